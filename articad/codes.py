@@ -1,0 +1,347 @@
+"""The vocabulary of findings: every code with its stage, who must act, and what it means.
+
+`docs/reference/findings.md` is generated from this table. A code that is not listed here cannot be used
+(`Finding` looks it up), and a test fails on one that no other test raises.
+"""
+
+from __future__ import annotations
+
+from typing import Literal, NamedTuple
+
+Stage = Literal["plan", "build", "interference", "motion", "fit", "export", "import", "audit", "model"]
+Route = Literal["design", "code"]
+
+
+class Code(NamedTuple):
+    """A registered code.
+
+    Attributes:
+        stage: The check that reports it.
+        route: Who must act: the plan's author (design), the part script's (code), or neither.
+        meaning: What was found.
+        remedy: What to do about it, in general; each finding's own hint is particular.
+    """
+
+    stage: Stage
+    route: Route | None
+    meaning: str
+    remedy: str
+
+
+CODES: dict[str, Code] = {
+    # --- plan: form and numbers
+    "E_SCHEMA": Code(
+        "plan", "design", "The plan does not have the form of articad.plan/1.", "Correct the named field; the valid ones are listed."
+    ),
+    "E_NAME": Code(
+        "plan",
+        "design",
+        "A name is not of the allowed form.",
+        "Use lower_snake_case, at most 40 characters, no Python keyword, no double underscore.",
+    ),
+    "E_DUP_NAME": Code("plan", "design", "A name is used twice in its own list.", "Rename one of them."),
+    "E_EXPRESSION": Code(
+        "plan",
+        "design",
+        "A number's expression cannot be read.",
+        "Use + - * / ( ), decimal literals, parameter names, pi and the listed functions.",
+    ),
+    "E_EXPRESSION_CYCLE": Code(
+        "plan", "design", "Parameters depend on each other in a circle.", "Give one of the parameters in the circle a number."
+    ),
+    "E_NONFINITE": Code(
+        "plan", "design", "A number is not finite.", "Give a finite number; check for division by zero and roots of negative numbers."
+    ),
+    "E_PARAMETER_BOUNDS": Code("plan", "design", "A parameter's value is outside its own min and max.", "Move the value or the bound."),
+    "W_PARAMETER_RANGE": Code(
+        "plan",
+        "design",
+        "The plan breaks when a parameter is at its min or max.",
+        "Narrow the parameter's range, or mend the expression that breaks.",
+    ),
+    "E_MATERIAL_UNKNOWN": Code(
+        "plan", "design", "A part names a material that is not declared.", "Declare the material or correct its name."
+    ),
+    "E_COUNT": Code("plan", "design", "A dimension that ends in _count is not a whole number.", "Give a whole number."),
+    "E_DENSITY": Code("plan", "design", "A density is not positive.", "Give the density in kg/m3; steel is 7850."),
+    "E_ENVELOPE_VALUE": Code(
+        "plan", "design", "An expected bounding box has a side that is not positive.", "Give three positive lengths in mm."
+    ),
+    "E_SCALE": Code(
+        "plan",
+        "design",
+        "The assembly is smaller than 0.5 mm or larger than 1e6 mm.",
+        "Lengths are millimetres; were metres or inches meant?",
+    ),
+    "E_NOT_SUPPORTED": Code(
+        "plan", "design", "The plan is valid, but this version cannot solve it yet.", "Use a supported joint type or structure."
+    ),
+    # --- plan: connectors
+    "E_AXIS_ZERO": Code("plan", "design", "An axis has no length.", "Give a vector longer than 1e-9."),
+    "E_AXIS_PARALLEL": Code("plan", "design", "A connector's x is parallel to its z.", "Give an x at right angles to z, or leave x out."),
+    "E_AXIS_NOT_ORTHOGONAL": Code(
+        "plan", "design", "A connector's x is more than 1 degree off the right angle to z.", "Use the projected x that is named."
+    ),
+    "W_AXIS_NOT_ORTHOGONAL": Code(
+        "plan", "design", "A connector's x is slightly off the right angle to z and was projected.", "Use the projected x that is named."
+    ),
+    "E_LEFT_HANDED": Code("plan", "design", "A frame is mirrored: its determinant is negative.", "Use derive: mirror for mirrored parts."),
+    "E_NOT_ROTATION": Code("plan", "design", "A matrix is not a rotation.", "Give orthonormal columns with determinant 1."),
+    "E_QUAT_NORM": Code("plan", "design", "A quaternion is not of unit length.", "Give a unit quaternion (x, y, z, w)."),
+    "E_CONNECTOR_UNKNOWN": Code(
+        "plan", "design", "A joint names a connector that its part does not declare.", "Declare the connector or use one of those listed."
+    ),
+    "W_CONNECTOR_KIND": Code(
+        "plan", "design", "A connector's kind does not suit its joint.", "Use a kind that suits the joint, or 'frame'."
+    ),
+    "W_CONNECTOR_UNUSED": Code("plan", "design", "No joint uses this connector.", "Use it in a joint, or remove it."),
+    "W_DUP_CONNECTOR_USE": Code(
+        "plan", "design", "Two joints use one connector.", "This is right for coaxial stacks; otherwise declare a connector of its own."
+    ),
+    "E_NO_CONNECTORS": Code(
+        "plan", "design", "A part of an assembly has no connector.", "Declare at least one connector and a joint that uses it."
+    ),
+    # --- plan: joints and graph
+    "E_PART_UNKNOWN": Code("plan", "design", "A part is named that is not declared.", "Declare it, or use one of those listed."),
+    "E_JOINT_UNKNOWN": Code("plan", "design", "A joint is named that is not declared.", "Declare it, or use one of those listed."),
+    "E_JOINT_SELF": Code("plan", "design", "A joint connects a part with itself.", "Name two different parts."),
+    "E_JOINT_DUP": Code("plan", "design", "Two joints connect the same two connectors.", "Remove one."),
+    "E_NO_GROUND": Code("plan", "design", "The ground is not one of the parts.", "Name a declared part as ground."),
+    "E_DISCONNECTED": Code(
+        "plan",
+        "design",
+        "Some parts are not connected to the ground.",
+        "Add a joint between one part of each group and one that is connected.",
+    ),
+    "E_NOT_TREE": Code(
+        "plan",
+        "design",
+        "The plan asserts a tree but its joints close a loop.",
+        "Remove the joint that closes the loop, or drop 'tree': true.",
+    ),
+    "E_REVERSE_UNSUPPORTED": Code(
+        "plan", "design", "A planar or universal joint would have to be crossed from child to parent.", "Exchange its parent and child."
+    ),
+    "E_DOF_MISMATCH": Code(
+        "plan",
+        "design",
+        "The declared freedoms differ from those the joints give.",
+        "Set freedoms to the computed number, or mend the joints.",
+    ),
+    "E_DRIVER": Code(
+        "plan",
+        "design",
+        "The declared drivers do not determine the motion.",
+        "Mark as drivers as many independent joints as there are freedoms.",
+    ),
+    "W_DRIVER": Code("plan", "design", "A driver mark has no effect here.", "Remove it."),
+    "E_LIMITS_MISSING": Code("plan", "design", "A joint that moves has no limits.", "Give [lower, upper], or 'endless' for an angle."),
+    "E_LIMITS_ORDER": Code("plan", "design", "A limit's lower bound is above its upper bound.", "Exchange the two."),
+    "E_LIMITS_KIND": Code("plan", "design", "A limit does not suit its joint.", "Use the fields of the joint's own type."),
+    "W_LIMITS_EQUAL": Code("plan", "design", "A joint's two limits are equal, so it cannot move.", "Use a fixed joint, or open the range."),
+    "W_LIMITS_UNITS": Code("plan", "design", "Limits of a turning joint look like radians, or exceed two turns.", "Give degrees."),
+    "E_REST_OUTSIDE_LIMITS": Code("plan", "design", "A joint's rest value is outside its limits.", "Move the rest value or the limit."),
+    "E_LEAD_ZERO": Code("plan", "design", "A screw has no lead.", "Give the advance per turn in mm, or use a revolute joint."),
+    "E_MATE_OFFSET": Code(
+        "plan", "design", "The two connectors of a joint do not meet at rest.", "Move one of them by the named offset, or set rest_pose."
+    ),
+    "E_MATE_FLIP": Code(
+        "plan",
+        "design",
+        "The two z axes of a joint oppose at rest although the mate is aligned, or agree although it is opposed.",
+        "Change the mate, or turn one z over.",
+    ),
+    "E_MATE_TILT": Code(
+        "plan", "design", "The two z axes of a joint are tilted against each other at rest.", "Use the corrected z that is named."
+    ),
+    "E_MATE_ROLL": Code(
+        "plan",
+        "design",
+        "The two x axes of a joint differ at rest: the part would be turned about the axis.",
+        "Use the corrected x, or set the rest value.",
+    ),
+    "I_REST_AUTO": Code(
+        "plan",
+        None,
+        "A part is placed by its joint, so that joint's rest check is empty.",
+        "Give the part a rest_pose if the check is wanted.",
+    ),
+    "E_REST_AUTO": Code("plan", "design", "The ground cannot be placed by a joint.", "Give the ground a rest_pose, or leave it out."),
+    # --- plan: derived parts and joints
+    "E_DERIVE_UNKNOWN": Code("plan", "design", "A derived part or joint names a source that is not declared.", "Use one of those listed."),
+    "E_DERIVE_CYCLE": Code(
+        "plan", "design", "Derived parts or joints derive from each other in a circle.", "Give one of them its own definition."
+    ),
+    "E_DERIVE_COUNT": Code("plan", "design", "A pattern's count is not a positive whole number.", "Give a whole number of at least 1."),
+    "E_DERIVE_JOINT": Code(
+        "plan",
+        "design",
+        "A derived joint's child is not the image of its source's child.",
+        "Name the part that is derived by the same operation.",
+    ),
+    "W_MIRROR_LIMITS": Code(
+        "plan",
+        "design",
+        "A mirrored part's joint has the limits of its source, so the motion is not symmetric.",
+        "Derive the joint as well, or negate and exchange the limits.",
+    ),
+    "W_CHIRAL": Code(
+        "plan",
+        "design",
+        "A part that is mirrored seems to have a handedness (thread, gear, text).",
+        "Make it a part of its own, unless the other hand is meant.",
+    ),
+    # --- plan: couplings, fits, waivers, mechanisms
+    "E_COUPLING": Code(
+        "plan", "design", "A coupling's joints do not suit its type.", "Name one coordinate each, of the kinds the coupling ties."
+    ),
+    "E_COUPLING_AXES": Code(
+        "plan", "design", "A coupling's axes are not parallel at rest.", "Use a linear coupling, or make the axes parallel."
+    ),
+    "E_COUPLING_RATIO": Code(
+        "plan", "design", "A coupling's ratio is zero or not finite.", "Give positive teeth or radii, or a ratio other than zero."
+    ),
+    "E_COUPLING_REST": Code(
+        "plan", "design", "A linear coupling's offset does not agree with the rest values.", "Set the offset to the named value."
+    ),
+    "E_FIT": Code("plan", "design", "A fit's range is impossible.", "Give 0 <= min <= max in mm."),
+    "E_ALLOW": Code("plan", "design", "A waiver is incomplete.", "Name two different parts, a positive depth in mm and a reason."),
+    "E_LOOP_OPEN": Code("plan", "design", "A loop cannot be closed.", "Lengthen a link or move a pivot."),
+    "E_LOOP_LOCKED": Code("plan", "design", "A loop cannot move.", "Make the axes parallel, or change a joint of the loop."),
+    "E_LOOP_LIMIT": Code(
+        "motion",
+        "design",
+        "A joint of a loop leaves its limits while the driver moves.",
+        "Narrow the driver's limits or widen the joint's.",
+    ),
+    "E_DEAD_POINT": Code("motion", "design", "A driver's declared range goes past a dead point of the loop.", "Set the named limits."),
+    "E_SINGULAR": Code(
+        "motion",
+        "design",
+        "The mechanism passes a singular configuration where its branch is not determined.",
+        "Keep the driver away from the named value.",
+    ),
+    "W_NEAR_SINGULAR": Code(
+        "motion", "design", "A loop is close to a singular configuration.", "Check for a misaligned axis or a dead point."
+    ),
+    "W_SHAKY": Code("plan", "design", "The linkage moves to first order only.", "Change a length: it is rigid, but barely."),
+    "W_IDLE_FREEDOM": Code(
+        "plan", "design", "A freedom moves one part alone and drives nothing.", "This is right for a leg that may spin; otherwise fix it."
+    ),
+    "I_REDUNDANT": Code(
+        "plan",
+        None,
+        "A loop has constraints that it does not need.",
+        "In real life, release the named joint to a ball or cylindrical joint.",
+    ),
+    # --- build
+    "E_SCRIPT_MISSING": Code("build", "code", "A part has no script.", "Write parts/<part>.py with a function build(part)."),
+    "E_SCRIPT_ERROR": Code("build", "code", "A part script raised an exception.", "Mend the named line."),
+    "E_SCRIPT_TIMEOUT": Code("build", "code", "A part script ran too long.", "Simplify the geometry; look for an endless loop."),
+    "E_SCRIPT_MEMORY": Code("build", "code", "A part script needed too much memory.", "Simplify the geometry."),
+    "E_SCRIPT_FORBIDDEN": Code(
+        "build",
+        "code",
+        "A part script did something that the sandbox forbids.",
+        "A script may only compute a shape: no files, network, processes.",
+    ),
+    "E_NO_BUILD": Code(
+        "build",
+        "code",
+        "A part script does not define build(part), or it does not return (shape, connectors).",
+        "Define build(part) and return (shape, connectors).",
+    ),
+    "E_NOT_ONE_SOLID": Code("build", "code", "The shape is not one solid.", "Fuse the bodies so that they touch or overlap."),
+    "E_INVALID_SOLID": Code("build", "code", "The solid is not valid.", "Avoid self-intersecting features and zero-thickness walls."),
+    "E_EMPTY_SOLID": Code("build", "code", "The solid has no volume.", "Check that cuts do not remove everything."),
+    "E_ENVELOPE": Code("build", "code", "The solid's bounding box differs from the stated one by more than 2 %.", "Build the stated size."),
+    "E_CONNECTOR_MISSING": Code(
+        "build", "code", "The script does not return a connector of the plan.", "Return an entry for each connector of the plan."
+    ),
+    "E_CONNECTOR_EXTRA": Code(
+        "build", "code", "The script returns a connector that the plan does not have.", "Return only the connectors of the plan."
+    ),
+    "E_CONNECTOR_DRIFT": Code(
+        "build", "code", "A realised connector is too far from where the plan has it.", "Build the feature where the plan's connector is."
+    ),
+    "W_CONNECTOR_DRIFT": Code(
+        "build", "code", "A realised connector is slightly off the plan's.", "Build the feature where the plan's connector is."
+    ),
+    "E_NOT_EDITABLE": Code(
+        "build",
+        "code",
+        "The part cannot be edited: its dimensions do not drive it.",
+        "Use the dimensions in the geometry instead of literal numbers.",
+    ),
+    "E_FEATURE_OFF_TIP": Code(
+        "build",
+        "code",
+        "A feature of the body is not part of its final solid.",
+        "Set body.Tip to the pattern before adding the next feature.",
+    ),
+    "W_DIMENSION_UNUSED": Code(
+        "build", "code", "A stated dimension does not change the part.", "Use the dimension in the script, or remove it from the plan."
+    ),
+    "E_SANDBOX": Code(
+        "build",
+        None,
+        "The sandbox that untrusted scripts need is not available.",
+        "Install what is named, or accept less with --sandbox weak.",
+    ),
+    "E_KERNEL_UNAVAILABLE": Code(
+        "build", None, "The kernel that builds parts is not available.", "Install what is named; `articad doctor` shows what is there."
+    ),
+    # --- interference and fits
+    "E_OVERLAP": Code("interference", "design", "Two parts overlap at rest.", "Move one of them, or shorten it."),
+    "W_STATIC_OVERLAP": Code(
+        "interference", "code", "Two parts that a joint connects overlap more than a fit allows.", "Enlarge the bore or thin the pin."
+    ),
+    "E_STATIC_OVERLAP": Code(
+        "interference",
+        "code",
+        "Two parts that a joint connects overlap by more than 1 % of the smaller.",
+        "Bore the hole, or cut the slot.",
+    ),
+    "E_MOTION_COLLISION": Code(
+        "motion", "design", "Two parts collide during motion.", "Narrow the limits to the free range, or make room."
+    ),
+    "E_FLOATING": Code("interference", "design", "A part touches nothing.", "Bring it to its neighbour, or connect it."),
+    "E_NOT_TOUCHING": Code(
+        "interference", "code", "Two parts that are fixed to each other do not touch.", "Extend one of them to the other."
+    ),
+    "E_MESH_OPEN": Code(
+        "interference",
+        "code",
+        "A mesh is not closed, so overlap cannot be measured.",
+        "Repair the mesh; every edge must belong to two triangles.",
+    ),
+    "I_WAIVED": Code("interference", None, "An overlap is allowed by a waiver of the plan.", "Nothing, while the reason holds."),
+    "E_NOT_CHECKED": Code("interference", None, "A check that was asked for was not done.", "Give it a larger budget, or what it needs."),
+    "E_FIT_TIGHT": Code("fit", "code", "A joint's gap is smaller than its fit.", "Enlarge the bore or thin the pin by the named amount."),
+    "E_FIT_LOOSE": Code("fit", "code", "A joint's gap is larger than its fit.", "Narrow the bore or thicken the pin by the named amount."),
+    "E_FIT_CONTACT": Code(
+        "fit", "design", "Contact is forbidden but found, or required but absent.", "Move the surfaces by the named amount."
+    ),
+    # --- model
+    "E_REPLY_SCHEMA": Code(
+        "model",
+        None,
+        "A model's reply does not have the form asked for.",
+        "The reply and the form are shown; the request is repeated with the findings.",
+    ),
+    "E_REPLAY_MISS": Code(
+        "model", None, "The recording has no reply for this request.", "Replay with the version that recorded it, or record again."
+    ),
+    "I_PROMPT_DRIFT": Code(
+        "model", None, "A prompt differs from the recorded one; the recorded reply was used.", "Record again, or use --strict to refuse."
+    ),
+    "E_BUDGET": Code("model", None, "The budget is spent.", "Raise --max-calls, --max-cost or --max-minutes, and resume."),
+    "E_TRANSPORT": Code("model", None, "The model could not be reached.", "Check --api-base, the network and the provider's status."),
+    "E_KEY_MISSING": Code("model", None, "The provider's key is missing or was refused.", "Set the environment variable that is named."),
+    # --- import and export
+    "E_UNREPRESENTABLE": Code(
+        "export", None, "A format cannot hold something, and strict was asked for.", "Export without --strict to accept the named loss."
+    ),
+    "E_READ": Code("import", None, "A file cannot be read.", "Check the file at the named place."),
+    "E_UNSAFE_PATH": Code("import", None, "A file names a path outside its own folder.", "Keep meshes beside the file."),
+}
