@@ -1,0 +1,327 @@
+"""Assembly: what users hold. Parts, a mechanism that moves them, and what was promised about their fits."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from types import MappingProxyType
+from typing import Literal, Self
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from articad.connectors.se3 import SE3
+from articad.errors import LimitError, PlanError, UnknownJointError
+from articad.findings import Findings
+from articad.geometry.part import MassProperties, Part
+from articad.interference.check import Checks, check_pose
+from articad.kernels.build123d import Build123dKernel
+from articad.kernels.kernel import BuildCache, PartKernel
+from articad.kernels.parts import Progress, RealisedPart, build_parts, find_scripts
+from articad.kinematics.joints import Coordinate, Coupling, Joint, JointType
+from articad.kinematics.mechanism import Mechanism
+from articad.plan.resolve import Fit, Material, ResolvedPlan, Waiver, resolve
+from articad.plan.schema import AssemblyPlan
+
+FloatArray = NDArray[np.float64]
+JointValue = float | Sequence[float]
+
+DEFLECTION_MM = 0.01  # meshes stay this close to their solids; interference tolerances are derived from it
+_LIMIT_SLACK = 1e-9  # rad or mm: a value computed to be at its limit is at its limit
+
+
+class Poses(Mapping[str, SE3]):
+    """Where each part is: part name -> its pose in the ground frame."""
+
+    def __init__(self, names: Sequence[str], stacked: SE3) -> None:
+        self._names = tuple(names)
+        self.stacked = stacked
+
+    def __getitem__(self, part: str) -> SE3:
+        try:
+            return self.stacked[self._names.index(part)]
+        except ValueError:
+            raise KeyError(part) from None
+
+    def __iter__(self) -> Iterable[str]:  # type: ignore[override]
+        return iter(self._names)
+
+    def __len__(self) -> int:
+        return len(self._names)
+
+    def __repr__(self) -> str:
+        return f"Poses({', '.join(self._names)})"
+
+
+@dataclass(frozen=True, eq=False)
+class Assembly:
+    """Parts, the mechanism that moves them, and the fits and waivers that were declared.
+
+    Attributes:
+        name: Name of the product.
+        mechanism: Parts, joints and couplings as mathematics.
+        parts: Geometry, mass and connectors by part name, in the order of `mechanism.parts`.
+        materials: By name.
+        fits: Declared fits by joint name.
+        waivers: Overlaps that the plan allows.
+        resolved: The plan with its numbers; None when made in Python or imported.
+        realised: How each part was built; empty when made in Python or imported.
+        findings: What the plan's check and the builds had to say, warnings and notes.
+    """
+
+    name: str
+    mechanism: Mechanism
+    parts: Mapping[str, Part]
+    materials: Mapping[str, Material] = field(default_factory=dict)
+    fits: Mapping[str, Fit] = field(default_factory=dict)
+    waivers: tuple[Waiver, ...] = ()
+    resolved: ResolvedPlan | None = None
+    realised: Mapping[str, RealisedPart] = field(default_factory=dict)
+    findings: Findings = field(default_factory=Findings)
+    deflection: float = DEFLECTION_MM
+    _kernel: PartKernel | None = None
+
+    def __post_init__(self) -> None:
+        for attribute in ("parts", "materials", "fits", "realised"):
+            object.__setattr__(self, attribute, MappingProxyType(dict(getattr(self, attribute))))
+
+    # ------------------------------------------------------------------ making one
+
+    @classmethod
+    def from_plan(
+        cls,
+        plan: AssemblyPlan,
+        parts: str | Path | Mapping[str, str | bytes],
+        *,
+        kernel: PartKernel | None = None,
+        sandbox: Literal["strict", "weak"] = "strict",
+        jobs: int | None = None,
+        deflection: float = DEFLECTION_MM,
+        cache: BuildCache | None = None,
+        progress: Progress | None = None,
+        parameters: Mapping[str, float] | None = None,
+    ) -> Self:
+        """Build every part script of a plan in the sandbox and assemble the result.
+
+        Args:
+            plan: A valid plan.
+            parts: Folder of part scripts, or source by part name.
+            kernel: Builds the scripts; build123d by default.
+            sandbox: "weak" accepts less isolation than landlock or bwrap give.
+            jobs: How many parts at once; by default the number of processors.
+            deflection: Largest distance of a mesh from its solid [mm].
+            cache: Keeps built parts; by default `$ARTICAD_CACHE` or `~/.cache/articad`.
+            progress: Told of each part's fate.
+            parameters: Values that replace the plan's own.
+
+        Raises:
+            PlanError: If the plan has errors.
+            ContractError: If a part cannot be built; holds the findings of all that failed.
+            SandboxError: If the isolation asked for is not available.
+        """
+        resolved = resolve(plan, **dict(parameters or {}))
+        kernel = kernel or Build123dKernel(sandbox=sandbox)
+        if isinstance(parts, Mapping):
+            scripts = {name: text.encode() if isinstance(text, str) else text for name, text in parts.items()}
+        else:
+            scripts = find_scripts(Path(parts), resolved, kernel.name)
+        realised = build_parts(
+            resolved, scripts, kernel=kernel, cache=cache or BuildCache(), deflection=deflection, jobs=jobs, progress=progress
+        )
+        return cls.from_realised(resolved, realised, kernel=kernel, deflection=deflection)
+
+    @classmethod
+    def from_realised(
+        cls,
+        resolved: ResolvedPlan,
+        realised: Mapping[str, RealisedPart],
+        *,
+        kernel: PartKernel | None = None,
+        deflection: float = DEFLECTION_MM,
+    ) -> Self:
+        """Assemble parts that are built already; no model, no kernel."""
+        mechanism = resolved.mechanism
+        return cls(
+            name=resolved.plan.name,
+            mechanism=mechanism,
+            parts={name: realised[name].part for name in mechanism.parts},
+            materials=resolved.materials,
+            fits=resolved.fits,
+            waivers=resolved.waivers,
+            resolved=resolved,
+            realised=realised,
+            findings=Findings(finding for part in realised.values() for finding in part.findings),
+            deflection=deflection,
+            _kernel=kernel,
+        )
+
+    @classmethod
+    def from_parts(
+        cls,
+        name: str,
+        *,
+        parts: Iterable[Part],
+        joints: Iterable[Joint],
+        ground: str,
+        couplings: Iterable[Coupling] = (),
+        fits: Mapping[str, Fit] | None = None,
+        waivers: Iterable[Waiver] = (),
+        T_ground: SE3 | None = None,
+    ) -> Self:
+        """Assemble parts and joints made in Python, without a plan.
+
+        Args:
+            name: Name of the product.
+            parts: From a mesh, a STEP file, a script, or without geometry.
+            joints: As `articad.revolute(...)` and its siblings make them.
+            ground: Name of the part that stands still.
+            couplings: Between joints.
+            fits: By joint name.
+            waivers: Overlaps to allow.
+            T_ground: Pose of the ground part; the identity by default.
+
+        Raises:
+            PlanError: With every finding about names, joints and structure.
+        """
+        by_name = {part.name: part for part in parts}
+        mechanism = Mechanism(
+            tuple(by_name), ground, tuple(joints), tuple(couplings), T_ground=SE3.identity() if T_ground is None else T_ground
+        )
+        return cls(name=name, mechanism=mechanism, parts=by_name, fits=fits or {}, waivers=tuple(waivers))
+
+    def with_parameters(self, **values: float) -> Assembly:
+        """Return the assembly with other parameter values; only parts whose numbers changed are built again.
+
+        Raises:
+            PlanError: If there is no plan, a parameter is unknown, or the plan does not hold at these values.
+        """
+        if self.resolved is None:
+            raise PlanError("This assembly was not made from a plan, so it has no parameters.")
+        scripts = {name: part.script for name, part in self.realised.items() if part.script is not None}
+        parameters = {**self.resolved.overrides, **values}
+        return Assembly.from_plan(
+            self.resolved.plan, scripts, kernel=self._kernel, deflection=self.deflection, parameters=parameters
+        )
+
+    # ------------------------------------------------------------------ what it is
+
+    @property
+    def plan(self) -> AssemblyPlan | None:
+        """The plan it was made from."""
+        return None if self.resolved is None else self.resolved.plan
+
+    @property
+    def ground(self) -> str:
+        """Name of the part that stands still."""
+        return self.mechanism.ground
+
+    @property
+    def joints(self) -> tuple[Joint, ...]:
+        """All joints, in the order of declaration."""
+        return self.mechanism.joints
+
+    @property
+    def drivers(self) -> tuple[Coordinate, ...]:
+        """The columns of `q`."""
+        return self.mechanism.drivers
+
+    # ------------------------------------------------------------------ where things are
+
+    def q(self, **by_joint: JointValue) -> FloatArray:
+        """Return the configuration with these joints set and all other drivers at rest.
+
+        Args:
+            by_joint: A number for a joint of one coordinate, else a sequence in the order of its coordinates [rad, mm];
+                a ball takes a quaternion (x, y, z, w).
+
+        Returns:
+            `q`, `(nq,)`.
+
+        Raises:
+            UnknownJointError: If a name is not that of a joint that drives.
+            LimitError: If a value is outside its limits.
+        """
+        q = np.array(self.mechanism.rest, dtype=np.float64)
+        columns: dict[str, list[int]] = {}
+        for index, driver in enumerate(self.drivers):
+            columns.setdefault(driver.joint, []).append(index)
+        for name, value in by_joint.items():
+            if name not in columns:
+                raise UnknownJointError(name, columns)
+            values = np.atleast_1d(np.asarray(value, dtype=np.float64))
+            if values.shape != (len(columns[name]),):
+                wanted = ", ".join(self.drivers[index].name for index in columns[name])
+                raise PlanError(f"Joint {name!r} takes {len(columns[name])} number(s) ({wanted}), not {values.size}.")
+            q[columns[name]] = values
+        self._refuse_outside_limits(q, by_joint)
+        return q
+
+    def at(self, **by_joint: JointValue) -> Poses:
+        """Place every part with these joints set and all other drivers at rest.
+
+        See `q` for the arguments and errors.
+        """
+        return Poses(self.mechanism.parts, self.poses(self.q(**by_joint)))
+
+    def poses(self, q: ArrayLike) -> SE3:
+        """Place every part in the ground frame.
+
+        Args:
+            q: Coordinates of the drivers [rad, mm], `(*batch, nq)`.
+
+        Returns:
+            `T_ground_part` of all parts in the order of `parts`, `(*batch, N, 7)` [mm, quaternion xyzw].
+        """
+        return self.mechanism.poses(np.asarray(q, dtype=np.float64))
+
+    def jacobian(self, q: ArrayLike, part: str, frame: SE3 | str | None = None) -> FloatArray:
+        """Return how fast a frame of a part moves with each driver.
+
+        Args:
+            q: Coordinates of the drivers [rad, mm], `(nq,)`.
+            part: Name of the part that carries the frame.
+            frame: Frame in the part, or the name of one of its connectors; the part's own frame by default.
+
+        Returns:
+            `(6, nv)`: velocity of the frame's origin [mm] over angular velocity [rad], both in the ground frame.
+        """
+        if isinstance(frame, str):
+            frame = self.parts[part].connectors[frame].frame
+        return self.mechanism.jacobian(np.asarray(q, dtype=np.float64), part, SE3.identity() if frame is None else frame)
+
+    # ------------------------------------------------------------------ what is true of it
+
+    def check(self, q: ArrayLike | None = None) -> Checks:
+        """Check one pose, by default the rest pose, for overlap, floating parts and broken meshes."""
+        at_rest = q is None
+        poses = self.poses(self.mechanism.rest if q is None else q)
+        return check_pose(
+            {name: part.mesh for name, part in self.parts.items() if part.mesh is not None},
+            dict(Poses(self.mechanism.parts, poses)),
+            joints=self.joints,
+            waivers=self.waivers,
+            deflection={name: part.deflection for name, part in self.parts.items()},
+            over="rest" if at_rest else "pose",
+        )
+
+    def mass(self, q: ArrayLike | None = None) -> MassProperties:
+        """Return mass, centre of mass and inertia of the whole in the ground frame, by default at rest.
+
+        Parts without mass count as massless.
+        """
+        poses = Poses(self.mechanism.parts, self.poses(self.mechanism.rest if q is None else q))
+        return MassProperties.combined([part.mass.moved(poses[name]) for name, part in self.parts.items() if part.mass is not None])
+
+    def __repr__(self) -> str:
+        joints = ", ".join(f"{joint.name}: {joint.type}" for joint in self.joints if joint.type is not JointType.FIXED)
+        return f"<Assembly {self.name}: {len(self.parts)} parts, {self.mechanism.mobility} freedoms ({joints})>"
+
+    def _refuse_outside_limits(self, q: FloatArray, names: Iterable[str]) -> None:
+        asked = set(names)
+        for value, driver in zip(q, self.drivers, strict=True):
+            if driver.joint not in asked or (math.isinf(driver.lower) and math.isinf(driver.upper)):
+                continue
+            if not driver.lower - _LIMIT_SLACK <= value <= driver.upper + _LIMIT_SLACK:
+                raise LimitError(driver.name, float(value), driver.lower, driver.upper, driver.unit)

@@ -1,0 +1,194 @@
+"""All parts of a plan: scripts found, parts built side by side, derived parts made from their sources.
+
+Every failure of every part is reported at once; what was built stays in the cache.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterator, Mapping
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from articad.errors import ContractError, KernelError, did_you_mean
+from articad.findings import Finding, Findings
+from articad.geometry.part import Part
+from articad.kernels.kernel import BuildCache, BuiltPart, PartKernel, build_part, mirror_part, realise
+from articad.plan.brief import brief_digest, build_digest
+from articad.plan.resolve import ResolvedPlan
+
+SCRIPT_SUFFIX = {"build123d": ".py", "freecad": ".freecad.py"}
+
+
+@dataclass(frozen=True)
+class RealisedPart:
+    """A part of the plan with its geometry.
+
+    Attributes:
+        part: What assemblies, checks and exports use; its connectors are the plan's.
+        built: The kernel's files and the connectors as the script realised them.
+        script: Source of the part script; None for a derived part.
+        digests: `brief` and `build` (contracts, Digests); empty for a derived part.
+        derived_from: Name of the source part, if derived.
+        cached: True when nothing had to be built.
+        findings: Warnings of the build.
+    """
+
+    part: Part
+    built: BuiltPart
+    script: bytes | None
+    digests: Mapping[str, str]
+    derived_from: str | None
+    cached: bool
+    findings: Findings
+
+
+Progress = Callable[[str, str], None]
+"""Called with the part's name and one of "started", "built", "cached", "derived", "failed"; from several threads."""
+
+
+def find_scripts(folder: Path, resolved: ResolvedPlan, kernel: str) -> dict[str, bytes]:
+    """Read the script of every part that is not derived.
+
+    Raises:
+        ContractError: With `E_SCRIPT_MISSING` for each part that has none.
+    """
+    suffix = SCRIPT_SUFFIX[kernel]
+    scripts: dict[str, bytes] = {}
+    missing = []
+    present = sorted(path.name for path in folder.glob("*.py")) if folder.is_dir() else []
+    for name, part in resolved.parts.items():
+        if part.derivation is not None:
+            continue
+        path = folder / f"{name}{suffix}"
+        if path.is_file():
+            scripts[name] = path.read_bytes()
+        else:
+            missing.append(_script_missing(name, path.name, present))
+    if missing:
+        raise ContractError("\n".join(map(str, missing)), findings=missing)
+    return scripts
+
+
+def build_parts(
+    resolved: ResolvedPlan,
+    scripts: Mapping[str, bytes],
+    *,
+    kernel: PartKernel,
+    cache: BuildCache,
+    deflection: float,
+    jobs: int | None = None,
+    progress: Progress | None = None,
+) -> dict[str, RealisedPart]:
+    """Build every part, independent ones side by side, in the order of the plan.
+
+    Args:
+        resolved: The plan with its numbers.
+        scripts: Source of each part script by part name.
+        kernel: Builds a script.
+        cache: Keeps what was built by its build digest.
+        deflection: Largest distance of a mesh from its solid [mm].
+        jobs: How many parts at once; by default the number of processors.
+        progress: Told of each part's fate.
+
+    Raises:
+        ContractError: With the findings of every part that failed.
+    """
+    tell = progress or _silent
+    sources = [name for name, part in resolved.parts.items() if part.derivation is None]
+    missing = [_script_missing(name, f"{name}{SCRIPT_SUFFIX[kernel.name]}", sorted(scripts)) for name in sources if name not in scripts]
+    if missing:
+        raise ContractError("\n".join(map(str, missing)), findings=missing)
+
+    def build(name: str) -> RealisedPart | KernelError:
+        tell(name, "started")
+        try:
+            realised = build_source(resolved, name, scripts[name], kernel=kernel, cache=cache, deflection=deflection)
+        except KernelError as error:
+            tell(name, "failed")
+            return error
+        tell(name, "cached" if realised.cached else "built")
+        return realised
+
+    with ThreadPoolExecutor(max_workers=jobs or os.cpu_count()) as pool:
+        outcomes = dict(zip(sources, pool.map(build, sources), strict=True))
+    errors = {name: outcome for name, outcome in outcomes.items() if isinstance(outcome, KernelError)}
+    if errors:
+        raise _all_failures(errors, len(sources))
+    realised = {name: outcome for name, outcome in outcomes.items() if isinstance(outcome, RealisedPart)}
+    for name in _derived_in_order(resolved):
+        realised[name] = derive_part(resolved, name, realised, kernel=kernel)
+        tell(name, "derived")
+    return {name: realised[name] for name in resolved.parts}
+
+
+def build_source(
+    resolved: ResolvedPlan, name: str, script: bytes, *, kernel: PartKernel, cache: BuildCache, deflection: float
+) -> RealisedPart:
+    """Build one part that is not derived and hold it to its contract.
+
+    Raises:
+        BuildError: If its script fails.
+        ContractError: If what it builds breaks the contract, connector drift included.
+    """
+    built = build_part(resolved, name, script, kernel=kernel, cache=cache, deflection=deflection)
+    part, drift = realise(resolved.parts[name], built)
+    findings = built.findings + drift
+    if not findings.ok:
+        raise ContractError("\n".join(map(str, findings.errors)), findings=findings, parts=(name,))
+    digests = {
+        "brief": brief_digest(resolved, name),
+        "build": build_digest(resolved, name, script, kernel.name, kernel.version, deflection),
+    }
+    return RealisedPart(part=part, built=built, script=script, digests=digests, derived_from=None, cached=built.cached, findings=findings)
+
+
+def derive_part(resolved: ResolvedPlan, name: str, realised: Mapping[str, RealisedPart], *, kernel: PartKernel) -> RealisedPart:
+    """Make a derived part from its source's geometry: the same for rigid and pattern, reflected for mirror."""
+    target = resolved.parts[name]
+    derivation = target.derivation
+    assert derivation is not None
+    source = realised[derivation.source]
+    if derivation.S is None:
+        built, part = source.built, source.part.renamed(name)
+    else:
+        built = mirror_part(kernel, source.built, derivation.S)
+        part = source.part.mirrored(name, derivation.S)
+    part = replace(part, connectors=target.connectors, color=target.color)
+    return RealisedPart(
+        part=part, built=built, script=None, digests={}, derived_from=derivation.source, cached=source.cached, findings=Findings()
+    )
+
+
+def _derived_in_order(resolved: ResolvedPlan) -> Iterator[str]:
+    """Yield derived parts, each after its source; `resolve` has refused circles."""
+    done = {name for name, part in resolved.parts.items() if part.derivation is None}
+    waiting = [name for name in resolved.parts if name not in done]
+    while waiting:
+        for name in waiting:
+            derivation = resolved.parts[name].derivation
+            if derivation is not None and derivation.source in done:
+                done.add(name)
+                yield name
+        waiting = [name for name in waiting if name not in done]
+
+
+def _all_failures(errors: Mapping[str, KernelError], total: int) -> ContractError:
+    findings = Findings(finding for error in errors.values() for finding in error.findings)
+    lines = [f"{len(errors)} of {total} part scripts failed.", *(str(error) for error in errors.values())]
+    return ContractError("\n".join(lines), findings=findings, parts=tuple(errors))
+
+
+def _script_missing(name: str, file: str, present: list[str]) -> Finding:
+    return Finding(
+        code="E_SCRIPT_MISSING",
+        where=f"parts.{name}",
+        parts=(name,),
+        message=f"Part {name!r} has no script {file!r}.{did_you_mean(file, present)}",
+        hint=f"Write {file} with a function build(part) that returns (shape, connectors).",
+    )
+
+
+def _silent(name: str, event: str) -> None:
+    """Tell nobody."""
