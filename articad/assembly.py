@@ -325,3 +325,16 @@ class Assembly:
                 continue
             if not driver.lower - _LIMIT_SLACK <= value <= driver.upper + _LIMIT_SLACK:
                 raise LimitError(driver.name, float(value), driver.lower, driver.upper, driver.unit)
+
+
+def build(
+    plan: AssemblyPlan,
+    parts: str | Path | Mapping[str, str | bytes],
+    *,
+    kernel: PartKernel | None = None,
+    sandbox: Literal["strict", "weak"] = "strict",
+    jobs: int | None = None,
+    deflection: float = DEFLECTION_MM,
+) -> Assembly:
+    """Build every part script of a plan in the sandbox and assemble the result; see `Assembly.from_plan`."""
+    return Assembly.from_plan(plan, parts, kernel=kernel, sandbox=sandbox, jobs=jobs, deflection=deflection)
