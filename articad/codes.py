@@ -342,6 +342,8 @@ CODES: dict[str, Code] = {
     "E_UNREPRESENTABLE": Code(
         "export", None, "A format cannot hold something, and strict was asked for.", "Export without --strict to accept the named loss."
     ),
+    "E_WRITE": Code("export", None, "A file cannot be written.", "Free space or permissions at the named place; finished work is kept."),
+    "E_RUN": Code("import", None, "A run directory cannot be used.", "Name another directory, or wait for the process that uses it."),
     "E_READ": Code("import", None, "A file cannot be read.", "Check the file at the named place."),
     "E_UNSAFE_PATH": Code("import", None, "A file names a path outside its own folder.", "Keep meshes beside the file."),
 }

@@ -15,6 +15,8 @@ ArticadError
 │  ├─ SandboxError
 │  └─ KernelUnavailableError
 ├─ ReadError
+├─ WriteError
+├─ RunError
 ├─ ExportError
 │  └─ UnrepresentableError
 └─ AgentError
@@ -153,6 +155,26 @@ class ReadError(ArticadError):
 
     def __init__(self, message: str, *, path: str, where: str = "", findings: Iterable[Finding] = ()) -> None:
         self.path, self.where = path, where
+        super().__init__(message, findings=findings)
+
+
+class WriteError(ArticadError):
+    """A file that cannot be written; `path` says which. What was written before is intact."""
+
+    default_stage = "export"
+
+    def __init__(self, message: str, *, path: str, findings: Iterable[Finding] = ()) -> None:
+        self.path = path
+        super().__init__(message, findings=findings)
+
+
+class RunError(ArticadError):
+    """A run directory that cannot be used: none, of another request, or in use by another process."""
+
+    default_stage = "import"
+
+    def __init__(self, message: str, *, path: str, findings: Iterable[Finding] = ()) -> None:
+        self.path = path
         super().__init__(message, findings=findings)
 
 
