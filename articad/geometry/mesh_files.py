@@ -1,0 +1,339 @@
+"""Mesh files: STL, OBJ, GLB and PLY, read and written.
+
+STL and OBJ are read with NumPy, and so is everything written; trimesh is loaded only to read GLB and PLY.
+What is written depends on the mesh alone: no times, no names of programs, no order of dictionaries.
+A file is somebody else's: whatever is wrong with it becomes a `ReadError` that says where.
+"""
+
+from __future__ import annotations
+
+import io
+import json
+import re
+import struct
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from articad.errors import ArticadError, ReadError
+from articad.findings import Finding
+from articad.geometry.mesh import TriMesh, merged
+
+FloatArray = NDArray[np.float64]
+
+MAX_FILE_BYTES = 1 << 30  # a mesh of 20 million triangles; more is a mistake or an attack
+STL_HEADER = b"articad binary STL, mm".ljust(80, b" ")  # must not begin with "solid", or readers take it for text
+_STL_RECORD = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
+_STL_KEYWORDS = {
+    0: b"facet",
+    1: b"normal",
+    5: b"outer",
+    6: b"loop",
+    7: b"vertex",
+    11: b"vertex",
+    15: b"vertex",
+    19: b"endloop",
+    20: b"endfacet",
+}
+_STL_NUMBERS = (8, 9, 10, 12, 13, 14, 16, 17, 18)
+_STL_TOKENS = 21  # facet normal n n n outer loop (vertex x y z) x 3 endloop endfacet
+
+
+def read_mesh(path: str | Path, scale: float = 1.0) -> TriMesh:
+    """Read a mesh file; exactly equal vertices are merged, collapsed triangles dropped.
+
+    Args:
+        path: A file whose name ends in .stl, .obj, .glb, .gltf or .ply.
+        scale: Millimetres per unit of the file.
+
+    Raises:
+        ReadError: If the file is missing, too large, of another form, truncated or holds no triangle.
+    """
+    path = Path(path)
+    reader = _READERS.get(path.suffix.lower())
+    if reader is None:
+        raise _unreadable(path, "name", f"{path.suffix or 'no'} extension is not one of {', '.join(_READERS)}")
+    try:
+        size = path.stat().st_size
+        if size > MAX_FILE_BYTES:
+            raise _unreadable(path, f"{size} bytes", f"the file is larger than {MAX_FILE_BYTES} bytes")
+        content = path.read_bytes()
+    except OSError as error:
+        raise _unreadable(path, "file", error.strerror or str(error)) from error
+    mesh = _checked(path, lambda: reader(path, content))
+    if not len(mesh.triangles):
+        raise _unreadable(path, "file", "it holds no triangle")
+    return mesh if scale == 1.0 else mesh.scaled(scale)
+
+
+def write_stl(mesh: TriMesh) -> bytes:
+    """Return the mesh as binary STL, float32, in the mesh's unit."""
+    corners = mesh.vertices[mesh.triangles]
+    normals = mesh.normals_of_twice_area
+    lengths = np.sqrt(np.einsum("ij,ij->i", normals, normals))
+    lengths[lengths == 0] = 1.0
+    records = np.zeros(len(mesh.triangles), dtype=_STL_RECORD)
+    records["normal"] = normals / lengths[:, None]
+    records["corners"] = corners
+    return STL_HEADER + struct.pack("<I", len(records)) + records.tobytes()
+
+
+def write_obj(mesh: TriMesh) -> bytes:
+    """Return the mesh as OBJ text; numbers are written in full, so that reading gives the same mesh bit for bit."""
+    vertices = ("v %r %r %r\n" * len(mesh.vertices)) % tuple(mesh.vertices.ravel().tolist())
+    triangles = ("f %d %d %d\n" * len(mesh.triangles)) % tuple((mesh.triangles.ravel() + 1).tolist())
+    return f"# articad, mm\n{vertices}{triangles}".encode("ascii")
+
+
+def write_ply(mesh: TriMesh) -> bytes:
+    """Return the mesh as binary little-endian PLY with float64 vertices."""
+    header = (
+        "ply\nformat binary_little_endian 1.0\ncomment articad, mm\n"
+        f"element vertex {len(mesh.vertices)}\nproperty double x\nproperty double y\nproperty double z\n"
+        f"element face {len(mesh.triangles)}\nproperty list uchar int vertex_indices\nend_header\n"
+    )
+    faces = np.empty(len(mesh.triangles), dtype=[("count", "u1"), ("corners", "<i4", 3)])
+    faces["count"] = 3
+    faces["corners"] = mesh.triangles
+    return header.encode("ascii") + mesh.vertices.astype("<f8", copy=False).tobytes() + faces.tobytes()
+
+
+def write_glb(mesh: TriMesh, color: str | None = None) -> bytes:
+    """Return the mesh as a GLB with one node, in the mesh's unit and axes.
+
+    Args:
+        mesh: The mesh; float32 in the file.
+        color: "#rrggbb" of the surface.
+    """
+    positions = mesh.vertices.astype("<f4")
+    indices = mesh.triangles.astype("<u4")
+    low, high = (positions.min(axis=0), positions.max(axis=0)) if len(positions) else (np.zeros(3), np.zeros(3))
+    primitive: dict[str, object] = {"attributes": {"POSITION": 0}, "indices": 1}
+    document: dict[str, object] = {
+        "asset": {"version": "2.0", "generator": "articad"},
+        "scene": 0,
+        "scenes": [{"nodes": [0]}],
+        "nodes": [{"mesh": 0}],
+        "meshes": [{"primitives": [primitive]}],
+        "accessors": [
+            {"bufferView": 0, "componentType": 5126, "count": len(positions), "type": "VEC3", "min": low.tolist(), "max": high.tolist()},
+            {"bufferView": 1, "componentType": 5125, "count": indices.size, "type": "SCALAR"},
+        ],
+        "bufferViews": [
+            {"buffer": 0, "byteOffset": 0, "byteLength": positions.nbytes, "target": 34962},
+            {"buffer": 0, "byteOffset": positions.nbytes, "byteLength": indices.nbytes, "target": 34963},
+        ],
+        "buffers": [{"byteLength": positions.nbytes + indices.nbytes}],
+    }
+    if color is not None:
+        primitive["material"] = 0
+        document["materials"] = [
+            {"pbrMetallicRoughness": {"baseColorFactor": [*_linear_color(color), 1.0], "metallicFactor": 0.0, "roughnessFactor": 0.8}}
+        ]
+    text = json.dumps(document, separators=(",", ":")).encode("ascii")
+    text += b" " * (-len(text) % 4)
+    binary = positions.tobytes() + indices.tobytes()
+    total = 12 + 8 + len(text) + 8 + len(binary)
+    return b"".join(
+        (
+            struct.pack("<4sII", b"glTF", 2, total),
+            struct.pack("<I4s", len(text), b"JSON"),
+            text,
+            struct.pack("<I4s", len(binary), b"BIN\0"),
+            binary,
+        )
+    )
+
+
+def _linear_color(color: str) -> list[float]:
+    """Turn "#rrggbb" (sRGB) into the linear factors that glTF wants."""
+    channels = [int(color[i : i + 2], 16) / 255 for i in (1, 3, 5)]
+    return [c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in channels]
+
+
+def _read_stl(path: Path, content: bytes) -> TriMesh:
+    if len(content) >= 84:
+        count = struct.unpack_from("<I", content, 80)[0]
+        if len(content) == 84 + count * _STL_RECORD.itemsize:
+            records = np.frombuffer(content, dtype=_STL_RECORD, offset=84)
+            return _soup(path, records["corners"].reshape(-1, 3).astype(np.float64))
+    if content[:256].lstrip()[:5].lower() == b"solid" and b"\0" not in content[:1024]:
+        return _read_text_stl(path, content)
+    if len(content) < 84:
+        raise _unreadable(path, f"byte {len(content)}", "a binary STL has at least 84 bytes")
+    have, odd = divmod(len(content) - 84, _STL_RECORD.itemsize)
+    raise _unreadable(
+        path, f"byte {len(content)}", f"its header announces {count} triangles, but {have} and {odd} bytes follow; is it truncated?"
+    )
+
+
+def _read_text_stl(path: Path, content: bytes) -> TriMesh:
+    lines = [line for line in content.splitlines() if line.lstrip()[:5].lower() != b"solid" and line.lstrip()[:8].lower() != b"endsolid"]
+    tokens = b"\n".join(lines).split()
+    well_formed = len(tokens) % _STL_TOKENS == 0
+    if well_formed:
+        well_formed = all(token.lower() == word for at, word in _STL_KEYWORDS.items() for token in tokens[at::_STL_TOKENS])
+    if not well_formed:
+        raise _unreadable(
+            path, _place_in_text_stl(content), "not a facet of the form 'facet normal … outer loop, 3 vertices, endloop endfacet'"
+        )
+    table = np.empty((len(tokens) // _STL_TOKENS, 9))
+    for column, at in enumerate(_STL_NUMBERS):
+        try:
+            table[:, column] = tokens[at::_STL_TOKENS]
+        except ValueError as error:
+            raise _unreadable(path, _place_in_text_stl(content), str(error)) from error
+    return _soup(path, table.reshape(-1, 3))
+
+
+def _place_in_text_stl(content: bytes) -> str:
+    """Find the first line that does not follow from the one before."""
+    expected = [(b"facet", 5), (b"outer", 2), (b"vertex", 4), (b"vertex", 4), (b"vertex", 4), (b"endloop", 1), (b"endfacet", 1)]
+    at = 0
+    number = 0
+    for number, line in enumerate(content.splitlines(), 1):
+        words = line.split()
+        if not words or words[0].lower() in (b"solid", b"endsolid"):
+            continue
+        keyword, count = expected[at]
+        if words[0].lower() != keyword or len(words) != count or (keyword in (b"facet", b"vertex") and not _are_numbers(words[-3:])):
+            return f"line {number}"
+        at = (at + 1) % len(expected)
+    return f"end of file, after line {number}"
+
+
+def _are_numbers(words: list[bytes]) -> bool:
+    try:
+        return bool(np.isfinite([float(word) for word in words]).all())
+    except ValueError:
+        return False
+
+
+def _soup(path: Path, corners: FloatArray) -> TriMesh:
+    bad = ~np.isfinite(corners).all(axis=1)
+    if bad.any():
+        raise _unreadable(path, f"triangle {int(np.flatnonzero(bad)[0]) // 3}", "a coordinate is not a finite number")
+    return TriMesh(corners, np.arange(len(corners), dtype=np.int32).reshape(-1, 3)).welded()
+
+
+def _read_obj(path: Path, content: bytes) -> TriMesh:
+    content = content.replace(b"\r\n", b"\n").replace(b"\\\n", b" ")
+    lines = content.split(b"\n")
+    vertex_lines = [line for line in lines if line.startswith((b"v ", b"v\t"))]
+    face_lines = [line for line in lines if line.startswith((b"f ", b"f\t"))]
+    vertices = _obj_vertices(path, lines, vertex_lines)
+    table = re.sub(rb"/\S*", b"", b"\n".join(face_lines))
+    words = table.replace(b"f", b"").split()
+    simple = len(words) == 3 * len(face_lines) and all(line.count(b"-") == 0 for line in face_lines)
+    try:
+        triangles = np.array(words, dtype=np.int64).reshape(-1, 3) - 1 if simple and _are_triangles(table) else None
+    except (ValueError, OverflowError):
+        triangles = None
+    if triangles is None or (len(triangles) and (triangles.min() < 0 or triangles.max() >= len(vertices))):
+        triangles = _obj_faces_one_by_one(path, lines, len(vertices))
+    return TriMesh(vertices, triangles.astype(np.int32)).welded()
+
+
+def _are_triangles(table: bytes) -> bool:
+    return all(len(line.split()) == 4 for line in table.split(b"\n") if line)
+
+
+def _obj_vertices(path: Path, lines: list[bytes], vertex_lines: list[bytes]) -> FloatArray:
+    if not vertex_lines:
+        return np.empty((0, 3))
+    try:
+        rows = [line.split()[1:4] for line in vertex_lines]
+        vertices = np.array(rows, dtype=np.float64)
+        if vertices.shape == (len(rows), 3) and np.isfinite(vertices).all():
+            return vertices
+    except ValueError:
+        pass
+    for number, line in enumerate(lines, 1):
+        if line.startswith((b"v ", b"v\t")) and (len(line.split()) < 4 or not _are_numbers(line.split()[1:4])):
+            raise _unreadable(path, f"line {number}", "a vertex needs three finite numbers")
+    raise _unreadable(path, "vertices", "they are not rows of three numbers")
+
+
+def _obj_faces_one_by_one(path: Path, lines: list[bytes], total: int) -> NDArray[np.int64]:
+    """Read polygons, fanned from their first corner, and indices that count back from the last vertex so far."""
+    triangles: list[tuple[int, int, int]] = []
+    known = 0
+    for number, line in enumerate(lines, 1):
+        if line.startswith((b"v ", b"v\t")):
+            known += 1
+        if not line.startswith((b"f ", b"f\t")):
+            continue
+        try:
+            corners = [int(word.split(b"/")[0]) for word in line.split()[1:]]
+        except ValueError:
+            raise _unreadable(path, f"line {number}", "a face needs whole numbers") from None
+        corners = [corner - 1 if corner > 0 else known + corner for corner in corners]
+        if len(corners) < 3:
+            raise _unreadable(path, f"line {number}", f"a face needs three corners, not {len(corners)}")
+        if min(corners) < 0 or max(corners) >= total:
+            raise _unreadable(path, f"line {number}", f"a face names a vertex that does not exist; there are {total}")
+        triangles += [(corners[0], corners[i], corners[i + 1]) for i in range(1, len(corners) - 1)]
+    return np.array(triangles, dtype=np.int64).reshape(-1, 3)
+
+
+def _read_with_trimesh(path: Path, content: bytes) -> TriMesh:
+    """Read GLB or PLY; nodes of a scene are placed and merged.
+
+    Only what is inside the file is read: buffers and pictures that a glTF names beside itself are not looked up.
+    """
+    import trimesh  # noqa: PLC0415  half a second, for two formats
+
+    kind = path.suffix.lower().lstrip(".")
+    _require_whole(path, kind, content)
+    scene = trimesh.load_scene(io.BytesIO(content), file_type=kind, process=False)
+    pieces = [piece for piece in scene.dump(concatenate=False) if isinstance(piece, trimesh.Trimesh)]
+    meshes = [TriMesh(np.asarray(piece.vertices, dtype=np.float64), np.asarray(piece.faces, dtype=np.int32)) for piece in pieces]
+    if not meshes:
+        raise _unreadable(path, "file", "it holds no triangle mesh")
+    return merged(meshes).welded()
+
+
+def _require_whole(path: Path, kind: str, content: bytes) -> None:
+    if kind == "glb":
+        if len(content) < 20 or content[:4] != b"glTF":
+            raise _unreadable(path, "byte 0", "a GLB begins with 'glTF' and has at least 20 bytes")
+        announced = struct.unpack_from("<I", content, 8)[0]
+        if announced > len(content):
+            raise _unreadable(path, f"byte {len(content)}", f"its header announces {announced} bytes; is it truncated?")
+    if kind == "ply" and b"end_header" not in content:
+        raise _unreadable(path, "header", "it has no 'end_header'")
+
+
+def _checked(path: Path, read: Callable[[], TriMesh]) -> TriMesh:
+    """Run a reader over bytes that may be hostile; whatever it stumbles over is the file's fault."""
+    try:
+        return read()
+    except ReadError:
+        raise
+    except ArticadError as error:
+        raise _unreadable(path, "arrays", error.message) from error
+    except (MemoryError, RecursionError) as error:
+        raise _unreadable(path, "file", "it needs too much memory") from error
+    except Exception as error:  # trimesh raises whatever its parsers raise
+        raise _unreadable(path, "file", f"{type(error).__name__}: {error}") from error
+
+
+def _unreadable(path: Path, where: str, reason: str) -> ReadError:
+    finding = Finding(
+        code="E_READ",
+        where=f"{path.name}, {where}",
+        message=f"{path.name} cannot be read at {where}: {reason}.",
+        hint="Export the mesh again as STL, OBJ, GLB or PLY.",
+    )
+    return ReadError(finding.message, path=str(path), where=where, findings=[finding])
+
+
+_READERS: dict[str, Callable[[Path, bytes], TriMesh]] = {
+    ".stl": _read_stl,
+    ".obj": _read_obj,
+    ".glb": _read_with_trimesh,
+    ".gltf": _read_with_trimesh,
+    ".ply": _read_with_trimesh,
+}

@@ -1,0 +1,286 @@
+"""Part: one type for what kernels build, what importers read and what is made from a mesh in Python."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from pathlib import Path
+from types import MappingProxyType
+from typing import Self
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from articad.connectors.attachment import Attachment
+from articad.connectors.connector import Connector
+from articad.connectors.se3 import SE3
+from articad.errors import ConnectorError, InvalidSolidError, did_you_mean
+from articad.geometry.mass import MassProperties
+from articad.geometry.mesh import TriMesh, merged
+from articad.geometry.mesh_files import read_mesh
+
+__all__ = ["MassProperties", "Part", "Shape", "Solid", "SolidReader"]
+
+FloatArray = NDArray[np.float64]
+
+DEFAULT_COLOR = "#9aa5b1"
+IDENTITY = SE3.identity()
+
+
+@dataclass(frozen=True, eq=False)
+class Shape:
+    """A mesh to look at or to collide with.
+
+    Attributes:
+        mesh: In its own frame [mm].
+        frame: `T_part_mesh`: where that frame is in the part.
+        color: "#rrggbb", or None for the part's.
+        name: For files and reports.
+    """
+
+    mesh: TriMesh
+    frame: SE3 = IDENTITY
+    color: str | None = None
+    name: str = ""
+
+    @property
+    def placed(self) -> TriMesh:
+        """The mesh in the part's frame."""
+        return self.mesh if self.frame.allclose(IDENTITY, mm=0.0, rad=0.0) else self.mesh.transformed(self.frame)
+
+    @cached_property
+    def digest(self) -> str:
+        """SHA-256 over mesh, frame and colour: equal digests are drawn by one file."""
+        total = hashlib.sha256(self.mesh.digest.encode())
+        total.update(np.ascontiguousarray(self.frame.data, dtype="<f8").tobytes())
+        total.update((self.color or "").encode())
+        return total.hexdigest()
+
+    def reflected(self, S: FloatArray) -> Shape:
+        """Return the mirror image under `S (4, 4)` of the part's frame, baked into the mesh."""
+        return Shape(self.placed.reflected(S), IDENTITY, self.color, self.name)
+
+
+@dataclass(frozen=True, eq=False)
+class Solid:
+    """One closed body, with its numbers exact where a B-rep stands behind it.
+
+    Attributes:
+        mesh: Its surface in the part's frame, closed.
+        brep: File of the B-rep, if there is one.
+        step: The same as STEP.
+        deflection: Largest distance between mesh and true surface [mm]; 0 when the mesh itself is the solid.
+        volume: [mm³].
+        area: [mm²].
+        com: Centre of the volume [mm], `(3,)`.
+        inertia_mm5: Inertia about the centre at density one [mm⁵], `(3, 3)`.
+        bbox: Smallest and largest coordinates [mm], `(2, 3)`.
+    """
+
+    mesh: TriMesh
+    brep: Path | None
+    step: Path | None
+    deflection: float
+    volume: float
+    area: float
+    com: FloatArray
+    inertia_mm5: FloatArray
+    bbox: FloatArray
+
+    @classmethod
+    def from_mesh(cls, mesh: TriMesh, *, deflection: float = 0.0) -> Self:
+        """Return the solid that a closed mesh bounds, measured on the mesh.
+
+        Raises:
+            InvalidSolidError: If the mesh is open or inside out.
+        """
+        if not mesh.is_closed:
+            raise InvalidSolidError(f"The mesh is not closed: {mesh.open_edges} of its edges have no partner.", status="open")
+        volume, com, inertia = mesh.solid_integrals()
+        if volume <= 0:
+            raise InvalidSolidError(
+                f"The mesh encloses {volume:.6g} mm³: it is inside out or flat; reverse its triangles.", status="inside_out"
+            )
+        return cls(mesh, None, None, deflection, volume, mesh.area, com, inertia, mesh.bounds)
+
+    def mass(self, density: float) -> MassProperties:
+        """Return its mass at a density [kg/m³]."""
+        return MassProperties.from_solid(self.volume, self.com, self.inertia_mm5, density)
+
+    def mirrored(self, S: ArrayLike) -> Solid:
+        """Return the mirror image under `S (4, 4)`; its B-rep files are left out, for they show the original."""
+        matrix = np.asarray(S, dtype=np.float64)
+        mesh = self.mesh.reflected(matrix)
+        Q = matrix[:3, :3]
+        return Solid(
+            mesh, None, None, self.deflection, self.volume, self.area, Q @ self.com + matrix[:3, 3], Q @ self.inertia_mm5 @ Q.T, mesh.bounds
+        )
+
+    def moved(self, T: SE3) -> Solid:
+        """Return the solid in the frame that `T` maps into; the B-rep files stay where they are and are kept."""
+        mesh = self.mesh.transformed(T)
+        R = T.rotation
+        return replace(self, mesh=mesh, com=R @ self.com + T.translation, inertia_mm5=R @ self.inertia_mm5 @ R.T, bbox=mesh.bounds)
+
+
+SolidReader = Callable[[Path, float], Solid]
+"""Turns a STEP file into a solid meshed to a deflection [mm]; the kernels' worker is one."""
+
+
+@dataclass(frozen=True, eq=False)
+class Part:
+    """A rigid body of an assembly.
+
+    Attributes:
+        name: Unique in the assembly.
+        connectors: By name, in the part's own frame.
+        visuals: What is drawn.
+        collisions: What collides, where it is not the solid.
+        solid: The body itself, if it is known; None for a part without geometry or from a file of loose triangles.
+        mass: Given, or from solid and density; None when neither is known.
+        color: "#rrggbb".
+        material: Name of its material, if it has one.
+    """
+
+    name: str
+    connectors: Mapping[str, Connector] = field(default_factory=dict)
+    visuals: tuple[Shape, ...] = ()
+    collisions: tuple[Shape, ...] = ()
+    solid: Solid | None = None
+    mass: MassProperties | None = None
+    color: str = DEFAULT_COLOR
+    material: str | None = None
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "connectors", MappingProxyType(dict(self.connectors)))
+        object.__setattr__(self, "visuals", tuple(self.visuals))
+        object.__setattr__(self, "collisions", tuple(self.collisions))
+
+    @classmethod
+    def from_mesh(
+        cls,
+        name: str,
+        mesh: TriMesh | str | Path,
+        *,
+        density: float | None = None,
+        connectors: Mapping[str, Connector] | None = None,
+        scale: float = 1.0,
+        color: str = DEFAULT_COLOR,
+        material: str | None = None,
+    ) -> Self:
+        """Return a part made of a triangle mesh or of a file that holds one.
+
+        A closed mesh becomes the solid; an open one is drawn and collided with, but has no volume and so no mass.
+
+        Args:
+            name: Name of the part.
+            mesh: The mesh, or an STL, OBJ, GLB or PLY file.
+            density: [kg/m³]; without it the part has no mass.
+            connectors: By name.
+            scale: Millimetres per unit of the file or mesh.
+            color: "#rrggbb".
+            material: Name of its material.
+
+        Raises:
+            ReadError: If the file cannot be read.
+            InvalidSolidError: If a density is given and the mesh is open or inside out.
+        """
+        trimesh = mesh if isinstance(mesh, TriMesh) else read_mesh(mesh)
+        trimesh = trimesh if scale == 1.0 else trimesh.scaled(scale)
+        shape = Shape(trimesh, name=name)
+        solid = Solid.from_mesh(trimesh) if density is not None or (trimesh.is_closed and trimesh.volume > 0) else None
+        mass = solid.mass(density) if solid is not None and density is not None else None
+        return cls(name, connectors or {}, (shape,), (shape,), solid, mass, color, material)
+
+    @classmethod
+    def from_solid(
+        cls,
+        name: str,
+        solid: Solid,
+        *,
+        density: float | None = None,
+        connectors: Mapping[str, Connector] | None = None,
+        color: str = DEFAULT_COLOR,
+        material: str | None = None,
+    ) -> Self:
+        """Return a part that is one solid; its mesh is what is drawn and what collides."""
+        shape = Shape(solid.mesh, name=name)
+        return cls(name, connectors or {}, (shape,), (shape,), solid, None if density is None else solid.mass(density), color, material)
+
+    @classmethod
+    def from_step(
+        cls,
+        name: str,
+        path: str | Path,
+        *,
+        read: SolidReader,
+        deflection: float = 0.01,
+        density: float | None = None,
+        connectors: Mapping[str, Connector] | None = None,
+        color: str = DEFAULT_COLOR,
+        material: str | None = None,
+    ) -> Self:
+        """Return a part from a STEP file.
+
+        B-rep never enters this process, so the reader is handed in: the kernels' worker, which meshes and measures the solid.
+        """
+        solid = read(Path(path), deflection)
+        return cls.from_solid(name, solid, density=density, connectors=connectors, color=color, material=material)
+
+    @classmethod
+    def without_geometry(cls, name: str, connectors: Mapping[str, Connector] | None = None, mass: MassProperties | None = None) -> Self:
+        """Return a part that has frames and perhaps mass, but no shape."""
+        return cls(name, connectors or {}, mass=mass)
+
+    def __getitem__(self, connector: str) -> Attachment:
+        """Return one side of a joint: this part with one of its connectors.
+
+        Raises:
+            ConnectorError: If the part has no such connector.
+        """
+        if connector not in self.connectors:
+            known = ", ".join(self.connectors) or "none"
+            raise ConnectorError(
+                f"Part {self.name!r} has no connector {connector!r}.{did_you_mean(connector, self.connectors)} Known: {known}."
+            )
+        return Attachment(self.name, self.connectors[connector])
+
+    @cached_property
+    def mesh(self) -> TriMesh | None:
+        """What interference is checked with: the solid's mesh, else all collision shapes as one mesh, else None."""
+        if self.solid is not None:
+            return self.solid.mesh
+        return merged([shape.placed for shape in self.collisions]) if self.collisions else None
+
+    @property
+    def deflection(self) -> float:
+        """Largest distance between `mesh` and the true surface [mm]; 0 where the mesh is all there is."""
+        return 0.0 if self.solid is None else self.solid.deflection
+
+    def mirrored(self, name: str, S: ArrayLike) -> Part:
+        """Return the mirror image as a part of its own.
+
+        Args:
+            name: Name of the image.
+            S: Reflection of the part's frame, `(4, 4)`.
+        """
+        matrix = np.asarray(S, dtype=np.float64)
+        images = {id(shape): shape.reflected(matrix) for shape in (*self.visuals, *self.collisions)}
+        return replace(
+            self,
+            name=name,
+            connectors={key: connector.mirrored(matrix) for key, connector in self.connectors.items()},
+            visuals=tuple(images[id(shape)] for shape in self.visuals),
+            collisions=tuple(images[id(shape)] for shape in self.collisions),
+            solid=None if self.solid is None else self.solid.mirrored(matrix),
+            mass=None if self.mass is None else self.mass.mirrored(matrix),
+        )
+
+    def renamed(self, name: str) -> Part:
+        """Return the same part under another name."""
+        return replace(self, name=name)
+
+    def __repr__(self) -> str:
+        return f"<Part {self.name}: {len(self.connectors)} connectors, {self.mesh or 'no geometry'}>"
