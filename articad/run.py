@@ -1,0 +1,550 @@
+"""Run: the directory that holds everything one run was asked, was told and has made.
+
+Only this module knows the names of its files. Every file is written beside itself and renamed, so that a
+killed process leaves whole files only; a file that exists is finished work, and a run that is opened again
+goes on from there. Times stand in `trace.jsonl` and nowhere else, so that two runs of the same replies are equal
+byte for byte. Form: `docs/reference/run.md`.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import errno
+import hashlib
+import json
+import os
+import re
+import secrets
+import shutil
+import threading
+import time
+import unicodedata
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, Final, Literal, Self
+
+from articad.errors import ReadError, RunError, WriteError
+from articad.findings import Finding
+
+try:
+    import fcntl
+except ImportError:  # pragma: no cover - Windows has no flock: two processes in one run are not refused there
+    fcntl = None  # type: ignore[assignment]
+
+Event = Literal["stage", "call", "build", "finding", "artifact", "note"]
+Json = dict[str, Any]
+
+REQUEST_SCHEMA: Final = "articad.request/1"
+PART_SCHEMA: Final = "articad.part/1"
+DEFAULT_ROOT: Final = Path("runs")
+
+_REQUEST, _REQUIREMENTS, _PLAN, _ASSEMBLY, _CHECKS, _TRACE = (
+    "request.json",
+    "requirements.json",
+    "plan.json",
+    "assembly.json",
+    "checks.json",
+    "trace.jsonl",
+)
+_IMAGES, _PLANS, _PARTS, _REMOVED, _ATTEMPTS, _REPLIES, _SUPERSEDED, _EXPORT = (
+    "images",
+    "plans",
+    "parts",
+    "removed",
+    "attempts",
+    "llm",
+    "llm/superseded",
+    "export",
+)
+_SCRIPT, _BRIEF, _CONNECTORS, _PART, _STL, _OUTCOME = "script.py", "brief.json", "connectors.json", "part.json", "part.stl", "outcome.json"
+_TEMPORARY = re.compile(r"\..+\.tmp-[0-9a-f]{8}$")
+
+_SLUG_LENGTH = 40  # characters of the prompt in a run's name: enough to recognise it in a listing
+_NAME_TRIES = 20  # random names to try before giving up; two equal ones are a 1 in 65536 chance
+_IMAGE_LIMIT = 20 * 2**20  # bytes; no provider takes larger ones
+_IMAGE_KINDS = {b"\x89PNG\r\n\x1a\n": ("image/png", "png"), b"\xff\xd8\xff": ("image/jpeg", "jpg"), b"GIF8": ("image/gif", "gif")}
+
+
+def canonical_json(value: object) -> bytes:
+    """Return the one spelling of a JSON value that digests are taken of: sorted keys, no spaces, `repr` floats."""
+    return json.dumps(value, sort_keys=True, separators=(",", ":"), ensure_ascii=False, allow_nan=False).encode()
+
+
+def digest(value: object) -> str:
+    """Return the sha256 of a JSON value's canonical form, in hexadecimal."""
+    return hashlib.sha256(canonical_json(value)).hexdigest()
+
+
+@dataclass(frozen=True)
+class UserImage:
+    """A picture that the user gave: its bytes, as they are, and the part it belongs to, if to one only."""
+
+    content: bytes = field(repr=False)
+    media_type: str
+    suffix: str
+    part: str | None = None
+
+    @classmethod
+    def read(cls, source: str | Path | bytes, part: str | None = None) -> Self:
+        """Read a PNG, JPEG, GIF or WebP picture.
+
+        Raises:
+            ReadError: If it cannot be read, is none of these, or is larger than 20 MiB.
+        """
+        name = "an image" if isinstance(source, bytes) else str(source)
+        try:
+            content = source if isinstance(source, bytes) else Path(source).read_bytes()
+        except OSError as error:
+            raise _unreadable(name, f"Cannot read {name}: {error.strerror}.") from error
+        if len(content) > _IMAGE_LIMIT:
+            raise _unreadable(name, f"{name} has {len(content) / 2**20:.0f} MiB; at most {_IMAGE_LIMIT // 2**20} are accepted.")
+        kinds = [kind for start, kind in _IMAGE_KINDS.items() if content.startswith(start)]
+        if content[:4] == b"RIFF" and content[8:12] == b"WEBP":
+            kinds = [("image/webp", "webp")]
+        if not kinds:
+            raise _unreadable(name, f"{name} is not a PNG, JPEG, GIF or WebP picture.")
+        return cls(content, *kinds[0], part=part)
+
+    @property
+    def sha256(self) -> str:
+        """Digest of the bytes, in hexadecimal."""
+        return hashlib.sha256(self.content).hexdigest()
+
+
+@dataclass(frozen=True, kw_only=True)
+class RunRequest:
+    """What a run was asked for.
+
+    Attributes:
+        prompt: The user's words.
+        images: The user's pictures, in order.
+        options: Choices that decide what is made, JSON values by name. No model, address or time stands here.
+    """
+
+    prompt: str
+    images: tuple[UserImage, ...] = ()
+    options: Mapping[str, Any] = field(default_factory=dict)
+
+    def to_json(self, version: str) -> Json:
+        """Return `request.json`; `version` is that of articad."""
+        images = [
+            {"file": f"{_IMAGES}/{number}.{image.suffix}", "sha256": image.sha256} | ({"part": image.part} if image.part else {})
+            for number, image in enumerate(self.images, 1)
+        ]
+        return {"schema": REQUEST_SCHEMA, "prompt": self.prompt, "images": images, "options": dict(self.options), "articad": version}
+
+    def same_as(self, other: RunRequest) -> bool:
+        """Whether both ask for the same, whatever the version of articad."""
+        return self.to_json("") == other.to_json("")
+
+
+class Run:
+    """A run directory, opened for writing by one process at a time, or viewed by any number.
+
+    Use `create`, `open` or `view`. As a context manager it releases its lock at the end.
+
+    Attributes:
+        path: The directory.
+        request: What was asked for.
+    """
+
+    def __init__(self, path: Path, request: RunRequest, lock: int | None) -> None:
+        self.path = path
+        self.request = request
+        self._lock = lock
+        self._tracing = threading.Lock()
+
+    # ------------------------------------------------------------------ opening
+
+    @classmethod
+    def create(cls, request: RunRequest, *, out: str | Path | None = None, version: str | None = None) -> Self:
+        """Make a new run directory.
+
+        Args:
+            request: What is asked for.
+            out: The directory, new or empty; by default `runs/<date>-<words of the prompt>-<4 hex digits>`.
+            version: Version of articad to record; this one's by default.
+
+        Raises:
+            RunError: If the directory holds something already.
+            WriteError: If it cannot be written.
+        """
+        path = _new_directory(request.prompt) if out is None else Path(out)
+        with _writing(path):
+            path.mkdir(parents=True, exist_ok=True)
+            strangers = sorted(entry.name for entry in path.iterdir() if entry.name != _IMAGES and not _TEMPORARY.fullmatch(entry.name))
+        if strangers:
+            raise _refused(path, f"{path} is not empty: it holds {strangers[0]}.", "Name a new directory, or resume the run that is there.")
+        run = cls(path, request, _locked(path))
+        described = request.to_json(_version() if version is None else version)
+        for image, entry in zip(request.images, described["images"], strict=True):
+            run._write(entry["file"], image.content)
+        run._write_json(_REQUEST, described)  # last: a directory without it is not a run yet
+        return run
+
+    @classmethod
+    def open(cls, path: str | Path) -> Self:
+        """Open a run to go on with it; what a killed process left half-written is swept away.
+
+        Raises:
+            RunError: If it is not a run, or another process works in it.
+        """
+        path = Path(path)
+        request = _read_request(path)
+        run = cls(path, request, _locked(path))
+        with _writing(path):
+            for leftover in [entry for entry in path.rglob(".*") if _TEMPORARY.fullmatch(entry.name)]:
+                shutil.rmtree(leftover) if leftover.is_dir() else leftover.unlink()
+            trace = path / _TRACE
+            if trace.exists() and (lines := trace.read_bytes()) and not lines.endswith(b"\n"):
+                run._append(b"\n")
+        return run
+
+    @classmethod
+    def view(cls, path: str | Path) -> Self:
+        """Open a run to read it only; any number of processes may.
+
+        Raises:
+            RunError: If it is not a run.
+        """
+        return cls(Path(path), _read_request(Path(path)), None)
+
+    def close(self) -> None:
+        """Let other processes write; nothing can be written through this object any more."""
+        if self._lock is not None:
+            os.close(self._lock)
+            self._lock = None
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def __repr__(self) -> str:
+        return f"<Run {self.path}>"
+
+    # ------------------------------------------------------------------ what was asked and told
+
+    @property
+    def prompt(self) -> str:
+        """The user's words."""
+        return self.request.prompt
+
+    @property
+    def version(self) -> str:
+        """Version of articad that made the run."""
+        return str((self._read_json(_REQUEST) or {}).get("articad", ""))
+
+    def requirements(self) -> Json | None:
+        """Return what was understood of the request, or None."""
+        return self._read_json(_REQUIREMENTS)
+
+    def save_requirements(self, requirements: Json) -> None:
+        """Keep what was understood of the request."""
+        self._write_json(_REQUIREMENTS, requirements)
+
+    def reply(self, step: str) -> Json | None:
+        """Return the recorded request and reply of a step, or None."""
+        return self._read_json(_reply_file(step))
+
+    def replies(self) -> tuple[str, ...]:
+        """Return the steps that have a reply."""
+        return tuple(sorted(file.stem.replace(".", "/") for file in (self.path / _REPLIES).glob("*.json")))
+
+    def save_reply(self, step: str, record: Json) -> None:
+        """Keep a reply; one to another question at the same step is put aside, not lost."""
+        old = self.reply(step)
+        if old is not None and old != record:
+            self._write_json(f"{_SUPERSEDED}/{Path(_reply_file(step)).stem}.{old['key'][:8]}.json", old)
+        self._write_json(_reply_file(step), record)
+
+    # ------------------------------------------------------------------ the plan
+
+    def plan_text(self) -> str | None:
+        """Return the current plan as JSON text, or None."""
+        content = self._read(_PLAN)
+        return None if content is None else content.decode()
+
+    def save_plan(self, text: str, version: int) -> None:
+        """Keep a version of the plan, counted from 0, and make it the current one."""
+        self._write(f"{_PLANS}/{version}.json", text.encode())
+        self._write(_PLAN, text.encode())
+
+    # ------------------------------------------------------------------ the parts
+
+    def part(self, name: str) -> Json | None:
+        """Return `part.json` of a finished part, or None."""
+        return self._read_json(f"{_PARTS}/{name}/{_PART}")
+
+    def script(self, name: str) -> bytes | None:
+        """Return the script of a part, or None."""
+        return self._read(f"{_PARTS}/{name}/{_SCRIPT}")
+
+    def part_names(self) -> tuple[str, ...]:
+        """Return the names of the finished parts."""
+        return tuple(sorted(file.parent.name for file in (self.path / _PARTS).glob(f"*/{_PART}")))
+
+    def save_part(
+        self,
+        name: str,
+        *,
+        record: Json,
+        brief: Json | None = None,
+        script: bytes | None = None,
+        connectors: Json | None = None,
+        stl: bytes | None = None,
+        files: Mapping[str, Path] | None = None,
+    ) -> None:
+        """Keep a built part; `part.json` is written last, so that it stands for the whole.
+
+        Args:
+            name: Name of the part.
+            record: Digests, kernel, measures, and of a derived part its source.
+            brief: What the script was given.
+            script: Its source.
+            connectors: Where the connectors are, and how far from the plan's.
+            stl: The mesh.
+            files: The kernel's own files to copy, by name.
+        """
+        folder = f"{_PARTS}/{name}"
+        record = {"schema": PART_SCHEMA} | record
+        if self.part(name) is not None and self.part(name) != record:
+            with _writing(self.path / folder):
+                (self.path / folder / _PART).unlink()
+        for file, value in ((_BRIEF, brief), (_CONNECTORS, connectors)):
+            if value is not None:
+                self._write_json(f"{folder}/{file}", value)
+        for file, content in ((_SCRIPT, script), (_STL, stl)):
+            if content is not None:
+                self._write(f"{folder}/{file}", content)
+        for file, source in sorted((files or {}).items()):
+            self._write(f"{folder}/{file}", source.read_bytes())
+        self._write_json(f"{folder}/{_PART}", record)
+
+    def remove_part(self, name: str) -> None:
+        """Put a part that the plan no longer has aside."""
+        source, target = self.path / _PARTS / name, self.path / _REMOVED / name
+        self._require_lock()
+        with _writing(target):
+            target.parent.mkdir(exist_ok=True)
+            if target.exists():
+                shutil.rmtree(target)
+            source.rename(target)
+
+    def attempt(self, name: str, number: int) -> Json | None:
+        """Return what came of an attempt at a part, or None."""
+        return self._read_json(f"{_ATTEMPTS}/{name}-{number}/{_OUTCOME}")
+
+    def save_attempt(self, name: str, number: int, *, script: bytes, outcome: Json) -> None:
+        """Keep an attempt at a part that did not succeed."""
+        self._write(f"{_ATTEMPTS}/{name}-{number}/{_SCRIPT}", script)
+        self._write_json(f"{_ATTEMPTS}/{name}-{number}/{_OUTCOME}", outcome)
+
+    # ------------------------------------------------------------------ the assembly
+
+    def assembly(self) -> Json | None:
+        """Return the assembly's report, or None."""
+        return self._read_json(_ASSEMBLY)
+
+    def save_assembly(self, report: Json) -> None:
+        """Keep the assembly's report."""
+        self._write_json(_ASSEMBLY, report)
+
+    def checks(self) -> Json | None:
+        """Return the report `articad.checks/1`, or None."""
+        return self._read_json(_CHECKS)
+
+    def save_checks(self, report: Json) -> None:
+        """Keep the report `articad.checks/1`."""
+        self._write_json(_CHECKS, report)
+
+    def save_export(self, kind: str, files: Mapping[str, bytes], report: Json) -> Path:
+        """Keep an exported format and what was lost in it; return its folder."""
+        folder = Path(_EXPORT) / kind
+        for name, content in sorted(files.items()):
+            if not (self.path / folder / name).resolve().is_relative_to((self.path / folder).resolve()):
+                raise _refused(self.path, f"{name} is outside {folder}.", "Export into the folder itself.")
+            self._write(str(folder / name), content)
+        self._write_json(str(folder / "losses.json"), report)
+        return self.path / folder
+
+    # ------------------------------------------------------------------ the trace
+
+    def trace(self, event: Event, **fields: object) -> None:
+        """Add a line to the trace; the only place where times are written."""
+        line = json.dumps({"t": round(time.time(), 3), "event": event} | fields, ensure_ascii=False)
+        self._append(line.encode() + b"\n")
+
+    def trace_finding(self, finding: Finding) -> None:
+        """Add a finding to the trace."""
+        self.trace("finding", **finding.to_json())
+
+    def events(self) -> Iterator[Json]:
+        """Yield the trace's events; a line that a killed process left torn is skipped."""
+        for line in (self._read(_TRACE) or b"").decode(errors="replace").splitlines():
+            with contextlib.suppress(ValueError):
+                yield json.loads(line)
+
+    def hashes(self) -> dict[str, str]:
+        """Return the sha256 of every file but the trace, by its path in the run."""
+        files = (file for file in sorted(self.path.rglob("*")) if file.is_file() and file.name != _TRACE)
+        return {file.relative_to(self.path).as_posix(): hashlib.sha256(file.read_bytes()).hexdigest() for file in files}
+
+    # ------------------------------------------------------------------ reading and writing
+
+    def _read(self, name: str) -> bytes | None:
+        try:
+            return (self.path / name).read_bytes()
+        except (FileNotFoundError, NotADirectoryError):
+            return None
+        except OSError as error:
+            raise _unreadable(str(self.path / name), f"Cannot read {self.path / name}: {error.strerror}.") from error
+
+    def _read_json(self, name: str) -> Json | None:
+        content = self._read(name)
+        if content is None:
+            return None
+        try:
+            value = json.loads(content)
+        except ValueError as error:
+            raise _unreadable(str(self.path / name), f"{self.path / name} is not JSON: {error}.") from error
+        if not isinstance(value, dict):
+            raise _unreadable(str(self.path / name), f"{self.path / name} is not a JSON object.")
+        return value
+
+    def _write_json(self, name: str, value: Json) -> None:
+        self._write(name, (json.dumps(value, indent=1, ensure_ascii=False, allow_nan=False) + "\n").encode())
+
+    def _write(self, name: str, content: bytes) -> None:
+        self._require_lock()
+        write_atomically(self.path / name, content)
+
+    def _append(self, line: bytes) -> None:
+        self._require_lock()
+        path = self.path / _TRACE
+        with self._tracing, _writing(path):
+            handle = os.open(path, os.O_WRONLY | os.O_APPEND | os.O_CREAT, 0o666)
+            try:
+                os.write(handle, line)
+            finally:
+                os.close(handle)
+
+    def _require_lock(self) -> None:
+        if self._lock is None:
+            raise _refused(self.path, f"{self.path} is open for reading only.", "Open it with Run.open.")
+
+
+def write_atomically(path: Path, content: bytes) -> None:
+    """Write a file so that a reader, or a process that comes after a crash, finds the old one or the new one, whole.
+
+    Raises:
+        WriteError: If the disk is full, the folder read-only and the like; the old file is intact.
+    """
+    temporary = path.with_name(f".{path.name}.tmp-{secrets.token_hex(4)}")
+    with _writing(path):
+        path.parent.mkdir(parents=True, exist_ok=True)
+        try:
+            with temporary.open("xb") as stream:
+                stream.write(content)
+                stream.flush()
+                os.fsync(stream.fileno())
+            temporary.replace(path)
+        except BaseException:
+            with contextlib.suppress(OSError):
+                temporary.unlink()
+            raise
+        with contextlib.suppress(OSError):  # not every file system can sync a folder
+            folder = os.open(path.parent, os.O_RDONLY)
+            try:
+                os.fsync(folder)
+            finally:
+                os.close(folder)
+
+
+def open_or_create(request: RunRequest, out: str | Path | None) -> Run:
+    """Open the run of this request that is at `out`, or make a new one.
+
+    Raises:
+        RunError: If `out` holds another request's run, or something else.
+    """
+    if out is None or not (Path(out) / _REQUEST).exists():
+        return Run.create(request, out=out)
+    run = Run.open(out)
+    if run.request.same_as(request):
+        return run
+    run.close()
+    raise _refused(Path(out), f"{out} is a run of another request.", "Name another directory, or repeat the run's own prompt and options.")
+
+
+def differences(first: Run, second: Run) -> Sequence[str]:
+    """Return the paths of the files, the trace apart, that are not equal in both runs."""
+    ours, theirs = first.hashes(), second.hashes()
+    return sorted(name for name in ours.keys() | theirs.keys() if ours.get(name) != theirs.get(name))
+
+
+def _reply_file(step: str) -> str:
+    return f"{_REPLIES}/{step.replace('/', '.')}.json"
+
+
+def _new_directory(prompt: str) -> Path:
+    ascii_text = unicodedata.normalize("NFKD", prompt).encode("ascii", "ignore").decode().lower()
+    slug = re.sub(r"[^a-z0-9]+", "-", ascii_text)[:_SLUG_LENGTH].strip("-") or "run"
+    day = time.strftime("%Y-%m-%d")
+    for _ in range(_NAME_TRIES):
+        path = DEFAULT_ROOT / f"{day}-{slug}-{secrets.token_hex(2)}"
+        if not path.exists():
+            return path
+    raise _refused(DEFAULT_ROOT, f"No free name for a run in {DEFAULT_ROOT}.", "Name a directory with --out.")
+
+
+def _read_request(path: Path) -> RunRequest:
+    run = Run(path, RunRequest(prompt=""), None)
+    stored = run._read_json(_REQUEST)  # noqa: SLF001 - the same class, before it is whole
+    if stored is None or stored.get("schema") != REQUEST_SCHEMA:
+        raise _refused(path, f"{path} is not a run: it has no {_REQUEST} of the form {REQUEST_SCHEMA}.", "Name a run directory.")
+    images = tuple(UserImage.read(path / image["file"], image.get("part")) for image in stored["images"])
+    return RunRequest(prompt=stored["prompt"], images=images, options=stored["options"])
+
+
+def _locked(path: Path) -> int:
+    with _writing(path):
+        handle = os.open(path, os.O_RDONLY)
+    if fcntl is not None:
+        try:
+            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError as error:
+            os.close(handle)
+            raise _refused(path, f"Another process works in {path}.", "Wait for it to end, or name another directory.") from error
+        except OSError:  # pragma: no cover - a file system without locks: better unguarded than unusable
+            pass
+    return handle
+
+
+@contextlib.contextmanager
+def _writing(path: Path) -> Iterator[None]:
+    """Turn what the file system refuses into the error of that name."""
+    try:
+        yield
+    except OSError as error:
+        reason = {errno.ENOSPC: "the disk is full", errno.EDQUOT: "the quota is used up", errno.EROFS: "the file system is read-only"}
+        why = reason.get(error.errno or 0, error.strerror or str(error))
+        message = f"Cannot write {path}: {why}."
+        finding = Finding(code="E_WRITE", where=str(path), message=message, hint="Mend this and resume: finished work is kept.")
+        raise WriteError(message, path=str(path), findings=[finding]) from error
+
+
+def _refused(path: Path, message: str, hint: str) -> RunError:
+    return RunError(f"{message} {hint}", path=str(path), findings=[Finding(code="E_RUN", where=str(path), message=message, hint=hint)])
+
+
+def _unreadable(name: str, message: str) -> ReadError:
+    finding = Finding(code="E_READ", where=name, message=message, hint="Check the file.")
+    return ReadError(message, path=name, findings=[finding])
+
+
+def _version() -> str:
+    from articad import __version__  # noqa: PLC0415 - the package's own version, without a cycle at import
+
+    return __version__
