@@ -1,0 +1,91 @@
+"""Runs the stages of ./scripts/test: each timed, all run even if one fails, one table, one line at the end."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import tempfile
+import time
+import xml.etree.ElementTree as ET
+from collections.abc import Callable
+from pathlib import Path
+from typing import NamedTuple
+
+ROOT = Path(__file__).resolve().parent.parent
+PYTHON = sys.executable
+
+
+class Outcome(NamedTuple):
+    """How a stage ended: what it counted, and what it printed if that is worth showing."""
+
+    passed: int
+    failed: int
+    skipped: int = 0
+
+
+def _command(*arguments: str) -> Callable[[], Outcome]:
+    """Return a stage that counts as one check: it passes when the command exits 0."""
+
+    def run() -> Outcome:
+        done = subprocess.run([PYTHON, *arguments], cwd=ROOT, check=False)
+        return Outcome(1, 0) if done.returncode == 0 else Outcome(0, 1)
+
+    return run
+
+
+def _tests() -> Outcome:
+    """Run pytest and count its tests; a run that broke off, or ran none, counts as one failure more."""
+    jobs = os.environ.get("ARTICAD_TEST_JOBS", "2")
+    with tempfile.TemporaryDirectory() as folder:
+        report = Path(folder, "report.xml")
+        selection = ["-m", "not crash and not fuzz"]
+        options = ["-q", "-n", jobs, "--durations=10", "--hypothesis-profile=ci", f"--junit-xml={report}"]
+        done = subprocess.run([PYTHON, "-m", "pytest", *selection, *options], cwd=ROOT, check=False)
+        if not report.is_file():
+            return Outcome(0, 1)
+        # Our own pytest wrote this file a moment ago.
+        suites = list(ET.parse(report).getroot().iter("testsuite"))  # noqa: S314
+    total, errors, failures, skipped = (
+        sum(int(suite.get(key, "0")) for suite in suites) for key in ("tests", "errors", "failures", "skipped")
+    )
+    failed = errors + failures
+    if done.returncode != 0 and failed == 0:
+        failed = 1
+    return Outcome(max(0, total - errors - failures - skipped), failed, skipped)
+
+
+STAGES: dict[str, Callable[[], Outcome]] = {
+    "ruff": _command("-m", "ruff", "check", "."),
+    "format": _command("-m", "ruff", "format", "--check", "."),
+    "mypy": _command("-m", "mypy"),
+    "imports": _command("-c", "import sys; from importlinter.cli import lint_imports_command; sys.exit(lint_imports_command())"),
+    "packages": _command("-m", "pip", "--disable-pip-version-check", "check"),
+    "tests": _tests,
+    "docs": _command("-m", "mkdocs", "build", "--strict", "--quiet"),
+}
+
+
+def main(names: list[str]) -> int:
+    """Run the named stages, or all; return 0 when nothing failed."""
+    unknown = [name for name in names if name not in STAGES]
+    if unknown:
+        print(f"unknown stage {', '.join(unknown)}; there are {', '.join(STAGES)}", file=sys.stderr)
+        return 2
+    rows: list[tuple[str, Outcome, float]] = []
+    for name in names or STAGES:
+        print(f"--- {name}", flush=True)
+        start = time.monotonic()
+        outcome = STAGES[name]()
+        rows.append((name, outcome, time.monotonic() - start))
+    print(f"\n{'stage':<10} {'passed':>7} {'failed':>7} {'skipped':>8} {'seconds':>8}")
+    for name, outcome, seconds in rows:
+        print(f"{name:<10} {outcome.passed:>7} {outcome.failed:>7} {outcome.skipped:>8} {seconds:>8.1f}")
+    passed, failed = (sum(getattr(outcome, key) for _, outcome, _ in rows) for key in ("passed", "failed"))
+    print(f"{'all':<10} {passed:>7} {failed:>7} {sum(o.skipped for _, o, _ in rows):>8} {sum(s for *_, s in rows):>8.1f}\n")
+    print(f"{passed} passed, {failed} failed", flush=True)
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
