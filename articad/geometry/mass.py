@@ -119,7 +119,7 @@ class MassProperties:
     def is_physical(self) -> bool:
         """True when some body could have this inertia: positive, and no principal moment above the sum of the others."""
         small, middle, large = self.principal_moments
-        return self.mass > 0 and small > 0 and bool(large <= (small + middle) * (1 + TRIANGLE_TOLERANCE))
+        return bool(self.mass > 0 and small > 0 and large <= (small + middle) * (1 + TRIANGLE_TOLERANCE))
 
     def __repr__(self) -> str:
         return f"MassProperties({self.mass:.6g} kg, com {self.com.tolist()} mm)"
