@@ -143,9 +143,9 @@ class SandboxError(KernelError):
 class KernelUnavailableError(KernelError):
     """A kernel that is not installed; says where it was looked for and how to get it."""
 
-    def __init__(self, message: str, *, looked_in: Iterable[str] = (), how_to_get: str = "") -> None:
+    def __init__(self, message: str, *, looked_in: Iterable[str] = (), how_to_get: str = "", findings: Iterable[Finding] = ()) -> None:
         self.looked_in, self.how_to_get = tuple(looked_in), how_to_get
-        super().__init__(message)
+        super().__init__(message, findings=findings)
 
 
 class ReadError(ArticadError):
