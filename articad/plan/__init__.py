@@ -1,0 +1,1 @@
+"""The plan: its form, its arithmetic, what it means, and what is wrong with it."""
