@@ -1,0 +1,9 @@
+from build123d import Align, Axis, Cylinder, fillet
+
+
+def build(part):
+    d = part.dimensions
+    foot = Cylinder(d["radius"], d["height"], align=(Align.CENTER, Align.CENTER, Align.MAX))
+    foot = fillet(foot.edges().sort_by(Axis.Z)[0], d["edge_radius"])
+    foot += Cylinder(d["spigot_radius"], d["spigot_length"], align=(Align.CENTER, Align.CENTER, Align.MIN))
+    return foot, {"top": {"o": (0, 0, 0), "z": (0, 0, 1), "x": (1, 0, 0)}}
