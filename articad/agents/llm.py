@@ -1,0 +1,428 @@
+"""The port to language models, and its doubles: scripted, recorded, replayed, budgeted.
+
+A request is addressed by its `step` in the run and verified by its `key`. The doubles are for users too: a run
+directory is its own cassette, and a script of replies makes every path of the agents testable without a model.
+Forms: `docs/reference/run.md`.
+"""
+
+from __future__ import annotations
+
+import difflib
+import fnmatch
+import hashlib
+import threading
+import time
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+from typing import Any, Final, Literal, Protocol
+
+from articad.errors import BudgetError, ReplayMissError, TransportError
+from articad.findings import Finding, Findings
+from articad.run import Run, canonical_json, digest
+
+Json = dict[str, Any]
+Speaker = Literal["system", "user", "assistant"]
+
+RECORD_SCHEMA: Final = "articad.llm/1"
+
+
+# ---------------------------------------------------------------------- what is asked and answered
+
+
+@dataclass(frozen=True)
+class Text:
+    """Words in a message."""
+
+    text: str
+
+    def to_json(self) -> Json:
+        """Return the form that enters the key and the record."""
+        return {"type": "text", "text": self.text}
+
+
+@dataclass(frozen=True)
+class Image:
+    """A picture in a message.
+
+    Attributes:
+        content: The bytes of the file.
+        media_type: "image/png" and the like.
+        recipe: How articad drew it (digests, views, options, version of the recipe), JSON; None if the user gave it.
+            A drawn picture enters the key by its recipe: its pixels differ between machines.
+    """
+
+    content: bytes = field(repr=False)
+    media_type: str = "image/png"
+    recipe: Mapping[str, Any] | None = None
+
+    def to_json(self) -> Json:
+        """Return the form that enters the key and the record."""
+        if self.recipe is not None:
+            return {"type": "image", "recipe": dict(self.recipe)}
+        return {"type": "image", "sha256": hashlib.sha256(self.content).hexdigest()}
+
+
+@dataclass(frozen=True)
+class Message:
+    """What one side says: words and pictures, in order."""
+
+    speaker: Speaker
+    parts: tuple[Text | Image, ...]
+
+    def to_json(self) -> Json:
+        """Return the form that enters the key and the record."""
+        return {"role": self.speaker, "content": [part.to_json() for part in self.parts]}
+
+
+def system(text: str) -> Message:
+    """Return the message that says what the role is and does."""
+    return Message("system", (Text(text),))
+
+
+def user(*parts: str | Image) -> Message:
+    """Return a message to the model."""
+    return Message("user", tuple(Text(part) if isinstance(part, str) else part for part in parts))
+
+
+def assistant(text: str) -> Message:
+    """Return what the model said before."""
+    return Message("assistant", (Text(text),))
+
+
+@dataclass(frozen=True)
+class Request:
+    """A question to a model.
+
+    Attributes:
+        role: Which agent asks: "requirements", "design", "part".
+        step: Its address in the run, such as `part/lid/2`.
+        messages: The conversation so far.
+        response_schema: JSON schema that the reply must have; None for free text.
+    """
+
+    role: str
+    step: str
+    messages: tuple[Message, ...]
+    response_schema: Mapping[str, Any] | None = None
+
+    def to_json(self) -> Json:
+        """Return what the key is taken of: nothing of the model, the time or the machine."""
+        return {
+            "role": self.role,
+            "step": self.step,
+            "messages": [message.to_json() for message in self.messages],
+            "response_schema": None if self.response_schema is None else dict(self.response_schema),
+        }
+
+    @cached_property
+    def key(self) -> str:
+        """The sha256 of the request's canonical JSON."""
+        return digest(self.to_json())
+
+    @property
+    def has_images(self) -> bool:
+        """Whether the model must be able to see."""
+        return any(isinstance(part, Image) for message in self.messages for part in message.parts)
+
+
+@dataclass(frozen=True)
+class Usage:
+    """Tokens that went in and came out."""
+
+    input_tokens: int = 0
+    output_tokens: int = 0
+
+    @property
+    def total(self) -> int:
+        """Both together."""
+        return self.input_tokens + self.output_tokens
+
+
+@dataclass(frozen=True)
+class Reply:
+    """A model's answer.
+
+    Attributes:
+        text: What it said.
+        model: Which one.
+        usage: Tokens.
+        cost: In US dollars; None when the price is unknown, which is not zero.
+        fingerprint: The provider's mark of the system that answered, if it gives one.
+    """
+
+    text: str
+    model: str
+    usage: Usage = Usage()
+    cost: float | None = None
+    fingerprint: str | None = None
+
+    def to_json(self) -> Json:
+        """Return the recorded form."""
+        return {
+            "text": self.text,
+            "model": self.model,
+            "usage": {"input_tokens": self.usage.input_tokens, "output_tokens": self.usage.output_tokens},
+            "cost": self.cost,
+            "fingerprint": self.fingerprint,
+        }
+
+    @classmethod
+    def from_json(cls, stored: Mapping[str, Any]) -> Reply:
+        """Return the reply of a record."""
+        return cls(stored["text"], stored["model"], Usage(**stored["usage"]), stored["cost"], stored["fingerprint"])
+
+
+class LLM(Protocol):
+    """Whatever answers requests. Called from several threads at once."""
+
+    def complete(self, request: Request) -> Reply:
+        """Answer.
+
+        Raises:
+            AgentError: If there is no answer to be had.
+        """
+        ...
+
+
+# ---------------------------------------------------------------------- the kill switch
+
+
+_closed_because: list[str] = []
+
+
+@contextmanager
+def closed_port(reason: str) -> Iterator[None]:
+    """Refuse every live call, of every thread, until the block ends.
+
+    Assembly and checks run under it: they are deterministic, and this proves it.
+    """
+    _closed_because.append(reason)
+    try:
+        yield
+    finally:
+        _closed_because.remove(reason)
+
+
+def require_open_port() -> None:
+    """Raise if live calls are forbidden now; adapters to real models call this first.
+
+    Raises:
+        TransportError: If a `closed_port` block is running.
+    """
+    if _closed_because:
+        raise transport_error("E_TRANSPORT", f"No model may be called now: {_closed_because[-1]}.", "Use Scripted or Replay here.")
+
+
+def transport_error(code: str, message: str, hint: str, *, where: str = "llm") -> TransportError:
+    """Return the error of a model that cannot be asked, with its finding."""
+    return TransportError(f"{message} {hint}", findings=[Finding(code=code, where=where, message=message, hint=hint)])
+
+
+# ---------------------------------------------------------------------- doubles
+
+
+Answer = str | Reply | Callable[[Request], "str | Reply"]
+
+
+class Scripted:
+    """Answers by a script: step, or pattern of steps such as `part/*/1`, to a reply or a function of the request.
+
+    Attributes:
+        requests: What was asked, in order of arrival.
+    """
+
+    def __init__(self, answers: Mapping[str, Answer | Sequence[Answer]], *, model: str = "scripted") -> None:
+        self.requests: list[Request] = []
+        self._answers = dict(answers)
+        self._model = model
+        self._guard = threading.Lock()
+
+    @property
+    def steps(self) -> list[str]:
+        """The steps that were asked, in order of arrival."""
+        return [request.step for request in self.requests]
+
+    def complete(self, request: Request) -> Reply:
+        """Answer by the script; an exact step goes before a pattern.
+
+        Raises:
+            ReplayMissError: If the script has no answer to this step.
+        """
+        with self._guard:
+            self.requests.append(request)
+        known = self._answers
+        pattern = request.step if request.step in known else next((p for p in known if fnmatch.fnmatchcase(request.step, p)), None)
+        if pattern is None:
+            raise _miss("The script", request, known)
+        answer = known[pattern]
+        if isinstance(answer, Sequence) and not isinstance(answer, str):
+            with self._guard:
+                asked = sum(fnmatch.fnmatchcase(step, pattern) for step in self.steps)
+            answer = answer[min(asked, len(answer)) - 1]
+        said = answer(request) if callable(answer) else answer
+        return Reply(said, self._model) if isinstance(said, str) else said
+
+
+class Recorded:
+    """Keeps every reply in the run, and answers again what the run has already: a resumed run repeats no call."""
+
+    def __init__(self, llm: LLM, run: Run) -> None:
+        self._llm = llm
+        self._run = run
+
+    def complete(self, request: Request) -> Reply:
+        """Answer from the run if it has this very request, else ask and record."""
+        stored = self._run.reply(request.step)
+        if stored is not None and stored["key"] == request.key:
+            return Reply.from_json(stored["reply"])
+        began = time.monotonic()
+        reply = self._llm.complete(request)
+        self._run.save_reply(request.step, {"schema": RECORD_SCHEMA, "key": request.key} | request.to_json() | {"reply": reply.to_json()})
+        self._run.trace(
+            "call",
+            step=request.step,
+            model=reply.model,
+            seconds=round(time.monotonic() - began, 3),
+            tokens=reply.usage.total,
+            cost="unknown" if reply.cost is None else reply.cost,
+        )
+        return reply
+
+
+class Replay:
+    """Answers from a recorded run, by step: no key, no network.
+
+    Attributes:
+        run: The recording, viewed.
+    """
+
+    def __init__(self, run: Run | str | Path, *, strict: bool = False) -> None:
+        self.run = run if isinstance(run, Run) else Run.view(run)
+        self._strict = strict
+        self._drift: list[Finding] = []
+        self._guard = threading.Lock()
+
+    @property
+    def findings(self) -> Findings:
+        """The prompts that were not the recorded ones."""
+        return Findings(self._drift)
+
+    def complete(self, request: Request) -> Reply:
+        """Answer as recorded.
+
+        Raises:
+            ReplayMissError: If the run has no reply to this step, or, when strict, to another prompt.
+        """
+        stored = self.run.reply(request.step)
+        if stored is None:
+            raise _miss("The recording", request, self.run.replies())
+        if stored["key"] != request.key:
+            where = _first_difference(stored, request)
+            message = f"The prompt of {request.step} is not the recorded one: {where}."
+            if self._strict:
+                finding = Finding(code="E_REPLAY_MISS", where=f"llm.{request.step}", message=message, hint="Record again.")
+                raise ReplayMissError(message, step=request.step, nearest=request.step, findings=[finding])
+            with self._guard:
+                self._drift.append(
+                    Finding(
+                        code="I_PROMPT_DRIFT",
+                        where=f"llm.{request.step}",
+                        message=message,
+                        hint="The recorded reply was used; record again, or replay strictly to refuse.",
+                    )
+                )
+        return Reply.from_json(stored["reply"])
+
+
+class Budget:
+    """Asks until a budget is spent; checked before each call, so that it ends in time rather than too late.
+
+    Args:
+        llm: Who answers.
+        calls: Most calls.
+        tokens: Most tokens, in and out together.
+        cost: Most US dollars. A model of unknown price cannot be held to it: the call after its first is refused.
+        minutes: Most time since this object was made.
+        clock: Seconds, never going backwards.
+    """
+
+    def __init__(
+        self,
+        llm: LLM,
+        *,
+        calls: int | None = None,
+        tokens: int | None = None,
+        cost: float | None = None,
+        minutes: float | None = None,
+        clock: Callable[[], float] = time.monotonic,
+    ) -> None:
+        self._llm = llm
+        self._limits = (calls, tokens, cost, minutes)
+        self._clock = clock
+        self._began = clock()
+        self._guard = threading.Lock()
+        self.calls = 0
+        self.tokens = 0
+        self.cost = 0.0
+        self.cost_unknown_of: str | None = None
+
+    def complete(self, request: Request) -> Reply:
+        """Ask, if something is left.
+
+        Raises:
+            BudgetError: If nothing is.
+        """
+        with self._guard:
+            spent = self._spent()
+            if spent is not None:
+                finding = Finding(code="E_BUDGET", where=f"llm.{request.step}", message=spent, hint="Raise the limit and resume the run.")
+                raise BudgetError(f"{spent} {request.step!r} was not asked.", spent=spent, findings=[finding])
+            self.calls += 1
+        reply = self._llm.complete(request)
+        with self._guard:
+            self.tokens += reply.usage.total
+            if reply.cost is None:
+                self.cost_unknown_of = reply.model
+            else:
+                self.cost += reply.cost
+        return reply
+
+    def _spent(self) -> str | None:
+        calls, tokens, cost, minutes = self._limits
+        passed = (self._clock() - self._began) / 60
+        if calls is not None and self.calls >= calls:
+            return f"The budget of {calls} calls is spent."
+        if tokens is not None and self.tokens >= tokens:
+            return f"The budget of {tokens} tokens is spent: {self.tokens} were used."
+        if cost is not None and self.cost >= cost:
+            return f"The budget of ${cost:g} is spent: ${self.cost:.4f} were used."
+        if cost is not None and self.cost_unknown_of is not None:
+            return (
+                f"The price of {self.cost_unknown_of} is unknown, so a budget of ${cost:g} cannot be held; limit calls or tokens instead."
+            )
+        if minutes is not None and passed >= minutes:
+            return f"The budget of {minutes:g} minutes is spent."
+        return None
+
+
+def _miss(who: str, request: Request, known: Mapping[str, Any] | Sequence[str]) -> ReplayMissError:
+    steps = sorted(known)
+    nearest = next(iter(difflib.get_close_matches(request.step, steps, n=1, cutoff=0.3)), None)
+    message = f"{who} has no reply to {request.step!r} (role {request.role}); the nearest step is {nearest!r}."
+    finding = Finding(code="E_REPLAY_MISS", where=f"llm.{request.step}", message=message, hint=f"It has: {', '.join(steps) or 'none'}.")
+    return ReplayMissError(message, step=request.step, nearest=nearest, findings=[finding])
+
+
+def _first_difference(stored: Mapping[str, Any], request: Request) -> str:
+    """Say where a prompt leaves the recorded one."""
+    now = request.to_json()
+    for name in ("role", "response_schema"):
+        if canonical_json(stored[name]) != canonical_json(now[name]):
+            return f"its {name.replace('_', ' ')} differs"
+    if len(stored["messages"]) != len(now["messages"]):
+        return f"it has {len(now['messages'])} messages, not {len(stored['messages'])}"
+    number = next((n for n, (a, b) in enumerate(zip(stored["messages"], now["messages"], strict=True), 1) if a != b), 0)
+    return f"message {number} differs"

@@ -1,0 +1,186 @@
+"""The live adapter against an OpenAI-compatible endpoint on this machine."""
+
+from __future__ import annotations
+
+import base64
+import json
+import os
+import subprocess
+import sys
+import traceback
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from articad.agents.live import LiteLLM, without_secrets
+from articad.agents.llm import Image, Recorded, Request, closed_port, system, user
+from articad.errors import TransportError
+from articad.run import Run, RunRequest
+from tests.agents.openai_stub import Canned, openai_stub
+
+SECRET = "sk-test-0123456789abcdefSECRET"
+SCHEMA = {"type": "object", "required": ["a"], "properties": {"a": {"type": "integer"}}}
+
+
+def question(*, schema: bool = False, image: bool = False) -> Request:
+    parts = ("why?", Image(b"\x89PNG-pixels")) if image else ("why?",)
+    return Request("design", "design/1", (system("You design."), user(*parts)), SCHEMA if schema else None)
+
+
+@pytest.fixture(autouse=True)
+def no_key(monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in [name for name in os.environ if name.endswith("_API_KEY")]:
+        monkeypatch.delenv(name)
+
+
+def live(address: str, **options: object) -> tuple[LiteLLM, list[float]]:
+    waits: list[float] = []
+    sleep: Callable[[float], None] = waits.append
+    return LiteLLM("stub", api_base=address, sleep=sleep, **options), waits  # type: ignore[arg-type]
+
+
+def test_an_answer_comes_with_model_tokens_fingerprint_and_unknown_cost() -> None:
+    with openai_stub([Canned("because")]) as stub:
+        reply = live(stub.address)[0].complete(question())
+
+        assert (reply.text, reply.model, reply.usage.total, reply.cost, reply.fingerprint) == ("because", "openai/stub", 10, None, "stub")
+        assert stub.received[0]["messages"] == [{"role": "system", "content": "You design."}, {"role": "user", "content": "why?"}]
+
+
+def test_a_picture_arrives_intact_and_goes_to_the_model_that_sees() -> None:
+    with openai_stub([Canned()]) as stub:
+        llm, _ = live(stub.address, vision_model="eyes", models={"judge": "court"})
+        llm.complete(question(image=True))
+        llm.complete(question())
+
+        address = stub.received[0]["messages"][1]["content"][1]["image_url"]["url"]
+        assert base64.b64decode(address.removeprefix("data:image/png;base64,")) == b"\x89PNG-pixels"
+        assert [request["model"] for request in stub.received] == ["eyes", "stub"]
+        assert llm.model_for(Request("judge", "judge/1/1", ())) == "openai/court"
+
+
+def test_a_schema_goes_along_and_where_it_is_refused_into_the_prompt() -> None:
+    refusal = Canned(status=400, body=b'{"error": {"message": "response_format is not supported here", "type": "invalid_request_error"}}')
+    with openai_stub([Canned("{}"), refusal, Canned("{}")]) as stub:
+        llm, _ = live(stub.address)
+        llm.complete(question(schema=True))
+        llm.complete(question(schema=True))
+        llm.complete(question(schema=True))
+
+        first, _, retried, later = stub.received
+        assert first["response_format"]["json_schema"]["schema"] == SCHEMA
+        for request in (retried, later):
+            assert "response_format" not in request
+            assert request["messages"][0]["content"].endswith(json.dumps(SCHEMA))
+
+
+@pytest.mark.parametrize("status", [429, 500, 503])
+def test_a_busy_provider_is_asked_again_after_a_pause(status: int) -> None:
+    with openai_stub([Canned(status=status, body=b"{}"), Canned(status=status, body=b"{}"), Canned("at last")]) as stub:
+        llm, waits = live(stub.address)
+
+        assert llm.complete(question()).text == "at last"
+        assert len(waits) == 2
+        assert waits[0] < waits[1]
+
+
+def test_the_pause_that_a_provider_asks_for_is_kept() -> None:
+    with openai_stub([Canned(status=429, body=b"{}", headers={"retry-after": "7"}), Canned()]) as stub:
+        llm, waits = live(stub.address)
+        llm.complete(question())
+
+        assert waits == [7.0]
+
+
+def test_an_empty_answer_is_asked_for_again() -> None:
+    with openai_stub([Canned(" "), Canned("words")]) as stub:
+        assert live(stub.address)[0].complete(question()).text == "words"
+
+
+def test_a_provider_that_stays_busy_is_given_up_with_its_status() -> None:
+    with openai_stub([Canned(status=503, body=b'{"error": {"message": "no room"}}')]) as stub:
+        llm, waits = live(stub.address, tries=3)
+        with pytest.raises(TransportError, match=r"status 503, asked 3 times") as caught:
+            llm.complete(question())
+        assert caught.value.findings.codes == ("E_TRANSPORT",)
+        assert len(waits) == 2
+
+
+def test_a_refused_key_names_its_variable_and_shows_nothing_of_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("OPENAI_API_KEY", SECRET)
+    body = json.dumps({"error": {"message": f"Incorrect API key provided: {SECRET}", "code": "invalid_api_key"}}).encode()
+    with openai_stub([Canned(status=401, body=body)]) as stub:
+        llm, waits = live(stub.address)
+        with pytest.raises(TransportError, match="OPENAI_API_KEY") as caught:
+            llm.complete(question())
+
+    assert stub.keys == [f"Bearer {SECRET}"]
+    assert waits == []
+    assert caught.value.findings.codes == ("E_KEY_MISSING",)
+    assert SECRET not in "".join(traceback.format_exception(caught.value))
+
+
+def test_a_missing_key_is_named_before_anything_is_sent() -> None:
+    for model, variable in (
+        ("gpt-5.2", "OPENAI_API_KEY"),
+        ("gemini/gemini-3-flash", "GEMINI_API_KEY"),
+        ("anthropic/c", "ANTHROPIC_API_KEY"),
+    ):
+        with pytest.raises(TransportError, match=variable) as caught:
+            LiteLLM(model)
+        assert caught.value.findings.codes == ("E_KEY_MISSING",)
+    with pytest.raises(TransportError, match="OPENAI_API_KEY"):
+        LiteLLM("some/model", api_base="https://models.example/v1")
+
+
+def test_a_model_of_no_known_provider_is_explained() -> None:
+    with pytest.raises(TransportError, match="provider/model"):
+        LiteLLM("nobody/nothing")
+
+
+@pytest.mark.parametrize("body", [b"<html>proxy error</html>", b'"hi"', b'{"choices": []}', b'{"object": "list"}', b""])
+def test_a_body_that_is_no_completion_gives_an_error_of_ours(body: bytes) -> None:
+    with openai_stub([Canned(body=body)]) as stub, pytest.raises(TransportError) as caught:
+        live(stub.address, tries=2)[0].complete(question())
+    assert caught.value.findings.codes == ("E_TRANSPORT",)
+
+
+def test_silence_ends_in_a_timeout_and_a_closed_door_in_no_connection() -> None:
+    with openai_stub([Canned(wait=1.0)]) as stub, pytest.raises(TransportError, match=r"within 0\.2 s"):
+        live(stub.address, timeout=0.2, tries=1)[0].complete(question())
+    with pytest.raises(TransportError, match="asked 2 times"):
+        live("http://127.0.0.1:9/v1", tries=2)[0].complete(question())
+
+
+def test_a_closed_port_sends_nothing() -> None:
+    with openai_stub([Canned()]) as stub:
+        llm, _ = live(stub.address)
+        with closed_port("assembly is deterministic"), pytest.raises(TransportError, match="assembly is deterministic"):
+            llm.complete(question())
+        assert stub.received == []
+        assert llm.complete(question()).text == "hello"
+
+
+def test_no_key_enters_the_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("OPENAI_API_KEY", SECRET)
+    with openai_stub([Canned()]) as stub, Run.create(RunRequest(prompt="x"), out=tmp_path / "r") as run:
+        request = question()
+        Recorded(live(stub.address)[0], run).complete(request)
+        assert stub.keys == [f"Bearer {SECRET}"]
+        assert SECRET not in json.dumps(request.to_json())
+    files = [file.read_bytes() for file in tmp_path.rglob("*") if file.is_file()]
+    assert len(files) == 3
+    assert not any(SECRET.encode() in content for content in files)
+
+
+def test_text_from_outside_loses_every_key(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("SOME_TOKEN", "plain-looking-value")
+    told = "plain-looking-value, sk-proj-abc***xyz99, Authorization: Bearer abc.def, http://me:pass@host/"
+
+    assert without_secrets(told) == "[key], [key], Authorization: [key], http:[key]host/"
+
+
+def test_neither_articad_nor_the_port_imports_litellm() -> None:
+    script = "import sys, articad.agents.llm, articad.agents.live; assert 'litellm' not in sys.modules"
+    subprocess.run([sys.executable, "-c", script], check=True)
