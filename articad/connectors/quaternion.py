@@ -38,7 +38,8 @@ def multiply(p: FloatArray, q: FloatArray) -> FloatArray:
 
 def conjugate(q: FloatArray) -> FloatArray:
     """Return the inverse rotation."""
-    return q * np.array([-1.0, -1.0, -1.0, 1.0])
+    inverse: FloatArray = q * np.array([-1.0, -1.0, -1.0, 1.0])
+    return inverse
 
 
 def rotate(q: FloatArray, v: FloatArray) -> FloatArray:

@@ -1,0 +1,325 @@
+"""Forward kinematics in NumPy: poses and velocities of all parts for many configurations at once.
+
+Two ways to the same poses. `matrices` multiplies homogeneous matrices: few calls per joint, right for few configurations
+and for the loop solver. `poses` with many configurations works on rows of quaternion components, one GEMM per joint,
+because 10,000 small matrix products cost more than their arithmetic. Pinocchio is the oracle of both in the tests.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from articad.connectors import SE3, FloatArray, Mate, flip, quaternion
+from articad.kinematics.joints import Joint, JointType
+from articad.kinematics.layout import Layout
+from articad.kinematics.tree import KinematicTree
+
+IndexArray = npt.NDArray[np.intp]
+
+_FEW = 32  # configurations up to which matrices win over rows (measured: break-even 25 … 50)
+_CHUNK = 1024  # configurations per pass: the rows of one joint then stay in the first-level cache
+_TURNING = frozenset({JointType.REVOLUTE, JointType.CYLINDRICAL, JointType.SCREW, JointType.PLANAR})
+
+
+class Crossing(NamedTuple):
+    """A joint as it is crossed from `near` to `far`: T_far = T_near · A · M(signs ∘ q) · B."""
+
+    joint: Joint
+    near: int
+    far: int
+    signs: FloatArray
+    A: SE3
+    B: SE3
+
+
+def crossing(joint: Joint, near: int, far: int, *, backwards: bool) -> Crossing:
+    """Return a joint as crossed from its declared parent, or backwards from its declared child."""
+    F = flip(joint.mate)
+    if backwards:  # T_p = T_c · C_c F⁻¹ · J⁻¹ · C_p⁻¹
+        signs = joint.type.reversal_signs(Mate.ALIGNED)
+        return Crossing(joint, near, far, signs, joint.T_child_connector @ F.inverse(), joint.T_parent_connector.inverse())
+    return Crossing(joint, near, far, np.ones(len(joint.type.coordinates)), joint.T_parent_connector, F @ joint.T_child_connector.inverse())
+
+
+class Motions:
+    """J(q) of many joints as matrices, filled type by type.
+
+    Args:
+        crossings: The joints.
+        layout: Of the coordinates that are given.
+    """
+
+    def __init__(self, crossings: Sequence[Crossing], layout: Layout) -> None:
+        turning: list[tuple[int, int, float]] = []  # joint, column, factor
+        sliding: list[tuple[int, int, float]] = []
+        level: list[tuple[int, int, int]] = []  # joint, row, column
+        self.balls: list[tuple[int, slice, FloatArray]] = []
+        self.universals: list[tuple[int, int]] = []
+        for k, c in enumerate(crossings):
+            columns = layout.columns[c.joint.name]
+            first, last = columns.start, columns.stop - 1
+            if c.joint.type in _TURNING:
+                turning.append((k, last, c.signs[-1]))
+            if c.joint.type in {JointType.SLIDER, JointType.CYLINDRICAL}:
+                sliding.append((k, first, c.signs[0]))
+            elif c.joint.type is JointType.SCREW:
+                sliding.append((k, first, c.signs[0] * c.joint.lead / (2 * math.pi)))
+            elif c.joint.type is JointType.PLANAR:
+                level += [(k, 0, first), (k, 1, first + 1)]
+            elif c.joint.type is JointType.BALL:
+                self.balls.append((k, columns, c.signs))
+            elif c.joint.type is JointType.UNIVERSAL:
+                self.universals.append((k, first))
+        self.count = len(crossings)
+        self.turning = _table(turning)
+        self.sliding = _table(sliding)
+        self.level = np.array(level, dtype=np.intp).reshape(-1, 3).T
+
+    def matrices(self, rows: FloatArray) -> FloatArray:
+        """Return M `(n_joints, batch, 4, 4)` for coordinates as rows `(n_columns, batch)`."""
+        M = np.zeros((self.count, rows.shape[1], 4, 4))
+        M[:, :, (0, 1, 2, 3), (0, 1, 2, 3)] = 1.0
+        k, column, factor = self.turning
+        if k.size:
+            angle = rows[column] * factor
+            cosine, sine = np.cos(angle), np.sin(angle)
+            M[k, :, 0, 0], M[k, :, 1, 1], M[k, :, 1, 0], M[k, :, 0, 1] = cosine, cosine, sine, -sine
+        k, column, factor = self.sliding
+        if k.size:
+            M[k, :, 2, 3] = rows[column] * factor
+        if self.level.size:
+            joint, row, source = self.level
+            M[joint, :, row, 3] = rows[source]
+        for ball, columns, signs in self.balls:
+            M[ball, :, :3, :3] = quaternion.to_matrix((rows[columns] * signs[:, None]).T)
+        for universal, first in self.universals:
+            M[universal, :, :3, :3] = _universal(rows[first], rows[first + 1])
+        return M
+
+
+def _table(entries: list[tuple[int, int, float]]) -> tuple[IndexArray, IndexArray, FloatArray]:
+    k, column, factor = zip(*entries, strict=True) if entries else ((), (), ())
+    return np.array(k, dtype=np.intp), np.array(column, dtype=np.intp), np.array(factor, dtype=np.float64)[:, None]
+
+
+def _universal(a: FloatArray, b: FloatArray) -> FloatArray:
+    """Return Rx(a) Ry(b) `(batch, 3, 3)`."""
+    ca, sa, cb, sb = np.cos(a), np.sin(a), np.cos(b), np.sin(b)
+    zero = np.zeros_like(a)
+    return np.stack([cb, zero, sb, sa * sb, ca, -sa * cb, -ca * sb, sa, ca * cb], axis=-1).reshape(-1, 3, 3)
+
+
+class TreeArrays:
+    """A tree compiled for arithmetic.
+
+    Args:
+        parts: In the order in which poses are returned.
+        tree: How the parts hang together.
+        layout: Of all coordinates; the tree's joints are among them.
+        T_ground: Pose of the ground part.
+    """
+
+    def __init__(self, parts: Sequence[str], tree: KinematicTree, layout: Layout, T_ground: SE3) -> None:
+        index = {part: i for i, part in enumerate(parts)}
+        self.layout = layout
+        self.n_parts = len(parts)
+        self.ground = index[tree.ground]
+        self.T_ground = T_ground
+        self.crossings = tuple(crossing(e.joint, index[e.parent], index[e.part], backwards=e.reversed) for e in tree.edges)
+        self.motions = Motions(self.crossings, layout)
+        self._A = _stacked([c.A for c in self.crossings])
+        self._B = _stacked([c.B for c in self.crossings])
+        self._rows = [_RowStep(c, layout.columns[c.joint.name]) for c in self.crossings]
+        self.twists = Twists(layout, index)
+        self.carried = np.zeros((self.n_parts, layout.n_freedoms))  # ±1 where a freedom moves a part
+        for edge, c in zip(tree.edges, self.crossings, strict=True):
+            self.carried[c.far] = self.carried[c.near]
+            self.carried[c.far, layout.freedoms[c.joint.name]] = -1.0 if edge.reversed else 1.0
+
+    def matrices(self, Q: FloatArray) -> FloatArray:
+        """Return the poses of all parts as `(N, batch, 4, 4)` for coordinates `(batch, n_columns)`."""
+        T = np.empty((self.n_parts, len(Q), 4, 4))
+        T[self.ground] = self.T_ground.matrix
+        X = self._A @ self.motions.matrices(Q.T) @ self._B
+        for k, c in enumerate(self.crossings):
+            np.matmul(T[c.near], X[k], out=T[c.far])
+        return T
+
+    def poses(self, Q: FloatArray) -> SE3:
+        """Return the poses `(*batch, N)` of all parts for coordinates `(*batch, n_columns)`."""
+        flat = Q.reshape(-1, self.layout.n_columns)
+        if len(flat) <= _FEW:
+            T = self.matrices(flat)
+            out = np.empty((self.n_parts, len(flat), 7))
+            out[..., :3] = T[..., :3, 3]
+            out[..., 3:] = quaternion.positive(quaternion.from_matrix(T[..., :3, :3]))
+            return SE3.from_unit_array(out.swapaxes(0, 1).reshape(*Q.shape[:-1], self.n_parts, 7))
+        rows = np.empty((self.n_parts, 7, len(flat)))
+        for start in range(0, len(flat), _CHUNK):
+            self._fill(rows[..., start : start + _CHUNK], np.ascontiguousarray(flat[start : start + _CHUNK].T))
+        return SE3.from_unit_array(np.moveaxis(rows, 2, 0).reshape(*Q.shape[:-1], self.n_parts, 7))
+
+    def _fill(self, out: FloatArray, q: FloatArray) -> None:
+        """Write the poses of one chunk into `out` `(N, 7, chunk)` for coordinates as rows `(n_columns, chunk)`."""
+        out[self.ground] = self.T_ground.data[:, None]
+        for step in self._rows:
+            step.place(out[step.near], out[step.far], q)
+        w = out[:, 6:7]
+        out[:, 3:] *= np.copysign(1.0, w)
+
+
+def _stacked(poses: Sequence[SE3]) -> FloatArray:
+    return np.array([pose.matrix for pose in poses]).reshape(-1, 1, 4, 4)
+
+
+class _RowStep:
+    """One joint of the row-wise pass: constants such that only products with rows of coordinates are left.
+
+    With p ⊗ c = right(c) p, the far quaternion of a turning joint is cos(θ/2)·right(a ⊗ b) p + sin(θ/2)·right(a ⊗ k ⊗ b) p.
+    """
+
+    def __init__(self, c: Crossing, columns: slice) -> None:
+        self.near, self.far, self.type, self.columns, self.signs = c.near, c.far, c.joint.type, columns, c.signs
+        self.pitch = c.joint.lead / (2 * math.pi)
+        a, b = c.A.quaternion, c.B.quaternion
+        k = np.array([0.0, 0.0, 1.0, 0.0])
+        self.right_a, self.right_b = _right(a), _right(b)
+        ab = quaternion.multiply(a, b)
+        self.right_ab = _right(ab)
+        self.right_both = np.concatenate([self.right_ab, _right(quaternion.multiply(quaternion.multiply(a, k), b))])
+        RA, pA, pB = c.A.rotation, c.A.translation, c.B.translation
+        self.RA, self.pA, self.pB = RA, pA[:, None], pB[:, None]
+        self.axis = RA[:, 2:]
+        # A · Rz(θ) · pB = [still, cos, sin] · (1, cos θ, sin θ)
+        self.still = (pA + RA[:, 2] * pB[2])[:, None]
+        self.arc = RA @ np.array([[pB[0], -pB[1]], [pB[1], pB[0]], [0.0, 0.0]])
+        self.fixed_offset = (pA + RA @ pB)[:, None]
+
+    def place(self, near: FloatArray, far: FloatArray, q: FloatArray) -> None:
+        """Write the pose of the far part, `(7, chunk)`, given the near part's."""
+        mine = q[self.columns]
+        if self.type in {JointType.FIXED, JointType.SLIDER}:
+            np.matmul(self.right_ab, near[3:], out=far[3:])
+            offset = self.fixed_offset if self.type is JointType.FIXED else self.fixed_offset + self.axis * (mine[0] * self.signs[0])
+        elif self.type in {JointType.REVOLUTE, JointType.CYLINDRICAL, JointType.SCREW}:
+            offset = self._turn(near, far, mine)
+        else:
+            offset = self._general(near, far, mine)
+        u, w = near[3:6], near[6]
+        twice = 2.0 * _row_cross(u, offset)
+        far[:3] = near[:3] + offset + w * twice + _row_cross(u, twice)
+
+    def _turn(self, near: FloatArray, far: FloatArray, mine: FloatArray) -> FloatArray:
+        angle = mine[-1] * self.signs[-1]
+        c, s = np.cos(0.5 * angle), np.sin(0.5 * angle)
+        both = self.right_both @ near[3:]
+        both[:4] *= c
+        both[4:] *= s
+        np.add(both[:4], both[4:], out=far[3:])
+        offset = self.still + self.arc @ np.stack([c * c - s * s, 2.0 * (c * s)])
+        if self.type is JointType.CYLINDRICAL:
+            offset += self.axis * (mine[0] * self.signs[0])
+        elif self.type is JointType.SCREW:
+            offset += self.axis * (angle * self.pitch)
+        carried: FloatArray = offset
+        return carried
+
+    def _general(self, near: FloatArray, far: FloatArray, mine: FloatArray) -> FloatArray:
+        shift = np.zeros((3, mine.shape[1]))
+        if self.type is JointType.BALL:
+            turn = mine * self.signs[:, None]
+        elif self.type is JointType.PLANAR:
+            shift[:2] = mine[:2]
+            turn = np.zeros((4, mine.shape[1]))
+            turn[2], turn[3] = np.sin(0.5 * mine[2]), np.cos(0.5 * mine[2])
+        else:
+            (sa, sb), (ca, cb) = np.sin(0.5 * mine), np.cos(0.5 * mine)
+            turn = np.stack([sa * cb, ca * sb, sa * sb, ca * cb])
+        middle = quaternion.multiply((self.right_a @ near[3:]).T, turn.T)
+        np.matmul(self.right_b, middle.T, out=far[3:])
+        carried = np.broadcast_to(self.pB, shift.shape)
+        twice = 2.0 * _row_cross(turn[:3], carried)
+        offset: FloatArray = self.pA + self.RA @ (shift + carried + turn[3] * twice + _row_cross(turn[:3], twice))
+        return offset
+
+
+def _right(c: FloatArray) -> FloatArray:
+    """Return the matrix with right(c) p = p ⊗ c."""
+    x, y, z, w = c
+    return np.array([[w, z, -y, x], [-z, w, x, y], [y, -x, w, z], [-x, -y, -z, w]])
+
+
+def _row_cross(a: FloatArray, b: FloatArray) -> FloatArray:
+    out = np.empty((3, max(a.shape[1], b.shape[1])))
+    out[0] = a[1] * b[2] - a[2] * b[1]
+    out[1] = a[2] * b[0] - a[0] * b[2]
+    out[2] = a[0] * b[1] - a[1] * b[0]
+    return out
+
+
+class Twists:
+    """Velocities that each freedom gives its joint's child side against its parent side, in the ground frame.
+
+    Args:
+        layout: Of the joints.
+        part_index: Index of each part in the array of poses.
+    """
+
+    def __init__(self, layout: Layout, part_index: dict[str, int]) -> None:
+        frames: list[tuple[int, FloatArray]] = []  # parent part and parent connector of each frame
+        self.planar: list[tuple[int, int]] = []  # frame to be shifted, first column
+        self.universal: list[tuple[int, int]] = []  # frame to be turned, first column
+        frame_of, axis_of, angular, pitch = [], [], [], []
+        for joint in layout.joints:
+            base = (part_index[joint.parent], joint.T_parent_connector.matrix)
+            frames.append(base)
+            frame, first = len(frames) - 1, layout.columns[joint.name].start
+            for axis, turns, advance, moved in _AXES[joint.type]:
+                if moved:
+                    frames.append(base)
+                    (self.planar if joint.type is JointType.PLANAR else self.universal).append((len(frames) - 1, first))
+                frame_of.append(len(frames) - 1 if moved else frame)
+                axis_of.append(axis)
+                angular.append(turns)
+                pitch.append(advance * joint.lead / (2 * math.pi))
+        self._part = np.array([part for part, _ in frames], dtype=np.intp)
+        self._connector = np.array([C for _, C in frames]).reshape(-1, 1, 4, 4)
+        self._frame = np.array(frame_of, dtype=np.intp)
+        self._axis = np.array(axis_of, dtype=np.intp)
+        self._angular = np.array(angular, dtype=np.float64)[:, None, None]
+        self._linear = 1.0 - self._angular + np.array(pitch, dtype=np.float64)[:, None, None]
+
+    def __call__(self, T: FloatArray, Q: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return v0 [mm/s], the velocity at the ground's origin, and ω [rad/s], both `(n_freedoms, batch, 3)`.
+
+        Args:
+            T: Poses of the parts `(N, batch, 4, 4)`.
+            Q: Coordinates `(batch, n_columns)`.
+        """
+        P = T[self._part] @ self._connector
+        for frame, first in self.planar:
+            P[frame, :, :3, 3] += P[frame, :, :3, 0] * Q[:, first, None] + P[frame, :, :3, 1] * Q[:, first + 1, None]
+        for frame, first in self.universal:
+            a = Q[:, first, None]
+            P[frame, :, :3, 1] = P[frame, :, :3, 1] * np.cos(a) + P[frame, :, :3, 2] * np.sin(a)
+        axes = P[self._frame, :, :3, self._axis]
+        omega = axes * self._angular
+        return quaternion.cross(P[self._frame, :, :3, 3], omega) + axes * self._linear, omega
+
+
+# axis of the parent connector, 1 = turns about it and 0 = slides along it, whether the lead advances it, whether other coordinates move it
+_AXES: dict[JointType, tuple[tuple[int, int, int, bool], ...]] = {
+    JointType.FIXED: (),
+    JointType.REVOLUTE: ((2, 1, 0, False),),
+    JointType.SLIDER: ((2, 0, 0, False),),
+    JointType.CYLINDRICAL: ((2, 0, 0, False), (2, 1, 0, False)),
+    JointType.BALL: ((0, 1, 0, False), (1, 1, 0, False), (2, 1, 0, False)),
+    JointType.SCREW: ((2, 1, 1, False),),
+    JointType.PLANAR: ((0, 0, 0, False), (1, 0, 0, False), (2, 1, 0, True)),
+    JointType.UNIVERSAL: ((0, 1, 0, False), (1, 1, 0, True)),
+}

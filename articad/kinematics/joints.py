@@ -1,0 +1,420 @@
+"""Joints: what each type may do, and the numbers of one joint between two connectors.
+
+A joint places its child by `T_child = T_parent · C_p · J(q) · F · C_c⁻¹` (`articad.connectors.mate`). J(q) is given here:
+revolute Rz(θ) · slider Tz(d) · cylindrical Tz(d) Rz(θ) · ball R(quaternion) · screw Tz(lead·θ/2π) Rz(θ) ·
+planar T(x, y, 0) Rz(θ) · universal Rx(a) Ry(b) · fixed I. All angles in rad, lengths in mm.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from enum import StrEnum
+from typing import Literal, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from articad.connectors import SE3, FloatArray, Mate
+from articad.errors import KinematicsError
+from articad.findings import Finding
+
+Unit = Literal["rad", "mm", "1"]
+Signs = tuple[float, ...]
+_FindingMaker = Callable[[str, str, str], Finding]  # code, message, hint
+_Shower = Callable[[float], str]
+
+LIMIT_SLACK = 1e-9  # rad or mm: a value computed to be at its limit is at its limit
+_QUATERNION_TOLERANCE = 1e-3  # | ‖q‖ − 1 | of a ball's coordinates: digits of a file pass, other quantities do not
+
+
+class _Kind(NamedTuple):
+    """A row of the table of joint types.
+
+    Attributes:
+        coordinates: Names of the columns of q.
+        units: Their units.
+        freedoms: Number of velocities.
+        mirror: q' = mirror ∘ q makes J(q') = K J(q) K with K = diag(1, −1, 1).
+        reverse: q' = reverse ∘ q makes J(q') = J(q)⁻¹; None where no such signs exist.
+        reverse_opposed: q' = reverse_opposed ∘ q makes J(q') = F J(q)⁻¹ F.
+    """
+
+    coordinates: tuple[str, ...]
+    units: tuple[Unit, ...]
+    freedoms: int
+    mirror: Signs
+    reverse: Signs | None
+    reverse_opposed: Signs | None
+
+
+_KINDS: dict[str, _Kind] = {
+    "fixed": _Kind((), (), 0, (), (), ()),
+    "revolute": _Kind(("angle",), ("rad",), 1, (-1,), (-1,), (1,)),
+    "slider": _Kind(("travel",), ("mm",), 1, (1,), (-1,), (1,)),
+    "cylindrical": _Kind(("travel", "angle"), ("mm", "rad"), 2, (1, -1), (-1, -1), (1, 1)),
+    "ball": _Kind(("qx", "qy", "qz", "qw"), ("1", "1", "1", "1"), 3, (-1, 1, -1, 1), (-1, -1, -1, 1), (-1, 1, 1, 1)),
+    "screw": _Kind(("angle",), ("rad",), 1, (-1,), (-1,), (1,)),
+    "planar": _Kind(("x", "y", "angle"), ("mm", "mm", "rad"), 3, (1, -1, -1), None, None),
+    "universal": _Kind(("a", "b"), ("rad", "rad"), 2, (-1, 1), None, None),
+}
+
+
+class JointType(StrEnum):
+    """The eight kinds of joints."""
+
+    FIXED = "fixed"
+    REVOLUTE = "revolute"
+    SLIDER = "slider"
+    CYLINDRICAL = "cylindrical"
+    BALL = "ball"
+    SCREW = "screw"
+    PLANAR = "planar"
+    UNIVERSAL = "universal"
+
+    @property
+    def freedoms(self) -> int:
+        """How many independent velocities the joint has."""
+        return _KINDS[self].freedoms
+
+    @property
+    def coordinates(self) -> tuple[str, ...]:
+        """Names of the joint's columns of q, in order."""
+        return _KINDS[self].coordinates
+
+    @property
+    def units(self) -> tuple[Unit, ...]:
+        """Unit of each coordinate; "1" for the four of a quaternion."""
+        return _KINDS[self].units
+
+    @property
+    def freedom_units(self) -> tuple[Unit, ...]:
+        """Unit of each freedom: as the coordinates', but a ball has three angles."""
+        return ("rad", "rad", "rad") if self is JointType.BALL else _KINDS[self].units
+
+    @property
+    def reversible(self) -> bool:
+        """False for planar and universal: crossed from child to parent they are not joints of their own type."""
+        return _KINDS[self].reverse is not None
+
+    @property
+    def neutral(self) -> tuple[float, ...]:
+        """Coordinates at which J is the identity."""
+        return (0.0, 0.0, 0.0, 1.0) if self is JointType.BALL else (0.0,) * len(self.coordinates)
+
+    def mirror_signs(self) -> FloatArray:
+        """Return the signs `(n_coordinates,)` that take coordinates to those of the mirrored joint (kinematics: derive)."""
+        return np.array(_KINDS[self].mirror, dtype=np.float64)
+
+    def reversal_signs(self, mate: Mate) -> FloatArray:
+        """Return the signs `(n_coordinates,)` that take coordinates to those measured from the child.
+
+        Raises:
+            KinematicsError: E_REVERSE_UNSUPPORTED for planar and universal.
+        """
+        signs = _KINDS[self].reverse_opposed if mate == Mate.OPPOSED else _KINDS[self].reverse
+        if signs is None:
+            raise KinematicsError(f"E_REVERSE_UNSUPPORTED: a {self} joint cannot be measured from its child; exchange parent and child.")
+        return np.array(signs, dtype=np.float64)
+
+    def motion(self, q: npt.ArrayLike, lead: float = 0.0) -> SE3:  # noqa: PLR0911 - one row per type
+        """Return J(q).
+
+        Args:
+            q: Coordinates `(*batch, n_coordinates)` [rad, mm]; a ball's quaternion need not be of exactly unit length.
+            lead: Advance per turn of a screw [mm], right-handed when positive.
+
+        Returns:
+            Motions `(*batch)` of the child connector in the parent connector, before the mate's flip.
+
+        Raises:
+            KinematicsError: If q has another number of coordinates.
+            ConnectorError: E_NONFINITE, E_QUAT_NORM.
+        """
+        values = np.asarray(q, dtype=np.float64)
+        if values.ndim == 0 or values.shape[-1] != len(self.coordinates):
+            raise KinematicsError(f"A {self} joint has coordinates ({', '.join(self.coordinates)}); q has shape {values.shape}.")
+        column = [values[..., i] for i in range(values.shape[-1])]
+        match self:
+            case JointType.FIXED:
+                return SE3.identity(values.shape[:-1])
+            case JointType.REVOLUTE:
+                return SE3.rot_z(column[0])
+            case JointType.SLIDER:
+                return SE3.trans(0.0, 0.0, column[0])
+            case JointType.CYLINDRICAL:
+                return SE3.trans(0.0, 0.0, column[0]) @ SE3.rot_z(column[1])
+            case JointType.BALL:
+                return SE3.from_quaternion(values)
+            case JointType.SCREW:
+                return SE3.trans(0.0, 0.0, lead / (2 * math.pi) * column[0]) @ SE3.rot_z(column[0])
+            case JointType.PLANAR:
+                return SE3.trans(column[0], column[1], 0.0) @ SE3.rot_z(column[2])
+            case JointType.UNIVERSAL:
+                return SE3.rot_x(column[0]) @ SE3.rot_y(column[1])
+
+
+@dataclass(frozen=True)
+class JointLimits:
+    """Bounds of a joint's coordinates [rad, mm].
+
+    Attributes:
+        lower: One per coordinate, −inf for an endless one; empty for a ball and a fixed joint.
+        upper: Likewise, +inf for an endless one.
+        cone: A ball's largest angle between the z axes of its two connectors [rad]; None is free.
+        twist: A ball's range of turn about z [rad]; None is free.
+    """
+
+    lower: tuple[float, ...] = ()
+    upper: tuple[float, ...] = ()
+    cone: float | None = None
+    twist: tuple[float, float] | None = None
+
+    def signed(self, signs: npt.ArrayLike) -> JointLimits:
+        """Return the limits of the coordinates `signs ∘ q`; a ball's third sign is that of its twist."""
+        s = np.asarray(signs, dtype=np.float64)
+        pairs = [(lo, hi) if sign > 0 else (-hi, -lo) for lo, hi, sign in zip(self.lower, self.upper, s, strict=False)]
+        twist = self.twist if self.twist is None or s[2] > 0 else (-self.twist[1], -self.twist[0])
+        return replace(self, lower=tuple(lo for lo, _ in pairs), upper=tuple(hi for _, hi in pairs), twist=twist)
+
+
+def swing(q: npt.ArrayLike) -> FloatArray:
+    """Return the angle `(*batch)` [rad] between the z axes of a ball's connectors, from its quaternions `(*batch, 4)`."""
+    x, y, z, w = np.moveaxis(np.asarray(q, dtype=np.float64), -1, 0)
+    angle: FloatArray = 2.0 * np.arctan2(np.hypot(x, y), np.hypot(z, w))
+    return angle
+
+
+def twist(q: npt.ArrayLike) -> FloatArray:
+    """Return the turn `(*batch)` [rad] about z, −π … π, that is left of a ball's quaternions `(*batch, 4)` after the swing."""
+    _, _, z, w = np.moveaxis(np.asarray(q, dtype=np.float64), -1, 0)
+    return wrapped(2.0 * np.arctan2(z, w))
+
+
+def wrapped(angle: npt.ArrayLike) -> FloatArray:
+    """Return the same directions with angles in [−π, π) [rad]."""
+    turned: FloatArray = np.mod(np.asarray(angle, dtype=np.float64) + math.pi, 2 * math.pi) - math.pi
+    return turned
+
+
+@dataclass(frozen=True, kw_only=True)
+class Joint:
+    """A joint between two parts.
+
+    Attributes:
+        name: Unique in the mechanism.
+        type: What it may do.
+        parent: Part from whose connector the motion is measured.
+        child: The other part.
+        parent_connector: Name of the parent's connector.
+        child_connector: Name of the child's connector.
+        T_parent_connector: C_p in the parent part's frame.
+        T_child_connector: C_c in the child part's frame.
+        mate: Whether the z axes agree or oppose where J is the identity.
+        limits: Bounds of the coordinates.
+        rest: Coordinates in the rest pose.
+        lead: Advance per turn of a screw [mm].
+        driver: Asked for as a driver of a loop.
+        effort: Largest force [N] or torque [N·mm] per coordinate, None where it is to be computed; empty: all of them.
+        velocity: Largest speed [mm/s, rad/s] per coordinate, likewise.
+    """
+
+    name: str
+    type: JointType
+    parent: str
+    child: str
+    parent_connector: str
+    child_connector: str
+    T_parent_connector: SE3
+    T_child_connector: SE3
+    limits: JointLimits
+    rest: tuple[float, ...]
+    mate: Mate = Mate.ALIGNED
+    lead: float = 0.0
+    driver: bool = False
+    effort: tuple[float | None, ...] = ()
+    velocity: tuple[float | None, ...] = ()
+
+    @property
+    def column_names(self) -> tuple[str, ...]:
+        """Names of the joint's columns of q: `joint`, or `joint.coordinate` where there are several."""
+        names = self.type.coordinates
+        return (self.name,) if len(names) == 1 else tuple(f"{self.name}.{coordinate}" for coordinate in names)
+
+    @property
+    def columns(self) -> tuple[Coordinate, ...]:
+        """The joint's columns of q."""
+        n = len(self.type.coordinates)
+        lower, upper = ((-1.0,) * n, (1.0,) * n) if self.type is JointType.BALL else (self.limits.lower, self.limits.upper)
+        rows = zip(self.column_names, self.type.units, lower, upper, self.rest, strict=True)
+        return tuple(Coordinate(name, self.name, unit, lo, hi, rest) for name, unit, lo, hi, rest in rows)
+
+    def motion(self, q: npt.ArrayLike) -> SE3:
+        """Return J(q) for coordinates `(*batch, n_coordinates)` [rad, mm]."""
+        return self.type.motion(q, self.lead)
+
+    def reversed(self) -> Joint:
+        """Return the same joint measured from its child: same relation between the parts, other coordinates.
+
+        The coordinates are `type.reversal_signs(mate) ∘ q` (kinematics: reversal).
+
+        Raises:
+            KinematicsError: E_REVERSE_UNSUPPORTED for planar and universal.
+        """
+        signs = self.type.reversal_signs(self.mate)
+        return replace(
+            self,
+            parent=self.child,
+            child=self.parent,
+            parent_connector=self.child_connector,
+            child_connector=self.parent_connector,
+            T_parent_connector=self.T_child_connector,
+            T_child_connector=self.T_parent_connector,
+            limits=self.limits.signed(signs),
+            rest=_signed(self.rest, signs),
+        )
+
+    def mirrored(
+        self,
+        *,
+        name: str,
+        parent: str,
+        child: str,
+        parent_connector: str,
+        child_connector: str,
+        T_parent_connector: SE3,
+        T_child_connector: SE3,
+    ) -> Joint:
+        """Return the joint of the mirror image between other connectors: J'(q') = K J(q) K, K = diag(1, −1, 1).
+
+        The coordinates are `type.mirror_signs() ∘ q`; a screw changes hand, so its lead changes sign; the mate stays; it is no driver.
+        """
+        signs = self.type.mirror_signs()
+        return replace(
+            self,
+            name=name,
+            parent=parent,
+            child=child,
+            parent_connector=parent_connector,
+            child_connector=child_connector,
+            T_parent_connector=T_parent_connector,
+            T_child_connector=T_child_connector,
+            limits=self.limits.signed(signs),
+            rest=_signed(self.rest, signs),
+            lead=-self.lead + 0.0,
+            driver=False,
+        )
+
+    def findings(self) -> list[Finding]:
+        """Return everything that is wrong with the joint's own numbers."""
+        return _joint_findings(self)
+
+
+@dataclass(frozen=True)
+class Coordinate:
+    """A column of q.
+
+    Attributes:
+        name: `joint`, or `joint.coordinate`.
+        joint: Name of its joint.
+        unit: "rad", "mm", or "1" for a component of a quaternion.
+        lower: Lower bound in `unit`; −inf when endless.
+        upper: Upper bound in `unit`.
+        rest: Value in the rest pose.
+    """
+
+    name: str
+    joint: str
+    unit: Unit
+    lower: float
+    upper: float
+    rest: float
+
+
+@dataclass(frozen=True)
+class Coupling:
+    """A relation q_b − ratio · q_a − offset = 0 between two coordinates, in rad and mm.
+
+    Attributes:
+        name: Unique among couplings.
+        kind: gear, belt, rack, screw or linear; for reading only.
+        a: Column name of the first coordinate.
+        b: Column name of the second one.
+        ratio: k.
+        offset: c.
+    """
+
+    name: str
+    kind: str
+    a: str
+    b: str
+    ratio: float
+    offset: float = 0.0
+
+
+def _signed(values: Sequence[float], signs: FloatArray) -> tuple[float, ...]:
+    return tuple(float(value * sign) + 0.0 for value, sign in zip(values, signs, strict=True))  # + 0.0: no −0 in a plan
+
+
+def _joint_findings(joint: Joint) -> list[Finding]:
+    where, parts = f"joints.{joint.name}", (joint.parent, joint.child)
+
+    def finding(code: str, message: str, hint: str) -> Finding:
+        return Finding(code=code, where=where, message=f"Joint {joint.name!r}: {message}", hint=hint, parts=parts)
+
+    found: list[Finding] = []
+    if not joint.type.freedoms and joint.driver:
+        found.append(finding("W_DRIVER", "a fixed joint cannot drive.", "Remove the mark."))
+    if not np.isfinite([*joint.rest, joint.lead]).all():
+        found.append(finding("E_NONFINITE", "rest values and lead must be finite.", "Give finite numbers."))
+    if joint.type is JointType.SCREW and joint.lead == 0:
+        found.append(finding("E_LEAD_ZERO", "a screw without lead.", "Give the advance per turn in mm, or use a revolute joint."))
+    if joint.type is JointType.BALL:
+        return found + _ball_findings(joint, finding)
+    n = len(joint.type.coordinates)
+    if not len(joint.limits.lower) == len(joint.limits.upper) == n or joint.limits.cone is not None or joint.limits.twist is not None:
+        found.append(finding("E_LIMITS_KIND", f"a {joint.type} joint has {n} pair(s) of limits, no cone.", "Give its own limits."))
+    elif len(joint.rest) != n:
+        found.append(finding("E_LIMITS_KIND", f"a {joint.type} joint has {n} rest value(s), not {len(joint.rest)}.", "Give one each."))
+    else:
+        found.extend(_range_findings(joint, finding))
+    return found
+
+
+def _range_findings(joint: Joint, finding: _FindingMaker) -> list[Finding]:
+    found: list[Finding] = []
+    for c in joint.columns:
+        show = _shown(c.unit)
+        given = f"[{show(c.lower)}, {show(c.upper)}]"
+        if math.isnan(c.lower) or math.isnan(c.upper):
+            found.append(finding("E_NONFINITE", f"limits {given} of {c.name} are not numbers.", "Give numbers, or an endless angle."))
+        elif c.lower > c.upper:
+            swapped = f"[{show(c.upper)}, {show(c.lower)}]"
+            found.append(finding("E_LIMITS_ORDER", f"limits {given} of {c.name} are reversed.", f"Did you mean {swapped}?"))
+        elif not c.lower - LIMIT_SLACK <= c.rest <= c.upper + LIMIT_SLACK:
+            message = f"{c.name} rests at {show(c.rest)}, outside {given}."
+            found.append(finding("E_REST_OUTSIDE_LIMITS", message, "Move the rest value or the limit."))
+    return found
+
+
+def _ball_findings(joint: Joint, finding: _FindingMaker) -> list[Finding]:
+    limits = joint.limits
+    cone = math.pi if limits.cone is None else limits.cone
+    if limits.lower or limits.upper or len(joint.rest) != 4:
+        return [finding("E_LIMITS_KIND", "a ball has a cone and a twist, and rests at a quaternion.", "Give cone and twist.")]
+    if not 0 < cone <= math.pi:
+        return [finding("E_LIMITS_ORDER", f"the cone is {math.degrees(cone):.6g}°.", "Give an angle above 0° up to 180°.")]
+    if abs(math.hypot(*joint.rest) - 1) > _QUATERNION_TOLERANCE:
+        return [finding("E_QUAT_NORM", f"it rests at {joint.rest}, not of unit length.", "Give a unit quaternion (x, y, z, w).")]
+    if limits.twist is not None and not limits.twist[0] <= limits.twist[1]:
+        lo, hi = (f"{math.degrees(v):.6g}°" for v in limits.twist)
+        return [finding("E_LIMITS_ORDER", f"its twist [{lo}, {hi}] is reversed.", f"Did you mean [{hi}, {lo}]?")]
+    turned = limits.twist is not None and not limits.twist[0] - LIMIT_SLACK <= twist(joint.rest) <= limits.twist[1] + LIMIT_SLACK
+    if turned or swing(joint.rest) > cone + LIMIT_SLACK:
+        return [finding("E_REST_OUTSIDE_LIMITS", "it rests outside its cone or twist.", "Move the rest value or the limit.")]
+    return []
+
+
+def _shown(unit: Unit) -> _Shower:
+    return (lambda v: f"{math.degrees(v):.6g}°") if unit == "rad" else (lambda v: f"{v:.6g} mm")
