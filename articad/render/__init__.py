@@ -1,0 +1,33 @@
+"""Pictures of parts, poses and motion, with no display, GPU or GL."""
+
+from articad.render.camera import VIEWS, Camera
+from articad.render.pictures import (
+    contact_sheet,
+    filmstrip,
+    motion_frames,
+    motion_gif,
+    picture,
+    render_motion,
+    render_part,
+    render_views,
+)
+from articad.render.raycast import Buffers, cast
+from articad.render.scene import Item, Scene, Section
+
+__all__ = [
+    "VIEWS",
+    "Buffers",
+    "Camera",
+    "Item",
+    "Scene",
+    "Section",
+    "cast",
+    "contact_sheet",
+    "filmstrip",
+    "motion_frames",
+    "motion_gif",
+    "picture",
+    "render_motion",
+    "render_part",
+    "render_views",
+]

@@ -1,0 +1,173 @@
+"""What is written over a picture: names, joint axes, directions, a scale bar, a title."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image, ImageDraw, ImageFont
+
+from articad.render.camera import Camera
+from articad.render.raycast import Buffers
+from articad.render.scene import Axis, Scene
+
+FloatArray = NDArray[np.float64]
+Color = tuple[int, int, int]
+
+INK: Color = (30, 34, 40)
+QUIET: Color = (110, 116, 124)
+HALO: Color = (250, 250, 248)
+AXIS_COLORS: tuple[Color, Color, Color] = ((200, 40, 40), (30, 140, 60), (40, 80, 200))
+JOINT: Color = (0, 96, 160)
+_SMALLEST_LABELLED = 40  # pixels: a part of which less is seen gets no name
+_TRIAD_PIXELS = 26
+_AXIS_SHARE = 0.13  # of the picture's width, to each side of the joint
+
+
+def annotate(
+    image: Image.Image, scene: Scene, camera: Camera, buffers: Buffers, *, labels: bool, axes: bool, title: str | None
+) -> Image.Image:
+    """Return the picture with its annotations; `buffers` may have more pixels than the picture."""
+    draw = ImageDraw.Draw(image)
+    taken: list[tuple[float, float, float, float]] = []
+    if axes:
+        for axis in scene.axes:
+            _joint_axis(draw, axis, camera, taken)
+    if labels:
+        _part_names(draw, scene, camera, buffers, taken)
+    _triad(draw, camera)
+    _scale_bar(draw, camera)
+    if title:
+        _text(draw, (8, 6), title, INK, size=13)
+    return image
+
+
+def font(size: int) -> ImageFont.FreeTypeFont | ImageFont.ImageFont:
+    """Return the font that comes with Pillow, so that pictures do not depend on the system's fonts."""
+    return ImageFont.load_default(size)
+
+
+def _text(draw: ImageDraw.ImageDraw, at: tuple[float, float], text: str, color: Color, *, size: int = 11) -> None:
+    draw.text(at, text, fill=color, font=font(size), stroke_width=2, stroke_fill=HALO)
+
+
+def _place(
+    draw: ImageDraw.ImageDraw,
+    at: tuple[float, float],
+    text: str,
+    color: Color,
+    camera: Camera,
+    taken: list[tuple[float, float, float, float]],
+) -> None:
+    """Write a name near a point, lower where another name stands already, and never outside the picture."""
+    x0, y0, x1, y1 = draw.textbbox((0, 0), text, font=font(11))
+    width, height = x1 - x0, y1 - y0 + 3
+    left = min(max(at[0] - width / 2, 2), camera.width - width - 2)
+    top = min(max(at[1] - height / 2, 22), camera.height - height - 2)
+    for _ in range(12):
+        clash = [box for box in taken if left < box[2] and box[0] < left + width and top < box[3] and box[1] < top + height]
+        if not clash:
+            break
+        top = max(box[3] for box in clash) + 1
+        if top > camera.height - height - 2:
+            top = min(box[1] for box in clash) - height - 1
+    taken.append((left, top, left + width, top + height))
+    _text(draw, (left, top), text, color)
+
+
+def _part_names(
+    draw: ImageDraw.ImageDraw, scene: Scene, camera: Camera, buffers: Buffers, taken: list[tuple[float, float, float, float]]
+) -> None:
+    ratio = buffers.item.shape[1] / camera.width
+    by_name: dict[str, list[int]] = {}
+    for index, item in enumerate(scene.items):
+        if item.manner == "solid":
+            by_name.setdefault(item.name, []).append(index)
+    for name, indices in by_name.items():
+        rows, columns = np.nonzero(np.isin(buffers.item, indices))
+        if len(rows) < _SMALLEST_LABELLED * ratio**2:
+            continue
+        # The pixel nearest to the mean lies on the part, even where the part has a hole in its middle.
+        nearest = np.argmin((rows - rows.mean()) ** 2 + (columns - columns.mean()) ** 2)
+        _place(draw, (float(columns[nearest] / ratio), float(rows[nearest] / ratio)), name, INK, camera, taken)
+
+
+def _joint_axis(draw: ImageDraw.ImageDraw, axis: Axis, camera: Camera, taken: list[tuple[float, float, float, float]]) -> None:
+    direction = np.array(axis.direction)
+    along = camera.project(camera.centre + direction * camera.mm_per_pixel) - camera.project(camera.centre[None])
+    seen = float(np.linalg.norm(along))
+    at = camera.project(np.array([axis.point]))[0]
+    if seen < 0.08:  # the axis points at the viewer
+        radius = 7
+        box = (at[0] - radius, at[1] - radius, at[0] + radius, at[1] + radius)
+        draw.ellipse(box, outline=JOINT, width=2)
+        draw.ellipse((at[0] - 1.5, at[1] - 1.5, at[0] + 1.5, at[1] + 1.5), fill=JOINT)
+        _place(draw, (at[0], at[1] - 15), axis.name, JOINT, camera, taken)
+        return
+    unit = along.reshape(2) / seen
+    length = _AXIS_SHARE * camera.width * max(seen, 0.35)
+    tail, tip = at - unit * length, at + unit * length
+    _dashed(draw, tail, tip)
+    _arrow_head(draw, tip, unit)
+    if axis.turns:
+        _turn_arrow(draw, at + unit * length * 0.72, unit)
+    _place(draw, (float(tip[0] + unit[0] * 14), float(tip[1] + unit[1] * 12)), axis.name, JOINT, camera, taken)
+
+
+def _dashed(draw: ImageDraw.ImageDraw, start: FloatArray, end: FloatArray) -> None:
+    """Draw a centre line: long dash, gap, dot, gap."""
+    total = float(np.linalg.norm(end - start))
+    unit = (end - start) / max(total, 1e-9)
+    position = 0.0
+    for index in range(1000):
+        if position >= total:
+            return
+        stroke = min((9.0, 2.0)[index % 2], total - position)
+        a, b = start + unit * position, start + unit * (position + stroke)
+        draw.line([(a[0], a[1]), (b[0], b[1])], fill=JOINT, width=2)
+        position += stroke + 3.0
+
+
+def _arrow_head(draw: ImageDraw.ImageDraw, tip: FloatArray, unit: FloatArray, *, size: float = 7.0, color: Color = JOINT) -> None:
+    across = np.array([-unit[1], unit[0]])
+    left, right = tip - unit * size + across * size * 0.45, tip - unit * size - across * size * 0.45
+    draw.polygon([(tip[0], tip[1]), (left[0], left[1]), (right[0], right[1])], fill=color)
+
+
+def _turn_arrow(draw: ImageDraw.ImageDraw, at: FloatArray, unit: FloatArray) -> None:
+    """Draw a narrow arc round the axis whose arrow shows the positive turn: by the right hand, towards the viewer's left of +z."""
+    across = np.array([-unit[1], unit[0]])
+    points = []
+    for step in range(15):
+        angle = math.radians(-70 + 290 * step / 14)
+        points.append(at + across * 9 * math.cos(angle) + unit * 3.5 * math.sin(angle))
+    draw.line([(point[0], point[1]) for point in points], fill=JOINT, width=2)
+    heading = points[-1] - points[-2]
+    _arrow_head(draw, points[-1] + heading, heading / max(float(np.linalg.norm(heading)), 1e-9), size=5.0)
+
+
+def _triad(draw: ImageDraw.ImageDraw, camera: Camera) -> None:
+    origin = np.array([_TRIAD_PIXELS + 12.0, camera.height - _TRIAD_PIXELS - 12.0])
+    order = sorted(range(3), key=lambda index: float(camera.eye[index]))  # the axis that points at the viewer last
+    for index in order:
+        axis = np.eye(3)[index]
+        flat = np.array([axis @ camera.right, -(axis @ camera.up)])
+        end = origin + flat * _TRIAD_PIXELS
+        if np.linalg.norm(flat) < 0.05:
+            continue
+        draw.line([(origin[0], origin[1]), (end[0], end[1])], fill=AXIS_COLORS[index], width=2)
+        _text(draw, (end[0] + flat[0] * 7 - 4, end[1] + flat[1] * 7 - 6), "XYZ"[index], AXIS_COLORS[index])
+
+
+def _scale_bar(draw: ImageDraw.ImageDraw, camera: Camera) -> None:
+    wanted = camera.mm_per_pixel * camera.width * 0.22
+    power = 10.0 ** math.floor(math.log10(wanted))
+    length = max(step * power for step in (1, 2, 5) if step * power <= wanted)
+    pixels = length / camera.mm_per_pixel
+    right, bottom = camera.width - 12, camera.height - 14
+    left = right - pixels
+    draw.line([(left, bottom), (right, bottom)], fill=INK, width=2)
+    for end in (left, right):
+        draw.line([(end, bottom - 4), (end, bottom + 4)], fill=INK, width=2)
+    _text(draw, (left, bottom - 18), f"{length:g} mm", INK)

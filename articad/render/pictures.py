@@ -1,0 +1,229 @@
+"""Pictures of assemblies and parts: views, motion keyframes, sheets, filmstrips, animations."""
+
+from __future__ import annotations
+
+import io
+import math
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image
+
+from articad.connectors.se3 import SE3
+from articad.errors import UnknownJointError
+from articad.geometry.mesh import TriMesh
+from articad.geometry.part import Part
+from articad.kinematics.joints import Joint, JointType
+from articad.render.annotate import annotate
+from articad.render.camera import Camera
+from articad.render.raycast import cast
+from articad.render.scene import Scene, Section, scene_of
+from articad.render.shade import reduced, shade
+
+if TYPE_CHECKING:
+    from articad.assembly import Assembly
+
+FloatArray = NDArray[np.float64]
+
+RECIPE = "articad.picture/1"  # changes when the same scene would be drawn differently; part of a model request's key
+DEFAULT_VIEWS = ("iso", "front", "right", "top")
+DEFAULT_SIZE = 512
+FRAMES = 8
+_FREE_TRAVEL = 0.1  # of the assembly's size: how far a travel without limits is shown
+_GAP = 6  # pixels between the pictures of a sheet
+_GIF_MILLISECONDS = 60
+
+
+def picture(
+    scene: Scene,
+    camera: Camera,
+    *,
+    supersample: int = 2,
+    labels: bool = True,
+    axes: bool = True,
+    title: str | None = None,
+) -> Image.Image:
+    """Draw a scene.
+
+    Args:
+        scene: What to draw.
+        camera: From where.
+        supersample: Rays per pixel in each direction; 1 is fastest.
+        labels: Write the parts' names.
+        axes: Draw the joints' axes with the direction of positive motion.
+        title: Written in the upper left corner.
+    """
+    fine = camera.scaled(supersample)
+    buffers = cast(scene, fine)
+    image = Image.fromarray(reduced(shade(scene, fine, buffers), supersample))
+    return annotate(image, scene, camera, buffers, labels=labels, axes=axes, title=title)
+
+
+def render_views(
+    assembly: Assembly,
+    views: Sequence[str] = DEFAULT_VIEWS,
+    *,
+    q: FloatArray | None = None,
+    size: int = DEFAULT_SIZE,
+    only: Sequence[str] | None = None,
+    section: str | Section | None = None,
+    explode: float = 0.0,
+    highlights: Sequence[TriMesh] = (),
+    supersample: int = 2,
+    labels: bool = True,
+    axes: bool = True,
+) -> dict[str, Image.Image]:
+    """Draw one pose of an assembly from several sides, at one scale.
+
+    Args:
+        assembly: What to draw.
+        views: Keys of `articad.render.VIEWS`.
+        q: Configuration; the rest pose by default.
+        size: Width and height of each picture [pixels].
+        only: Parts shown in full; the others are faded.
+        section: A cutting plane, or its short form such as `x` or `-y=12.5`.
+        explode: How far parts are moved apart, as a share of their distance from the middle.
+        highlights: Meshes in the ground frame drawn over everything, such as overlaps.
+        supersample: Rays per pixel in each direction.
+        labels: Write the parts' names.
+        axes: Draw the joints' axes.
+    """
+    poses = _poses(assembly, assembly.mechanism.rest if q is None else q)
+    scene = scene_of(assembly.parts, poses, joints=assembly.joints, only=only, highlights=highlights)
+    if explode:
+        scene = scene.exploded(explode)
+    cut = Section.parse(section, scene.bounds) if isinstance(section, str) else section
+    scene = Scene(scene.items, scene.axes, cut)
+    return {
+        view: picture(
+            scene,
+            Camera.fit(view, scene.bounds, width=size, height=size),
+            supersample=supersample,
+            labels=labels,
+            axes=axes,
+            title=f"{assembly.name} · {view}",
+        )
+        for view in views
+    }
+
+
+def render_part(
+    part: Part, views: Sequence[str] = DEFAULT_VIEWS, *, size: int = DEFAULT_SIZE, supersample: int = 2
+) -> dict[str, Image.Image]:
+    """Draw one part in its own frame from several sides."""
+    scene = scene_of({part.name: part}, {part.name: SE3.identity()})
+    return {
+        view: picture(
+            scene, Camera.fit(view, scene.bounds, width=size, height=size), supersample=supersample, title=f"{part.name} · {view}"
+        )
+        for view in views
+    }
+
+
+def motion_frames(assembly: Assembly, joint: str, count: int = FRAMES) -> tuple[list[str], FloatArray]:
+    """Return configurations that show what a driving joint does, all other drivers at rest.
+
+    Each coordinate runs from its lower to its upper limit, an endless angle over one turn from rest; a ball swings about
+    both axes across z and then twists.
+
+    Returns:
+        A caption for each frame, and `q`, `(frames, nq)`.
+
+    Raises:
+        UnknownJointError: If the joint drives nothing.
+    """
+    driving = {driver.joint for driver in assembly.drivers}
+    if joint not in driving:
+        raise UnknownJointError(joint, sorted(driving))
+    declared = next(entry for entry in assembly.joints if entry.name == joint)
+    if declared.type is JointType.BALL:
+        return _ball_frames(assembly, declared, count)
+    captions: list[str] = []
+    rows: list[FloatArray] = []
+    size = float(np.linalg.norm(np.ptp(scene_of(assembly.parts, _poses(assembly, assembly.mechanism.rest)).bounds, axis=0)))
+    for column, driver in enumerate(assembly.drivers):
+        if driver.joint != joint:
+            continue
+        free = 2 * math.pi if driver.unit == "rad" else _FREE_TRAVEL * size
+        lower = driver.lower if math.isfinite(driver.lower) else driver.rest
+        upper = driver.upper if math.isfinite(driver.upper) else lower + free
+        for value in np.linspace(lower, upper, count):
+            q = np.array(assembly.mechanism.rest, dtype=np.float64)
+            q[column] = value
+            rows.append(q)
+            shown = f"{math.degrees(value):.1f}°" if driver.unit == "rad" else f"{value:.1f} mm"
+            captions.append(f"{driver.name} = {shown}")
+    return captions, np.array(rows)
+
+
+def render_motion(
+    assembly: Assembly, joint: str, *, view: str = "iso", frames: int = FRAMES, size: int = 320, supersample: int = 2, axes: bool = True
+) -> list[Image.Image]:
+    """Draw the frames of `motion_frames`, all with one camera that shows the whole motion."""
+    captions, q = motion_frames(assembly, joint, frames)
+    scenes = [scene_of(assembly.parts, _poses(assembly, row), joints=_of(assembly.joints, joint)) for row in q]
+    bounds = np.array([np.min([s.bounds[0] for s in scenes], axis=0), np.max([s.bounds[1] for s in scenes], axis=0)])
+    camera = Camera.fit(view, bounds, width=size, height=size)
+    return [
+        picture(scene, camera, supersample=supersample, labels=False, axes=axes, title=caption)
+        for scene, caption in zip(scenes, captions, strict=True)
+    ]
+
+
+def contact_sheet(pictures: Sequence[Image.Image], columns: int) -> Image.Image:
+    """Return pictures of one size side by side in rows."""
+    width, height = pictures[0].size
+    rows = math.ceil(len(pictures) / columns)
+    sheet = Image.new("RGB", (columns * (width + _GAP) - _GAP, rows * (height + _GAP) - _GAP), (205, 208, 212))
+    for index, entry in enumerate(pictures):
+        sheet.paste(entry, ((index % columns) * (width + _GAP), (index // columns) * (height + _GAP)))
+    return sheet
+
+
+def filmstrip(frames: Sequence[Image.Image], columns: int = 4) -> Image.Image:
+    """Return motion frames as one picture, to be read like lines of text."""
+    return contact_sheet(frames, min(columns, len(frames)))
+
+
+def motion_gif(frames: Sequence[Image.Image]) -> bytes:
+    """Return an animation that runs forth and back without end."""
+    palette = [frame.quantize(colors=128, method=Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE) for frame in frames]
+    loop = [*palette, *palette[-2:0:-1]]
+    stream = io.BytesIO()
+    loop[0].save(stream, format="GIF", save_all=True, append_images=loop[1:], duration=_GIF_MILLISECONDS, loop=0, optimize=False)
+    return stream.getvalue()
+
+
+def png(image: Image.Image) -> bytes:
+    """Return the picture as a PNG file."""
+    stream = io.BytesIO()
+    image.save(stream, format="PNG", optimize=False)
+    return stream.getvalue()
+
+
+def _ball_frames(assembly: Assembly, joint: Joint, count: int) -> tuple[list[str], FloatArray]:
+    columns = [index for index, driver in enumerate(assembly.drivers) if driver.joint == joint.name]
+    cone = joint.limits.cone if joint.limits.cone is not None else math.pi / 4
+    twist = joint.limits.twist or (0.0, 2 * math.pi)
+    captions, rows = [], []
+    swings = (("x", -cone, cone), ("y", -cone, cone), ("z", *twist))
+    for axis, lower, upper in swings:
+        for angle in np.linspace(lower, upper, count):
+            q = np.array(assembly.mechanism.rest, dtype=np.float64)
+            quaternion = np.zeros(4)
+            quaternion["xyz".index(axis)], quaternion[3] = math.sin(angle / 2), math.cos(angle / 2)
+            q[columns] = quaternion
+            rows.append(q)
+            captions.append(f"{joint.name} {'twist' if axis == 'z' else 'swing ' + axis} = {math.degrees(angle):.1f}°")
+    return captions, np.array(rows)
+
+
+def _of(joints: Sequence[Joint], name: str) -> tuple[Joint, ...]:
+    return tuple(joint for joint in joints if joint.name == name)
+
+
+def _poses(assembly: Assembly, q: FloatArray) -> Mapping[str, SE3]:
+    stacked = assembly.poses(q)
+    return {name: stacked[index] for index, name in enumerate(assembly.mechanism.parts)}

@@ -1,0 +1,133 @@
+"""Which part each pixel sees, how far away and how it is turned: the only user of Embree."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from articad.render.camera import Camera
+from articad.render.scene import Scene
+
+FloatArray = NDArray[np.float64]
+FloatImage = NDArray[np.float32]
+IndexImage = NDArray[np.int32]
+
+BACKGROUND = -1
+_STEP = 1e-4  # of the scene's size: how far behind a surface a ray goes on; float32 resolves 1e-7
+
+
+@dataclass(frozen=True, eq=False)
+class Buffers:
+    """What the rays of a picture met.
+
+    Attributes:
+        item: Index into `Scene.items`, `BACKGROUND` where nothing is, `(height, width)`.
+        depth: Distance in front of (negative: nearer than) the plane through the camera's centre [mm]; inf for background.
+        normal: Unit normal towards the viewer, `(height, width, 3)`; zero for background.
+        cut: True where the section plane cuts through a solid.
+        over: Index of the highlighted item that lies anywhere on the ray, else `BACKGROUND`.
+    """
+
+    item: IndexImage
+    depth: FloatImage
+    normal: FloatImage
+    cut: NDArray[np.bool_]
+    over: IndexImage
+
+
+def cast(scene: Scene, camera: Camera) -> Buffers:
+    """Send one ray through the centre of each pixel.
+
+    Vertices are taken relative to the camera's centre before they become float32, so that a scene far from the origin is
+    as sharp as one at it.
+    """
+    plain = [index for index, item in enumerate(scene.items) if item.manner != "highlight"]
+    marked = [index for index, item in enumerate(scene.items) if item.manner == "highlight"]
+    size = float(np.linalg.norm(scene.bounds[1] - scene.bounds[0])) + camera.mm_per_pixel * max(camera.width, camera.height)
+    origins = camera.plane_points() + camera.eye * size
+    start = np.zeros(len(origins))
+    end = np.full(len(origins), 4 * size)
+    if scene.section is not None:
+        start, end = _kept_interval(scene, camera, origins, end)
+    item, distance, normal, cut = _first_hits(scene, plain, camera, origins, start, end, step=_STEP * size)
+    over = np.full(len(origins), BACKGROUND, dtype=np.int32)
+    if marked:
+        over = _first_hits(scene, marked, camera, origins, np.zeros(len(origins)), np.full(len(origins), 4 * size), step=_STEP * size)[0]
+    shape = (camera.height, camera.width)
+    return Buffers(
+        item=item.reshape(shape),
+        depth=(distance - size).astype(np.float32).reshape(shape),
+        normal=normal.astype(np.float32).reshape(*shape, 3),
+        cut=cut.reshape(shape),
+        over=over.reshape(shape),
+    )
+
+
+def _kept_interval(scene: Scene, camera: Camera, origins: FloatArray, end: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return from where to where each ray runs through the half-space that a section keeps."""
+    assert scene.section is not None
+    normal = np.array(scene.section.normal) / np.linalg.norm(scene.section.normal)
+    toward = -camera.eye
+    height = (origins - (np.array(scene.section.point) - camera.centre)) @ normal
+    rate = float(toward @ normal)
+    start = np.zeros(len(origins))
+    if abs(rate) < 1e-9:  # the plane is seen edge-on: whole rays are kept or lost
+        return start, np.where(height <= 0, end, 0.0)
+    crossing = -height / rate
+    if rate < 0:
+        return np.maximum(crossing, 0.0), end
+    return start, np.clip(crossing, 0.0, end)
+
+
+def _first_hits(
+    scene: Scene, indices: list[int], camera: Camera, origins: FloatArray, start: FloatArray, end: FloatArray, *, step: float
+) -> tuple[IndexImage, FloatArray, FloatArray, NDArray[np.bool_]]:
+    """Return item, distance, normal and whether the ray began inside the item, for each ray."""
+    count = len(origins)
+    item = np.full(count, BACKGROUND, dtype=np.int32)
+    distance = np.full(count, np.inf)
+    normal = np.zeros((count, 3))
+    cut = np.zeros(count, dtype=np.bool_)
+    indices = [index for index in indices if len(scene.items[index].mesh.triangles)]
+    if not indices or not count:
+        return item, distance, normal, cut
+    embree = _embree_scene(scene, indices, camera)
+    toward = -camera.eye
+    direction = np.broadcast_to(toward.astype(np.float32), (count, 3)).copy()
+    begin = (origins + start[:, None] * toward).astype(np.float32)
+    dists = np.maximum(end - start, 0).astype(np.float32)
+    hit = embree.run(begin, direction, dists=dists, output=1)
+    found = (hit["geomID"] >= 0) & (end > start)
+    item[found] = np.asarray(indices, dtype=np.int32)[hit["geomID"][found]]
+    distance[found] = start[found] + hit["tfar"][found]
+    Ng = hit["Ng"][found].astype(np.float64)
+    Ng /= np.maximum(np.linalg.norm(Ng, axis=1, keepdims=True), 1e-30)
+    facing = Ng @ camera.eye
+    normal[found] = np.where(facing[:, None] < 0, -Ng, Ng)
+    if scene.section is not None:
+        toward_viewer = np.array(scene.section.normal) / np.linalg.norm(scene.section.normal)
+        if toward_viewer @ camera.eye < 0:
+            toward_viewer = -toward_viewer
+        # Each solid alone: where two touch, the first of all surfaces does not tell inside which of them the ray began.
+        for index in indices:
+            alone = _embree_scene(scene, [index], camera).run(begin, direction, dists=dists, output=1)
+            inside = (alone["geomID"] >= 0) & (alone["Ng"].astype(np.float64) @ camera.eye < 0) & (start > step) & (end > start)
+            item[inside], distance[inside], normal[inside] = index, start[inside], toward_viewer
+            cut |= inside
+    return item, distance, normal, cut
+
+
+def _embree_scene(scene: Scene, indices: list[int], camera: Camera) -> Any:
+    # Embree costs 0.1 s to load and is not on every platform.
+    from embreex import rtcore_scene  # noqa: PLC0415
+    from embreex.mesh_construction import TriangleMesh  # noqa: PLC0415
+
+    embree = rtcore_scene.EmbreeScene()
+    for index in indices:
+        entry = scene.items[index]
+        vertices = np.ascontiguousarray(entry.vertices - camera.centre, dtype=np.float32)
+        TriangleMesh(embree, vertices, np.ascontiguousarray(entry.mesh.triangles, dtype=np.int32))
+    return embree

@@ -1,0 +1,156 @@
+"""Scene: what is drawn, placed in the ground frame."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from articad.connectors.se3 import SE3
+from articad.geometry.mesh import TriMesh
+from articad.geometry.part import Part
+from articad.kinematics.joints import Joint
+
+FloatArray = NDArray[np.float64]
+Manner = Literal["solid", "faded", "highlight"]
+
+
+@dataclass(frozen=True, eq=False)
+class Item:
+    """One mesh in the ground frame.
+
+    Attributes:
+        name: Name of the part.
+        mesh: Its surface in its own frame [mm].
+        T_ground: Where that frame is.
+        color: "#rrggbb".
+        manner: solid; faded for context; highlight is drawn over everything in front of it.
+    """
+
+    name: str
+    mesh: TriMesh
+    T_ground: SE3
+    color: str
+    manner: Manner = "solid"
+
+    @property
+    def vertices(self) -> FloatArray:
+        """Vertices in the ground frame [mm], `(V, 3)`."""
+        return self.T_ground.apply(self.mesh.vertices)
+
+
+@dataclass(frozen=True)
+class Section:
+    """A cutting plane; what lies on the side of its normal is taken away.
+
+    Attributes:
+        point: A point of the plane [mm].
+        normal: Towards what is taken away; need not be of unit length.
+    """
+
+    point: tuple[float, float, float]
+    normal: tuple[float, float, float]
+
+    @classmethod
+    def parse(cls, text: str, bounds: FloatArray) -> Section:
+        """Read `x`, `-y`, `z=12.5` …: the axis of the normal, and where it cuts (the middle of `bounds` by default).
+
+        Raises:
+            ValueError: If the text is not of this form.
+        """
+        axis, _, offset = text.partition("=")
+        sign = -1.0 if axis.startswith("-") else 1.0
+        index = "xyz".find(axis.lstrip("-"))
+        if len(axis.lstrip("-")) != 1 or index < 0:
+            raise ValueError(f"A section is x, y or z, perhaps with a sign and '=mm', for instance -y=12.5; not {text!r}.")
+        point = bounds.mean(axis=0)
+        if offset:
+            point[index] = float(offset)
+        normal = np.zeros(3)
+        normal[index] = sign
+        return cls((float(point[0]), float(point[1]), float(point[2])), (float(normal[0]), float(normal[1]), float(normal[2])))
+
+
+@dataclass(frozen=True)
+class Axis:
+    """A joint's axis to be drawn: where it is, along what, and what it is called."""
+
+    name: str
+    point: tuple[float, float, float]
+    direction: tuple[float, float, float]
+    turns: bool
+
+
+@dataclass(frozen=True)
+class Scene:
+    """Items, and what is drawn over them.
+
+    Attributes:
+        items: Meshes with their places and colours.
+        axes: Joint axes to draw.
+        section: Cutting plane, or None.
+    """
+
+    items: tuple[Item, ...]
+    axes: tuple[Axis, ...] = ()
+    section: Section | None = field(default=None)
+
+    @property
+    def bounds(self) -> FloatArray:
+        """Smallest and largest coordinates of all items [mm], `(2, 3)`; a unit box when there are none."""
+        corners = [item.vertices for item in self.items if len(item.mesh.vertices)]
+        if not corners:
+            return np.array([[-0.5] * 3, [0.5] * 3])
+        return np.array([np.min([c.min(axis=0) for c in corners], axis=0), np.max([c.max(axis=0) for c in corners], axis=0)])
+
+    def exploded(self, factor: float) -> Scene:
+        """Return the scene with every item moved away from the middle by `factor` times its own distance from it."""
+        middle = self.bounds.mean(axis=0)
+        moved = []
+        for item in self.items:
+            centre = item.vertices.mean(axis=0) if len(item.mesh.vertices) else middle
+            moved.append(replace(item, T_ground=SE3.from_translation(factor * (centre - middle)) @ item.T_ground))
+        return replace(self, items=tuple(moved), axes=())
+
+
+def scene_of(
+    parts: Mapping[str, Part],
+    poses: Mapping[str, SE3],
+    *,
+    joints: Sequence[Joint] = (),
+    only: Sequence[str] | None = None,
+    highlights: Sequence[TriMesh] = (),
+) -> Scene:
+    """Return the scene of parts in their poses.
+
+    Args:
+        parts: By name.
+        poses: `T_ground_part` by name.
+        joints: Whose axes are drawn.
+        only: Parts to show in full; the others are faded. All by default.
+        highlights: Meshes in the ground frame that are drawn over everything, such as overlaps.
+    """
+
+    def manner(name: str) -> Manner:
+        return "solid" if only is None or name in only else "faded"
+
+    items = [
+        Item(name, shape.mesh, poses[name] @ shape.frame, shape.color or part.color, manner(name))
+        for name, part in parts.items()
+        for shape in part.visuals or part.collisions
+    ]
+    items += [Item(f"overlap {index + 1}", mesh, SE3.identity(), "#e5383b", "highlight") for index, mesh in enumerate(highlights)]
+    return Scene(tuple(items), axes=tuple(_axis(joint, poses) for joint in joints if joint.type.freedoms))
+
+
+def _axis(joint: Joint, poses: Mapping[str, SE3]) -> Axis:
+    frame = poses[joint.parent] @ joint.T_parent_connector
+    return Axis(
+        joint.name,
+        tuple(map(float, frame.translation)),  # type: ignore[arg-type]
+        tuple(map(float, frame.z_axis)),  # type: ignore[arg-type]
+        turns="rad" in joint.type.units or "1" in joint.type.units,
+    )
