@@ -1,0 +1,1 @@
+"""Interference: overlap at one pose, sampled and certified motion, fits, root causes."""

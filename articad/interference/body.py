@@ -1,0 +1,150 @@
+"""Bodies: meshes made ready for collision queries, once each, and refused when they are not solids."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import Any
+from weakref import WeakKeyDictionary
+
+import fcl
+import manifold3d
+import numpy as np
+from numpy.typing import NDArray
+
+from articad.connectors.se3 import SE3
+from articad.geometry.mesh import TriMesh
+
+FloatArray = NDArray[np.float64]
+
+_EXTREME_DIRECTIONS = np.array([[x, y, z] for x in (-1, 0, 1) for y in (-1, 0, 1) for z in (-1, 0, 1) if x or y or z], dtype=np.float64)
+_bodies: WeakKeyDictionary[TriMesh, Body] = WeakKeyDictionary()
+
+
+class Body:
+    """One mesh with what FCL and manifold3d make of it, each made when first asked for.
+
+    Attributes:
+        mesh: Welded, so that neighbouring triangles share their vertices.
+    """
+
+    def __init__(self, mesh: TriMesh) -> None:
+        self.mesh = mesh if mesh.is_closed else mesh.welded()
+
+    @cached_property
+    def fault(self) -> str | None:
+        """Why overlap with this mesh cannot be measured; None for a proper solid.
+
+        Without this a broken mesh would silently overlap nothing: manifold3d answers 0 for it.
+        """
+        if not len(self.mesh.triangles):
+            return "the mesh has no triangles"
+        if not self.mesh.is_closed:
+            return f"the mesh is open: {self.mesh.open_edges} edges have no partner"
+        if self.mesh.volume <= 0:
+            return f"the mesh encloses {self.mesh.volume:.6g} mm³: it is flat or inside out"
+        if self._shell_outside_all is not None:
+            return f"a shell of the mesh encloses {self._shell_outside_all:.6g} mm³ outside all others: it is inside out"
+        status = self.manifold.status()
+        if status != manifold3d.Error.NoError:
+            return f"the mesh is not a manifold ({status.name})"
+        return None
+
+    @cached_property
+    def manifold(self) -> Any:
+        """The mesh as a `manifold3d.Manifold` in double precision; look at `fault` before trusting it."""
+        # copies: manifold3d takes only arrays that it could write
+        return manifold3d.Manifold(manifold3d.Mesh64(self.mesh.vertices.copy(), self.mesh.triangles.astype(np.uint64)))
+
+    @cached_property
+    def bvh(self) -> Any:
+        """The mesh as an `fcl.BVHModel`."""
+        return make_bvh(self.mesh.vertices, self.mesh.triangles)
+
+    @cached_property
+    def standing(self) -> Any:
+        """A collision object that stays at the identity."""
+        return fcl.CollisionObject(self.bvh)
+
+    @cached_property
+    def moving(self) -> Any:
+        """A collision object to be placed anew for every query; a second one, since a mesh may be asked against itself."""
+        return fcl.CollisionObject(self.bvh)
+
+    @cached_property
+    def volume(self) -> float:
+        """Enclosed volume [mm³]."""
+        return self.mesh.volume
+
+    @cached_property
+    def diagonal(self) -> float:
+        """Diagonal of the bounding box [mm]."""
+        return float(np.linalg.norm(self.mesh.bounds[1] - self.mesh.bounds[0]))
+
+    @cached_property
+    def components(self) -> tuple[TriMesh, ...]:
+        """Its shells."""
+        return self.mesh.components()
+
+    @cached_property
+    def extremes(self) -> tuple[FloatArray, ...]:
+        """For each shell the vertices that reach furthest in 26 directions, `(26, 3)`: all inside a box iff nearly the shell is."""
+        return tuple(shell.vertices[np.argmax(shell.vertices @ _EXTREME_DIRECTIONS.T, axis=0)] for shell in self.components)
+
+    @cached_property
+    def corners(self) -> FloatArray:
+        """Corners of all triangles, `(T, 3, 3)`."""
+        return self.mesh.vertices[self.mesh.triangles]
+
+    @property
+    def _shell_outside_all(self) -> float | None:
+        """Volume of a shell that is inside out but no cavity of another."""
+        if len(self.components) == 1:
+            return None
+        solids = [shell for shell in self.components if shell.volume > 0]
+        for shell in self.components:
+            low, high = shell.bounds
+            if shell.volume <= 0 and not any((other.bounds[0] <= low).all() and (high <= other.bounds[1]).all() for other in solids):
+                return shell.volume
+        return None
+
+
+def body_of(mesh: TriMesh) -> Body:
+    """Return the body of a mesh; parts that share a mesh share the body, and it lives as long as the mesh."""
+    body = _bodies.get(mesh)
+    if body is None:
+        body = _bodies[mesh] = Body(mesh)
+    return body
+
+
+def make_bvh(vertices: FloatArray, triangles: NDArray[Any]) -> Any:
+    """Return an FCL model of loose triangles."""
+    model = fcl.BVHModel()
+    model.beginModel(len(vertices), len(triangles))
+    model.addSubModel(vertices, triangles)
+    model.endModel()
+    return model
+
+
+def winding_numbers(points: FloatArray, corners: FloatArray) -> FloatArray:
+    """Count how often a closed mesh winds round each point: 1 inside, 0 outside (van Oosterom and Strackee 1983).
+
+    Args:
+        points: `(P, 3)` [mm].
+        corners: Corners of the triangles, `(T, 3, 3)` [mm].
+
+    Returns:
+        `(P,)`; halves on the surface.
+    """
+    total = np.empty(len(points))
+    for row, point in enumerate(points):
+        a, b, c = np.moveaxis(corners - point, 1, 0)
+        la, lb, lc = (np.sqrt(np.einsum("ij,ij->i", v, v)) for v in (a, b, c))
+        numerator = np.einsum("ij,ij->i", a, np.cross(b, c))
+        dot = np.einsum("ij,ij->i", a, b) * lc + np.einsum("ij,ij->i", b, c) * la + np.einsum("ij,ij->i", c, a) * lb
+        total[row] = np.arctan2(numerator, la * lb * lc + dot).sum() / (2 * np.pi)
+    return total
+
+
+def relative(T_a: SE3, T_b: SE3) -> SE3:
+    """Return `T_a_b`: where b stands as seen from a."""
+    return T_a.inverse() @ T_b

@@ -1,0 +1,112 @@
+"""One pose: which parts overlap, which float, which meshes cannot be judged.
+
+Bounding boxes choose the pairs; a boolean of the two solids gives the verdict (`articad.interference.overlap`).
+Definitions and tolerances: `docs/concepts/interference.md`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from articad.connectors.se3 import SE3
+from articad.findings import Finding, Findings
+from articad.geometry.mesh import TriMesh
+from articad.interference.body import relative
+from articad.interference.holding import Holding
+from articad.interference.overlap import distance, measured
+from articad.interference.relations import FitLike, WaiverLike
+from articad.interference.report import Checks, PairCheck, Strength
+from articad.interference.scene import Scene
+from articad.interference.verdict import judge
+from articad.kinematics.joints import Joint
+
+__all__ = ["Checks", "PairCheck", "Scene", "Strength", "check_pose", "check_scene"]
+
+
+def check_pose(
+    meshes: Mapping[str, TriMesh],
+    poses: Mapping[str, SE3],
+    *,
+    joints: Sequence[Joint],
+    waivers: Sequence[WaiverLike] = (),
+    deflection: Mapping[str, float] | float = 0.0,
+    over: str = "rest",
+    fits: Mapping[str, FitLike] | None = None,
+    ground: str | None = None,
+    pose: Mapping[str, float] | None = None,
+    gaps: bool = False,
+) -> Checks:
+    """Check one pose of an assembly.
+
+    Args:
+        meshes: By part, in the part's frame; parts without geometry are left out and cannot overlap.
+        poses: `T_ground_part` of all parts, also of those without geometry.
+        joints: Of the mechanism.
+        waivers: Overlaps that the plan allows.
+        deflection: How far meshes are from their solids [mm], by part or the same for all.
+        over: "rest" or "pose". Rigid groups, floating and fixed parts are judged at rest only.
+        fits: By joint name; a declared gap widens what counts as held.
+        ground: The part that stands still; without it the first one.
+        pose: Coordinates, for the findings [rad, mm].
+        gaps: Whether to measure the distance of every pair whose boxes are near, too.
+    """
+    scene = Scene.of(meshes, joints, waivers=waivers, deflection=deflection, fits=fits)
+    return check_scene(scene, poses, over=over, ground=ground, pose=pose, gaps=gaps)
+
+
+def check_scene(
+    scene: Scene,
+    poses: Mapping[str, SE3],
+    *,
+    over: str = "rest",
+    ground: str | None = None,
+    pose: Mapping[str, float] | None = None,
+    gaps: bool = False,
+) -> Checks:
+    """Check one pose of a scene; see `check_pose`."""
+    placed = {name: poses[name] for name in scene.bodies}
+    findings = [_broken_finding(name, reason) for name, reason in scene.broken.items()]
+    pairs: dict[tuple[str, str], PairCheck] = {}
+    for a, b in scene.candidates(placed):
+        if over != "rest" and scene.relations.rigid.together(a, b):
+            continue
+        if a in scene.broken or b in scene.broken:
+            continue
+        found = measured(scene.bodies[a], scene.bodies[b], relative(placed[a], placed[b]))
+        gap = distance(scene.bodies[a], scene.bodies[b], relative(placed[a], placed[b])) if gaps and not found.volume else None
+        pairs[a, b], finding = judge(scene, (a, b), found, over=over, pose=pose, gap=gap)
+        findings += finding
+    pairs.update(_unknown_pairs(scene, over))
+    if over == "rest":
+        holding = Holding(scene, placed, pairs)
+        findings += holding.fixed_apart()
+        findings += holding.floating(ground or next(iter(poses), ""), [name for name in poses if name not in scene.bodies])
+    bare = tuple(name for name in poses if name not in scene.bodies)
+    order = {name: at for at, name in enumerate(scene.bodies)}
+    ordered = sorted(pairs.values(), key=lambda pair: (order[pair.parts[0]], order[pair.parts[1]]))
+    return Checks(Findings(findings), tuple(ordered), scene.deflection, over, tuple(scene.bodies), bare)
+
+
+def _broken_finding(name: str, reason: str) -> Finding:
+    return Finding(
+        code="E_MESH_OPEN",
+        where=f"parts.{name}",
+        parts=(name,),
+        message=f"Overlap with {name} cannot be measured: {reason}.",
+        hint="Repair the mesh: every edge belongs to two triangles, and all triangles face outwards.",
+    )
+
+
+def _unknown_pairs(scene: Scene, over: str) -> dict[tuple[str, str], PairCheck]:
+    """Return a verdict "unknown" for every pair with a broken mesh: it is never taken for no interference."""
+    names = list(scene.bodies)
+    unknown = {}
+    for at, a in enumerate(names):
+        for b in names[at + 1 :]:
+            culprits = [name for name in (a, b) if name in scene.broken]
+            if culprits:
+                strength = Strength.not_checked("; ".join(f"{name}: {scene.broken[name]}" for name in culprits))
+                unknown[a, b] = PairCheck(
+                    (a, b), scene.relations.of(a, b), over, strength, allowed=scene.tolerated(a, b), verdict="unknown"
+                )
+    return unknown

@@ -1,0 +1,154 @@
+"""What holds what at rest: parts that are fixed but apart, and parts that touch nothing."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from articad.connectors.se3 import SE3
+from articad.findings import Finding
+from articad.interference.body import relative
+from articad.interference.overlap import distance, surfaces_touch
+from articad.interference.relations import Groups
+from articad.interference.report import PairCheck
+from articad.interference.scene import Scene
+from articad.kinematics.joints import Joint, JointType
+
+TOUCH_MM = 0.1  # surfaces that are fixed to each other may be this far apart: glue, or a bolt in its hole
+NEAR_MM = 5.0  # a part within this distance of another is held by it: runners, shadow gaps
+NEAR_LEAST_MM = 0.5  # … but for small parts the limit is a tenth of their size, and at least this
+NEAR_SHARE = 0.1
+_NEAR_SAMPLES = 256  # vertices compared before FCL is asked whether two parts are near
+
+
+class Holding:
+    """What holds what at rest: contact within rigid groups, nearness of everything else."""
+
+    def __init__(self, scene: Scene, poses: Mapping[str, SE3], pairs: dict[tuple[str, str], PairCheck]) -> None:
+        self.scene, self.poses, self.pairs = scene, poses, pairs
+
+    def fixed_apart(self) -> list[Finding]:
+        """Find parts that are fixed to each other without touching, and that no third part of their group connects."""
+        scene = self.scene
+        fixed = [joint for joint in scene.relations.joints if joint.type is JointType.FIXED]
+        fixed = [joint for joint in fixed if joint.parent in scene.bodies and joint.child in scene.bodies]
+        touching = Groups(scene.bodies)
+        for (a, b), pair in self.pairs.items():
+            if pair.volume > 0 and scene.relations.rigid.together(a, b):
+                touching.join(a, b)
+        loose: list[tuple[Joint, float]] = []
+        for joint in fixed:
+            if touching.together(joint.parent, joint.child):
+                continue
+            gap = self._gap(joint.parent, joint.child)
+            if gap <= self._touch_limit(joint):
+                touching.join(joint.parent, joint.child)
+            else:
+                loose.append((joint, gap))
+        if loose:
+            self._join_touching_neighbours(touching)
+        return [self._apart_finding(joint, gap) for joint, gap in loose if not touching.together(joint.parent, joint.child)]
+
+    def _join_touching_neighbours(self, touching: Groups) -> None:
+        """Let the other pairs of rigid groups touch too, now that it matters."""
+        for a, b in self.scene.candidates(self.poses, TOUCH_MM):
+            apart = self.scene.relations.rigid.together(a, b) and not touching.together(a, b)
+            if apart and self._gap(a, b) <= TOUCH_MM + self.scene.deflection_of(a, b):
+                touching.join(a, b)
+
+    def floating(self, ground: str, bare: Sequence[str]) -> list[Finding]:
+        """Find groups of parts that are near each other but near nothing that leads to the ground."""
+        scene = self.scene
+        near = Groups([*scene.bodies, *bare])
+        for joint in scene.relations.joints:  # a part without geometry may hold anything that is joined to it
+            if joint.parent in bare or joint.child in bare:
+                near.join(joint.parent, joint.child)
+        candidates = scene.candidates(self.poses, max([NEAR_MM, *(fit.gap_max or 0.0 for fit in scene.fits.values())]))
+        candidates.sort(key=lambda pair: not scene.relations.between(*pair))  # parts that a joint connects are near, mostly
+        for a, b in candidates:
+            if not near.together(a, b) and self._is_near(a, b):
+                near.join(a, b)
+        groups = near.sets()
+        if len(groups) < 2:
+            return []
+        return [self._floating_finding(group) for group in groups if ground not in group]
+
+    def _is_near(self, a: str, b: str) -> bool:
+        pair = self.pairs.get((a, b))
+        if pair is not None and (pair.volume > 0 or pair.verdict == "unknown"):
+            return True
+        bodies = self.scene.bodies
+        limit = min(max(NEAR_LEAST_MM, NEAR_SHARE * min(bodies[a].diagonal, bodies[b].diagonal)), NEAR_MM)
+        for joint in self.scene.relations.between(a, b):
+            fit = self.scene.fits.get(joint.name)
+            limit = max(limit, (fit.gap_max or 0.0) if fit is not None else 0.0)
+        if pair is not None and pair.gap is not None:
+            return pair.gap <= limit
+        return self._vertices_within(a, b, limit) or distance(bodies[a], bodies[b], self._relative(a, b)) <= limit
+
+    def _vertices_within(self, a: str, b: str, limit: float) -> bool:
+        """Return whether two vertices are that near: often true, and cheaper than a search of all triangles."""
+        p = self.scene.bodies[a].mesh.vertices
+        q = self._relative(a, b).apply(self.scene.bodies[b].mesh.vertices)
+        low, high = np.maximum(p.min(axis=0), q.min(axis=0)) - limit, np.minimum(p.max(axis=0), q.max(axis=0)) + limit
+        p, q = (v[((v >= low) & (v <= high)).all(axis=1)] for v in (p, q))
+        p, q = (v[:: max(1, len(v) // _NEAR_SAMPLES)] for v in (p, q))
+        return bool(len(p) and len(q)) and bool((((p[:, None] - q[None]) ** 2).sum(axis=2) <= limit**2).any())
+
+    def _gap(self, a: str, b: str) -> float:
+        bodies, T_a_b = self.scene.bodies, self._relative(a, b)
+        gap = 0.0 if surfaces_touch(bodies[a], bodies[b], T_a_b) else distance(bodies[a], bodies[b], T_a_b)
+        for key in ((a, b), (b, a)):
+            if key in self.pairs and self.pairs[key].verdict != "unknown":
+                pair = self.pairs[key]
+                values = {**pair.__dict__, "gap": gap}
+                if gap <= TOUCH_MM + self.scene.deflection_of(a, b) and pair.verdict == "clear":
+                    values["verdict"] = "contact"
+                self.pairs[key] = PairCheck(**values)
+        return gap
+
+    def _touch_limit(self, joint: Joint) -> float:
+        fit = self.scene.fits.get(joint.name)
+        declared = fit.gap_max if fit is not None and fit.gap_max is not None else 0.0
+        return max(TOUCH_MM, declared) + self.scene.deflection_of(joint.parent, joint.child)
+
+    def _relative(self, a: str, b: str) -> SE3:
+        return relative(self.poses[a], self.poses[b])
+
+    def _apart_finding(self, joint: Joint, gap: float) -> Finding:
+        return Finding(
+            code="E_NOT_TOUCHING",
+            where=f"joints.{joint.name}",
+            parts=(joint.parent, joint.child),
+            message=f"{joint.parent} and {joint.child} are fixed to each other but {gap:.4g} mm apart, and no third part connects them.",
+            hint=f"Extend one of them by {gap:.4g} mm towards the other, or fix it to a part that it touches.",
+            value=gap,
+            limit=self._touch_limit(joint),
+            unit="mm",
+            cause="not_touching",
+        )
+
+    def _floating_finding(self, group: tuple[str, ...]) -> Finding:
+        inside = set(group)
+        outside = [name for name in self.scene.bodies if name not in inside]
+        gaps = [
+            (distance(self.scene.bodies[a], self.scene.bodies[b], self._relative(a, b)), a, b)
+            for a in group
+            if a in self.scene.bodies
+            for b in outside
+        ]
+        gap, here, there = min(gaps)
+        names = group[0] if len(group) == 1 else f"{', '.join(group[:-1])} and {group[-1]}"
+        joints = [joint for joint in self.scene.relations.joints if (joint.parent in inside) != (joint.child in inside)]
+        return Finding(
+            code="E_FLOATING",
+            where=f"joints.{joints[0].name}" if joints else f"parts.{group[0]}",
+            parts=group,
+            message=f"{names} touch{'es' if len(group) == 1 else ''} nothing: the nearest is {there}, {gap:.4g} mm from {here}.",
+            hint=f"Bring {here} to what holds it, or extend one of the two by about {gap:.4g} mm; within {NEAR_MM:g} mm counts as held.",
+            value=gap,
+            limit=NEAR_MM,
+            unit="mm",
+            cause="floating",
+        )

@@ -1,0 +1,182 @@
+"""What an interference check reports: a verdict for every pair, and how strong each verdict is."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any, Literal, Self
+
+from articad.findings import Findings
+from articad.interference.relations import Relation
+
+Verdict = Literal["clear", "contact", "overlap", "unknown"]
+
+_DIGITS = 6
+
+
+@dataclass(frozen=True)
+class Strength:
+    """How strong a verdict is: proven, sampled, waived or absent.
+
+    Attributes:
+        kind: "certified", "sampled", "waived" or "not_checked".
+        epsilon: Of a proof: how far the solids may be from what was proven [mm].
+        poses: Of samples: how many.
+        step: Of samples along one joint: the distance of two [rad or mm]; None for a single pose or scattered ones.
+        reason: Of a waiver, or why nothing was done.
+    """
+
+    kind: Literal["certified", "sampled", "waived", "not_checked"]
+    epsilon: float | None = None
+    poses: int | None = None
+    step: float | None = None
+    reason: str = ""
+
+    @classmethod
+    def certified(cls, epsilon: float) -> Self:
+        """Proven up to `epsilon` [mm]."""
+        return cls("certified", epsilon=epsilon)
+
+    @classmethod
+    def sampled(cls, poses: int, step: float | None = None) -> Self:
+        """Seen at so many poses."""
+        return cls("sampled", poses=poses, step=step)
+
+    @classmethod
+    def waived(cls, reason: str) -> Self:
+        """Allowed by the plan."""
+        return cls("waived", reason=reason)
+
+    @classmethod
+    def not_checked(cls, reason: str) -> Self:
+        """Not known."""
+        return cls("not_checked", reason=reason)
+
+    def to_json(self) -> dict[str, Any]:
+        """Return the JSON object of a report."""
+        match self.kind:
+            case "certified":
+                return {"kind": self.kind, "epsilon_mm": rounded(self.epsilon)}
+            case "sampled":
+                return {"kind": self.kind, "poses": self.poses, "step": rounded(self.step)}
+            case _:
+                return {"kind": self.kind, "reason": self.reason}
+
+    def __str__(self) -> str:
+        match self.kind:
+            case "certified":
+                return f"certified({self.epsilon:.3g} mm)"
+            case "sampled":
+                return f"sampled({self.poses})"
+            case _:
+                return f"{self.kind.replace('_', ' ')}({self.reason})"
+
+
+@dataclass(frozen=True)
+class PairCheck:
+    """The verdict on one pair of parts.
+
+    Attributes:
+        parts: Their names, in the order of the mechanism.
+        relation: "mating" when a joint connects them, "rigid" when only fixed joints do, else "unrelated".
+        over: "rest", "pose", or the names of the joints that moved.
+        strength: How strong the verdict is.
+        volume: Largest overlap [mm³].
+        depth: Deepest overlap [mm].
+        allowed: Depth up to which nothing is said [mm].
+        gap: Smallest distance of the surfaces [mm]; None where it was not measured.
+        verdict: "clear" when they have nothing in common, "contact" within what is allowed, "overlap" beyond it, or "unknown".
+        pose: Where the worst was found [rad, mm]; None at rest.
+    """
+
+    parts: tuple[str, str]
+    relation: Relation
+    over: str | tuple[str, ...]
+    strength: Strength
+    volume: float = 0.0
+    depth: float = 0.0
+    allowed: float = 0.0
+    gap: float | None = None
+    verdict: Verdict = "clear"
+    pose: Mapping[str, float] | None = None
+
+    def to_json(self) -> dict[str, Any]:
+        """Return the JSON object of a report."""
+        return {
+            "parts": list(self.parts),
+            "relation": self.relation,
+            "over": self.over if isinstance(self.over, str) else list(self.over),
+            "strength": self.strength.to_json(),
+            "volume_mm3": rounded(self.volume),
+            "depth_mm": rounded(self.depth),
+            "allowed_mm": rounded(self.allowed),
+            "gap_mm": rounded(self.gap),
+            "verdict": self.verdict,
+        }
+
+
+@dataclass(frozen=True)
+class Checks:
+    """The report of an interference check.
+
+    Attributes:
+        findings: All of them.
+        pairs: Every pair that could meet or was asked for; a pair that is missing has bounding boxes that do not meet.
+        deflection: Largest distance of any mesh from its solid [mm].
+        over: "rest", "pose", or the names of the joints that moved.
+        parts: All parts that have geometry.
+        without_geometry: Parts that have none, so that they cannot overlap anything.
+    """
+
+    findings: Findings
+    pairs: tuple[PairCheck, ...]
+    deflection: float
+    over: str | tuple[str, ...] = "rest"
+    parts: tuple[str, ...] = field(default=())
+    without_geometry: tuple[str, ...] = field(default=())
+
+    @property
+    def ok(self) -> bool:
+        """True when nothing is wrong and everything that was asked for was done."""
+        return self.findings.ok
+
+    @property
+    def deepest(self) -> float:
+        """Depth of the deepest overlap of all pairs, allowed ones included [mm]."""
+        return max((pair.depth for pair in self.pairs), default=0.0)
+
+    def pair(self, a: str, b: str) -> PairCheck | None:
+        """Return the worst verdict on two parts; None when their bounding boxes do not meet."""
+        found = [pair for pair in self.pairs if set(pair.parts) == {a, b}]
+        return max(found, key=lambda pair: (("clear", "contact", "unknown", "overlap").index(pair.verdict), pair.depth), default=None)
+
+    def to_json(self) -> dict[str, Any]:
+        """Return the report `articad.checks/1`."""
+        return {
+            "schema": "articad.checks/1",
+            "ok": self.ok,
+            "findings": [finding.to_json() for finding in self.findings],
+            "deflection_mm": rounded(self.deflection),
+            "pairs": [pair.to_json() for pair in self.pairs],
+        }
+
+    def __add__(self, other: Checks) -> Checks:
+        """Return both reports as one."""
+        over = tuple(dict.fromkeys(_names(self.over) + _names(other.over)))
+        return Checks(
+            self.findings + other.findings,
+            self.pairs + other.pairs,
+            max(self.deflection, other.deflection),
+            over,
+            tuple(dict.fromkeys(self.parts + other.parts)),
+            tuple(dict.fromkeys(self.without_geometry + other.without_geometry)),
+        )
+
+
+def rounded(number: float | None) -> float | None:
+    """Round to the digits that a report shows."""
+    return None if number is None else float(f"{number:.{_DIGITS}g}")
+
+
+def _names(over: str | tuple[str, ...]) -> tuple[str, ...]:
+    return (over,) if isinstance(over, str) else over
