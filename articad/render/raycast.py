@@ -99,7 +99,7 @@ def _first_hits(
     direction = np.broadcast_to(toward.astype(np.float32), (count, 3)).copy()
     begin = (origins + start[:, None] * toward).astype(np.float32)
     dists = np.maximum(end - start, 0).astype(np.float32)
-    hit = embree.run(begin, direction, dists=dists, output=1)
+    hit = embree.run(begin, direction, dists=dists.copy(), output=1)  # Embree writes into it
     found = (hit["geomID"] >= 0) & (end > start)
     item[found] = np.asarray(indices, dtype=np.int32)[hit["geomID"][found]]
     distance[found] = start[found] + hit["tfar"][found]
@@ -113,7 +113,7 @@ def _first_hits(
             toward_viewer = -toward_viewer
         # Each solid alone: where two touch, the first of all surfaces does not tell inside which of them the ray began.
         for index in indices:
-            alone = _embree_scene(scene, [index], camera).run(begin, direction, dists=dists, output=1)
+            alone = _embree_scene(scene, [index], camera).run(begin, direction, dists=dists.copy(), output=1)
             inside = (alone["geomID"] >= 0) & (alone["Ng"].astype(np.float64) @ camera.eye < 0) & (start > step) & (end > start)
             item[inside], distance[inside], normal[inside] = index, start[inside], toward_viewer
             cut |= inside
@@ -125,7 +125,7 @@ def _embree_scene(scene: Scene, indices: list[int], camera: Camera) -> Any:
     from embreex import rtcore_scene  # noqa: PLC0415
     from embreex.mesh_construction import TriangleMesh  # noqa: PLC0415
 
-    embree = rtcore_scene.EmbreeScene()
+    embree = rtcore_scene.EmbreeScene(robust=True)  # no ray slips between two triangles
     for index in indices:
         entry = scene.items[index]
         vertices = np.ascontiguousarray(entry.vertices - camera.centre, dtype=np.float32)
