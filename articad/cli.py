@@ -1,0 +1,412 @@
+"""The command line: parse, call, print. One function per command; what a command needs is imported when it runs.
+
+`articad --help` and `--version` load neither numpy nor rich. Exit codes: 0 ok, 1 findings, 2 usage, 3 cannot go on, 130 interrupted.
+"""
+
+from __future__ import annotations
+
+import argparse
+import difflib
+import sys
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Final, Literal, NamedTuple, NoReturn
+
+from articad import __version__
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from articad.assembly import Assembly
+    from articad.interference.check import Checks
+    from articad.plan.schema import AssemblyPlan
+    from articad.terminal import Report, Terminal
+
+OK: Final = 0
+FINDINGS: Final = 1
+USAGE: Final = 2
+CANNOT_GO_ON: Final = 3
+INTERRUPTED: Final = 130  # 128 + SIGINT, as shells count
+
+_WRITERS: Final = ("urdf", "mjcf")
+
+
+class _Command(NamedTuple):
+    """A command: what it says of itself, its arguments, and what runs it and returns its report."""
+
+    name: str
+    summary: str
+    arguments: Callable[[argparse.ArgumentParser], None]
+    run: Callable[[argparse.Namespace, Terminal], Report]
+    needs_libraries: bool
+
+
+_COMMANDS: dict[str, _Command] = {}
+
+_Body = Callable[[argparse.Namespace, "Terminal"], "Report"]
+
+
+def _command(
+    name: str, summary: str, *arguments: Callable[[argparse.ArgumentParser], None], needs_libraries: bool = True
+) -> Callable[[_Body], _Body]:
+    """Register a function as a command."""
+
+    def add_all(parser: argparse.ArgumentParser) -> None:
+        for add in arguments:
+            add(parser)
+
+    def register(run: _Body) -> _Body:
+        _COMMANDS[name] = _Command(name, summary, add_all, run, needs_libraries)
+        return run
+
+    return register
+
+
+# ---------------------------------------------------------------------- arguments
+
+
+def _argument(*names: str, **options: Any) -> Callable[[argparse.ArgumentParser], None]:
+    def add(parser: argparse.ArgumentParser) -> None:
+        parser.add_argument(*names, **options)
+
+    return add
+
+
+def _formats(text: str) -> tuple[str, ...]:
+    """Read `urdf,mjcf`."""
+    names = tuple(dict.fromkeys(name.strip() for name in text.split(",") if name.strip()))
+    for name in names:
+        if name not in _WRITERS:
+            raise argparse.ArgumentTypeError(f"unknown format {name!r}{_closest(name, _WRITERS)}; there are {', '.join(_WRITERS)}")
+    return names
+
+
+def _assignment(text: str) -> tuple[str, str]:
+    """Read `NAME=VALUE`."""
+    name, sign, value = text.partition("=")
+    if not (sign and name and value):
+        raise argparse.ArgumentTypeError(f"{text!r} is not of the form NAME=VALUE")
+    return name, value
+
+
+def _parameter(text: str) -> tuple[str, float]:
+    """Read `NAME=NUMBER`."""
+    name, value = _assignment(text)
+    try:
+        return name, float(value)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{value!r} in {text!r} is not a number") from None
+
+
+def _positive(text: str) -> int:
+    """Read a whole number of at least 1."""
+    if not (text.isdecimal() and int(text) >= 1):
+        raise argparse.ArgumentTypeError(f"{text!r} is not a whole number of at least 1")
+    return int(text)
+
+
+_OUT = _argument("--out", metavar="DIR", help="where to write; by default a new folder under runs/")
+_BUILD_ARGUMENTS = (
+    _OUT,
+    _argument("--kernel", choices=["build123d", "freecad"], default=None, help="what builds part scripts (the plan's own choice)"),
+    _argument("--set", metavar="NAME=VALUE", dest="parameters", type=_parameter, action="append", default=[], help="replace a parameter"),
+    _argument("--verify", choices=["rest", "sampled", "certified"], default="rest", help="how much motion is checked (rest)"),
+    _argument("--export", metavar="FORMATS", dest="formats", type=_formats, default=_WRITERS, help="formats to write (urdf,mjcf)"),
+    _argument(
+        "--sandbox", choices=["strict", "weak"], default=None, help="weak runs part scripts with less isolation than landlock or bwrap"
+    ),
+    _argument("--jobs", metavar="N", type=_positive, default=None, help="parts built at once (all processors)"),
+    _argument("--force", action="store_true", help="build every part anew, whatever the cache holds"),
+)
+_MODEL_ARGUMENTS = (
+    _argument("--image", metavar="FILE", dest="images", action="append", default=[], help="a picture that belongs to the request"),
+    _argument("--part-image", metavar="NAME=FILE", dest="part_images", type=_assignment, action="append", default=[], help="of one part"),
+    _argument("--model", metavar="NAME", help="the model that writes plans and scripts, as LiteLLM names it"),
+    _argument("--vision-model", metavar="NAME", help="the model that looks at pictures (the same)"),
+    _argument("--api-base", metavar="URL", help="an OpenAI-compatible endpoint"),
+    _argument("--repairs", metavar="N", type=_positive, default=3, help="attempts at one part (3)"),
+    _argument("--max-calls", metavar="N", type=_positive, default=60, help="model calls (60)"),
+    _argument("--max-cost", metavar="USD", type=float, default=None, help="cost of all calls (unlimited)"),
+    _argument("--max-minutes", metavar="N", type=float, default=60.0, help="wall clock (60)"),
+)
+
+
+# ---------------------------------------------------------------------- commands
+
+
+@_command("build", "Build a plan's parts, assemble, check and export them.", _argument("plan", metavar="PLAN_DIR"), *_BUILD_ARGUMENTS)
+def _build(options: argparse.Namespace, terminal: Terminal) -> Report:
+    from pathlib import Path
+
+    from articad import summaries
+    from articad.plan.schema import AssemblyPlan
+    from articad.record import assembly_report, record_assembly, record_checks, record_export
+    from articad.run import RunRequest, open_or_create
+
+    plan = AssemblyPlan.load(options.plan)
+    folder = Path(options.plan)
+    scripts = (folder if folder.is_dir() else folder.parent) / "parts"
+    choices = {"task": "build", "kernel": options.kernel or plan.kernel, "parameters": dict(options.parameters)}
+    assembly = _assembled(plan, scripts, options, terminal)
+    with open_or_create(RunRequest(prompt=plan.name, options=choices), options.out) as run:
+        run.save_plan(plan.dumps(), 0)
+        record_assembly(run, assembly)
+        checks = _verified(assembly, options.verify)
+        record_checks(run, checks)
+        exports = {name: record_export(run, assembly, name) for name in options.formats}
+        path = str(run.path)
+    summaries.print_assembly(assembly, terminal)
+    summaries.print_checks(checks, terminal)
+    terminal.findings(assembly.findings + checks.findings)
+    summaries.print_exports(exports, terminal)
+    terminal.say(f"Run: {path}")
+    return {
+        "schema": "articad.build/1",
+        "ok": assembly.findings.ok and checks.ok and all(export["ok"] for export in exports.values()),
+        "run": path,
+        "assembly": assembly_report(assembly),
+        "checks": checks.to_json(),
+        "exports": exports,
+        "findings": [],
+    }
+
+
+@_command("check", "Check a plan, or the plan and the geometry of a finished run.", _argument("target", metavar="PLAN_DIR|RUN|FILE"))
+def _check(options: argparse.Namespace, terminal: Terminal) -> Report:
+    from pathlib import Path
+
+    from articad import summaries
+    from articad.plan.check import check_plan
+    from articad.plan.schema import AssemblyPlan
+
+    plan = AssemblyPlan.load(options.target)
+    findings = check_plan(plan)
+    terminal.findings(findings)
+    terminal.say(f"{plan.name}: {summaries.counted(findings)}.")
+    if not findings.ok or not (Path(options.target) / "request.json").is_file():
+        return findings.to_json()
+
+    from articad.record import assembly_of
+    from articad.run import Run
+
+    with Run.view(options.target) as run, terminal.progress("Reading") as tell:
+        checks = assembly_of(run, progress=tell).check()
+    terminal.findings(checks.findings)
+    summaries.print_checks(checks, terminal)
+    return checks.to_json()
+
+
+@_command(
+    "export",
+    "Write a finished run in other formats.",
+    _argument("run", metavar="RUN"),
+    _argument("--to", metavar="FORMATS", dest="formats", type=_formats, required=True, help="formats to write, such as urdf,mjcf"),
+    _argument("--out", metavar="DIR", help="where to write, a folder for each format; by default RUN/export"),
+    _argument("--strict", action="store_true", help="refuse what a format cannot hold, instead of reporting it as lost"),
+)
+def _export(options: argparse.Namespace, terminal: Terminal) -> Report:
+    from pathlib import Path
+
+    from articad import summaries
+    from articad.record import assembly_of, record_export, written
+    from articad.run import Run
+
+    with Run.view(options.run) as run, terminal.progress("Reading") as tell:
+        assembly = assembly_of(run, progress=tell)
+    exports: dict[str, Report] = {}
+    if options.out is None:
+        with Run.open(options.run) as run:
+            exports = {name: record_export(run, assembly, name, strict=options.strict) for name in options.formats}
+    else:
+        for name in options.formats:
+            bundle = written(assembly, name, strict=options.strict)
+            main = bundle.write(Path(options.out) / name)[0]
+            exports[name] = bundle.to_json() | {"folder": str(main.parent), "main": str(main)}
+    summaries.print_exports(exports, terminal)
+    return {"schema": "articad.exports/1", "ok": all(export["ok"] for export in exports.values()), "exports": exports, "findings": []}
+
+
+@_command(
+    "doctor",
+    "Say what this machine has and lacks.",
+    _argument("--model", metavar="NAME", help="ask this model one tiny question"),
+    _argument("--api-base", metavar="URL", help="an OpenAI-compatible endpoint"),
+    needs_libraries=False,
+)
+def _doctor(options: argparse.Namespace, terminal: Terminal) -> Report:
+    from articad import doctor
+
+    items = doctor.examine()
+    terminal.say(f"articad {__version__}")
+    terminal.table(["", "what", "found"], [(item.status, item.name, item.detail) for item in items])
+    for item in items:
+        if item.remedy and item.status == "missing":
+            terminal.say(f"{item.name}: {item.remedy}")
+    report = doctor.report(items)
+    if missing := doctor.missing_libraries():
+        error = doctor.unavailable(missing)
+        terminal.say(error.message)
+        terminal.findings(error.findings)
+        report |= {"error": terminal.described(error), "findings": [finding.to_json() for finding in error.findings]}
+    elif options.model:
+        report |= _asked_once(options, terminal)
+    return report
+
+
+# ---------------------------------------------------------------------- steps that commands share
+
+
+def _assembled(plan: AssemblyPlan, scripts: Path, options: argparse.Namespace, terminal: Terminal) -> Assembly:
+    """Build the parts with progress, and assemble them."""
+    from articad.assembly import Assembly
+    from articad.kernels.kernel import BuildCache
+    from articad.record import kernel_named
+
+    with terminal.progress("Building", total=len(plan.parts)) as tell:
+        return Assembly.from_plan(
+            plan,
+            scripts,
+            kernel=kernel_named(options.kernel or plan.kernel, sandbox=_sandbox(options)),
+            jobs=options.jobs,
+            cache=BuildCache(None) if options.force else None,
+            progress=tell,
+            parameters=dict(options.parameters),
+        )
+
+
+def _sandbox(options: argparse.Namespace) -> Literal["strict", "weak"]:
+    """Return how much isolation is asked for: by the flag, else by $ARTICAD_SANDBOX."""
+    import os
+
+    return "weak" if (options.sandbox or os.environ.get("ARTICAD_SANDBOX")) == "weak" else "strict"
+
+
+def _verified(assembly: Assembly, verify: str) -> Checks:
+    """Return the checks that were asked for; what this version cannot do is a finding, not a pass."""
+    from dataclasses import replace
+
+    from articad.findings import Finding
+
+    checks = assembly.check()
+    if verify == "rest":
+        return checks
+    message = f"--verify {verify}: this version checks the rest pose only."
+    return replace(
+        checks, findings=checks.findings + [Finding(code="E_NOT_CHECKED", where="motion", message=message, hint="Use --verify rest.")]
+    )
+
+
+# ---------------------------------------------------------------------- the frame
+
+
+class _Parser(argparse.ArgumentParser):
+    """A parser that says which word may have been meant."""
+
+    def _check_value(self, action: argparse.Action, value: Any) -> None:
+        if action.choices is not None and value not in action.choices:
+            known = [str(choice) for choice in action.choices]
+            what = "command" if action.dest == "command" else "value"
+            raise argparse.ArgumentError(action, f"unknown {what} {value!r}{_closest(str(value), known)}; there are {', '.join(known)}")
+
+    def error(self, message: str) -> NoReturn:
+        self.print_usage(sys.stderr)
+        self.exit(USAGE, f"articad: {message}\n")
+
+
+def _parser() -> _Parser:
+    """Return the parser of the whole command line; the global flags may stand before or after the command."""
+    parser = _Parser(prog="articad", description="Editable, articulated CAD assemblies from text, images or a plan.", allow_abbrev=False)
+    parser.add_argument("--version", action="version", version=f"articad {__version__}")
+    _add_global_flags(parser, default=False)
+    commands = parser.add_subparsers(dest="command", metavar="COMMAND", parser_class=_Parser)
+    for command in _COMMANDS.values():
+        sub = commands.add_parser(command.name, help=command.summary, description=command.summary, allow_abbrev=False)
+        command.arguments(sub)
+        _add_global_flags(sub, default=argparse.SUPPRESS)  # else the default would undo a flag given before the command
+    return parser
+
+
+def _add_global_flags(parser: argparse.ArgumentParser, *, default: Any) -> None:
+    flags = parser.add_argument_group("output")
+    flags.add_argument("--json", dest="as_json", action="store_true", default=default, help="one report on stdout, nothing else")
+    flags.add_argument("-q", "--quiet", action="store_true", default=default, help="findings and errors only")
+    flags.add_argument("-v", "--verbose", action="store_true", default=default, help="details, and tracebacks of defects")
+    flags.add_argument("--no-color", dest="colorless", action="store_true", default=default, help="no colour, no moving bars")
+
+
+def _parsed(arguments: Sequence[str] | None) -> argparse.Namespace:
+    """Parse, or end with exit code 2 and a word that may have been meant."""
+    parser = _parser()
+    options, unknown = parser.parse_known_args(arguments)
+    if options.command is None and not unknown:
+        parser.print_help(sys.stderr)
+        parser.exit(USAGE)
+    if unknown:
+        flags = _flags_of(parser, options.command)
+        word = next((word.partition("=")[0] for word in unknown if word.startswith("-")), unknown[0])
+        parser.error(f"unknown argument {word!r}{_closest(word, flags) if word.startswith('-') else ''}")
+    return options
+
+
+def _flags_of(parser: argparse.ArgumentParser, command: str | None) -> list[str]:
+    known = parser
+    for action in parser._actions:  # noqa: SLF001 - argparse keeps its list of flags nowhere else
+        if isinstance(action, argparse._SubParsersAction) and command is not None:  # noqa: SLF001
+            known = action.choices[command]
+    return [flag for action in known._actions for flag in action.option_strings]  # noqa: SLF001
+
+
+def _closest(word: str, known: Iterable[str]) -> str:
+    """Say which known word is close. (`articad.errors` has the same for names in plans, at the price of its imports)."""
+    close = difflib.get_close_matches(word, list(known), n=1, cutoff=0.6)
+    return f", did you mean {close[0]!r}?" if close else ""
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run a command line and return its exit code.
+
+    Args:
+        arguments: Without the program's name; those of the process by default.
+    """
+    options = _parsed(arguments)
+
+    from articad.terminal import Terminal
+
+    terminal = Terminal(as_json=options.as_json, quiet=options.quiet, verbose=options.verbose, color=not options.colorless)
+    try:
+        return _run(_COMMANDS[options.command], options, terminal)
+    except BrokenPipeError:  # the reader of our output went away, as `head` does: nothing is left to be said
+        sys.stdout = None  # type: ignore[assignment]
+        return CANNOT_GO_ON
+
+
+def _run(command: _Command, options: argparse.Namespace, terminal: Terminal) -> int:
+    from articad.doctor import require_libraries
+    from articad.errors import ArticadError
+
+    try:
+        if command.needs_libraries:
+            require_libraries()
+        report = command.run(options, terminal)
+        terminal.finish(report)
+    except ArticadError as error:
+        terminal.error(error)
+        return CANNOT_GO_ON
+    except KeyboardInterrupt:
+        terminal.failure(KeyboardInterrupt(), "interrupted; what was finished is kept.")
+        return INTERRUPTED
+    except BrokenPipeError:
+        raise
+    except OSError as error:
+        terminal.failure(error, f"{error.strerror or error}{f': {error.filename}' if error.filename else ''}.")
+        return CANNOT_GO_ON
+    except Exception as error:  # noqa: BLE001 - no traceback reaches a user who did not ask for one
+        more = "" if terminal.verbose else " Run it again with -v for the traceback."
+        terminal.failure(error, f"this is a defect of articad, please report it: {type(error).__name__}: {error}.{more}")
+        return CANNOT_GO_ON
+    if "error" in report:
+        return CANNOT_GO_ON
+    return OK if report["ok"] else FINDINGS
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,162 @@
+"""Record: what an assembly leaves in a run directory, and how it is made again from there."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, Final, Literal
+
+from articad.assembly import Assembly
+from articad.connectors.connector import Connector
+from articad.errors import KernelUnavailableError, ReadError
+from articad.export.bundle import Bundle
+from articad.export.mjcf import write_mjcf
+from articad.export.urdf import write_urdf
+from articad.findings import Finding
+from articad.geometry.mesh_files import write_stl
+from articad.interference.check import Checks
+from articad.kernels.build123d import Build123dKernel
+from articad.kernels.kernel import BuildCache, PartKernel
+from articad.kernels.parts import Progress, RealisedPart
+from articad.plan.brief import brief
+from articad.plan.schema import AssemblyPlan
+from articad.run import Run
+
+Report = dict[str, Any]
+Sandbox = Literal["strict", "weak"]
+
+WRITERS: Final = {"urdf": write_urdf, "mjcf": write_mjcf}
+_KERNEL_FILES: Final = ("part.npz", "part.brep", "part.step")
+
+
+def kernel_named(name: str, *, sandbox: Sandbox = "strict") -> PartKernel:
+    """Return the kernel of this name.
+
+    Raises:
+        KernelUnavailableError: If this version does not have it.
+    """
+    if name == "build123d":
+        return Build123dKernel(sandbox=sandbox)
+    message = f"This version cannot build parts with the kernel {name!r}; it has 'build123d'."
+    finding = Finding(
+        code="E_KERNEL_UNAVAILABLE", where="kernel", message=message, hint="Use --kernel build123d, with scripts parts/<part>.py."
+    )
+    raise KernelUnavailableError(message, findings=[finding])
+
+
+def record_assembly(run: Run, assembly: Assembly) -> None:
+    """Keep every part with its script, files and measures, and the assembly's report."""
+    for name, realised in assembly.realised.items():
+        _record_part(run, assembly, name, realised)
+    for stranger in sorted(set(run.part_names()) - set(assembly.parts)):
+        run.remove_part(stranger)
+    run.save_assembly(assembly_report(assembly))
+
+
+def assembly_report(assembly: Assembly) -> Report:
+    """Return the report `articad.assembly/1`: parts, joints, freedoms, drivers and mass at rest, numbers in mm, rad and kg."""
+    mechanism = assembly.mechanism
+    rest = assembly.at()
+    return {
+        "schema": "articad.assembly/1",
+        "ok": assembly.findings.ok,
+        "name": assembly.name,
+        "ground": assembly.ground,
+        "freedoms": mechanism.mobility,
+        "parts": {
+            name: {"mass_kg": None if part.mass is None else part.mass.mass, "rest": rest[name].data.tolist()}
+            for name, part in assembly.parts.items()
+        },
+        "joints": {joint.name: {"type": str(joint.type), "parent": joint.parent, "child": joint.child} for joint in mechanism.joints},
+        "drivers": [
+            {"name": driver.name, "unit": driver.unit, "lower": _finite(driver.lower), "upper": _finite(driver.upper), "rest": driver.rest}
+            for driver in assembly.drivers
+        ],
+        "findings": [finding.to_json() for finding in assembly.findings],
+    }
+
+
+def record_checks(run: Run, checks: Checks) -> None:
+    """Keep the checks, and tell the trace of each finding."""
+    run.save_checks(checks.to_json())
+    for finding in checks.findings:
+        run.trace_finding(finding)
+
+
+def written(assembly: Assembly, format_name: str, *, strict: bool = False) -> Bundle:
+    """Return the assembly in a format of `WRITERS`.
+
+    Raises:
+        UnrepresentableError: If `strict` and the format cannot hold it.
+    """
+    return WRITERS[format_name](assembly, strict=strict)
+
+
+def record_export(run: Run, assembly: Assembly, format_name: str, *, strict: bool = False) -> Report:
+    """Keep an export; return its report `articad.losses/1`, with the folder."""
+    bundle = written(assembly, format_name, strict=strict)
+    report = bundle.to_json()
+    folder = run.save_export(format_name, bundle.files, report)
+    run.trace("artifact", kind=format_name, file=str(Path("export") / format_name / bundle.main))
+    return report | {"folder": str(folder), "main": str(folder / bundle.main)}
+
+
+def assembly_of(run: Run, *, cache: BuildCache | None = None, sandbox: Sandbox = "strict", progress: Progress | None = None) -> Assembly:
+    """Make a run's assembly again from its plan and part scripts; what the cache holds is not built again.
+
+    Raises:
+        ReadError: If the run has no plan, or not all parts.
+        ArticadError: As building does.
+    """
+    text = run.plan_text()
+    if text is None:
+        raise ReadError(f"{run.path} has no plan yet.", path=str(run.path), where="plan.json")
+    plan = AssemblyPlan.loads(text)
+    scripts = {name: script for name in run.part_names() if (script := run.script(name)) is not None}
+    parameters: Mapping[str, float] = run.request.options.get("parameters", {})
+    kernel = kernel_named(str(run.request.options.get("kernel", plan.kernel)), sandbox=sandbox)
+    return Assembly.from_plan(plan, scripts, kernel=kernel, cache=cache, progress=progress, parameters=parameters)
+
+
+def _record_part(run: Run, assembly: Assembly, name: str, realised: RealisedPart) -> None:
+    assert assembly.resolved is not None
+    built = realised.built
+    record: Report = {
+        "kernel": {"name": assembly.resolved.plan.kernel},
+        "sandbox": built.sandbox,
+        "editable": realised.derived_from is None,
+    }
+    if realised.derived_from is not None:
+        run.save_part(name, record=record | {"derived_from": realised.derived_from})
+        return
+    solid = built.solid
+    record |= {
+        "digests": dict(realised.digests),
+        "shape": {
+            "volume_mm3": solid.volume,
+            "area_mm2": solid.area,
+            "bbox_mm": solid.bbox.tolist(),
+            "com_mm": solid.com.tolist(),
+            "inertia_mm5": solid.inertia_mm5.tolist(),
+        },
+        "mesh": {"triangles": len(solid.mesh.triangles), "deflection_mm": solid.deflection, "sha256": solid.mesh.digest},
+    }
+    run.save_part(
+        name,
+        record=record,
+        brief=brief(assembly.resolved, name),
+        script=realised.script,
+        connectors={connector.name: _connector_json(connector) for connector in built.connectors.values()},
+        stl=write_stl(solid.mesh),
+        files={file: built.folder / file for file in _KERNEL_FILES if (built.folder / file).is_file()},
+    )
+
+
+def _connector_json(connector: Connector) -> Report:
+    frame = connector.frame
+    return {"o": frame.translation.tolist(), "z": frame.z_axis.tolist(), "x": frame.x_axis.tolist()}
+
+
+def _finite(bound: float) -> float | None:
+    """A bound that JSON can hold; None where there is none."""
+    return bound if abs(bound) < float("inf") else None

@@ -1,0 +1,236 @@
+"""Terminal: how commands speak. Lines and tables on stdout, progress and errors on stderr, or one JSON report and nothing else.
+
+Rich is imported only where a person looks: a terminal, without --json. Everywhere else the output is plain text
+with aligned columns, which survives pipes, logs and CI.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+import threading
+import time
+import traceback
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any, TextIO
+
+if TYPE_CHECKING:
+    from articad.errors import ArticadError
+    from articad.findings import Finding, Findings
+
+Report = dict[str, Any]
+"""What a command made or found: `{"schema": "articad.<kind>/1", "ok": bool, "findings": […], …}`."""
+
+Progress = Callable[[str, str], None]
+"""Told of a part's or stage's name and its new state; may be called from any thread."""
+
+_STARTED = "started"
+
+
+class Terminal:
+    """Where a command's words go.
+
+    Args:
+        as_json: Print one JSON report and nothing else on stdout.
+        quiet: Print findings and errors only.
+        verbose: Print details, and tracebacks of defects.
+        color: False forbids colour; by default a terminal decides.
+    """
+
+    def __init__(
+        self,
+        *,
+        as_json: bool = False,
+        quiet: bool = False,
+        verbose: bool = False,
+        color: bool = True,
+        out: TextIO | None = None,
+        err: TextIO | None = None,
+    ) -> None:
+        self.as_json, self.quiet, self.verbose = as_json, quiet, verbose
+        self.out, self.err = out or sys.stdout, err or sys.stderr
+        self._color = color and "NO_COLOR" not in os.environ and os.environ.get("TERM") != "dumb"
+
+    # ------------------------------------------------------------------ results
+
+    def say(self, text: str = "") -> None:
+        """Print a line of the result."""
+        if not (self.as_json or self.quiet):
+            print(text, file=self.out)
+
+    def detail(self, text: str) -> None:
+        """Print a line for those who asked for more."""
+        if self.verbose:
+            print(text, file=self.err)
+
+    def table(self, columns: Sequence[str], rows: Sequence[Sequence[object]], *, right: Sequence[int] = ()) -> None:
+        """Print a table.
+
+        Args:
+            columns: Headings.
+            rows: Cells.
+            right: Indices of the columns that hold numbers.
+        """
+        if self.as_json or self.quiet or not rows:
+            return
+        cells = [[str(cell) for cell in row] for row in rows]
+        if self._is_watched(self.out):
+            self._rich_table(columns, cells, right)
+            return
+        widths = [max(len(row[index]) for row in [list(columns), *cells]) for index in range(len(columns))]
+        for row in [list(columns), *cells]:
+            aligned = (
+                cell.rjust(width) if index in right else cell.ljust(width)
+                for index, (cell, width) in enumerate(zip(row, widths, strict=True))
+            )
+            print("  ".join(aligned).rstrip(), file=self.out)
+
+    def findings(self, findings: Findings) -> None:
+        """Print findings, the errors even with -q."""
+        if self.as_json:
+            return
+        for finding in findings:
+            if finding.severity == "error" or not self.quiet:
+                print(self._line_of(finding, self.out), file=self.out)
+
+    def finish(self, report: Report) -> None:
+        """Print the report, if that was asked for."""
+        if self.as_json:
+            print(json.dumps(report, indent=1, ensure_ascii=False, allow_nan=False), file=self.out)
+        self.out.flush()
+
+    # ------------------------------------------------------------------ what went wrong
+
+    def error(self, error: ArticadError) -> None:
+        """Print an error in full: what happened, its findings with their hints, and how to get what is missing."""
+        self.finish(
+            {
+                "schema": "articad.error/1",
+                "ok": False,
+                "error": self.described(error),
+                "findings": [finding.to_json() for finding in error.findings],
+            }
+        )
+        if self.as_json:
+            return
+        told = {str(finding) for finding in error.findings}
+        lines = [line for line in error.message.splitlines() if line not in told]  # a message may list its own findings
+        print(self._painted("articad: ", "31;1", self.err) + ("\n".join(lines) or "cannot go on."), file=self.err)
+        for finding in error.findings:
+            print(self._line_of(finding, self.err), file=self.err)
+        how_to_get = getattr(error, "how_to_get", "")
+        if how_to_get and not any(how_to_get in line for line in told):
+            print(f"  {how_to_get}", file=self.err)
+        script_traceback = getattr(error, "traceback", "")
+        if script_traceback:
+            print(script_traceback.rstrip(), file=self.err)
+        if self.verbose:
+            traceback.print_exception(error, file=self.err)
+
+    @staticmethod
+    def described(error: ArticadError) -> dict[str, Any]:
+        """Return what a report says of an error."""
+        return {"type": type(error).__name__, "stage": error.stage, "message": error.message}
+
+    def failure(self, error: BaseException, explanation: str) -> None:
+        """Print one line about an exception that is not ours, and how to learn more."""
+        name = type(error).__name__
+        self.finish(
+            {"schema": "articad.error/1", "ok": False, "error": {"type": name, "stage": None, "message": str(error)}, "findings": []}
+        )
+        if not self.as_json:
+            print(self._painted("articad: ", "31;1", self.err) + f"{explanation}", file=self.err)
+        if self.verbose:
+            traceback.print_exception(error, file=self.err)
+
+    # ------------------------------------------------------------------ progress
+
+    @contextmanager
+    def progress(self, title: str, total: int | None = None) -> Iterator[Progress]:
+        """Show what is under way: live on a terminal, a line for each thing that ends otherwise.
+
+        Args:
+            title: What is being done.
+            total: How many things will end, if that is known.
+        """
+        if self.as_json or self.quiet:
+            yield _silent
+        elif self._is_watched(self.err):
+            with self._live(title, total) as tell:
+                yield tell
+        else:
+            yield self._lines()
+
+    def _lines(self) -> Progress:
+        started: dict[str, float] = {}
+        lock = threading.Lock()
+
+        def tell(name: str, state: str) -> None:
+            now = time.monotonic()
+            with lock:
+                if state == _STARTED:
+                    started[name] = now
+                    return
+                seconds = f"{now - started[name]:6.2f} s" if name in started else " " * 8
+                print(f"  {state:<8} {seconds}  {name}", file=self.err, flush=True)
+
+        return tell
+
+    @contextmanager
+    def _live(self, title: str, total: int | None) -> Iterator[Progress]:
+        from rich.console import Console  # noqa: PLC0415 - 100 ms that only a terminal needs
+        from rich.progress import BarColumn, MofNCompleteColumn, SpinnerColumn, TextColumn, TimeElapsedColumn  # noqa: PLC0415
+        from rich.progress import Progress as Bars  # noqa: PLC0415
+
+        columns = (SpinnerColumn(), TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
+        console = Console(file=self.err, no_color=not self._color, highlight=False)
+        under_way: dict[str, None] = {}
+        lock = threading.Lock()
+        with Bars(*columns, console=console, transient=True) as bars:
+            task = bars.add_task(title, total=total)
+
+            def tell(name: str, state: str) -> None:
+                with lock:
+                    if state == _STARTED:
+                        under_way[name] = None
+                    else:
+                        under_way.pop(name, None)
+                        bars.advance(task)
+                    bars.update(task, description=f"{title} {', '.join(under_way)}".rstrip())
+
+            yield tell
+
+    # ------------------------------------------------------------------ looks
+
+    def _is_watched(self, stream: TextIO) -> bool:
+        return self._color and not self.as_json and stream.isatty()
+
+    def _painted(self, text: str, code: str, stream: TextIO) -> str:
+        return f"\x1b[{code}m{text}\x1b[0m" if self._is_watched(stream) else text
+
+    def _line_of(self, finding: Finding, stream: TextIO) -> str:
+        code = self._painted(finding.code, {"error": "31", "warning": "33", "info": "36"}[finding.severity], stream)
+        numbers = ""
+        if finding.value is not None and finding.limit is not None:
+            numbers = f" ({finding.value:.6g} against {finding.limit:.6g} {finding.unit or ''}".rstrip() + ")"
+        hint = f"\n    {finding.hint}" if finding.hint else ""
+        return f"  {code} {finding.where}: {finding.message}{numbers}{hint}"
+
+    def _rich_table(self, columns: Sequence[str], cells: Sequence[Sequence[str]], right: Sequence[int]) -> None:
+        from rich.box import SIMPLE_HEAD  # noqa: PLC0415 - 100 ms that only a terminal needs
+        from rich.console import Console  # noqa: PLC0415
+        from rich.table import Table  # noqa: PLC0415
+        from rich.text import Text  # noqa: PLC0415
+
+        table = Table(box=SIMPLE_HEAD)
+        for index, column in enumerate(columns):
+            table.add_column(column, justify="right" if index in right else "left", overflow="fold")
+        for row in cells:
+            table.add_row(*map(Text, row))  # Text: a name with [brackets] is a name, not markup
+        Console(file=self.out).print(table)
+
+
+def _silent(_name: str, _state: str) -> None:
+    return
