@@ -30,13 +30,18 @@ class Body:
     def __init__(self, mesh: TriMesh) -> None:
         self.mesh = mesh if mesh.is_closed else mesh.welded()
 
+    @property
+    def is_empty(self) -> bool:
+        """True when there are no triangles; FCL must not be asked then, for it would crash."""
+        return not len(self.mesh.triangles)
+
     @cached_property
     def fault(self) -> str | None:
         """Why overlap with this mesh cannot be measured; None for a proper solid.
 
         Without this a broken mesh would silently overlap nothing: manifold3d answers 0 for it.
         """
-        if not len(self.mesh.triangles):
+        if self.is_empty:
             return "the mesh has no triangles"
         if not self.mesh.is_closed:
             return f"the mesh is open: {self.mesh.open_edges} edges have no partner"

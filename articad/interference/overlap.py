@@ -6,6 +6,7 @@ because FCL does not see containment and calls touching faces a hit or not by ro
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import cache
 from typing import Any
@@ -89,11 +90,15 @@ def measured(a: Body, b: Body, T_a_b: SE3) -> Overlap:
 
 def surfaces_touch(a: Body, b: Body, T_a_b: SE3) -> bool:
     """Return whether FCL finds a common point of the two surfaces; of faces that merely touch, by rounding."""
+    if a.is_empty or b.is_empty:
+        return False
     return bool(fcl.collide(a.standing, _placed(b, T_a_b), fcl.CollisionRequest(), fcl.CollisionResult()) > 0)
 
 
 def distance(a: Body, b: Body, T_a_b: SE3) -> float:
     """Return the smallest distance of the two surfaces [mm]; 0 when they meet, positive also when one is inside the other."""
+    if a.is_empty or b.is_empty:
+        return math.inf
     return max(float(fcl.distance(a.standing, _placed(b, T_a_b), fcl.DistanceRequest(), fcl.DistanceResult())), 0.0)
 
 
