@@ -304,6 +304,8 @@ class Assembly:
             waivers=self.waivers,
             deflection={name: part.deflection for name, part in self.parts.items()},
             over="rest" if at_rest else "pose",
+            fits=self.fits,
+            ground=self.ground,
         )
 
     def mass(self, q: ArrayLike | None = None) -> MassProperties:

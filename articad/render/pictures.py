@@ -30,7 +30,9 @@ FloatArray = NDArray[np.float64]
 RECIPE = "articad.picture/1"  # changes when the same scene would be drawn differently; part of a model request's key
 DEFAULT_VIEWS = ("iso", "front", "right", "top")
 DEFAULT_SIZE = 512
+MOTION_VIEWS = ("iso", "iso_left", "front", "right", "top", "iso_back", "iso_below")
 FRAMES = 8
+_PROBE_SIZE = 96  # pixels of the pictures by which a view is chosen
 _FREE_TRAVEL = 0.1  # of the assembly's size: how far a travel without limits is shown
 _GAP = 6  # pixels between the pictures of a sheet
 _GIF_MILLISECONDS = 60
@@ -159,17 +161,54 @@ def motion_frames(assembly: Assembly, joint: str, count: int = FRAMES) -> tuple[
 
 
 def render_motion(
-    assembly: Assembly, joint: str, *, view: str = "iso", frames: int = FRAMES, size: int = 320, supersample: int = 2, axes: bool = True
+    assembly: Assembly,
+    joint: str,
+    *,
+    view: str | None = None,
+    frames: int = FRAMES,
+    size: int = 320,
+    supersample: int = 2,
+    axes: bool = True,
 ) -> list[Image.Image]:
-    """Draw the frames of `motion_frames`, all with one camera that shows the whole motion."""
+    """Draw the frames of `motion_frames`, all with one camera that shows the whole motion.
+
+    Args:
+        assembly: What to draw.
+        joint: The joint that moves.
+        view: A key of `articad.render.VIEWS`; by default the one in which most of the motion is seen.
+        frames: How many pictures for each coordinate of the joint.
+        size: Width and height of each picture [pixels].
+        supersample: Rays per pixel in each direction.
+        axes: Draw the joint's axis.
+    """
     captions, q = motion_frames(assembly, joint, frames)
     scenes = [scene_of(assembly.parts, _poses(assembly, row), joints=_of(assembly.joints, joint)) for row in q]
-    bounds = np.array([np.min([s.bounds[0] for s in scenes], axis=0), np.max([s.bounds[1] for s in scenes], axis=0)])
-    camera = Camera.fit(view, bounds, width=size, height=size)
+    bounds = _envelope(scenes)
+    camera = Camera.fit(view or best_view(scenes), bounds, width=size, height=size)
     return [
         picture(scene, camera, supersample=supersample, labels=False, axes=axes, title=caption)
         for scene, caption in zip(scenes, captions, strict=True)
     ]
+
+
+def best_view(scenes: Sequence[Scene], candidates: Sequence[str] = MOTION_VIEWS) -> str:
+    """Return the view in which most pixels change between the scenes, the first one on a tie."""
+    bounds = _envelope(scenes)
+    shown = [scenes[0], scenes[len(scenes) // 2], scenes[-1]]
+
+    def changed(view: str) -> int:
+        camera = Camera.fit(view, bounds, width=_PROBE_SIZE, height=_PROBE_SIZE)
+        first, *others = [cast(scene, camera).item for scene in shown]
+        return sum(int((first != other).sum()) for other in others)
+
+    return max(candidates, key=changed)
+
+
+def before_after(before: Scene, after: Scene, view: str = "iso", *, size: int = DEFAULT_SIZE, supersample: int = 2) -> Image.Image:
+    """Return two scenes side by side, drawn with one camera at one scale."""
+    camera = Camera.fit(view, _envelope([before, after]), width=size, height=size)
+    pair = [picture(scene, camera, supersample=supersample, title=title) for scene, title in ((before, "before"), (after, "after"))]
+    return contact_sheet(pair, 2)
 
 
 def contact_sheet(pictures: Sequence[Image.Image], columns: int) -> Image.Image:
@@ -218,6 +257,11 @@ def _ball_frames(assembly: Assembly, joint: Joint, count: int) -> tuple[list[str
             rows.append(q)
             captions.append(f"{joint.name} {'twist' if axis == 'z' else 'swing ' + axis} = {math.degrees(angle):.1f}°")
     return captions, np.array(rows)
+
+
+def _envelope(scenes: Sequence[Scene]) -> FloatArray:
+    """Return the box that holds every scene [mm], `(2, 3)`."""
+    return np.array([np.min([scene.bounds[0] for scene in scenes], axis=0), np.max([scene.bounds[1] for scene in scenes], axis=0)])
 
 
 def _of(joints: Sequence[Joint], name: str) -> tuple[Joint, ...]:

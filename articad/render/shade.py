@@ -40,7 +40,8 @@ def shade(scene: Scene, camera: Camera, buffers: Buffers) -> Picture:
     if over.any():
         red = colors[np.where(over, buffers.over, 0)]
         picture = np.where(over[..., None], picture + _OVER_OPACITY * (red - picture), picture)
-    return np.clip(np.rint(picture), 0, 255).astype(np.uint8)
+    pixels: Picture = np.clip(np.rint(picture), 0, 255).astype(np.uint8)
+    return pixels
 
 
 def reduced(picture: Picture, factor: int) -> Picture:
@@ -49,7 +50,8 @@ def reduced(picture: Picture, factor: int) -> Picture:
         return picture
     height, width = picture.shape[0] // factor, picture.shape[1] // factor
     blocks = picture.reshape(height, factor, width, factor, 3).astype(np.float64)
-    return np.rint(blocks.mean(axis=(1, 3))).astype(np.uint8)
+    means: Picture = np.rint(blocks.mean(axis=(1, 3))).astype(np.uint8)
+    return means
 
 
 def _rgb(color: str) -> list[float]:
