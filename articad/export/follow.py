@@ -1,0 +1,43 @@
+"""Which freedoms follow which: couplings and screws as one-step linear relations, the only ones that <mimic> holds."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from articad.export.lowering import Follows, Freedom, LoweredModel
+
+
+def followers(model: LoweredModel, leaders: Iterable[str]) -> dict[str, Follows]:
+    """Return what each tied freedom of the tree follows; leaders follow nothing, so no chain has two steps.
+
+    Args:
+        model: Freedoms and the relations between them.
+        leaders: Columns that are asked for as leaders, best first; else the first freedom of the tree leads.
+    """
+    freedoms: dict[str, Freedom] = {freedom.name: freedom for joint in model.joints for freedom in joint.freedoms}
+    relations = [(name, follows) for _, name, follows in model.couplings]
+    relations += [(freedom.name, freedom.follows) for freedom in freedoms.values() if freedom.follows is not None]
+    neighbours: dict[str, list[Follows]] = {}
+    for name, follows in relations:
+        neighbours.setdefault(follows.leader, []).append(Follows(name, 1 / follows.ratio, -follows.offset / follows.ratio))
+        neighbours.setdefault(name, []).append(follows)
+    by_column = {freedom.column: name for name, freedom in freedoms.items() if freedom.column is not None}
+    order = [by_column[column] for column in leaders if column in by_column] + list(freedoms)
+    found: dict[str, Follows] = {}
+    reached: set[str] = set()
+    for leader in order:
+        if leader in reached or leader not in neighbours:
+            continue
+        reached.add(leader)
+        queue = [(leader, 1.0, 0.0)]
+        for name, ratio, offset in queue:  # value(name) = ratio · value(leader) + offset
+            for relation in neighbours[name]:
+                if relation.leader in reached:
+                    continue
+                # value(name) = k · value(other) + c, solved for the other
+                k, c = relation.ratio, relation.offset
+                other = (relation.leader, ratio / k, (offset - c) / k)
+                reached.add(relation.leader)
+                queue.append(other)
+                found[relation.leader] = Follows(leader, other[1], other[2])
+    return {name: follows for name, follows in found.items() if name in freedoms}

@@ -1,0 +1,93 @@
+"""Inertia in SI units, and how carrier links get some of it without changing the whole.
+
+The pseudo-inertia of a body, `[[Σ, h], [hᵀ, m]]` with second moments Σ, first moments h and mass m about one frame, adds up when
+bodies are joined, and a body is physical exactly when it is positive (Wensing, Kim, Slotine 2018). A carrier is a small ball at the
+joint's origin; taking it out of the moved body is a subtraction of pseudo-inertias, so mass, centre and inertia of both together
+stay what they were.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from articad.connectors.se3 import SE3
+from articad.geometry.mass import MassProperties
+
+FloatArray = NDArray[np.float64]
+
+CARRIER_MASS_KG = 1e-4  # small beside any part, but far above the least that simulators accept (1e-15)
+CARRIER_INERTIA_KG_M2 = 1e-7  # that of a ball of 50 mm radius and the carrier's mass: what keeps mass matrices well conditioned
+CARRIER_SHARE = 0.05  # carriers take at most this share of the body's pseudo-inertia in any direction, so that it stays physical
+MM_PER_M = 1000.0
+
+
+@dataclass(frozen=True, eq=False)
+class Inertial:
+    """Mass properties of a link.
+
+    Attributes:
+        mass: [kg].
+        com: Centre of mass in the link's frame [m], `(3,)`.
+        inertia: About the centre of mass, along the link's axes [kg·m²], `(3, 3)`.
+    """
+
+    mass: float
+    com: FloatArray
+    inertia: FloatArray
+
+    @classmethod
+    def from_part(cls, mass: MassProperties, T_link_part: SE3) -> Inertial:
+        """Return a part's mass properties in its link's frame; `T_link_part` [mm]."""
+        moved = mass.moved(T_link_part)
+        return cls(moved.mass, moved.com / MM_PER_M, moved.inertia / MM_PER_M**2)
+
+    @classmethod
+    def carrier(cls, scale: float = 1.0) -> Inertial:
+        """Return a carrier's mass properties: a ball at the frame's origin."""
+        return cls(CARRIER_MASS_KG * scale, np.zeros(3), CARRIER_INERTIA_KG_M2 * scale * np.eye(3))
+
+    @property
+    def pseudo(self) -> FloatArray:
+        """The pseudo-inertia `(4, 4)` about the link's origin [kg·m², kg·m, kg]."""
+        P = np.empty((4, 4))
+        about_com = np.trace(self.inertia) / 2 * np.eye(3) - self.inertia
+        P[:3, :3] = about_com + self.mass * np.outer(self.com, self.com)
+        P[:3, 3] = P[3, :3] = self.mass * self.com
+        P[3, 3] = self.mass
+        return P
+
+    @classmethod
+    def from_pseudo(cls, P: FloatArray) -> Inertial:
+        """Return the mass properties that a pseudo-inertia stands for."""
+        mass = float(P[3, 3])
+        com = P[:3, 3] / mass
+        about_com = P[:3, :3] - mass * np.outer(com, com)
+        return cls(mass, com, np.trace(about_com) * np.eye(3) - about_com)
+
+    def without_carriers(self, count: int, origin: FloatArray | None = None) -> tuple[Inertial, Inertial]:
+        """Take carriers out of this body.
+
+        Args:
+            count: How many carriers, all at one point.
+            origin: That point in the link's frame [m]; the link's origin by default.
+
+        Returns:
+            What is left of the body, and one carrier about its own origin. Carriers of a very light or thin body are scaled down.
+        """
+        if count == 0:
+            return self, Inertial.carrier()
+        whole = Inertial.carrier()
+        one = Inertial(whole.mass, np.zeros(3) if origin is None else np.asarray(origin, dtype=np.float64), whole.inertia).pseudo
+        whitened = np.linalg.inv(np.linalg.cholesky(_positive(self.pseudo)))
+        largest = float(np.linalg.eigvalsh(whitened @ (count * one) @ whitened.T)[-1])
+        scale = min(1.0, CARRIER_SHARE / largest)
+        return Inertial.from_pseudo(self.pseudo - scale * count * one), Inertial.carrier(scale)
+
+
+def _positive(P: FloatArray) -> FloatArray:
+    """Thicken a body that is a plane, a line or a point, by a share of its size too small to matter, so that it can be inverted."""
+    thickness = 1e-9 * (np.trace(P[:3, :3]) + P[3, 3] * 1e-12)
+    return P + np.diag([thickness, thickness, thickness, 0.0])

@@ -1,0 +1,164 @@
+"""The table of losses: for each feature of an assembly and each format, what it becomes and what is lost.
+
+The table is data: exporters report its rows, `docs/reference/formats.md` is generated from it, and a test walks over
+all of it. A feature whose `lost` is empty is held by the format without loss.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Literal, NamedTuple
+
+from articad.errors import UnrepresentableError
+from articad.export.bundle import Loss
+from articad.findings import Finding
+
+Format = Literal["urdf", "mjcf"]
+
+
+class Row(NamedTuple):
+    """What one feature becomes in one format.
+
+    Attributes:
+        becomes: What is written.
+        lost: What a reader that does not know articad's metadata does not see; empty for nothing.
+        refused: Whether `strict` refuses it, because motion, mass or shape change.
+    """
+
+    becomes: str
+    lost: str = ""
+    refused: bool = False
+
+
+class Feature(NamedTuple):
+    """A feature that an assembly has, so that each writer can look its row up.
+
+    Attributes:
+        key: Key of `TABLE`.
+        where: What has it, such as `joints.elbow`.
+        detail: Numbers or names that the row's text leaves out.
+    """
+
+    key: str
+    where: str
+    detail: str = ""
+
+
+TABLE: dict[str, dict[Format, Row]] = {
+    # --- joints
+    "fixed": {"urdf": Row("a fixed joint"), "mjcf": Row("a body without joint inside its parent")},
+    "revolute": {"urdf": Row("a revolute joint"), "mjcf": Row("a hinge")},
+    "revolute.endless": {"urdf": Row("a continuous joint"), "mjcf": Row("a hinge without range")},
+    "slider": {"urdf": Row("a prismatic joint"), "mjcf": Row("a slide joint")},
+    "cylindrical": {"urdf": Row("a prismatic joint, a carrier link and a revolute joint"), "mjcf": Row("a slide and a hinge on one body")},
+    "ball": {
+        "urdf": Row(
+            "three revolute joints about x, y, z with two carrier links",
+            "the cone becomes a box about x and y that contains it, and the twist's range is widened to contain the declared one",
+            refused=True,
+        ),
+        "mjcf": Row("a ball joint", "cone and twist become one limit on the total angle, which contains them", refused=True),
+    },
+    "ball.free": {
+        "urdf": Row("three revolute joints about x, y, z with two carrier links"),
+        "mjcf": Row("a ball joint"),
+    },
+    "ball.wide": {
+        "urdf": Row(
+            "three revolute joints about x, y, z with two carrier links",
+            "the cone reaches 85° or more: where the second angle is ±90° the first and the third axis are the same (gimbal lock)",
+            refused=True,
+        ),
+        "mjcf": Row("a ball joint"),
+    },
+    "screw": {
+        "urdf": Row(
+            "a prismatic joint that mimics a revolute joint, with a carrier link",
+            "readers that ignore <mimic> let the two move on their own",
+        ),
+        "mjcf": Row("a slide and a hinge on one body, tied by an equality of joints"),
+    },
+    "planar": {
+        "urdf": Row("two prismatic joints and a revolute joint, with two carrier links"),
+        "mjcf": Row("two slides and a hinge on one body"),
+    },
+    "universal": {"urdf": Row("two revolute joints with a carrier link"), "mjcf": Row("two hinges on one body")},
+    "limits.open": {
+        "urdf": Row("a far limit, 1e6 rad or 1000 m away", "the joint is endless to that side"),
+        "mjcf": Row("a far limit, 1e6 rad or 1000 m away", "the joint is endless to that side"),
+    },
+    "slide.endless": {"urdf": Row("limits of ±1000 m", "the slide is endless"), "mjcf": Row("a slide joint without range")},
+    "velocity": {"urdf": Row("the velocity of <limit>"), "mjcf": Row("metadata", "MJCF has no limit on a joint's velocity")},
+    # --- loops and couplings
+    "loop": {
+        "urdf": Row("metadata", "URDF holds trees only: this joint is left out and its loop is open", refused=True),
+        "mjcf": Row("equality constraints between sites"),
+    },
+    "coupling": {
+        "urdf": Row("<mimic>", "readers that ignore <mimic> let the joints move on their own"),
+        "mjcf": Row("an equality of joints"),
+    },
+    "coupling.loop": {
+        "urdf": Row("metadata", "the coupling names a joint that cannot be written, or ties joints that are tied already", refused=True),
+        "mjcf": Row("an equality of joints"),
+    },
+    # --- parts
+    "mass.missing": {
+        "urdf": Row("1e-4 kg", "the mass of a moving part is not known", refused=True),
+        "mjcf": Row("1e-4 kg", "the mass of a moving part is not known", refused=True),
+    },
+    "shape.missing": {"urdf": Row("a link without shapes"), "mjcf": Row("a body without geoms")},
+    "hull": {
+        "urdf": Row(
+            "collision meshes",
+            "readers that collide with convex hulls (MuJoCo, PyBullet) see these two parts overlap at rest, and URDF cannot exclude the pair",
+        ),
+        "mjcf": Row(
+            "an excluded pair", "MuJoCo collides with convex hulls; those of these two parts overlap at rest, so they do not collide at all"
+        ),
+    },
+    "color": {"urdf": Row("<material>"), "mjcf": Row("a material")},
+    "friction": {
+        "urdf": Row("metadata", "URDF has no friction between surfaces: readers use their own"),
+        "mjcf": Row("the geoms' friction"),
+    },
+    "connector": {"urdf": Row("metadata"), "mjcf": Row("a site")},
+    "fit": {"urdf": Row("metadata"), "mjcf": Row("metadata")},
+    "name": {
+        "urdf": Row("a name of letters, digits and underscores", "the name as given, which is kept in the metadata"),
+        "mjcf": Row("a name of letters, digits and underscores", "the name as given, which is kept in the metadata"),
+    },
+}
+
+
+def losses_of(format_name: Format, features: Iterable[Feature]) -> tuple[Loss, ...]:
+    """Return the losses that these features have in a format, in order, each once."""
+    losses: dict[Loss, None] = {}
+    for feature in features:
+        row = TABLE[feature.key][format_name]
+        if row.lost:
+            kept = f"{row.becomes} ({feature.detail})" if feature.detail else row.becomes
+            losses[Loss(format_name, feature.where, kept, row.lost, row.refused)] = None
+    return tuple(losses)
+
+
+def refuse(losses: Iterable[Loss]) -> None:
+    """Raise on the first loss that changes motion, mass or shape, naming all of them.
+
+    Raises:
+        UnrepresentableError: If there is one.
+    """
+    refused = [loss for loss in losses if loss.refused]
+    if not refused:
+        return
+    findings = [
+        Finding(
+            code="E_UNREPRESENTABLE",
+            where=loss.where,
+            message=f"{loss.format}: {loss.lost}.",
+            hint=f"Without strict it becomes {loss.kept}.",
+        )
+        for loss in refused
+    ]
+    first = refused[0]
+    raise UnrepresentableError(first.where, first.format, first.lost, findings=findings)

@@ -1,0 +1,437 @@
+"""One lowering pass for all formats: joints of eight kinds become frames and one-freedom motions, mm become m.
+
+Each part becomes a link whose frame is that of the joint above it; the ground's link frame is the ground frame itself.
+For a tree edge that is crossed from parent to child, `T_link_part = F · C_c⁻¹` and the joint's frame is `B_parent · C_p`; crossed the
+other way, the frame is `B_child · C_c · F`, the motion is J(q)⁻¹ (the same motions backwards about turned axes) and `T_link_part = C_p⁻¹`.
+So every coordinate of a format equals ours, whichever way the tree crosses a joint and whatever its mate; only a ball
+that is crossed backwards has the inverse quaternion.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Literal, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from articad.connectors.mate import flip
+from articad.connectors.se3 import SE3
+from articad.export.inertia import MM_PER_M, Inertial
+from articad.export.loads import Load, joint_loads
+from articad.export.losses import Feature
+from articad.export.names import Names, valid_name
+from articad.geometry.part import Part, Shape
+from articad.kinematics.joints import Joint, JointType
+
+if TYPE_CHECKING:
+    from articad.assembly import Assembly
+
+FloatArray = NDArray[np.float64]
+Kind = Literal["turn", "slide"]
+
+WIDE_CONE = math.radians(85.0)  # from here on the three angles of a ball come too near to gimbal lock
+
+
+class Motion(NamedTuple):
+    """One elementary motion of a joint type.
+
+    Attributes:
+        suffix: Of the name, where a joint has several motions.
+        kind: Turning about or sliding along the axis.
+        axis: In the parent connector's frame.
+        coordinate: Index of the joint's coordinate that is its value; None for a ball's angles and a screw's slide.
+    """
+
+    suffix: str
+    kind: Kind
+    axis: tuple[float, float, float]
+    coordinate: int | None
+
+
+_X, _Y, _Z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
+
+MOTIONS: dict[JointType, tuple[Motion, ...]] = {
+    JointType.FIXED: (),
+    JointType.REVOLUTE: (Motion("", "turn", _Z, 0),),
+    JointType.SLIDER: (Motion("", "slide", _Z, 0),),
+    JointType.CYLINDRICAL: (Motion("t", "slide", _Z, 0), Motion("r", "turn", _Z, 1)),
+    JointType.BALL: (Motion("rx", "turn", _X, None), Motion("ry", "turn", _Y, None), Motion("rz", "turn", _Z, None)),
+    JointType.SCREW: (Motion("t", "slide", _Z, None), Motion("r", "turn", _Z, 0)),
+    JointType.PLANAR: (Motion("x", "slide", _X, 0), Motion("y", "slide", _Y, 1), Motion("r", "turn", _Z, 2)),
+    JointType.UNIVERSAL: (Motion("rx", "turn", _X, 0), Motion("ry", "turn", _Y, 1)),
+}
+"""J(q) of each joint type as a product of elementary motions, first one first."""
+
+
+@dataclass(frozen=True)
+class Follows:
+    """A value that is a linear function of another one: value = ratio · leader + offset, in SI units."""
+
+    leader: str
+    ratio: float
+    offset: float
+
+
+@dataclass(frozen=True, eq=False)
+class Freedom:
+    """A one-freedom motion, in SI units.
+
+    Attributes:
+        name: Of the joint that a format has for it.
+        kind: Turning about or sliding along the axis.
+        axis: Unit vector in the joint's frame, `(3,)`.
+        lower: [rad, m], −inf for none.
+        upper: [rad, m], +inf for none.
+        rest: Value in the rest pose [rad, m].
+        load: Effort, velocity and damping.
+        follows: What it is tied to.
+        column: Name of our coordinate that is its value, if there is one.
+    """
+
+    name: str
+    kind: Kind
+    axis: FloatArray
+    lower: float
+    upper: float
+    rest: float
+    load: Load
+    follows: Follows | None = None
+    column: str | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class LoweredJoint:
+    """A joint in SI units, between two links.
+
+    Attributes:
+        name: Valid in every format.
+        joint: Ours.
+        backwards: True when it leads from the joint's child to its parent.
+        parent: Name of the link that carries its frame.
+        child: Name of the link that it moves.
+        T_parent_joint: Its frame in the parent link's [m].
+        T_child_joint: The frame of the child link that coincides with it where all values are zero [m]; identity in a tree.
+        freedoms: Its motions, from the parent outwards.
+        carriers: Names for links between its motions, and one for a link at its end.
+    """
+
+    name: str
+    joint: Joint
+    backwards: bool
+    parent: str
+    child: str
+    T_parent_joint: SE3
+    T_child_joint: SE3
+    freedoms: tuple[Freedom, ...]
+    carriers: tuple[str, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Placed:
+    """A shape of a link.
+
+    Attributes:
+        shape: Mesh and colour; the mesh is in mm.
+        T_link_shape: Where the mesh's frame is in the link's [m].
+        color: "#rrggbb".
+    """
+
+    shape: Shape
+    T_link_shape: SE3
+    color: str
+
+
+@dataclass(frozen=True, eq=False)
+class Link:
+    """A part as formats see it.
+
+    Attributes:
+        name: Valid in every format.
+        part: Ours.
+        T_link_part: The part's frame in the link's [m].
+        inertial: In the link's frame.
+        moves: False for what is rigidly connected with the ground.
+        visuals: What is drawn.
+        collisions: What collides.
+        friction: Between its surfaces and others; None when it has no material.
+    """
+
+    name: str
+    part: Part
+    T_link_part: SE3
+    inertial: Inertial | None
+    moves: bool
+    visuals: tuple[Placed, ...]
+    collisions: tuple[Placed, ...]
+    friction: float | None
+
+
+@dataclass(frozen=True, eq=False)
+class LoweredModel:
+    """An assembly in SI units.
+
+    Attributes:
+        name: Valid in every format.
+        links: Depth first, the ground first.
+        joints: Of the tree, in the order of the links that they move.
+        loops: Joints that close loops.
+        couplings: `name -> (freedom, Follows)` that hold besides the tree.
+        features: What it has, for the table of losses.
+    """
+
+    name: str
+    links: tuple[Link, ...]
+    joints: tuple[LoweredJoint, ...]
+    loops: tuple[LoweredJoint, ...]
+    couplings: tuple[tuple[str, str, Follows], ...]
+    features: tuple[Feature, ...]
+
+    def link_of(self, part: str) -> Link:
+        """Return the link that a part became."""
+        return next(link for link in self.links if link.part.name == part)
+
+
+def metres(T: SE3) -> SE3:
+    """Return the same motion with its translation in m: divided by 1000 exactly, the rotation untouched."""
+    return SE3.from_unit_array(T.data / np.array([MM_PER_M, MM_PER_M, MM_PER_M, 1.0, 1.0, 1.0, 1.0]))
+
+
+def lower(assembly: Assembly) -> LoweredModel:
+    """Turn an assembly into links, frames and one-freedom motions in SI units.
+
+    Names become valid, limits and rest values are converted, loads are computed, and each feature that a format may not hold is noted.
+    """
+    mechanism = assembly.mechanism
+    names = _ValidNames(assembly)
+    loads = joint_loads(mechanism, assembly.parts)
+    T_link_part = {mechanism.ground: mechanism.T_ground}
+    joints = []
+    for edge in mechanism.tree.edges:
+        head, T_link_part[edge.part] = _frames(edge.joint, backwards=edge.reversed)
+        T_parent_joint = metres(T_link_part[edge.parent] @ head)
+        joints.append(_lowered(edge.joint, edge.parent, edge.part, T_parent_joint, SE3.identity(), loads, names, backwards=edge.reversed))
+    loops = []
+    for joint in mechanism.loop_joints:
+        T_parent_joint = metres(T_link_part[joint.parent] @ joint.T_parent_connector)
+        T_child_joint = metres(T_link_part[joint.child] @ joint.T_child_connector @ flip(joint.mate))
+        loops.append(_lowered(joint, joint.parent, joint.child, T_parent_joint, T_child_joint, loads, names, backwards=False))
+    still = _rigid_with_ground(assembly)
+    links = tuple(_link(names.links[part], assembly, part, T_link_part[part], moves=part not in still) for part in mechanism.tree.parts)
+    return LoweredModel(
+        valid_name(assembly.name),
+        links,
+        tuple(joints),
+        tuple(loops),
+        _couplings(assembly, [*joints, *loops]),
+        (*_features(assembly, links), *names.features(assembly)),
+    )
+
+
+class _ValidNames:
+    """Valid names of links and joints; declared ones are claimed before carriers', in the order of declaration."""
+
+    def __init__(self, assembly: Assembly) -> None:
+        self._link_names, self._joint_names = Names(), Names()
+        self.links = {part: self._link_names.claim(part) for part in assembly.mechanism.parts}
+        self.joints = {joint.name: self._joint_names.claim(joint.name) for joint in assembly.mechanism.joints}
+        self._changed = [("parts", *item) for item in self._link_names.changed.items()]
+        self._changed += [("joints", *item) for item in self._joint_names.changed.items()]
+
+    def motions(self, joint: Joint) -> tuple[str, ...]:
+        """Return the names of a joint's motions: its own where there is one, else `joint__suffix`."""
+        base = self.joints[joint.name]
+        return tuple(self._joint_names.claim(f"{base}__{motion.suffix}") if motion.suffix else base for motion in MOTIONS[joint.type])
+
+    def carriers(self, joint: Joint) -> tuple[str, ...]:
+        """Return names of links that carry a joint's motions but the last, and one that can stand for its end."""
+        base = self.joints[joint.name]
+        count = len(MOTIONS[joint.type])
+        return tuple(self._link_names.claim(f"{base}__d{number + 1}") for number in range(max(count, 1)))
+
+    def features(self, assembly: Assembly) -> list[Feature]:
+        """Return the names that had to change."""
+        features = [Feature("name", f"{kind}.{old}", new) for kind, old, new in self._changed]
+        if valid_name(assembly.name) != assembly.name:
+            features.append(Feature("name", "name", valid_name(assembly.name)))
+        return features
+
+
+def _lowered(
+    joint: Joint,
+    parent: str,
+    child: str,
+    T_parent_joint: SE3,
+    T_child_joint: SE3,
+    loads: Mapping[str, tuple[Load, ...]],
+    names: _ValidNames,
+    *,
+    backwards: bool,
+) -> LoweredJoint:
+    """Return the joint with its motions from the tree's parent outwards; backwards they come last first, about turned axes."""
+    motion_names = names.motions(joint)
+    freedoms = [_freedom(joint, motion_names, index, loads[joint.name][index]) for index in range(len(motion_names))]
+    if backwards:
+        freedoms = [replace(freedom, axis=0.0 - freedom.axis) for freedom in reversed(freedoms)]  # 0 − x, so that no −0 is written
+    return LoweredJoint(
+        names.joints[joint.name],
+        joint,
+        backwards,
+        names.links[parent],
+        names.links[child],
+        T_parent_joint,
+        T_child_joint,
+        tuple(freedoms),
+        names.carriers(joint),
+    )
+
+
+def _frames(joint: Joint, *, backwards: bool) -> tuple[SE3, SE3]:
+    """Return the joint's frame in the part before it, and the part after it in its link's frame [mm]."""
+    if backwards:
+        return joint.T_child_connector @ flip(joint.mate), joint.T_parent_connector.inverse()
+    return joint.T_parent_connector, flip(joint.mate) @ joint.T_child_connector.inverse()
+
+
+def _freedom(joint: Joint, names: tuple[str, ...], index: int, load: Load) -> Freedom:
+    motion = MOTIONS[joint.type][index]
+    axis = np.array(motion.axis)
+    if joint.type is JointType.BALL:
+        lower, upper = ball_box(joint)[index]
+        return Freedom(names[index], motion.kind, axis, lower, upper, ball_angles(joint.rest)[index], load)
+    if motion.coordinate is None:  # the slide of a screw follows its turn
+        ratio = joint.lead / math.tau / MM_PER_M
+        ends = sorted((ratio * joint.limits.lower[0], ratio * joint.limits.upper[0]))
+        return Freedom(names[index], motion.kind, axis, ends[0], ends[1], ratio * joint.rest[0], load, Follows(names[1], ratio, 0.0))
+    unit = 1.0 if motion.kind == "turn" else MM_PER_M
+    at = motion.coordinate
+    lower, upper, rest = joint.limits.lower[at] / unit, joint.limits.upper[at] / unit, joint.rest[at] / unit
+    return Freedom(names[index], motion.kind, axis, lower, upper, rest, load, column=joint.column_names[at])
+
+
+def ball_angles(xyzw: tuple[float, ...]) -> tuple[float, float, float]:
+    """Return (rx, ry, rz) with R(q) = Rx(rx) · Ry(ry) · Rz(rz) [rad]."""
+    R = SE3.from_quaternion(xyzw).rotation
+    ry = math.atan2(R[0, 2], math.hypot(R[0, 0], R[0, 1]))
+    rx = math.atan2(-R[1, 2], R[2, 2])
+    # from R with the first turn taken back, which stays exact at ry = ±90° where rx and rz cannot be told apart
+    s, c = math.sin(rx), math.cos(rx)
+    rz = math.atan2(c * R[1, 0] + s * R[2, 0], c * R[1, 1] + s * R[2, 1])
+    return rx, ry, rz
+
+
+def ball_box(joint: Joint) -> tuple[tuple[float, float], ...]:
+    """Return ranges of (rx, ry, rz) that contain everything a ball's cone and twist allow [rad].
+
+    The swing of Rx(a)·Ry(b) has cos(swing) = cos a · cos b, so |a| and |b| are at most the cone; its own twist is
+    2·atan(tan(a/2)·tan(b/2)), largest where a = b, and rz is the ball's twist less this.
+    """
+    limits = joint.limits
+    cone = math.pi if limits.cone is None else limits.cone
+    if cone >= math.pi / 2:
+        swing, about_y, own_twist = math.inf, math.pi / 2, math.inf
+    else:
+        swing = about_y = cone
+        own_twist = 2 * math.atan(math.tan(math.acos(math.sqrt(math.cos(cone))) / 2) ** 2)
+    low, high = (-math.inf, math.inf) if limits.twist is None else (limits.twist[0] - own_twist, limits.twist[1] + own_twist)
+    return (-swing, swing), (-about_y, about_y), (low, high)
+
+
+def ball_total_angle(joint: Joint) -> float:
+    """Return the largest total angle of a ball within its cone and twist [rad]; π or more is no limit.
+
+    Swing s and twist t together turn by 2·acos(cos(s/2)·cos(t/2)).
+    """
+    limits = joint.limits
+    cone = math.pi if limits.cone is None else limits.cone
+    twist = math.pi if limits.twist is None else min(math.pi, max(map(abs, limits.twist)))
+    return 2 * math.acos(math.cos(cone / 2) * math.cos(twist / 2))
+
+
+def _couplings(assembly: Assembly, joints: list[LoweredJoint]) -> tuple[tuple[str, str, Follows], ...]:
+    """Return couplings between freedoms: q_b = k q_a + c, in SI units."""
+    by_column = {freedom.column: freedom for joint in joints for freedom in joint.freedoms if freedom.column is not None}
+    rows = []
+    for coupling in assembly.mechanism.couplings:
+        a, b = by_column[coupling.a], by_column[coupling.b]
+        unit_a, unit_b = (MM_PER_M if freedom.kind == "slide" else 1.0 for freedom in (a, b))
+        rows.append((coupling.name, b.name, Follows(a.name, coupling.ratio * unit_a / unit_b, coupling.offset / unit_b)))
+    return tuple(rows)
+
+
+def _link(name: str, assembly: Assembly, part_name: str, T_link_part: SE3, *, moves: bool) -> Link:
+    part = assembly.parts[part_name]
+    material = assembly.materials.get(part.material) if part.material is not None else None
+    known = part.mass is not None and part.mass.mass > 0
+    return Link(
+        name,
+        part,
+        metres(T_link_part),
+        Inertial.from_part(part.mass, T_link_part) if known and part.mass is not None else None,
+        moves,
+        tuple(_placed(shape, part, T_link_part) for shape in part.visuals or part.collisions),
+        tuple(_placed(shape, part, T_link_part) for shape in part.collisions or part.visuals),
+        None if material is None else material.friction,
+    )
+
+
+def _placed(shape: Shape, part: Part, T_link_part: SE3) -> Placed:
+    return Placed(shape, metres(T_link_part @ shape.frame), shape.color or part.color)
+
+
+def _rigid_with_ground(assembly: Assembly) -> set[str]:
+    still = {assembly.mechanism.ground}
+    for edge in assembly.mechanism.tree.edges:
+        if edge.parent in still and edge.joint.type is JointType.FIXED:
+            still.add(edge.part)
+    return still
+
+
+def _features(assembly: Assembly, links: tuple[Link, ...]) -> list[Feature]:
+    """Return what the assembly has, in the order of declaration."""
+    features = []
+    loop_names = {joint.name for joint in assembly.mechanism.loop_joints}
+    for joint in assembly.mechanism.joints:
+        where = f"joints.{joint.name}"
+        features.append(Feature("loop" if joint.name in loop_names else _joint_feature(joint), where))
+        features.extend(_limit_features(joint, where))
+        if any(velocity is not None for velocity in joint.velocity):
+            features.append(Feature("velocity", where))
+    features.extend(Feature("coupling", f"couplings.{coupling.name}") for coupling in assembly.mechanism.couplings)
+    for link in links:
+        where = f"parts.{link.part.name}"
+        if link.inertial is None and link.moves:
+            features.append(Feature("mass.missing", where))
+        if not link.visuals:
+            features.append(Feature("shape.missing", where))
+        if link.friction is not None:
+            features.append(Feature("friction", where))
+    features.extend(Feature("fit", f"joints.{joint}") for joint in assembly.fits)
+    return features
+
+
+def _joint_feature(joint: Joint) -> str:
+    if joint.type is JointType.BALL:
+        cone = joint.limits.cone or math.pi
+        free = cone >= math.pi and joint.limits.twist is None
+        return "ball.wide" if cone >= WIDE_CONE and not free else "ball.free" if free else "ball"
+    if joint.type is JointType.REVOLUTE and math.isinf(joint.limits.lower[0]) and math.isinf(joint.limits.upper[0]):
+        return "revolute.endless"
+    return str(joint.type)
+
+
+def _limit_features(joint: Joint, where: str) -> list[Feature]:
+    features = []
+    for unit, lower, upper in zip(joint.type.units, joint.limits.lower, joint.limits.upper, strict=False):
+        if math.isinf(lower) != math.isinf(upper):
+            features.append(Feature("limits.open", where))
+        elif math.isinf(lower) and unit == "mm":
+            features.append(Feature("slide.endless", where))
+    return features
+
+
+def rest_values(model: LoweredModel) -> Mapping[str, float]:
+    """Return the rest value of every freedom [rad, m] by name."""
+    return {freedom.name: freedom.rest for joint in (*model.joints, *model.loops) for freedom in joint.freedoms}

@@ -1,0 +1,58 @@
+"""XML with numbers in full: what is read back is bit for bit what was written."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from typing import Any
+
+from lxml import etree
+
+from articad.connectors.se3 import SE3
+
+
+def number(value: float) -> str:
+    """Return the shortest text that reads back as the same float; −0 becomes 0, and whole numbers lose their ".0"."""
+    text = repr(float(value) + 0.0)
+    return text.removesuffix(".0")
+
+
+def numbers(values: Iterable[float]) -> str:
+    """Return numbers with spaces between them."""
+    return " ".join(map(number, values))
+
+
+def rpy(T: SE3) -> tuple[float, float, float]:
+    """Return (roll, pitch, yaw) with R = Rz(yaw) · Ry(pitch) · Rx(roll) [rad], exact at pitch = ±90° too.
+
+    Roll is read from R with the yaw taken back, so that the product is R even where the two cannot be told apart.
+    """
+    R = T.rotation
+    pitch = math.atan2(-R[2, 0], math.hypot(R[0, 0], R[1, 0]))
+    yaw = math.atan2(R[1, 0], R[0, 0])
+    s, c = math.sin(yaw), math.cos(yaw)
+    roll = math.atan2(s * R[0, 2] - c * R[1, 2], c * R[1, 1] - s * R[0, 1])
+    return roll, pitch, yaw
+
+
+def wxyz(T: SE3) -> tuple[float, float, float, float]:
+    """Return the rotation as a quaternion, w first."""
+    x, y, z, w = T.quaternion
+    return float(w), float(x), float(y), float(z)
+
+
+def rgba(color: str) -> str:
+    """Turn "#rrggbb" into four numbers from 0 to 1."""
+    return numbers([*(int(color[at : at + 2], 16) / 255 for at in (1, 3, 5)), 1.0])
+
+
+def child(parent: Any, tag: str, attributes: dict[str, str] | None = None, text: str | None = None) -> Any:
+    """Append an element; lxml escapes whatever the strings hold."""
+    element = etree.SubElement(parent, tag, attributes or {})
+    element.text = text
+    return element
+
+
+def document(root: Any) -> bytes:
+    """Return the document as indented UTF-8."""
+    return bytes(etree.tostring(root, pretty_print=True, xml_declaration=True, encoding="utf-8"))

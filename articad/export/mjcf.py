@@ -1,0 +1,332 @@
+"""MJCF: bodies, joints and equality constraints for MuJoCo."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from lxml import etree
+
+from articad.connectors.se3 import SE3
+from articad.export.bundle import Bundle
+from articad.export.hulls import HullOverlap, hull_overlaps, mating_pairs, same_group_pairs
+from articad.export.inertia import Inertial
+from articad.export.loads import GRAVITY_M_S2
+from articad.export.losses import Feature, losses_of, refuse
+from articad.export.lowering import Follows, Freedom, Link, LoweredJoint, LoweredModel, Placed, ball_total_angle, lower, metres
+from articad.export.markup import child, document, number, numbers, rgba, wxyz
+from articad.export.meshes import MM_TO_M, MeshFiles, MeshKind
+from articad.export.metadata import dumps, records
+from articad.export.names import Names
+from articad.geometry.mesh import TriMesh
+from articad.kinematics.joints import JointType
+
+if TYPE_CHECKING:
+    from articad.assembly import Assembly
+
+FAR_RAD = 1e6  # stands for an open end of a range that has another end
+FAR_M = 1e3
+LEAST_HALF_LENGTH_M = 1e-3  # between the middle and the ends of a hinge that closes a loop
+LEAST_VOLUME_MM3 = 1e-3  # below it MuJoCo calls a mesh too small to measure
+STL_TRIANGLES = 200_000  # MuJoCo refuses larger STL files; OBJ has no such bound
+TIMESTEP_S = 0.002
+EQUALITY = {"solref": "0.005 1", "solimp": "0.99 0.9999 0.001"}  # MuJoCo's own default lets loaded loops sag visibly
+SERVO_ERROR_TURN = 0.05  # rad by which a servo is off at full effort
+SERVO_ERROR_SLIDE = 0.005  # m, likewise
+FRICTION_SPIN, FRICTION_ROLL = 0.005, 0.0001  # MuJoCo's defaults beside the sliding friction [m]
+
+
+def write_mjcf(assembly: Assembly, *, strict: bool = False, meshes: MeshKind = "stl", actuators: bool = False) -> Bundle:
+    """Write an assembly as MJCF.
+
+    Body frames are joint frames, the one base body is the ground part, and every joint's value is ours in rad or m, so all zero is q = 0;
+    the key `home` is the rest pose. Loops are closed by equality constraints between sites.
+    Parts that share a joint do not collide with each other, nor do parts whose convex hulls overlap at rest.
+
+    Args:
+        assembly: What to write.
+        strict: Refuse what MJCF holds only with a loss of motion, mass or shape.
+        meshes: Format of the mesh files: STL holds single precision, OBJ full numbers.
+        actuators: Give every driver a position servo of the joint's effort.
+
+    Returns:
+        `<name>.xml`, `meshes/…`, and the losses.
+
+    Raises:
+        UnrepresentableError: If `strict` and there is such a loss.
+    """
+    model = lower(assembly)
+    overlaps = _hull_overlaps(assembly, model)
+    losses = losses_of("mjcf", (*model.features, *(_hull_feature(overlap) for overlap in overlaps)))
+    if strict:
+        refuse(losses)
+    writer = _Writer(assembly, model, MeshFiles(meshes))
+    root = writer.document(overlaps, actuators=actuators)
+    return Bundle({f"{model.name}.xml": document(root), **writer.files.files}, losses)
+
+
+class _Writer:
+    """Builds one document; holds what its sections share."""
+
+    def __init__(self, assembly: Assembly, model: LoweredModel, files: MeshFiles) -> None:
+        self.assembly, self.model, self.files = assembly, model, files
+        self.sites = Names()
+        self.asset: Any = None
+        self.bodies: dict[str, Any] = {}
+        self.assets: dict[str, str] = {}
+        self.ghosts: dict[str, Inertial] = {}
+        self.qpos: dict[str, list[float]] = {}
+
+    def document(self, overlaps: list[HullOverlap], *, actuators: bool) -> Any:
+        root = etree.Element("mujoco", model=self.model.name)
+        child(root, "compiler", {"angle": "radian", "autolimits": "true", "inertiafromgeom": "false", "balanceinertia": "false"})
+        child(root, "option", {"timestep": number(TIMESTEP_S), "gravity": numbers([0, 0, -GRAVITY_M_S2]), "integrator": "implicitfast"})
+        _defaults(root)
+        custom = child(root, "custom")
+        self.asset = child(root, "asset")
+        self._materials()
+        world = child(root, "worldbody")
+        self._bodies(world)
+        self._exclusions(root, overlaps)
+        self._equalities(root)
+        servos = self._actuators(root) if actuators else []
+        self._home(root, world, servos)
+        for number_, record in enumerate(records(self.assembly, self.model, self.files.by_digest)):
+            child(custom, "text", {"name": f"articad.{number_}.{record['kind']}", "data": dumps(record)})
+        if not len(self.asset):
+            root.remove(self.asset)
+        return root
+
+    # ------------------------------------------------------------------ bodies
+
+    def _materials(self) -> None:
+        colors = dict.fromkeys(placed.color for link in self.model.links for placed in link.visuals)
+        for color in colors:
+            child(self.asset, "material", {"name": _material(color), "rgba": rgba(color)})
+
+    def _bodies(self, world: Any) -> None:
+        carried = {joint.child: joint for joint in self.model.joints}
+        inertials = self._inertials()
+        for link in self.model.links:
+            joint = carried.get(link.name)
+            parent = world if joint is None else self.bodies[joint.parent]
+            body = child(parent, "body", {"name": link.name} | ({} if joint is None else _placement(joint.T_parent_joint)))
+            self.bodies[link.name] = body
+            inertial = inertials[link.name]
+            if inertial is not None:
+                _inertial(body, inertial)
+            if joint is not None:
+                self._joints(body, joint)
+            self._geoms(body, link)
+            for connector in link.part.connectors.values():
+                self._site(body, f"{link.name}__{connector.name}", link.T_link_part @ metres(connector.frame))
+
+    def _inertials(self) -> dict[str, Inertial | None]:
+        """Return each link's inertia, ghosts of loops taken out of the part that they stand for."""
+        found = {link.name: link.inertial or (Inertial.carrier() if link.moves else None) for link in self.model.links}
+        for loop in self.model.loops:
+            whole = found[loop.child]
+            if not _needs_ghost(loop):
+                continue
+            self.ghosts[loop.name] = Inertial.carrier()
+            if whole is not None:
+                found[loop.child], self.ghosts[loop.name] = whole.without_carriers(1, loop.T_child_joint.translation)
+        return found
+
+    def _joints(self, body: Any, joint: LoweredJoint) -> None:
+        if joint.joint.type is JointType.BALL:
+            attributes = {"name": joint.name, "type": "ball"}
+            total = ball_total_angle(joint.joint)
+            if total < math.pi:
+                attributes["range"] = numbers([0, total])
+            child(body, "joint", attributes | {"damping": number(joint.freedoms[0].load.damping)})
+            R = SE3.from_quaternion(joint.joint.rest)
+            self.qpos[joint.name] = list(wxyz(R.inverse() if joint.backwards else R))
+            return
+        for freedom in joint.freedoms:
+            child(body, "joint", _joint(freedom))
+            self.qpos[freedom.name] = [freedom.rest]
+
+    def _geoms(self, body: Any, link: Link) -> None:
+        for placed in link.visuals:
+            geom = {"class": "visual", "mesh": self._mesh(placed, link.name), "material": _material(placed.color)}
+            child(body, "geom", geom | _placement(placed.T_link_shape))
+        friction = {} if link.friction is None else {"friction": numbers([link.friction, FRICTION_SPIN, FRICTION_ROLL])}
+        for placed in link.collisions:
+            child(body, "geom", {"class": "collision", "mesh": self._mesh(placed, link.name)} | friction | _placement(placed.T_link_shape))
+
+    def _mesh(self, placed: Placed, name: str) -> str:
+        """Return the name of the asset that is this mesh, adding it if it is new."""
+        mesh = placed.shape.mesh
+        path = self.files.path(mesh, name, "obj" if len(mesh.triangles) > STL_TRIANGLES else None)
+        asset = path.removeprefix(f"{self.files.folder}/").rpartition(".")[0]
+        if path not in self.assets:
+            self.assets[path] = asset
+            child(self.asset, "mesh", {"name": asset, "file": path, "scale": numbers([MM_TO_M] * 3)} | _mesh_inertia(mesh))
+        return asset
+
+    def _site(self, body: Any, name: str, T: SE3) -> str:
+        claimed = self.sites.claim(name)
+        child(body, "site", {"name": claimed} | _placement(T))
+        return claimed
+
+    # ------------------------------------------------------------------ relations
+
+    def _exclusions(self, root: Any, overlaps: list[HullOverlap]) -> None:
+        links = {link.part.name: link for link in self.model.links}
+        mating = mating_pairs(self.assembly.mechanism.joints, self.assembly.mechanism.parts)
+        pairs = dict.fromkeys([*mating, *(overlap.parts for overlap in overlaps)])
+        if pairs:
+            contact = child(root, "contact")
+            for a, b in pairs:
+                child(contact, "exclude", {"body1": links[a].name, "body2": links[b].name})
+
+    def _equalities(self, root: Any) -> None:
+        """Tie what the tree of bodies does not: loops by sites, screws and couplings by their joints."""
+        equality = etree.SubElement(root, "equality")
+        for joint in (*self.model.joints, *self.model.loops):
+            for freedom in joint.freedoms:
+                if freedom.follows is not None and freedom.name in self.qpos:
+                    _tie(equality, freedom.name, freedom.name, freedom.follows)
+        for loop in self.model.loops:
+            self._close(equality, loop)
+        for name, follower, follows in self.model.couplings:
+            if {follower, follows.leader} <= self.qpos.keys():
+                _tie(equality, name, follower, follows)
+        if not len(equality):
+            root.remove(equality)
+
+    def _close(self, equality: Any, loop: LoweredJoint) -> None:
+        """Close a loop: a point for a ball, two points on the axis for an endless hinge, all six directions through a ghost for others."""
+        near, far = self.bodies[loop.parent], self.bodies[loop.child]
+        if loop.joint.type is JointType.BALL:
+            self._tie_sites(equality, "connect", loop.name, (near, loop.T_parent_joint), (far, loop.T_child_joint))
+        elif loop.joint.type is JointType.FIXED:
+            self._tie_sites(equality, "weld", loop.name, (near, loop.T_parent_joint), (far, loop.T_child_joint))
+        elif not _needs_ghost(loop):
+            for end, offset in (("a", -self._half_length(loop)), ("b", self._half_length(loop))):
+                along = SE3.from_translation([0.0, 0.0, offset])
+                ends = (near, loop.T_parent_joint @ along), (far, loop.T_child_joint @ along)
+                self._tie_sites(equality, "connect", f"{loop.name}__{end}", *ends)
+        else:
+            ghost = child(near, "body", {"name": loop.carriers[-1]} | _placement(loop.T_parent_joint))
+            _inertial(ghost, self.ghosts[loop.name])
+            for freedom in loop.freedoms:
+                child(ghost, "joint", _joint(freedom))
+                self.qpos[freedom.name] = [freedom.rest]
+                if freedom.follows is not None:
+                    _tie(equality, freedom.name, freedom.name, freedom.follows)
+            self._tie_sites(equality, "weld", loop.name, (ghost, SE3.identity()), (far, loop.T_child_joint))
+
+    def _tie_sites(self, equality: Any, kind: str, name: str, near: tuple[Any, SE3], far: tuple[Any, SE3]) -> None:
+        site1, site2 = (self._site(body, f"{name}__{side}", T) for side, (body, T) in (("near", near), ("far", far)))
+        child(equality, kind, {"name": name, "site1": site1, "site2": site2} | EQUALITY)
+
+    def _half_length(self, loop: LoweredJoint) -> float:
+        """Return half the distance between the two points that hold a hinge [m]: a quarter of the reach of its parts."""
+        reach = 0.0
+        for link in self.model.links:
+            if link.name in {loop.parent, loop.child}:
+                origins = [metres(connector.frame).translation for connector in link.part.connectors.values()]
+                reach = max([reach, *(float(np.linalg.norm(a - b)) for a in origins for b in origins)])
+        return max(reach / 4, LEAST_HALF_LENGTH_M)
+
+    def _actuators(self, root: Any) -> list[Freedom]:
+        """Add a position servo for every driver but balls; return the driven freedoms."""
+        driven = {driver.name for driver in self.assembly.mechanism.drivers}
+        freedoms = [freedom for joint in (*self.model.joints, *self.model.loops) for freedom in joint.freedoms]
+        freedoms = [freedom for freedom in freedoms if freedom.column in driven and freedom.name in self.qpos]
+        if freedoms:
+            actuator = child(root, "actuator")
+            for freedom in freedoms:
+                child(actuator, "position", _servo(freedom))
+        return freedoms
+
+    def _home(self, root: Any, world: Any, servos: list[Freedom]) -> None:
+        values = [value for joint in world.iter("joint") for value in self.qpos[joint.get("name")]]
+        if values:
+            key = {"name": "home", "qpos": numbers(values)} | ({"ctrl": numbers(servo.rest for servo in servos)} if servos else {})
+            child(child(root, "keyframe"), "key", key)
+
+
+def _defaults(root: Any) -> None:
+    default = child(root, "default")
+    visual = child(default, "default", {"class": "visual"})
+    child(visual, "geom", {"type": "mesh", "contype": "0", "conaffinity": "0", "group": "2"})
+    collision = child(default, "default", {"class": "collision"})
+    child(collision, "geom", {"type": "mesh", "group": "3"})
+    child(default, "site", {"size": "0.002", "group": "4"})
+
+
+def _material(color: str) -> str:
+    return f"color_{color.removeprefix('#')}"
+
+
+def _placement(T: SE3) -> dict[str, str]:
+    return {"pos": numbers(T.translation), "quat": numbers(wxyz(T))}
+
+
+def _inertial(body: Any, inertial: Inertial) -> None:
+    I = inertial.inertia
+    moments = [I[0, 0], I[1, 1], I[2, 2], I[0, 1], I[0, 2], I[1, 2]]
+    child(body, "inertial", {"pos": numbers(inertial.com), "mass": number(inertial.mass), "fullinertia": numbers(moments)})
+
+
+def _joint(freedom: Freedom) -> dict[str, str]:
+    """Return the attributes of a hinge or slide; the effort limits what actuators give it."""
+    turn = freedom.kind == "turn"
+    attributes = {"name": freedom.name, "type": "hinge" if turn else "slide", "axis": numbers(freedom.axis)}
+    bounds = _range(freedom)
+    if bounds is not None:
+        attributes["range"] = bounds
+    effort = freedom.load.effort
+    return attributes | {"actuatorfrcrange": numbers([-effort, effort]), "damping": number(freedom.load.damping)}
+
+
+def _range(freedom: Freedom) -> str | None:
+    if math.isinf(freedom.lower) and math.isinf(freedom.upper):
+        return None
+    far = FAR_RAD if freedom.kind == "turn" else FAR_M
+    return numbers([max(freedom.lower, -far), min(freedom.upper, far)])
+
+
+def _servo(freedom: Freedom) -> dict[str, str]:
+    effort = freedom.load.effort
+    gain = effort / (SERVO_ERROR_TURN if freedom.kind == "turn" else SERVO_ERROR_SLIDE)
+    attributes = {"name": freedom.name, "joint": freedom.name, "kp": number(gain), "dampratio": "1"}
+    bounds = _range(freedom)
+    if bounds is not None:
+        attributes["ctrlrange"] = bounds
+    return attributes | {"forcerange": numbers([-effort, effort])}
+
+
+def _tie(equality: Any, name: str, follower: str, follows: Follows) -> None:
+    """Write q_follower = ratio · q_leader + offset."""
+    polynomial = numbers([follows.offset, follows.ratio, 0, 0, 0])
+    child(equality, "joint", {"name": name, "joint1": follower, "joint2": follows.leader, "polycoef": polynomial} | EQUALITY)
+
+
+def _needs_ghost(loop: LoweredJoint) -> bool:
+    """True for joints that points alone cannot hold, or whose limits must hold: a body with the joint is welded to the other side."""
+    kind = loop.joint.type
+    if kind is JointType.REVOLUTE:
+        return any(math.isfinite(bound) for bound in (*loop.joint.limits.lower, *loop.joint.limits.upper))
+    return kind not in {JointType.BALL, JointType.FIXED}
+
+
+def _mesh_inertia(mesh: TriMesh) -> dict[str, str]:
+    """Tell MuJoCo not to measure the volume of a mesh that has none; the body's inertia is written anyway."""
+    return {} if mesh.is_closed and mesh.volume > LEAST_VOLUME_MM3 else {"inertia": "shell"}
+
+
+def _hull_overlaps(assembly: Assembly, model: LoweredModel) -> list[HullOverlap]:
+    """Return the pairs that MuJoCo would see in contact at rest although no joint connects them."""
+    mechanism = assembly.mechanism
+    skip = set(mating_pairs(mechanism.joints, mechanism.parts)) | same_group_pairs(mechanism.joints, mechanism.parts)
+    shapes = {link.part.name: tuple(placed.shape for placed in link.collisions) for link in model.links}
+    return hull_overlaps(shapes, mechanism.rest_poses(), skip=skip)
+
+
+def _hull_feature(overlap: HullOverlap) -> Feature:
+    return Feature("hull", "parts." + "+".join(overlap.parts), f"hulls share {overlap.volume:.3g} mm³")

@@ -1,0 +1,37 @@
+"""Names that every reader accepts: ROS, MuJoCo and USD alike take letters, digits and underscores after a letter."""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+
+MAX_LENGTH = 120  # characters; files are named after parts, and file systems stop at 255 bytes
+
+
+class Names:
+    """Hands out valid names, each once."""
+
+    def __init__(self) -> None:
+        self._taken: set[str] = set()
+        self.changed: dict[str, str] = {}
+
+    def claim(self, wanted: str) -> str:
+        """Return `wanted` if it is valid and free, else a valid name like it; `changed` remembers which."""
+        name = free = valid_name(wanted)
+        number = 2
+        while free in self._taken:
+            free = f"{name}_{number}"
+            number += 1
+        self._taken.add(free)
+        if free != wanted:
+            self.changed[wanted] = free
+        return free
+
+
+def valid_name(wanted: str) -> str:
+    """Return the name with everything but ASCII letters, digits and underscores replaced."""
+    plain = unicodedata.normalize("NFKD", wanted).encode("ascii", "ignore").decode()
+    name = re.sub(r"[^A-Za-z0-9_]+", "_", plain)[:MAX_LENGTH]
+    if name != wanted:
+        name = name.strip("_")
+    return name if name[:1].isalpha() else f"n{name}"

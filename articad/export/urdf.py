@@ -1,0 +1,177 @@
+"""URDF: a tree of links and one-freedom joints, for ROS, Pinocchio, MuJoCo, PyBullet, Isaac and others."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+from lxml import etree
+
+from articad.connectors.se3 import SE3
+from articad.export.bundle import Bundle
+from articad.export.follow import followers
+from articad.export.hulls import hull_overlaps, mating_pairs, same_group_pairs
+from articad.export.inertia import Inertial
+from articad.export.losses import Feature, losses_of, refuse
+from articad.export.lowering import Follows, Freedom, Link, LoweredJoint, LoweredModel, Placed, lower
+from articad.export.markup import child, document, number, numbers, rgba, rpy
+from articad.export.meshes import MM_TO_M, MeshFiles, MeshKind
+from articad.export.metadata import dumps, records
+
+if TYPE_CHECKING:
+    from articad.assembly import Assembly
+
+FAR_RAD = 1e6  # stands for an open end of a range that has another end
+FAR_M = 1e3  # URDF has no endless prismatic joint
+
+
+def write_urdf(assembly: Assembly, *, strict: bool = False, meshes: MeshKind = "stl") -> Bundle:
+    """Write an assembly as URDF.
+
+    Link frames are joint frames, the root link is the ground part, and every joint's value is ours in rad or m, so all zero is q = 0.
+    Joints of several freedoms become chains over carrier links (`<joint>__d1`) of small mass, which is taken out of the moved part.
+    What URDF does not hold is kept in `<articad>` elements, which other readers ignore.
+
+    Args:
+        assembly: What to write.
+        strict: Refuse what URDF holds only with a loss of motion, mass or shape.
+        meshes: Format of the mesh files: STL holds single precision, OBJ full numbers.
+
+    Returns:
+        `<name>.urdf`, `meshes/…`, and the losses.
+
+    Raises:
+        UnrepresentableError: If `strict` and there is such a loss.
+    """
+    model = lower(assembly)
+    losses = losses_of("urdf", (*model.features, *_hull_features(assembly, model)))
+    if strict:
+        refuse(losses)
+    files = MeshFiles(meshes)
+    root = etree.Element("robot", name=model.name)
+    _compiler(root)
+    _materials(root, model)
+    carried = {joint.child: joint for joint in model.joints}
+    follows = followers(model, [driver.name for driver in assembly.mechanism.drivers])
+    for link in model.links:
+        joint = carried.get(link.name)
+        carriers = _carrier_count(joint)
+        whole, carrier = _inertials(link, carriers)
+        if joint is not None:
+            for name in joint.carriers[:carriers]:
+                _inertial(child(root, "link", {"name": name}), carrier)
+        _link(root, link, whole, files)
+        if joint is not None:
+            _joints(root, joint, follows)
+    for record in records(assembly, model, files.by_digest):
+        child(root, "articad", {"kind": str(record["kind"])}, dumps(record))
+    return Bundle({f"{model.name}.urdf": document(root), **files.files}, losses)
+
+
+def _compiler(root: Any) -> None:
+    """Tell MuJoCo to take file paths as they are, to keep what is drawn and to keep rigidly connected links apart."""
+    settings = {"strippath": "false", "discardvisual": "false", "fusestatic": "false", "balanceinertia": "false"}
+    child(child(root, "mujoco"), "compiler", settings)
+
+
+def _materials(root: Any, model: LoweredModel) -> None:
+    colors = dict.fromkeys(placed.color for link in model.links for placed in link.visuals)
+    for color in colors:
+        child(child(root, "material", {"name": _material(color)}), "color", {"rgba": rgba(color)})
+
+
+def _material(color: str) -> str:
+    return f"color_{color.removeprefix('#')}"
+
+
+def _carrier_count(joint: LoweredJoint | None) -> int:
+    return 0 if joint is None else max(0, len(joint.freedoms) - 1)
+
+
+def _inertials(link: Link, carriers: int) -> tuple[Inertial | None, Inertial]:
+    """Return what is left of the link's inertia, and one carrier's."""
+    if link.inertial is not None:
+        return link.inertial.without_carriers(carriers)
+    return (Inertial.carrier() if link.moves else None), Inertial.carrier()
+
+
+def _link(root: Any, link: Link, inertial: Inertial | None, files: MeshFiles) -> None:
+    element = child(root, "link", {"name": link.name})
+    if inertial is not None:
+        _inertial(element, inertial)
+    for placed in link.visuals:
+        visual = _shape(element, "visual", placed, link.name, files)
+        child(visual, "material", {"name": _material(placed.color)})
+    for placed in link.collisions:
+        _shape(element, "collision", placed, link.name, files)
+
+
+def _inertial(link: Any, inertial: Inertial) -> None:
+    element = child(link, "inertial")
+    child(element, "origin", {"xyz": numbers(inertial.com), "rpy": "0 0 0"})
+    child(element, "mass", {"value": number(inertial.mass)})
+    moments = {f"i{'xyz'[i]}{'xyz'[j]}": number(inertial.inertia[i, j]) for i in range(3) for j in range(i, 3)}
+    child(element, "inertia", moments)
+
+
+def _shape(link: Any, tag: str, placed: Placed, name: str, files: MeshFiles) -> Any:
+    element = child(link, tag)
+    _origin(element, placed.T_link_shape)
+    mesh = {"filename": files.path(placed.shape.mesh, name), "scale": numbers([MM_TO_M] * 3)}
+    child(child(element, "geometry"), "mesh", mesh)
+    return element
+
+
+def _origin(parent: Any, T: SE3) -> None:
+    child(parent, "origin", {"xyz": numbers(T.translation), "rpy": numbers(rpy(T))})
+
+
+def _joints(root: Any, joint: LoweredJoint, follows: dict[str, Follows]) -> None:
+    """Write a joint as a chain of one-freedom joints over its carriers."""
+    if not joint.freedoms:
+        element = child(root, "joint", {"name": joint.name, "type": "fixed"})
+        _ends(element, joint.T_parent_joint, joint.parent, joint.child)
+        return
+    links = [joint.parent, *joint.carriers[: _carrier_count(joint)], joint.child]
+    T = joint.T_parent_joint
+    for freedom, near, far in zip(joint.freedoms, links[:-1], links[1:], strict=True):
+        element = child(root, "joint", {"name": freedom.name, "type": _type(freedom)})
+        _ends(element, T, near, far)
+        child(element, "axis", {"xyz": numbers(freedom.axis)})
+        child(element, "limit", _limit(freedom))
+        child(element, "dynamics", {"damping": number(freedom.load.damping), "friction": "0"})
+        if freedom.name in follows:
+            tie = follows[freedom.name]
+            child(element, "mimic", {"joint": tie.leader, "multiplier": number(tie.ratio), "offset": number(tie.offset)})
+        T = SE3.identity()
+
+
+def _ends(element: Any, T_parent_joint: SE3, parent: str, child_link: str) -> None:
+    _origin(element, T_parent_joint)
+    child(element, "parent", {"link": parent})
+    child(element, "child", {"link": child_link})
+
+
+def _type(freedom: Freedom) -> str:
+    if freedom.kind == "slide":
+        return "prismatic"
+    return "continuous" if math.isinf(freedom.lower) and math.isinf(freedom.upper) else "revolute"
+
+
+def _limit(freedom: Freedom) -> dict[str, str]:
+    bounds = {}
+    if _type(freedom) != "continuous":
+        far = FAR_RAD if freedom.kind == "turn" else FAR_M
+        bounds = {"lower": number(max(freedom.lower, -far)), "upper": number(min(freedom.upper, far))}
+    return bounds | {"effort": number(freedom.load.effort), "velocity": number(freedom.load.velocity)}
+
+
+def _hull_features(assembly: Assembly, model: LoweredModel) -> list[Feature]:
+    """Return the pairs whose hulls overlap at rest and that readers do not skip by themselves, as they skip a parent and its child."""
+    order = assembly.mechanism.parts
+    chained = {frozenset((joint.joint.parent, joint.joint.child)) for joint in model.joints if len(joint.freedoms) > 1}
+    mating = {pair for pair in mating_pairs(assembly.mechanism.joints, order) if frozenset(pair) not in chained}
+    skip = mating | same_group_pairs(assembly.mechanism.joints, order)
+    shapes = {link.part.name: tuple(placed.shape for placed in link.collisions) for link in model.links}
+    overlaps = hull_overlaps(shapes, assembly.mechanism.rest_poses(), skip=skip)
+    return [Feature("hull", "parts." + "+".join(overlap.parts), f"hulls share {overlap.volume:.3g} mm³") for overlap in overlaps]

@@ -1,0 +1,203 @@
+"""Engines that are not ours, as oracles of exports: poses of parts at given joint values, read from files on disk.
+
+Where a part is in its link is read from the file as well: meshes are written in the part's frame, so the origin of the
+first visual is it. Poses are matrices in m.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from lxml import etree
+from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
+
+from articad.assembly import Assembly
+from articad.kinematics.joints import JointType
+
+FloatArray = NDArray[np.float64]
+
+SUFFIXES = {
+    JointType.FIXED: (),
+    JointType.REVOLUTE: ("",),
+    JointType.SLIDER: ("",),
+    JointType.CYLINDRICAL: ("__t", "__r"),
+    JointType.PLANAR: ("__x", "__y", "__r"),
+    JointType.UNIVERSAL: ("__rx", "__ry"),
+}
+
+
+def joint_values(assembly: Assembly, q: FloatArray) -> dict[str, float]:
+    """Values [rad, m] of a chain of one-freedom joints, by name, for a configuration `(nq,)` of the drivers."""
+    configuration = assembly.mechanism.configuration(q)
+    values: dict[str, float] = {}
+    for joint in assembly.joints:
+        own = configuration[joint.name]
+        if joint.type is JointType.BALL:
+            angles = Rotation.from_quat(own).as_euler("XYZ")
+            values |= {f"{joint.name}__r{axis}": float(angle) for axis, angle in zip("xyz", angles, strict=True)}
+        elif joint.type is JointType.SCREW:
+            values |= {f"{joint.name}__t": joint.lead * own[0] / (2 * math.pi) / 1000, f"{joint.name}__r": own[0]}
+        else:
+            for suffix, unit, value in zip(SUFFIXES[joint.type], joint.type.units, own, strict=True):
+                values[joint.name + suffix] = value / 1000 if unit == "mm" else value
+    return values
+
+
+def ball_values(assembly: Assembly, q: FloatArray) -> dict[str, FloatArray]:
+    """Rotations `(3, 3)` of the balls, by joint name, as the tree crosses them."""
+    configuration = assembly.mechanism.configuration(q)
+    backwards = {edge.joint.name: edge.reversed for edge in assembly.mechanism.tree.edges}
+    rotations = {}
+    for joint in assembly.joints:
+        if joint.type is JointType.BALL:
+            R = Rotation.from_quat(configuration[joint.name]).as_matrix()
+            rotations[joint.name] = R.T if backwards.get(joint.name) else R
+    return rotations
+
+
+class PinocchioUrdf:
+    """A URDF as Pinocchio reads it."""
+
+    def __init__(self, path: Path) -> None:
+        import pinocchio as pin
+
+        self.pin = pin
+        self.model = pin.buildModelFromUrdf(str(path))
+        self.data = self.model.createData()
+        self.origins = _urdf_origins(path)
+
+    def poses(self, values: Mapping[str, float]) -> dict[str, FloatArray]:
+        q = self.pin.neutral(self.model)
+        for name, value in values.items():
+            joint = self.model.joints[self.model.getJointId(name)]
+            q[joint.idx_q : joint.idx_q + joint.nq] = [math.cos(value), math.sin(value)] if joint.nq == 2 else [value]
+        self.pin.framesForwardKinematics(self.model, self.data, q)
+        return {
+            link: self.data.oMf[self.model.getFrameId(link, self.pin.FrameType.BODY)].homogeneous @ origin
+            for link, origin in self.origins.items()
+        }
+
+
+class YourdfpyUrdf:
+    """A URDF as yourdfpy reads it."""
+
+    def __init__(self, path: Path) -> None:
+        import yourdfpy
+
+        self.robot = yourdfpy.URDF.load(str(path), mesh_dir=str(path.parent), build_scene_graph=True, load_meshes=True)
+        self.origins = _urdf_origins(path)
+
+    def poses(self, values: Mapping[str, float]) -> dict[str, FloatArray]:
+        self.robot.update_cfg({name: value for name, value in values.items() if name in self.robot.actuated_joint_names})
+        return {link: self.robot.get_transform(link) @ origin for link, origin in self.origins.items()}
+
+
+class MujocoMjcf:
+    """An MJCF or URDF as MuJoCo reads it."""
+
+    def __init__(self, path: Path) -> None:
+        import mujoco
+
+        self.mujoco = mujoco
+        self.model = mujoco.MjModel.from_xml_path(str(path))
+        self.data = mujoco.MjData(self.model)
+        self.origins = _urdf_origins(path) if path.suffix == ".urdf" else _mjcf_origins(path)
+
+    def poses(self, values: Mapping[str, float], balls: Mapping[str, FloatArray] | None = None) -> dict[str, FloatArray]:
+        mujoco = self.mujoco
+        self.data.qpos[:] = self.model.qpos0
+        for index in range(self.model.njnt):
+            name = self.model.joint(index).name
+            at = self.model.jnt_qposadr[index]
+            if self.model.jnt_type[index] == mujoco.mjtJoint.mjJNT_BALL:
+                assert balls is not None
+                x, y, z, w = Rotation.from_matrix(balls[name]).as_quat()
+                self.data.qpos[at : at + 4] = w, x, y, z
+            else:
+                self.data.qpos[at] = values[name]
+        mujoco.mj_kinematics(self.model, self.data)
+        return {name: self._pose(name) @ origin for name, origin in self.origins.items()}
+
+    def _pose(self, body: str) -> FloatArray:
+        T = np.eye(4)
+        index = self.mujoco.mj_name2id(self.model, self.mujoco.mjtObj.mjOBJ_BODY, body)
+        if index >= 0:  # MuJoCo's URDF reader makes the root link the world
+            T[:3, :3] = self.data.xmat[index].reshape(3, 3)
+            T[:3, 3] = self.data.xpos[index]
+        return T
+
+
+def bullet_poses(path: Path, values: Mapping[str, float]) -> dict[str, FloatArray]:
+    """Poses of a URDF as PyBullet reads it."""
+    import pybullet
+
+    client = pybullet.connect(pybullet.DIRECT)
+    try:
+        body = pybullet.loadURDF(str(path), useFixedBase=True, physicsClientId=client)
+        origins = _urdf_origins(path)
+        found = {}
+        links = {}
+        for index in range(pybullet.getNumJoints(body, physicsClientId=client)):
+            joint = pybullet.getJointInfo(body, index, physicsClientId=client)
+            links[joint[12].decode()] = index
+            if joint[1].decode() in values:
+                pybullet.resetJointState(body, index, values[joint[1].decode()], physicsClientId=client)
+        for link, index in links.items():
+            if link in origins:
+                state = pybullet.getLinkState(body, index, computeForwardKinematics=True, physicsClientId=client)
+                found[link] = _matrix(state[4], Rotation.from_quat(state[5])) @ origins[link]
+        return found
+    finally:
+        pybullet.disconnect(client)
+
+
+def our_poses(assembly: Assembly, q: FloatArray) -> dict[str, FloatArray]:
+    """Poses of the parts as articad has them, as matrices in m."""
+    matrices = assembly.poses(q).matrix.copy()
+    matrices[..., :3, 3] /= 1000
+    return dict(zip(assembly.parts, matrices, strict=True))
+
+
+def largest_difference(ours: Mapping[str, FloatArray], theirs: Mapping[str, FloatArray]) -> tuple[float, float]:
+    """Largest distance [m] and angle [rad] between the poses of the parts that both have."""
+    distance = angle = 0.0
+    for name in theirs:
+        distance = max(distance, float(np.linalg.norm(ours[name][:3, 3] - theirs[name][:3, 3])))
+        angle = max(angle, float(Rotation.from_matrix(ours[name][:3, :3].T @ theirs[name][:3, :3]).magnitude()))
+    return distance, angle
+
+
+def _urdf_origins(path: Path) -> dict[str, FloatArray]:
+    origins = {}
+    for link in etree.parse(str(path)).getroot().iterfind("link"):
+        origin = link.find("visual/origin")
+        if origin is not None:
+            rotation = Rotation.from_euler("xyz", _floats(origin, "rpy"))
+            origins[link.get("name")] = _matrix(_floats(origin, "xyz"), rotation)
+    return origins
+
+
+def _mjcf_origins(path: Path) -> dict[str, FloatArray]:
+    origins = {}
+    for body in etree.parse(str(path)).getroot().iterfind("worldbody//body"):
+        geom = body.find("geom[@class='visual']")
+        if geom is not None:
+            w, x, y, z = _floats(geom, "quat")
+            origins[body.get("name")] = _matrix(_floats(geom, "pos"), Rotation.from_quat([x, y, z, w]))
+    return origins
+
+
+def _floats(element: Any, attribute: str) -> list[float]:
+    return [float(word) for word in element.get(attribute).split()]
+
+
+def _matrix(xyz: Any, rotation: Rotation) -> FloatArray:
+    T = np.eye(4)
+    T[:3, :3] = rotation.as_matrix()
+    T[:3, 3] = xyz
+    return T
