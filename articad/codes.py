@@ -53,6 +53,7 @@ CODES: dict[str, Code] = {
         "plan", "design", "A number is not finite.", "Give a finite number; check for division by zero and roots of negative numbers."
     ),
     "E_PARAMETER_BOUNDS": Code("plan", "design", "A parameter's value is outside its own min and max.", "Move the value or the bound."),
+    "E_PARAMETER_UNKNOWN": Code("plan", "design", "A value is given for a parameter that is not declared.", "Use one of those listed."),
     "W_PARAMETER_RANGE": Code(
         "plan",
         "design",
@@ -64,6 +65,7 @@ CODES: dict[str, Code] = {
     ),
     "E_COUNT": Code("plan", "design", "A dimension that ends in _count is not a whole number.", "Give a whole number."),
     "E_DENSITY": Code("plan", "design", "A density is not positive.", "Give the density in kg/m3; steel is 7850."),
+    "E_FRICTION": Code("plan", "design", "A friction coefficient is negative.", "Give a coefficient of at least 0; wood on wood is 0.4."),
     "E_ENVELOPE_VALUE": Code(
         "plan", "design", "An expected bounding box has a side that is not positive.", "Give three positive lengths in mm."
     ),
@@ -141,6 +143,12 @@ CODES: dict[str, Code] = {
     "W_LIMITS_EQUAL": Code("plan", "design", "A joint's two limits are equal, so it cannot move.", "Use a fixed joint, or open the range."),
     "W_LIMITS_UNITS": Code("plan", "design", "Limits of a turning joint look like radians, or exceed two turns.", "Give degrees."),
     "E_REST_OUTSIDE_LIMITS": Code("plan", "design", "A joint's rest value is outside its limits.", "Move the rest value or the limit."),
+    "E_EFFORT": Code(
+        "plan",
+        "design",
+        "An effort or velocity is not positive, or does not suit its joint.",
+        "Give a positive number in the unit of a freedom that the joint has, or leave it out.",
+    ),
     "E_LEAD_ZERO": Code("plan", "design", "A screw has no lead.", "Give the advance per turn in mm, or use a revolute joint."),
     "E_MATE_OFFSET": Code(
         "plan", "design", "The two connectors of a joint do not meet at rest.", "Move one of them by the named offset, or set rest_pose."
@@ -166,7 +174,12 @@ CODES: dict[str, Code] = {
         "A part is placed by its joint, so that joint's rest check is empty.",
         "Give the part a rest_pose if the check is wanted.",
     ),
-    "E_REST_AUTO": Code("plan", "design", "The ground cannot be placed by a joint.", "Give the ground a rest_pose, or leave it out."),
+    "E_REST_AUTO": Code(
+        "plan",
+        "design",
+        "A part cannot be placed by a joint: it is the ground, or what would place it is given relative to where it is.",
+        "Give the part a rest_pose, or leave it out.",
+    ),
     # --- plan: derived parts and joints
     "E_DERIVE_UNKNOWN": Code("plan", "design", "A derived part or joint names a source that is not declared.", "Use one of those listed."),
     "E_DERIVE_CYCLE": Code(
@@ -190,6 +203,12 @@ CODES: dict[str, Code] = {
         "design",
         "A part that is mirrored seems to have a handedness (thread, gear, text).",
         "Make it a part of its own, unless the other hand is meant.",
+    ),
+    "I_MIRROR_SIDE": Code(
+        "plan",
+        None,
+        "A mirrored part keeps connector names or labels that say left or right.",
+        "Nothing, if that is understood; otherwise name the source's connectors without a side.",
     ),
     # --- plan: couplings, fits, waivers, mechanisms
     "E_COUPLING": Code(

@@ -147,7 +147,7 @@ class Expression:
         """
         for name in self.names:
             if name not in values:
-                raise _unknown_name(self.text, name, values)
+                raise unknown_parameter(self.text, name, values)
         try:
             value = self._evaluator(values)
         except (ValueError, OverflowError) as error:
@@ -234,7 +234,7 @@ def dependency_order(parameters: Mapping[str, float | str]) -> list[str]:
         if isinstance(number, str):
             for used in parse(number).names:
                 if used not in parameters:
-                    raise _unknown_name(number, used, parameters)
+                    raise unknown_parameter(number, used, parameters)
                 visit(used, (*path, name))
         order[name] = None
 
@@ -251,6 +251,15 @@ def cycle_error(circle: Iterable[str]) -> ExpressionError:
         f"Parameters depend on each other: {' -> '.join(names)}.",
         f"Give one of {', '.join(names[:-1])} a number." if len(names) > 2 else f"Define {names[0]} without itself.",
     )
+
+
+def unknown_parameter(text: str, name: str, known: Collection[str]) -> ExpressionError:
+    """Return the error of an expression that uses a name which is no parameter."""
+    position = re.search(rf"\b{re.escape(name)}\b", text)
+    column = position.start() if position else 0
+    listed = ", ".join(sorted(known)) or "none are declared"
+    hint = f"{did_you_mean(name, (*known, *RESERVED)).strip()} Parameters: {listed}. {_USABLE}".strip()
+    return _refused(text, column, f"there is no parameter {name!r}", hint)
 
 
 @dataclass(frozen=True)
@@ -346,14 +355,6 @@ def _refused(text: str, column: int, reason: str, hint: str = _USABLE) -> Expres
     return ExpressionError(
         "E_EXPRESSION", f"{text!r} cannot be read at position {column + 1}: {reason.rstrip('.')}.", hint, position=column + 1
     )
-
-
-def _unknown_name(text: str, name: str, known: Collection[str]) -> ExpressionError:
-    position = re.search(rf"\b{re.escape(name)}\b", text)
-    column = position.start() if position else 0
-    listed = ", ".join(sorted(known)) or "none are declared"
-    hint = f"{did_you_mean(name, (*known, *RESERVED)).strip()} Parameters: {listed}. {_USABLE}".strip()
-    return _refused(text, column, f"there is no parameter {name!r}", hint)
 
 
 def _signature(name: str) -> str:

@@ -1,0 +1,166 @@
+"""Briefs: what a part's script is told, and the digests that say when it, or its geometry, is out of date.
+
+The brief digest covers what the part is, without any number and without where it stands: while it is the same, the
+script is kept. The build digest covers the numbers, the script and the kernel: while it is the same, the geometry is
+kept. A moved or repainted part is not a changed part (contracts §3).
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+from collections.abc import Mapping
+from typing import Any
+
+from articad.connectors import Connector, world_x
+from articad.kinematics.joints import Joint, JointType
+from articad.plan.motions import AXES
+from articad.plan.resolve import ResolvedPart, ResolvedPlan
+
+Json = dict[str, Any]
+
+_DIGITS = 12  # decimals of mm: rounding of frames and of degrees must not show in a script or a digest
+
+
+def brief(resolved: ResolvedPlan, part: str) -> Json:
+    """Return what the script of a part is given: the JSON `part` of a job.
+
+    Args:
+        resolved: The plan with its numbers.
+        part: Name of the part.
+
+    Returns:
+        `name`, `description`, `material`, `dimensions`, `envelope_mm`, and `connectors`: by name `o`, `z`, `x` in the part's
+        frame, `label` and the `joints` that hold it. Where the plan leaves x to a rule, x is the world axis least parallel
+        to z in the part's own frame: only origin and z of such a connector are held to what is built.
+
+    Raises:
+        KeyError: If there is no such part.
+    """
+    target = resolved.parts[part]
+    return {
+        "name": target.name,
+        "description": target.description,
+        "material": target.material.name,
+        "dimensions": {name: _plain(value) for name, value in target.dimensions.items()},
+        "envelope_mm": None if target.envelope is None else [_plain(side) for side in target.envelope],
+        "connectors": {
+            name: {**_axes(connector), "label": connector.label, "joints": _joints(resolved, part, name)}
+            for name, connector in target.connectors.items()
+        },
+    }
+
+
+def brief_digest(resolved: ResolvedPlan, part: str) -> str:
+    """Return the sha256 of what the part is: no number, no rest pose, no colour."""
+    target = resolved.parts[part]
+    return _digest(
+        {
+            "name": target.name,
+            "material": target.material.name,
+            "role": target.role,
+            "description": target.description,
+            "orientation": target.orientation,
+            "dimensions": sorted(target.dimensions),
+            "envelope": target.envelope is not None,
+            "kernel": _kernel(resolved, target),
+            "connectors": {
+                name: {
+                    "kind": connector.kind,
+                    "label": connector.label,
+                    "x": not connector.roll_free,
+                    "joints": [
+                        {key: joint[key] for key in ("type", "side", "mate")} | {"contact": (joint["fit"] or {}).get("contact")}
+                        for joint in _joints(resolved, part, name)
+                    ],
+                }
+                for name, connector in target.connectors.items()
+            },
+        }
+    )
+
+
+def build_digest(resolved: ResolvedPlan, part: str, script: bytes, kernel: str, version: str, deflection: float) -> str:
+    """Return the sha256 of everything that a part's geometry depends on.
+
+    Args:
+        resolved: The plan with its numbers.
+        part: Name of the part.
+        script: Its source.
+        kernel: Name of the kernel.
+        version: Its version.
+        deflection: Largest distance of the mesh from the solid [mm].
+    """
+    return _digest(
+        {
+            "brief": brief(resolved, part),
+            "script": hashlib.sha256(script).hexdigest(),
+            "kernel": kernel,
+            "version": version,
+            "deflection": float(deflection),
+        }
+    )
+
+
+def _kernel(resolved: ResolvedPlan, part: ResolvedPart) -> str:
+    return part.kernel or resolved.plan.kernel
+
+
+def _axes(connector: Connector) -> Json:
+    frame = connector.frame
+    z = frame.z_axis
+    x = world_x(z) if connector.roll_free else frame.x_axis
+    return {key: [_plain(float(c)) for c in vector] for key, vector in (("o", frame.translation), ("z", z), ("x", x))}
+
+
+def _joints(resolved: ResolvedPlan, part: str, connector: str) -> list[Json]:
+    """Return the joints at a connector as a script sees them, in order of declaration."""
+    found = []
+    for joint in resolved.joints:
+        parent, child = (joint.parent, joint.parent_connector), (joint.child, joint.child_connector)
+        for side, end, other in (("parent", parent, child), ("child", child, parent)):
+            if end == (part, connector):
+                fit = resolved.fits.get(joint.name)
+                found.append(
+                    {
+                        "name": joint.name,
+                        "type": str(joint.type),
+                        "side": side,
+                        "mate": str(joint.mate),
+                        "limits": _limits(joint),
+                        "fit": None
+                        if fit is None
+                        else {"gap_mm": [fit.gap_min, fit.gap_max], "within_mm": fit.within, "contact": fit.contact},
+                        "other": ".".join(other),
+                    }
+                )
+    return found
+
+
+def _limits(joint: Joint) -> Json:
+    """Return a joint's limits under the plan's names and in its units."""
+    if joint.type is JointType.BALL:
+        cone, twist = joint.limits.cone, joint.limits.twist
+        return {
+            "cone_deg": None if cone is None else _plain(math.degrees(cone)),
+            "twist_deg": None if twist is None else [_plain(math.degrees(bound)) for bound in twist],
+        }
+    limits: Json = {}
+    for axis, low, high in zip(AXES[joint.type], joint.limits.lower, joint.limits.upper, strict=True):
+        if math.isinf(low) and math.isinf(high):
+            limits[axis.range] = "endless"
+        else:
+            scale = math.degrees(1.0) if axis.unit == "deg" else 1.0
+            limits[axis.range] = [_plain(low * scale), _plain(high * scale)]
+    return limits
+
+
+def _plain(value: float) -> float | int:
+    """Return a number without the noise of its last bits; whole dimensions stay whole."""
+    return value if isinstance(value, int) else round(value, _DIGITS) + 0.0
+
+
+def _digest(value: Mapping[str, Any]) -> str:
+    text = json.dumps(value, sort_keys=True, separators=(",", ":"), ensure_ascii=False, allow_nan=False)
+    return hashlib.sha256(text.encode()).hexdigest()

@@ -1,0 +1,168 @@
+"""Frames: connectors from origin, z and x, and the x that a rule chooses where none is stated (contracts §2, rule 3).
+
+Joints between parts that are not derived come first, then the rest, each in order of declaration: if one side has an x,
+the other takes the x that makes the roll at rest zero; if neither has, the parent takes the world axis least parallel
+to its z, and the child follows. A world rule on both sides would turn a mirrored door by 180° unseen.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+from typing import NamedTuple
+
+import numpy as np
+
+from articad.connectors import SE3, Connector, FloatArray, axis_findings, world_x
+from articad.plan.derive import DraftPart, Frame
+from articad.plan.evaluation import Evaluation, Triple
+
+_ACROSS_ZERO = 1e-9  # length of a projected x below which it has no direction: only where two z axes are far apart
+_PLAIN_LENGTH = 1e-3  # an axis this long is certainly one; shorter ones are looked at with care
+
+
+class Link(NamedTuple):
+    """A joint as far as rule 3 needs it.
+
+    Attributes:
+        parent: Part and connector name.
+        child: Part and connector name.
+        turn: Angle about the parent's z at rest [rad].
+    """
+
+    parent: tuple[str, str]
+    child: tuple[str, str]
+    turn: float
+
+
+def read_frames(part: DraftPart, evaluation: Evaluation) -> None:
+    """Evaluate the connectors of a part that is not derived, reporting bad axes; those are left out of `part.frames`.
+
+    Connectors stated in the assembly's frame are brought into the part's; without a rest pose they are left out.
+    """
+    assert part.spec is not None
+    for spec in part.spec.connectors:
+        if spec.name in part.frames:
+            continue  # reported as E_DUP_NAME; the first counts
+        where = f"{part.where}.connectors.{spec.name}"
+        o, z = evaluation.triple(spec.o, where, "o"), evaluation.triple(spec.z, where, "z")
+        x = None if spec.x is None else evaluation.triple(spec.x, where, "x")
+        if math.isnan(sum(o) + sum(z) + (sum(x) if x else 0.0)):
+            continue
+        if not _plainly_good(z, x):
+            findings = axis_findings(o, z, x, where=where)
+            evaluation.findings.extend(findings)
+            if not findings.ok:
+                continue
+        frame = Frame(spec, where, np.array(o), _unit(np.array(z)), None if x is None else np.array(x))
+        if spec.frame == "assembly":
+            if part.T is None:
+                continue
+            into_part = part.T.inverse()
+            frame.o, frame.z = into_part.apply(frame.o), into_part.rotate(frame.z)
+            frame.x = None if frame.x is None else into_part.rotate(frame.x)
+        if frame.x is not None:
+            frame.x = _across(frame.x, frame.z)
+        part.frames[spec.name] = frame
+
+
+def _plainly_good(z: Triple, x: Triple | None) -> bool:
+    """Tell whether axes need no second look: far from zero, and x at exactly a right angle to z."""
+    if math.hypot(*z) < _PLAIN_LENGTH:
+        return False
+    return x is None or (math.hypot(*x) >= _PLAIN_LENGTH and x[0] * z[0] + x[1] * z[1] + x[2] * z[2] == 0.0)
+
+
+def settle(links: Iterable[Link], parts: Mapping[str, DraftPart]) -> None:
+    """Give an x to the connectors of these joints that have none, joint by joint in the order given."""
+    for link in links:
+        parent, child = (_side(part, connector, parts) for part, connector in (link.parent, link.child))
+        if parent is None or child is None or (parent.x is not None and child.x is not None):
+            continue
+        if parent.x is None and child.x is None:
+            parent.choose()
+        if child.x is None:
+            child.take(_turned(parent.world_x, parent.world_z, link.turn))
+        else:
+            parent.take(_turned(child.world_x, parent.world_z, -link.turn))
+
+
+def settle_alone(part: DraftPart, names: Iterable[str] | None = None) -> None:
+    """Give the world axis to the connectors of a part that still have no x; its own axes if it has no rest pose yet."""
+    for name in part.frames if names is None else names:
+        frame = part.frames.get(name)
+        if frame is not None and frame.x is None:
+            _Side(part, frame).choose()
+
+
+def finish(parts: Iterable[DraftPart]) -> None:
+    """Make the connectors of all frames, all at once."""
+    slots = [(part, name, frame) for part in parts for name, frame in part.frames.items() if frame.x is not None]
+    if not slots:
+        return
+    z, x = np.array([frame.z for _, _, frame in slots]), np.array([frame.x for _, _, frame in slots])
+    rotations = np.stack([x, np.cross(z, x), z], axis=-1)
+    poses = SE3.from_rotation(rotations, np.array([frame.o for _, _, frame in slots]))
+    for index, (part, name, frame) in enumerate(slots):
+        spec = frame.spec
+        part.connectors[name] = Connector(name, poses[index], label=spec.label, kind=spec.kind, roll_free=spec.x is None)
+
+
+class _Side:
+    """One connector of a joint, seen from the assembly at rest."""
+
+    def __init__(self, part: DraftPart, frame: Frame | Connector) -> None:
+        self.T = SE3.identity() if part.T is None else part.T
+        self.frame = frame
+
+    @property
+    def x(self) -> FloatArray | None:
+        return self.frame.x if isinstance(self.frame, Frame) else self.frame.frame.x_axis
+
+    @property
+    def world_x(self) -> FloatArray:
+        assert self.x is not None
+        return self.T.rotate(self.x)
+
+    @property
+    def world_z(self) -> FloatArray:
+        return self.T.rotate(self.frame.z if isinstance(self.frame, Frame) else self.frame.frame.z_axis)
+
+    def choose(self) -> None:
+        """Take the world axis least parallel to z."""
+        self.take(world_x(self.world_z))
+
+    def take(self, x: FloatArray) -> None:
+        """Take this direction of the assembly's frame, projected across z; the world axis if nothing is left of it."""
+        assert isinstance(self.frame, Frame)
+        z = self.world_z
+        across = x - (x @ z) * z
+        self.frame.x = _across(self.T.inverse().rotate(x if across @ across > _ACROSS_ZERO**2 else world_x(z)), self.frame.z)
+
+
+def _side(part: str, connector: str, parts: Mapping[str, DraftPart]) -> _Side | None:
+    draft = parts.get(part)
+    if draft is None or draft.T is None:
+        return None
+    frame = draft.connectors.get(connector, draft.frames.get(connector))
+    return None if frame is None else _Side(draft, frame)
+
+
+def _turned(x: FloatArray, z: FloatArray, angle: float) -> FloatArray:
+    """Turn x about the unit vector z by an angle [rad]."""
+    if angle == 0.0:
+        return x
+    turned: FloatArray = math.cos(angle) * x + math.sin(angle) * np.cross(z, x) + (1.0 - math.cos(angle)) * (x @ z) * z
+    return turned
+
+
+def _across(x: FloatArray, z: FloatArray) -> FloatArray:
+    """Project x across the unit vector z; twice, because once leaves rounding in proportion to x · z."""
+    for _ in range(2):
+        x = _unit(x - (x @ z) * z)
+    return x
+
+
+def _unit(v: FloatArray) -> FloatArray:
+    unit: FloatArray = v / np.sqrt(v @ v)
+    return unit

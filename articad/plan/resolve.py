@@ -1,0 +1,220 @@
+"""Resolving: from a plan with names and expressions to parts, frames and joints with numbers.
+
+`Draft` works through a whole plan and goes on after every fault, so that all are found at once. `resolve` returns the
+result if there was none.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+
+from articad.connectors import SE3, Connector, FloatArray
+from articad.errors import PlanError
+from articad.findings import Findings
+from articad.kinematics.joints import Coupling, Joint
+from articad.kinematics.mechanism import Mechanism
+from articad.plan.derive import Operation
+from articad.plan.draft import Draft
+from articad.plan.joint_forms import Contact
+from articad.plan.schema import AssemblyPlan, KernelName, PartSpec
+
+
+@dataclass(frozen=True)
+class Material:
+    """What a part is made of.
+
+    Attributes:
+        name: As in the plan.
+        density: kg/m³.
+        color: "#rrggbb".
+        friction: Coefficient.
+    """
+
+    name: str
+    density: float
+    color: str
+    friction: float
+
+
+@dataclass(frozen=True)
+class Fit:
+    """How closely the two parts of a joint fit.
+
+    Attributes:
+        gap_min: Smallest surface distance over the whole motion [mm]; None: not checked.
+        gap_max: Largest one at rest [mm]; None: not checked.
+        within: Only surface closer than this to the joint's axis counts [mm]; None: all of it.
+        contact: "allowed", "required", "forbidden"; None: not checked.
+    """
+
+    gap_min: float | None = None
+    gap_max: float | None = None
+    within: float | None = None
+    contact: Contact | None = None
+
+
+@dataclass(frozen=True)
+class Waiver:
+    """An overlap that is meant.
+
+    Attributes:
+        parts: The two parts.
+        max_depth: Depth up to which it is waived [mm].
+        reason: Why.
+    """
+
+    parts: tuple[str, str]
+    max_depth: float
+    reason: str
+
+
+@dataclass(frozen=True, eq=False)
+class Derivation:
+    """How a part comes from another.
+
+    Attributes:
+        source: Name of that part, which may be derived itself.
+        op: mirror, rigid or pattern.
+        S: Reflection `(4, 4)` in the source's part frame; None unless mirrored.
+    """
+
+    source: str
+    op: Operation
+    S: FloatArray | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class ResolvedPart:
+    """A part with its numbers.
+
+    Attributes:
+        name: Its name; copies of a pattern are numbered.
+        description: For whoever builds it.
+        role: What it is for.
+        orientation: Which way is up and front in its own frame.
+        material: What it is made of.
+        color: Its own, else its material's.
+        dimensions: Numbers of its script: mm, degrees (`_deg`), whole numbers (`_count`).
+        envelope: Expected bounding box `(3,)` [mm] in the part's frame, or None.
+        T_rest: T_assembly_part at rest.
+        connectors: By name, in the part's frame.
+        derivation: Where it comes from; None if a script builds it.
+        kernel: The kernel it asks for, or None.
+        parent_joint: The joint to its parent in the spanning tree; None for the ground.
+        spec: The plan's form of the part that a script builds.
+    """
+
+    name: str
+    description: str
+    role: str
+    orientation: str
+    material: Material
+    color: str
+    dimensions: Mapping[str, float | int]
+    envelope: tuple[float, float, float] | None
+    T_rest: SE3
+    connectors: Mapping[str, Connector]
+    derivation: Derivation | None
+    kernel: KernelName | None
+    parent_joint: str | None
+    spec: PartSpec
+
+
+@dataclass(frozen=True, eq=False)
+class ResolvedPlan:
+    """A plan with its numbers.
+
+    Attributes:
+        plan: What it was made of.
+        overrides: Parameters that were given other values than the plan's.
+        parameters: All parameters: mm, degrees or plain.
+        parts: By name, in order of declaration, patterns expanded.
+        joints: In order of declaration.
+        couplings: Rows q_b - k q_a - c = 0.
+        fits: By joint.
+        waivers: Overlaps that are meant.
+        materials: By name.
+        ground: The part that stands still.
+        findings: Warnings and notes met on the way.
+    """
+
+    plan: AssemblyPlan
+    overrides: Mapping[str, float]
+    parameters: Mapping[str, float]
+    parts: Mapping[str, ResolvedPart]
+    joints: tuple[Joint, ...]
+    couplings: tuple[Coupling, ...]
+    fits: Mapping[str, Fit]
+    waivers: tuple[Waiver, ...]
+    materials: Mapping[str, Material]
+    ground: str
+    findings: Findings = field(default_factory=Findings)
+
+    @cached_property
+    def mechanism(self) -> Mechanism:
+        """The parts and joints as mathematics, made when first asked for.
+
+        Raises:
+            PlanError: If the joints make no mechanism.
+        """
+        return Mechanism(tuple(self.parts), self.ground, self.joints, self.couplings, self.parts[self.ground].T_rest)
+
+
+def resolve(plan: AssemblyPlan, /, **parameters: float) -> ResolvedPlan:
+    """Work out every number, frame and joint of a plan.
+
+    Args:
+        plan: The plan.
+        **parameters: Values that replace those of parameters: mm, degrees.
+
+    Raises:
+        PlanError: With all findings, if a number, name, axis or derivation is wrong. Rest poses that do not meet are
+            no obstacle here: `check_plan` reports them.
+    """
+    draft = Draft(plan, parameters)
+    findings = draft.findings()
+    if not findings.ok:
+        raise PlanError("\n".join(map(str, findings.errors)), findings=findings)
+    return resolved_from(draft, findings)
+
+
+def resolved_from(draft: Draft, findings: Findings) -> ResolvedPlan:
+    """Return the result of a draft without errors."""
+    materials = {name: Material(name, density, form.color.lower(), friction) for name, (form, density, friction) in draft.materials.items()}
+    parts: dict[str, ResolvedPart] = {}
+    for name, part in draft.parts.items():
+        spec = part.spec
+        assert spec is not None
+        assert part.T is not None
+        material = materials[spec.material]
+        parts[name] = ResolvedPart(
+            name=name,
+            description=part.form.description or spec.description,
+            role=spec.role,
+            orientation=spec.orientation,
+            material=material,
+            color=draft.color(part) or material.color,
+            dimensions=draft.dimensions[spec.name],
+            envelope=draft.envelope(part),
+            T_rest=part.T,
+            connectors=part.connectors,
+            derivation=None if part.source is None or part.op is None else Derivation(part.source, part.op, part.S),
+            kernel=spec.kernel,
+            parent_joint=draft.parent_joints.get(name),
+            spec=spec,
+        )
+    return ResolvedPlan(
+        plan=draft.plan,
+        overrides=draft.overrides,
+        parameters=draft.evaluation.values,
+        parts=parts,
+        joints=tuple(draft.joints),
+        couplings=tuple(draft.couplings),
+        fits={name: Fit(low, high, within, contact) for name, (low, high, within, contact) in draft.fits.items()},
+        waivers=tuple(Waiver(parts, depth, reason) for parts, depth, reason in draft.waivers),
+        materials=materials,
+        ground=draft.plan.ground,
+        findings=findings,
+    )
