@@ -6,9 +6,11 @@
 from __future__ import annotations
 
 import argparse
+import contextlib
 import difflib
+import os
 import sys
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import TYPE_CHECKING, Any, Final, Literal, NamedTuple, NoReturn
 
 from articad import __version__
@@ -235,20 +237,23 @@ def _export(options: argparse.Namespace, terminal: Terminal) -> Report:
 def _doctor(options: argparse.Namespace, terminal: Terminal) -> Report:
     from articad import doctor
 
+    missing = doctor.missing_libraries()
     items = doctor.examine()
+    if options.model and not missing:
+        from articad.agents.live import LiteLLM
+
+        items = (*items, doctor.ask_once(LiteLLM(options.model, api_base=options.api_base)))
     terminal.say(f"articad {__version__}")
     terminal.table(["", "what", "found"], [(item.status, item.name, item.detail) for item in items])
     for item in items:
         if item.remedy and item.status == "missing":
             terminal.say(f"{item.name}: {item.remedy}")
     report = doctor.report(items)
-    if missing := doctor.missing_libraries():
+    if missing:
         error = doctor.unavailable(missing)
         terminal.say(error.message)
         terminal.findings(error.findings)
         report |= {"error": terminal.described(error), "findings": [finding.to_json() for finding in error.findings]}
-    elif options.model:
-        report |= _asked_once(options, terminal)
     return report
 
 
@@ -275,8 +280,6 @@ def _assembled(plan: AssemblyPlan, scripts: Path, options: argparse.Namespace, t
 
 def _sandbox(options: argparse.Namespace) -> Literal["strict", "weak"]:
     """Return how much isolation is asked for: by the flag, else by $ARTICAD_SANDBOX."""
-    import os
-
     return "weak" if (options.sandbox or os.environ.get("ARTICAD_SANDBOX")) == "weak" else "strict"
 
 
@@ -284,15 +287,14 @@ def _verified(assembly: Assembly, verify: str) -> Checks:
     """Return the checks that were asked for; what this version cannot do is a finding, not a pass."""
     from dataclasses import replace
 
-    from articad.findings import Finding
+    from articad.findings import Finding, Findings
 
     checks = assembly.check()
     if verify == "rest":
         return checks
     message = f"--verify {verify}: this version checks the rest pose only."
-    return replace(
-        checks, findings=checks.findings + [Finding(code="E_NOT_CHECKED", where="motion", message=message, hint="Use --verify rest.")]
-    )
+    undone = Finding(code="E_NOT_CHECKED", where="motion", message=message, hint="Use --verify rest.")
+    return replace(checks, findings=Findings([*checks.findings, undone]))
 
 
 # ---------------------------------------------------------------------- the frame
@@ -374,8 +376,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     terminal = Terminal(as_json=options.as_json, quiet=options.quiet, verbose=options.verbose, color=not options.colorless)
     try:
         return _run(_COMMANDS[options.command], options, terminal)
-    except BrokenPipeError:  # the reader of our output went away, as `head` does: nothing is left to be said
-        sys.stdout = None  # type: ignore[assignment]
+    except BrokenPipeError:  # the reader of our output went away, as `head` does: nothing is left to be said, at exit neither
+        with contextlib.suppress(OSError, ValueError):
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return CANNOT_GO_ON
 
 

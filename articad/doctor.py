@@ -7,6 +7,8 @@ without libgomp Pinocchio, end in an ImportError that tells a user nothing, and 
 from __future__ import annotations
 
 import ctypes
+import io
+import json
 import os
 import platform
 import shutil
@@ -16,10 +18,13 @@ from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from importlib import metadata
 from pathlib import Path
-from typing import Any, Literal, NamedTuple
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 from articad.errors import KernelUnavailableError
 from articad.findings import Finding
+
+if TYPE_CHECKING:
+    from articad.agents.llm import LLM
 
 Status = Literal["ok", "missing", "optional"]
 Loader = Callable[[str], object]
@@ -142,6 +147,26 @@ def examine(load: Loader = _load_lazily) -> tuple[Item, ...]:
     )
 
 
+def ask_once(llm: LLM) -> Item:
+    """Ask a model one tiny question with a picture and a form for the answer: does its key work, can it see, does it keep to the form?
+
+    Raises:
+        TransportError: If it cannot be asked.
+    """
+    from articad.agents.llm import Image, Request, system, user  # noqa: PLC0415 - the agents are needed by this question only
+
+    schema = {"type": "object", "properties": {"color": {"type": "string"}}, "required": ["color"], "additionalProperties": False}
+    messages = (system("Answer with one JSON object."), user("Which colour is this square? One English word.", Image(_red_square())))
+    reply = llm.complete(Request(role="doctor", step="doctor", messages=messages, response_schema=schema))
+    try:
+        color = str(json.loads(reply.text)["color"])
+    except (ValueError, KeyError, TypeError):
+        return Item(f"model {reply.model}", "missing", f"answers, but not in the form asked for: {reply.text[:80]!r}", "Try another model.")
+    sight = "sees" if "red" in color.lower() else f"does not see well: it took a red square for {color!r}"
+    price = "price unknown" if reply.cost is None else f"${reply.cost:.6f}"
+    return Item(f"model {reply.model}", "ok", f"keeps to the form, {sight}; {reply.usage.total} tokens, {price}")
+
+
 def report(items: Iterable[Item]) -> dict[str, Any]:
     """Return the report `articad.doctor/1`."""
     rows = tuple(items)
@@ -223,6 +248,15 @@ def _keys() -> Item:
     if present:
         return Item("model keys", "ok", ", ".join(f"{name} is set" for name in present))
     return Item("model keys", "optional", "none set; only generate and edit need one", "Set your provider's variable, say GEMINI_API_KEY.")
+
+
+def _red_square() -> bytes:
+    """Return a PNG of 32 x 32 red pixels."""
+    from PIL import Image as Picture  # noqa: PLC0415 - see `ask_once`
+
+    stream = io.BytesIO()
+    Picture.new("RGB", (32, 32), (220, 20, 20)).save(stream, "PNG")
+    return stream.getvalue()
 
 
 def _disk_free() -> str:

@@ -58,7 +58,7 @@ def print_exports(exports: Mapping[str, Report], terminal: Terminal) -> None:
 
 def counted(findings: Findings) -> str:
     """Return `2 errors, 1 warning`, or `no findings`."""
-    count = Counter(finding.severity for finding in findings)
+    count = Counter(str(finding.severity) for finding in findings)
     names = (("error", "errors"), ("warning", "warnings"), ("info", "notes"))
     told = [counted_things(count[one], "note" if one == "info" else one, many) for one, many in names if count[one]]
     return ", ".join(told) or "no findings"

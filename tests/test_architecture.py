@@ -1,0 +1,173 @@
+"""The house: who may import whom, what an import costs, and that what is declared is used."""
+
+from __future__ import annotations
+
+import ast
+import importlib
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+
+import pytest
+
+import articad
+
+ROOT = Path(__file__).resolve().parent.parent
+PACKAGE = ROOT / "articad"
+HEAVY = ("litellm", "mujoco", "build123d", "OCP", "pinocchio", "scipy", "trimesh", "fcl", "manifold3d", "rich", "pydantic")
+
+# Distribution -> module, for the packages that articad is made of.
+FIXED = {
+    "numpy": "numpy",
+    "scipy": "scipy",
+    "pin": "pinocchio",
+    "yourdfpy": "yourdfpy",
+    "trimesh": "trimesh",
+    "python-fcl": "fcl",
+    "manifold3d": "manifold3d",
+    "pydantic": "pydantic",
+    "litellm": "litellm",
+}
+
+
+def modules_after(statement: str) -> set[str]:
+    """Return the top-level modules that a fresh interpreter has loaded after a statement."""
+    code = f"import sys\n{statement}\nprint(*sorted({{name.partition('.')[0] for name in sys.modules}}))"
+    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True, timeout=120)
+    return set(done.stdout.split())
+
+
+def imported_by(path: Path) -> set[str]:
+    """Return the top-level modules that a source file imports anywhere, inside functions too."""
+    names: set[str] = set()
+    for node in ast.walk(ast.parse(path.read_text())):
+        if isinstance(node, ast.Import):
+            names |= {alias.name.partition(".")[0] for alias in node.names}
+        elif isinstance(node, ast.ImportFrom) and node.module and node.level == 0:
+            names.add(node.module.partition(".")[0])
+    return names
+
+
+def third_party(modules: set[str]) -> set[str]:
+    return {name for name in modules if name not in sys.stdlib_module_names and not name.startswith("_")} - {"articad"}
+
+
+SOURCES = sorted(PACKAGE.rglob("*.py"))
+
+
+def test_import_contracts_hold() -> None:
+    code = "import sys; from importlinter.cli import lint_imports_command; sys.exit(lint_imports_command(['--no-cache']))"
+    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=False, timeout=300)
+    assert done.returncode == 0, done.stdout[-4000:]
+    assert "0 broken" in done.stdout
+
+
+@pytest.mark.parametrize("name", articad.__all__)
+def test_every_public_name_is_there(name: str) -> None:
+    assert getattr(articad, name) is not None
+
+
+def test_the_namespace_is_all() -> None:
+    assert dir(articad) == sorted(articad.__all__)
+    assert len(set(articad.__all__)) == len(articad.__all__)
+    with pytest.raises(AttributeError, match="no_such_name"):
+        _ = articad.no_such_name
+
+
+def test_the_names_that_type_checkers_see_are_all() -> None:
+    tree = ast.parse((PACKAGE / "__init__.py").read_text())
+    blocks = [node for node in tree.body if isinstance(node, ast.If) and ast.unparse(node.test) == "TYPE_CHECKING"]
+    seen = {
+        alias.asname or alias.name for block in blocks for node in block.body if isinstance(node, ast.ImportFrom) for alias in node.names
+    }
+    assert seen | {"__version__"} == set(articad.__all__)
+
+
+def test_import_articad_loads_nothing_heavy() -> None:
+    assert not modules_after("import articad") & set(HEAVY)
+
+
+def test_using_the_public_names_loads_no_model_simulator_or_kernel() -> None:
+    loaded = modules_after("import articad\nfor name in articad.__all__: getattr(articad, name)")
+    assert not loaded & {"litellm", "mujoco", "build123d", "OCP", "rich"}
+
+
+@pytest.mark.parametrize("argument", ["--help", "--version"])
+def test_help_and_version_load_neither_numpy_nor_rich(argument: str) -> None:
+    statement = f"import contextlib, io, articad.cli\nwith contextlib.suppress(SystemExit), contextlib.redirect_stdout(io.StringIO()): articad.cli.main(['{argument}'])"
+    assert not third_party(modules_after(statement)) - third_party(modules_after("pass"))
+
+
+def test_kinematics_loads_only_numpy_and_pinocchio() -> None:
+    exercise = """
+from articad.connectors.attachment import Attachment
+from articad.connectors.connector import Connector
+from articad.connectors.se3 import SE3
+from articad.kinematics.declare import revolute
+from articad.kinematics.mechanism import Mechanism
+
+axis = Connector("axis", SE3.identity())
+arm = Mechanism(("base", "arm"), "base", [revolute("elbow", Attachment("base", axis), Attachment("arm", axis), limits=(-1, 1))])
+arm.poses(arm.rest), arm.jacobian(arm.rest, "arm")
+"""
+    with_pinocchio = modules_after("import pinocchio")  # its own bindings: eigenpy, coal, cmeel
+    assert third_party(modules_after(exercise)) <= third_party(with_pinocchio)
+    allowed = {"numpy", "pinocchio"}
+    for room in ("kinematics", "connectors"):
+        for source in sorted((PACKAGE / room).glob("*.py")):
+            foreign = third_party(imported_by(source)) - allowed
+            assert foreign <= ({"scipy"} if source.name == "loops.py" else set()), source
+
+
+def test_every_fixed_package_is_declared_and_imported() -> None:
+    declared = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["dependencies"]
+    imported = set().union(*(imported_by(source) for source in SOURCES))
+    for distribution, module in FIXED.items():
+        assert any(line.startswith(distribution) for line in declared), f"{distribution} is not declared"
+        assert module in imported, f"{module} is imported by no module"
+
+
+def test_every_import_is_declared() -> None:
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    module_of = FIXED | {"pillow": "PIL", "build123d": "build123d"}
+    names = [line.partition(";")[0].strip().split("[")[0].split(">")[0].split("<")[0].split("=")[0] for line in project["dependencies"]]
+    known = {module_of.get(name, name) for name in names} | {"OCP"}  # OCP comes with build123d, and only with it
+    unknown = {(source.name, name) for source in SOURCES for name in third_party(imported_by(source)) - known}
+    assert not unknown
+
+
+@pytest.mark.parametrize(
+    ("module", "owner"),
+    [("pinocchio", "kinematics/forward.py"), ("fcl", "interference/"), ("litellm", "agents/live.py"), ("mujoco", "simulate.py")],
+)
+def test_one_place_each_imports_the_engines(module: str, owner: str) -> None:
+    users = {str(source.relative_to(PACKAGE)) for source in SOURCES if module in imported_by(source)}
+    assert all(user.startswith(owner) for user in users), users
+
+
+def test_every_module_says_what_it_is() -> None:
+    for source in SOURCES:
+        assert ast.get_docstring(ast.parse(source.read_text())), f"{source} has no docstring"
+
+
+def test_no_room_is_a_lumber_room() -> None:
+    for source in SOURCES:
+        assert source.stem not in {"utils", "core", "common", "manager", "helper", "helpers"}, source
+
+
+def test_the_lock_names_no_registry_and_hashes_everything() -> None:
+    lines = (ROOT / "requirements.lock").read_text().splitlines()
+    assert not [line for line in lines if "://" in line or line.lstrip().startswith(("-i", "--index", "--extra", "--find"))]
+    requirements = [line for line in lines if "==" in line]
+    assert len(requirements) > 100
+    assert all(line.endswith("\\") for line in requirements)
+
+
+def test_the_package_s_version_is_its_module_s() -> None:
+    assert tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["version"] == articad.__version__
+
+
+def test_the_typed_marker_is_shipped() -> None:
+    assert (PACKAGE / "py.typed").is_file()
+    assert importlib.import_module("articad").__file__ == str(PACKAGE / "__init__.py")

@@ -1,0 +1,132 @@
+"""The frame of the command line: flags, suggestions, exit codes, and never a traceback."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from articad import __version__, cli
+from articad.errors import PlanError
+from articad.findings import Finding
+from articad.terminal import Report, Terminal
+
+FINDING = Finding(code="E_DUP_NAME", where="parts[1]", message="'lid' is used twice.", hint="Rename one.")
+
+
+@pytest.fixture
+def probe(monkeypatch: pytest.MonkeyPatch) -> Callable[[Callable[[], Report]], None]:
+    """Put a command `probe` beside the real ones that does what the test says."""
+
+    def install(body: Callable[[], Report]) -> None:
+        def run(_options: argparse.Namespace, terminal: Terminal) -> Report:
+            terminal.say("probing")
+            return body()
+
+        command = cli._Command("probe", "Probe.", lambda _parser: None, run, needs_libraries=False)
+        monkeypatch.setitem(cli._COMMANDS, "probe", command)
+
+    return install
+
+
+def failing(error: BaseException) -> Callable[[], Report]:
+    def body() -> Report:
+        raise error
+
+    return body
+
+
+@pytest.mark.parametrize(("ok", "code"), [(True, 0), (False, 1)])
+def test_the_exit_code_is_the_report_s_verdict(probe: Callable[[Callable[[], Report]], None], ok: bool, code: int) -> None:
+    probe(lambda: {"schema": "articad.findings/1", "ok": ok, "findings": []})
+    assert cli.main(["probe"]) == code
+
+
+@pytest.mark.parametrize(
+    ("error", "code", "words"),
+    [
+        (PlanError("The plan has errors.", findings=[FINDING]), 3, "Rename one."),
+        (FileNotFoundError(2, "No such file or directory", "/x"), 3, "No such file or directory: /x"),
+        (ZeroDivisionError("division by zero"), 3, "Run it again with -v"),
+        (RecursionError("maximum recursion depth exceeded"), 3, "defect"),
+        (KeyboardInterrupt(), 130, "interrupted"),
+    ],
+    ids=lambda value: type(value).__name__ if isinstance(value, BaseException) else None,
+)
+def test_no_error_ends_in_a_traceback(
+    probe: Callable[[Callable[[], Report]], None], capsys: pytest.CaptureFixture[str], error: BaseException, code: int, words: str
+) -> None:
+    probe(failing(error))
+    assert cli.main(["probe"]) == code
+    told = capsys.readouterr()
+    assert words in told.err
+    assert "Traceback" not in told.err
+    assert cli.main(["probe", "--json"]) == code
+    assert json.loads(capsys.readouterr().out)["ok"] is False
+
+
+def test_verbose_shows_the_traceback_of_a_defect(probe: Callable[[Callable[[], Report]], None], capsys: pytest.CaptureFixture[str]) -> None:
+    probe(failing(ZeroDivisionError("division by zero")))
+    assert cli.main(["-v", "probe"]) == 3
+    assert "Traceback" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("arguments", [["--json", "probe"], ["probe", "--json"]])
+def test_global_flags_stand_before_or_after_the_command(
+    probe: Callable[[Callable[[], Report]], None], capsys: pytest.CaptureFixture[str], arguments: list[str]
+) -> None:
+    probe(lambda: {"schema": "articad.findings/1", "ok": True, "findings": []})
+    assert cli.main(arguments) == 0
+    assert json.loads(capsys.readouterr().out) == {"schema": "articad.findings/1", "ok": True, "findings": []}
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["biuld", "x"], "did you mean 'build'?"),
+        (["build", "x", "--exprot", "urdf"], "did you mean '--export'?"),
+        (["build", "x", "--export", "urfd"], "did you mean 'urdf'?"),
+        (["build", "x", "--kernel", "bild123d"], "did you mean 'build123d'?"),
+        (["build", "x", "--set", "width"], "not of the form NAME=VALUE"),
+        (["build", "x", "--set", "width=wide"], "'wide' in 'width=wide' is not a number"),
+        (["build", "x", "--jobs", "0"], "at least 1"),
+        (["build"], "PLAN_DIR"),
+        (["--jsno"], "unknown argument '--jsno', did you mean '--json'?"),
+        ([], "COMMAND"),
+    ],
+)
+def test_wrong_usage_ends_with_2_and_says_what_was_meant(capsys: pytest.CaptureFixture[str], arguments: list[str], words: str) -> None:
+    with pytest.raises(SystemExit) as ended:
+        cli.main(arguments)
+    assert ended.value.code == 2
+    assert words in capsys.readouterr().err
+
+
+def test_the_version_is_the_package_s(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as ended:
+        cli.main(["--version"])
+    assert ended.value.code == 0
+    assert capsys.readouterr().out == f"articad {__version__}\n"
+
+
+@pytest.mark.parametrize("command", ["build", "check"])
+def test_a_plan_that_is_not_there_is_an_error_not_a_defect(capsys: pytest.CaptureFixture[str], tmp_path: Path, command: str) -> None:
+    assert cli.main([command, str(tmp_path / "nowhere")]) == 3
+    assert "defect" not in capsys.readouterr().err
+
+
+def test_output_whose_reader_went_away_is_no_defect() -> None:
+    command = [sys.executable, "-m", "articad.cli", "check", "/nowhere", "--json"]
+    running = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    assert running.stdout is not None
+    assert running.stderr is not None
+    running.stdout.close()
+    told = running.stderr.read()
+    running.stderr.close()
+    assert running.wait(timeout=60) == 3
+    assert told == ""

@@ -1,0 +1,140 @@
+"""Plain text off a terminal, one JSON report with --json, findings even with -q."""
+
+from __future__ import annotations
+
+import io
+import json
+import threading
+
+from articad.errors import BuildError, PlanError
+from articad.findings import Finding, Findings
+from articad.terminal import Terminal
+
+ERROR = Finding(code="E_DUP_NAME", where="parts[1]", message="'lid' is used twice.", hint="Rename one.")
+WARNING = Finding(code="W_CONNECTOR_UNUSED", where="parts.lid", message="No joint uses 'rim'.", hint="Remove it.")
+
+
+class Screen(io.StringIO):
+    """A stream that says it is a terminal."""
+
+    def isatty(self) -> bool:
+        return True
+
+
+def terminal(**flags: bool) -> Terminal:
+    return Terminal(**flags, out=io.StringIO(), err=io.StringIO())
+
+
+def out(of: Terminal) -> str:
+    assert isinstance(of.out, io.StringIO)
+    return of.out.getvalue()
+
+
+def err(of: Terminal) -> str:
+    assert isinstance(of.err, io.StringIO)
+    return of.err.getvalue()
+
+
+def test_off_a_terminal_tables_are_aligned_plain_text() -> None:
+    plain = terminal()
+    plain.table(["part", "mass"], [("lid", 1.5), ("a [bold] name", 20)], right=(1,))
+    assert out(plain).splitlines() == ["part           mass", "lid             1.5", "a [bold] name    20"]
+
+
+def test_on_a_terminal_names_are_not_markup() -> None:
+    watched = Terminal(out=Screen(), err=Screen())
+    watched.table(["part"], [("a [bold] name",)])
+    assert "a [bold] name" in out(watched)
+
+
+def test_quiet_prints_errors_only() -> None:
+    quiet = terminal(quiet=True)
+    quiet.say("hello")
+    quiet.table(["a"], [("b",)])
+    quiet.findings(Findings([ERROR, WARNING]))
+    assert "E_DUP_NAME" in out(quiet)
+    assert "hello" not in out(quiet)
+    assert "W_CONNECTOR_UNUSED" not in out(quiet)
+
+
+def test_json_prints_one_report_and_nothing_else() -> None:
+    speaking = terminal(as_json=True)
+    speaking.say("hello")
+    speaking.table(["a"], [("b",)])
+    speaking.findings(Findings([ERROR]))
+    with speaking.progress("Building", 1) as tell:
+        tell("lid", "started")
+        tell("lid", "built")
+    speaking.finish({"schema": "articad.findings/1", "ok": True, "findings": []})
+    assert json.loads(out(speaking))["ok"] is True
+    assert err(speaking) == ""
+
+
+def test_an_error_is_printed_in_full_with_every_finding_and_hint() -> None:
+    speaking = terminal()
+    speaking.error(PlanError("The plan has errors.", findings=[ERROR, WARNING]))
+    assert "articad: The plan has errors." in err(speaking)
+    for finding in (ERROR, WARNING):
+        assert finding.code in err(speaking)
+        assert finding.hint in err(speaking)
+    assert out(speaking) == ""
+
+
+def test_a_message_that_lists_its_findings_does_not_say_them_twice() -> None:
+    speaking = terminal()
+    speaking.error(PlanError(str(ERROR), findings=[ERROR]))
+    assert err(speaking).count("is used twice") == 1
+
+
+def test_an_error_as_json_holds_its_type_and_findings() -> None:
+    speaking = terminal(as_json=True)
+    speaking.error(BuildError("box.py failed.", script="box.py", line=3, findings=[]))
+    report = json.loads(out(speaking))
+    assert report["schema"] == "articad.error/1"
+    assert report["error"] == {"type": "BuildError", "stage": "build", "message": "box.py failed."}
+
+
+def test_a_script_s_own_traceback_is_shown() -> None:
+    speaking = terminal()
+    speaking.error(BuildError("box.py failed.", traceback="line 3, in build\n    1 / 0"))
+    assert "1 / 0" in err(speaking)
+
+
+def test_a_finding_shows_its_number_against_its_limit() -> None:
+    speaking = terminal()
+    speaking.findings(
+        Findings([Finding(code="E_MATE_ROLL", where="joints.a", message="Rolled.", hint="Turn x.", value=180.0, limit=0.05, unit="deg")])
+    )
+    assert "(180 against 0.05 deg)" in out(speaking)
+
+
+def test_off_a_terminal_progress_is_a_line_for_each_end_from_any_thread() -> None:
+    speaking = terminal()
+    with speaking.progress("Building", 20) as tell:
+        names = [f"part_{number}" for number in range(20)]
+        for name in names:
+            tell(name, "started")
+        threads = [threading.Thread(target=tell, args=(name, "built")) for name in names]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+    lines = err(speaking).splitlines()
+    assert sorted(line.split()[-1] for line in lines) == sorted(names)
+    assert out(speaking) == ""
+
+
+def test_on_a_terminal_progress_is_live_and_leaves_nothing_behind() -> None:
+    watched = Terminal(out=Screen(), err=Screen())
+    with watched.progress("Building", 2) as tell:
+        tell("lid", "started")
+        tell("lid", "built")
+        tell("box", "derived")
+    assert out(watched) == ""
+
+
+def test_no_color_keeps_a_terminal_plain() -> None:
+    watched = Terminal(color=False, out=Screen(), err=Screen())
+    watched.findings(Findings([ERROR]))
+    watched.table(["a"], [("b",)])
+    assert "\x1b" not in out(watched)
