@@ -41,7 +41,7 @@ def parent_pose(T_child: SE3, C_p: SE3, motion: SE3, mate: Mate, C_c: SE3) -> SE
     return T_child @ (C_p @ motion @ flip(mate) @ C_c.inverse()).inverse()
 
 
-def rest_mismatch(T_parent: SE3, C_p: SE3, motion: SE3, mate: Mate, C_c: SE3, T_child: SE3) -> SE3:  # noqa: PLR0917 - the order of the formula
+def rest_mismatch(T_parent: SE3, C_p: SE3, motion: SE3, mate: Mate, C_c: SE3, T_child: SE3) -> SE3:
     """Return D = (T_parent C_p M F)⁻¹ T_child C_c: the identity when the two connectors meet at rest."""
     return (T_parent @ C_p @ motion @ flip(mate)).inverse() @ T_child @ C_c
 

@@ -152,7 +152,7 @@ class TreeArrays:
 
     def poses(self, Q: FloatArray) -> SE3:
         """Return the poses `(*batch, N)` of all parts for coordinates `(*batch, n_columns)`."""
-        flat = Q.reshape(-1, self.layout.n_columns)
+        flat = Q.reshape(math.prod(Q.shape[:-1]), self.layout.n_columns)
         if len(flat) <= _FEW:
             T = self.matrices(flat)
             out = np.empty((self.n_parts, len(flat), 7))
