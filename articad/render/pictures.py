@@ -5,27 +5,29 @@ from __future__ import annotations
 import io
 import math
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
 from articad.connectors.se3 import SE3
-from articad.errors import UnknownJointError
+from articad.errors import KernelUnavailableError, UnknownJointError
 from articad.geometry.mesh import TriMesh
 from articad.geometry.part import Part
 from articad.kinematics.joints import Joint, JointType
+from articad.render import vtk
 from articad.render.annotate import annotate
 from articad.render.camera import Camera
 from articad.render.raycast import cast
 from articad.render.scene import Scene, Section, scene_of
-from articad.render.shade import reduced, shade
+from articad.render.shade import overlaid, reduced, shade
 
 if TYPE_CHECKING:
     from articad.assembly import Assembly
 
 FloatArray = NDArray[np.float64]
+Renderer = Literal["embree", "pyvista"]
 
 RECIPE = "articad.picture/1"  # changes when the same scene would be drawn differently; part of a model request's key
 DEFAULT_VIEWS = ("iso", "front", "right", "top")
@@ -46,6 +48,7 @@ def picture(
     labels: bool = True,
     axes: bool = True,
     title: str | None = None,
+    renderer: Renderer = "embree",
 ) -> Image.Image:
     """Draw a scene.
 
@@ -56,7 +59,16 @@ def picture(
         labels: Write the parts' names.
         axes: Draw the joints' axes with the direction of positive motion.
         title: Written in the upper left corner.
+        renderer: "embree" works everywhere and always gives the same pixels; "pyvista" is smoother, where it can be had.
+
+    Raises:
+        KernelUnavailableError: If PyVista was asked for and cannot draw here.
     """
+    if renderer == "pyvista":
+        _require_pyvista()
+        buffers = cast(scene, camera)
+        image = Image.fromarray(overlaid(vtk.draw(scene, camera), scene, buffers))
+        return annotate(image, scene, camera, buffers, labels=labels, axes=axes, title=title)
     fine = camera.scaled(supersample)
     buffers = cast(scene, fine)
     image = Image.fromarray(reduced(shade(scene, fine, buffers), supersample))
@@ -76,6 +88,7 @@ def render_views(
     supersample: int = 2,
     labels: bool = True,
     axes: bool = True,
+    renderer: Renderer = "embree",
 ) -> dict[str, Image.Image]:
     """Draw one pose of an assembly from several sides, at one scale.
 
@@ -91,6 +104,7 @@ def render_views(
         supersample: Rays per pixel in each direction.
         labels: Write the parts' names.
         axes: Draw the joints' axes.
+        renderer: As in `picture`.
     """
     poses = _poses(assembly, assembly.mechanism.rest if q is None else q)
     scene = scene_of(assembly.parts, poses, joints=assembly.joints, only=only, highlights=highlights)
@@ -106,6 +120,7 @@ def render_views(
             labels=labels,
             axes=axes,
             title=f"{assembly.name} · {view}",
+            renderer=renderer,
         )
         for view in views
     }
@@ -257,6 +272,14 @@ def _ball_frames(assembly: Assembly, joint: Joint, count: int) -> tuple[list[str
             rows.append(q)
             captions.append(f"{joint.name} {'twist' if axis == 'z' else 'swing ' + axis} = {math.degrees(angle):.1f}°")
     return captions, np.array(rows)
+
+
+def _require_pyvista() -> None:
+    if not vtk.available():
+        raise KernelUnavailableError(
+            "PyVista cannot draw here: it is not installed, or there is no OpenGL. The renderer 'embree' needs neither.",
+            how_to_get="pip install 'articad[render]', and libegl1 or libosmesa6 from the distribution",
+        )
 
 
 def _envelope(scenes: Sequence[Scene]) -> FloatArray:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -36,10 +38,15 @@ def shade(scene: Scene, camera: Camera, buffers: Buffers) -> Picture:
     picture = np.where(seen[..., None], picture, PAPER)
     strength = _edges(camera, buffers) * np.where(faded[index] & seen, 0.35, 0.85)
     picture += strength[..., None] * (INK - picture)
+    return overlaid(picture, scene, buffers)
+
+
+def overlaid(picture: NDArray[Any], scene: Scene, buffers: Buffers) -> Picture:
+    """Return the picture with highlighted items drawn over everything, `(height, width, 3)`."""
     over = buffers.over != BACKGROUND
     if over.any():
-        red = colors[np.where(over, buffers.over, 0)]
-        picture = np.where(over[..., None], picture + _OVER_OPACITY * (red - picture), picture)
+        colors = np.array([_rgb(item.color) for item in scene.items])[np.where(over, buffers.over, 0)]
+        picture = np.where(over[..., None], picture + _OVER_OPACITY * (colors - picture), picture)
     pixels: Picture = np.clip(np.rint(picture), 0, 255).astype(np.uint8)
     return pixels
 
