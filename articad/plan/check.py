@@ -1,0 +1,149 @@
+"""Checking: everything that is wrong with a plan, all at once, before any geometry exists."""
+
+from __future__ import annotations
+
+import math
+
+from articad.errors import ArticadError
+from articad.findings import Finding, Findings
+from articad.kinematics.graph import JointGraph
+from articad.kinematics.joints import Joint
+from articad.kinematics.mechanism import Mechanism
+from articad.plan.draft import Draft
+from articad.plan.rest import rest_findings
+from articad.plan.schema import AssemblyPlan
+from articad.plan.usage import scale_findings, usage_findings
+
+_SHOWN_AT_BOUND = 3  # findings reported in full for one bound of one parameter
+
+
+def check_plan(plan: AssemblyPlan) -> Findings:
+    """Return everything that is wrong with a plan; it never raises.
+
+    Numbers, names, axes and limits are checked, the joint graph, the rest pose of every joint, the declared freedoms, and
+    all of it again with each parameter at its min and max.
+    """
+    draft = Draft(plan)
+    found = [*draft.findings(), *rest_findings(draft), *usage_findings(draft)]
+    found += _structure_findings(draft, Findings(found))
+    found += _range_findings(draft, found)
+    return Findings(found)
+
+
+# ---------------------------------------------------------------- mechanism
+
+
+def _structure_findings(draft: Draft, so_far: Findings) -> list[Finding]:
+    """Judge loops, freedoms and drivers, as far as the findings so far leave a mechanism to judge."""
+    if not draft.graph_findings.ok:
+        return []
+    tree, loop_joints = draft.graph.spanning_tree()
+    found = []
+    if draft.plan.tree:
+        for joint in loop_joints:
+            loop = tree.path(joint.parent, joint.child)
+            message = f"The plan asserts a tree, but joint {joint.name!r} closes the loop {'-'.join(loop)}."
+            hint = "Remove one joint of the loop, or drop 'tree': true."
+            found.append(Finding(code="E_NOT_TREE", where=f"joints.{joint.name}", message=message, hint=hint, parts=loop))
+    if len(draft.lines) < len(draft.plan.joints):
+        return found  # a joint without a type has unknown freedoms
+    if not loop_joints and not draft.plan.couplings:
+        freedoms = [(joint.name, joint.type.freedoms) for joint in draft.graph.joints]
+        account = ", ".join(f"{name} {count}" for name, count in freedoms if count) or "no joint moves"
+        found += _freedom_findings(draft, sum(count for _, count in freedoms), account)
+        found += _idle_marks(draft.graph)
+        return found
+    found += _not_supported(draft, loop_joints)
+    if found or not so_far.ok:
+        return found  # what does not meet at rest cannot be solved
+    return _mechanism_findings(draft)
+
+
+def _not_supported(draft: Draft, loop_joints: tuple[Joint, ...]) -> list[Finding]:
+    """Return what is valid but cannot be solved yet: the one gate, to be removed when mechanisms solve it."""
+    found = [
+        Finding(
+            code="E_NOT_SUPPORTED",
+            where=f"joints.{joint.name}",
+            message=f"Joint {joint.name!r} closes a loop; this version solves trees only.",
+            hint="Remove a joint of the loop.",
+            parts=(joint.parent, joint.child),
+        )
+        for joint in loop_joints
+    ]
+    for coupling in draft.plan.couplings:
+        message = f"Coupling {coupling.name!r} cannot be solved by this version."
+        found.append(Finding(code="E_NOT_SUPPORTED", where=f"couplings.{coupling.name}", message=message, hint="Remove the coupling."))
+    return found
+
+
+def _mechanism_findings(draft: Draft) -> list[Finding]:
+    """Return what the mechanism says of its loops, couplings and drivers, and whether its mobility is the declared one."""
+    plan = draft.plan
+    try:
+        mechanism = Mechanism(tuple(draft.parts), plan.ground, draft.joints, draft.couplings, draft.parts[plan.ground].T)
+        found = list(mechanism.findings())
+        total = sum(joint.type.freedoms for joint in draft.joints)
+        loops = ", ".join("-".join(mechanism.tree.path(joint.parent, joint.child)) for joint in mechanism.loop_joints)
+        account = f"sum of joint freedoms {total}"
+        if mechanism.loop_joints:
+            account += f", loop constraints of rank {total - mechanism.mobility - len(plan.couplings)}: loop {loops}"
+        if plan.couplings:
+            account += f", {len(plan.couplings)} couplings"
+        return found + _freedom_findings(draft, mechanism.mobility, account)
+    except ArticadError as error:
+        return list(error.findings)
+
+
+def _freedom_findings(draft: Draft, freedoms: int, account: str) -> list[Finding]:
+    declared = draft.plan.freedoms
+    if declared == freedoms:
+        return []
+    message = f"Declared freedoms {declared}, but the assembly has {freedoms} ({account})."
+    hint = f"Set freedoms to {freedoms}, or change the joints if {declared} is meant."
+    return [Finding(code="E_DOF_MISMATCH", where="freedoms", message=message, hint=hint, value=declared, limit=freedoms)]
+
+
+def _idle_marks(graph: JointGraph) -> list[Finding]:
+    return [
+        Finding(
+            code="W_DRIVER",
+            where=f"joints.{joint.name}.driver",
+            message=f"Joint {joint.name!r} is marked as a driver, but without loops and couplings every joint is one.",
+            hint="Remove the mark.",
+        )
+        for joint in graph.joints
+        if joint.driver
+    ]
+
+
+# ---------------------------------------------------------------- parameters at their bounds
+
+
+def _range_findings(draft: Draft, found: list[Finding]) -> list[Finding]:
+    """Try every parameter at its min and at its max, and report what breaks there and not already as stated."""
+    known = {(finding.code, finding.where) for finding in found}
+    reported = []
+    for parameter in draft.plan.parameters:
+        value = draft.evaluation.values[parameter.name]
+        for name, bound in zip(("min", "max"), draft.evaluation.bounds(parameter), strict=True):
+            if not math.isfinite(bound) or not math.isfinite(value) or bound == value:
+                continue
+            tried = Draft(draft.plan, {parameter.name: bound})
+            broken = Findings([*tried.findings(), *rest_findings(tried), *scale_findings(tried)]).errors
+            fresh = [finding for finding in broken if (finding.code, finding.where) not in known]
+            for finding in fresh[:_SHOWN_AT_BOUND]:
+                more = f" (and {len(fresh) - _SHOWN_AT_BOUND} more)" if len(fresh) > _SHOWN_AT_BOUND and finding is fresh[0] else ""
+                reported.append(
+                    Finding(
+                        code="W_PARAMETER_RANGE",
+                        where=f"parameters.{parameter.name}.{name}",
+                        message=f"At {parameter.name} = {bound:.6g}, its {name}, the plan breaks{more}: {finding.code} {finding.where}: {finding.message}",
+                        hint=f"Narrow the {name} of {parameter.name}, or mend the numbers so that they follow it. There: {finding.hint}",
+                        parts=finding.parts,
+                        value=bound,
+                        limit=value,
+                        unit=None if parameter.unit == "1" else parameter.unit,
+                    )
+                )
+    return reported

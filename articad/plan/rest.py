@@ -1,0 +1,192 @@
+"""The rest check: in every joint the two connectors must meet at rest, before any geometry exists.
+
+D = (T_p C_p J(q_rest) F)⁻¹ T_c C_c must be the identity within 0.01 mm and 0.05° (kinematics §1). Every finding names
+the value that would make it so, in the frame in which that connector is stated.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from articad.connectors import FLIP, SE3, FloatArray, Mate
+from articad.findings import Finding
+from articad.kinematics.joints import Joint, JointType
+from articad.plan.derive import DraftPart
+from articad.plan.draft import Draft
+from articad.plan.schema import PartSpec, Pose
+
+OFFSET_MM = 0.01  # plan frames are numbers, so this is rounding of what people write, far below any fit
+ANGLE_DEG = 0.05  # 0.9 mm at one metre: rounding of axes to four digits passes
+_TURN_FIELD = {JointType.REVOLUTE: "rest_deg", JointType.CYLINDRICAL: "rest_deg"}
+_SLIDE_FIELD = {JointType.SLIDER: "rest_mm", JointType.CYLINDRICAL: "rest_mm"}
+_IDENTITY = SE3.identity()
+
+
+def rest_findings(draft: Draft) -> list[Finding]:
+    """Return every joint whose connectors do not meet at rest; joints that place their part are left out."""
+    joints = [
+        joint
+        for joint in draft.joints
+        if joint.name not in draft.auto_joints and draft.parts[joint.parent].T is not None and draft.parts[joint.child].T is not None
+    ]
+    if not joints:
+        return []
+    moved = [_identity_or(joint) for joint in joints]
+    expected = (
+        SE3.stack([_pose(draft, joint.parent) for joint in joints])
+        @ SE3.stack([joint.T_parent_connector for joint in joints])
+        @ SE3.stack(moved)
+    )
+    actual = SE3.stack([_pose(draft, joint.child) for joint in joints]) @ SE3.stack([joint.T_child_connector for joint in joints])
+    D = expected.inverse() @ actual
+    R = D.rotation
+    axis = np.degrees(np.arctan2(np.hypot(R[:, 0, 2], R[:, 1, 2]), R[:, 2, 2]))
+    roll = np.degrees(np.arctan2(R[:, 1, 0] - R[:, 0, 1], R[:, 0, 0] + R[:, 1, 1]))
+    offset = np.sqrt((D.translation**2).sum(axis=-1))
+    wrong = (axis > ANGLE_DEG) | (np.abs(roll) > ANGLE_DEG) | (offset > OFFSET_MM)
+    found: list[Finding] = []
+    for i in np.flatnonzero(wrong):
+        mismatch = _Mismatch(draft, joints[i], expected[int(i)], actual[int(i)])
+        found.extend(mismatch.findings(float(axis[i]), float(roll[i]), float(offset[i])))
+    return found
+
+
+def _identity_or(joint: Joint) -> SE3:
+    """Return J(q_rest) F of a joint."""
+    J = _IDENTITY if joint.rest == joint.type.neutral else joint.motion(joint.rest)
+    return J @ FLIP if joint.mate is Mate.OPPOSED else J
+
+
+def _pose(draft: Draft, part: str) -> SE3:
+    T = draft.parts[part].T
+    assert T is not None
+    return T
+
+
+class _Mismatch:
+    """One joint that does not meet, and what would mend it."""
+
+    def __init__(self, draft: Draft, joint: Joint, expected: SE3, actual: SE3) -> None:
+        self.draft, self.joint, self.expected, self.actual = draft, joint, expected, actual
+        self.parent = f"{joint.parent}.{joint.parent_connector}"
+        self.child = f"{joint.child}.{joint.child_connector}"
+        parent, child = draft.parts[joint.parent], draft.parts[joint.child]
+        on_child = not child.derived or parent.derived
+        self.part: DraftPart = child if on_child else parent
+        self.target = self.child if on_child else self.parent
+        connector = joint.child_connector if on_child else joint.parent_connector
+        self.spec = next(spec for spec in self.part.connector_specs if spec.name == connector)
+        right = expected if on_child else actual @ _identity_or(joint).inverse()
+        in_assembly = self.spec.frame == "assembly" and not self.part.derived
+        self.right = right if in_assembly else _pose(draft, self.part.name).inverse() @ right
+
+    def findings(self, axis: float, roll: float, offset: float) -> list[Finding]:
+        """Return what is wrong, given the angle between the axes [deg], the roll [deg] and the distance [mm]."""
+        found = []
+        if axis > 90.0:
+            found.append(self._flip(axis))
+        elif axis > ANGLE_DEG:
+            found.append(self._tilt(axis))
+        elif abs(roll) > ANGLE_DEG:
+            found.append(self._roll(roll))
+        if offset > OFFSET_MM:
+            found.append(self._offset(offset))
+        return found
+
+    def _finding(self, code: str, message: str, hint: str, value: float, limit: float, unit: str) -> Finding:
+        parts = (self.joint.parent, self.joint.child)
+        where = f"joints.{self.joint.name}"
+        return Finding(code=code, where=where, message=message, hint=hint, parts=parts, value=value, limit=limit, unit=unit)
+
+    def _set(self, *keys: str) -> str:
+        """Return the sentence that gives the connector the right values."""
+        values = {"o": self.right.translation, "z": self.right.z_axis, "x": self.right.x_axis}
+        wanted = " and ".join(f"{key} of {self.target} to {_vector(values[key])}" for key in keys)
+        if self.part.derived:
+            return f"set {wanted}, which comes from {self.part.source}: change it there, or what {self.part.name} derives by"
+        return f"set {wanted}"
+
+    def _axes(self) -> tuple[str, ...]:
+        """Return which axes to state: an x that is left to the rule follows by itself."""
+        return ("z",) if self.spec.x is None else ("z", "x")
+
+    def _flip(self, axis: float) -> Finding:
+        mate = self.joint.mate
+        other = Mate.ALIGNED if mate is Mate.OPPOSED else Mate.OPPOSED
+        between = 180.0 - axis if mate is Mate.OPPOSED else axis
+        verb = "agree" if mate is Mate.OPPOSED else "oppose"
+        message = f"z axes of {self.parent} and {self.child} {verb} at rest (angle {between:.1f}°) but mate is {str(mate)!r}."
+        if 180.0 - axis <= ANGLE_DEG:
+            hint = f"Set mate to {str(other)!r}, or {self._set('z')}."
+        else:
+            hint = f"{_capital(self._set(*self._axes()))}."
+        return self._finding("E_MATE_FLIP", message, hint, axis, ANGLE_DEG, "deg")
+
+    def _tilt(self, axis: float) -> Finding:
+        message = f"z axes of {self.parent} and {self.child} are tilted by {axis:.4g}° at rest (mate {str(self.joint.mate)!r})."
+        hint = f"{_capital(self._set(*self._axes()))}."
+        return self._finding("E_MATE_TILT", message, hint, axis, ANGLE_DEG, "deg")
+
+    def _roll(self, roll: float) -> Finding:
+        message = f"x axes of {self.parent} and {self.child} differ by {abs(roll):.1f}° about z: the part would be turned."
+        hint = f"{_capital(self._set('x'))}{self._rest_instead(roll)}."
+        return self._finding("E_MATE_ROLL", message, hint, abs(roll), ANGLE_DEG, "deg")
+
+    def _rest_instead(self, roll: float) -> str:
+        """Return the rest value that would mend a roll, if the joint has one and its limits let it."""
+        field = _TURN_FIELD.get(self.joint.type)
+        if field is None:
+            return ""
+        index = self.joint.type.coordinates.index("angle")
+        rest = math.degrees(self.joint.rest[index]) + (-roll if self.joint.mate is Mate.OPPOSED else roll)
+        low, high = (math.degrees(bound[index]) for bound in (self.joint.limits.lower, self.joint.limits.upper))
+        turns = [rest + turn for turn in (0.0, -360.0, 360.0) if low - ANGLE_DEG <= rest + turn <= high + ANGLE_DEG]
+        return f", or {field} of the joint to {_number(min(max(turns[0], low), high))}" if turns else ""
+
+    def _offset(self, distance: float) -> Finding:
+        wrong = self.actual.translation - self.expected.translation
+        message = (
+            f"{self.parent} and {self.child} are {distance:.4g} mm apart at rest: "
+            f"{self.child} is off by {_vector(wrong)} mm in the assembly's frame."
+        )
+        hint = f"{_capital(self._set('o'))}{self._move_instead(wrong)}{self._travel_instead(wrong)}."
+        return self._finding("E_MATE_OFFSET", message, hint, distance, OFFSET_MM, "mm")
+
+    def _move_instead(self, wrong: FloatArray) -> str:
+        """Return the rest pose that would mend an offset, if the child has one of its own."""
+        child = self.draft.parts[self.joint.child]
+        if not isinstance(child.form, PartSpec) or not isinstance(child.form.rest_pose, Pose) or child.name == self.draft.plan.ground:
+            return ""
+        if any(spec.frame == "assembly" and spec.name == self.joint.child_connector for spec in child.connector_specs):
+            return ""
+        at = np.array(self.draft.evaluation.triple(child.form.rest_pose.at, f"{child.where}.rest_pose", "at"))
+        return f", or rest_pose.at of {child.name} to {_vector(at - wrong)}"
+
+    def _travel_instead(self, wrong: FloatArray) -> str:
+        """Return the rest travel that would mend an offset along the axis, if the limits let it."""
+        field = _SLIDE_FIELD.get(self.joint.type)
+        if field is None:
+            return ""
+        parent_z = (_pose(self.draft, self.joint.parent) @ self.joint.T_parent_connector).z_axis
+        along = float(wrong @ parent_z)
+        if float(np.linalg.norm(wrong - along * parent_z)) > OFFSET_MM:
+            return ""
+        rest, low, high = self.joint.rest[0] + along, self.joint.limits.lower[0], self.joint.limits.upper[0]
+        if not low - OFFSET_MM <= rest <= high + OFFSET_MM:
+            return ""
+        return f", or {field} of the joint to {_number(min(max(rest, low), high))}"
+
+
+def _vector(vector: FloatArray) -> str:
+    return f"({', '.join(_number(float(c)) for c in vector)})"
+
+
+def _number(value: float) -> str:
+    """Return a number as a plan would state it: six digits, no noise of the last bits."""
+    return f"{round(value, 9) + 0.0:.6g}"
+
+
+def _capital(sentence: str) -> str:
+    return sentence[:1].upper() + sentence[1:]

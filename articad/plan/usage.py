@@ -1,0 +1,229 @@
+"""How a plan uses its connectors and derivations: what is legal but hardly meant."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections import defaultdict
+
+import numpy as np
+
+from articad.connectors import FloatArray
+from articad.findings import Finding
+from articad.kinematics.joints import Joint, JointLimits, JointType
+from articad.plan.draft import Draft
+from articad.plan.motions import AXES
+from articad.plan.schema import DerivedJoint
+
+SMALLEST_MM = 0.5  # an assembly below this is in metres or inches
+LARGEST_MM = 1e6  # a kilometre
+_SUITABLE = {  # contracts §2; a type that is not listed takes any kind
+    JointType.REVOLUTE: ("hinge_axis", "shaft_axis", "bore_axis", "gear_axis"),
+    JointType.SLIDER: ("slide_axis", "shaft_axis", "bore_axis"),
+    JointType.CYLINDRICAL: ("shaft_axis", "bore_axis", "slide_axis"),
+    JointType.SCREW: ("thread_axis", "shaft_axis", "bore_axis"),
+    JointType.BALL: ("ball_centre",),
+    JointType.FIXED: ("mount_face",),
+}
+_AXLE_KIND = "shaft_axis"  # an axle carries several parts on one axis
+_CHIRAL = re.compile(
+    r"\b(threads?|threaded|helix|helical|worm|spiral|bevel|lettering|inscription|logo|(?:left|right)-hand(?:ed)?)\b", re.IGNORECASE
+)
+_SIDE = re.compile(r"(?:\b|_)(left|right)(?:\b|_)", re.IGNORECASE)
+_SAME = 1e-9  # rad or mm: limits computed to be the same are the same
+
+Ends = dict[tuple[str, str], list[str]]
+
+
+def usage_findings(draft: Draft) -> list[Finding]:
+    """Return warnings about connectors, mirrored parts and the size of the whole."""
+    ends = _joints_at(draft)
+    return [
+        *_unused(draft, ends),
+        *_shared(draft, ends),
+        *_kinds(draft),
+        *_placed_by_joint(draft),
+        *_chiral(draft),
+        *_sided(draft),
+        *_mirrored_limits(draft),
+        *scale_findings(draft),
+    ]
+
+
+def _joints_at(draft: Draft) -> Ends:
+    """Return the names of the joints at each (part, connector), from names alone."""
+    ends: Ends = defaultdict(list)
+    for form in draft.plan.joints:
+        for reference in (form.parent, form.child):
+            part, connector = reference.split(".")
+            ends[part, connector].append(form.name)
+    return ends
+
+
+def _unused(draft: Draft, ends: Ends) -> list[Finding]:
+    used = {(part.spec.name, connector) for (name, connector) in ends if (part := draft.parts.get(name)) and part.spec}
+    found = []
+    for part in draft.parts.values():
+        if part.derived or len(draft.parts) == 1:
+            continue
+        for spec in part.connector_specs:
+            if (part.name, spec.name) not in used:
+                message = f"No joint uses connector {spec.name!r} of {part.name}."
+                where = f"{part.where}.connectors.{spec.name}"
+                found.append(
+                    Finding(
+                        code="W_CONNECTOR_UNUSED", where=where, message=message, hint="Use it in a joint, or remove it.", parts=(part.name,)
+                    )
+                )
+    return found
+
+
+def _shared(draft: Draft, ends: Ends) -> list[Finding]:
+    found = []
+    for (name, connector), joints in ends.items():
+        part = draft.parts.get(name)
+        spec = next((spec for spec in part.connector_specs if spec.name == connector), None) if part else None
+        if spec is None or len(joints) == 1 or spec.kind == _AXLE_KIND:
+            continue
+        message = f"Joints {' and '.join(joints)} share connector {name}.{connector}."
+        hint = f"This is right for parts on one axle (kind '{_AXLE_KIND}' says so); otherwise declare a connector for each joint."
+        where = f"parts.{name}.connectors.{connector}"
+        found.append(
+            Finding(code="W_DUP_CONNECTOR_USE", where=where, message=message, hint=hint, parts=(name,), value=len(joints), limit=1)
+        )
+    return found
+
+
+def _kinds(draft: Draft) -> list[Finding]:
+    found = []
+    for line in draft.lines:
+        suitable = _SUITABLE.get(JointType(line.root.type))
+        if suitable is None:
+            continue
+        for name, connector in draft.ends(line):
+            part = draft.parts.get(name)
+            if part is None or part.derived:
+                continue
+            spec = next((spec for spec in part.connector_specs if spec.name == connector), None)
+            if spec is not None and spec.kind != "frame" and spec.kind not in suitable:
+                message = f"Connector {name}.{connector} is a {spec.kind}, but joint {line.name!r} is {_an(line.root.type)}."
+                hint = f"Use kind {', '.join(map(repr, suitable))} or 'frame'."
+                where = f"parts.{name}.connectors.{connector}.kind"
+                found.append(Finding(code="W_CONNECTOR_KIND", where=where, message=message, hint=hint, parts=(name,)))
+    return found
+
+
+def _an(noun: str) -> str:
+    return f"{'an' if noun[0] in 'aeio' else 'a'} {noun} joint"
+
+
+def _placed_by_joint(draft: Draft) -> list[Finding]:
+    return [
+        Finding(
+            code="I_REST_AUTO",
+            where=f"joints.{joint}",
+            message=f"{part} is placed by joint {joint!r}, so that joint's rest check is empty.",
+            hint=f"Give {part} a rest_pose with numbers if the check is wanted.",
+            parts=(part,),
+        )
+        for joint, part in draft.auto_joints.items()
+    ]
+
+
+def _chiral(draft: Draft) -> list[Finding]:
+    found = []
+    for part in draft.parts.values():
+        if part.op != "mirror" or part.spec is None:
+            continue
+        texts = [part.spec.description, part.spec.role, *(spec.label for spec in part.connector_specs)]
+        words = [match.group(0) for text in texts if (match := _CHIRAL.search(text))]
+        words += [spec.kind for spec in part.connector_specs if spec.kind == "thread_axis"]
+        if words:
+            message = f"{part.name} mirrors {part.source}, which seems to have a handedness ({', '.join(dict.fromkeys(words))})."
+            hint = "Make it a part of its own, or derive it with op 'rigid', unless the other hand is meant."
+            found.append(Finding(code="W_CHIRAL", where=f"{part.where}.derive", message=message, hint=hint, parts=(part.name,)))
+    for line in draft.lines:
+        if isinstance(line.form, DerivedJoint) and line.form.derive.op == "mirror" and line.root.type == "screw":
+            known = draft.motions.get(line.name)
+            lead = f": its lead is {known.lead:.6g} mm" if known else ""
+            message = f"Joint {line.name!r} mirrors a screw, so its thread has the other hand{lead}."
+            hint = "Declare the joint in full with the hand that the part has, unless the other hand is meant."
+            found.append(Finding(code="W_CHIRAL", where=f"joints.{line.name}.derive", message=message, hint=hint))
+    return found
+
+
+def _sided(draft: Draft) -> list[Finding]:
+    found = []
+    for part in draft.parts.values():
+        if part.op != "mirror":
+            continue
+        sided = [spec.name for spec in part.connector_specs if _SIDE.search(spec.name) or _SIDE.search(spec.label)]
+        if sided:
+            message = f"{part.name} mirrors {part.source} and keeps connectors that say left or right: {', '.join(sided)}."
+            hint = f"Name or label the connectors of {part.source} without a side, or take it that they mean the source's."
+            found.append(Finding(code="I_MIRROR_SIDE", where=f"{part.where}.derive", message=message, hint=hint, parts=(part.name,)))
+    return found
+
+
+def _mirrored_limits(draft: Draft) -> list[Finding]:
+    """Find joints of mirrored parts that repeat the limits of the source's joint although they are not derived from it."""
+    stated = {line.name for line in draft.lines if not isinstance(line.form, DerivedJoint)}
+    by_child = {(joint.child, joint.child_connector): joint for joint in draft.joints}
+    found = []
+    for joint in draft.joints:
+        part = draft.parts[joint.child]
+        if joint.name not in stated or part.op != "mirror" or part.source is None:
+            continue
+        original = by_child.get((part.source, joint.child_connector))
+        if original is None or original.type is not joint.type or not _equal(original.limits, joint.limits):
+            continue
+        symmetric = draft.motions[original.name].mirrored().limits
+        if _equal(symmetric, joint.limits):
+            continue
+        message = f"{part.name} mirrors {part.source}, but the limits of {joint.name!r} equal those of {original.name!r}."
+        needed = _limits_text(joint, symmetric)
+        hint = f'A symmetric motion needs {needed}; or derive the joint: {{"from": "{original.name}", "op": "mirror"}}.'
+        found.append(
+            Finding(code="W_MIRROR_LIMITS", where=f"joints.{joint.name}", message=message, hint=hint, parts=(part.name, part.source))
+        )
+    return found
+
+
+def _equal(a: JointLimits, b: JointLimits) -> bool:
+    rows = [*a.lower, *a.upper, *(a.twist or ())], [*b.lower, *b.upper, *(b.twist or ())]
+    return len(rows[0]) == len(rows[1]) and np.allclose(*rows, rtol=0.0, atol=_SAME)
+
+
+def _limits_text(joint: Joint, limits: JointLimits) -> str:
+    rows = [
+        (axis.range, low, high, axis.unit == "deg")
+        for axis, low, high in zip(AXES[joint.type], limits.lower, limits.upper, strict=True)
+        if math.isfinite(low) and math.isfinite(high)
+    ]
+    if limits.twist is not None:
+        rows.append(("twist_deg", *limits.twist, True))
+    scaled = [(name, *(math.degrees(bound) if turns else bound for bound in (low, high))) for name, low, high, turns in rows]
+    return ", ".join(f"{name} [{low + 0.0:.6g}, {high + 0.0:.6g}]" for name, low, high in scaled)
+
+
+def scale_findings(draft: Draft) -> list[Finding]:
+    """Return E_SCALE if the assembly's diagonal is that of a grain of dust or of a county."""
+    origins = [
+        part.T.apply(connector.frame.translation)
+        for part in draft.parts.values()
+        if part.T is not None
+        for connector in part.connectors.values()
+    ]
+    diagonals = [math.hypot(*sides) for sides in draft.envelopes.values() if not any(map(math.isnan, sides))]
+    size = max([_extent(np.array(origins)) if origins else 0.0, *diagonals])
+    if size == 0.0 or SMALLEST_MM <= size <= LARGEST_MM:
+        return []
+    small = size < SMALLEST_MM
+    hint = "Lengths are millimetres: were metres given?" if small else "Lengths are millimetres: were micrometres given?"
+    message = f"The assembly is {size:.6g} mm across."
+    limit = SMALLEST_MM if small else LARGEST_MM
+    return [Finding(code="E_SCALE", where="plan", message=message, hint=hint, value=size, limit=limit, unit="mm")]
+
+
+def _extent(points: FloatArray) -> float:
+    return float(np.linalg.norm(points.max(axis=0) - points.min(axis=0)))
