@@ -14,6 +14,7 @@ import threading
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from contextvars import ContextVar
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
@@ -190,20 +191,20 @@ class LLM(Protocol):
 # ---------------------------------------------------------------------- the kill switch
 
 
-_closed_because: list[str] = []
+_closed_because: ContextVar[str | None] = ContextVar("_closed_because", default=None)
 
 
 @contextmanager
 def closed_port(reason: str) -> Iterator[None]:
-    """Refuse every live call, of every thread, until the block ends.
+    """Refuse live calls from this thread until the block ends.
 
-    Assembly and checks run under it: they are deterministic, and this proves it.
+    Assembly and checks run under it: they are deterministic, and this holds them to it. Other runs in the same process go on.
     """
-    _closed_because.append(reason)
+    token = _closed_because.set(reason)
     try:
         yield
     finally:
-        _closed_because.remove(reason)
+        _closed_because.reset(token)
 
 
 def require_open_port() -> None:
@@ -212,8 +213,9 @@ def require_open_port() -> None:
     Raises:
         TransportError: If a `closed_port` block is running.
     """
-    if _closed_because:
-        raise transport_error("E_TRANSPORT", f"No model may be called now: {_closed_because[-1]}.", "Use Scripted or Replay here.")
+    reason = _closed_because.get()
+    if reason is not None:
+        raise transport_error("E_TRANSPORT", f"No model may be called now: {reason}.", "Use Scripted or Replay here.")
 
 
 def transport_error(code: str, message: str, hint: str, *, where: str = "llm") -> TransportError:

@@ -1,0 +1,132 @@
+"""Design: from requirements to a plan that passes every check, before any geometry."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterable
+from typing import Any, Final
+
+from articad.agents.llm import LLM, Message, Request, assistant, system, user
+from articad.agents.prompts import prompt, prompt_file
+from articad.agents.replies import object_text
+from articad.agents.requirements import Requirements, pictures_of
+from articad.errors import OutputError, PlanError
+from articad.findings import Finding, Findings
+from articad.plan.check import check_plan
+from articad.plan.schema import AssemblyPlan
+from articad.run import RunRequest
+
+TRIES: Final = 5  # answers until a plan validates; the findings of each go back
+SHOWN_FINDINGS: Final = 40  # more at once is not read; the next answer brings the rest
+ROLE: Final = "design"
+
+Tell = Callable[[AssemblyPlan | None, Findings], None]
+"""Told of each answer: the plan, if it could be read, and what was found in it."""
+
+
+def response_schema() -> dict[str, Any]:
+    """Return the JSON schema of a reply: the plan's top level only.
+
+    Providers differ in what depth and which unions they take; the prompt teaches the whole form, and `check_plan` holds it.
+    """
+    text, items = {"type": "string"}, {"type": "array", "items": {"type": "object"}}
+    properties = {
+        "schema": {"type": "string", "enum": ["articad.plan/1"]},
+        "name": text,
+        "description": text,
+        "ground": text,
+        "freedoms": {"type": "integer"},
+        "tree": {"type": "boolean"},
+        **dict.fromkeys(("parameters", "materials", "parts", "joints", "couplings", "allow"), items),
+        "assumptions": {"type": "array", "items": text},
+    }
+    return {
+        "type": "object",
+        "properties": properties,
+        "required": ["schema", "name", "ground", "freedoms", "materials", "parts", "joints"],
+    }
+
+
+class Designer:
+    """Designs one product: the first plan, and new versions of it when geometry shows what was wrong.
+
+    Args:
+        request: What the user asked for.
+        requirements: How it was understood.
+        llm: Who designs.
+        tries: Answers until a plan must validate.
+        tell: Told of each answer.
+    """
+
+    def __init__(self, request: RunRequest, requirements: Requirements, llm: LLM, *, tries: int = TRIES, tell: Tell | None = None) -> None:
+        self._llm = llm
+        self._tries = tries
+        self._tell = tell or (lambda _plan, _findings: None)
+        self._answered = 0
+        self._said = ""
+        self._opening = (system(_instructions()), user(_task(request, requirements), *pictures_of(request)))
+
+    def first(self) -> AssemblyPlan:
+        """Return a plan that has no errors.
+
+        Raises:
+            PlanError: If the last answer still has errors; it holds them.
+            OutputError: If the last answer is no plan at all.
+        """
+        return self._until_valid(self._opening)
+
+    def again(self, plan: AssemblyPlan, findings: Iterable[Finding]) -> AssemblyPlan:
+        """Return another plan, after the parts of this one were built and findings came up.
+
+        Raises:
+            PlanError, OutputError: As `first`.
+        """
+        return self._until_valid(
+            (*self._opening, assistant(self._said or plan.dumps()), user(prompt("redesign", findings=listed(findings))))
+        )
+
+    def _until_valid(self, messages: tuple[Message, ...]) -> AssemblyPlan:
+        for number in range(1, self._tries + 1):
+            self._answered += 1
+            step = f"design/{self._answered}"
+            reply = self._llm.complete(Request(ROLE, step, messages, response_schema()))
+            self._said = reply.text
+            plan, findings, problem = _judged(reply.text, step)
+            self._tell(plan, findings)
+            if plan is not None and findings.ok:
+                return plan
+            if number == self._tries:
+                raise problem or PlanError(f"No valid plan in {self._tries} answers.\n{findings}", findings=findings)
+            complaint = prompt("form_repair", problem=problem.message) if problem else prompt("design_repair", findings=listed(findings))
+            messages = (*self._opening, assistant(reply.text), user(complaint))
+        raise AssertionError("the last try either returns or raises")
+
+
+def listed(findings: Iterable[Finding]) -> str:
+    """Return findings as a list for a prompt: what is wrong where, and what would be right."""
+    several = tuple(findings)
+    lines = [f"- {finding}" for finding in several[:SHOWN_FINDINGS]]
+    if len(several) > SHOWN_FINDINGS:
+        lines.append(f"- … and {len(several) - SHOWN_FINDINGS} more, likely of the same causes.")
+    return "\n".join(lines)
+
+
+def _judged(text: str, step: str) -> tuple[AssemblyPlan | None, Findings, OutputError | None]:
+    """Return the plan of a reply, what is to be said of it, and the problem if it is not even JSON."""
+    try:
+        plan = AssemblyPlan.loads(object_text(text, step=step))
+    except OutputError as error:
+        return None, error.findings, error
+    except PlanError as error:
+        return None, error.findings, None
+    return plan, check_plan(plan), None
+
+
+def _instructions() -> str:
+    return prompt("design", example=prompt_file("sewing_box.json"))
+
+
+def _task(request: RunRequest, requirements: Requirements) -> str:
+    analysis = json.dumps({name: value for name, value in requirements.to_json().items() if name != "schema"}, indent=1, ensure_ascii=False)
+    words = request.prompt.strip() or "(no words; see the pictures)"
+    return f"The customer's request:\n\n{words}\n\nIts analysis:\n\n```json\n{analysis}\n```"

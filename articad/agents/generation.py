@@ -1,0 +1,189 @@
+"""Generation: one part, from its entry in the plan to a solid that keeps its contract.
+
+A request depends on the part's own entry, its own connectors and the kernel: never on another part.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any, Final
+
+from articad.agents.llm import LLM, Image, Message, Request, assistant, system, user
+from articad.agents.prompts import prompt, prompt_file
+from articad.agents.replies import parse_script
+from articad.connectors.connector import Connector
+from articad.errors import BuildError, ContractError, KernelError, OutputError
+from articad.findings import Finding, Findings
+from articad.kernels.parts import RealisedPart
+from articad.plan.brief import brief
+from articad.plan.resolve import ResolvedPlan
+from articad.run import Run
+
+ROLE: Final = "part"
+REPAIRS: Final = 3
+ATTEMPT_SCHEMA: Final = "articad.attempt/1"
+_DIGITS = 6  # decimals of mm in a prompt: the last bits of a cosine differ between machines
+_SHOWN_CHARACTERS = 6000  # of a failure; tracebacks hold the script's own frames only, so this is rarely reached
+_EXAMPLES: Final = {"build123d": "lid_left.txt"}
+
+Build = Callable[[str, bytes], RealisedPart]
+"""Builds the script of a part, or raises `KernelError`."""
+
+Picture = Callable[[KernelError], Image | None]
+"""Draws what a failed script had made so far, if anything."""
+
+
+@dataclass(frozen=True)
+class Attempt:
+    """An answer that did not do: what was said, what was wrong with it, and a picture of how far it came."""
+
+    said: str
+    failure: str
+    picture: Image | None = None
+
+
+class Modeller:
+    """Writes the script of one part.
+
+    Args:
+        resolved: The plan with its numbers; only the part's own entry is read.
+        name: The part.
+        llm: Who writes.
+        run: Keeps the attempts that failed, and knows those of a run that was interrupted.
+        build: Builds a script and holds it to its contract.
+        kernel: Name of the kernel: the dialect of the script.
+        repairs: How often a failed script may be mended.
+        picture: Draws a failed attempt.
+    """
+
+    def __init__(
+        self,
+        resolved: ResolvedPlan,
+        name: str,
+        *,
+        llm: LLM,
+        run: Run,
+        build: Build,
+        kernel: str = "build123d",
+        repairs: int = REPAIRS,
+        picture: Picture | None = None,
+    ) -> None:
+        self._name, self._llm, self._run, self._build = name, llm, run, build
+        self._repairs = repairs
+        self._picture = picture
+        pictures = tuple(Image(image.content, image.media_type) for image in run.request.images if image.part == name)
+        self._opening = opening(resolved, name, kernel, pictures)
+
+    def make(self, *, answered: int = 0, previous: Attempt | None = None) -> tuple[RealisedPart, int]:
+        """Return the part as built, and the number of answers it took.
+
+        Args:
+            answered: Answers that were given before: the address of the next one follows.
+            previous: The last of these, and what is wrong with it.
+
+        Raises:
+            BuildError, ContractError, OutputError: As the last answer failed, when all repairs are used up.
+        """
+        for number in range(answered + 1, answered + self._repairs + 2):
+            step = f"part/{self._name}/{number}"
+            reply = self._llm.complete(Request(ROLE, step, messages_after(self._opening, previous)))
+            try:
+                return self._attempted(reply.text, step, number), number
+            except (KernelError, OutputError) as error:
+                if number == answered + self._repairs + 1:
+                    raise
+                drawn = self._picture(error) if self._picture is not None and isinstance(error, KernelError) else None
+                previous = Attempt(reply.text, failure_text(error), drawn)
+        raise AssertionError("the last try either returns or raises")
+
+    def _attempted(self, said: str, step: str, number: int) -> RealisedPart:
+        script = parse_script(said, step=step)
+        mark = hashlib.sha256(script).hexdigest()
+        known = self._run.attempt(self._name, number)
+        if known is not None and known["script"] == mark:  # an interrupted run has built it before, in vain
+            raise _remembered(known, self._name)
+        try:
+            return self._build(self._name, script)
+        except (BuildError, ContractError) as error:
+            outcome = {"schema": ATTEMPT_SCHEMA, "script": mark, "message": error.message, "findings": error.findings.to_json()["findings"]}
+            trace = {"line": error.line, "traceback": error.traceback} if isinstance(error, BuildError) else {}
+            self._run.save_attempt(self._name, number, script=script, outcome=outcome | trace)
+            self._run.trace("build", part=self._name, attempt=number, ok=False, codes=list(error.findings.codes))
+            raise
+
+
+def opening(resolved: ResolvedPlan, name: str, kernel: str, pictures: tuple[Image, ...] = ()) -> tuple[Message, ...]:
+    """Return what a part's engineer is told first: the contract of a script, and the part's own entry."""
+    instructions = prompt(f"part_{kernel}", example=prompt_file(_EXAMPLES[kernel]))
+    shown = f"\n\n{len(pictures)} picture(s) of the part follow." if pictures else ""
+    return (system(instructions), user(f"The specification:\n\n{specification(resolved, name)}{shown}", *pictures))
+
+
+def messages_after(first: tuple[Message, ...], previous: Attempt | None) -> tuple[Message, ...]:
+    """Return the conversation that asks for a script, or for a better one than the previous."""
+    if previous is None:
+        return first
+    complaint = prompt("part_repair", failure=previous.failure)
+    if previous.picture is None:
+        return (*first, assistant(previous.said), user(complaint))
+    return (*first, assistant(previous.said), user(f"{complaint}\n\nA picture of what the script had made:", previous.picture))
+
+
+def specification(resolved: ResolvedPlan, name: str) -> str:
+    """Return a part's entry in the plan as its engineer reads it, with numbers; other parts are not named."""
+    target, told = resolved.parts[name], brief(resolved, name)
+    lines = [f"name: {name}", f"material: {target.material.name}"]
+    lines += [f"{field}: {text}" for field, text in (("role", target.role), ("orientation", target.orientation)) if text]
+    lines += ["", "description:", target.description, "", "dimensions:" if told["dimensions"] else "dimensions: none"]
+    lines += [f"- {dimension} = {_number(value)}" for dimension, value in told["dimensions"].items()]
+    envelope = told["envelope_mm"]
+    lines += ["", f"envelope_mm: {'not given' if envelope is None else ' x '.join(map(_number, envelope))}", "", "connectors:"]
+    for connector, frame in told["connectors"].items():
+        lines.append(_connector_line(target.connectors[connector], frame))
+    return "\n".join(lines)
+
+
+def failure_text(error: KernelError | OutputError) -> str:
+    """Return what went wrong as its author is told: no path, no address, no time."""
+    lines = [error.message] if isinstance(error, BuildError) or not error.findings else []
+    if isinstance(error, BuildError) and error.traceback:
+        lines += ["", error.traceback.strip(), ""]
+    if not isinstance(error, OutputError):
+        shown = [str(finding) for finding in error.findings if finding.severity != "info"]
+        lines += [f"- {text}" for text in shown if error.message not in text or len(shown) > 1]
+    else:
+        lines = [f"It could not be read: {error.message}"]
+    return "\n".join(lines).strip()[:_SHOWN_CHARACTERS]
+
+
+def _connector_line(connector: Connector, frame: Mapping[str, Any]) -> str:
+    axes = [f"{axis} = {_vector(frame[axis])}" for axis in ("o", "z", "x") if axis != "x" or not connector.roll_free]
+    line = f"- {connector.name} ({connector.kind}): {', '.join(axes)}{'; x is free' if connector.roll_free else ''}; {connector.label}"
+    for joint in frame["joints"]:
+        limits = ", ".join(
+            f"{field} {bounds if isinstance(bounds, str) else _vector(bounds)}" for field, bounds in joint["limits"].items() if bounds
+        )
+        fit = f", fit {joint['fit']}" if joint["fit"] else ""
+        side = "the part moves" if joint["side"] == "child" else "the other part moves"
+        line += f"\n  {joint['type']} joint{f', {side}' if limits else ''}{f': {limits}' if limits else ''}{fit}"
+    return line
+
+
+def _vector(values: Any) -> str:
+    return f"({', '.join(map(_number, values))})" if isinstance(values, (list, tuple)) else _number(values)
+
+
+def _number(value: float) -> str:
+    rounded = round(value, _DIGITS)
+    return str(int(rounded)) if rounded == int(rounded) else repr(rounded)
+
+
+def _remembered(known: Mapping[str, Any], name: str) -> KernelError:
+    """Return the error of an attempt that an earlier process made."""
+    entries = ({key: value for key, value in stored.items() if key != "severity"} for stored in known["findings"])
+    findings = Findings(Finding(**entry | {"parts": tuple(entry["parts"])}) for entry in entries)
+    if "traceback" in known:
+        return BuildError(known["message"], line=known["line"], traceback=known["traceback"], findings=findings, parts=(name,))
+    return ContractError(known["message"], findings=findings, parts=(name,))
