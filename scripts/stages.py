@@ -62,6 +62,7 @@ STAGES: dict[str, Callable[[], Outcome]] = {
     "imports": _command("-c", "import sys; from importlinter.cli import lint_imports_command; sys.exit(lint_imports_command())"),
     "packages": _command("-m", "pip", "--disable-pip-version-check", "check"),
     "tests": _tests,
+    "tables": _command("scripts/tables.py", "--check"),
     "docs": _command("-m", "mkdocs", "build", "--strict", "--quiet"),
 }
 

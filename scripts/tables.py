@@ -1,0 +1,81 @@
+"""Writes the pages of docs/reference that are tables of the code: findings and losses. `--check` only compares."""
+
+from __future__ import annotations
+
+import re
+import sys
+from itertools import groupby
+from pathlib import Path
+
+from articad.codes import CODES
+from articad.export.losses import TABLE
+
+REFERENCE = Path(__file__).resolve().parent.parent / "docs" / "reference"
+NOTE = "<!-- Written by scripts/tables.py from the code; edit that. -->\n"
+SEVERITIES = {"E": "error", "W": "warning", "I": "info"}
+
+
+def findings() -> str:
+    """Return the page of all findings."""
+    lines = [
+        "# Findings",
+        "",
+        NOTE,
+        "A check returns all its findings at once, as values: `code`, `severity`, `stage`, `where`, `message`, `hint`, the `value` that was measured and the",
+        "`limit` it was held against, the `parts` concerned, and who must act: the plan's author (*design*) or the part script's (*code*). The first letter of a",
+        "code is its severity: `E_` error, `W_` warning, `I_` info. A report is `ok` when it has no error and everything that was asked for was done.",
+        "",
+        "As JSON (`articad.findings/1`):",
+        "",
+        "```json",
+        '{"code": "E_MATE_ROLL", "severity": "error", "stage": "plan", "where": "joints.hinge_right",',
+        ' "parts": ["cabinet", "door_right"], "value": 180.0, "limit": 0.05, "unit": "deg",',
+        ' "message": "x axes of cabinet.hinge_right and door_right.hinge differ by 180.0° about z.",',
+        ' "hint": "Set x of cabinet.hinge_right to (-1, 0, 0).", "cause": null, "route": "design", "pose": null}',
+        "```",
+    ]
+    order = list(dict.fromkeys(code.stage for code in CODES.values()))
+    entries = sorted(CODES.items(), key=lambda entry: order.index(entry[1].stage))
+    for stage, group in groupby(entries, key=lambda entry: entry[1].stage):
+        lines += ["", f"## {stage.capitalize()}", "", "| code | severity | who acts | what | what to do |", "|---|---|---|---|---|"]
+        for name, code in group:
+            lines.append(f"| `{name}` | {SEVERITIES[name[0]]} | {code.route or ''} | {code.meaning} | {code.remedy} |")
+    return "\n".join(lines) + "\n"
+
+
+def losses() -> str:
+    """Return the page of what each format holds and loses."""
+    lines = [
+        "# Formats and their losses",
+        "",
+        NOTE,
+        "What each feature of an assembly becomes in each format, and what a reader that does not know articad's metadata does not see. An export reports the rows",
+        "that concern it; with `strict` it refuses those marked so, where motion, mass or shape would change. What has no entry in *lost* is held exactly.",
+    ]
+    for format_name in ("urdf", "mjcf"):
+        lines += ["", f"## {format_name.upper()}", "", "| feature | becomes | lost | strict |", "|---|---|---|---|"]
+        for key, rows in TABLE.items():
+            if format_name in rows:
+                row = rows[format_name]
+                lines.append(f"| `{key}` | {row.becomes} | {row.lost} | {'refused' if row.refused else ''} |")
+    lines[5:] = [re.sub(r"<\w+>", r"`\g<0>`", line) for line in lines[5:]]  # a tag in a cell is text, not HTML
+    return "\n".join(lines) + "\n"
+
+
+PAGES = {"findings.md": findings, "losses.md": losses}
+
+
+def main(arguments: list[str]) -> int:
+    """Write the pages, or say which are not up to date."""
+    stale = [name for name, page in PAGES.items() if not (REFERENCE / name).is_file() or (REFERENCE / name).read_text() != page()]
+    if "--check" in arguments:
+        if stale:
+            print(f"not up to date: {', '.join(stale)}; run .venv/bin/python scripts/tables.py", file=sys.stderr)
+        return 1 if stale else 0
+    for name in stale:
+        (REFERENCE / name).write_text(PAGES[name]())
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
