@@ -30,6 +30,7 @@ from articad.plan.schema import (
 )
 
 Operation = Literal["mirror", "rigid", "pattern"]
+End = tuple[str, str]  # names of a part and of its connector
 
 MAX_COUNT = 1000  # a pattern of more is a slip of the pen, and would take the memory that the plan is read into
 _NORMAL_ZERO = 1e-9  # length below which a normal has no direction, as in articad.connectors
@@ -219,6 +220,12 @@ class JointLine:
     form: JointSpec | DerivedJoint
     root: JointSpec
     mirrored: bool
+
+    @property
+    def ends(self) -> tuple[End, End]:
+        """Part and connector names of the parent's and the child's side."""
+        (parent, parent_connector), (child, child_connector) = self.form.parent.split("."), self.form.child.split(".")
+        return (parent, parent_connector), (child, child_connector)
 
 
 def trace_joints(plan: AssemblyPlan, parts: Mapping[str, DraftPart], evaluation: Evaluation) -> list[JointLine]:

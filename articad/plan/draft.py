@@ -9,25 +9,23 @@ from functools import cached_property
 
 import numpy as np
 
-from articad.connectors import SE3, Mate, child_pose, parent_pose
+from articad.connectors import SE3, Mate
 from articad.errors import PlanError, did_you_mean
 from articad.findings import Findings
 from articad.kinematics.graph import JointGraph
 from articad.kinematics.joints import Coupling, Joint, JointLimits, JointType
 from articad.kinematics.tree import KinematicTree
-from articad.plan import frames
 from articad.plan.couplings import TiedCoordinate, couple
-from articad.plan.derive import DraftPart, JointLine, expand, inherit, place, trace, trace_joints
+from articad.plan.derive import DraftPart, expand, trace, trace_joints
 from articad.plan.evaluation import Evaluation
 from articad.plan.joint_forms import Contact
 from articad.plan.motions import Motion, checked_fit, motion
-from articad.plan.schema import AssemblyPlan, Material, PartSpec, Pose
+from articad.plan.placing import Placing
+from articad.plan.schema import AssemblyPlan, Material, PartSpec
 
 _IDENTITY = SE3.identity()
 _WHOLE_TOLERANCE = 1e-9  # a computed count that is off a whole number by rounding is that number
 _SIGNED_PERMUTATION = 1e-9  # how far a reflection's entries may be from 0 and ±1 for a bounding box to keep its sides
-
-End = tuple[str, str]
 
 
 class Draft:
@@ -55,7 +53,7 @@ class Draft:
         self.part_names = [part.name for part in expanded]
         self.parts = {part.name: part for part in reversed(expanded)}  # of two of one name the first counts
         self.parts = {name: self.parts[name] for name in self.part_names}
-        self._in_order = trace(self.parts, self.evaluation)
+        in_order = trace(self.parts, self.evaluation)
         self.lines = trace_joints(plan, self.parts, self.evaluation)
         self.motions: dict[str, Motion] = {}
         self.fits: dict[str, tuple[float | None, float | None, float | None, Contact | None]] = {}
@@ -66,13 +64,14 @@ class Draft:
         self.couplings: list[Coupling] = []
         self.waivers: list[tuple[tuple[str, str], float, str]] = []
         self.parent_joints: dict[str, str] = {}
-        self.auto_joints: dict[str, str] = {}
         self._read_materials()
         self._read_parts()
         self._read_motions()
-        self._tree = self._structure()
-        self._place_parts()
-        self._settle_frames()
+        tree = self._structure()
+        placing = Placing(self.parts, in_order, self.lines, self.motions, tree, self.evaluation)
+        placing.place_parts()
+        placing.settle_frames()
+        self.auto_joints = placing.auto_joints
         self._make_joints()
         self._read_couplings()
         self._read_waivers()
@@ -171,11 +170,6 @@ class Draft:
 
     # ---------------------------------------------------------------- structure
 
-    def ends(self, line: JointLine) -> tuple[End, End]:
-        """Return the part and connector names of a joint's two sides."""
-        (a, b), (c, d) = line.form.parent.split("."), line.form.child.split(".")
-        return (a, b), (c, d)
-
     @cached_property
     def graph(self) -> JointGraph:
         """The joint graph of names alone: frames and numbers may still be broken."""
@@ -231,133 +225,12 @@ class Draft:
                     message = f"Joint {form.name!r} names connector {connector!r} which part {part_name!r} does not have."
                     self.evaluation.report("E_CONNECTOR_UNKNOWN", f"joints.{form.name}.{side}", message, hint, parts=(part_name,))
 
-    # ---------------------------------------------------------------- poses and frames
-
-    def _place_parts(self) -> None:
-        """Place every part: stated poses first, then images and parts that hang on a joint, each after what it needs."""
-        for part in self._in_order:
-            if isinstance(part.form, PartSpec) and isinstance(part.form.rest_pose, Pose):
-                part.T = self.evaluation.pose(part.form.rest_pose, f"{part.where}.rest_pose")
-                frames.read_frames(part, self.evaluation)
-        placed: set[str] = set()
-        for part in self._in_order:
-            self._place(part, placed, ())
-
-    def _place(self, part: DraftPart, placed: set[str], path: tuple[str, ...]) -> None:
-        if part.name in placed:
-            return
-        if part.name in path:
-            circle = " -> ".join((*path[path.index(part.name) :], part.name))
-            hint = f"Give {part.name} a rest_pose with numbers."
-            message = f"Parts wait for each other to be placed: {circle}."
-            self.evaluation.report("E_REST_AUTO", f"{part.where}.rest_pose", message, hint, parts=(part.name,))
-            return
-        if part.source is not None:
-            source = self.parts[part.source]
-            self._place(source, placed, (*path, part.name))
-            place(part, source, self.evaluation)
-        elif part.auto:
-            self._place_by_joint(part, placed, (*path, part.name))
-        placed.add(part.name)
-
-    def _place_by_joint(self, part: DraftPart, placed: set[str], path: tuple[str, ...]) -> None:
-        """Place a part with `rest_pose: "auto"` from the joint to its parent in the tree."""
-        where = f"{part.where}.rest_pose"
-        if part.name == self.plan.ground:
-            message = "The ground cannot be placed by a joint: everything else is measured from it."
-            self.evaluation.report("E_REST_AUTO", where, message, "Give the ground a rest_pose, or leave it out.", parts=(part.name,))
-        edge = None if self._tree is None or part.name == self.plan.ground else self._tree.edge(part.name)
-        if edge is None:
-            frames.read_frames(part, self.evaluation)  # for its own faults: it stays unplaced
-            return
-        near = self.parts[edge.parent]
-        self._place(near, placed, path)
-        name = edge.joint.name
-        own, other = (
-            (edge.joint.parent_connector, edge.joint.child_connector)
-            if edge.reversed
-            else (edge.joint.child_connector, edge.joint.parent_connector)
-        )
-        spec = next((spec for spec in part.connector_specs if spec.name == own), None)
-        if spec is not None and spec.frame == "assembly":
-            message = f"{part.name} is placed by joint {name!r}, but its connector {own!r} is given in the assembly's frame."
-            hint = f'Give {own!r} in the part\'s own frame ("frame": "part"), or give {part.name} a rest_pose.'
-            self.evaluation.report("E_REST_AUTO", where, message, hint, parts=(part.name,))
-            return
-        frames.read_frames(part, self.evaluation)
-        frames.settle_alone(part, [own])
-        C_near, C_own, known = self._connector_pose(near, other), self._connector_pose(part, own), self.motions.get(name)
-        if near.T is not None and C_near is not None and C_own is not None and known is not None:
-            J, mate = known.type.motion(known.rest, known.lead), self._mate(name)
-            if edge.reversed:
-                part.T = parent_pose(near.T, C_own, J, mate, C_near)
-            else:
-                part.T = child_pose(near.T, C_near, J, mate, C_own)
-            part.frames.clear()  # read again, now that connectors in the assembly's frame can be placed
-            frames.read_frames(part, self.evaluation)
-            frames.settle_alone(part, [own])
-        self.auto_joints[name] = part.name
-
-    def _connector_pose(self, part: DraftPart, name: str) -> SE3 | None:
-        """Return a connector in its part's frame before all frames are settled: a missing x is the world axis."""
-        root = part
-        while root.source is not None:
-            root = self.parts[root.source]
-        frames.settle_alone(root, [name])
-        frame = root.frames.get(name)
-        if frame is None or frame.x is None:
-            return None
-        pose = SE3.from_rotation(np.stack([frame.x, np.cross(frame.z, frame.x), frame.z], axis=-1), frame.o)
-        return self._image(part, pose)
-
-    def _image(self, part: DraftPart, pose: SE3) -> SE3 | None:
-        """Return a frame of the root part as it is on an image of that part."""
-        if part.source is None:
-            return pose
-        inner = self._image(self.parts[part.source], pose)
-        if inner is None or part.op != "mirror":
-            return inner
-        return None if part.S is None else SE3.from_matrix(part.S @ inner.matrix @ np.diag([1.0, -1.0, 1.0, 1.0]))
-
-    def _settle_frames(self) -> None:
-        """Choose every x that is not stated (rule 3), and finish all connectors."""
-        links = {line.name: self._link(line) for line in self.lines}
-        plain: list[frames.Link] = []
-        rest: list[frames.Link] = []
-        for line in self.lines:
-            ends = self.ends(line)
-            derived = any(part in self.parts and self.parts[part].derived for part, _ in ends)
-            (rest if derived else plain).append(links[line.name])
-        frames.settle(plain, self.parts)
-        for part in self._in_order:
-            if part.source is not None and not self.parts[part.source].derived:
-                frames.settle_alone(self.parts[part.source])
-        own = [part for part in self._in_order if not part.derived]
-        sources = {part.source for part in self._in_order if part.source is not None}
-        frames.finish(part for part in own if part.name in sources)
-        for part in self._in_order:
-            if part.source is not None:
-                inherit(part, self.parts[part.source])
-        frames.settle(rest, self.parts)
-        others = [part for part in own if part.name not in sources]
-        for part in others:
-            frames.settle_alone(part)
-        frames.finish(others)
-
-    def _link(self, line: JointLine) -> frames.Link:
-        parent, child = self.ends(line)
-        known = self.motions.get(line.name)
-        return frames.Link(parent, child, known.turn_at_rest if known else 0.0)
-
-    def _mate(self, joint: str) -> Mate:
-        return Mate(next(line.root.mate for line in self.lines if line.name == joint))
-
     # ---------------------------------------------------------------- joints, couplings, waivers
 
     def _make_joints(self) -> None:
         for line in self.lines:
             known = self.motions.get(line.name)
-            (parent, parent_connector), (child, child_connector) = self.ends(line)
+            (parent, parent_connector), (child, child_connector) = line.ends
             C_p, C_c = (
                 self.parts[part].connectors.get(connector) if part in self.parts else None
                 for part, connector in ((parent, parent_connector), (child, child_connector))

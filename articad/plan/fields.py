@@ -128,33 +128,34 @@ def _wrong(form: str) -> PydanticCustomError:
     return PydanticCustomError("plan_form", "expected {form}", {"form": form})
 
 
-_NUMBER_SCHEMA = {"$ref": "#/$defs/Number"}
+SHARED = "x-articad-shared"  # stands for "$ref" until the schema is complete: pydantic follows those itself
+_NUMBER_SCHEMA = {SHARED: "Number"}
 _PAIR_SCHEMA = {"type": "array", "items": _NUMBER_SCHEMA, "minItems": 2, "maxItems": 2}
 
-Name = Annotated[str, PlainValidator(_name), WithJsonSchema({"$ref": "#/$defs/Name"})]
+Name = Annotated[str, PlainValidator(_name), WithJsonSchema({SHARED: "Name"})]
 Number = Annotated[float | str, PlainValidator(_number), WithJsonSchema(_NUMBER_SCHEMA)]
 Text = Annotated[str, PlainValidator(_text), WithJsonSchema({"type": "string"})]
 Truth = Annotated[bool, PlainValidator(_truth), WithJsonSchema({"type": "boolean"})]
 Whole = Annotated[int, PlainValidator(_whole), WithJsonSchema({"type": "integer", "minimum": 0})]
 Color = Annotated[str, PlainValidator(_color), WithJsonSchema({"type": "string", "pattern": "^#[0-9a-fA-F]{6}$"})]
-Reference = Annotated[str, PlainValidator(_reference((2,), "part.connector in quotes")), WithJsonSchema({"$ref": "#/$defs/Reference"})]
+Reference = Annotated[str, PlainValidator(_reference((2,), "part.connector in quotes")), WithJsonSchema({SHARED: "Reference"})]
 CoordinateName = Annotated[
     str,
     PlainValidator(_reference((1, 2), "the name of a joint, or joint.travel or joint.angle of a cylindrical one")),
     WithJsonSchema({"type": "string"}),
 ]
-Vector = Annotated[tuple[Number, Number, Number], _listed(3, "three numbers [x, y, z]"), WithJsonSchema({"$ref": "#/$defs/Vector"})]
-Interval = Annotated[tuple[Number, Number], _listed(2, "[lower, upper]"), WithJsonSchema({"$ref": "#/$defs/Interval"})]
+Vector = Annotated[tuple[Number, Number, Number], _listed(3, "three numbers [x, y, z]"), WithJsonSchema({SHARED: "Vector"})]
+Interval = Annotated[tuple[Number, Number], _listed(2, "[lower, upper]"), WithJsonSchema({SHARED: "Interval"})]
 NumberPair = Annotated[tuple[Number, Number], _listed(2, "two numbers [a, b]"), WithJsonSchema(_PAIR_SCHEMA)]
 Range = Annotated[
     tuple[Number, Number] | Literal["endless"],
     PlainValidator(_range_or_endless),
-    WithJsonSchema({"anyOf": [{"$ref": "#/$defs/Interval"}, {"const": "endless"}]}),
+    WithJsonSchema({"anyOf": [{SHARED: "Interval"}, {"const": "endless"}]}),
 ]
 NamePair = Annotated[
     tuple[Name, Name],
     _listed(2, "the names of two parts [a, b]"),
-    WithJsonSchema({"type": "array", "items": {"$ref": "#/$defs/Name"}, "minItems": 2, "maxItems": 2}),
+    WithJsonSchema({"type": "array", "items": {SHARED: "Name"}, "minItems": 2, "maxItems": 2}),
 ]
 CoordinatePair = Annotated[
     tuple[CoordinateName, CoordinateName],

@@ -100,7 +100,7 @@ def _kinds(draft: Draft) -> list[Finding]:
         suitable = _SUITABLE.get(JointType(line.root.type))
         if suitable is None:
             continue
-        for name, connector in draft.ends(line):
+        for name, connector in line.ends:
             part = draft.parts.get(name)
             if part is None or part.derived:
                 continue
@@ -202,8 +202,11 @@ def _limits_text(joint: Joint, limits: JointLimits) -> str:
     ]
     if limits.twist is not None:
         rows.append(("twist_deg", *limits.twist, True))
-    scaled = [(name, *(math.degrees(bound) if turns else bound for bound in (low, high))) for name, low, high, turns in rows]
-    return ", ".join(f"{name} [{low + 0.0:.6g}, {high + 0.0:.6g}]" for name, low, high in scaled)
+    texts = []
+    for name, low, high, turns in rows:
+        scale = math.degrees(1.0) if turns else 1.0
+        texts.append(f"{name} [{low * scale + 0.0:.6g}, {high * scale + 0.0:.6g}]")
+    return ", ".join(texts)
 
 
 def scale_findings(draft: Draft) -> list[Finding]:
