@@ -301,6 +301,15 @@ CODES: dict[str, Code] = {
     "W_DIMENSION_UNUSED": Code(
         "build", "code", "A stated dimension does not change the part.", "Use the dimension in the script, or remove it from the plan."
     ),
+    "W_DIMENSION_REFUSED": Code(
+        "build",
+        "code",
+        "The script itself refuses a small change of a dimension.",
+        "Let the script accept what can be built, or derive dependent dimensions in the plan.",
+    ),
+    "W_BUILD_UNCHECKED": Code(
+        "build", "code", "A check of the built part was not finished in time.", "Simplify the part, or give the kernel more time."
+    ),
     "E_SANDBOX": Code(
         "build",
         None,
@@ -336,6 +345,9 @@ CODES: dict[str, Code] = {
     ),
     "I_WAIVED": Code("interference", None, "An overlap is allowed by a waiver of the plan.", "Nothing, while the reason holds."),
     "E_NOT_CHECKED": Code("interference", None, "A check that was asked for was not done.", "Give it a larger budget, or what it needs."),
+    "W_NOT_CERTIFIED": Code(
+        "motion", "design", "Two parts touch too closely for their motion to be proven free; it was sampled.", "Give them a clearance."
+    ),
     "E_FIT_TIGHT": Code("fit", "code", "A joint's gap is smaller than its fit.", "Enlarge the bore or thin the pin by the named amount."),
     "E_FIT_LOOSE": Code("fit", "code", "A joint's gap is larger than its fit.", "Narrow the bore or thicken the pin by the named amount."),
     "E_FIT_CONTACT": Code(

@@ -30,6 +30,7 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Iterable
+from pathlib import Path
 
 from articad.findings import Finding, Findings
 
@@ -102,9 +103,10 @@ class DeadPointError(KinematicsError):
 
 
 class KernelError(ArticadError):
-    """A part that could not be built."""
+    """A part that could not be built; `partial` is a folder with the mesh (part.npz) of the solids that its script had, if any."""
 
     default_stage = "build"
+    partial: Path | None = None
 
 
 class BuildError(KernelError):

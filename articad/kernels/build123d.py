@@ -1,0 +1,363 @@
+"""The embedded kernel: part scripts in build123d, from PyPI alone."""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+import json
+import os
+import shutil
+import tempfile
+from collections.abc import Collection, Iterator, Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+from importlib import metadata
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from articad.connectors.connector import Connector
+from articad.connectors.se3 import SE3
+from articad.errors import BuildError, ContractError, KernelError, ReadError, SandboxError
+from articad.findings import Finding, Findings
+from articad.geometry.part import Solid
+from articad.kernels import sandbox as isolation
+from articad.kernels.contract import probe_findings, read_connectors, solid_findings
+from articad.kernels.failures import poisoned, script_failure
+from articad.kernels.kernel import BuiltPart, Inspect
+from articad.kernels.results import PoisonedError, number, numbers, read_bytes, read_lines, read_mesh
+from articad.kernels.zygote import Outcome, Zygote, ZygoteDiedError, ends_by
+
+ANGLE_DEG = 5.0  # of the mesh, where the deflection allows more
+WORKER = 1  # raised when the worker measures or meshes otherwise, so that what it built before is built again
+MESH_VOLUME_SHARE = 1.0  # times area and deflection: by which a mesh's volume may differ from the solid's
+RESULT_FILES = {"npz": "part.npz", "brep": "part.brep", "step": "part.step"}
+_MAGIC = {"brep": b"\nCASCADE Topology", "step": b"ISO-10303-21;"}
+_ATTEMPTS = 2  # a zygote that dies under a job is started again once
+_CRASH_BYTES = 65536
+
+Json = dict[str, Any]
+
+
+@dataclass(frozen=True)
+class _Ran:
+    """What is left of one job: how it ended, what it reported, what it said when it crashed."""
+
+    outcome: Outcome
+    report: list[Json]
+    crash: str
+
+
+class Build123dKernel:
+    """Builds part scripts with build123d in a sandbox. Threads may share one; nothing is started before the first part."""
+
+    name = "build123d"
+
+    def __init__(
+        self,
+        *,
+        sandbox: str | None = None,
+        timeout: float = 60.0,
+        probe_timeout: float = 30.0,
+        memory: int = 3 * 2**30,
+        layers: Collection[str] | None = None,
+    ) -> None:
+        """Choose how scripts are run.
+
+        Args:
+            sandbox: `strict` refuses to run scripts below Landlock or bubblewrap, `weak` does not; by default `$ARTICAD_SANDBOX`, else strict.
+            timeout: Wall clock of a script [s].
+            probe_timeout: Wall clock of its dimension probe [s].
+            memory: Address space of a script [bytes].
+            layers: Isolation to put on, of what is available; all by default. Fewer is for measuring what each one holds.
+        """
+        self.mode = sandbox or os.environ.get("ARTICAD_SANDBOX") or "strict"
+        if self.mode not in ("strict", "weak"):
+            raise SandboxError(f"Unknown sandbox {self.mode!r}; there are strict and weak.")
+        self.limits = isolation.Limits(seconds=timeout, probe_seconds=probe_timeout, memory=memory)
+        self._chosen = layers
+
+    @cached_property
+    def version(self) -> str:
+        """build123d, its OCCT, and the worker's own recipe."""
+        return f"{_version('build123d')}+ocp{_version('cadquery-ocp-novtk')}+worker{WORKER}"
+
+    @property
+    def level(self) -> str:
+        """The isolation that scripts run under."""
+        return isolation.level_of(self._layers)
+
+    @cached_property
+    def _layers(self) -> frozenset[str]:
+        available = isolation.available()
+        return available if self._chosen is None else available & frozenset(self._chosen)
+
+    @cached_property
+    def _zygote(self) -> Zygote:
+        return Zygote(self._layers)
+
+    @cached_property
+    def _scratch(self) -> tempfile.TemporaryDirectory[str]:
+        return tempfile.TemporaryDirectory(prefix="articad-worker-")
+
+    def close(self) -> None:
+        """End the worker's process; the next part starts it again."""
+        self._zygote.close()
+
+    def build(
+        self,
+        script: bytes,
+        brief: Mapping[str, Any],
+        *,
+        folder: Path | None = None,
+        deflection: float = 0.01,
+        probe: bool = True,
+        inspect: Inspect | None = None,
+    ) -> BuiltPart:
+        """Run a script and hold its part to the contract; see `PartKernel.build`."""
+        self._require_sandbox()
+        part, source = str(brief["name"]), script.decode("utf-8", errors="replace")
+        limits = self.limits if probe else replace(self.limits, probe_seconds=0.0)
+        with self._job(source, brief, deflection) as job:
+            ran = self._run("script", job, {"shape": "shape.bin"}, limits)
+            try:
+                if not ran.report or ran.report[0].get("ok") is not True:
+                    error: KernelError = script_failure(part, source, ran.report, ran.outcome, ran.crash, limits)
+                    error.partial = self._pieces(job)
+                    raise error
+                return self._judged(job, brief, ran, folder or self._new_folder(), deflection, inspect)
+            except PoisonedError as poison:
+                raise poisoned(part, source, str(poison)) from poison
+
+    def moved(self, built: BuiltPart, matrix: ArrayLike, folder: Path | None = None) -> BuiltPart:
+        """Return the part under a rigid motion or a reflection `(4, 4)`; see `PartKernel.moved`."""
+        matrix = np.asarray(matrix, dtype=np.float64)
+        assert built.solid.brep is not None
+        with self._job("", built.brief, built.solid.deflection) as job:
+            shutil.copyfile(built.solid.brep, job / "shape.bin")
+            shape = self._measured(job, form="brep", name=str(built.brief.get("name", "part")), matrix=matrix.tolist())
+            mesh_shape = self._checked(job, shape, built.solid.deflection)
+            reflects = np.linalg.det(matrix[:3, :3]) < 0
+            connectors = {
+                name: connector.mirrored(matrix) if reflects else connector.moved(SE3.from_matrix(matrix))
+                for name, connector in built.connectors.items()
+            }
+            target = folder or self._new_folder()
+            self._leave(job, target, mesh_shape, connectors, built.findings, built.brief, built.solid.deflection, built.sandbox)
+        return BuiltPart.load(target)
+
+    def mirror(self, built: BuiltPart, S: ArrayLike) -> BuiltPart:
+        """Return the mirror image under `S (4, 4)`."""
+        return self.moved(built, S)
+
+    def read_step(self, path: Path, deflection: float = 0.01) -> Solid:
+        """Read a STEP file that holds one solid; it is parsed in the sandbox like everything else.
+
+        Raises:
+            ReadError: If it is not STEP or does not hold exactly one valid solid.
+        """
+        self._require_sandbox()
+        folder = self._new_folder()
+        with self._job("", {"name": path.stem}, deflection) as job:
+            try:
+                shutil.copyfile(path, job / "shape.bin")
+                shape = self._measured(job, form="step", name="part", matrix=None)
+                findings = Findings(solid_findings({"name": path.stem}, shape))
+                if not findings.ok:
+                    raise ReadError(f"{path.name}: {findings.errors[0].message}", path=str(path), findings=findings)
+                self._leave(job, folder, self._checked(job, shape, deflection), {}, findings, {"name": path.stem}, deflection, self.level)
+            except (OSError, PoisonedError, BuildError) as error:
+                raise ReadError(f"{path.name} is not a STEP file that can be read: {error}", path=str(path)) from error
+        return BuiltPart.load(folder).solid
+
+    # ------------------------------------------------------------------ one job
+
+    def _require_sandbox(self) -> None:
+        if self.level != isolation.WEAK or self.mode == "weak":
+            return
+        reasons = "; ".join(isolation.missing()) or "neither Landlock nor bubblewrap was chosen"
+        message = f"Part scripts are untrusted code, and this machine has neither Landlock nor bubblewrap ({reasons})."
+        hint = f"{isolation.HOW_TO_GET}; or accept less with --sandbox weak."
+        raise SandboxError(f"{message} {hint}", findings=[Finding(code="E_SANDBOX", where="sandbox", message=message, hint=hint)])
+
+    @contextlib.contextmanager
+    def _job(self, script: str, brief: Mapping[str, Any], deflection: float) -> Iterator[Path]:
+        folder = self._new_folder()
+        job = {"schema": "articad.job/1", "kernel": self.name, "task": "build", "script": script, "part": dict(brief)}
+        try:
+            (folder / "job.json").write_text(json.dumps(job | {"deflection_mm": deflection, "angle_deg": ANGLE_DEG}))
+            yield folder
+        finally:
+            shutil.rmtree(folder, ignore_errors=True)
+
+    def _new_folder(self) -> Path:
+        return Path(tempfile.mkdtemp(dir=self._scratch.name))
+
+    def _run(self, task: str, job: Path, files: Mapping[str, str], limits: isolation.Limits) -> _Ran:
+        """Run one task; `files` maps the task's names to files of the job's folder. A dead zygote is replaced once."""
+        report, crash = f"{task}.report", f"{task}.crash"
+        names = {"job": "job.json", "report": report, "crash": crash} | dict(files)
+        for attempt in range(_ATTEMPTS):
+            for name in (report, crash):
+                (job / name).write_bytes(b"")
+            opened = {name: os.open(job / file, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o600) for name, file in names.items()}
+            try:
+                outcome = self._zygote.run(task, opened, limits)
+                break
+            except ZygoteDiedError as error:
+                if attempt == _ATTEMPTS - 1:
+                    raise KernelError(
+                        "The worker's process was killed twice while it built a part; is the machine out of memory?"
+                    ) from error
+            finally:
+                for descriptor in opened.values():
+                    os.close(descriptor)
+        if outcome.refused:
+            raise KernelError(f"No process could be started for a part: {outcome.refused}.")
+        said = (job / crash).read_bytes()[:_CRASH_BYTES].decode(errors="replace")
+        return _Ran(outcome, read_lines(job / report), said)
+
+    def _measured(self, job: Path, *, form: str, name: str, matrix: list[list[float]] | None) -> Json:
+        """Have a shape measured, meshed and written by a process that ran no script; return its report.
+
+        Raises:
+            BuildError: If the kernel fails on it.
+        """
+        request = json.loads((job / "job.json").read_text()) | {"form": form, "name": name, "matrix": matrix, "script": ""}
+        (job / "job.json").write_text(json.dumps(request))
+        limits = replace(self.limits, probe_seconds=30.0)
+        ran = self._run("measure", job, {"shape": "shape.bin"} | RESULT_FILES, limits)
+        shape: Json = {}
+        for line in ran.report:
+            shape |= line
+        if shape.get("ok") is not True:
+            why = shape.get("message") or ends_by(ran.outcome) or ran.crash
+            finding = Finding(
+                code="E_INVALID_SOLID",
+                where=f"parts.{name}",
+                parts=(name,),
+                message=f"The shape cannot be measured: {str(why)[:200]}.",
+                hint="Simplify the last operation; the kernel cannot work with its result.",
+            )
+            raise BuildError(str(finding), findings=[finding], parts=(name,))
+        return shape
+
+    def _judged(
+        self, job: Path, brief: Mapping[str, Any], ran: _Ran, folder: Path, deflection: float, inspect: Inspect | None
+    ) -> BuiltPart:
+        """Measure what a script left, and hold it to the contract.
+
+        Raises:
+            ContractError: With every breach at once.
+        """
+        part, said = str(brief["name"]), ran.report[0]
+        found: list[Finding] = []
+        connectors = read_connectors(brief, said.get("connectors"), found)
+        shape = self._measured(job, form="bin", name=part, matrix=None)
+        found += solid_findings(brief, shape)
+        if inspect is not None and "bbox_mm" in shape:
+            found += inspect(connectors, numbers(shape["bbox_mm"], 2, 3))
+        if ran.report[1:] or ran.outcome.signal:
+            outcomes = [line["probe"] for line in ran.report[1:] if isinstance(line.get("probe"), dict)]
+            ended = any("probed" in line for line in ran.report)
+            found += probe_findings(brief, outcomes, ended=ended, crashed="" if ended else ends_by(ran.outcome))
+        findings = Findings(found)
+        if not findings.ok:
+            error = ContractError("\n".join(map(str, findings.errors)), findings=findings, parts=(part,))
+            error.partial = self._pieces(job)
+            raise error
+        self._leave(job, folder, self._checked(job, shape, deflection), connectors, findings, brief, deflection, self.level)
+        return BuiltPart.load(folder)
+
+    def _pieces(self, job: Path) -> Path | None:
+        """Return a folder with the mesh of whatever solids a failed script left."""
+        try:
+            if not (job / "shape.bin").stat().st_size:
+                return None
+            request = json.loads((job / "job.json").read_text()) | {"form": "bin"}
+            (job / "job.json").write_text(json.dumps(request))
+            ran = self._run("pieces", job, {"shape": "shape.bin", "npz": "pieces.npz"}, self.limits)
+            if not ran.report or not ran.report[0].get("solids"):
+                return None
+            content = read_bytes(job / "pieces.npz")
+            read_mesh(content)
+        except (OSError, PoisonedError, KernelError):
+            return None
+        folder = self._new_folder()
+        (folder / "part.npz").write_bytes(content)
+        return folder
+
+    def _checked(self, job: Path, shape: Json, deflection: float) -> Json:
+        """Return the shape's numbers, validated, and agreeing with the mesh that came with them.
+
+        Raises:
+            PoisonedError: If they do not.
+        """
+        mesh = read_mesh(read_bytes(job / RESULT_FILES["npz"]))
+        checked = {
+            "solids": 1,
+            "valid": True,
+            "volume_mm3": number(shape.get("volume_mm3")),
+            "area_mm2": number(shape.get("area_mm2")),
+            "com_mm": numbers(shape.get("com_mm"), 3).tolist(),
+            "inertia_mm5": numbers(shape.get("inertia_mm5"), 3, 3).tolist(),
+            "bbox_mm": numbers(shape.get("bbox_mm"), 2, 3).tolist(),
+            "self_intersection": "checked" if shape.get("intersects_itself") is False else "not checked",
+        }
+        if not mesh.is_closed:
+            raise PoisonedError("the mesh is not closed")
+        difference, allowed = abs(mesh.volume - checked["volume_mm3"]), MESH_VOLUME_SHARE * checked["area_mm2"] * deflection
+        if difference > allowed:
+            raise PoisonedError(f"the mesh's volume is {difference:.3g} mm³ off the solid's")
+        for kind, magic in _MAGIC.items():
+            with (job / RESULT_FILES[kind]).open("rb") as file:
+                if not file.read(len(magic)) == magic:
+                    raise PoisonedError(f"{RESULT_FILES[kind]} is of another form")
+        return checked
+
+    def _leave(
+        self,
+        job: Path,
+        folder: Path,
+        shape: Json,
+        connectors: Mapping[str, Connector],
+        findings: Findings,
+        brief: Mapping[str, Any],
+        deflection: float,
+        level: str,
+    ) -> None:
+        """Write the folder of a built part; result.json holds nothing but what was validated."""
+        hashes = {}
+        for file in RESULT_FILES.values():
+            content = read_bytes(job / file)
+            (folder / file).write_bytes(content)
+            hashes[file] = hashlib.sha256(content).hexdigest()
+        result = {
+            "schema": "articad.result/1",
+            "ok": True,
+            "error": None,
+            "shape": shape,
+            "connectors": {name: _frame(connector) for name, connector in connectors.items()},
+            "files": hashes,
+            "findings": findings.to_json()["findings"],
+            "part": dict(brief),
+            "kernel": {"name": self.name, "version": self.version},
+            "deflection_mm": deflection,
+            "sandbox": level,
+        }
+        (folder / "result.json").write_text(json.dumps(result, sort_keys=True, allow_nan=False))
+
+
+def _version(distribution: str) -> str:
+    try:
+        return metadata.version(distribution)
+    except metadata.PackageNotFoundError:
+        return "none"
+
+
+def _frame(connector: Connector) -> Json:
+    frame = connector.frame
+    vectors = {"o": frame.translation, "z": frame.z_axis, "x": frame.x_axis}
+    return {axis: [float(value) for value in vector] for axis, vector in vectors.items()} | {"label": connector.label}

@@ -1,0 +1,108 @@
+"""Built parts by digest, on disk: a folder appears whole or not at all, and is checked by its hashes when it is used."""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+import json
+import os
+import shutil
+import tempfile
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+_SEAL = "seal.json"  # sha256 of every other file of the folder
+_TEMPORARY = ".building-"
+_STALE_SECONDS = 86400.0  # of a folder that some process left half-written
+
+
+def default_root() -> Path:
+    """Return `$ARTICAD_CACHE`, or `~/.cache/articad/parts`."""
+    given = os.environ.get("ARTICAD_CACHE")
+    if given:
+        return Path(given)
+    return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "articad" / "parts"
+
+
+class BuildCache:
+    """Folders of results by digest; several processes may share one."""
+
+    def __init__(self, *root: Path | None) -> None:
+        """Open a cache.
+
+        Args:
+            *root: Its folder; nothing for the user's own, None for one that is new and goes with this object.
+        """
+        self._own: tempfile.TemporaryDirectory[str] | None = None
+        if root and root[0] is None:
+            self._own = tempfile.TemporaryDirectory(prefix="articad-parts-")
+        given = root[0] if root else default_root()
+        self.root = Path(self._own.name) if self._own is not None else Path(given or default_root())
+
+    def get(self, digest: str) -> Path | None:
+        """Return the folder of a digest if it is there and each file is what it was; a spoiled one is removed."""
+        folder = self.root / digest
+        if not folder.is_dir():
+            return None
+        if _intact(folder):
+            return folder
+        self._discard(folder)
+        return None
+
+    @contextlib.contextmanager
+    def writing(self, digest: str) -> Iterator[Path]:
+        """Give a new folder to write to; when the block ends without an error it becomes the folder of the digest.
+
+        Where another process was first, its folder stays. After an error nothing is left.
+        """
+        self.root.mkdir(parents=True, exist_ok=True)
+        self._sweep()
+        folder = Path(tempfile.mkdtemp(prefix=_TEMPORARY, dir=self.root))
+        try:
+            yield folder
+            seal = {path.name: _hash(path) for path in sorted(folder.iterdir())}
+            (folder / _SEAL).write_text(json.dumps(seal, sort_keys=True))
+            folder.chmod(0o755)
+            try:
+                folder.rename(self.root / digest)
+            except OSError:
+                if self.get(digest) is None:  # what stood in the way was spoiled and is gone now
+                    folder.rename(self.root / digest)
+        finally:
+            shutil.rmtree(folder, ignore_errors=True)
+
+    def keep_failed(self, digest: str, files: dict[str, bytes]) -> Path:
+        """Keep what a failed build left, for a picture; the latest of each digest."""
+        folder = self.root / f"{digest}.failed"
+        folder.mkdir(parents=True, exist_ok=True)
+        for name, content in files.items():
+            temporary = folder / f".{name}.{os.getpid()}"
+            temporary.write_bytes(content)
+            temporary.replace(folder / name)
+        return folder
+
+    def _discard(self, folder: Path) -> None:
+        grave = Path(tempfile.mkdtemp(prefix=_TEMPORARY, dir=self.root))
+        with contextlib.suppress(OSError):
+            folder.rename(grave / "spoiled")
+        shutil.rmtree(grave, ignore_errors=True)
+
+    def _sweep(self) -> None:
+        for folder in self.root.glob(f"{_TEMPORARY}*"):
+            with contextlib.suppress(OSError):
+                if time.time() - folder.stat().st_mtime > _STALE_SECONDS:
+                    shutil.rmtree(folder, ignore_errors=True)
+
+
+def _intact(folder: Path) -> bool:
+    try:
+        seal = json.loads((folder / _SEAL).read_text())
+        return bool(seal) and all(_hash(folder / name) == digest for name, digest in seal.items())
+    except (OSError, ValueError, AttributeError):
+        return False
+
+
+def _hash(path: Path) -> str:
+    with path.open("rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()

@@ -1,0 +1,254 @@
+"""The contract of a part script: what was promised, held against what was built, all breaches at once."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from articad.connectors.connector import Connector, Drift
+from articad.connectors.se3 import SE3, axis_findings
+from articad.errors import ConnectorError, did_you_mean
+from articad.findings import Finding, Findings
+from articad.kernels.failures import scrubbed
+from articad.kernels.results import PoisonedError, number, numbers
+from articad.plan.resolve import ResolvedPart
+
+ENVELOPE_TOLERANCE = 0.02  # of each side: the contract's 2 %
+EMPTY_MM3 = 1e-3  # below this a solid has no volume
+DRIFT_RADIAL_MM, DRIFT_RADIAL_SHARE = 0.2, 0.002  # free of comment up to the larger of the two; the share is of the part's diagonal
+DRIFT_ALONG_MM, DRIFT_ALONG_SHARE = 0.5, 0.005
+DRIFT_ANGLE = math.radians(0.25)  # 2.2 mm at a reach of 500 mm
+DRIFT_ERROR = 10.0  # times these bounds is what is still a warning
+
+FloatArray = NDArray[np.float64]
+Json = Mapping[str, Any]
+
+
+def solid_findings(brief: Json, shape: Json) -> Iterator[Finding]:
+    """Yield what is wrong with the solid that was measured: `shape` is the worker's report."""
+    name, solids, loose = brief["name"], int(number(shape.get("solids"))), int(number(shape.get("loose", 0)))
+    if solids == 0 and loose == 0:
+        yield _finding("E_EMPTY_SOLID", name, "The shape is empty.", "Check that cuts do not remove everything.")
+    elif solids != 1 or loose:
+        beside = f" and {loose} loose faces or edges" if loose else ""
+        yield _finding(
+            "E_NOT_ONE_SOLID",
+            name,
+            f"The shape has {solids} solids{beside}, not one solid.",
+            "Fuse bodies so that they overlap by at least 0.01 mm, and return the solid alone.",
+            value=solids,
+            limit=1,
+        )
+    if solids != 1:
+        return
+    volume = number(shape.get("volume_mm3"))
+    if volume < EMPTY_MM3:
+        hint = "Check that cuts do not remove everything, and that extrusions have a positive height."
+        yield _finding("E_EMPTY_SOLID", name, f"The solid's volume is {volume:.3g} mm³.", hint, value=volume, limit=EMPTY_MM3, unit="mm^3")
+        return
+    advice = "Avoid features that cross themselves, walls of no thickness, and faces that only touch along an edge."
+    if shape.get("valid") is not True:
+        yield _finding("E_INVALID_SOLID", name, "The kernel's own check finds the solid invalid.", advice)
+    elif shape.get("intersects_itself") is True:
+        yield _finding("E_INVALID_SOLID", name, "The solid's faces cut each other.", advice)
+    elif shape.get("closed") is not True:
+        yield _finding("E_INVALID_SOLID", name, "The solid's surface cannot be meshed without gaps.", advice)
+    elif shape.get("intersects_itself") is None:
+        message = "Whether the solid's faces cut each other was not determined in time."
+        yield _finding("W_BUILD_UNCHECKED", name, message, "Simplify swept and lofted features if overlap volumes look wrong.")
+    yield from _envelope_findings(name, brief.get("envelope_mm"), numbers(shape.get("bbox_mm"), 2, 3))
+
+
+def _envelope_findings(name: str, envelope: Sequence[float] | None, bbox: FloatArray) -> Iterator[Finding]:
+    for axis, stated, size in zip("xyz", envelope or (), bbox[1] - bbox[0], strict=False):
+        if abs(size - stated) > ENVELOPE_TOLERANCE * stated:
+            yield _finding(
+                "E_ENVELOPE",
+                name,
+                f"The bounding box along {axis} is {size:.6g} mm, but the plan states {stated:.6g} mm.",
+                f"Make the part {abs(size - stated):.3g} mm {'shorter' if size > stated else 'longer'} along {axis}.",
+                value=float(size),
+                limit=float(stated),
+                unit="mm",
+            )
+
+
+def read_connectors(brief: Json, entries: object, findings: list[Finding]) -> dict[str, Connector]:
+    """Return the connectors that a script stated, in the plan's order, and add what is wrong with them to `findings`.
+
+    Raises:
+        PoisonedError: If the entries do not have the form that the worker gives them.
+    """
+    if not isinstance(entries, dict):
+        raise PoisonedError("connectors are expected where there are none")
+    name, planned = brief["name"], brief["connectors"]
+    for missing in planned.keys() - entries.keys():
+        hint = f'Return "{missing}": {{"o": …, "z": …, "x": …}} where the feature is; the plan has it at {_tuple(planned[missing]["o"])}.'
+        findings.append(_finding("E_CONNECTOR_MISSING", name, f"Connector {missing!r} is not returned.", hint, at=missing))
+    for extra in entries.keys() - planned.keys():
+        hint = f"Return only {', '.join(planned) or 'an empty dict'}."
+        message = f"Connector {extra!r} is not in the plan.{did_you_mean(extra, planned)}"
+        findings.append(_finding("E_CONNECTOR_EXTRA", name, message, hint))
+    connectors: dict[str, Connector] = {}
+    for key, reference in planned.items():
+        if key not in entries:
+            continue
+        entry = entries[key]
+        if not isinstance(entry, dict):
+            raise PoisonedError("a connector is expected where there is none")
+        o, z = numbers(entry.get("o"), 3), numbers(entry.get("z"), 3)
+        x = reference["x"] if entry.get("x") is None else numbers(entry["x"], 3)
+        where = f"parts.{name}.connectors.{key}"
+        try:
+            connectors[key] = Connector(key, SE3.from_axes(o, z, x, where=where), label=reference["label"])
+        except ConnectorError:
+            wrong = axis_findings(o, z, x, where=where).errors
+            findings += [_finding("E_NO_BUILD", name, finding.message, finding.hint, at=key) for finding in wrong]
+    return connectors
+
+
+def primary_connector(target: ResolvedPart, brief: Json) -> str | None:
+    """Return the connector by which a part hangs in the tree; None for the ground."""
+    for name, connector in brief.get("connectors", {}).items():
+        if any(joint["name"] == target.parent_joint for joint in connector["joints"]):
+            return str(name)
+    return None
+
+
+def seating(target: ResolvedPart, realised: Mapping[str, Connector], primary: str | None) -> SE3:
+    """Return the motion that brings the realised primary connector to where the plan has it: C*·C⁻¹.
+
+    Where nothing states the turn about its axis, none is made.
+    """
+    if primary is None or primary not in realised or primary not in target.connectors:
+        return SE3.identity()
+    planned, frame = target.connectors[primary], realised[primary].frame
+    if not planned.roll_free:
+        return planned.frame @ frame.inverse()
+    return planned.frame @ SE3.rot_z(planned.drift(frame).roll) @ frame.inverse()
+
+
+def drift_findings(target: ResolvedPart, brief: Json, realised: Mapping[str, Connector], bbox: FloatArray) -> Findings:
+    """Return how far connectors are from the plan once the part is seated (kinematics §1, connector realisation drift)."""
+    diagonal = float(np.linalg.norm(bbox[1] - bbox[0]))
+    primary = primary_connector(target, brief)
+    T = seating(target, realised, primary)
+    found: list[Finding] = []
+    for name, connector in realised.items():
+        if name not in target.connectors:
+            continue
+        planned = target.connectors[name]
+        roll_matters = not planned.roll_free and not _only_ball(brief, name)
+        if name == primary:
+            found += _moved_finding(target.name, name, planned.drift(connector.frame), diagonal, roll_matters=roll_matters)
+            continue
+        drift = planned.drift(T @ connector.frame)
+        worst = max(_shares(drift, diagonal, roll_matters=roll_matters))
+        if worst > 1.0:
+            found.append(_drift_finding(target, name, drift, error=worst > DRIFT_ERROR, bound=worst))
+    return Findings(found)
+
+
+def _only_ball(brief: Json, name: str) -> bool:
+    joints = brief.get("connectors", {}).get(name, {}).get("joints", ())
+    return bool(joints) and all(joint["type"] == "ball" for joint in joints)
+
+
+def _shares(drift: Drift, diagonal: float, *, roll_matters: bool) -> tuple[float, ...]:
+    """Return each component of a drift as a multiple of what passes without comment."""
+    return (
+        drift.radial / max(DRIFT_RADIAL_MM, DRIFT_RADIAL_SHARE * diagonal),
+        drift.along / max(DRIFT_ALONG_MM, DRIFT_ALONG_SHARE * diagonal),
+        drift.axis / DRIFT_ANGLE,
+        abs(drift.roll) / DRIFT_ANGLE if roll_matters else 0.0,
+    )
+
+
+def _components(drift: Drift) -> str:
+    return (
+        f"{drift.radial:.3g} mm off the axis, {drift.along:.3g} mm along it, "
+        f"axis tilted {math.degrees(drift.axis):.3g}°, turned {math.degrees(drift.roll):.3g}° about it"
+    )
+
+
+def _drift_finding(target: ResolvedPart, name: str, drift: Drift, *, error: bool, bound: float) -> Finding:
+    frame = target.connectors[name].frame
+    return _finding(
+        "E_CONNECTOR_DRIFT" if error else "W_CONNECTOR_DRIFT",
+        target.name,
+        f"Connector {name!r} is {_components(drift)}, compared with the plan.",
+        f"Build the feature at o {_tuple(frame.translation)}, z {_tuple(frame.z_axis)}, x {_tuple(frame.x_axis)}.",
+        at=name,
+        value=bound,
+        limit=DRIFT_ERROR if error else 1.0,
+        unit="tolerances",
+    )
+
+
+def _moved_finding(part: str, name: str, drift: Drift, diagonal: float, *, roll_matters: bool) -> list[Finding]:
+    """The primary connector is where the plan has it, because the part was moved: worth a word when it was moved far."""
+    worst = max(_shares(drift, diagonal, roll_matters=roll_matters))
+    if worst <= 1.0:
+        return []
+    message = f"Connector {name!r} was built {_components(drift)}; the whole part was moved so that it is where the plan has it."
+    hint = "Build the part in the frame that the plan's connectors are given in."
+    return [_finding("W_CONNECTOR_DRIFT", part, message, hint, at=name, value=worst, limit=1.0, unit="tolerances")]
+
+
+def probe_findings(brief: Json, outcomes: Iterable[Json], *, ended: bool, crashed: str) -> Iterator[Finding]:
+    """Yield what moving each dimension showed.
+
+    Args:
+        brief: What the script was told.
+        outcomes: The worker's reports, one a dimension.
+        ended: The probe came to its end, though perhaps not to all dimensions.
+        crashed: The signal that ended it instead, or empty.
+    """
+    name, reached = brief["name"], set()
+    for outcome in outcomes:
+        dimension, kind = str(outcome.get("dimension")), outcome.get("outcome")
+        if dimension not in brief["dimensions"]:
+            raise PoisonedError("the probe reports a dimension that the part does not have")
+        reached.add(dimension)
+        step = "1" if dimension.endswith("_count") else "2 %"
+        if kind == "unused":
+            message = f"Moving dimension {dimension!r} by {step} changes neither volume, centre, bounding box nor connectors."
+            yield _finding("W_DIMENSION_UNUSED", name, message, "Use it in the geometry instead of a literal number.", dimension=dimension)
+        elif kind == "refused":
+            message = f"The script refuses dimension {dimension!r} moved by {step} either way: {_why(outcome)}."
+            hint = "Let the script accept what can be built, or derive the dependent dimensions in the plan."
+            yield _finding("W_DIMENSION_REFUSED", name, message, hint, dimension=dimension)
+        elif kind == "broken":
+            message = f"The script fails when dimension {dimension!r} is moved by {step} either way: {_why(outcome)}."
+            hint = "Write the geometry so that it follows its dimensions; pick edges and faces by position relative to them."
+            yield _finding("E_NOT_EDITABLE", name, message, hint, dimension=dimension)
+    missed = [dimension for dimension in brief["dimensions"] if dimension not in reached]
+    if crashed and crashed not in ("SIGALRM", "SIGKILL", "SIGXCPU") and missed:
+        message = f"The kernel crashes ({crashed}) when dimension {missed[0]!r} is moved by 2 %."
+        yield _finding("E_NOT_EDITABLE", name, message, "Write the geometry so that it follows its dimensions.", dimension=missed[0])
+        missed = missed[1:]
+    if missed and (ended or crashed):
+        message = f"The probe ended before dimensions {', '.join(missed)} were moved."
+        yield _finding("W_BUILD_UNCHECKED", name, message, "Simplify the script, so that it can be run once for each dimension.")
+
+
+def _why(outcome: Json) -> str:
+    error = outcome.get("error")
+    if not isinstance(error, dict):
+        return "it failed"
+    line = f"line {error['line']}: " if isinstance(error.get("line"), int) else ""
+    kind = f"{error['type']}: " if error.get("type") else ""
+    return scrubbed(f"{line}{kind}{error.get('message')}").rstrip(".")
+
+
+def _finding(code: str, part: str, message: str, hint: str, *, at: str = "", dimension: str = "", **measured: Any) -> Finding:
+    where = f"parts.{part}" + (f".connectors.{at}" if at else "") + (f".dimensions.{dimension}" if dimension else "")
+    return Finding(code=code, where=where, parts=(part,), message=message, hint=hint, **measured)
+
+
+def _tuple(vector: Iterable[float]) -> str:
+    return "(" + ", ".join(f"{value:.6g}" for value in vector) + ")"

@@ -1,0 +1,242 @@
+"""The seam between plans and B-rep kernels: what a kernel is asked, what it hands back, and how that is seated in the plan."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from articad.connectors.connector import Connector
+from articad.connectors.se3 import SE3
+from articad.errors import KernelError
+from articad.findings import Finding, Findings
+from articad.geometry.part import Part, Solid
+from articad.kernels.cache import BuildCache
+from articad.kernels.contract import drift_findings, primary_connector, seating
+from articad.kernels.results import read_mesh
+from articad.plan.brief import brief, brief_digest, build_digest
+from articad.plan.resolve import ResolvedPart, ResolvedPlan
+
+__all__ = ["BuildCache", "BuiltPart", "Inspect", "PartKernel", "build_part", "mirror_part", "realise"]
+
+FloatArray = NDArray[np.float64]
+SEATED_MM, SEATED_RAD = 1e-7, 1e-10  # a seat this close is rounding of what a script wrote down; the files stay as they are
+
+Inspect = Callable[[Mapping[str, Connector], FloatArray], Findings]
+"""What a caller holds the realised connectors to, given the bounding box `(2, 3)`; its findings join the kernel's own."""
+
+
+@dataclass(frozen=True, eq=False)
+class BuiltPart:
+    """One solid with its files.
+
+    Attributes:
+        folder: Holds result.json, part.npz, part.brep, part.step.
+        solid: Its mesh and exact numbers.
+        connectors: Where the features really are, in the part's frame.
+        findings: Warnings of the build and of the dimension probe.
+        sandbox: The level of isolation that the script ran under.
+        cached: True when nothing had to be built.
+        brief: What the script was told; `connectors` of it names the joints at each connector.
+    """
+
+    folder: Path
+    solid: Solid
+    connectors: Mapping[str, Connector]
+    findings: Findings
+    sandbox: str
+    cached: bool = False
+    brief: Mapping[str, Any] = field(default_factory=dict)
+
+    @classmethod
+    def load(cls, folder: Path, *, cached: bool = False) -> BuiltPart:
+        """Read a folder that a kernel has left."""
+        result = json.loads((folder / "result.json").read_text())
+        shape = result["shape"]
+        solid = Solid(
+            mesh=read_mesh((folder / "part.npz").read_bytes()),
+            brep=folder / "part.brep",
+            step=folder / "part.step",
+            deflection=float(result["deflection_mm"]),
+            volume=float(shape["volume_mm3"]),
+            area=float(shape["area_mm2"]),
+            com=np.array(shape["com_mm"]),
+            inertia_mm5=np.array(shape["inertia_mm5"]),
+            bbox=np.array(shape["bbox_mm"]),
+        )
+        connectors = {
+            name: Connector(name, SE3.from_axes(frame["o"], frame["z"], frame["x"]), label=frame.get("label", ""))
+            for name, frame in result["connectors"].items()
+        }
+        findings = Findings(finding_from_json(finding) for finding in result["findings"])
+        return cls(folder, solid, connectors, findings, result["sandbox"], cached, result["part"])
+
+
+class PartKernel(Protocol):
+    """What turns part scripts into solids."""
+
+    @property
+    def name(self) -> str:
+        """Name in plans: `build123d`, `freecad`."""
+        ...
+
+    @property
+    def version(self) -> str:
+        """Of everything that a part's geometry depends on besides its script."""
+        ...
+
+    def build(
+        self,
+        script: bytes,
+        brief: Mapping[str, Any],
+        *,
+        folder: Path,
+        deflection: float = 0.01,
+        probe: bool = True,
+        inspect: Inspect | None = None,
+    ) -> BuiltPart:
+        """Run a script and hold its part to the contract.
+
+        Args:
+            script: Its source.
+            brief: What it is told (`articad.plan.brief`).
+            folder: Empty; takes the files.
+            deflection: Largest distance of the mesh from the solid [mm].
+            probe: Whether to move each dimension and build again.
+            inspect: What else the connectors are held to.
+
+        Raises:
+            BuildError: If the script fails; `partial` holds the solids that it had.
+            ContractError: With every breach at once; `partial` as well.
+        """
+        ...
+
+    def moved(self, built: BuiltPart, matrix: ArrayLike, folder: Path) -> BuiltPart:
+        """Return the part under a rigid motion or a reflection `(4, 4)`, files and all, in an empty folder."""
+        ...
+
+
+def build_part(
+    resolved: ResolvedPlan, name: str, script: bytes, *, kernel: PartKernel, cache: BuildCache, deflection: float = 0.01
+) -> BuiltPart:
+    """Build a part of a plan, or take it from the cache.
+
+    Its files are in the plan's frame: where the script put the connector to the tree parent elsewhere, the whole part is
+    moved so that it is where the plan has it. A script's dimensions are probed once, not again for other numbers.
+
+    Args:
+        resolved: The plan with its numbers.
+        name: A part that a script builds.
+        script: Its source.
+        kernel: Builds it.
+        cache: Keeps it, by build digest.
+        deflection: Largest distance of the mesh from the solid [mm].
+
+    Raises:
+        BuildError: If the script fails.
+        ContractError: If what it builds breaks the contract.
+    """
+    target = resolved.parts[name]
+    digest = build_digest(resolved, name, script, kernel.name, kernel.version, deflection)
+    folder = cache.get(digest)
+    cached = folder is not None
+    if folder is None:
+        told = brief(resolved, name)
+        script_digest = _digest(brief_digest(resolved, name), script.hex(), kernel.name, kernel.version)
+        probed = cache.get(f"{script_digest}.probe")
+        known = [] if probed is None else json.loads((probed / "findings.json").read_text())
+        try:
+            with cache.writing(digest) as empty:
+                built = kernel.build(
+                    script,
+                    told,
+                    folder=empty,
+                    deflection=deflection,
+                    probe=probed is None,
+                    inspect=lambda connectors, bbox: drift_findings(target, told, connectors, bbox),
+                )
+                _add_findings(empty, known)
+        except KernelError as error:
+            error.partial = _kept(cache, digest, error.partial)
+            raise
+        if probed is None:
+            with cache.writing(f"{script_digest}.probe") as empty:
+                (empty / "findings.json").write_text(json.dumps([finding.to_json() for finding in built.findings]))
+        folder = cache.root / digest
+    return _seated(target, BuiltPart.load(folder, cached=cached), kernel)
+
+
+def mirror_part(kernel: PartKernel, built: BuiltPart, S: ArrayLike) -> BuiltPart:
+    """Return the mirror image of a built part under `S (4, 4)`, beside it in the cache."""
+    return _moved(kernel, built, np.asarray(S, dtype=np.float64))
+
+
+def realise(resolved_part: ResolvedPart, built: BuiltPart) -> tuple[Part, Findings]:
+    """Seat a built part in the plan.
+
+    Its connectors are the plan's: the mechanism never follows a script. The geometry is seated by the connector to the
+    tree parent, C*·C⁻¹·G, and what is left at the others is drift (kinematics §1).
+
+    Returns:
+        The part and the findings of drift, `E_CONNECTOR_DRIFT` where it is beyond the table.
+    """
+    T = seating(resolved_part, built.connectors, primary_connector(resolved_part, built.brief))
+    solid = built.solid if T.allclose(SE3.identity(), mm=SEATED_MM, rad=SEATED_RAD) else built.solid.moved(T)
+    part = Part.from_solid(
+        resolved_part.name,
+        solid,
+        density=resolved_part.material.density,
+        connectors=resolved_part.connectors,
+        color=resolved_part.color,
+        material=resolved_part.material.name,
+    )
+    return part, drift_findings(resolved_part, built.brief, built.connectors, built.solid.bbox)
+
+
+def finding_from_json(form: Mapping[str, Any]) -> Finding:
+    """Return a finding from its own JSON."""
+    names = ("code", "where", "message", "hint", "value", "limit", "unit", "cause", "pose", "stage", "route")
+    return Finding(**{name: form[name] for name in names}, parts=tuple(form["parts"]))
+
+
+def _seated(target: ResolvedPart, built: BuiltPart, kernel: PartKernel) -> BuiltPart:
+    T = seating(target, built.connectors, primary_connector(target, built.brief))
+    if T.allclose(SE3.identity(), mm=SEATED_MM, rad=SEATED_RAD):
+        return built
+    return _moved(kernel, built, T.matrix)
+
+
+def _moved(kernel: PartKernel, built: BuiltPart, matrix: FloatArray) -> BuiltPart:
+    cache = BuildCache(built.folder.parent)
+    digest = f"{built.folder.name}.{_digest(json.dumps(matrix.tolist()))[:16]}"
+    folder = cache.get(digest)
+    if folder is None:
+        with cache.writing(digest) as empty:
+            kernel.moved(built, matrix, empty)
+        folder = cache.root / digest
+    return replace(BuiltPart.load(folder, cached=built.cached), findings=built.findings)
+
+
+def _add_findings(folder: Path, known: list[dict[str, Any]]) -> None:
+    """Add what an earlier probe of the same script found."""
+    if known:
+        path = folder / "result.json"
+        result = json.loads(path.read_text())
+        result["findings"] = Findings(map(finding_from_json, (*result["findings"], *known))).to_json()["findings"]
+        path.write_text(json.dumps(result, sort_keys=True))
+
+
+def _kept(cache: BuildCache, digest: str, partial: Path | None) -> Path | None:
+    if partial is None or not partial.is_dir():
+        return None
+    return cache.keep_failed(digest, {path.name: path.read_bytes() for path in partial.iterdir() if path.is_file()})
+
+
+def _digest(*parts: str) -> str:
+    return hashlib.sha256("\n".join(parts).encode()).hexdigest()

@@ -1,0 +1,229 @@
+"""Measure, mesh and write a shape that a script or a file left. Runs inside the sandbox, in a process that ran no script.
+
+So a script that tampers with the kernel can spoil its own shape, but not what is measured of it.
+"""
+
+from __future__ import annotations
+
+import io
+import json
+import math
+import re
+from collections.abc import Iterator
+from typing import Any, NamedTuple
+
+import numpy as np
+from OCP.BinTools import BinTools
+from OCP.Bnd import Bnd_Box
+from OCP.BOPAlgo import BOPAlgo_ArgumentAnalyzer
+from OCP.BRep import BRep_Builder
+from OCP.BRepBndLib import BRepBndLib
+from OCP.BRepBuilderAPI import BRepBuilderAPI_Transform
+from OCP.BRepCheck import BRepCheck_Analyzer
+from OCP.BRepGProp import BRepGProp
+from OCP.BRepTools import BRepTools
+from OCP.gp import gp_Trsf
+from OCP.GProp import GProp_GProps
+from OCP.IFSelect import IFSelect_ReturnStatus
+from OCP.Interface import Interface_Static
+from OCP.STEPControl import STEPControl_AsIs, STEPControl_Reader, STEPControl_Writer
+from OCP.TopAbs import TopAbs_EDGE, TopAbs_FACE, TopAbs_SOLID
+from OCP.TopExp import TopExp_Explorer
+from OCP.TopoDS import TopoDS, TopoDS_Compound, TopoDS_Shape
+from OCP.TopTools import TopTools_FormatVersion
+
+from articad.kernels.tessellation import Mesh, Same, is_closed, tessellate
+
+EMPTY_MM3 = 1e-3  # the contract's smallest volume
+STEP_TIME = "2000-01-01T00:00:00"
+_STEP_TIME_FIELD = re.compile(rb"(FILE_NAME\('(?:[^']|'')*',\s*')[^']*'")
+
+
+class Measured(NamedTuple):
+    """What is left of a shape: numbers for `result.json`, and files by name."""
+
+    report: dict[str, Any]
+    files: dict[str, bytes]
+
+
+def read_shape(form: str, content: bytes) -> TopoDS_Shape:
+    """Read a shape.
+
+    Args:
+        form: `bin` (between two processes of ours), `brep` or `step`.
+        content: The file.
+
+    Raises:
+        ValueError: If it holds no shape.
+    """
+    shape = TopoDS_Shape()
+    if form == "bin":
+        BinTools.Read_s(shape, io.BytesIO(content))
+    elif form == "brep":
+        BRepTools.Read_s(shape, io.BytesIO(content), BRep_Builder())
+    else:
+        reader = STEPControl_Reader()
+        if reader.ReadStream("part", io.BytesIO(content)) != IFSelect_ReturnStatus.IFSelect_RetDone:
+            raise ValueError("this is not a STEP file")
+        reader.TransferRoots()
+        shape = reader.OneShape()
+    if shape.IsNull():
+        raise ValueError("it holds no shape")
+    return shape
+
+
+def measure(shape: TopoDS_Shape, *, deflection: float, angle: float, name: str, matrix: list[list[float]] | None = None) -> Measured:
+    """Measure a shape and, if it is one solid with volume, mesh it and write it.
+
+    Args:
+        shape: As read.
+        deflection: Of the mesh [mm].
+        angle: Of the mesh [rad].
+        name: Product name in the STEP file.
+        matrix: Rigid motion or reflection `(4, 4)` to apply first.
+    """
+    solids = list(_found(shape, TopAbs_SOLID))
+    loose = sum(1 for _ in _found(shape, TopAbs_FACE, avoid=TopAbs_SOLID)) + sum(1 for _ in _found(shape, TopAbs_EDGE, avoid=TopAbs_FACE))
+    report: dict[str, Any] = {"ok": True, "solids": len(solids), "loose": loose}
+    if len(solids) != 1:
+        return Measured(report, {})
+    solid = TopoDS.Solid(solids[0])
+    if matrix is not None:
+        solid = _moved(solid, matrix)
+    report |= properties(solid) | {"valid": BRepCheck_Analyzer(solid).IsValid(), "closed": False}
+    if report["volume_mm3"] < EMPTY_MM3:
+        return Measured(report, {})
+    mesh = tessellate(solid, deflection, angle)
+    report["closed"] = is_closed(mesh.triangles)
+    BRepTools.Clean_s(solid)
+    return Measured(report, {"npz": _npz(mesh), "brep": _brep(solid), "step": step_file(solid, name)})
+
+
+def pieces(shape: TopoDS_Shape, *, deflection: float, angle: float) -> Measured:
+    """Mesh all solids of what a failed script held, as one mesh, for a picture of how far it came."""
+    solids = [solid for solid in _found(shape, TopAbs_SOLID) if _volume(solid).Mass() > EMPTY_MM3]
+    meshes = [mesh for mesh in (tessellate(solid, deflection, angle) for solid in solids) if is_closed(mesh.triangles)]
+    report = {"ok": True, "solids": len(meshes)}
+    if not meshes:
+        return Measured(report, {})
+    starts = np.cumsum([0, *(len(mesh.vertices) for mesh in meshes)])
+    together = Mesh(
+        np.concatenate([mesh.vertices for mesh in meshes]),
+        np.concatenate([mesh.triangles + start for mesh, start in zip(meshes, starts[:-1], strict=True)]).astype(np.int32),
+        np.concatenate([np.full(len(mesh.face), place, np.int32) for place, mesh in enumerate(meshes)]),
+    )
+    return Measured(report, {"npz": _npz(together)})
+
+
+def properties(solid: TopoDS_Shape) -> dict[str, Any]:
+    """Return volume, area, centre, inertia about the centre at density one, and bounding box, from the B-rep."""
+    surface, volume = GProp_GProps(), _volume(solid)
+    BRepGProp.SurfaceProperties_s(solid, surface)
+    center, inertia, box = volume.CentreOfMass(), volume.MatrixOfInertia(), Bnd_Box()
+    BRepBndLib.AddOptimal_s(solid, box, useTriangulation=False, useShapeTolerance=False)
+    box.SetGap(0.0)
+    return {
+        "volume_mm3": volume.Mass(),
+        "area_mm2": surface.Mass(),
+        "com_mm": _xyz(center),
+        "inertia_mm5": [[inertia.Value(row, column) for column in (1, 2, 3)] for row in (1, 2, 3)],
+        "bbox_mm": [[0.0] * 3, [0.0] * 3] if box.IsVoid() else [_xyz(box.CornerMin()), _xyz(box.CornerMax())],
+    }
+
+
+def intersects_itself(solid: TopoDS_Shape) -> bool:
+    """Return whether faces or edges of a solid cut each other. May take long; a caller bounds it from outside."""
+    analyzer = BOPAlgo_ArgumentAnalyzer()
+    analyzer.SetShape1(solid)
+    analyzer.ArgumentTypeMode = False
+    analyzer.SmallEdgeMode = False
+    analyzer.RebuildFaceMode = False
+    analyzer.SelfInterMode = True
+    analyzer.Perform()
+    return bool(analyzer.HasFaulty())
+
+
+def step_file(shape: TopoDS_Shape, name: str) -> bytes:
+    """Return a shape as STEP AP214; the same shape gives the same bytes, for the header holds a fixed time."""
+    writer, stream = STEPControl_Writer(), io.BytesIO()
+    Interface_Static.SetCVal_s("write.step.product.name", name)  # only known once there is a writer
+    writer.Transfer(shape, STEPControl_AsIs)
+    writer.WriteStream(stream)
+    head, data, body = stream.getvalue().partition(b"DATA;")
+    body = body.replace(f"PRODUCT('{name} 1','{name} 1'".encode(), f"PRODUCT('{name}','{name}'".encode(), 1)
+    return _STEP_TIME_FIELD.sub(rb"\g<1>" + STEP_TIME.encode() + b"'", head, count=1) + data + body
+
+
+def compound(shapes: list[TopoDS_Shape]) -> TopoDS_Compound:
+    """Return several shapes as one."""
+    together, builder = TopoDS_Compound(), BRep_Builder()
+    builder.MakeCompound(together)
+    for shape in shapes:
+        builder.Add(together, shape)
+    return together
+
+
+def binary(shape: TopoDS_Shape) -> bytes:
+    """Return a shape in the form in which it goes from one process of the worker to the next."""
+    stream = io.BytesIO()
+    BinTools.Write_s(shape, stream)
+    return stream.getvalue()
+
+
+def solids_of(shape: TopoDS_Shape) -> list[TopoDS_Shape]:
+    """Return the solids of a shape, each once."""
+    return list(_found(shape, TopAbs_SOLID))
+
+
+def to_json(report: dict[str, Any]) -> bytes:
+    """Return one line of JSON; a number that is not finite becomes null, which no reader takes for a number."""
+    return json.dumps(_finite(report), allow_nan=False, separators=(",", ":")).encode() + b"\n"
+
+
+def _finite(value: Any) -> Any:
+    if isinstance(value, float):
+        return value if math.isfinite(value) else None
+    if isinstance(value, dict):
+        return {key: _finite(item) for key, item in value.items()}
+    return [_finite(item) for item in value] if isinstance(value, (list, tuple)) else value
+
+
+def _found(shape: TopoDS_Shape, kind: Any, avoid: Any = None) -> Iterator[TopoDS_Shape]:
+    """Yield the sub-shapes of a kind, each once, in the kernel's order."""
+    seen: set[Same] = set()
+    explorer = TopExp_Explorer(shape, kind) if avoid is None else TopExp_Explorer(shape, kind, avoid)
+    while explorer.More():
+        current = explorer.Current()
+        if (key := Same(current)) not in seen:
+            seen.add(key)
+            yield current
+        explorer.Next()
+
+
+def _volume(solid: TopoDS_Shape) -> GProp_GProps:
+    volume = GProp_GProps()
+    BRepGProp.VolumeProperties_s(solid, volume)
+    return volume
+
+
+def _moved(solid: TopoDS_Shape, matrix: list[list[float]]) -> TopoDS_Shape:
+    motion = gp_Trsf()
+    motion.SetValues(*(value for row in matrix[:3] for value in row))
+    return TopoDS.Solid(BRepBuilderAPI_Transform(solid, motion, theCopyGeom=True).Shape())
+
+
+def _npz(mesh: Mesh) -> bytes:
+    stream = io.BytesIO()
+    np.savez(stream, vertices=mesh.vertices, triangles=mesh.triangles, face=mesh.face)
+    return stream.getvalue()
+
+
+def _brep(solid: TopoDS_Shape) -> bytes:
+    stream = io.BytesIO()
+    version = TopTools_FormatVersion.TopTools_FormatVersion_VERSION_1
+    BRepTools.Write_s(solid, stream, theWithTriangles=False, theWithNormals=False, theVersion=version)
+    return stream.getvalue()
+
+
+def _xyz(point: Any) -> list[float]:
+    return [point.X(), point.Y(), point.Z()]

@@ -1,0 +1,250 @@
+"""Run one part script: untrusted code, in a confined process of its own that nothing else is asked of afterwards.
+
+What it leaves is a report, one JSON object a line, and the shape. Whoever reads them must not trust them.
+"""
+
+from __future__ import annotations
+
+import copy
+import signal
+import time
+import traceback
+from collections.abc import Callable, Iterator, Mapping
+from types import FrameType, SimpleNamespace
+from typing import Any
+
+from build123d import Shape
+from OCP.BRepCheck import BRepCheck_Analyzer
+
+from articad.kernels import measure
+from articad.kernels.tessellation import Same
+
+FILE = "part.py"  # the name that a script's code bears: tracebacks are cut down to it
+PROBE_STEP = 0.02  # the contract's 2 %
+PROBE_ZERO_MM, PROBE_ZERO_DEG = 0.1, 1.0  # by which a dimension that is zero is moved
+SAME = 1e-9  # relative change of a number that is rounding
+PARTIAL_SOLIDS = 32  # of a failed script that are kept
+_TEXT = 2000  # characters of a message that are kept
+
+Write = Callable[[dict[str, Any]], None]
+Json = dict[str, Any]
+
+
+class NotAPart(Exception):  # noqa: N818 - it is not the script's error, but what the script is told
+    """The script has no `build(part)`, or what that returns is not `(shape, connectors)`; `problems` says in which ways."""
+
+    def __init__(self, *problems: str, shape: Any = None) -> None:
+        super().__init__(*problems)
+        self.problems, self.shape = problems, shape
+
+
+def run(script: str, part: Json, *, seconds: float, probe_seconds: float, report: Write, shape: Callable[[bytes], None]) -> None:
+    """Run a script, hand over its shape and its report, then probe its dimensions.
+
+    Args:
+        script: The source.
+        part: The brief: contracts, part script.
+        seconds: Wall clock for the script; the process is killed by SIGALRM after it.
+        probe_seconds: Wall clock for the probe; 0 leaves it out.
+        report: Takes each object of the report at once, so that a later crash loses nothing.
+        shape: Takes the shape, in the form that `measure.read_shape("bin", …)` reads.
+    """
+    signal.setitimer(signal.ITIMER_REAL, seconds)
+    started = time.monotonic()
+    namespace: Json = {"__name__": "part", "__builtins__": __builtins__}
+    try:
+        exec(compile(script, FILE, "exec"), namespace)  # noqa: S102 - this is what the sandbox is for
+        solid, connectors = _built(namespace, part)
+    except NotAPart as wrong:
+        if wrong.shape is not None:
+            shape(measure.binary(wrong.shape))
+        report({"ok": False, "problems": list(wrong.problems), "partial": wrong.shape is not None})
+        return
+    except BaseException as error:  # noqa: BLE001 - a script may raise anything
+        held = _last_solids(error)
+        if held:
+            shape(measure.binary(measure.compound(held)))
+        report({"ok": False, "error": described(error), "partial": bool(held)})
+        return
+    shape(measure.binary(solid))
+    report({"ok": True, "connectors": connectors, "seconds": time.monotonic() - started})
+    if probe_seconds > 0:
+        signal.setitimer(signal.ITIMER_REAL, probe_seconds)
+        for outcome in _probe(namespace, part, _fingerprint(solid, connectors), probe_seconds):
+            report({"probe": outcome})
+        report({"probed": True})
+    signal.setitimer(signal.ITIMER_REAL, 0)
+
+
+def described(error: BaseException) -> Json:
+    """Return an exception as data: type, message, and the frames of the script alone, outermost first."""
+    frames = [(line, frame.f_code.co_name) for frame, line in traceback.walk_tb(error.__traceback__) if frame.f_code.co_filename == FILE]
+    line = frames[-1][0] if frames else None
+    if isinstance(error, SyntaxError) and error.filename == FILE:
+        line = error.lineno
+    own = error.__traceback__ is not None and _innermost(error).f_code.co_filename == FILE
+    return {
+        "type": type(error).__name__[:100],
+        "message": str(error)[:_TEXT],
+        "line": line,
+        "frames": frames[-20:],
+        "denied": isinstance(error, OSError),  # a script has no business with the system: whatever failed there was forbidden
+        "module": error.name if isinstance(error, ImportError) else None,
+        "refused": own and isinstance(error, (ValueError, AssertionError)),
+    }
+
+
+def _innermost(error: BaseException) -> FrameType:
+    return [frame for frame, _ in traceback.walk_tb(error.__traceback__)][-1]
+
+
+def _built(namespace: Json, part: Json) -> tuple[Any, dict[str, Json]]:
+    """Call `build(part)` and return the kernel's shape and plain connectors."""
+    build = namespace.get("build")
+    if not callable(build):
+        raise NotAPart("the script defines no function build(part)")
+    result = build(_as_object(part))
+    if not (isinstance(result, (tuple, list)) and len(result) == 2):
+        raise NotAPart(f"build(part) returned {_kind(result)}, not (shape, connectors)")
+    problems: list[str] = []
+    shape = _kernel_shape(result[0], problems)
+    connectors = _plain_connectors(result[1], problems)
+    if problems:
+        raise NotAPart(*problems, shape=shape)
+    return shape, connectors
+
+
+def _as_object(part: Json) -> SimpleNamespace:
+    """Return the brief as the object that scripts are given, fresh for each call."""
+    fields = copy.deepcopy({key: part[key] for key in ("name", "description", "material", "dimensions")})
+    connectors = {
+        name: SimpleNamespace(
+            o=tuple(frame["o"]), z=tuple(frame["z"]), x=tuple(frame["x"]), label=frame["label"], joints=copy.deepcopy(frame["joints"])
+        )
+        for name, frame in part["connectors"].items()
+    }
+    return SimpleNamespace(**fields, connectors=connectors)
+
+
+def _kernel_shape(value: Any, problems: list[str]) -> Any:
+    shapes = list(value) if isinstance(value, (list, tuple)) else [value]
+    wrapped = [shape.wrapped for shape in shapes if isinstance(shape, Shape) and shape.wrapped is not None]
+    if len(wrapped) < len(shapes) or not shapes:
+        hint = "; return its .part" if hasattr(value, "part") else ""
+        problems.append(f"the shape is {_kind(value)}, not a build123d Part, Solid or Compound{hint}")
+        return None
+    return wrapped[0] if len(wrapped) == 1 else measure.compound(wrapped)
+
+
+def _plain_connectors(value: Any, problems: list[str]) -> dict[str, Json]:
+    if not isinstance(value, Mapping):
+        problems.append(f"the connectors are {_kind(value)}, not a dict of name to {{'o', 'z', 'x'}}")
+        return {}
+    connectors: dict[str, Json] = {}
+    for name, entry in value.items():
+        if not isinstance(entry, Mapping) or not {"o", "z"} <= set(entry) <= {"o", "z", "x"}:
+            problems.append(f"connector {str(name)[:60]!r} is {_kind(entry)}, not a dict with 'o', 'z' and perhaps 'x'")
+            continue
+        vectors = {axis: _vector(entry[axis]) for axis in ("o", "z", "x") if entry.get(axis) is not None}
+        wrong = [axis for axis, vector in vectors.items() if vector is None]
+        problems += [f"{axis} of connector {str(name)[:60]!r} is not three finite numbers" for axis in wrong]
+        connectors[str(name)[:60]] = {"o": vectors.get("o"), "z": vectors.get("z"), "x": vectors.get("x")}
+    return connectors
+
+
+def _vector(value: Any) -> list[float] | None:
+    try:
+        numbers = [float(number) for number in value]
+    except (TypeError, ValueError):
+        return None
+    return numbers if len(numbers) == 3 and all(abs(number) < 1e9 for number in numbers) else None
+
+
+def _kind(value: Any) -> str:
+    return "None" if value is None else f"a {type(value).__name__[:60]}"
+
+
+# ---------------------------------------------------------------------- the dimension probe
+
+
+def _probe(namespace: Json, part: Json, before: list[float], seconds: float) -> Iterator[Json]:
+    """Move each dimension by 2 % (a count by 1), up and, if that changes nothing or fails, down, and build again.
+
+    Outcomes: `changed`; `unused`, both ways give the same part; `refused`, the script itself raised a ValueError or
+    AssertionError both ways; `broken`, it failed otherwise both ways, with the error of the first.
+    """
+    until = time.monotonic() + 0.9 * seconds  # what is left over tells which dimensions were not reached
+    for name, value in part["dimensions"].items():
+        outcomes: list[Json] = []
+        for moved in _moves(name, value):
+            if time.monotonic() > until:
+                return
+            outcomes.append(_tried(namespace, {**part, "dimensions": {**part["dimensions"], name: moved}}, before))
+            if outcomes[-1]["outcome"] == "changed":
+                break
+        yield {"dimension": name} | min(outcomes, key=lambda outcome: ("changed", "unused", "refused", "broken").index(outcome["outcome"]))
+
+
+def _moves(name: str, value: float) -> Iterator[float]:
+    if name.endswith("_count"):
+        yield from (value + 1, value - 1) if value > 1 else (value + 1,)
+        return
+    step = abs(value) * PROBE_STEP or (PROBE_ZERO_DEG if name.endswith("_deg") else PROBE_ZERO_MM)
+    yield from (value + step, value - step)
+
+
+def _tried(namespace: Json, part: Json, before: list[float]) -> Json:
+    try:
+        shape, connectors = _built(namespace, part)
+        count = len(measure.solids_of(shape))
+        if count != 1:
+            return {"outcome": "broken", "error": {"type": "", "message": f"gives {count} solids", "line": None}}
+        if not BRepCheck_Analyzer(shape).IsValid():
+            return {"outcome": "broken", "error": {"type": "", "message": "gives a solid that is not valid", "line": None}}
+    except NotAPart as wrong:
+        return {"outcome": "broken", "error": {"type": "", "message": "; ".join(wrong.problems)[:_TEXT], "line": None}}
+    except Exception as error:  # noqa: BLE001 - a script may raise anything
+        what = described(error)
+        return {"outcome": "refused" if what["refused"] else "broken", "error": {key: what[key] for key in ("type", "message", "line")}}
+    after = _fingerprint(shape, connectors)
+    scale = max(map(abs, before), default=1.0)
+    same = len(after) == len(before) and all(
+        abs(a - b) <= SAME * max(abs(b), 1e-6 * scale, 1e-3) for a, b in zip(after, before, strict=True)
+    )
+    return {"outcome": "unused" if same else "changed"}
+
+
+def _fingerprint(shape: Any, connectors: dict[str, Json]) -> list[float]:
+    """Return volume, centre, bounding box and connectors as numbers."""
+    numbers = measure.properties(shape)
+    frames = [number for name in sorted(connectors) for axis in ("o", "z", "x") for number in connectors[name][axis] or ()]
+    return [numbers["volume_mm3"], *numbers["com_mm"], *numbers["bbox_mm"][0], *numbers["bbox_mm"][1], *frames]
+
+
+# ---------------------------------------------------------------------- what a failed script held
+
+
+def _last_solids(error: BaseException) -> list[Any]:
+    """Return the valid solids in the local variables of the script's innermost frame that holds any."""
+    frames = [frame for frame, _ in traceback.walk_tb(error.__traceback__) if frame.f_code.co_filename == FILE]
+    for frame in reversed(frames):
+        try:
+            solids = list(_solids_in(list(frame.f_locals.values())))
+        except Exception:  # noqa: BLE001, S112 - shapes of a failed script may be in any state, and nobody would read a log
+            continue
+        if solids:
+            return solids
+    return []
+
+
+def _solids_in(values: list[Any]) -> Iterator[Any]:
+    seen: set[Same] = set()
+    for value in values:
+        held = getattr(value, "part", value)  # a builder's part so far
+        for shape in held if isinstance(held, (list, tuple)) else [held]:
+            if not isinstance(shape, Shape) or shape.wrapped is None:
+                continue
+            for solid in measure.solids_of(shape.wrapped):
+                if len(seen) < PARTIAL_SOLIDS and Same(solid) not in seen and BRepCheck_Analyzer(solid).IsValid():
+                    seen.add(Same(solid))
+                    yield solid

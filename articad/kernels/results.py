@@ -1,0 +1,131 @@
+"""Read what a confined process left, and believe nothing of it: sizes first, then form, then every number."""
+
+from __future__ import annotations
+
+import io
+import json
+import math
+import zipfile
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from articad.errors import InvalidSolidError
+from articad.geometry.mesh import TriMesh
+
+REPORT_BYTES = 2**20
+MESH_BYTES = 2**28
+MAX_ROWS = 20_000_000  # of an array; 5 million triangles are the most that a checked part has had
+MAX_MM = 1e7  # a coordinate beyond 10 km is none
+_HEADER_BYTES = 4096  # of an array in a .npz: magic, version, shape
+_ARRAYS: dict[str, tuple[np.dtype[Any], int]] = {
+    "vertices": (np.dtype("<f8"), 2),
+    "triangles": (np.dtype("<i4"), 2),
+    "face": (np.dtype("<i4"), 1),
+}
+
+Json = dict[str, Any]
+
+
+class PoisonedError(Exception):
+    """A result that no honest worker would leave; says in what."""
+
+
+def read_lines(path: Path) -> list[Json]:
+    """Read a report: one JSON object a line, an unfinished last line left out.
+
+    Raises:
+        PoisonedError: If it is too large or not JSON.
+    """
+    if path.stat().st_size > REPORT_BYTES:
+        raise PoisonedError(f"{path.name} has {path.stat().st_size} bytes")
+    try:
+        lines = [json.loads(line, parse_constant=_refuse) for line in path.read_bytes().split(b"\n")[:-1]]
+    except (ValueError, RecursionError) as error:
+        raise PoisonedError(f"{path.name} is not JSON") from error
+    if not all(isinstance(line, dict) for line in lines):
+        raise PoisonedError(f"{path.name} holds something else than objects")
+    return lines
+
+
+def numbers(value: Any, *shape: int) -> NDArray[np.float64]:
+    """Return finite numbers of a shape.
+
+    Raises:
+        PoisonedError: If the value is anything else.
+    """
+    try:
+        array = np.array(value, dtype=np.float64)
+    except (TypeError, ValueError, OverflowError) as error:
+        raise PoisonedError("numbers are expected where there are none") from error
+    if array.shape != shape or not np.isfinite(array).all():
+        raise PoisonedError(f"{shape} finite numbers are expected")
+    return array
+
+
+def number(value: Any) -> float:
+    """Return a finite number.
+
+    Raises:
+        PoisonedError: If the value is anything else.
+    """
+    if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
+        raise PoisonedError("a finite number is expected where there is none")
+    return float(value)
+
+
+def read_mesh(content: bytes) -> TriMesh:
+    """Read `part.npz`, without pickles and without believing what its headers claim.
+
+    Raises:
+        PoisonedError: If it is not the mesh that the contract names.
+    """
+    try:
+        with zipfile.ZipFile(io.BytesIO(content)) as archive:
+            members = {member.filename: member for member in archive.infolist()}
+            if set(members) != {f"{name}.npy" for name in _ARRAYS} or len(archive.infolist()) != len(_ARRAYS):
+                raise PoisonedError("part.npz holds other arrays than vertices, triangles and face")
+            if any(member.compress_type != zipfile.ZIP_STORED or member.file_size > len(content) for member in members.values()):
+                raise PoisonedError("part.npz is compressed")
+            arrays = {name: _array(archive.read(f"{name}.npy"), *_ARRAYS[name]) for name in _ARRAYS}
+    except (zipfile.BadZipFile, OSError, ValueError, EOFError, NotImplementedError, RuntimeError) as error:
+        raise PoisonedError("part.npz cannot be read") from error
+    vertices, face = arrays["vertices"], arrays["face"]
+    if vertices.size and np.nanmax(np.abs(vertices)) > MAX_MM:
+        raise PoisonedError("a vertex is farther than 10 km away")
+    if face.size and face.min() < 0:
+        raise PoisonedError("a triangle belongs to a negative face")
+    try:
+        return TriMesh(vertices, arrays["triangles"], face)
+    except InvalidSolidError as error:
+        raise PoisonedError(error.message) from error
+
+
+def _array(content: bytes, dtype: np.dtype[Any], dimensions: int) -> NDArray[Any]:
+    """Return an array whose header promises exactly the bytes that follow it."""
+    stream = io.BytesIO(content)
+    if np.lib.format.read_magic(stream) != (1, 0):
+        raise PoisonedError("part.npz is of another version")
+    shape, fortran, found = np.lib.format.read_array_header_1_0(stream, max_header_size=_HEADER_BYTES)
+    if found != dtype or fortran or len(shape) != dimensions or (dimensions == 2 and shape[1] != 3) or shape[0] > MAX_ROWS:
+        raise PoisonedError(f"part.npz holds an array {shape} of {found}")
+    if len(content) - stream.tell() != math.prod(shape) * dtype.itemsize:
+        raise PoisonedError(f"part.npz claims an array {shape}, but has bytes for another")
+    return np.frombuffer(content, dtype, offset=stream.tell()).reshape(shape)
+
+
+def read_bytes(path: Path, limit: int = MESH_BYTES) -> bytes:
+    """Return a file's content.
+
+    Raises:
+        PoisonedError: If it is larger than the limit [bytes].
+    """
+    if path.stat().st_size > limit:
+        raise PoisonedError(f"{path.name} has {path.stat().st_size} bytes")
+    return path.read_bytes()
+
+
+def _refuse(constant: str) -> None:
+    raise ValueError(f"{constant} is no number of JSON")

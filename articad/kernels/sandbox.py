@@ -1,0 +1,239 @@
+"""The sandbox of part scripts: which layers this machine has, and how a process puts them on.
+
+From the outside in: an empty environment and a session of its own (zygote.py); bubblewrap's namespaces round the zygote;
+and in the process forked for one script: no capabilities, resource limits, Landlock, seccomp. A script is handed open
+files for what it may read and write and can open none but the libraries, so no layer needs a path that is writable.
+
+The level names the layers reached, such as `bwrap+landlock+seccomp`. With neither Landlock nor bubblewrap it is `weak`,
+and scripts are refused unless that was asked for. Standard library only: this module also runs inside the sandbox.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import resource
+import shutil
+import site
+import subprocess
+import sys
+import sysconfig
+from collections.abc import Collection, Iterator
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+
+from articad.kernels import landlock, seccomp
+
+LAYERS = ("bwrap", "landlock", "seccomp")
+WEAK = "weak"
+HOW_TO_GET = (
+    "Install bubblewrap (apt-get install bubblewrap), allow user namespaces (sysctl kernel.unprivileged_userns_clone=1), "
+    "or use a kernel with Landlock (Linux 5.13 or later, 'landlock' in /sys/kernel/security/lsm)"
+)
+
+# Empty but for what makes two runs equal: hashes, locale, and one thread where BLAS would start several before the fork.
+ENVIRONMENT = {
+    "HOME": "/nonexistent",
+    "LANG": "C.UTF-8",
+    "LC_ALL": "C.UTF-8",
+    "PYTHONHASHSEED": "0",
+    "OPENBLAS_NUM_THREADS": "1",
+    "OMP_NUM_THREADS": "1",
+    "MPLBACKEND": "agg",
+}
+_SYSTEM_LIBRARIES = ("/usr/lib", "/usr/lib64", "/usr/local/lib", "/lib", "/lib64", "/lib32", "/libx32")
+_FONTS = ("/usr/share/fonts", "/usr/local/share/fonts", "/etc/fonts")
+_LOADER = ("/etc/ld.so.cache", "/etc/ld.so.conf", "/etc/ld.so.conf.d", "/etc/alternatives")
+_PR_SET_PDEATHSIG, _PR_CAPBSET_DROP, _PR_SET_NO_NEW_PRIVS = 1, 24, 38
+_CAPABILITY_VERSION = 0x20080522
+_CAPSET = {"x86_64": 126, "aarch64": 91}
+_PROBE_SECONDS = 20.0  # bubblewrap answers in 0.02 s; a machine that swaps may need longer
+
+
+@dataclass(frozen=True)
+class Limits:
+    """What one script may use.
+
+    Attributes:
+        seconds: Wall clock until its shape must be there.
+        probe_seconds: Wall clock for the dimension probe after that.
+        memory: Address space [bytes], libraries (1 GiB) included.
+        file_size: Of each result [bytes].
+    """
+
+    seconds: float = 60.0
+    probe_seconds: float = 30.0
+    memory: int = 3 * 2**30
+    file_size: int = 256 * 2**20
+
+
+def level(layers: Collection[str] | None = None) -> str:
+    """Return the level that this machine reaches, `weak` when it has neither Landlock nor bubblewrap.
+
+    Args:
+        layers: Those to consider; by default all that are available.
+    """
+    return level_of(available() if layers is None else frozenset(layers) & available())
+
+
+def level_of(layers: Collection[str]) -> str:
+    """Return the name of a set of layers."""
+    if not {"bwrap", "landlock"} & set(layers):
+        return WEAK
+    return "+".join(layer for layer in LAYERS if layer in layers)
+
+
+@cache
+def available() -> frozenset[str]:
+    """Return the layers that work here, each one tried."""
+    if sys.platform != "linux":
+        return frozenset()
+    works = {"bwrap": bubblewrap_problem() is None, "landlock": landlock.abi() > 0, "seccomp": seccomp.available()}
+    return frozenset(layer for layer, there in works.items() if there)
+
+
+def missing() -> tuple[str, ...]:
+    """Return, for each layer that does not work here, why not."""
+    reasons = []
+    if (problem := bubblewrap_problem()) is not None:
+        reasons.append(f"bubblewrap: {problem}")
+    if landlock.abi() == 0:
+        reasons.append("Landlock: this kernel does not offer it")
+    if not seccomp.available():
+        reasons.append("seccomp: not offered by this kernel or not known for this processor")
+    return tuple(reasons)
+
+
+@cache
+def bubblewrap_problem() -> str | None:
+    """Return why bubblewrap does not work here, or None if it does."""
+    if shutil.which("bwrap") is None:
+        return "not installed"
+    command = bubblewrap_command([sys.executable, "-I", "-S", "-c", "pass"])
+    try:
+        tried = subprocess.run(command, env={}, stdin=subprocess.DEVNULL, capture_output=True, timeout=_PROBE_SECONDS, check=False)  # noqa: S603
+    except (OSError, subprocess.TimeoutExpired) as error:
+        return type(error).__name__
+    lines = tried.stderr.decode(errors="replace").strip().splitlines()
+    return None if tried.returncode == 0 else (lines[-1][:200] if lines else f"exit code {tried.returncode}")
+
+
+def bubblewrap_command(command: list[str]) -> list[str]:
+    """Return the command that runs another one in namespaces of its own: no network, nothing but libraries to read, nowhere to write.
+
+    It must itself be started with an empty environment: /proc/1/environ inside would show whatever it was given.
+    """
+    mounts: list[str] = []
+    for path in _visible_paths():
+        mounts += ["--symlink", str(Path(path).readlink()), path] if Path(path).is_symlink() else ["--ro-bind-try", path, path]
+    return [
+        shutil.which("bwrap") or "bwrap",
+        *("--unshare-all", "--unshare-user", "--uid", "65534", "--gid", "65534", "--cap-drop", "ALL"),
+        *_disable_user_namespaces(),
+        *("--new-session", "--die-with-parent", "--hostname", "sandbox"),
+        *mounts,
+        *("--dev", "/dev", "--remount-ro", "/dev", "--chdir", "/", "--remount-ro", "/"),
+        *command,
+    ]
+
+
+@cache
+def _disable_user_namespaces() -> tuple[str, ...]:
+    """Return bubblewrap's flag against user namespaces inside, which 0.8.0 and later have."""
+    command = [shutil.which("bwrap") or "bwrap", "--help"]
+    shown = subprocess.run(command, env={}, capture_output=True, timeout=_PROBE_SECONDS, check=False)  # noqa: S603
+    return ("--disable-userns",) if b"--disable-userns" in shown.stdout + shown.stderr else ()
+
+
+def _visible_paths() -> list[str]:
+    """Return what bubblewrap shows, parents first: system libraries, this Python with its packages, fonts, this package."""
+    python = [sys.base_prefix, sys.base_exec_prefix, sys.prefix, sys.exec_prefix, *_executable_homes(), *site.getsitepackages()]
+    package = str(Path(__file__).parents[1])
+    wanted = ["/usr", *_SYSTEM_LIBRARIES[3:], *_LOADER, "/etc/fonts", *python, package]
+    kept: list[str] = []
+    for path in sorted({path for path in wanted if os.path.lexists(path) and path != "/"}, key=len):
+        if not any(path == parent or path.startswith(f"{parent}/") for parent in kept):
+            kept.append(path)
+    return sorted(kept)
+
+
+def _executable_homes() -> Iterator[str]:
+    """Yield the folders that the interpreter's links pass through: an environment links to a Python that may link on."""
+    path = Path(sys.executable)
+    for _ in range(8):
+        if not path.is_symlink():
+            return
+        path = Path(os.path.normpath(path.parent / path.readlink()))
+        if path.parent.name == "bin":
+            yield str(path.parent.parent)
+
+
+def readable_paths() -> tuple[str, ...]:
+    """Return what a confined process may still read: the libraries that Python and the kernel load when first used, and fonts.
+
+    Packages installed as links to a folder of sources are left out, for such a folder may hold anything.
+    """
+    python = (sysconfig.get_path("stdlib"), sysconfig.get_path("platstdlib"), *site.getsitepackages())
+    return (*python, *_SYSTEM_LIBRARIES, *_FONTS, *_LOADER, "/dev/null", "/dev/urandom")
+
+
+def confine(limits: Limits, layers: Collection[str], readable: Collection[str]) -> None:
+    """Give up, in this process and for good, what computing a shape does not need.
+
+    Called right after the fork, while there is one thread and before any code of a script is read.
+
+    Args:
+        limits: Held by the kernel from now on.
+        layers: Those to put on, of `landlock` and `seccomp`.
+        readable: Paths that stay readable under Landlock.
+
+    Raises:
+        OSError: If a layer that was promised cannot be put on.
+    """
+    _limit_resources(limits)
+    _drop_capabilities()
+    libc = ctypes.CDLL(None, use_errno=True)
+    if libc.prctl(_PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0:
+        raise OSError(ctypes.get_errno(), "no_new_privs")
+    if "landlock" in layers:
+        landlock.restrict(readable)
+    if "seccomp" in layers:
+        seccomp.restrict()
+
+
+def die_with_parent(signal_number: int, parent: int) -> None:
+    """Ask the kernel to send this process a signal when its parent ends, and end now if it has ended already."""
+    ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal_number, 0, 0, 0)
+    if os.getppid() != parent:
+        os._exit(1)
+
+
+def _limit_resources(limits: Limits) -> None:
+    # Twice the wall clock on every processor is only reached by threads that outlive the wall clock's own kill.
+    cpu = int(2 * (limits.seconds + limits.probe_seconds) * (os.cpu_count() or 1)) + 1
+    for what, value in (
+        (resource.RLIMIT_AS, limits.memory),
+        (resource.RLIMIT_FSIZE, limits.file_size),
+        (resource.RLIMIT_CPU, cpu),
+        (resource.RLIMIT_NOFILE, 64),
+        (resource.RLIMIT_CORE, 0),
+        (resource.RLIMIT_MEMLOCK, 0),
+        (resource.RLIMIT_MSGQUEUE, 0),
+    ):
+        hard = resource.getrlimit(what)[1]
+        bound = value if hard == resource.RLIM_INFINITY else min(value, hard)
+        resource.setrlimit(what, (bound, bound))
+
+
+def _drop_capabilities() -> None:
+    """Leave root's powers: without them it may not raise limits, mount, or read what belongs to others."""
+    libc = ctypes.CDLL(None)
+    capability = 0
+    while libc.prctl(_PR_CAPBSET_DROP, capability, 0, 0, 0) == 0:
+        capability += 1
+    header = (ctypes.c_uint32 * 2)(_CAPABILITY_VERSION, 0)
+    nothing = (ctypes.c_uint32 * 6)()
+    number = _CAPSET.get(os.uname().machine)
+    if number is not None:
+        libc.syscall(number, ctypes.byref(header), ctypes.byref(nothing))

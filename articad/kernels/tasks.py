@@ -1,0 +1,63 @@
+"""What the worker does in a confined process, one task each. The zygote imports this once; no task returns anything but files."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import signal
+from typing import Any
+
+from articad.kernels import measure, part_script
+
+SELF_INTERSECTION_SECONDS = 5.0  # the check is quadratic in faces; a swept thread would need 12 s
+
+Json = dict[str, Any]
+
+
+def run_script(request: Json, files: dict[str, int]) -> None:
+    """Task `script`: run a part script."""
+    job, limits = json.loads(_content(files["job"])), request["limits"]
+    part_script.run(
+        job["script"],
+        job["part"],
+        seconds=limits["seconds"],
+        probe_seconds=limits["probe_seconds"],
+        report=lambda line: _write(files["report"], measure.to_json(line)),
+        shape=lambda content: _write(files["shape"], content),
+    )
+
+
+def measure_shape(request: Json, files: dict[str, int]) -> None:
+    """Tasks `measure` (what a script left, a file of STEP or B-rep, moved or mirrored) and `pieces` (what a failed one held)."""
+    job = json.loads(_content(files["job"]))
+    signal.setitimer(signal.ITIMER_REAL, request["limits"]["seconds"])
+    try:
+        shape = measure.read_shape(job["form"], _content(files["shape"]))
+    except (ValueError, RuntimeError) as error:
+        _write(files["report"], measure.to_json({"ok": False, "message": str(error)}))
+        return
+    accuracy = {"deflection": job["deflection_mm"], "angle": math.radians(job["angle_deg"])}
+    if request["task"] == "pieces":
+        measured = measure.pieces(shape, **accuracy)
+    else:
+        measured = measure.measure(shape, **accuracy, name=job["name"], matrix=job["matrix"])
+    for name, content in measured.files.items():
+        _write(files[name], content)
+    _write(files["report"], measure.to_json(measured.report))
+    if measured.report.get("valid") and measured.files:
+        signal.setitimer(signal.ITIMER_REAL, SELF_INTERSECTION_SECONDS)
+        _write(files["report"], measure.to_json({"intersects_itself": measure.intersects_itself(measure.solids_of(shape)[0])}))
+
+
+TASKS = {"script": run_script, "measure": measure_shape, "pieces": measure_shape}
+
+
+def _content(file: int) -> bytes:
+    return os.pread(file, os.fstat(file).st_size, 0)
+
+
+def _write(file: int, content: bytes) -> None:
+    view = memoryview(content)
+    while view:
+        view = view[os.write(file, view) :]

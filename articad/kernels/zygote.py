@@ -1,0 +1,205 @@
+"""The parent's end of the worker: starts the zygote, hands it jobs, starts another one when it has died."""
+
+from __future__ import annotations
+
+import atexit
+import contextlib
+import itertools
+import json
+import os
+import signal
+import socket
+import subprocess
+import sys
+import threading
+from collections.abc import Collection, Mapping
+from concurrent.futures import Future
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+from articad.errors import KernelUnavailableError
+from articad.findings import Finding
+from articad.kernels import sandbox
+from articad.kernels.libraries import install_line, missing_libraries
+
+START_SECONDS = 180.0  # the import takes 2 s, on a cold and busy disk 10 s
+_ANSWER = 4096
+_ROOT = str(Path(__file__).parents[2])
+# -P and -s: neither the folder it is started in nor the user's own packages are on the path. -B: nothing is written beside sources.
+_BOOT = f"import sys; sys.path.insert(0, {_ROOT!r}); from articad.kernels.worker import main; sys.path.remove({_ROOT!r}); main()"
+
+
+class ZygoteDiedError(Exception):
+    """The zygote ended while a job was running; the job may be given to the next one."""
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """How a job's process ended.
+
+    Attributes:
+        exit_code: What it returned, or None if a signal ended it.
+        signal: The signal that ended it, or 0.
+        late: The zygote killed it at its deadline.
+        peak: Largest memory it held [bytes].
+        refused: Why no process could be started; empty if one was.
+    """
+
+    exit_code: int | None
+    signal: int
+    late: bool
+    peak: int
+    refused: str = ""
+
+    @property
+    def ok(self) -> bool:
+        """True when it came to its end."""
+        return self.exit_code == 0
+
+
+class Zygote:
+    """One process that has the kernel imported and forks a confined one for each job; jobs may be handed in from many threads."""
+
+    def __init__(self, layers: Collection[str]) -> None:
+        self._layers = tuple(layer for layer in sandbox.LAYERS if layer in layers)
+        self._lock = threading.Lock()
+        self._numbers = itertools.count(1)
+        self._waiting: dict[int, Future[Outcome]] = {}
+        self._control: socket.socket | None = None
+        self._process: subprocess.Popen[bytes] | None = None
+        self._owner = 0
+
+    def run(self, task: str, files: Mapping[str, int], limits: sandbox.Limits) -> Outcome:
+        """Do one job and wait for its end.
+
+        Args:
+            task: Which of the worker's tasks.
+            files: Open files by the names that the task knows; `crash` among them takes what a dying process has to say.
+            limits: What it may use.
+
+        Raises:
+            ZygoteDiedError: If the zygote died meanwhile.
+            KernelUnavailableError: If it could not be started.
+        """
+        answer: Future[Outcome] = Future()
+        with self._lock:
+            control = self._started()
+            number = next(self._numbers)
+            request = {"id": number, "task": task, "files": list(files), "limits": asdict(limits), "layers": self._layers}
+            self._waiting[number] = answer
+            try:
+                socket.send_fds(control, [json.dumps(request).encode()], list(files.values()))
+            except OSError as error:
+                del self._waiting[number]
+                raise ZygoteDiedError from error
+        return answer.result()
+
+    @property
+    def pid(self) -> int | None:
+        """The process that was started, for tests and for people; None before the first job."""
+        return None if self._process is None else self._process.pid
+
+    def close(self) -> None:
+        """End the zygote and whatever it runs; the next job starts another one."""
+        with self._lock:
+            self._stop()
+
+    def _started(self) -> socket.socket:
+        """Return the socket to a zygote that runs, started now if there is none or if this process is a fork of its owner."""
+        alive = self._process is not None and self._process.poll() is None and self._owner == os.getpid()
+        if alive and self._control is not None:
+            return self._control
+        if self._owner == os.getpid():
+            self._stop()
+        self._owner, self._waiting = os.getpid(), {}
+        ready: Future[socket.socket] = Future()
+        # A thread of its own lives as long as the zygote: the kernel ends the zygote with the thread that started it.
+        threading.Thread(target=self._attend, args=(ready,), name="articad-zygote", daemon=True).start()
+        self._control = ready.result()
+        atexit.register(self.close)
+        return self._control
+
+    def _stop(self) -> None:
+        if self._control is not None:
+            with contextlib.suppress(OSError):
+                self._control.shutdown(socket.SHUT_RDWR)
+            self._control = None
+        if self._process is not None and self._owner == os.getpid():
+            try:
+                self._process.wait(timeout=2.0)
+            except subprocess.TimeoutExpired:
+                self._process.kill()
+                self._process.wait()
+        self._process = None
+        atexit.unregister(self.close)
+
+    def _attend(self, ready: Future[socket.socket]) -> None:
+        """Start the zygote and deliver its answers until it ends."""
+        ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+        waiting = self._waiting
+        try:
+            with theirs:
+                process = self._spawn(theirs)
+            self._process = process
+            ours.settimeout(START_SECONDS)
+            hello = json.loads(ours.recv(_ANSWER) or b'{"problem": "it ended before it was ready"}')
+            if not hello.get("ready"):
+                process.kill()
+                process.wait()
+                raise _unavailable(str(hello.get("problem")))
+            ours.settimeout(None)
+        except (OSError, KernelUnavailableError) as error:
+            ready.set_exception(error if isinstance(error, KernelUnavailableError) else _unavailable(str(error)))
+            ours.close()
+            return
+        ready.set_result(ours)
+        with ours, contextlib.suppress(OSError):
+            while message := ours.recv(_ANSWER):
+                answer = json.loads(message)
+                future = waiting.pop(answer["id"], None)
+                if future is not None:
+                    future.set_result(_outcome(answer))
+        for future in list(waiting.values()):
+            if not future.done():
+                future.set_exception(ZygoteDiedError("the worker's process ended"))
+
+    def _spawn(self, control: socket.socket) -> subprocess.Popen[bytes]:
+        command = [sys.executable, "-P", "-s", "-B", "-c", _BOOT]
+        if "bwrap" in self._layers:
+            command = sandbox.bubblewrap_command(command)
+        return subprocess.Popen(  # noqa: S603 - this interpreter, our module
+            command,
+            stdin=control.fileno(),
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+            env=sandbox.ENVIRONMENT,
+            cwd="/",
+            start_new_session=True,
+        )
+
+
+def _outcome(answer: dict[str, Any]) -> Outcome:
+    if "refused" in answer:
+        return Outcome(None, 0, late=False, peak=0, refused=str(answer["refused"]))
+    status = int(answer["status"])
+    signaled = os.WIFSIGNALED(status)
+    return Outcome(
+        None if signaled else os.WEXITSTATUS(status),
+        os.WTERMSIG(status) if signaled else 0,
+        late=bool(answer["late"]),
+        peak=int(answer["peak"]),
+    )
+
+
+def _unavailable(problem: str) -> KernelUnavailableError:
+    missing = missing_libraries()
+    how = install_line(missing) if missing else "pip install 'build123d>=0.13,<0.14'"
+    what = f"The build123d kernel could not be loaded: {problem}."
+    finding = Finding(code="E_KERNEL_UNAVAILABLE", where="kernels.build123d", message=what, hint=f"Run: {how}")
+    return KernelUnavailableError(f"{what} Run: {how}", looked_in=(sys.executable,), how_to_get=how, findings=[finding])
+
+
+def ends_by(outcome: Outcome) -> str:
+    """Return the name of the signal that ended a job, as `SIGSEGV`; empty if none did."""
+    return signal.Signals(outcome.signal).name if outcome.signal else ""
