@@ -20,7 +20,9 @@ if TYPE_CHECKING:
 
     from articad.assembly import Assembly
     from articad.interference.check import Checks
+    from articad.kernels.kernel import BuildCache
     from articad.plan.schema import AssemblyPlan
+    from articad.run import Run
     from articad.terminal import Report, Terminal
 
 OK: Final = 0
@@ -99,6 +101,17 @@ def _parameter(text: str) -> tuple[str, float]:
         raise argparse.ArgumentTypeError(f"{value!r} in {text!r} is not a number") from None
 
 
+def _amount(text: str) -> float:
+    """Read a positive number."""
+    try:
+        amount = float(text)
+    except ValueError:
+        amount = 0.0
+    if not 0 < amount < float("inf"):
+        raise argparse.ArgumentTypeError(f"{text!r} is not a positive number")
+    return amount
+
+
 def _positive(text: str) -> int:
     """Read a whole number of at least 1."""
     if not (text.isdecimal() and int(text) >= 1):
@@ -107,28 +120,33 @@ def _positive(text: str) -> int:
 
 
 _OUT = _argument("--out", metavar="DIR", help="where to write; by default a new folder under runs/")
+_SANDBOX = _argument(
+    "--sandbox", choices=["strict", "weak"], default=None, help="weak runs part scripts with less isolation than landlock or bwrap"
+)
+_JOBS = _argument("--jobs", metavar="N", type=_positive, default=None, help="parts built at once (all processors)")
+_FORCE = _argument("--force", action="store_true", help="build every part anew, whatever the cache holds")
+_EXPORT = _argument("--export", metavar="FORMATS", dest="formats", type=_formats, default=_WRITERS, help="formats to write (urdf,mjcf)")
 _BUILD_ARGUMENTS = (
     _OUT,
     _argument("--kernel", choices=["build123d", "freecad"], default=None, help="what builds part scripts (the plan's own choice)"),
     _argument("--set", metavar="NAME=VALUE", dest="parameters", type=_parameter, action="append", default=[], help="replace a parameter"),
     _argument("--verify", choices=["rest", "sampled", "certified"], default="rest", help="how much motion is checked (rest)"),
-    _argument("--export", metavar="FORMATS", dest="formats", type=_formats, default=_WRITERS, help="formats to write (urdf,mjcf)"),
-    _argument(
-        "--sandbox", choices=["strict", "weak"], default=None, help="weak runs part scripts with less isolation than landlock or bwrap"
-    ),
-    _argument("--jobs", metavar="N", type=_positive, default=None, help="parts built at once (all processors)"),
-    _argument("--force", action="store_true", help="build every part anew, whatever the cache holds"),
+    _EXPORT,
+    _SANDBOX,
+    _JOBS,
+    _FORCE,
 )
 _MODEL_ARGUMENTS = (
     _argument("--image", metavar="FILE", dest="images", action="append", default=[], help="a picture that belongs to the request"),
     _argument("--part-image", metavar="NAME=FILE", dest="part_images", type=_assignment, action="append", default=[], help="of one part"),
-    _argument("--model", metavar="NAME", help="the model that writes plans and scripts, as LiteLLM names it"),
+    _argument("--model", metavar="NAME", required=True, help="the model that writes plans and scripts, as LiteLLM names it"),
     _argument("--vision-model", metavar="NAME", help="the model that looks at pictures (the same)"),
     _argument("--api-base", metavar="URL", help="an OpenAI-compatible endpoint"),
-    _argument("--repairs", metavar="N", type=_positive, default=3, help="attempts at one part (3)"),
+    _argument("--rounds", metavar="N", type=_positive, default=3, help="designs that are built and checked (3)"),
+    _argument("--repairs", metavar="N", type=_positive, default=3, help="attempts to mend one part (3)"),
     _argument("--max-calls", metavar="N", type=_positive, default=60, help="model calls (60)"),
-    _argument("--max-cost", metavar="USD", type=float, default=None, help="cost of all calls (unlimited)"),
-    _argument("--max-minutes", metavar="N", type=float, default=60.0, help="wall clock (60)"),
+    _argument("--max-cost", metavar="USD", type=_amount, default=None, help="cost of all calls (unlimited)"),
+    _argument("--max-minutes", metavar="N", type=_amount, default=60.0, help="wall clock (60)"),
 )
 
 
@@ -139,9 +157,8 @@ _MODEL_ARGUMENTS = (
 def _build(options: argparse.Namespace, terminal: Terminal) -> Report:
     from pathlib import Path
 
-    from articad import summaries
     from articad.plan.schema import AssemblyPlan
-    from articad.record import assembly_report, record_assembly, record_checks, record_export
+    from articad.record import record_assembly, record_checks, record_export
     from articad.run import RunRequest, open_or_create
 
     plan = AssemblyPlan.load(options.plan)
@@ -152,24 +169,10 @@ def _build(options: argparse.Namespace, terminal: Terminal) -> Report:
     with open_or_create(RunRequest(prompt=plan.name, options=choices), options.out) as run:
         run.save_plan(plan.dumps(), 0)
         record_assembly(run, assembly)
-        checks = _verified(assembly, options.verify)
-        record_checks(run, checks)
-        exports = {name: record_export(run, assembly, name) for name in options.formats}
-        path = str(run.path)
-    summaries.print_assembly(assembly, terminal)
-    summaries.print_checks(checks, terminal)
-    terminal.findings(assembly.findings + checks.findings)
-    summaries.print_exports(exports, terminal)
-    terminal.say(f"Run: {path}")
-    return {
-        "schema": "articad.build/1",
-        "ok": assembly.findings.ok and checks.ok and all(export["ok"] for export in exports.values()),
-        "run": path,
-        "assembly": assembly_report(assembly),
-        "checks": checks.to_json(),
-        "exports": exports,
-        "findings": [],
-    }
+        record_checks(run, _verified(assembly, options.verify))
+        for name in options.formats:
+            record_export(run, assembly, name)
+    return _reported(run, terminal)
 
 
 @_command("check", "Check a plan, or the plan and the geometry of a finished run.", _argument("target", metavar="PLAN_DIR|RUN|FILE"))
@@ -193,8 +196,9 @@ def _check(options: argparse.Namespace, terminal: Terminal) -> Report:
     with Run.view(options.target) as run, terminal.progress("Reading") as tell:
         checks = assembly_of(run, progress=tell).check()
     terminal.findings(checks.findings)
-    summaries.print_checks(checks, terminal)
-    return checks.to_json()
+    report = checks.to_json()
+    summaries.print_checks(report, terminal)
+    return report
 
 
 @_command(
@@ -225,6 +229,78 @@ def _export(options: argparse.Namespace, terminal: Terminal) -> Report:
             exports[name] = bundle.to_json() | {"folder": str(main.parent), "main": str(main)}
     summaries.print_exports(exports, terminal)
     return {"schema": "articad.exports/1", "ok": all(export["ok"] for export in exports.values()), "exports": exports, "findings": []}
+
+
+@_command(
+    "generate",
+    "Have a model write the plan and the part scripts of what you describe; then build, check and export it.",
+    _argument("text", metavar="TEXT", help="what is wanted"),
+    *_MODEL_ARGUMENTS,
+    _OUT,
+    _EXPORT,
+    _SANDBOX,
+    _JOBS,
+    _FORCE,
+)
+def _generate(options: argparse.Namespace, terminal: Terminal) -> Report:
+    from articad.agents.live import LiteLLM
+    from articad.agents.llm import Budget
+    from articad.agents.pipeline import generate
+
+    model = LiteLLM(options.model, api_base=options.api_base, vision_model=options.vision_model)
+    budget = Budget(model, calls=options.max_calls, cost=options.max_cost, minutes=options.max_minutes)
+    with terminal.progress("Generating") as tell:
+        run = generate(
+            options.text,
+            llm=budget,
+            images=options.images,
+            part_images=dict(options.part_images),
+            out=options.out,
+            sandbox=_sandbox(options),
+            cache=_cache(options),
+            formats=options.formats,
+            repairs=options.repairs,
+            rounds=options.rounds,
+            jobs=options.jobs,
+            progress=tell,
+        )
+    report = _reported(run, terminal)
+    price = "of unknown price" if budget.cost_unknown_of else f"${budget.cost:.4f}"
+    terminal.say(f"Model: {budget.calls} calls, {budget.tokens} tokens, {price}.")
+    return report | {"model": {"calls": budget.calls, "tokens": budget.tokens, "cost_usd": None if budget.cost_unknown_of else budget.cost}}
+
+
+@_command(
+    "replay",
+    "Make a recorded run again, without model or network, and compare.",
+    _argument("run", metavar="RUN"),
+    _OUT,
+    _argument("--strict", action="store_true", help="refuse a prompt that is not the recorded one, instead of reporting it"),
+    _SANDBOX,
+    _JOBS,
+    _FORCE,
+)
+def _replay(options: argparse.Namespace, terminal: Terminal) -> Report:
+    from articad.agents.pipeline import replay
+
+    with terminal.progress("Replaying") as tell:
+        replayed = replay(
+            options.run,
+            out=options.out,
+            strict=options.strict,
+            sandbox=_sandbox(options),
+            cache=_cache(options),
+            jobs=options.jobs,
+            progress=tell,
+        )
+    report = _reported(replayed.run, terminal)
+    terminal.findings(replayed.findings)
+    for name in replayed.differences:
+        terminal.say(f"differs: {name}")
+    verdict = "every file but the trace is equal" if replayed.ok else f"{len(replayed.differences)} files differ"
+    terminal.say(f"Replay of {options.run}: {verdict}.")
+    findings = [finding.to_json() for finding in replayed.findings]
+    return report | {"ok": report["ok"] and replayed.ok, "differences": list(replayed.differences), "findings": findings}
 
 
 @_command(
@@ -263,7 +339,6 @@ def _doctor(options: argparse.Namespace, terminal: Terminal) -> Report:
 def _assembled(plan: AssemblyPlan, scripts: Path, options: argparse.Namespace, terminal: Terminal) -> Assembly:
     """Build the parts with progress, and assemble them."""
     from articad.assembly import Assembly
-    from articad.kernels.kernel import BuildCache
     from articad.record import kernel_named
 
     with terminal.progress("Building", total=len(plan.parts)) as tell:
@@ -272,10 +347,27 @@ def _assembled(plan: AssemblyPlan, scripts: Path, options: argparse.Namespace, t
             scripts,
             kernel=kernel_named(options.kernel or plan.kernel, sandbox=_sandbox(options)),
             jobs=options.jobs,
-            cache=BuildCache(None) if options.force else None,
+            cache=_cache(options),
             progress=tell,
             parameters=dict(options.parameters),
         )
+
+
+def _reported(run: Run, terminal: Terminal) -> Report:
+    """Print what a finished run holds, and return its report."""
+    from articad.record import run_report
+    from articad.summaries import print_run
+
+    report = run_report(run)
+    print_run(report, terminal)
+    return report
+
+
+def _cache(options: argparse.Namespace) -> BuildCache:
+    """Return the user's cache of parts, or with --force an empty one."""
+    from articad.kernels.kernel import BuildCache
+
+    return BuildCache(None) if options.force else BuildCache()
 
 
 def _sandbox(options: argparse.Namespace) -> Literal["strict", "weak"]:

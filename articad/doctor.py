@@ -22,6 +22,7 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 from articad.errors import KernelUnavailableError
 from articad.findings import Finding
+from articad.kernels.libraries import PACKAGES
 
 if TYPE_CHECKING:
     from articad.agents.llm import LLM
@@ -38,12 +39,8 @@ class Library(NamedTuple):
     needed_by: str
 
 
-LIBRARIES = (
-    Library("libGL.so.1", "libgl1", "the B-rep kernel"),
-    Library("libX11.so.6", "libx11-6", "the B-rep kernel"),
-    Library("libexpat.so.1", "libexpat1", "the B-rep kernel"),
-    Library("libgomp.so.1", "libgomp1", "Pinocchio"),
-)
+_NEEDED_BY = {"libgomp.so.1": "Pinocchio"}  # the others by the B-rep kernel
+LIBRARIES = tuple(Library(soname, package, _NEEDED_BY.get(soname, "the B-rep kernel")) for soname, package in PACKAGES.items())
 
 # Distribution -> what it does for articad. Reported with versions; all of them come with `pip install articad`.
 _PACKAGES = {

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from pathlib import Path
 from typing import Any, Final, Literal
 
 from articad.assembly import Assembly
@@ -14,6 +13,7 @@ from articad.export.mjcf import write_mjcf
 from articad.export.urdf import write_urdf
 from articad.findings import Finding
 from articad.geometry.mesh_files import write_stl
+from articad.geometry.part import Solid
 from articad.interference.check import Checks
 from articad.kernels.build123d import Build123dKernel
 from articad.kernels.kernel import BuildCache, PartKernel
@@ -55,23 +55,31 @@ def record_assembly(run: Run, assembly: Assembly) -> None:
 
 def assembly_report(assembly: Assembly) -> Report:
     """Return the report `articad.assembly/1`: parts, joints, freedoms, drivers and mass at rest, numbers in mm, rad and kg."""
-    mechanism = assembly.mechanism
     rest = assembly.at()
+    parts = {
+        name: {
+            "material": part.material,
+            "volume_mm3": None if part.solid is None else part.solid.volume,
+            "mass_kg": None if part.mass is None else part.mass.mass,
+            "rest": rest[name].data.tolist(),
+            "derived_from": assembly.realised[name].derived_from if name in assembly.realised else None,
+        }
+        for name, part in assembly.parts.items()
+    }
+    drivers = [
+        {"name": driver.name, "unit": driver.unit, "lower": _finite(driver.lower), "upper": _finite(driver.upper), "rest": driver.rest}
+        for driver in assembly.drivers
+    ]
     return {
         "schema": "articad.assembly/1",
         "ok": assembly.findings.ok,
         "name": assembly.name,
         "ground": assembly.ground,
-        "freedoms": mechanism.mobility,
-        "parts": {
-            name: {"mass_kg": None if part.mass is None else part.mass.mass, "rest": rest[name].data.tolist()}
-            for name, part in assembly.parts.items()
-        },
-        "joints": {joint.name: {"type": str(joint.type), "parent": joint.parent, "child": joint.child} for joint in mechanism.joints},
-        "drivers": [
-            {"name": driver.name, "unit": driver.unit, "lower": _finite(driver.lower), "upper": _finite(driver.upper), "rest": driver.rest}
-            for driver in assembly.drivers
-        ],
+        "freedoms": assembly.mechanism.mobility,
+        "mass_kg": sum(part.mass.mass for part in assembly.parts.values() if part.mass is not None),
+        "parts": parts,
+        "joints": {joint.name: {"type": str(joint.type), "parent": joint.parent, "child": joint.child} for joint in assembly.joints},
+        "drivers": drivers,
         "findings": [finding.to_json() for finding in assembly.findings],
     }
 
@@ -95,10 +103,29 @@ def written(assembly: Assembly, format_name: str, *, strict: bool = False) -> Bu
 def record_export(run: Run, assembly: Assembly, format_name: str, *, strict: bool = False) -> Report:
     """Keep an export; return its report `articad.losses/1`, with the folder."""
     bundle = written(assembly, format_name, strict=strict)
-    report = bundle.to_json()
-    folder = run.save_export(format_name, bundle.files, report)
-    run.trace("artifact", kind=format_name, file=str(Path("export") / format_name / bundle.main))
-    return report | {"folder": str(folder), "main": str(folder / bundle.main)}
+    run.save_export(format_name, bundle.files, bundle.to_json())
+    run.trace("artifact", kind=format_name, file=f"export/{format_name}/{bundle.main}")
+    return run.exports()[format_name]
+
+
+def run_report(run: Run) -> Report:
+    """Return the report `articad.build/1` of a finished run: its assembly's, its checks' and its exports'.
+
+    Raises:
+        ReadError: If the run is not finished.
+    """
+    assembly, checks, exports = run.assembly(), run.checks(), run.exports()
+    if assembly is None or checks is None:
+        raise ReadError(f"{run.path} is not finished: it has no {'assembly' if assembly is None else 'checks'} yet.", path=str(run.path))
+    return {
+        "schema": "articad.build/1",
+        "ok": all(report["ok"] for report in (assembly, checks, *exports.values())),
+        "run": str(run.path),
+        "assembly": assembly,
+        "checks": checks,
+        "exports": exports,
+        "findings": [],
+    }
 
 
 def assembly_of(run: Run, *, cache: BuildCache | None = None, sandbox: Sandbox = "strict", progress: Progress | None = None) -> Assembly:
@@ -121,40 +148,46 @@ def assembly_of(run: Run, *, cache: BuildCache | None = None, sandbox: Sandbox =
 def _record_part(run: Run, assembly: Assembly, name: str, realised: RealisedPart) -> None:
     assert assembly.resolved is not None
     built = realised.built
-    record: Report = {
-        "kernel": {"name": assembly.resolved.plan.kernel},
-        "sandbox": built.sandbox,
-        "editable": realised.derived_from is None,
-    }
+    # What depends on the machine and not on the part stands in the trace, so that a replay elsewhere compares equal.
+    run.trace("build", part=name, sandbox=built.sandbox, cached=realised.cached, derived_from=realised.derived_from)
+    record: Report = {"kernel": assembly.resolved.plan.kernel, "editable": realised.derived_from is None, "shape": _shape_json(built.solid)}
     if realised.derived_from is not None:
         run.save_part(name, record=record | {"derived_from": realised.derived_from})
         return
-    solid = built.solid
-    record |= {
-        "digests": dict(realised.digests),
-        "shape": {
-            "volume_mm3": solid.volume,
-            "area_mm2": solid.area,
-            "bbox_mm": solid.bbox.tolist(),
-            "com_mm": solid.com.tolist(),
-            "inertia_mm5": solid.inertia_mm5.tolist(),
-        },
-        "mesh": {"triangles": len(solid.mesh.triangles), "deflection_mm": solid.deflection, "sha256": solid.mesh.digest},
-    }
+    planned = assembly.resolved.parts[name].connectors
     run.save_part(
         name,
-        record=record,
+        record=record | {"digests": dict(realised.digests)},
         brief=brief(assembly.resolved, name),
         script=realised.script,
-        connectors={connector.name: _connector_json(connector) for connector in built.connectors.values()},
-        stl=write_stl(solid.mesh),
+        connectors={connector: _connector_json(realised_one, planned[connector]) for connector, realised_one in built.connectors.items()},
+        stl=write_stl(built.solid.mesh),
         files={file: built.folder / file for file in _KERNEL_FILES if (built.folder / file).is_file()},
     )
 
 
-def _connector_json(connector: Connector) -> Report:
-    frame = connector.frame
-    return {"o": frame.translation.tolist(), "z": frame.z_axis.tolist(), "x": frame.x_axis.tolist()}
+def _shape_json(solid: Solid) -> Report:
+    return {
+        "volume_mm3": solid.volume,
+        "area_mm2": solid.area,
+        "bbox_mm": solid.bbox.tolist(),
+        "com_mm": solid.com.tolist(),
+        "inertia_mm5": solid.inertia_mm5.tolist(),
+        "triangles": len(solid.mesh.triangles),
+        "mesh_sha256": solid.mesh.digest,
+        "deflection_mm": solid.deflection,
+    }
+
+
+def _connector_json(realised: Connector, planned: Connector) -> Report:
+    """Where the script has a connector, and how far that is from the plan's."""
+    frame, drift = realised.frame, planned.drift(realised.frame)
+    return {
+        "o": frame.translation.tolist(),
+        "z": frame.z_axis.tolist(),
+        "x": frame.x_axis.tolist(),
+        "drift": {"radial_mm": drift.radial, "along_mm": drift.along, "axis_rad": drift.axis, "roll_rad": drift.roll},
+    }
 
 
 def _finite(bound: float) -> float | None:

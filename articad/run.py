@@ -370,6 +370,15 @@ class Run:
         self._write_json(str(folder / "losses.json"), report)
         return self.path / folder
 
+    def exports(self) -> dict[str, Json]:
+        """Return the report of each export by its format, with the `folder` and the path of the `main` file added."""
+        reports = {}
+        for file in sorted((self.path / _EXPORT).glob("*/losses.json")):
+            report = self._read_json(str(file.relative_to(self.path))) or {}
+            main = next(iter(report.get("files", {})), "")
+            reports[file.parent.name] = report | {"folder": str(file.parent), "main": str(file.parent / main)}
+        return reports
+
     # ------------------------------------------------------------------ the trace
 
     def trace(self, event: Event, **fields: object) -> None:

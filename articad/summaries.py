@@ -1,47 +1,58 @@
-"""Summaries: what commands print of assemblies, checks and exports, for people to read."""
+"""Summaries: what commands print of their reports, for people to read."""
 
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from articad.assembly import Assembly
     from articad.findings import Findings
-    from articad.interference.check import Checks
     from articad.terminal import Report, Terminal
 
 
-def print_assembly(assembly: Assembly, terminal: Terminal) -> None:
-    """Print the parts with their measures, then what moves."""
-    rows = []
-    for name, part in assembly.parts.items():
-        volume = "" if part.solid is None else f"{part.solid.volume:.1f}"
-        mass = "" if part.mass is None else f"{part.mass.mass:.4g}"
-        rows.append((name, part.material or "", volume, mass, _made(assembly, name)))
-    terminal.table(["part", "material", "volume mm³", "mass kg", "made"], rows, right=(2, 3))
-    joints = [(joint.name, joint.type, joint.parent, joint.child) for joint in assembly.joints]
-    terminal.say()
-    terminal.table(["joint", "type", "parent", "child"], joints)
-    terminal.say()
-    total = f", {assembly.mass().mass:.4g} kg" if any(part.mass is not None for part in assembly.parts.values()) else ""
-    terminal.say(f"{assembly.name}: {len(rows)} parts, {len(joints)} joints, {assembly.mechanism.mobility} freedoms{total}.")
+def print_run(report: Report, terminal: Terminal) -> None:
+    """Print what a finished run made, how it was judged, and where it is."""
+    print_assembly(report["assembly"], terminal)
+    print_checks(report["checks"], terminal)
+    print_findings([*report["assembly"]["findings"], *report["checks"]["findings"]], terminal)
+    print_exports(report["exports"], terminal)
+    terminal.say(f"Run: {report['run']}")
 
 
-def print_checks(checks: Checks, terminal: Terminal) -> None:
+def print_assembly(report: Report, terminal: Terminal) -> None:
+    """Print the parts with their measures, the joints, and what moves."""
+    parts, joints = report["parts"], report["joints"]
+    rows = [
+        (name, part["material"] or "", _number(part["volume_mm3"], ".1f"), _number(part["mass_kg"], ".4g"), part["derived_from"] or "")
+        for name, part in parts.items()
+    ]
+    terminal.table(["part", "material", "volume mm³", "mass kg", "derived from"], rows, right=(2, 3))
+    terminal.say()
+    terminal.table(["joint", "type", "parent", "child"], [(name, j["type"], j["parent"], j["child"]) for name, j in joints.items()])
+    terminal.say()
+    terminal.say(
+        f"{report['name']}: {counted_things(len(parts), 'part', 'parts')}, {counted_things(len(joints), 'joint', 'joints')}, "
+        f"{counted_things(report['freedoms'], 'freedom', 'freedoms')}, {report['mass_kg']:.4g} kg."
+    )
+
+
+def print_checks(report: Report, terminal: Terminal) -> None:
     """Print how the pairs of parts fared, how that is known, and the deepest overlap."""
-    verdicts = Counter(pair.verdict for pair in checks.pairs)
-    strengths = Counter(pair.strength.kind.replace("_", " ") for pair in checks.pairs)
-    told = ", ".join(f"{count} {verdict}" for verdict, count in sorted(verdicts.items()))
-    known = ", ".join(f"{count} {kind}" for kind, count in sorted(strengths.items()))
-    over = checks.over if isinstance(checks.over, str) else " and ".join(checks.over)
-    pairs = f"{len(checks.pairs)} pairs are near each other ({told}; {known})" if checks.pairs else "no two parts are near each other"
-    terminal.say(f"Check at {over}: {'ok' if checks.ok else 'NOT ok'}; {pairs}.")
-    deepest = max(checks.pairs, key=lambda pair: pair.depth, default=None)
-    if deepest is not None and deepest.depth > 0:
-        names = " and ".join(deepest.parts)
-        terminal.say(f"Largest overlap depth: {deepest.depth:.6g} mm ({names}; {deepest.allowed:.6g} mm allowed).")
+    pairs = report["pairs"]
+    told = _counts(pair["verdict"] for pair in pairs)
+    known = _counts(pair["strength"]["kind"].replace("_", " ") for pair in pairs)
+    near = (
+        f"{counted_things(len(pairs), 'pair', 'pairs')} of parts near each other ({told}; {known})"
+        if pairs
+        else "no two parts are near each other"
+    )
+    terminal.say(f"Interference: {'ok' if report['ok'] else 'NOT ok'}; {near}.")
+    deepest = max(pairs, key=lambda pair: pair["depth_mm"], default=None)
+    if deepest is not None and deepest["depth_mm"] > 0:
+        terminal.say(
+            f"Largest overlap depth: {deepest['depth_mm']:.6g} mm ({' and '.join(deepest['parts'])}; {deepest['allowed_mm']:.6g} mm allowed)."
+        )
     else:
         terminal.say("Largest overlap depth: 0 mm.")
 
@@ -49,19 +60,27 @@ def print_checks(checks: Checks, terminal: Terminal) -> None:
 def print_exports(exports: Mapping[str, Report], terminal: Terminal) -> None:
     """Print each export's main file, and everything that was lost in it."""
     for name, export in exports.items():
-        terminal.say(
-            f"{name.upper()}: {export['main']} ({len(export['files'])} files, {counted_things(len(export['rows']), 'loss', 'losses')})"
-        )
+        losses = counted_things(len(export["rows"]), "loss", "losses")
+        terminal.say(f"{name.upper()}: {export['main']} ({counted_things(len(export['files']), 'file', 'files')}, {losses})")
+        alike: dict[str, list[Report]] = {}
         for row in export["rows"]:
-            terminal.say(f"  {row['where']}: {row['kept']}; lost: {row['lost']}")
+            alike.setdefault(row["lost"], []).append(row)
+        for lost, rows in alike.items():
+            others = f" and {len(rows) - 1} more" if len(rows) > 1 else ""
+            terminal.say(f"  {rows[0]['where']}{others}: written as {rows[0]['kept']}; lost: {lost}")
+
+
+def print_findings(findings: list[Report], terminal: Terminal) -> None:
+    """Print the findings of a report."""
+    for finding in findings:
+        terminal.finding(finding)
 
 
 def counted(findings: Findings) -> str:
     """Return `2 errors, 1 warning`, or `no findings`."""
     count = Counter(str(finding.severity) for finding in findings)
-    names = (("error", "errors"), ("warning", "warnings"), ("info", "notes"))
-    told = [counted_things(count[one], "note" if one == "info" else one, many) for one, many in names if count[one]]
-    return ", ".join(told) or "no findings"
+    names = {"error": ("error", "errors"), "warning": ("warning", "warnings"), "info": ("note", "notes")}
+    return ", ".join(counted_things(count[severity], *words) for severity, words in names.items() if count[severity]) or "no findings"
 
 
 def counted_things(count: int, one: str, many: str) -> str:
@@ -69,10 +88,10 @@ def counted_things(count: int, one: str, many: str) -> str:
     return f"{count} {one if count == 1 else many}"
 
 
-def _made(assembly: Assembly, name: str) -> str:
-    realised = assembly.realised.get(name)
-    if realised is None:
-        return ""
-    if realised.derived_from is not None:
-        return f"from {realised.derived_from}"
-    return "kept" if realised.cached else "built"
+def _counts(words: Iterable[str]) -> str:
+    counter = Counter(words)
+    return ", ".join(f"{count} {word}" for word, count in sorted(counter.items()))
+
+
+def _number(value: float | None, form: str) -> str:
+    return "" if value is None else format(value, form)

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any, TextIO
 
 if TYPE_CHECKING:
     from articad.errors import ArticadError
-    from articad.findings import Finding, Findings
+    from articad.findings import Findings
 
 Report = dict[str, Any]
 """What a command made or found: `{"schema": "articad.<kind>/1", "ok": bool, "findings": […], …}`."""
@@ -89,11 +89,13 @@ class Terminal:
 
     def findings(self, findings: Findings) -> None:
         """Print findings, the errors even with -q."""
-        if self.as_json:
-            return
         for finding in findings:
-            if finding.severity == "error" or not self.quiet:
-                print(self._line_of(finding, self.out), file=self.out)
+            self.finding(finding.to_json())
+
+    def finding(self, finding: Report) -> None:
+        """Print a finding as a report has it, an error even with -q."""
+        if not self.as_json and (finding["severity"] == "error" or not self.quiet):
+            print(self._line_of(finding, self.out), file=self.out)
 
     def finish(self, report: Report) -> None:
         """Print the report, if that was asked for."""
@@ -119,7 +121,7 @@ class Terminal:
         lines = [line for line in error.message.splitlines() if line not in told]  # a message may list its own findings
         print(self._painted("articad: ", "31;1", self.err) + ("\n".join(lines) or "cannot go on."), file=self.err)
         for finding in error.findings:
-            print(self._line_of(finding, self.err), file=self.err)
+            print(self._line_of(finding.to_json(), self.err), file=self.err)
         how_to_get = getattr(error, "how_to_get", "")
         if how_to_get and not any(how_to_get in line for line in told):
             print(f"  {how_to_get}", file=self.err)
@@ -210,13 +212,13 @@ class Terminal:
     def _painted(self, text: str, code: str, stream: TextIO) -> str:
         return f"\x1b[{code}m{text}\x1b[0m" if self._is_watched(stream) else text
 
-    def _line_of(self, finding: Finding, stream: TextIO) -> str:
-        code = self._painted(finding.code, {"error": "31", "warning": "33", "info": "36"}[finding.severity], stream)
+    def _line_of(self, finding: Report, stream: TextIO) -> str:
+        code = self._painted(finding["code"], {"error": "31", "warning": "33", "info": "36"}[finding["severity"]], stream)
         numbers = ""
-        if finding.value is not None and finding.limit is not None:
-            numbers = f" ({finding.value:.6g} against {finding.limit:.6g} {finding.unit or ''}".rstrip() + ")"
-        hint = f"\n    {finding.hint}" if finding.hint else ""
-        return f"  {code} {finding.where}: {finding.message}{numbers}{hint}"
+        if finding["value"] is not None and finding["limit"] is not None:
+            numbers = f" ({finding['value']:.6g} against {finding['limit']:.6g} {finding['unit'] or ''}".rstrip() + ")"
+        hint = f"\n    {finding['hint']}" if finding["hint"] else ""
+        return f"  {code} {finding['where']}: {finding['message']}{numbers}{hint}"
 
     def _rich_table(self, columns: Sequence[str], cells: Sequence[Sequence[str]], right: Sequence[int]) -> None:
         from rich.box import SIMPLE_HEAD  # noqa: PLC0415 - 100 ms that only a terminal needs
