@@ -1,0 +1,103 @@
+"""Replies for two small products, as a model would give them."""
+
+from __future__ import annotations
+
+import json
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+from articad.agents.llm import Scripted
+from articad.kernels.build123d import Build123dKernel
+from articad.kernels.kernel import BuildCache
+
+FIXTURES = Path(__file__).parent.parent / "fixtures"
+PROMPTS = files("articad.agents.prompts")
+
+SEWING_BOX_PROMPT = "a sewing box, 240 mm wide, whose two lids open to the left and right, with a drawer below"
+
+FLAP_PROMPT = "a plate with a flap on it"
+FLAP_PLAN: dict[str, Any] = {
+    "schema": "articad.plan/1",
+    "name": "flap",
+    "ground": "plate",
+    "freedoms": 1,
+    "parameters": [{"name": "lift", "value": 1}],
+    "materials": [{"name": "steel", "density_kg_m3": 7850, "color": "#8a9299"}],
+    "parts": [
+        {
+            "name": "plate",
+            "material": "steel",
+            "description": "Box x from 0 to length, y and z from 0 to side.",
+            "dimensions": {"length": 40, "side": 10},
+            "connectors": [{"name": "axis", "o": [0, 5, 10], "z": [0, -1, 0], "x": [1, 0, 0], "label": "hinge axis"}],
+        },
+        {
+            "name": "flap",
+            "material": "steel",
+            "description": "Box x from 0 to length, y from 0 to side, z from lift to lift + thickness.",
+            "dimensions": {"length": 30, "side": 10, "thickness": 2, "lift": "lift"},
+            "rest_pose": {"at": [0, 0, 10]},
+            "connectors": [{"name": "axis", "o": [0, 5, 0], "z": [0, -1, 0], "x": [1, 0, 0], "label": "hinge axis"}],
+        },
+    ],
+    "joints": [{"name": "hinge", "type": "revolute", "parent": "plate.axis", "child": "flap.axis", "angle_deg": [0, 90]}],
+}
+FLAP_SCRIPTS = {
+    "plate": """
+from build123d import Align, Box
+
+def build(part):
+    d = part.dimensions
+    shape = Box(d["length"], d["side"], d["side"], align=(Align.MIN,) * 3)
+    return shape, {"axis": {"o": (0, d["side"] / 2, d["side"]), "z": (0, -1, 0), "x": (1, 0, 0)}}
+""",
+    "flap": """
+from build123d import Align, Box, Pos
+
+def build(part):
+    d = part.dimensions
+    shape = Pos(0, 0, d["lift"]) * Box(d["length"], d["side"], d["thickness"], align=(Align.MIN,) * 3)
+    return shape, {"axis": {"o": (0, d["side"] / 2, 0), "z": (0, -1, 0), "x": (1, 0, 0)}}
+""",
+}
+
+
+def requirements(name: str = "flap") -> str:
+    """The shortest analysis that has the form."""
+    empty: dict[str, Any] = {field: [] for field in ("relations", "motions", "constraints", "dimensions", "assumptions")}
+    return json.dumps({"name": name, "summary": name, "components": [{"name": "plate", "count": 1, "description": "a plate"}]} | empty)
+
+
+def fenced(script: str) -> str:
+    return f"Here it is:\n\n```python\n{script.strip()}\n```\n"
+
+
+def flap(**answers: Any) -> Scripted:
+    """A model that designs the flap right at once; answers to single steps (`design__1`) may be replaced."""
+    script: dict[str, Any] = {"requirements": requirements(), "design/1": json.dumps(FLAP_PLAN)}
+    script |= {f"part/{name}/1": fenced(text) for name, text in FLAP_SCRIPTS.items()}
+    return Scripted(script | {step.replace("__", "/"): answer for step, answer in answers.items()})
+
+
+def sewing_box() -> Scripted:
+    """A model that designs the example of the prompt."""
+    folder = FIXTURES / "sewing_box" / "parts"
+    script = {f"part/{path.stem}/1": fenced(path.read_text()) for path in folder.glob("*.py")}
+    script["part/lid_left/1"] = fenced((PROMPTS / "lid_left.txt").read_text())
+    script |= {"requirements": requirements("sewing_box"), "design/1": (PROMPTS / "sewing_box.json").read_text()}
+    return Scripted(script)
+
+
+_KERNELS: list[Build123dKernel] = []
+
+
+def kernel() -> Build123dKernel:
+    """One kernel for all tests of a process: its start takes two seconds."""
+    if not _KERNELS:
+        _KERNELS.append(Build123dKernel())
+    return _KERNELS[0]
+
+
+def cache(folder: Path) -> BuildCache:
+    return BuildCache(folder / "cache")
