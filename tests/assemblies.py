@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
@@ -12,6 +13,7 @@ from numpy.typing import NDArray
 from articad.assembly import Assembly
 from articad.connectors.attachment import Attachment
 from articad.connectors.connector import Connector
+from articad.connectors.mate import flip
 from articad.connectors.se3 import SE3
 from articad.geometry.part import Part
 from articad.geometry.shapes import box
@@ -60,7 +62,7 @@ def all_joint_kinds() -> Assembly:
         declare.revolute("flap", *on("flap")[::-1], limits=(-1.0, 2.0), rest=0.25),
         declare.slider("tray", *on("tray")[::-1], limits=(0.0, 80.0), mate="opposed"),
         declare.cylindrical("ring", *on("ring")[::-1], travel=(-5.0, 25.0), angle=(-3.0, 1.0), rest=(5.0, -1.0)),
-        declare.ball("knob", *on("knob")[::-1], cone=pi / 4, mate="opposed"),
+        replace(declare.ball("knob", *on("knob")[::-1], cone=pi / 4, mate="opposed"), rest=(0.1, 0.2, 0.3, math.sqrt(1 - 0.14))),
         declare.screw("bolt", *on("bolt")[::-1], lead=2.0, limits="endless"),
     ]
     # a chain on top, so that frames beyond the first joint matter
@@ -110,7 +112,7 @@ def geared_pair() -> Assembly:
     joints = [
         declare.revolute("a", base["a"], wheel_a["axis"], limits="endless", driver=True),
         declare.revolute("b", base["b"], wheel_b["axis"], limits="endless"),
-        declare.slider("s", base["s"], rack["slide"], limits=(-100.0, 100.0)),
+        declare.slider("s", base["s"], rack["slide"], limits=(-100.0, 100.0), rest=1.0),
     ]
     couplings = [Coupling("mesh", "gear", "a", "b", -0.5), Coupling("pinion", "rack", "b", "s", 20.0, 1.0)]
     return Assembly.from_parts("geared", parts=[base, wheel_a, wheel_b, rack], joints=joints, couplings=couplings, ground="base")
@@ -151,3 +153,35 @@ def _random_joint(rng: np.random.Generator, name: str, kind: JointType, ends: tu
             return declare.planar(name, *ends, x=travel, y=travel, angle=angle, mate=mate)
         case JointType.UNIVERSAL:
             return declare.universal(name, *ends, a=(-1.0, 1.0), b=(-0.8, 1.2), mate=mate)
+
+
+def closed(kind: Callable[[Attachment, Attachment], Joint], *, angle: float = 1.0, turned: bool = False) -> Assembly:
+    """A crank, a coupler and a third link, closed by a joint of the given kind onto the ground; rests closed.
+
+    The planar chain of revolutes is 30, 90 and 70 mm long over a span of 100 mm (the four-bar of the reference values), and the
+    closing joint meets it at its rest value wherever that is: its frame on the ground is computed, not chosen.
+    """
+    base = block("base", (120, 20, 4), a=frame(at=(0, 0, 5)))
+    crank, coupler, rocker = (block(name, (length, 6, 4), a=frame(), b=frame(at=(length, 0, 0))) for name, length in _LINKS)
+    joints = [
+        declare.revolute("crank", base["a"], crank["a"], limits="endless", rest=angle, driver=True),
+        declare.revolute("pin_b", crank["b"], coupler["a"], limits="endless", rest=-0.6),
+        declare.revolute("pin_c", coupler["b"], rocker["a"], limits="endless", rest=-0.9),
+    ]
+    tip = frame(at=(5, 0, 5))
+    for joint in joints:
+        tip = tip @ SE3.from_translation(joint.T_parent_connector.translation * (joint.name != "crank")) @ SE3.rot_z(joint.rest[0])
+    tip = SE3.trans(-5, 0, 0) @ tip @ SE3.trans(70, 0, 0)
+    if turned:
+        closing = kind(rocker["b"], base["a"])
+        T_base = tip @ closing.motion(closing.rest) @ flip(closing.mate)
+        closing = replace(closing, child_connector="d", T_child_connector=T_base)
+    else:
+        closing = kind(base["a"], rocker["b"])
+        T_base = tip @ flip(closing.mate) @ closing.motion(closing.rest).inverse()
+        closing = replace(closing, parent_connector="d", T_parent_connector=T_base)
+    base = _with(base, "d", T_base)
+    return Assembly.from_parts("loop", parts=[base, crank, coupler, rocker], joints=[*joints, closing], ground="base")
+
+
+_LINKS = (("crank_arm", 30), ("coupler", 90), ("rocker", 70))

@@ -17,6 +17,8 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from articad.assembly import Assembly
+from articad.export.mjcf import write_mjcf
+from articad.export.urdf import write_urdf
 from articad.kinematics.joints import JointType
 
 FloatArray = NDArray[np.float64]
@@ -123,6 +125,12 @@ class MujocoMjcf:
         mujoco.mj_kinematics(self.model, self.data)
         return {name: self._pose(name) @ origin for name, origin in self.origins.items()}
 
+    def home(self) -> dict[str, FloatArray]:
+        """Poses at the key `home`."""
+        self.mujoco.mj_resetDataKeyframe(self.model, self.data, self.model.key("home").id)
+        self.mujoco.mj_kinematics(self.model, self.data)
+        return {name: self._pose(name) @ origin for name, origin in self.origins.items()}
+
     def _pose(self, body: str) -> FloatArray:
         T = np.eye(4)
         index = self.mujoco.mj_name2id(self.model, self.mujoco.mjtObj.mjOBJ_BODY, body)
@@ -163,13 +171,24 @@ def our_poses(assembly: Assembly, q: FloatArray) -> dict[str, FloatArray]:
     return dict(zip(assembly.parts, matrices, strict=True))
 
 
-def largest_difference(ours: Mapping[str, FloatArray], theirs: Mapping[str, FloatArray]) -> tuple[float, float]:
-    """Largest distance [m] and angle [rad] between the poses of the parts that both have."""
-    distance = angle = 0.0
-    for name in theirs:
-        distance = max(distance, float(np.linalg.norm(ours[name][:3, 3] - theirs[name][:3, 3])))
-        angle = max(angle, float(Rotation.from_matrix(ours[name][:3, :3].T @ theirs[name][:3, :3]).magnitude()))
-    return distance, angle
+def largest_difference(ours: Mapping[str, FloatArray], theirs: Mapping[str, FloatArray]) -> float:
+    """Largest difference of an entry of the pose matrices [m, 1] between the parts that both have."""
+    assert theirs
+    return max(float(np.abs(ours[name] - theirs[name]).max()) for name in theirs)
+
+
+def disagreement(assembly: Assembly, folder: Path, configurations: FloatArray) -> float:
+    """Export, read back with Pinocchio and MuJoCo, and return the largest difference of a pose matrix at any configuration or at home."""
+    urdf, mjcf = write_urdf(assembly), write_mjcf(assembly)
+    urdf.write(folder)
+    mjcf.write(folder)
+    pinocchio, mujoco = PinocchioUrdf(folder / urdf.main), MujocoMjcf(folder / mjcf.main)
+    worst = largest_difference(our_poses(assembly, assembly.mechanism.rest), mujoco.home())
+    for q in configurations:
+        ours, values = our_poses(assembly, q), joint_values(assembly, q)
+        worst = max(worst, largest_difference(ours, pinocchio.poses(values)))
+        worst = max(worst, largest_difference(ours, mujoco.poses(values, ball_values(assembly, q))))
+    return worst
 
 
 def _urdf_origins(path: Path) -> dict[str, FloatArray]:

@@ -86,6 +86,12 @@ class Inertial:
         scale = min(1.0, CARRIER_SHARE / largest)
         return Inertial.from_pseudo(self.pseudo - scale * count * one), Inertial.carrier(scale)
 
+    def halved(self, T_link_frame: SE3) -> tuple[Inertial, Inertial]:
+        """Return half of this body, and the other half as seen from another frame of its link [m]."""
+        R = T_link_frame.rotation
+        half = Inertial(self.mass / 2, self.com, self.inertia / 2)
+        return half, Inertial(self.mass / 2, T_link_frame.inverse().apply(self.com), R.T @ half.inertia @ R)
+
 
 def _positive(P: FloatArray) -> FloatArray:
     """Thicken a body that is a plane, a line or a point, by a share of its size too small to matter, so that it can be inverted."""

@@ -189,8 +189,7 @@ def _sum(
         mass += body.mass
         moment += body.mass * r
         inertia += body.mass * r * r + float(body.principal_moments[-1]) / MM_PER_M**2
-        corners = _corners(part)
-        reach = max([reach, r, *(_distance(seen[name], corner, about_axis=about_axis) / MM_PER_M for corner in corners)])
+        reach = max(reach, r, _reach(seen[name], part, about_axis=about_axis) / MM_PER_M)
     if mass < LEAST_MASS_KG:
         mass, moment, inertia = LEAST_MASS_KG, LEAST_MASS_KG * reach, LEAST_MASS_KG * reach * reach
     return _Carried(mass, moment, inertia, reach)
@@ -225,11 +224,14 @@ def _distance(seen: _Seen, point: FloatArray, *, about_axis: bool) -> float:
     return math.hypot(x, y) if about_axis else math.hypot(x, y, z)
 
 
-def _corners(part: Part) -> list[FloatArray]:
-    """Return the corners of the part's bounding box [mm]."""
+def _reach(seen: _Seen, part: Part, *, about_axis: bool) -> float:
+    """Bound the distance [mm] of a part's surface to the joint's axis or origin: by its vertices, or by its box if it moves itself."""
     meshes = [shape.placed for shape in (*part.visuals, *part.collisions)] or ([] if part.mesh is None else [part.mesh])
     if not meshes:
-        return []
-    low = np.min([mesh.bounds[0] for mesh in meshes], axis=0)
-    high = np.max([mesh.bounds[1] for mesh in meshes], axis=0)
-    return [np.array(corner) for corner in product(*zip(low, high, strict=True))]
+        return 0.0
+    if seen.T is None:
+        low = np.min([mesh.bounds[0] for mesh in meshes], axis=0)
+        high = np.max([mesh.bounds[1] for mesh in meshes], axis=0)
+        return max(_distance(seen, np.array(corner), about_axis=False) for corner in product(*zip(low, high, strict=True)))
+    points = seen.T.apply(np.concatenate([mesh.vertices for mesh in meshes]))
+    return float(np.linalg.norm(points[:, :2] if about_axis else points, axis=1).max())

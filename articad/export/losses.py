@@ -94,12 +94,16 @@ TABLE: dict[str, dict[Format, Row]] = {
         "urdf": Row("metadata", "URDF holds trees only: this joint is left out and its loop is open", refused=True),
         "mjcf": Row("equality constraints between sites"),
     },
+    "loop.ball": {
+        "urdf": Row("metadata"),
+        "mjcf": Row("an equality of two points", "the cone and twist of a ball that closes a loop", refused=True),
+    },
     "coupling": {
         "urdf": Row("<mimic>", "readers that ignore <mimic> let the joints move on their own"),
         "mjcf": Row("an equality of joints"),
     },
     "coupling.loop": {
-        "urdf": Row("metadata", "the coupling names a joint that cannot be written, or ties joints that are tied already", refused=True),
+        "urdf": Row("metadata", "the coupling names a joint that closes a loop, or ties joints that are tied already", refused=True),
         "mjcf": Row("an equality of joints"),
     },
     # --- parts

@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from articad.connectors.mate import flip
 from articad.connectors.se3 import SE3
+from articad.export.features import features_of, rigid_with_ground
 from articad.export.inertia import MM_PER_M, Inertial
 from articad.export.loads import Load, joint_loads
 from articad.export.losses import Feature
@@ -31,8 +32,6 @@ if TYPE_CHECKING:
 
 FloatArray = NDArray[np.float64]
 Kind = Literal["turn", "slide"]
-
-WIDE_CONE = math.radians(85.0)  # from here on the three angles of a ball come too near to gimbal lock
 
 
 class Motion(NamedTuple):
@@ -213,12 +212,15 @@ def lower(assembly: Assembly) -> LoweredModel:
         head, T_link_part[edge.part] = _frames(edge.joint, backwards=edge.reversed)
         T_parent_joint = metres(T_link_part[edge.parent] @ head)
         joints.append(_lowered(edge.joint, edge.parent, edge.part, T_parent_joint, SE3.identity(), loads, names, backwards=edge.reversed))
+    still = rigid_with_ground(assembly)
     loops = []
     for joint in mechanism.loop_joints:
-        T_parent_joint = metres(T_link_part[joint.parent] @ joint.T_parent_connector)
-        T_child_joint = metres(T_link_part[joint.child] @ joint.T_child_connector @ flip(joint.mate))
-        loops.append(_lowered(joint, joint.parent, joint.child, T_parent_joint, T_child_joint, loads, names, backwards=False))
-    still = _rigid_with_ground(assembly)
+        # from what stands still, if one side does, so that what stands for the joint's end is never tied to the ground
+        backwards = joint.child in still
+        near, far = (joint.child, joint.parent) if backwards else (joint.parent, joint.child)
+        head, tail = _frames(joint, backwards=backwards)
+        T_parent_joint, T_child_joint = metres(T_link_part[near] @ head), metres(T_link_part[far] @ tail.inverse())
+        loops.append(_lowered(joint, near, far, T_parent_joint, T_child_joint, loads, names, backwards=backwards))
     links = tuple(_link(names.links[part], assembly, part, T_link_part[part], moves=part not in still) for part in mechanism.tree.parts)
     return LoweredModel(
         valid_name(assembly.name),
@@ -226,7 +228,7 @@ def lower(assembly: Assembly) -> LoweredModel:
         tuple(joints),
         tuple(loops),
         _couplings(assembly, [*joints, *loops]),
-        (*_features(assembly, links), *names.features(assembly)),
+        (*features_of(assembly), *names.features(assembly)),
     )
 
 
@@ -379,59 +381,3 @@ def _link(name: str, assembly: Assembly, part_name: str, T_link_part: SE3, *, mo
 
 def _placed(shape: Shape, part: Part, T_link_part: SE3) -> Placed:
     return Placed(shape, metres(T_link_part @ shape.frame), shape.color or part.color)
-
-
-def _rigid_with_ground(assembly: Assembly) -> set[str]:
-    still = {assembly.mechanism.ground}
-    for edge in assembly.mechanism.tree.edges:
-        if edge.parent in still and edge.joint.type is JointType.FIXED:
-            still.add(edge.part)
-    return still
-
-
-def _features(assembly: Assembly, links: tuple[Link, ...]) -> list[Feature]:
-    """Return what the assembly has, in the order of declaration."""
-    features = []
-    loop_names = {joint.name for joint in assembly.mechanism.loop_joints}
-    for joint in assembly.mechanism.joints:
-        where = f"joints.{joint.name}"
-        features.append(Feature("loop" if joint.name in loop_names else _joint_feature(joint), where))
-        features.extend(_limit_features(joint, where))
-        if any(velocity is not None for velocity in joint.velocity):
-            features.append(Feature("velocity", where))
-    features.extend(Feature("coupling", f"couplings.{coupling.name}") for coupling in assembly.mechanism.couplings)
-    for link in links:
-        where = f"parts.{link.part.name}"
-        if link.inertial is None and link.moves:
-            features.append(Feature("mass.missing", where))
-        if not link.visuals:
-            features.append(Feature("shape.missing", where))
-        if link.friction is not None:
-            features.append(Feature("friction", where))
-    features.extend(Feature("fit", f"joints.{joint}") for joint in assembly.fits)
-    return features
-
-
-def _joint_feature(joint: Joint) -> str:
-    if joint.type is JointType.BALL:
-        cone = joint.limits.cone or math.pi
-        free = cone >= math.pi and joint.limits.twist is None
-        return "ball.wide" if cone >= WIDE_CONE and not free else "ball.free" if free else "ball"
-    if joint.type is JointType.REVOLUTE and math.isinf(joint.limits.lower[0]) and math.isinf(joint.limits.upper[0]):
-        return "revolute.endless"
-    return str(joint.type)
-
-
-def _limit_features(joint: Joint, where: str) -> list[Feature]:
-    features = []
-    for unit, lower, upper in zip(joint.type.units, joint.limits.lower, joint.limits.upper, strict=False):
-        if math.isinf(lower) != math.isinf(upper):
-            features.append(Feature("limits.open", where))
-        elif math.isinf(lower) and unit == "mm":
-            features.append(Feature("slide.endless", where))
-    return features
-
-
-def rest_values(model: LoweredModel) -> Mapping[str, float]:
-    """Return the rest value of every freedom [rad, m] by name."""
-    return {freedom.name: freedom.rest for joint in (*model.joints, *model.loops) for freedom in joint.freedoms}

@@ -31,7 +31,7 @@ LEAST_HALF_LENGTH_M = 1e-3  # between the middle and the ends of a hinge that cl
 LEAST_VOLUME_MM3 = 1e-3  # below it MuJoCo calls a mesh too small to measure
 STL_TRIANGLES = 200_000  # MuJoCo refuses larger STL files; OBJ has no such bound
 TIMESTEP_S = 0.002
-EQUALITY = {"solref": "0.005 1", "solimp": "0.99 0.9999 0.001"}  # MuJoCo's own default lets loaded loops sag visibly
+EQUALITY = {"solref": "0.004 1", "solimp": "0.9999 0.9999 0.001"}  # as stiff as the time step allows: MuJoCo's default sags visibly
 SERVO_ERROR_TURN = 0.05  # rad by which a servo is off at full effort
 SERVO_ERROR_SLIDE = 0.005  # m, likewise
 FRICTION_SPIN, FRICTION_ROLL = 0.005, 0.0001  # MuJoCo's defaults beside the sliding friction [m]
@@ -83,7 +83,6 @@ class _Writer:
         child(root, "compiler", {"angle": "radian", "autolimits": "true", "inertiafromgeom": "false", "balanceinertia": "false"})
         child(root, "option", {"timestep": number(TIMESTEP_S), "gravity": numbers([0, 0, -GRAVITY_M_S2]), "integrator": "implicitfast"})
         _defaults(root)
-        custom = child(root, "custom")
         self.asset = child(root, "asset")
         self._materials()
         world = child(root, "worldbody")
@@ -92,6 +91,7 @@ class _Writer:
         self._equalities(root)
         servos = self._actuators(root) if actuators else []
         self._home(root, world, servos)
+        custom = child(root, "custom")
         for number_, record in enumerate(records(self.assembly, self.model, self.files.by_digest)):
             child(custom, "text", {"name": f"articad.{number_}.{record['kind']}", "data": dumps(record)})
         if not len(self.asset):
@@ -123,7 +123,10 @@ class _Writer:
                 self._site(body, f"{link.name}__{connector.name}", link.T_link_part @ metres(connector.frame))
 
     def _inertials(self) -> dict[str, Inertial | None]:
-        """Return each link's inertia, ghosts of loops taken out of the part that they stand for."""
+        """Return each link's inertia; ghosts of loops get half of the part that they stand for.
+
+        MuJoCo's constraints are the softer, the lighter the bodies that they tie, so a ghost must not be much lighter than its part.
+        """
         found = {link.name: link.inertial or (Inertial.carrier() if link.moves else None) for link in self.model.links}
         for loop in self.model.loops:
             whole = found[loop.child]
@@ -131,7 +134,7 @@ class _Writer:
                 continue
             self.ghosts[loop.name] = Inertial.carrier()
             if whole is not None:
-                found[loop.child], self.ghosts[loop.name] = whole.without_carriers(1, loop.T_child_joint.translation)
+                found[loop.child], self.ghosts[loop.name] = whole.halved(loop.T_child_joint)
         return found
 
     def _joints(self, body: Any, joint: LoweredJoint) -> None:

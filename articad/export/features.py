@@ -1,0 +1,94 @@
+"""What an assembly has that a format may not hold: rows of the table of losses, in the order of declaration."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from articad.export.losses import Feature
+from articad.kinematics.joints import Joint, JointType
+
+if TYPE_CHECKING:
+    from articad.assembly import Assembly
+
+WIDE_CONE = math.radians(85.0)  # from here on the three angles of a ball come too near to gimbal lock
+
+
+def features_of(assembly: Assembly) -> list[Feature]:
+    """Return the features of joints, couplings, parts and fits."""
+    mechanism = assembly.mechanism
+    closing = {joint.name for joint in mechanism.loop_joints}
+    features = []
+    for joint in mechanism.joints:
+        features.extend(_loop_features(joint) if joint.name in closing else _joint_features(joint))
+    features.extend(_coupling_features(assembly))
+    features.extend(_part_features(assembly))
+    features.extend(Feature("fit", f"joints.{joint}") for joint in assembly.fits)
+    return features
+
+
+def _joint_features(joint: Joint) -> list[Feature]:
+    where = f"joints.{joint.name}"
+    features = [Feature(_key(joint), where)]
+    for unit, lower, upper in zip(joint.type.units, joint.limits.lower, joint.limits.upper, strict=False):
+        if math.isinf(lower) != math.isinf(upper):
+            features.append(Feature("limits.open", where))
+        elif math.isinf(lower) and unit == "mm":
+            features.append(Feature("slide.endless", where))
+    if any(velocity is not None for velocity in joint.velocity):
+        features.append(Feature("velocity", where))
+    return features
+
+
+def _key(joint: Joint) -> str:
+    if joint.type is JointType.BALL:
+        cone = math.pi if joint.limits.cone is None else joint.limits.cone
+        if cone >= math.pi and joint.limits.twist is None:
+            return "ball.free"
+        return "ball.wide" if cone >= WIDE_CONE else "ball"
+    if joint.type is JointType.REVOLUTE and math.isinf(joint.limits.lower[0]) and math.isinf(joint.limits.upper[0]):
+        return "revolute.endless"
+    return str(joint.type)
+
+
+def _loop_features(joint: Joint) -> list[Feature]:
+    where = f"joints.{joint.name}"
+    limited = joint.type is JointType.BALL and _key(joint) != "ball.free"
+    return [Feature("loop", where), *([Feature("loop.ball", where)] if limited else [])]
+
+
+def _coupling_features(assembly: Assembly) -> list[Feature]:
+    """Return a feature per coupling; one that names a joint which closes a loop, or ties what is tied already, is another."""
+    mechanism = assembly.mechanism
+    closing = {name for joint in mechanism.loop_joints for name in joint.column_names}
+    group = {coordinate.name: coordinate.name for coordinate in mechanism.coordinates}
+    features = []
+    for coupling in mechanism.couplings:
+        a, b = group[coupling.a], group[coupling.b]
+        written = a != b and not {coupling.a, coupling.b} & closing
+        group = {name: a if leader == b else leader for name, leader in group.items()}
+        features.append(Feature("coupling" if written else "coupling.loop", f"couplings.{coupling.name}"))
+    return features
+
+
+def _part_features(assembly: Assembly) -> list[Feature]:
+    features = []
+    still = rigid_with_ground(assembly)
+    for name, part in assembly.parts.items():
+        where = f"parts.{name}"
+        if name not in still and (part.mass is None or part.mass.mass <= 0):
+            features.append(Feature("mass.missing", where))
+        if not part.visuals and not part.collisions:
+            features.append(Feature("shape.missing", where))
+        if part.material in assembly.materials:
+            features.append(Feature("friction", where))
+    return features
+
+
+def rigid_with_ground(assembly: Assembly) -> set[str]:
+    """Return the parts that never move: the ground and what fixed joints of the tree hold to it."""
+    still = {assembly.mechanism.ground}
+    for edge in assembly.mechanism.tree.edges:
+        if edge.parent in still and edge.joint.type is JointType.FIXED:
+            still.add(edge.part)
+    return still

@@ -1,0 +1,70 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from articad.connectors.se3 import SE3
+from articad.export.inertia import CARRIER_INERTIA_KG_M2, CARRIER_MASS_KG, Inertial
+from articad.geometry.mass import MassProperties
+from articad.geometry.shapes import box
+
+sizes = st.floats(0.5, 500)
+points = st.lists(st.floats(-300, 300), min_size=3, max_size=3)
+
+
+def cuboid(x: float, y: float, z: float, at: list[float], density: float = 1000.0) -> Inertial:
+    return Inertial.from_part(MassProperties.from_solid(*box(x, y, z).solid_integrals(), density), SE3.from_translation(at))
+
+
+def test_millimetres_become_metres() -> None:
+    inertial = cuboid(100, 200, 300, [10, 0, 0])
+
+    assert inertial.mass == pytest.approx(6.0)
+    assert inertial.com == pytest.approx([0.01, 0, 0])
+    assert inertial.inertia == pytest.approx(np.diag([0.5 * (0.04 + 0.09), 0.5 * (0.01 + 0.09), 0.5 * (0.01 + 0.04)]))
+
+
+@given(sizes, sizes, sizes, points, points, st.integers(1, 3))
+def test_body_and_carriers_together_are_the_body(x: float, y: float, z: float, at: list[float], origin: list[float], count: int) -> None:
+    whole = cuboid(x, y, z, at)
+    where = np.array(origin) / 1000
+    rest, carrier = whole.without_carriers(count, where)
+    placed = Inertial(carrier.mass, where, carrier.inertia)
+
+    assert np.allclose(rest.pseudo + count * placed.pseudo, whole.pseudo, rtol=1e-12, atol=1e-15 * whole.pseudo.max())
+
+
+@given(sizes, sizes, sizes, points, st.integers(1, 3))
+def test_what_is_left_of_a_body_is_physical(x: float, y: float, z: float, at: list[float], count: int) -> None:
+    rest, carrier = cuboid(x, y, z, at).without_carriers(count)
+    small, middle, large = np.linalg.eigvalsh(rest.inertia)
+
+    assert rest.mass > 0
+    assert small > 0
+    assert large < small + middle
+    assert 0 < carrier.mass <= CARRIER_MASS_KG
+
+
+def test_a_heavy_body_gets_full_carriers() -> None:
+    rest, carrier = cuboid(100, 100, 100, [0, 0, 0]).without_carriers(2)
+
+    assert (carrier.mass, carrier.inertia[0, 0]) == (CARRIER_MASS_KG, CARRIER_INERTIA_KG_M2)
+    assert rest.mass == pytest.approx(1.0 - 2 * CARRIER_MASS_KG)
+
+
+@pytest.mark.parametrize("flat", [[1, 1, 0], [1, 0, 0]])
+def test_bodies_without_thickness_keep_a_little(flat: list[float]) -> None:
+    second_moments = np.diag(flat) * 1e-3
+    inertia = np.trace(second_moments) * np.eye(3) - second_moments
+    rest, carrier = Inertial(1.0, np.zeros(3), inertia).without_carriers(1)
+
+    assert carrier.mass > 0
+    assert np.isfinite(rest.inertia).all()
+
+
+def test_no_carriers_take_nothing() -> None:
+    whole = cuboid(1, 2, 3, [0, 0, 0])
+
+    assert whole.without_carriers(0)[0] is whole

@@ -1,0 +1,85 @@
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from lxml import etree
+from scipy.spatial.transform import Rotation
+
+from articad.connectors.se3 import SE3
+from articad.export.markup import child, document, number, rgba, rpy, wxyz
+from articad.export.names import MAX_LENGTH, Names, valid_name
+
+angles = st.floats(-math.pi, math.pi)
+
+
+@given(st.floats(allow_nan=False, allow_infinity=False))
+def test_numbers_read_back_bit_for_bit(value: float) -> None:
+    assert float(number(value)) == value
+
+
+@pytest.mark.parametrize(("value", "text"), [(-0.0, "0"), (1.0, "1"), (0.1, "0.1"), (1e-7, "1e-07"), (-2.5, "-2.5")])
+def test_numbers_are_short(value: float, text: str) -> None:
+    assert number(value) == text
+
+
+@given(angles, angles, angles)
+def test_roll_pitch_yaw_give_the_rotation_back(roll: float, pitch: float, yaw: float) -> None:
+    R = Rotation.from_euler("xyz", [roll, pitch, yaw]).as_matrix()
+
+    assert np.allclose(Rotation.from_euler("xyz", rpy(SE3.from_rotation(R))).as_matrix(), R, atol=1e-14)
+
+
+@given(st.sampled_from([-math.pi / 2, math.pi / 2]), angles, angles, st.floats(-1e-8, 1e-8))
+def test_roll_pitch_yaw_are_exact_at_and_near_gimbal_lock(pitch: float, roll: float, yaw: float, off: float) -> None:
+    R = Rotation.from_euler("xyz", [roll, pitch + off, yaw]).as_matrix()
+
+    assert np.allclose(Rotation.from_euler("xyz", rpy(SE3.from_rotation(R))).as_matrix(), R, atol=1e-14)
+
+
+def test_a_quaternion_is_written_w_first() -> None:
+    assert wxyz(SE3.rot_z(math.pi)) == pytest.approx((0, 0, 0, 1), abs=1e-15)
+    assert wxyz(SE3.identity()) == (1, 0, 0, 0)
+
+
+def test_colours_are_between_zero_and_one() -> None:
+    assert rgba("#ff0080") == "1 0 0.5019607843137255 1"
+
+
+def test_hostile_text_stays_text() -> None:
+    root = etree.Element("robot")
+    child(root, "text", {"data": '"/><evil/>&<![CDATA['}, "]]></text><evil/>")
+    read = etree.fromstring(document(root))
+
+    assert [element.tag for element in read.iter()] == ["robot", "text"]
+    assert read[0].get("data") == '"/><evil/>&<![CDATA['
+    assert read[0].text == "]]></text><evil/>"
+
+
+@pytest.mark.parametrize(
+    ("wanted", "valid"),
+    [
+        ("door_left", "door_left"),
+        ("Door Left", "Door_Left"),
+        ("../../etc/passwd", "etc_passwd"),
+        ("Tür", "Tur"),
+        ("9lives", "n9lives"),
+        ("", "n"),
+        ("日本", "n"),
+        ("a<b>&\"'", "a_b"),
+        ("_x", "n_x"),
+        ("x" * 500, "x" * MAX_LENGTH),
+    ],
+)
+def test_names_become_valid(wanted: str, valid: str) -> None:
+    assert valid_name(wanted) == valid
+
+
+def test_names_are_unique_and_changes_are_remembered() -> None:
+    names = Names()
+
+    assert [names.claim(name) for name in ("a b", "a_b", "a-b", "c")] == ["a_b", "a_b_2", "a_b_3", "c"]
+    assert names.changed == {"a b": "a_b", "a_b": "a_b_2", "a-b": "a_b_3"}
