@@ -14,8 +14,9 @@ UNRELATED_VOLUME_MM3 = 1e-3  # a smaller overlap is rounding of the model
 STATIC_SHARE = 0.01  # of the smaller part: more than that is no fit but a missing hole …
 STATIC_CAP_MM3 = 1000.0  # … and so is a cubic centimetre of any part, …
 STATIC_CAP_MM = 1.0  # … or a millimetre
-MOTION_VOLUME_MM3 = 1.0  # a collision in motion is more than the overlap that is always there: by this …
-MOTION_SHARE = 1e-4  # … or by this share of the smaller part, whichever is more
+MOTION_VOLUME_MM3 = 1.0  # a collision in motion is more than the overlap that is always there: by this, …
+MOTION_SHARE = 1e-4  # … for large parts by this share of the smaller one, …
+MOTION_SHARE_TINY = 1e-2  # … and for tiny parts by this share: a wire of 2 mm³ cannot overlap by much more
 
 
 def judge(
@@ -68,7 +69,8 @@ def _is_motion(scene: Scene, parts: tuple[str, str], found: Overlap, baseline: f
     if not scene.relations.between(*parts):
         return True
     smaller = min(scene.bodies[name].volume for name in parts)
-    return baseline is not None and found.volume - baseline > max(MOTION_VOLUME_MM3, MOTION_SHARE * smaller)
+    needed = max(min(MOTION_VOLUME_MM3, MOTION_SHARE_TINY * smaller), MOTION_SHARE * smaller)
+    return baseline is not None and found.volume - baseline > needed
 
 
 def _overlap_finding(scene: Scene, parts: tuple[str, str], found: Overlap, *, collides: bool, pose: Mapping[str, float] | None) -> Finding:

@@ -1,0 +1,266 @@
+"""Covering a range of motion with boxes in each of which a distance at the centre excludes contact.
+
+A distance d at q clears every q' with Σ reach·|q' − q| < d − margin. `cover_line` walks from the rest pose to both ends of a
+single coordinate with boxes that overlap as little as can be (conservative advancement with two-sided intervals);
+`cover_box` bisects several coordinates.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from articad.interference.motion import Distance, Values
+
+FloatArray = NDArray[np.float64]
+
+STRICT = 1e-7  # share by which a box stays smaller than its distance allows, so that the inequality is strict in any rounding
+_GUESS = 0.97  # of the width that a linear distance would allow: a miss costs one query, a shy guess costs many
+_STEEPEST = 0.75  # a slope is extrapolated up to this share of the reach
+_SMALLEST = 1e-12  # of the range: boxes below it are rounding
+
+
+@dataclass(frozen=True)
+class CoverBox:
+    """A part of the range that one distance clears.
+
+    Attributes:
+        centre: Where the distance was measured, `(n,)`.
+        half: Half sides, `(n,)`.
+        distance: At the centre, or a lower bound of it [mm].
+    """
+
+    centre: tuple[float, ...]
+    half: tuple[float, ...]
+    distance: float
+
+
+class Budget:
+    """Seconds and distance queries that may be spent.
+
+    Attributes:
+        seconds: Wall time.
+        queries: How many distances were asked for so far.
+    """
+
+    def __init__(self, seconds: float, clock: Callable[[], float] = time.monotonic) -> None:
+        self.seconds, self.queries = seconds, 0
+        self._clock, self._start = clock, clock()
+
+    @property
+    def spent(self) -> float:
+        """Seconds since the beginning."""
+        return self._clock() - self._start
+
+    @property
+    def is_spent(self) -> bool:
+        """True when no time is left."""
+        return self.spent >= self.seconds
+
+
+@dataclass
+class Cover:
+    """What a covering came to.
+
+    Attributes:
+        boxes: They cover `[lower, upper]` of a line, or everything of a box when `is_complete`.
+        lower: End of what is cleared below the start; of a line only.
+        upper: The same above it.
+        contacts: Values at which the distance was not above the margin, one per end of a line.
+        out_of_budget: True when it was given up.
+    """
+
+    boxes: list[CoverBox] = field(default_factory=list)
+    lower: float = 0.0
+    upper: float = 0.0
+    contacts: list[tuple[float, ...]] = field(default_factory=list)
+    out_of_budget: bool = False
+
+    @property
+    def is_complete(self) -> bool:
+        """True when the whole range is cleared."""
+        return not self.contacts and not self.out_of_budget
+
+
+def cover_line(
+    distance: Distance,
+    bounds: tuple[float, float],
+    start: float,
+    *,
+    reach: float,
+    margin: float = 0.0,
+    epsilon: float = 1e-3,
+    budget: Budget,
+    most: int = 100_000,
+) -> Cover:
+    """Clear a single coordinate from `start` outwards, up to its bounds or to contact.
+
+    Args:
+        distance: At a value [mm].
+        bounds: Of the coordinate [rad or mm].
+        start: Within the bounds.
+        reach: Speed of the fastest point [mm/rad or 1].
+        margin: Part of every distance that proves nothing, such as the deflection of the meshes [mm].
+        epsilon: A distance that is above the margin by no more is contact [mm].
+        budget: Time and queries.
+        most: Queries for this line.
+    """
+    walk = _Walk(distance, reach, margin, epsilon, budget, most)
+    upper = walk.outwards(start, bounds[1])
+    lower = walk.outwards(start, bounds[0])
+    walk.cover.lower, walk.cover.upper = lower, upper
+    walk.cover.boxes.sort(key=lambda box: box.centre)
+    return walk.cover
+
+
+class _Walk:
+    def __init__(self, distance: Distance, reach: float, margin: float, epsilon: float, budget: Budget, most: int) -> None:
+        self.distance, self.reach, self.margin, self.epsilon = distance, max(reach, 1e-12), margin, epsilon
+        self.budget, self.left = budget, most
+        self.cover = Cover()
+        self._seen: dict[float, float] = {}
+
+    def spare(self, q: float) -> float:
+        """Return what a distance has above the margin [mm]."""
+        if q not in self._seen:
+            self.budget.queries += 1
+            self.left -= 1
+            self._seen[q] = self.distance((q,))
+        return self._seen[q] - self.margin
+
+    def outwards(self, start: float, end: float) -> float:
+        """Clear from start to end; return how far it came."""
+        sign = 1.0 if end >= start else -1.0
+        length = abs(end - start)
+        done, slope = 0.0, 0.0  # measured from the start; slope of the spare distance along the way
+        here = self.spare(start)
+        if not self._clears(here):
+            self.cover.contacts.append((start,))
+            return start
+        done = self._add(start, here)
+        last_at, last = 0.0, here
+        while done < length:
+            if self.budget.is_spent or self.left <= 0:
+                self.cover.out_of_budget = True
+                break
+            ahead = self._ahead(done, last_at, last, slope)
+            at = min(done + ahead, max((done + length) / 2, done + _SMALLEST * length), length)
+            spare = self.spare(start + sign * at)
+            half = spare / self.reach * (1 - STRICT)
+            if half < at - done:  # too far: the box would not reach back, so ask at the frontier itself
+                beyond_at, beyond = at, spare
+                at, spare = done, self.spare(start + sign * done)
+                if not self._clears(spare):
+                    self.cover.contacts.append((start + sign * done,))
+                    break
+                slope = self._slope(beyond - spare, beyond_at - at)
+                half = spare / self.reach * (1 - STRICT)
+            elif not self._clears(spare):
+                self.cover.contacts.append((start + sign * at,))
+                break
+            elif at > last_at:
+                slope = self._slope(spare - last, at - last_at)
+            self._add(start + sign * at, spare)
+            last_at, last = at, spare
+            if at + half <= done:  # rounding: no progress is possible at this distance
+                self.cover.contacts.append((start + sign * done,))
+                break
+            done = at + half
+        return end if done >= length else start + sign * done
+
+    def _ahead(self, done: float, last_at: float, last: float, slope: float) -> float:
+        """Guess how far ahead of the frontier a distance still reaches back to it, if distances go on as they did."""
+        expected = last + slope * (done - last_at)
+        if expected <= self.epsilon:
+            expected = max(last / 4, self.epsilon)
+        return _GUESS * expected / (self.reach - slope)
+
+    def _slope(self, rise: float, run: float) -> float:
+        return float(np.clip(rise / run, -self.reach, _STEEPEST * self.reach)) if run > 0 else 0.0
+
+    def _clears(self, spare: float) -> bool:
+        return spare > self.epsilon
+
+    def _add(self, q: float, spare: float) -> float:
+        half = spare / self.reach * (1 - STRICT)
+        self.cover.boxes.append(CoverBox((q,), (half,), spare + self.margin))
+        return half
+
+
+def cover_box(
+    distance: Distance,
+    bound: Distance,
+    bounds: Sequence[tuple[float, float]],
+    *,
+    reach: Sequence[float] | FloatArray,
+    margin: float = 0.0,
+    epsilon: float = 1e-3,
+    budget: Budget,
+    most: int = 100_000,
+    left_out: Callable[[FloatArray, FloatArray], bool] | None = None,
+) -> Cover:
+    """Clear several coordinates at once by bisection, up to the first contact.
+
+    Args:
+        distance: At a point [mm].
+        bound: A cheap lower bound of it [mm], tried first.
+        bounds: Of each coordinate [rad or mm].
+        reach: Of each coordinate [mm/rad or 1].
+        margin: Part of every distance that proves nothing [mm].
+        epsilon: A distance that is above the margin by no more is contact [mm].
+        budget: Time and queries.
+        most: Boxes looked at.
+        left_out: Whether a box (centre, half) lies outside what the joints allow, such as the corners of a cone.
+    """
+    cover = Cover()
+    speed = np.asarray(reach, dtype=np.float64)
+    low, high = np.array(bounds, dtype=np.float64).T
+    todo = [((low + high) / 2, (high - low) / 2)]
+    while todo:
+        if budget.is_spent or most <= 0:
+            cover.out_of_budget = True
+            return cover
+        most -= 1
+        centre, half = todo.pop()
+        if left_out is not None and left_out(centre, half):
+            continue
+        needed = float(speed @ half) * (1 + STRICT) + margin
+        values: Values = centre.tolist()
+        known = bound(values)
+        if known <= needed:
+            budget.queries += 1
+            known = distance(values)
+        if known > needed:
+            cover.boxes.append(CoverBox(tuple(centre.tolist()), tuple(half.tolist()), known))
+            continue
+        if known - margin <= epsilon:
+            cover.contacts.append(tuple(centre.tolist()))
+            return cover
+        at = int(np.argmax(speed * half))
+        step = np.zeros(len(half))
+        step[at] = half[at] / 2
+        smaller = half.copy()
+        smaller[at] /= 2
+        todo += [(centre + step, smaller), (centre - step, smaller)]
+    return cover
+
+
+def box_distance(T: FloatArray, box_a: tuple[FloatArray, FloatArray], box_b: tuple[FloatArray, FloatArray]) -> float:
+    """Return a lower bound of the distance of two boxes, each given by centre and half sides in its own part's frame [mm].
+
+    Args:
+        T: `T_a_b (4, 4)`.
+        box_a: In a's frame.
+        box_b: In b's frame.
+    """
+    R = T[:3, :3]
+    size = np.abs(R)
+    offset = R @ box_b[0] + T[:3, 3] - box_a[0]
+    gap_a = np.abs(offset) - box_a[1] - size @ box_b[1]
+    gap_b = np.abs(offset @ R) - box_b[1] - box_a[1] @ size
+    squares = max(float((np.maximum(gap, 0.0) ** 2).sum()) for gap in (gap_a, gap_b))
+    return float(np.sqrt(squares))

@@ -1,0 +1,274 @@
+"""Relative motion of two parts: the chain of joints between them, and how far it can carry a point.
+
+A chain is `T_a_b(q) = K0 · J1(q)^±1 · K1 · J2(q)^±1 · K2 …`: joints that do not move are multiplied into the constants K.
+`reach` bounds the speed of every point of b as seen from a, per unit of each coordinate; with it a distance at one pose
+clears a whole neighbourhood of that pose (kinematics: certified motion).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from articad.connectors.mate import flip
+from articad.kinematics.joints import Joint, JointType
+from articad.kinematics.tree import KinematicTree
+
+FloatArray = NDArray[np.float64]
+
+FULL_TURN = (-math.pi, math.pi)  # an endless joint is proven over one turn about its rest
+
+
+class Freedom(NamedTuple):
+    """One coordinate along which a joint is proven.
+
+    Attributes:
+        name: `joint`, or `joint.coordinate`; of a ball `joint.sx`, `joint.sy`, `joint.twist`: it turns by twist about z, then swings
+            about (sx, sy, 0) by the length of that vector.
+        lower: [rad or mm].
+        upper: [rad or mm].
+        rest: Value in the rest pose.
+    """
+
+    name: str
+    lower: float
+    upper: float
+    rest: float
+
+
+def freedoms(joint: Joint) -> tuple[Freedom, ...]:
+    """Return the coordinates along which a joint moves; an endless one over one turn."""
+    if joint.type is JointType.BALL:
+        cone = math.pi if joint.limits.cone is None else joint.limits.cone
+        twist = FULL_TURN if joint.limits.twist is None else joint.limits.twist
+        ranges = {"sx": (-cone, cone), "sy": (-cone, cone), "twist": twist}
+        return tuple(Freedom(f"{joint.name}.{key}", lo, hi, 0.0) for key, (lo, hi) in ranges.items())
+    found = []
+    for column in joint.columns:
+        lower = column.lower if math.isfinite(column.lower) else column.rest - math.pi
+        upper = column.upper if math.isfinite(column.upper) else column.rest + math.pi
+        found.append(Freedom(column.name, lower, upper, column.rest))
+    return tuple(found)
+
+
+def driver_values(joint: Joint, values: Sequence[float]) -> tuple[float, ...]:
+    """Return the joint's own coordinates for values of its `freedoms`: only a ball's differ."""
+    if joint.type is not JointType.BALL:
+        return tuple(values)
+    sx, sy, twist = values
+    angle = math.hypot(sx, sy)
+    c, s = math.cos(angle / 2), (0.5 if angle < 1e-9 else math.sin(angle / 2) / angle)  # sin(x/2)/x at 0
+    x, y = s * sx, s * sy
+    cz, sz = math.cos(twist / 2), math.sin(twist / 2)
+    return (x * cz + y * sz, y * cz - x * sz, c * sz, c * cz)
+
+
+def motion_matrix(joint: Joint, values: Sequence[float]) -> FloatArray:
+    """Return J `(4, 4)` for values of the joint's `freedoms`; the same as `Joint.motion`, without its checks."""
+    kind = joint.type
+    if kind is JointType.REVOLUTE:
+        return _turn_z(values[0], 0.0, 0.0, 0.0)
+    if kind is JointType.SLIDER:
+        return _turn_z(0.0, 0.0, 0.0, values[0])
+    if kind is JointType.CYLINDRICAL:
+        return _turn_z(values[1], 0.0, 0.0, values[0])
+    if kind is JointType.SCREW:
+        return _turn_z(values[0], 0.0, 0.0, joint.lead / (2 * math.pi) * values[0])
+    if kind is JointType.PLANAR:
+        return _turn_z(values[2], values[0], values[1], 0.0)
+    return np.asarray(joint.motion(np.array(driver_values(joint, values))).matrix)
+
+
+def _turn_z(angle: float, x: float, y: float, z: float) -> FloatArray:
+    c, s = math.cos(angle), math.sin(angle)
+    return np.array([[c, -s, 0.0, x], [s, c, 0.0, y], [0.0, 0.0, 1.0, z], [0.0, 0.0, 0.0, 1.0]])
+
+
+@dataclass(frozen=True, eq=False)
+class Mover:
+    """A joint of a chain that moves.
+
+    Attributes:
+        joint: As declared.
+        forward: Whether the chain crosses it from parent to child.
+        columns: Places of its freedoms in the chain's values.
+        before: K in front of it, `(4, 4)`.
+    """
+
+    joint: Joint
+    forward: bool
+    columns: tuple[int, ...]
+    before: FloatArray
+
+
+class Chain:
+    """The joints between two parts, some of which move.
+
+    Attributes:
+        a: The part from which is looked.
+        b: The part that moves.
+        freedoms: What moves, in the order of the values.
+        hold: Values of all other freedoms on the way, by name.
+        movers: The joints that move, from a to b.
+        last: K behind the last of them.
+    """
+
+    def __init__(self, tree: KinematicTree, a: str, b: str, moving: Sequence[str], values: Mapping[str, float] | None = None) -> None:
+        self.a, self.b = a, b
+        held = dict(values or {})
+        self.hold: dict[str, float] = {}
+        self.movers: list[Mover] = []
+        found: list[Freedom] = []
+        K: FloatArray = np.eye(4)
+        parts = tree.path(a, b)
+        for joint, near in zip(tree.joints_between(a, b), parts, strict=False):
+            forward = joint.parent == near
+            L, R = joint.T_parent_connector.matrix, (flip(joint.mate) @ joint.T_child_connector.inverse()).matrix
+            if not forward:
+                L, R = _inverse(R), _inverse(L)
+            K = K @ L
+            mine = freedoms(joint)
+            if joint.name in moving and mine:
+                columns = tuple(range(len(found), len(found) + len(mine)))
+                self.movers.append(Mover(joint, forward, columns, K))
+                found += mine
+                K = R
+            else:
+                self.hold.update({freedom.name: held.get(freedom.name, freedom.rest) for freedom in mine})
+                J = motion_matrix(joint, [self.hold[freedom.name] for freedom in mine]) if mine else np.eye(4)
+                K = K @ (J if forward else _inverse(J)) @ R
+        self.freedoms = tuple(found)
+        self.last = K
+
+    @property
+    def joints(self) -> tuple[str, ...]:
+        """Names of the joints that move."""
+        return tuple(mover.joint.name for mover in self.movers)
+
+    @property
+    def rest(self) -> FloatArray:
+        """Values at rest, `(n,)`."""
+        return np.array([freedom.rest for freedom in self.freedoms])
+
+    def matrix(self, values: Sequence[float] | FloatArray) -> FloatArray:
+        """Return `T_a_b (4, 4)`."""
+        T = None
+        for mover in self.movers:
+            J = motion_matrix(mover.joint, [float(values[column]) for column in mover.columns])
+            if not mover.forward:
+                J = _inverse(J)
+            step = mover.before @ J
+            T = step if T is None else T @ step
+        return self.last if T is None else np.asarray(T @ self.last)
+
+    def reach(self, points_a: FloatArray, points_b: FloatArray) -> FloatArray:
+        """Bound how far any point of b moves as seen from a, per unit of each freedom.
+
+        Moving one joint turns b about its axis as seen from a, or a about it as seen from b: distances change alike,
+        so the smaller of the two radii counts.
+
+        Args:
+            points_a: Points of a whose hull holds its surface, in a's frame, `(P, 3)` [mm].
+            points_b: The same of b in b's frame.
+
+        Returns:
+            `(n,)` [mm/rad or 1].
+        """
+        from_b = self._reach_from(points_b, towards_a=True)
+        from_a = self._reach_from(points_a, towards_a=False)
+        return np.minimum(from_a, from_b)
+
+    def _reach_from(self, points: FloatArray, *, towards_a: bool) -> FloatArray:
+        reach = np.empty(len(self.freedoms))
+        cloud = Cloud(points)
+        constants = [*(mover.before for mover in self.movers), self.last]
+        order = range(len(self.movers) - 1, -1, -1) if towards_a else range(len(self.movers))
+        for at in order:
+            mover = self.movers[at]
+            cloud = cloud.moved(constants[at + 1]) if towards_a else cloud.moved(_inverse(constants[at]))
+            bounds = [(self.freedoms[c].lower, self.freedoms[c].upper) for c in mover.columns]
+            reach[list(mover.columns)] = _reach_of_joint(mover.joint, cloud, bounds)
+            cloud = cloud.shaken(_largest_travel(mover.joint, bounds))
+        return reach
+
+
+@dataclass(frozen=True, eq=False)
+class Cloud:
+    """Where points may be: exactly, or somewhere within `radius` of `centre`."""
+
+    points: FloatArray | None
+    centre: FloatArray | None = None
+    radius: float = 0.0
+
+    def moved(self, K: FloatArray) -> Cloud:
+        """Return the cloud in another frame."""
+        if self.points is not None:
+            return Cloud(self.points @ K[:3, :3].T + K[:3, 3])
+        assert self.centre is not None
+        return Cloud(None, K[:3, :3] @ self.centre + K[:3, 3], self.radius)
+
+    def shaken(self, travel: float) -> Cloud:
+        """Return where the points may be after any turn about the origin and a travel [mm]."""
+        return Cloud(None, np.zeros(3), self.from_origin + travel)
+
+    @property
+    def from_origin(self) -> float:
+        """Largest distance from the origin [mm]."""
+        return self._largest(3)
+
+    @property
+    def from_axis(self) -> float:
+        """Largest distance from the z axis [mm]."""
+        return self._largest(2)
+
+    def _largest(self, dimensions: int) -> float:
+        if self.points is not None:
+            return math.sqrt(float((self.points[:, :dimensions] ** 2).sum(axis=1).max(initial=0.0)))
+        assert self.centre is not None
+        return float(np.linalg.norm(self.centre[:dimensions])) + self.radius
+
+
+def _reach_of_joint(joint: Joint, cloud: Cloud, bounds: list[tuple[float, float]]) -> list[float]:
+    match joint.type:
+        case JointType.REVOLUTE:
+            return [cloud.from_axis]
+        case JointType.SLIDER:
+            return [1.0]
+        case JointType.CYLINDRICAL:
+            return [1.0, cloud.from_axis]
+        case JointType.SCREW:
+            return [cloud.from_axis + abs(joint.lead) / (2 * math.pi)]
+        case JointType.PLANAR:
+            return [1.0, 1.0, cloud.from_axis + _largest_travel(joint, bounds)]
+        case _:
+            return [cloud.from_origin] * len(bounds)
+
+
+def _largest_travel(joint: Joint, bounds: list[tuple[float, float]]) -> float:
+    """Return how far the joint carries its origin at most [mm]."""
+    largest = [max(abs(lo), abs(hi)) for lo, hi in bounds]
+    match joint.type:
+        case JointType.SLIDER | JointType.CYLINDRICAL:
+            return largest[0]
+        case JointType.SCREW:
+            return abs(joint.lead) / (2 * math.pi) * largest[0]
+        case JointType.PLANAR:
+            return math.hypot(largest[0], largest[1])
+        case _:
+            return 0.0
+
+
+def _inverse(T: FloatArray) -> FloatArray:
+    result = np.eye(4)
+    result[:3, :3] = T[:3, :3].T
+    result[:3, 3] = -T[:3, :3].T @ T[:3, 3]
+    return result
+
+
+Values = Sequence[float] | FloatArray
+Distance = Callable[[Values], float]

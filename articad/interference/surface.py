@@ -1,0 +1,187 @@
+"""Pieces of a part's surface for a proof: within a cylinder about a joint's axis, outside it, or shrunk by what is allowed.
+
+Why shrinking proves something: move every vertex of a by at most τ. If the moved surface never meets b, and was not inside
+it to begin with, then whatever of a is in b lies between the two surfaces, so no point of a is deeper than τ in b.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import fcl
+import numpy as np
+from numpy.typing import NDArray
+
+from articad.geometry.mesh import TriMesh
+from articad.interference.body import make_bvh
+
+FloatArray = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Surface:
+    """Loose triangles in a part's frame.
+
+    Attributes:
+        corners: `(T, 3, 3)` [mm].
+    """
+
+    corners: FloatArray
+
+    @classmethod
+    def of(cls, mesh: TriMesh, shrink: float = 0.0) -> Surface:
+        """Return the whole surface, its vertices moved inwards by `shrink` [mm]."""
+        vertices = shrunk(mesh, shrink) if shrink else mesh.vertices
+        return cls(vertices[mesh.triangles])
+
+    @property
+    def is_empty(self) -> bool:
+        """True when there is nothing of it."""
+        return not len(self.corners)
+
+    @cached_property
+    def points(self) -> FloatArray:
+        """Corners as a list without repetitions, `(P, 3)`."""
+        return np.unique(self.corners.reshape(-1, 3), axis=0)
+
+    @cached_property
+    def box(self) -> tuple[FloatArray, FloatArray]:
+        """Centre and half sides of the bounding box, `(3,)` each."""
+        low, high = self.points.min(axis=0), self.points.max(axis=0)
+        return (low + high) / 2, (high - low) / 2
+
+    @cached_property
+    def standing(self) -> Any:
+        """An FCL object at the identity."""
+        return fcl.CollisionObject(self._bvh)
+
+    @cached_property
+    def moving(self) -> Any:
+        """An FCL object to be placed anew for every query."""
+        return fcl.CollisionObject(self._bvh)
+
+    @cached_property
+    def _bvh(self) -> Any:
+        flat = np.ascontiguousarray(self.corners.reshape(-1, 3))
+        return make_bvh(flat, np.arange(len(flat), dtype=np.int64).reshape(-1, 3))
+
+
+def shrunk(mesh: TriMesh, depth: float) -> FloatArray:
+    """Return the vertices moved inwards by `depth` [mm] along the mean of the adjacent triangles' unit normals, `(V, 3)`.
+
+    The mean is over distinct faces, not weighted by area, so that every face at a corner recedes: by depth/√3 at a cube's.
+    """
+    normals = mesh.normals_of_twice_area
+    lengths = np.linalg.norm(normals, axis=1)
+    unit = normals / np.where(lengths > 0, lengths, 1.0)[:, None]
+    total = np.zeros_like(mesh.vertices)
+    corners = mesh.vertices[mesh.triangles]
+    for at in range(3):  # weighted by the angle at the corner, so that how a face is cut into triangles does not matter
+        u, v = corners[:, (at + 1) % 3] - corners[:, at], corners[:, (at + 2) % 3] - corners[:, at]
+        angle = np.arctan2(np.linalg.norm(np.cross(u, v), axis=1), np.einsum("ij,ij->i", u, v))
+        np.add.at(total, mesh.triangles[:, at], unit * angle[:, None])
+    size = np.linalg.norm(total, axis=1)
+    return np.asarray(mesh.vertices - depth * total / np.where(size > 0, size, 1.0)[:, None])
+
+
+def split_by_radius(mesh: TriMesh, core: Core, radius: float, edge: float, shrink: float = 0.0) -> tuple[Surface, Surface, Surface]:
+    """Cut a mesh's surface at a cylinder or sphere.
+
+    Triangles that cross it are quartered until no edge is longer than `edge`.
+
+    Args:
+        mesh: In the part's frame.
+        core: The axis or centre.
+        radius: [mm].
+        edge: [mm].
+        shrink: How far the inner piece is moved inwards [mm]; cutting is linear, so a triangle's quarters move as it does.
+
+    Returns:
+        Triangles inside, shrunk; those that still cross; those that reach outside, the crossing ones included.
+    """
+    moved = shrunk(mesh, shrink) if shrink else mesh.vertices
+    todo = np.concatenate([mesh.vertices, moved], axis=1)[mesh.triangles]
+    none = np.empty((0, 3, 6))
+    inside, crossing, outside = [none], [none], [none]
+    while len(todo):
+        corners = todo[..., :3]
+        is_in = (core.radii(corners.reshape(-1, 3)).reshape(-1, 3) <= radius).all(axis=1)
+        is_out = ~is_in & (core.least_radii(corners) > radius)
+        inside.append(todo[is_in])
+        outside.append(todo[is_out])
+        mixed = todo[~is_in & ~is_out]
+        long = np.linalg.norm(mixed[..., :3] - mixed[:, [1, 2, 0], :3], axis=2).max(axis=1, initial=0.0) > edge
+        crossing.append(mixed[~long])
+        todo = quartered(mixed[long])
+    seam = np.concatenate(crossing)[..., :3]
+    return Surface(np.concatenate(inside)[..., 3:]), Surface(seam), Surface(np.concatenate([seam, *(piece[..., :3] for piece in outside)]))
+
+
+def quartered(corners: FloatArray) -> FloatArray:
+    """Cut each triangle into four at the middles of its edges, `(T, 3, n)` to `(4T, 3, n)`."""
+    a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
+    ab, bc, ca = (a + b) / 2, (b + c) / 2, (c + a) / 2
+    return np.concatenate([np.stack(t, axis=1) for t in ((a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca))])
+
+
+@dataclass(frozen=True, eq=False)
+class Core:
+    """The axis or point about which a joint turns.
+
+    Attributes:
+        frame: `T_part_axis (4, 4)`: the axis is its z, the point its origin.
+        dimensions: 2 measures radii from the axis, 3 from the point.
+    """
+
+    frame: FloatArray
+    dimensions: int = 2
+
+    def local(self, points: FloatArray) -> FloatArray:
+        """Return coordinates in which the radius is the distance from 0, `(…, dimensions)`."""
+        return np.asarray((points - self.frame[:3, 3]) @ self.frame[:3, : self.dimensions])
+
+    def radii(self, points: FloatArray) -> FloatArray:
+        """Return the radius of each point, `(P,)` [mm]."""
+        return np.asarray(np.linalg.norm(self.local(points), axis=-1))
+
+    def heights(self, points: FloatArray) -> tuple[float, float]:
+        """Return the smallest and largest coordinate along the axis [mm]."""
+        along = (points - self.frame[:3, 3]) @ self.frame[:3, 2]
+        return float(along.min()), float(along.max())
+
+    def least_radii(self, corners: FloatArray) -> FloatArray:
+        """Return the smallest radius of each triangle `(T, 3, 3)`, `(T,)` [mm]; 0 where the axis pierces it."""
+        flat = self.local(corners)
+        least = np.full(len(flat), np.inf)
+        for at in range(3):
+            p, q = flat[:, at], flat[:, (at + 1) % 3]
+            edge = q - p
+            length = np.einsum("ij,ij->i", edge, edge)
+            t = np.clip(-np.einsum("ij,ij->i", p, edge) / np.where(length > 0, length, 1.0), 0.0, 1.0)
+            least = np.minimum(least, np.linalg.norm(p + t[:, None] * edge, axis=1))
+        return np.asarray(np.minimum(least, _least_within(flat)))
+
+
+def _least_within(flat: FloatArray) -> FloatArray:
+    """Return the distance of 0 from each triangle's inside; infinite where its nearest point is on the edge."""
+    a, b, c = flat[:, 0], flat[:, 1], flat[:, 2]
+    if flat.shape[2] == 2:
+        side = np.stack([p[:, 0] * q[:, 1] - p[:, 1] * q[:, 0] for p, q in ((a, b), (b, c), (c, a))])
+        return np.asarray(np.where((side > 0).all(axis=0) | (side < 0).all(axis=0), 0.0, np.inf))
+    normal = np.cross(b - a, c - a)
+    length = np.linalg.norm(normal, axis=1)
+    unit = normal / np.where(length > 0, length, 1.0)[:, None]
+    offset = np.einsum("ij,ij->i", a, unit)
+    foot = offset[:, None] * unit
+    inside = np.stack([np.einsum("ij,ij->i", np.cross(q - p, foot - p), unit) >= 0 for p, q in ((a, b), (b, c), (c, a))]).all(axis=0)
+    return np.asarray(np.where(inside & (length > 0), np.abs(offset), np.inf))
+
+
+def surface_distance(a: Surface, b: Surface, T_a_b: FloatArray) -> float:
+    """Return the smallest distance of two surfaces [mm], `T_a_b (4, 4)`; infinite when one is empty."""
+    if a.is_empty or b.is_empty:
+        return float("inf")
+    b.moving.setTransform(fcl.Transform(T_a_b[:3, :3], T_a_b[:3, 3]))
+    return max(float(fcl.distance(a.standing, b.moving, fcl.DistanceRequest(), fcl.DistanceResult())), 0.0)
