@@ -282,7 +282,13 @@ def _generate(options: argparse.Namespace, terminal: Terminal) -> Report:
 )
 def _replay(options: argparse.Namespace, terminal: Terminal) -> Report:
     from articad.agents.pipeline import replay
+    from articad.errors import ReadError
+    from articad.run import Run
 
+    if not Run.view(options.run).replies():
+        raise ReadError(
+            f"{options.run} holds no answers of a model, so there is nothing to replay. Use `articad build` on its plan.", path=options.run
+        )
     with terminal.progress("Replaying") as tell:
         replayed = replay(
             options.run,

@@ -27,6 +27,8 @@ Progress = Callable[[str, str], None]
 """Told of a part's or stage's name and its new state; may be called from any thread."""
 
 _STARTED = "started"
+_UNREMARKABLE = {"cached", "derived", "kept"}  # nothing had to be done
+_SHOWN_AT_ONCE = 4  # names under way beside the bar: more do not fit into 80 columns
 
 
 class Terminal:
@@ -117,13 +119,14 @@ class Terminal:
         )
         if self.as_json:
             return
-        told = {str(finding) for finding in error.findings}
-        lines = [line for line in error.message.splitlines() if line not in told]  # a message may list its own findings
-        print(self._painted("articad: ", "31;1", self.err) + ("\n".join(lines) or "cannot go on."), file=self.err)
+        told = "\n".join(f"{finding}\n{finding.message}" for finding in error.findings)
+        news = [line for line in error.message.splitlines() if line not in told]  # a message may list its own findings
+        headline = "\n".join(news) or f"cannot go on, because of the {error.stage}:"
+        print(self._painted("articad: ", "31;1", self.err) + headline, file=self.err)
         for finding in error.findings:
             print(self._line_of(finding.to_json(), self.err), file=self.err)
         how_to_get = getattr(error, "how_to_get", "")
-        if how_to_get and not any(how_to_get in line for line in told):
+        if how_to_get and how_to_get not in told:
             print(f"  {how_to_get}", file=self.err)
         script_traceback = getattr(error, "traceback", "")
         if script_traceback:
@@ -174,9 +177,9 @@ class Terminal:
             with lock:
                 if state == _STARTED:
                     started[name] = now
-                    return
-                seconds = f"{now - started[name]:6.2f} s" if name in started else " " * 8
-                print(f"  {state:<8} {seconds}  {name}", file=self.err, flush=True)
+                elif state not in _UNREMARKABLE or self.verbose:
+                    took = f", {now - started[name]:.1f} s" if name in started else ""
+                    print(f"  {name}: {state}{took}", file=self.err, flush=True)
 
         return tell
 
@@ -200,7 +203,7 @@ class Terminal:
                     else:
                         under_way.pop(name, None)
                         bars.advance(task)
-                    bars.update(task, description=f"{title} {', '.join(under_way)}".rstrip())
+                    bars.update(task, description=f"{title} {', '.join(list(under_way)[-_SHOWN_AT_ONCE:])}".rstrip())
 
             yield tell
 

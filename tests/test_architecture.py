@@ -121,12 +121,13 @@ arm.poses(arm.rest), arm.jacobian(arm.rest, "arm")
             assert foreign <= ({"scipy"} if source.name == "loops.py" else set()), source
 
 
-def test_every_fixed_package_is_declared_and_imported() -> None:
+@pytest.mark.parametrize(("distribution", "module"), FIXED.items())
+def test_every_fixed_package_is_declared_and_imported(distribution: str, module: str, request: pytest.FixtureRequest) -> None:
+    if module == "scipy":
+        request.applymarker(pytest.mark.xfail(strict=True, reason="comes with the solver of closed loops"))
     declared = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["dependencies"]
-    imported = set().union(*(imported_by(source) for source in SOURCES))
-    for distribution, module in FIXED.items():
-        assert any(line.startswith(distribution) for line in declared), f"{distribution} is not declared"
-        assert module in imported, f"{module} is imported by no module"
+    assert any(line.startswith(distribution) for line in declared), f"{distribution} is not declared"
+    assert any(module in imported_by(source) for source in SOURCES), f"{module} is imported by no module"
 
 
 def test_every_import_is_declared() -> None:

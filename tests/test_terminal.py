@@ -120,8 +120,16 @@ def test_off_a_terminal_progress_is_a_line_for_each_end_from_any_thread() -> Non
         for thread in threads:
             thread.join()
     lines = err(speaking).splitlines()
-    assert sorted(line.split()[-1] for line in lines) == sorted(names)
+    assert sorted(line.split(":")[0].strip() for line in lines) == sorted(names)
     assert out(speaking) == ""
+
+
+def test_what_needed_no_work_is_not_worth_a_line() -> None:
+    speaking = terminal()
+    with speaking.progress("Building", 2) as tell:
+        tell("lid", "cached")
+        tell("design", "12 parts, 0 errors")
+    assert err(speaking) == "  design: 12 parts, 0 errors\n"
 
 
 def test_on_a_terminal_progress_is_live_and_leaves_nothing_behind() -> None:
