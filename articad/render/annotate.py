@@ -21,6 +21,9 @@ HALO: Color = (250, 250, 248)
 AXIS_COLORS: tuple[Color, Color, Color] = ((200, 40, 40), (30, 140, 60), (40, 80, 200))
 JOINT: Color = (0, 96, 160)
 _SMALLEST_LABELLED = 40  # pixels: a part of which less is seen gets no name
+_MOST_NAMES = 14  # names in one picture; more would hide it
+_MOST_AXES = 8
+_LOWERED = 4  # how often a name gives way to others before it is left out
 _TRIAD_PIXELS = 26
 _AXIS_SHARE = 0.13  # of the picture's width, to each side of the joint
 
@@ -32,7 +35,7 @@ def annotate(
     draw = ImageDraw.Draw(image)
     taken: list[tuple[float, float, float, float]] = []
     if axes:
-        for axis in scene.axes:
+        for axis in scene.axes if len(scene.axes) <= _MOST_AXES else ():
             _joint_axis(draw, axis, camera, taken)
     if labels:
         _part_names(draw, scene, camera, buffers, taken)
@@ -65,13 +68,15 @@ def _place(
     width, height = x1 - x0, y1 - y0 + 3
     left = min(max(at[0] - width / 2, 2), camera.width - width - 2)
     top = min(max(at[1] - height / 2, 22), camera.height - height - 2)
-    for _ in range(12):
+    for _ in range(_LOWERED):
         clash = [box for box in taken if left < box[2] and box[0] < left + width and top < box[3] and box[1] < top + height]
         if not clash:
             break
         top = max(box[3] for box in clash) + 1
-        if top > camera.height - height - 2:
-            top = min(box[1] for box in clash) - height - 1
+    else:
+        return  # too far from what it names: no name is better than one that misleads
+    if top > camera.height - height - 2:
+        return
     taken.append((left, top, left + width, top + height))
     _text(draw, (left, top), text, color)
 
@@ -79,13 +84,16 @@ def _place(
 def _part_names(
     draw: ImageDraw.ImageDraw, scene: Scene, camera: Camera, buffers: Buffers, taken: list[tuple[float, float, float, float]]
 ) -> None:
+    """Name the parts of which most is seen; small ones are left out where names would hide the picture."""
     ratio = buffers.item.shape[1] / camera.width
     by_name: dict[str, list[int]] = {}
     for index, item in enumerate(scene.items):
         if item.manner == "solid":
             by_name.setdefault(item.name, []).append(index)
-    for name, indices in by_name.items():
-        rows, columns = np.nonzero(np.isin(buffers.item, indices))
+    seen = {name: np.nonzero(np.isin(buffers.item, indices)) for name, indices in by_name.items()}
+    largest = sorted(seen, key=lambda name: -len(seen[name][0]))[:_MOST_NAMES]
+    for name in largest:
+        rows, columns = seen[name]
         if len(rows) < _SMALLEST_LABELLED * ratio**2:
             continue
         # The pixel nearest to the mean lies on the part, even where the part has a hole in its middle.

@@ -207,16 +207,26 @@ def render_motion(
 
 
 def best_view(scenes: Sequence[Scene], candidates: Sequence[str] = MOTION_VIEWS) -> str:
-    """Return the view in which most pixels change between the scenes, the first one on a tie."""
+    """Return the view that shows a motion best: what moves is seen, and moves far across the picture.
+
+    Args:
+        scenes: The same items in different places.
+        candidates: Keys of `articad.render.VIEWS`; the first one wins a tie.
+    """
     bounds = _envelope(scenes)
-    shown = [scenes[0], scenes[len(scenes) // 2], scenes[-1]]
+    first, last = scenes[0].items, max(scenes, key=lambda scene: _displacement(scenes[0], scene)).items
+    moving = [index for index, item in enumerate(first) if not item.T_ground.allclose(last[index].T_ground)]
 
-    def changed(view: str) -> int:
+    def shown(view: str) -> float:
         camera = Camera.fit(view, bounds, width=_PROBE_SIZE, height=_PROBE_SIZE)
-        first, *others = [cast(scene, camera).item for scene in shown]
-        return sum(int((first != other).sum()) for other in others)
+        travel = sum(
+            float(np.linalg.norm(camera.project(first[index].vertices) - camera.project(last[index].vertices), axis=1).mean())
+            for index in moving
+        )
+        seen = sum(int(np.isin(cast(scene, camera).item, moving).sum()) for scene in (scenes[0], scenes[-1]))
+        return travel * seen
 
-    return max(candidates, key=changed)
+    return max(candidates, key=shown)
 
 
 def before_after(before: Scene, after: Scene, view: str = "iso", *, size: int = DEFAULT_SIZE, supersample: int = 2) -> Image.Image:
@@ -280,6 +290,12 @@ def _require_pyvista() -> None:
             "PyVista cannot draw here: it is not installed, or there is no OpenGL. The renderer 'embree' needs neither.",
             how_to_get="pip install 'articad[render]', and libegl1 or libosmesa6 from the distribution",
         )
+
+
+def _displacement(before: Scene, after: Scene) -> float:
+    return sum(
+        float(a.T_ground.distance_to(b.T_ground) + a.T_ground.angle_to(b.T_ground)) for a, b in zip(before.items, after.items, strict=True)
+    )
 
 
 def _envelope(scenes: Sequence[Scene]) -> FloatArray:
