@@ -212,7 +212,7 @@ def _check_offset(form: LinearSpec, where: str, a: TiedCoordinate, b: TiedCoordi
             f"At rest {b.column} is {rest_b:.6g} {unit}, but {ratio:.6g} * {rest_a:.6g} + {offset:.6g} is {ratio * rest_a + offset:.6g}."
         )
         evaluation.report(
-            "E_COUPLING_REST", f"{where}.offset", message, f"Set offset to {right + 0.0:.6g}.", value=offset, limit=right, unit=unit
+            "E_COUPLING_REST", f"{where}.offset", message, f"Set offset to {right + 0.0:.12g}.", value=offset, limit=right, unit=unit
         )
 
 

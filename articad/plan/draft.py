@@ -68,7 +68,7 @@ class Draft:
         self._read_parts()
         self._read_motions()
         tree = self._structure()
-        placing = Placing(self.parts, in_order, self.lines, self.motions, tree, self.evaluation)
+        placing = Placing(self.parts, in_order, self.lines, self.motions, plan.ground, tree, self.evaluation)
         placing.place_parts()
         placing.settle_frames()
         self.auto_joints = placing.auto_joints

@@ -79,12 +79,12 @@ class Evaluation:
         value, unit = self.values[parameter.name], {"1": None}.get(parameter.unit, parameter.unit)
         where = f"parameters.{parameter.name}"
         if low > high:
-            message, hint = f"min {low:.6g} is above max {high:.6g}.", f"Did you mean min {high:.6g}, max {low:.6g}?"
+            message, hint = f"min {low:.6g} is above max {high:.6g}.", f"Did you mean min {high:.12g}, max {low:.12g}?"
             self.report("E_PARAMETER_BOUNDS", where, message, hint, value=low, limit=high, unit=unit)
         elif value < low or value > high:
             bound, name = (low, "min") if value < low else (high, "max")
             message = f"{parameter.name} is {value:.6g}, {'below its min' if name == 'min' else 'above its max'} {bound:.6g}."
-            hint = f"Set the value to {bound:.6g}, or {name} to {value:.6g}."
+            hint = f"Set the value to {bound:.12g}, or {name} to {value:.12g}."
             self.report("E_PARAMETER_BOUNDS", where, message, hint, value=value, limit=bound, unit=unit)
 
     def _settle(self, name: str, path: tuple[str, ...]) -> None:

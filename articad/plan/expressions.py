@@ -103,8 +103,8 @@ _OPERATORS: Mapping[type[ast.operator], tuple[str, Callable[[float, float], floa
 _REFUSED_OPERATORS: Mapping[type[ast.operator], str] = {
     ast.Pow: "'**' is not allowed; multiply, as in a * a",
     ast.FloorDiv: "'//' is not allowed; use floor(a / b)",
-    ast.Mod: "'%' is not allowed; use a - b * floor(a / b)",
 }
+_INSTEAD_OF = {"^": "Multiply, as in a * a.", "%": "Use a - b * floor(a / b)."}
 _CHARACTERS = re.compile(r"[A-Za-z0-9_+\-*/(). ,\t]*")
 _LITERAL = re.compile(r"(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?")
 _USABLE = "Use + - * / ( ), decimal literals, parameter names, pi and " + " ".join(FUNCTIONS) + "; angles are in degrees."
@@ -180,8 +180,7 @@ def parse(text: str) -> Expression:
     legal = _CHARACTERS.match(text)
     end = legal.end() if legal else 0
     if end < len(text):
-        hint = "Write multiplication, not a power: a * a." if text[end] == "^" else _USABLE
-        raise _refused(text, end, f"{text[end]!r} is not allowed", hint)
+        raise _refused(text, end, f"{text[end]!r} is not allowed", _INSTEAD_OF.get(text[end], _USABLE))
     indent = len(text) - len(text.lstrip())
     try:
         with warnings.catch_warnings():

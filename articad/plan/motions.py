@@ -124,7 +124,7 @@ def _check_range(limits: tuple[float, float], rest: float, axis: _Axis, joint_ty
     low, high = limits
     path, unit, given = f"{where}.{axis.range}", axis.unit, f"[{low:.6g}, {high:.6g}]"
     if low > high:
-        hint = f"Did you mean [{high:.6g}, {low:.6g}]?"
+        hint = f"Did you mean [{high:.12g}, {low:.12g}]?"
         evaluation.report("E_LIMITS_ORDER", path, f"Limits {given}: the lower is above the upper.", hint, value=low, limit=high, unit=unit)
         return
     if low == high:
@@ -134,11 +134,11 @@ def _check_range(limits: tuple[float, float], rest: float, axis: _Axis, joint_ty
         _check_degrees(limits, path, evaluation, many_turns=joint_type is JointType.SCREW)
     if rest < low - _SLACK or rest > high + _SLACK:
         nearest = low if rest < low else high
-        widened = f"[{min(low, rest):.6g}, {max(high, rest):.6g}]"
+        widened = f"[{min(low, rest):.12g}, {max(high, rest):.12g}]"
         if axis.rest is None:
             hint = f"This joint rests at zero: widen {axis.range} to {widened}."
         else:
-            hint = f"Set {axis.rest} to {nearest:.6g}, or {axis.range} to {widened}."
+            hint = f"Set {axis.rest} to {nearest:.12g}, or {axis.range} to {widened}."
         message = f"The joint rests at {rest:.6g} {unit}, outside its limits {given}."
         evaluation.report("E_REST_OUTSIDE_LIMITS", path, message, hint, value=rest, limit=nearest, unit=unit)
 
@@ -227,7 +227,7 @@ def checked_fit(form: Fit, where: str, evaluation: Evaluation) -> tuple[float | 
     if form.gap_mm is not None:
         low, high = (evaluation.number(bound, where, f"gap_mm[{i}]") for i, bound in enumerate(form.gap_mm))
         if low > high:
-            hint = f"Did you mean [{high:.6g}, {low:.6g}]?"
+            hint = f"Did you mean [{high:.12g}, {low:.12g}]?"
             message = f"gap_mm [{low:.6g}, {high:.6g}]: the least gap is above the largest."
             evaluation.report("E_FIT", f"{where}.gap_mm", message, hint, value=low, limit=high, unit="mm")
         elif low < 0.0:

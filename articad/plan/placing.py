@@ -23,6 +23,7 @@ class Placing:
         in_order: Those with a root, each after its source.
         lines: Joints with a type.
         motions: Joint name -> motion, where its numbers are good.
+        ground: The part that stands still.
         tree: The spanning tree; None if the joints make none, so that no joint can place a part.
         evaluation: The plan's numbers.
 
@@ -36,11 +37,12 @@ class Placing:
         in_order: Sequence[DraftPart],
         lines: Sequence[JointLine],
         motions: Mapping[str, Motion],
+        ground: str,
         tree: KinematicTree | None,
         evaluation: Evaluation,
     ) -> None:
         self.parts, self.in_order, self.lines = parts, in_order, lines
-        self.motions, self.tree, self.evaluation = motions, tree, evaluation
+        self.motions, self.ground, self.tree, self.evaluation = motions, ground, tree, evaluation
         self.auto_joints: dict[str, str] = {}
 
     def place_parts(self) -> None:
@@ -73,7 +75,7 @@ class Placing:
     def _place_by_joint(self, part: DraftPart, placed: set[str], path: tuple[str, ...]) -> None:
         """Place a part with `rest_pose: "auto"` from the joint to its parent in the tree."""
         where = f"{part.where}.rest_pose"
-        if self.tree is not None and part.name == self.tree.ground:
+        if part.name == self.ground:
             message = "The ground cannot be placed by a joint: everything else is measured from it."
             self.evaluation.report("E_REST_AUTO", where, message, "Give the ground a rest_pose, or leave it out.", parts=(part.name,))
         edge = None if self.tree is None else self.tree.edge(part.name)

@@ -21,6 +21,8 @@ OFFSET_MM = 0.01  # plan frames are numbers, so this is rounding of what people 
 ANGLE_DEG = 0.05  # 0.9 mm at one metre: rounding of axes to four digits passes
 _TURN_FIELD = {JointType.REVOLUTE: "rest_deg", JointType.CYLINDRICAL: "rest_deg"}
 _SLIDE_FIELD = {JointType.SLIDER: "rest_mm", JointType.CYLINDRICAL: "rest_mm"}
+_DECIMALS = 4  # of mm and degrees in hints: a hundredth of the tolerances
+_AXIS_DECIMALS = 6  # of unit axes in hints: 0.0001°
 _IDENTITY = SE3.identity()
 
 
@@ -102,8 +104,8 @@ class _Mismatch:
 
     def _set(self, *keys: str) -> str:
         """Return the sentence that gives the connector the right values."""
-        values = {"o": self.right.translation, "z": self.right.z_axis, "x": self.right.x_axis}
-        wanted = " and ".join(f"{key} of {self.target} to {_vector(values[key])}" for key in keys)
+        values = {"o": _point(self.right.translation), "z": _direction(self.right.z_axis), "x": _direction(self.right.x_axis)}
+        wanted = " and ".join(f"{key} of {self.target} to {values[key]}" for key in keys)
         if self.part.derived:
             return f"set {wanted}, which comes from {self.part.source}: change it there, or what {self.part.name} derives by"
         return f"set {wanted}"
@@ -149,7 +151,7 @@ class _Mismatch:
         wrong = self.actual.translation - self.expected.translation
         message = (
             f"{self.parent} and {self.child} are {distance:.4g} mm apart at rest: "
-            f"{self.child} is off by {_vector(wrong)} mm in the assembly's frame."
+            f"{self.child} is off by {_point(wrong)} mm in the assembly's frame."
         )
         hint = f"{_capital(self._set('o'))}{self._move_instead(wrong)}{self._travel_instead(wrong)}."
         return self._finding("E_MATE_OFFSET", message, hint, distance, OFFSET_MM, "mm")
@@ -162,7 +164,7 @@ class _Mismatch:
         if any(spec.frame == "assembly" and spec.name == self.joint.child_connector for spec in child.connector_specs):
             return ""
         at = np.array(self.draft.evaluation.triple(child.form.rest_pose.at, f"{child.where}.rest_pose", "at"))
-        return f", or rest_pose.at of {child.name} to {_vector(at - wrong)}"
+        return f", or rest_pose.at of {child.name} to {_point(at - wrong)}"
 
     def _travel_instead(self, wrong: FloatArray) -> str:
         """Return the rest travel that would mend an offset along the axis, if the limits let it."""
@@ -179,13 +181,18 @@ class _Mismatch:
         return f", or {field} of the joint to {_number(min(max(rest, low), high))}"
 
 
-def _vector(vector: FloatArray) -> str:
-    return f"({', '.join(_number(float(c)) for c in vector)})"
+def _point(point: FloatArray) -> str:
+    return f"({', '.join(_number(float(c)) for c in point)})"
 
 
-def _number(value: float) -> str:
-    """Return a number as a plan would state it: six digits, no noise of the last bits."""
-    return f"{round(value, 9) + 0.0:.6g}"
+def _direction(axis: FloatArray) -> str:
+    return f"({', '.join(_number(float(c), _AXIS_DECIMALS) for c in axis)})"
+
+
+def _number(value: float, decimals: int = _DECIMALS) -> str:
+    """Return a number as a plan would state it: exact enough to mend the fault, without the noise of the last bits."""
+    text = f"{round(value, decimals) + 0.0:.{decimals}f}"
+    return text.rstrip("0").rstrip(".") if "." in text else text
 
 
 def _capital(sentence: str) -> str:
