@@ -57,7 +57,8 @@ _IMAGES, _PLANS, _PARTS, _REMOVED, _ATTEMPTS, _REPLIES, _SUPERSEDED, _EXPORT = (
     "llm/superseded",
     "export",
 )
-_SCRIPT, _BRIEF, _CONNECTORS, _PART, _STL, _OUTCOME = "script.py", "brief.json", "connectors.json", "part.json", "part.stl", "outcome.json"
+_SCRIPT, _BRIEF, _CONNECTORS, _PART, _STL = "script.py", "brief.json", "connectors.json", "part.json", "part.stl"
+_OUTCOME, _PICTURE = "outcome.json", "partial.png"
 _TEMPORARY = re.compile(r"\..+\.tmp-[0-9a-f]{8}$")
 
 _SLUG_LENGTH = 40  # characters of the prompt in a run's name: enough to recognise it in a listing
@@ -337,9 +338,15 @@ class Run:
         """Return what came of an attempt at a part, or None."""
         return self._read_json(f"{_ATTEMPTS}/{name}-{number}/{_OUTCOME}")
 
-    def save_attempt(self, name: str, number: int, *, script: bytes, outcome: Json) -> None:
-        """Keep an attempt at a part that did not succeed."""
+    def attempt_picture(self, name: str, number: int) -> bytes | None:
+        """Return the picture of what an attempt had made, or None."""
+        return self._read(f"{_ATTEMPTS}/{name}-{number}/{_PICTURE}")
+
+    def save_attempt(self, name: str, number: int, *, script: bytes, outcome: Json, picture: bytes | None = None) -> None:
+        """Keep an attempt at a part that did not succeed; its outcome is written last."""
         self._write(f"{_ATTEMPTS}/{name}-{number}/{_SCRIPT}", script)
+        if picture is not None:
+            self._write(f"{_ATTEMPTS}/{name}-{number}/{_PICTURE}", picture)
         self._write_json(f"{_ATTEMPTS}/{name}-{number}/{_OUTCOME}", outcome)
 
     # ------------------------------------------------------------------ the assembly

@@ -5,19 +5,21 @@ A request depends on the part's own entry, its own connectors and the kernel: ne
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, Final
 
 from articad.agents.llm import LLM, Image, Message, Request, assistant, system, user
+from articad.agents.pictures import partial_picture
 from articad.agents.prompts import prompt, prompt_file
 from articad.agents.replies import parse_script
+from articad.assembly import DEFLECTION_MM
 from articad.connectors.connector import Connector
-from articad.errors import BuildError, ContractError, KernelError, OutputError
+from articad.errors import ArticadError, BuildError, ContractError, KernelError, OutputError
 from articad.findings import Finding, Findings
+from articad.kernels.kernel import PartKernel
 from articad.kernels.parts import RealisedPart
-from articad.plan.brief import brief
+from articad.plan.brief import brief, build_digest
 from articad.plan.resolve import ResolvedPlan
 from articad.run import Run
 
@@ -31,17 +33,27 @@ _EXAMPLES: Final = {"build123d": "lid_left.txt"}
 Build = Callable[[str, bytes], RealisedPart]
 """Builds the script of a part, or raises `KernelError`."""
 
-Picture = Callable[[KernelError], Image | None]
-"""Draws what a failed script had made so far, if anything."""
-
 
 @dataclass(frozen=True)
 class Attempt:
-    """An answer that did not do: what was said, what was wrong with it, and a picture of how far it came."""
+    """An answer that did not do.
+
+    Attributes:
+        said: The answer.
+        failure: What was wrong with it, as its author is told.
+        picture: What its script had made.
+        error: The same as an exception.
+    """
 
     said: str
     failure: str
     picture: Image | None = None
+    error: ArticadError | None = None
+
+    @classmethod
+    def of(cls, said: str, error: KernelError | OutputError, picture: Image | None = None) -> Attempt:
+        """Return the attempt that ended with an error."""
+        return cls(said, failure_text(error), picture, error)
 
 
 class Modeller:
@@ -53,28 +65,17 @@ class Modeller:
         llm: Who writes.
         run: Keeps the attempts that failed, and knows those of a run that was interrupted.
         build: Builds a script and holds it to its contract.
-        kernel: Name of the kernel: the dialect of the script.
+        kernel: The kernel: its name is the dialect of the script.
         repairs: How often a failed script may be mended.
-        picture: Draws a failed attempt.
     """
 
     def __init__(
-        self,
-        resolved: ResolvedPlan,
-        name: str,
-        *,
-        llm: LLM,
-        run: Run,
-        build: Build,
-        kernel: str = "build123d",
-        repairs: int = REPAIRS,
-        picture: Picture | None = None,
+        self, resolved: ResolvedPlan, name: str, *, llm: LLM, run: Run, build: Build, kernel: PartKernel, repairs: int = REPAIRS
     ) -> None:
-        self._name, self._llm, self._run, self._build = name, llm, run, build
+        self._resolved, self._name, self._llm, self._run, self._build, self._kernel = resolved, name, llm, run, build, kernel
         self._repairs = repairs
-        self._picture = picture
         pictures = tuple(Image(image.content, image.media_type) for image in run.request.images if image.part == name)
-        self._opening = opening(resolved, name, kernel, pictures)
+        self._opening = opening(resolved, name, kernel.name, pictures)
 
     def make(self, *, answered: int = 0, previous: Attempt | None = None) -> tuple[RealisedPart, int]:
         """Return the part as built, and the number of answers it took.
@@ -89,29 +90,37 @@ class Modeller:
         for number in range(answered + 1, answered + self._repairs + 2):
             step = f"part/{self._name}/{number}"
             reply = self._llm.complete(Request(ROLE, step, messages_after(self._opening, previous)))
-            try:
-                return self._attempted(reply.text, step, number), number
-            except (KernelError, OutputError) as error:
-                if number == answered + self._repairs + 1:
-                    raise
-                drawn = self._picture(error) if self._picture is not None and isinstance(error, KernelError) else None
-                previous = Attempt(reply.text, failure_text(error), drawn)
-        raise AssertionError("the last try either returns or raises")
+            outcome = self._tried(reply.text, step, number)
+            if isinstance(outcome, RealisedPart):
+                return outcome, number
+            previous = outcome
+        assert previous is not None
+        assert previous.error is not None
+        raise previous.error
 
-    def _attempted(self, said: str, step: str, number: int) -> RealisedPart:
-        script = parse_script(said, step=step)
-        mark = hashlib.sha256(script).hexdigest()
+    def _tried(self, said: str, step: str, number: int) -> RealisedPart | Attempt:
+        """Return the part that an answer made, or why it made none."""
+        try:
+            script = parse_script(said, step=step)
+        except OutputError as error:
+            return Attempt.of(said, error)
+        mark = build_digest(self._resolved, self._name, script, self._kernel.name, self._kernel.version, DEFLECTION_MM)
         known = self._run.attempt(self._name, number)
-        if known is not None and known["script"] == mark:  # an interrupted run has built it before, in vain
-            raise _remembered(known, self._name)
+        if known is not None and known["build"] == mark:  # an interrupted run has built it before, in vain
+            return _remembered(known, self._run.attempt_picture(self._name, number), said, self._name)
         try:
             return self._build(self._name, script)
         except (BuildError, ContractError) as error:
-            outcome = {"schema": ATTEMPT_SCHEMA, "script": mark, "message": error.message, "findings": error.findings.to_json()["findings"]}
-            trace = {"line": error.line, "traceback": error.traceback} if isinstance(error, BuildError) else {}
-            self._run.save_attempt(self._name, number, script=script, outcome=outcome | trace)
+            picture = partial_picture(error.partial, self._name, mark)
+            self._run.save_attempt(
+                self._name,
+                number,
+                script=script,
+                picture=None if picture is None else picture.content,
+                outcome=_outcome(error, mark, picture),
+            )
             self._run.trace("build", part=self._name, attempt=number, ok=False, codes=list(error.findings.codes))
-            raise
+            return Attempt.of(said, error, picture)
 
 
 def opening(resolved: ResolvedPlan, name: str, kernel: str, pictures: tuple[Image, ...] = ()) -> tuple[Message, ...]:
@@ -180,10 +189,23 @@ def _number(value: float) -> str:
     return str(int(rounded)) if rounded == int(rounded) else repr(rounded)
 
 
-def _remembered(known: Mapping[str, Any], name: str) -> KernelError:
-    """Return the error of an attempt that an earlier process made."""
+def _outcome(error: KernelError, mark: str, picture: Image | None) -> dict[str, Any]:
+    """Return what is kept of a failed attempt: all that is needed to ask for a better one."""
+    trace = {"line": error.line, "traceback": error.traceback} if isinstance(error, BuildError) else {}
+    recipe = None if picture is None or picture.recipe is None else dict(picture.recipe)
+    findings = error.findings.to_json()["findings"]
+    return {"schema": ATTEMPT_SCHEMA, "build": mark, "message": error.message, "findings": findings, "picture": recipe} | trace
+
+
+def _remembered(known: Mapping[str, Any], content: bytes | None, said: str, name: str) -> Attempt:
+    """Return the attempt that an earlier process made."""
     entries = ({key: value for key, value in stored.items() if key != "severity"} for stored in known["findings"])
     findings = Findings(Finding(**entry | {"parts": tuple(entry["parts"])}) for entry in entries)
+    picture = None if content is None else Image(content, recipe=known["picture"])
     if "traceback" in known:
-        return BuildError(known["message"], line=known["line"], traceback=known["traceback"], findings=findings, parts=(name,))
-    return ContractError(known["message"], findings=findings, parts=(name,))
+        error: KernelError = BuildError(
+            known["message"], line=known["line"], traceback=known["traceback"], findings=findings, parts=(name,)
+        )
+    else:
+        error = ContractError(known["message"], findings=findings, parts=(name,))
+    return Attempt.of(said, error, picture)

@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Any, Final, Literal
 
 from articad.agents.design import TRIES, Designer
+from articad.agents.evidence import examine
 from articad.agents.generation import REPAIRS, Attempt, Modeller, failure_text
 from articad.agents.llm import LLM, Recorded, Replay, closed_port
 from articad.agents.requirements import Requirements, analyse
@@ -186,7 +187,7 @@ class _Workshop:
             assembly = self._assembled(plan)
             with closed_port("assembly and checks are deterministic"):
                 record_assembly(self.run, assembly)
-                checks = assembly.check()
+                checks = examine(assembly)
                 record_checks(self.run, checks)
             self._tell("check", "ok" if checks.ok else f"{len(checks.findings.errors)} errors")
             if checks.ok or number + 1 == self.options["rounds"]:
@@ -241,7 +242,7 @@ class _Workshop:
             llm=self.port,
             run=self.run,
             build=lambda part, script: self._build(resolved, part, script),
-            kernel=self.kernel.name,
+            kernel=self.kernel,
             repairs=self.options["repairs"],
         )
         realised, answers = modeller.make(answered=answers, previous=previous)
@@ -269,8 +270,7 @@ class _Workshop:
 
 def _attempt(script: bytes, error: KernelError) -> Attempt:
     """Return a kept script that no longer builds as an answer that did not do."""
-    said = f"```python\n{script.decode()}```"
-    return Attempt(said, f"The specification has changed since. {failure_text(error)}")
+    return Attempt(f"```python\n{script.decode()}```", f"The specification has changed since. {failure_text(error)}", error=error)
 
 
 def _raise_failures(futures: Mapping[str, Future[None]], total: int) -> None:
