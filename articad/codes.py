@@ -375,6 +375,9 @@ CODES: dict[str, Code] = {
     ),
     "E_WRITE": Code("export", None, "A file cannot be written.", "Free space or permissions at the named place; finished work is kept."),
     "E_RUN": Code("import", None, "A run directory cannot be used.", "Name another directory, or wait for the process that uses it."),
+    "E_MIMIC_FIT": Code(
+        "export", None, "A closed loop cannot be written as mimic joints within 0.1 mm.", "Use another way to write loops, or MJCF."
+    ),
     "E_READ": Code("import", None, "A file cannot be read.", "Check the file at the named place."),
     "E_UNSAFE_PATH": Code("import", None, "A file names a path outside its own folder.", "Keep meshes beside the file."),
 }

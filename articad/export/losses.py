@@ -94,6 +94,16 @@ TABLE: dict[str, dict[Format, Row]] = {
         "urdf": Row("metadata", "URDF holds trees only: this joint is left out and its loop is open", refused=True),
         "mjcf": Row("equality constraints between sites"),
     },
+    "loop.points": {
+        "urdf": Row(
+            "points that two links share", "only the reader that was asked for closes the loop, and the closing joint has no limits there"
+        ),
+        "mjcf": Row("equality constraints between sites"),
+    },
+    "loop.mimic": {
+        "urdf": Row("<mimic> of the driver", "readers that ignore <mimic> open the loop"),
+        "mjcf": Row("equality constraints between sites"),
+    },
     "loop.ball": {
         "urdf": Row("metadata"),
         "mjcf": Row("an equality of two points", "the cone and twist of a ball that closes a loop", refused=True),

@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
 from lxml import etree
 
 from articad.connectors.se3 import SE3
 from articad.export.bundle import Bundle
+from articad.export.closing import has_limits, tied_points
 from articad.export.hulls import HullOverlap, hull_overlaps, mating_pairs, same_group_pairs
 from articad.export.inertia import Inertial
 from articad.export.loads import GRAVITY_M_S2
@@ -27,7 +27,6 @@ if TYPE_CHECKING:
 
 FAR_RAD = 1e6  # stands for an open end of a range that has another end
 FAR_M = 1e3
-LEAST_HALF_LENGTH_M = 1e-3  # between the middle and the ends of a hinge that closes a loop
 LEAST_VOLUME_MM3 = 1e-3  # below it MuJoCo calls a mesh too small to measure
 STL_TRIANGLES = 200_000  # MuJoCo refuses larger STL files; OBJ has no such bound
 TIMESTEP_S = 0.002
@@ -203,15 +202,11 @@ class _Writer:
     def _close(self, equality: Any, loop: LoweredJoint) -> None:
         """Close a loop: a point for a ball, two points on the axis for an endless hinge, all six directions through a ghost for others."""
         near, far = self.bodies[loop.parent], self.bodies[loop.child]
-        if loop.joint.type is JointType.BALL:
-            self._tie_sites(equality, "connect", loop.name, (near, loop.T_parent_joint), (far, loop.T_child_joint))
-        elif loop.joint.type is JointType.FIXED:
+        if loop.joint.type is JointType.FIXED:
             self._tie_sites(equality, "weld", loop.name, (near, loop.T_parent_joint), (far, loop.T_child_joint))
         elif not _needs_ghost(loop):
-            for end, offset in (("a", -self._half_length(loop)), ("b", self._half_length(loop))):
-                along = SE3.from_translation([0.0, 0.0, offset])
-                ends = (near, loop.T_parent_joint @ along), (far, loop.T_child_joint @ along)
-                self._tie_sites(equality, "connect", f"{loop.name}__{end}", *ends)
+            for point in tied_points(self.model, loop):
+                self._tie_sites(equality, "connect", f"{loop.name}{point.suffix}", (near, point.near), (far, point.far))
         else:
             ghost = child(near, "body", {"name": loop.carriers[-1]} | _placement(loop.T_parent_joint))
             _inertial(ghost, self.ghosts[loop.name])
@@ -225,15 +220,6 @@ class _Writer:
     def _tie_sites(self, equality: Any, kind: str, name: str, near: tuple[Any, SE3], far: tuple[Any, SE3]) -> None:
         site1, site2 = (self._site(body, f"{name}__{side}", T) for side, (body, T) in (("near", near), ("far", far)))
         child(equality, kind, {"name": name, "site1": site1, "site2": site2} | EQUALITY)
-
-    def _half_length(self, loop: LoweredJoint) -> float:
-        """Return half the distance between the two points that hold a hinge [m]: a quarter of the reach of its parts."""
-        reach = 0.0
-        for link in self.model.links:
-            if link.name in {loop.parent, loop.child}:
-                origins = [metres(connector.frame).translation for connector in link.part.connectors.values()]
-                reach = max([reach, *(float(np.linalg.norm(a - b)) for a in origins for b in origins)])
-        return max(reach / 4, LEAST_HALF_LENGTH_M)
 
     def _actuators(self, root: Any) -> list[Freedom]:
         """Add a position servo for every driver but balls; return the driven freedoms."""
@@ -314,7 +300,7 @@ def _needs_ghost(loop: LoweredJoint) -> bool:
     """True for joints that points alone cannot hold, or whose limits must hold: a body with the joint is welded to the other side."""
     kind = loop.joint.type
     if kind is JointType.REVOLUTE:
-        return any(math.isfinite(bound) for bound in (*loop.joint.limits.lower, *loop.joint.limits.upper))
+        return has_limits(loop)
     return kind not in {JointType.BALL, JointType.FIXED}
 
 

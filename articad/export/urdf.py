@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, Literal
 
 from lxml import etree
 
 from articad.connectors.se3 import SE3
 from articad.export.bundle import Bundle
+from articad.export.closing import TiedPoint, tied_points
 from articad.export.follow import followers
 from articad.export.hulls import hull_overlaps, mating_pairs, same_group_pairs
 from articad.export.inertia import Inertial
@@ -17,15 +19,19 @@ from articad.export.lowering import Follows, Freedom, Link, LoweredJoint, Lowere
 from articad.export.markup import child, document, number, numbers, rgba, rpy
 from articad.export.meshes import MM_TO_M, MeshFiles, MeshKind
 from articad.export.metadata import dumps, records
+from articad.export.mimic import linear_followers
 
 if TYPE_CHECKING:
     from articad.assembly import Assembly
 
+Loops = Literal["none", "isaac", "drake", "mimic"]
+
 FAR_RAD = 1e6  # stands for an open end of a range that has another end
+DRAKE = "http://drake.mit.edu"  # the namespace of Drake's own elements
 FAR_M = 1e3  # URDF has no endless prismatic joint
 
 
-def write_urdf(assembly: Assembly, *, strict: bool = False, meshes: MeshKind = "stl") -> Bundle:
+def write_urdf(assembly: Assembly, *, strict: bool = False, meshes: MeshKind = "stl", loops: Loops = "none") -> Bundle:
     """Write an assembly as URDF.
 
     Link frames are joint frames, the root link is the ground part, and every joint's value is ours in rad or m, so all zero is q = 0.
@@ -36,23 +42,29 @@ def write_urdf(assembly: Assembly, *, strict: bool = False, meshes: MeshKind = "
         assembly: What to write.
         strict: Refuse what URDF holds only with a loss of motion, mass or shape.
         meshes: Format of the mesh files: STL holds single precision, OBJ full numbers.
+        loops: How closed loops are written besides the tree: not at all, as `<loop_joint>` for Isaac Sim, as `<drake:ball_constraint>`
+            for Drake, or as `<mimic>` of the driver, where a linear relation is as good as 0.1 mm.
 
     Returns:
         `<name>.urdf`, `meshes/…`, and the losses.
 
     Raises:
         UnrepresentableError: If `strict` and there is such a loss.
+        ExportError: E_MIMIC_FIT if `loops` is "mimic" and no linear relation is good enough.
     """
     model = lower(assembly)
-    losses = losses_of("urdf", (*model.features, *_hull_features(assembly, model)))
+    tied = {loop.name: tied_points(model, loop) for loop in model.loops} if loops in {"isaac", "drake"} else {}
+    losses = losses_of("urdf", (*_loop_features(model, loops, tied), *_hull_features(assembly, model)))
     if strict:
         refuse(losses)
     files = MeshFiles(meshes)
-    root = etree.Element("robot", name=model.name)
+    root = etree.Element("robot", {"name": model.name}, nsmap={"drake": DRAKE} if loops == "drake" else None)
     _compiler(root)
     _materials(root, model)
     carried = {joint.child: joint for joint in model.joints}
     follows = followers(model, [driver.name for driver in assembly.mechanism.drivers])
+    if loops == "mimic" and model.loops:
+        follows |= linear_followers(assembly, model)
     for link in model.links:
         joint = carried.get(link.name)
         carriers = _carrier_count(joint)
@@ -63,6 +75,9 @@ def write_urdf(assembly: Assembly, *, strict: bool = False, meshes: MeshKind = "
         _link(root, link, whole, files)
         if joint is not None:
             _joints(root, joint, follows)
+    for loop in model.loops:
+        for point in tied.get(loop.name, ()):
+            (_isaac if loops == "isaac" else _drake)(root, loop, point)
     for record in records(assembly, model, files.by_digest):
         child(root, "articad", {"kind": str(record["kind"])}, dumps(record))
     return Bundle({f"{model.name}.urdf": document(root), **files.files}, losses)
@@ -164,6 +179,32 @@ def _limit(freedom: Freedom) -> dict[str, str]:
         far = FAR_RAD if freedom.kind == "turn" else FAR_M
         bounds = {"lower": number(max(freedom.lower, -far)), "upper": number(min(freedom.upper, far))}
     return bounds | {"effort": number(freedom.load.effort), "velocity": number(freedom.load.velocity)}
+
+
+def _isaac(root: Any, loop: LoweredJoint, point: TiedPoint) -> None:
+    """Write a point that Isaac Sim's importer ties."""
+    element = child(root, "loop_joint", {"name": f"{loop.name}{point.suffix}", "type": "spherical"})
+    for tag, link, T in (("link1", loop.parent, point.near), ("link2", loop.child, point.far)):
+        child(element, tag, {"link": link, "xyz": numbers(T.translation), "rpy": numbers(rpy(T))})
+
+
+def _drake(root: Any, loop: LoweredJoint, point: TiedPoint) -> None:
+    """Write a point that Drake's parser ties."""
+    element = child(root, f"{{{DRAKE}}}ball_constraint")
+    for tag, link in (("body_A", loop.parent), ("body_B", loop.child)):
+        child(element, f"{{{DRAKE}}}{tag}", {"name": link})
+    for tag, T in (("p_AP", point.near), ("p_BQ", point.far)):
+        child(element, f"{{{DRAKE}}}{tag}", {"value": numbers(T.translation)})
+
+
+def _loop_features(model: LoweredModel, loops: Loops, tied: Mapping[str, tuple[TiedPoint, ...]]) -> list[Feature]:
+    """Return the model's features with what became of its loops."""
+    written = {f"joints.{loop.joint.name}": bool(tied.get(loop.name)) for loop in model.loops}
+    key = "loop.mimic" if loops == "mimic" else "loop.points"
+    keep = loops == "mimic"
+    return [
+        feature._replace(key=key) if feature.key == "loop" and (keep or written[feature.where]) else feature for feature in model.features
+    ]
 
 
 def _hull_features(assembly: Assembly, model: LoweredModel) -> list[Feature]:

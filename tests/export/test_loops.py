@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from itertools import product
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from lxml import etree
 
 from articad.assembly import Assembly
 from articad.export.mjcf import write_mjcf
@@ -128,3 +130,54 @@ def test_the_limits_of_a_ball_that_closes_a_loop_are_lost_in_mjcf() -> None:
     assert [loss.lost for loss in write_mjcf(closed(KINDS["ball"][0])).losses if loss.refused] == [
         "the cone and twist of a ball that closes a loop"
     ]
+
+
+POINTS = {"fixed": 3, "endless revolute": 2, "ball": 1, "cylindrical": 0}
+
+
+@pytest.mark.engines
+@pytest.mark.parametrize(("kind", "flavour"), list(product(POINTS, ["isaac", "drake"])))
+def test_points_that_close_a_loop_meet_at_rest(kind: str, flavour: Any, tmp_path: Path) -> None:
+    import pinocchio as pin
+
+    assembly = closed(KINDS[kind][0])
+    bundle = write_urdf(assembly, loops=flavour)
+    bundle.write(tmp_path)
+    root = etree.fromstring(bundle.files[bundle.main])
+    model = pin.buildModelFromUrdf(str(tmp_path / bundle.main))  # unchanged, whatever the flavour
+    data = model.createData()
+    q = pin.neutral(model)
+    for name, value in (("crank", 1.0), ("pin_b", -0.6), ("pin_c", -0.9)):
+        joint = model.joints[model.getJointId(name)]
+        q[joint.idx_q : joint.idx_q + 2] = math.cos(value), math.sin(value)
+    pin.framesForwardKinematics(model, data, q)
+    points = isaac_points(root) if flavour == "isaac" else drake_points(root)
+
+    assert len(points) == POINTS[kind]
+    for (near, p_near), (far, p_far) in points:
+        placed = [data.oMf[model.getFrameId(link)].act(np.array(p)) for link, p in ((near, p_near), (far, p_far))]
+        assert np.abs(placed[0] - placed[1]).max() < 1e-12
+    lost = [loss for loss in bundle.losses if loss.where == "joints.d"]
+    assert lost[0].refused == (POINTS[kind] == 0)
+
+
+def isaac_points(root: Any) -> list[Any]:
+    return [
+        [(end.get("link"), floats(end.get("xyz"))) for end in (loop.find("link1"), loop.find("link2"))]
+        for loop in root.iterfind("loop_joint")
+    ]
+
+
+def drake_points(root: Any) -> list[Any]:
+    namespace = {"drake": "http://drake.mit.edu"}
+    return [
+        [
+            (tie.find(f"drake:{body}", namespace).get("name"), floats(tie.find(f"drake:{point}", namespace).get("value")))
+            for body, point in (("body_A", "p_AP"), ("body_B", "p_BQ"))
+        ]
+        for tie in root.iterfind("drake:ball_constraint", namespace)
+    ]
+
+
+def floats(text: str) -> list[float]:
+    return [float(word) for word in text.split()]
