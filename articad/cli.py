@@ -126,6 +126,9 @@ _SANDBOX = _argument(
 _JOBS = _argument("--jobs", metavar="N", type=_positive, default=None, help="parts built at once (all processors)")
 _FORCE = _argument("--force", action="store_true", help="build every part anew, whatever the cache holds")
 _EXPORT = _argument("--export", metavar="FORMATS", dest="formats", type=_formats, default=_WRITERS, help="formats to write (urdf,mjcf)")
+_SANDBOX = _argument(
+    "--sandbox", choices=["strict", "weak"], default=None, help="weak runs part scripts with less isolation than landlock or bwrap"
+)
 _BUILD_ARGUMENTS = (
     _OUT,
     _argument("--kernel", choices=["build123d", "freecad"], default=None, help="what builds part scripts (the plan's own choice)"),
@@ -180,13 +183,20 @@ def _check(options: argparse.Namespace, terminal: Terminal) -> Report:
     from pathlib import Path
 
     from articad import summaries
+    from articad.errors import PlanError
     from articad.plan.check import check_plan
     from articad.plan.schema import AssemblyPlan
 
-    plan = AssemblyPlan.load(options.target)
-    findings = check_plan(plan)
+    try:
+        plan = AssemblyPlan.load(options.target)
+    except PlanError as error:  # what is wrong with a plan is what this command is asked for
+        if not error.findings:
+            raise
+        name, findings = str(options.target), error.findings
+    else:
+        name, findings = plan.name, check_plan(plan)
     terminal.findings(findings)
-    terminal.say(f"{plan.name}: {summaries.counted(findings)}.")
+    terminal.say(f"{name}: {summaries.counted(findings)}.")
     if not findings.ok or not (Path(options.target) / "request.json").is_file():
         return findings.to_json()
 
@@ -310,6 +320,46 @@ def _replay(options: argparse.Namespace, terminal: Terminal) -> Report:
 
 
 @_command(
+    "render",
+    "Draw a run or a plan from several sides, or a joint's motion.",
+    _argument("target", metavar="RUN|PLAN_DIR"),
+    _argument("--views", metavar="VIEWS", default="iso,front,right,top", help="views, each a picture (iso,front,right,top)"),
+    _argument("--motion", metavar="JOINT", help="draw this joint's motion instead, as a filmstrip and an animation"),
+    _argument("--parts", metavar="NAMES", help="parts shown in full; the others are faded"),
+    _argument("--section", metavar="AXIS[=MM]", help="cut away what lies beyond x, y or z (such as -y=12.5)"),
+    _argument("--explode", metavar="SHARE", type=float, default=0.0, help="move parts apart by this share of their distance from the middle"),
+    _argument("--size", metavar="PIXELS", type=_positive, default=512, help="width and height of a picture (512)"),
+    _argument("--renderer", choices=["embree", "pyvista"], default="embree", help="pyvista is smoother, where OpenGL can be had"),
+    _argument("--out", metavar="DIR", default="pictures", help="where to write (pictures)"),
+    _SANDBOX,
+)
+def _render(options: argparse.Namespace, terminal: Terminal) -> Report:
+    from pathlib import Path
+
+    from articad.render.files import write_motion, write_views
+
+    assembly = _loaded(options.target, options, terminal)
+    out = Path(options.out)
+    if options.motion:
+        files = write_motion(assembly, options.motion, out, size=options.size)
+    else:
+        only = options.parts.split(",") if options.parts else None
+        files = write_views(
+            assembly,
+            [view for view in options.views.split(",") if view],
+            out,
+            size=options.size,
+            only=only,
+            section=options.section,
+            explode=options.explode,
+            renderer=options.renderer,
+        )
+    for file in files:
+        terminal.say(str(file))
+    return {"schema": "articad.pictures/1", "ok": True, "files": [str(file) for file in files], "findings": []}
+
+
+@_command(
     "doctor",
     "Say what this machine has and lacks.",
     _argument("--model", metavar="NAME", help="ask this model one tiny question"),
@@ -374,6 +424,24 @@ def _cache(options: argparse.Namespace) -> BuildCache:
     from articad.kernels.kernel import BuildCache
 
     return BuildCache(None) if options.force else BuildCache()
+
+
+def _loaded(target: str, options: argparse.Namespace, terminal: Terminal) -> Assembly:
+    """Return the assembly of a run or of a plan with its part scripts; what the cache holds is not built again."""
+    from pathlib import Path
+
+    from articad.assembly import Assembly
+    from articad.plan.schema import AssemblyPlan
+    from articad.record import assembly_of, kernel_named
+    from articad.run import Run
+
+    if (Path(target) / "request.json").is_file():
+        with Run.view(target) as run, terminal.progress("Reading") as tell:
+            return assembly_of(run, progress=tell)
+    plan = AssemblyPlan.load(target)
+    folder = Path(target) if Path(target).is_dir() else Path(target).parent
+    with terminal.progress("Building", total=len(plan.parts)) as tell:
+        return Assembly.from_plan(plan, folder / "parts", kernel=kernel_named(plan.kernel, sandbox=_sandbox(options)), progress=tell)
 
 
 def _sandbox(options: argparse.Namespace) -> Literal["strict", "weak"]:

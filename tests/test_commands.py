@@ -1,0 +1,222 @@
+"""Each command does its job on a small product: a box with a hinged lid and its mirror image."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from articad import cli
+from articad.run import Run
+
+PLAN: dict[str, Any] = {
+    "schema": "articad.plan/1",
+    "name": "chest",
+    "ground": "box",
+    "freedoms": 1,
+    "parameters": [{"name": "width", "value": 60, "min": 40, "max": 100}],
+    "materials": [{"name": "oak", "density_kg_m3": 700, "color": "#b08050"}],
+    "parts": [
+        {
+            "name": "box",
+            "material": "oak",
+            "description": "Block width x 40 x 20, its top at z = 0.",
+            "dimensions": {"width": "width"},
+            "envelope_mm": ["width", 40, 20],
+            "connectors": [{"name": "hinge", "o": [0, 20, 0.2], "z": [1, 0, 0], "x": [0, 1, 0], "label": "hinge"}],
+        },
+        {
+            "name": "lid",
+            "material": "oak",
+            "description": "Plate width x 40 x 5 with the hinge at its lower back edge.",
+            "dimensions": {"width": "width"},
+            "rest_pose": {"at": [0, 20, 0.2]},
+            "connectors": [{"name": "hinge", "o": [0, 0, 0], "z": [1, 0, 0], "x": [0, 1, 0], "label": "hinge"}],
+        },
+    ],
+    "joints": [{"name": "hinge", "type": "revolute", "parent": "box.hinge", "child": "lid.hinge", "angle_deg": [-100, 0]}],
+}
+BOX = """\
+from build123d import Box, Pos
+
+def build(part):
+    return Pos(0, 0, -10) * Box(part.dimensions["width"], 40, 20), {"hinge": {"o": (0, 20, 0.2), "z": (1, 0, 0), "x": (0, 1, 0)}}
+"""
+LID = """\
+from build123d import Box, Pos
+
+def build(part):
+    return Pos(0, -20, 2.5) * Box(part.dimensions["width"], 40, 5), {"hinge": {"o": (0, 0, 0), "z": (1, 0, 0), "x": (0, 1, 0)}}
+"""
+
+
+@pytest.fixture(scope="module", autouse=True)
+def cache(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("ARTICAD_CACHE", str(tmp_path_factory.mktemp("cache")))
+        yield
+
+
+@pytest.fixture
+def chest(tmp_path: Path) -> Path:
+    """The folder of a plan with its scripts."""
+    folder = tmp_path / "chest"
+    (folder / "parts").mkdir(parents=True)
+    (folder / "plan.json").write_text(json.dumps(PLAN))
+    (folder / "parts" / "box.py").write_text(BOX)
+    (folder / "parts" / "lid.py").write_text(LID)
+    return folder
+
+
+@pytest.fixture
+def report(capsys: pytest.CaptureFixture[str]) -> Any:
+    """Run a command with --json and return its exit code and its report."""
+
+    def run(*arguments: object) -> tuple[int, dict[str, Any]]:
+        code = cli.main([*map(str, arguments), "--json"])
+        return code, json.loads(capsys.readouterr().out)
+
+    return run
+
+
+def test_build_makes_a_whole_run_and_says_where(chest: Path, tmp_path: Path, report: Any) -> None:
+    out = tmp_path / "out"
+    code, built = report("build", chest, "--out", out)
+    assert (code, built["schema"], built["ok"], built["run"]) == (0, "articad.build/1", True, str(out))
+    assert built["assembly"]["parts"]["box"]["volume_mm3"] == pytest.approx(60 * 40 * 20)
+    assert built["assembly"]["parts"]["box"]["mass_kg"] == pytest.approx(60 * 40 * 20 * 700e-9)
+    assert built["checks"]["ok"]
+    files = {file.relative_to(out).as_posix() for file in out.rglob("*") if file.is_file()}
+    part = {
+        f"parts/lid/{name}"
+        for name in ("script.py", "brief.json", "part.json", "connectors.json", "part.brep", "part.step", "part.stl", "part.npz")
+    }
+    assert part <= files
+    assert {"request.json", "plan.json", "plans/0.json", "assembly.json", "checks.json", "trace.jsonl"} <= files
+    assert {"export/urdf/chest.urdf", "export/mjcf/chest.xml", "export/urdf/losses.json"} <= files
+    assert (out / "parts" / "lid" / "script.py").read_text() == LID
+
+
+def test_build_again_is_the_same_byte_for_byte(chest: Path, tmp_path: Path, report: Any) -> None:
+    for name in ("first", "second"):
+        assert report("build", chest, "--out", tmp_path / name)[0] == 0
+    assert Run.view(tmp_path / "first").hashes() == Run.view(tmp_path / "second").hashes()
+
+
+def test_build_prints_parts_verdict_deepest_overlap_and_place(chest: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert cli.main(["build", str(chest), "--out", str(tmp_path / "out")]) == 0
+    told = capsys.readouterr().out
+    for words in (
+        "box",
+        "48000.0",
+        "chest: 2 parts, 1 joint, 1 freedom",
+        "Interference: ok",
+        "Largest overlap depth: 0 mm",
+        "chest.urdf",
+        "Run: ",
+    ):
+        assert words in told
+
+
+def test_set_moves_the_whole_assembly(chest: Path, tmp_path: Path, report: Any) -> None:
+    code, built = report("build", chest, "--set", "width=80", "--out", tmp_path / "out")
+    assert code == 0
+    assert built["assembly"]["parts"]["lid"]["volume_mm3"] == pytest.approx(80 * 40 * 5)
+
+
+def test_an_unknown_parameter_is_named_with_the_one_meant(chest: Path, tmp_path: Path, report: Any) -> None:
+    code, failed = report("build", chest, "--set", "widht=80", "--out", tmp_path / "out")
+    assert code == 3
+    assert "Did you mean 'width'?" in failed["findings"][0]["hint"]
+
+
+def test_a_failing_script_is_an_error_with_its_line_and_an_earlier_run_stays(chest: Path, tmp_path: Path, report: Any) -> None:
+    out = tmp_path / "out"
+    assert report("build", chest, "--out", out)[0] == 0
+    before = Run.view(out).hashes()
+    (chest / "parts" / "lid.py").write_text("def build(part):\n    return 1 / 0\n")
+    code, failed = report("build", chest, "--out", out)
+    assert (code, failed["schema"]) == (3, "articad.error/1")
+    assert [finding["code"] for finding in failed["findings"]] == ["E_SCRIPT_ERROR"]
+    assert "line 2" in failed["findings"][0]["message"] + failed["findings"][0]["where"]
+    assert Run.view(out).hashes() == before
+
+
+def test_a_collision_ends_with_1_and_its_finding(chest: Path, tmp_path: Path, report: Any) -> None:
+    (chest / "parts" / "lid.py").write_text(LID.replace("Pos(0, -20, 2.5)", "Pos(0, -20, -5)"))
+    code, built = report("build", chest, "--out", tmp_path / "out")
+    assert code == 1
+    assert not built["checks"]["ok"]
+    assert [pair["verdict"] for pair in built["checks"]["pairs"]] == ["overlap"]
+
+
+def test_a_check_that_this_version_cannot_do_is_not_passed(chest: Path, tmp_path: Path, report: Any) -> None:
+    code, built = report("build", chest, "--verify", "certified", "--out", tmp_path / "out")
+    assert code == 1
+    assert "E_NOT_CHECKED" in [finding["code"] for finding in built["checks"]["findings"]]
+
+
+def test_check_needs_no_script(chest: Path, report: Any) -> None:
+    for script in (chest / "parts").iterdir():
+        script.unlink()
+    code, checked = report("check", chest)
+    assert (code, checked["schema"], checked["ok"]) == (0, "articad.findings/1", True)
+
+
+def test_check_of_a_wrong_plan_ends_with_1_and_all_findings(chest: Path, report: Any) -> None:
+    wrong = PLAN | {"freedoms": 2, "joints": [PLAN["joints"][0] | {"angle_deg": [0, -100]}]}
+    (chest / "plan.json").write_text(json.dumps(wrong))
+    code, checked = report("check", chest)
+    assert code == 1
+    assert {"E_LIMITS_ORDER", "E_DOF_MISMATCH"} <= {finding["code"] for finding in checked["findings"]}
+
+
+def test_check_of_a_plan_of_the_wrong_form_ends_with_1_too(chest: Path, report: Any) -> None:
+    (chest / "plan.json").write_text(json.dumps(PLAN | {"freedom": 1, "ground": 7}))
+    code, checked = report("check", chest)
+    assert (code, checked["schema"]) == (1, "articad.findings/1")
+    assert {finding["code"] for finding in checked["findings"]} == {"E_SCHEMA"}
+    assert len(checked["findings"]) == 2
+
+
+def test_check_of_a_run_holds_its_geometry_too(chest: Path, tmp_path: Path, report: Any) -> None:
+    assert report("build", chest, "--out", tmp_path / "out")[0] == 0
+    code, checked = report("check", tmp_path / "out")
+    assert (code, checked["schema"], checked["ok"]) == (0, "articad.checks/1", True)
+
+
+def test_export_writes_beside_or_elsewhere_the_same_bytes(chest: Path, tmp_path: Path, report: Any) -> None:
+    out = tmp_path / "out"
+    assert report("build", chest, "--out", out, "--export", "urdf")[0] == 0
+    assert not (out / "export" / "mjcf").exists()
+    assert report("export", out, "--to", "mjcf")[0] == 0
+    code, exported = report("export", out, "--to", "mjcf,urdf", "--out", tmp_path / "elsewhere")
+    assert code == 0
+    assert (out / "export" / "mjcf" / "chest.xml").read_bytes() == (tmp_path / "elsewhere" / "mjcf" / "chest.xml").read_bytes()
+    assert Path(exported["exports"]["urdf"]["main"]).is_file()
+
+
+@pytest.mark.parametrize("command", [["export", "--to", "urdf"], ["replay"]], ids=lambda words: words[0])
+def test_what_is_not_a_run_is_an_error(command: list[str], tmp_path: Path, report: Any) -> None:
+    code, failed = report(*command, tmp_path)
+    assert code == 3
+    assert "is not a run" in failed["error"]["message"]
+
+
+def test_a_build_is_no_recording(chest: Path, tmp_path: Path, report: Any) -> None:
+    assert report("build", chest, "--out", tmp_path / "out")[0] == 0
+    code, failed = report("replay", tmp_path / "out")
+    assert code == 3
+    assert "nothing to replay" in failed["error"]["message"]
+
+
+def test_a_missing_key_is_named(tmp_path: Path, report: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv("GEMINI_API_KEY", raising=False)
+    code, failed = report("generate", "a lamp", "--model", "gemini/gemini-3-flash", "--out", tmp_path / "out")
+    assert code == 3
+    assert failed["findings"][0]["code"] == "E_KEY_MISSING"
+    assert "GEMINI_API_KEY" in failed["findings"][0]["message"] + failed["findings"][0]["hint"]
+    assert not (tmp_path / "out").exists()
