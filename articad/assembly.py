@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from types import MappingProxyType
-from typing import Literal, Self
+from typing import TYPE_CHECKING, Any, Literal, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -24,6 +24,9 @@ from articad.kinematics.joints import Coordinate, Coupling, Joint, JointType
 from articad.kinematics.mechanism import Mechanism
 from articad.plan.resolve import Fit, Material, ResolvedPlan, Waiver, resolve
 from articad.plan.schema import AssemblyPlan
+
+if TYPE_CHECKING:
+    from PIL import Image
 
 FloatArray = NDArray[np.float64]
 JointValue = float | Sequence[float]
@@ -201,9 +204,7 @@ class Assembly:
             raise PlanError("This assembly was not made from a plan, so it has no parameters.")
         scripts = {name: part.script for name, part in self.realised.items() if part.script is not None}
         parameters = {**self.resolved.overrides, **values}
-        return Assembly.from_plan(
-            self.resolved.plan, scripts, kernel=self._kernel, deflection=self.deflection, parameters=parameters
-        )
+        return Assembly.from_plan(self.resolved.plan, scripts, kernel=self._kernel, deflection=self.deflection, parameters=parameters)
 
     # ------------------------------------------------------------------ what it is
 
@@ -315,6 +316,12 @@ class Assembly:
         """
         poses = Poses(self.mechanism.parts, self.poses(self.mechanism.rest if q is None else q))
         return MassProperties.combined([part.mass.moved(poses[name]) for name, part in self.parts.items() if part.mass is not None])
+
+    def render(self, views: Sequence[str] = ("iso",), **options: Any) -> dict[str, Image.Image]:
+        """Draw the assembly from several sides; see `articad.render.render_views` for the options."""
+        from articad.render import render_views  # noqa: PLC0415 - pictures are not needed to assemble
+
+        return render_views(self, views, **options)
 
     def __repr__(self) -> str:
         joints = ", ".join(f"{joint.name}: {joint.type}" for joint in self.joints if joint.type is not JointType.FIXED)
