@@ -156,15 +156,12 @@ def specification(resolved: ResolvedPlan, name: str) -> str:
 
 def failure_text(error: KernelError | OutputError) -> str:
     """Return what went wrong as its author is told: no path, no address, no time."""
-    lines = [error.message] if isinstance(error, BuildError) or not error.findings else []
+    if isinstance(error, OutputError):
+        return f"It could not be read: {error.message}"
+    lines = [f"- {finding}" for finding in error.findings if finding.severity != "info"] or [error.message]
     if isinstance(error, BuildError) and error.traceback:
-        lines += ["", error.traceback.strip(), ""]
-    if not isinstance(error, OutputError):
-        shown = [str(finding) for finding in error.findings if finding.severity != "info"]
-        lines += [f"- {text}" for text in shown if error.message not in text or len(shown) > 1]
-    else:
-        lines = [f"It could not be read: {error.message}"]
-    return "\n".join(lines).strip()[:_SHOWN_CHARACTERS]
+        lines += ["", error.traceback.strip()]
+    return "\n".join(lines)[:_SHOWN_CHARACTERS]
 
 
 def _connector_line(connector: Connector, frame: Mapping[str, Any]) -> str:

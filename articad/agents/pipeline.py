@@ -251,8 +251,12 @@ class _Workshop:
         self._tell(name, "built")
 
     def _build(self, resolved: ResolvedPlan, name: str, script: bytes) -> RealisedPart:
+        """Build a script; where a person is warned of connectors that are off, a model is asked to build them in place."""
         with self.building:
-            return build_source(resolved, name, script, kernel=self.kernel, cache=self.cache, deflection=DEFLECTION_MM)
+            part = build_source(resolved, name, script, kernel=self.kernel, cache=self.cache, deflection=DEFLECTION_MM)
+        if drift := part.findings.of("W_CONNECTOR_DRIFT"):
+            raise ContractError("\n".join(map(str, drift)), findings=drift, parts=(name,))
+        return part
 
     # ------------------------------------------------------------------ telling
 

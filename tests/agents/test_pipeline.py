@@ -62,6 +62,8 @@ def test_a_good_first_shot_takes_one_call_for_the_plan_and_one_for_each_part_tha
     assert checks is not None
     assert checks["ok"]
     assert checks["findings"] == []
+    in_motion = {(tuple(pair["over"]), pair["strength"]["kind"]) for pair in checks["pairs"] if pair["over"] != "rest"}
+    assert in_motion == {((joint,), "sampled") for joint in ("lid_left", "lid_right", "drawer")}
     assert (run.path / "export/urdf/sewing_box.urdf").is_file()
     assert (run.path / "export/mjcf/sewing_box.xml").is_file()
     assert json.loads((run.path / "parts/lid_right/part.json").read_text())["derived_from"] == "lid_left"
@@ -168,6 +170,27 @@ def test_a_script_that_fails_twice_is_repaired_with_its_trace_and_its_text(tmp_p
     assert run.script("flap") == (FLAP_SCRIPTS["flap"].strip() + "\n").encode()
 
 
+def test_a_repair_shows_what_the_script_had_made_and_the_run_keeps_the_picture(tmp_path: Path) -> None:
+    two = FLAP_SCRIPTS["flap"].replace("return shape,", "return shape + Pos(100, 0, 0) * shape,")
+    llm = flap(part__flap__1=fenced(two), part__flap__2=fenced(FLAP_SCRIPTS["flap"]))
+    run = made(tmp_path, llm)
+    asked = of(llm, "part/flap/2")
+    recipe = asked.to_json()["messages"][-1]["content"][-1]["recipe"]
+
+    assert "E_NOT_ONE_SOLID" in said(asked)
+    assert recipe["views"] == ["iso", "front", "right", "top"]
+    assert len(recipe["build"]) == 64
+    assert (run.path / "attempts/flap-1/partial.png").read_bytes() == asked.messages[-1].parts[-1].content  # type: ignore[union-attr]
+
+
+def test_a_part_built_beside_its_connector_is_built_again(tmp_path: Path) -> None:
+    beside = FLAP_SCRIPTS["flap"].replace('"o": (0,', '"o": (7,')
+    llm = flap(part__flap__1=fenced(beside), part__flap__2=fenced(FLAP_SCRIPTS["flap"]))
+    made(tmp_path, llm)
+
+    assert "'axis' was built 7 mm off the axis" in said(of(llm, "part/flap/2"))
+
+
 def test_a_part_that_cannot_be_made_is_named_and_the_others_are_finished(tmp_path: Path) -> None:
     llm = flap(**{f"part__flap__{n}": fenced("def build(part):\n    return None") for n in range(1, 5)})
     with pytest.raises(ContractError, match="1 of 2 parts could not be made") as caught:
@@ -190,6 +213,19 @@ def test_what_the_checks_find_goes_to_the_designer_and_only_the_changed_part_is_
     assert sorted(llm.steps[2:]) == ["design/2", "part/flap/1", "part/flap/2", "part/plate/1"]
     assert (run.checks() or {})["ok"]
     assert sorted(path.name for path in (run.path / "plans").iterdir()) == ["0.json", "1.json"]
+
+
+def test_a_collision_in_motion_goes_to_the_designer_with_the_joint_and_the_place(tmp_path: Path) -> None:
+    digging = changed()
+    digging["joints"][0]["angle_deg"] = [-90, 90]
+    digging["parts"][1]["rest_pose"] = {"at": [-5, 0, 10]}
+    digging["parts"][1]["connectors"][0]["o"] = [5, 5, 0]
+    llm = flap(design__1=json.dumps(digging), design__2=json.dumps(FLAP_PLAN))
+    run = made(tmp_path, llm)
+    told = said(of(llm, "design/2"))
+
+    assert "E_MOTION_COLLISION joints.hinge: plate and flap collide in motion: at hinge = " in told
+    assert (run.checks() or {})["ok"]
 
 
 def test_a_change_of_numbers_alone_keeps_every_script(tmp_path: Path) -> None:
