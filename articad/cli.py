@@ -218,6 +218,7 @@ def _check(options: argparse.Namespace, terminal: Terminal) -> Report:
     _argument("--to", metavar="FORMATS", dest="formats", type=_formats, required=True, help="formats to write, such as urdf,mjcf"),
     _argument("--out", metavar="DIR", help="where to write, a folder for each format; by default RUN/export"),
     _argument("--strict", action="store_true", help="refuse what a format cannot hold, instead of reporting it as lost"),
+    _argument("--loops", choices=["none", "isaac", "drake", "mimic"], default="none", help="how URDF closes loops (none)"),
 )
 def _export(options: argparse.Namespace, terminal: Terminal) -> Report:
     from pathlib import Path
@@ -231,10 +232,10 @@ def _export(options: argparse.Namespace, terminal: Terminal) -> Report:
     exports: dict[str, Report] = {}
     if options.out is None:
         with Run.open(options.run) as run:
-            exports = {name: record_export(run, assembly, name, strict=options.strict) for name in options.formats}
+            exports = {name: record_export(run, assembly, name, strict=options.strict, loops=options.loops) for name in options.formats}
     else:
         for name in options.formats:
-            bundle = written(assembly, name, strict=options.strict)
+            bundle = written(assembly, name, strict=options.strict, loops=options.loops)
             main = bundle.write(Path(options.out) / name)[0]
             exports[name] = bundle.to_json() | {"folder": str(main.parent), "main": str(main)}
     summaries.print_exports(exports, terminal)
@@ -327,7 +328,9 @@ def _replay(options: argparse.Namespace, terminal: Terminal) -> Report:
     _argument("--motion", metavar="JOINT", help="draw this joint's motion instead, as a filmstrip and an animation"),
     _argument("--parts", metavar="NAMES", help="parts shown in full; the others are faded"),
     _argument("--section", metavar="AXIS[=MM]", help="cut away what lies beyond x, y or z (such as -y=12.5)"),
-    _argument("--explode", metavar="SHARE", type=float, default=0.0, help="move parts apart by this share of their distance from the middle"),
+    _argument(
+        "--explode", metavar="SHARE", type=float, default=0.0, help="move parts apart by this share of their distance from the middle"
+    ),
     _argument("--size", metavar="PIXELS", type=_positive, default=512, help="width and height of a picture (512)"),
     _argument("--renderer", choices=["embree", "pyvista"], default="embree", help="pyvista is smoother, where OpenGL can be had"),
     _argument("--out", metavar="DIR", default="pictures", help="where to write (pictures)"),
