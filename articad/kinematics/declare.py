@@ -30,7 +30,14 @@ def revolute(
 
 
 def slider(
-    name: str, parent: Attachment, child: Attachment, *, limits: tuple[float, float], rest: float = 0.0, mate: MateName = "aligned", driver: bool = False
+    name: str,
+    parent: Attachment,
+    child: Attachment,
+    *,
+    limits: tuple[float, float],
+    rest: float = 0.0,
+    mate: MateName = "aligned",
+    driver: bool = False,
 ) -> Joint:
     """Slide along the common z by a travel within `limits` [mm]."""
     return _joint(name, JointType.SLIDER, parent, child, mate, (limits,), (rest,), driver=driver)
