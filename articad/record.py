@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any, Final, Literal
 
 from articad.assembly import Assembly
@@ -10,7 +10,7 @@ from articad.connectors.connector import Connector
 from articad.errors import KernelUnavailableError, ReadError
 from articad.export.bundle import Bundle
 from articad.export.mjcf import write_mjcf
-from articad.export.urdf import write_urdf
+from articad.export.urdf import Loops, write_urdf
 from articad.findings import Finding
 from articad.geometry.mesh_files import write_stl
 from articad.geometry.part import Solid
@@ -25,7 +25,7 @@ from articad.run import Run
 Report = dict[str, Any]
 Sandbox = Literal["strict", "weak"]
 
-WRITERS: Final = {"urdf": write_urdf, "mjcf": write_mjcf}
+WRITERS: Final[dict[str, Callable[..., Bundle]]] = {"urdf": write_urdf, "mjcf": write_mjcf}
 _KERNEL_FILES: Final = ("part.npz", "part.brep", "part.step")
 
 
@@ -91,18 +91,20 @@ def record_checks(run: Run, checks: Checks) -> None:
         run.trace_finding(finding)
 
 
-def written(assembly: Assembly, format_name: str, *, strict: bool = False) -> Bundle:
-    """Return the assembly in a format of `WRITERS`.
+def written(assembly: Assembly, format_name: str, *, strict: bool = False, loops: Loops = "none") -> Bundle:
+    """Return the assembly in a format of `WRITERS`; `loops` says how URDF closes loops.
 
     Raises:
         UnrepresentableError: If `strict` and the format cannot hold it.
     """
+    if format_name == "urdf":
+        return write_urdf(assembly, strict=strict, loops=loops)
     return WRITERS[format_name](assembly, strict=strict)
 
 
-def record_export(run: Run, assembly: Assembly, format_name: str, *, strict: bool = False) -> Report:
+def record_export(run: Run, assembly: Assembly, format_name: str, *, strict: bool = False, loops: Loops = "none") -> Report:
     """Keep an export; return its report `articad.losses/1`, with the folder."""
-    bundle = written(assembly, format_name, strict=strict)
+    bundle = written(assembly, format_name, strict=strict, loops=loops)
     run.save_export(format_name, bundle.files, bundle.to_json())
     run.trace("artifact", kind=format_name, file=f"export/{format_name}/{bundle.main}")
     return run.exports()[format_name]
