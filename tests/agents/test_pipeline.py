@@ -220,7 +220,8 @@ def test_a_collision_in_motion_goes_to_the_designer_with_the_joint_and_the_place
     digging["joints"][0]["angle_deg"] = [-90, 90]
     digging["parts"][1]["rest_pose"] = {"at": [-5, 0, 10]}
     digging["parts"][1]["connectors"][0]["o"] = [5, 5, 0]
-    llm = flap(design__1=json.dumps(digging), design__2=json.dumps(FLAP_PLAN))
+    where_planned = FLAP_SCRIPTS["flap"].replace('(0, d["side"] / 2, 0)', 'part.connectors["axis"].o')
+    llm = flap(design__1=json.dumps(digging), design__2=json.dumps(FLAP_PLAN), part__flap__1=fenced(where_planned))
     run = made(tmp_path, llm)
     told = said(of(llm, "design/2"))
 
