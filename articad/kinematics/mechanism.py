@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from collections.abc import Mapping, Sequence
 from functools import cached_property
 
 import numpy as np
@@ -12,10 +13,15 @@ from articad.connectors import SE3, FloatArray, quaternion
 from articad.errors import KinematicsError, PlanError, did_you_mean
 from articad.findings import Finding, Findings
 from articad.kinematics.batch import TreeArrays
+from articad.kinematics.branch import Branch
 from articad.kinematics.configuration import Configuration
 from articad.kinematics.graph import JointGraph
 from articad.kinematics.joints import Coordinate, Coupling, Joint
 from articad.kinematics.layout import Layout
+from articad.kinematics.linkage_findings import loop_findings
+from articad.kinematics.mobility import Redundancy, redundancies
+from articad.kinematics.motion import FeasibleRange, Sweep, feasible_range, sweep
+from articad.kinematics.reach import Reach, reach
 
 
 class Mechanism:
@@ -59,10 +65,30 @@ class Mechanism:
         """Columns of all joints, in order of declaration."""
         return self.layout.coordinates
 
+    @cached_property
+    def branch(self) -> Branch:
+        """The loops and couplings, closed at rest; of a mechanism that has some.
+
+        Raises:
+            LoopError: E_LOOP_OPEN if the loops cannot be closed from the rest pose.
+        """
+        return Branch(self.tree, self.layout, self.loop_joints, self.couplings)
+
     @property
     def drivers(self) -> tuple[Coordinate, ...]:
-        """The columns of q, in order of declaration; of a tree all coordinates."""
-        return self.layout.coordinates
+        """The columns of q, in order of declaration: of a tree all coordinates.
+
+        With loops or couplings the joints that are marked as drivers, completed in order of declaration to the mobility.
+
+        Raises:
+            LoopError: E_LOOP_OPEN if the loops cannot be closed from the rest pose.
+        """
+        return self.layout.coordinates if self.is_tree else self.branch.drivers
+
+    @property
+    def driver_columns(self) -> tuple[int, ...]:
+        """Place of each driver among `coordinates`."""
+        return tuple(range(self.layout.n_columns)) if self.is_tree else self.branch.columns
 
     @property
     def nq(self) -> int:
@@ -72,14 +98,17 @@ class Mechanism:
     @cached_property
     def rest(self) -> FloatArray:
         """Values of the drivers in the rest pose `(nq,)`, read-only."""
-        rest = self.layout.rest.copy()
+        rest = self.layout.rest.copy() if self.is_tree else self.branch.Q_rest[list(self.branch.columns)]
         rest.setflags(write=False)
         return rest
 
     @property
     def mobility(self) -> int:
-        """How many independent motions the mechanism has."""
-        return self.layout.n_freedoms
+        """How many independent motions the mechanism has: rank of the constraints in general position, not a count."""
+        if self.is_tree:
+            return self.layout.n_freedoms
+        passive = self.layout.n_freedoms - int(self.branch.system.active.sum())
+        return passive + self.branch.analysis.mobility
 
     @property
     def grubler(self) -> int:
@@ -87,8 +116,19 @@ class Mechanism:
         return self.layout.n_freedoms - 6 * len(self.loop_joints) - len(self.couplings)
 
     def findings(self) -> Findings:
-        """Return what there is to say about a mechanism that could be made: warnings and notes."""
-        return self._structure
+        """Return what there is to say about a mechanism that could be made.
+
+        Of a tree only warnings about its joints; of loops and couplings also whether they close and move (E_LOOP_OPEN,
+        E_LOOP_LOCKED, E_DRIVER, W_SHAKY, W_NEAR_SINGULAR, W_IDLE_FREEDOM, I_REDUNDANT). Ranges: `motion_findings`.
+        """
+        return self._structure if self.is_tree else self._structure + loop_findings(self)
+
+    def motion_findings(self) -> Findings:
+        """Return where a driver's declared range is larger than what loops allow: E_DEAD_POINT, E_LOOP_LIMIT, E_SINGULAR."""
+        if self.is_tree:
+            return Findings()
+        ranges = [self.feasible_range(c.name) for c in self.drivers if c.unit != "1"]
+        return Findings(finding for one in ranges for finding in one.findings)
 
     # --- where things are
 
@@ -116,6 +156,8 @@ class Mechanism:
 
         Raises:
             KinematicsError: If q is not finite or has another number of columns.
+            DeadPointError: If a loop would have to pass a dead point.
+            LoopError: E_LOOP_OPEN if a loop cannot be closed at rest.
         """
         return self.arrays.poses(self._columns(q))
 
@@ -140,8 +182,78 @@ class Mechanism:
             KinematicsError: If the part is not one of the mechanism.
         """
         frame = SE3.identity() if T_part_frame is None else T_part_frame
-        index = self.part_index(part)
-        return self._part_jacobian(self._columns(q), index, frame.translation)
+        Q = self._columns(q)
+        if Q.ndim != 1:
+            raise KinematicsError(f"A Jacobian is of one configuration; q has shape {np.shape(q)}.")
+        J = self._part_jacobian(Q, self.part_index(part), frame.translation)
+        return J if self.is_tree else J @ self.branch.velocities(Q)
+
+    # --- motion
+
+    def sweep(
+        self, driver: str, lo: float, hi: float, steps: int = 60, *, at: Mapping[str, float] | None = None, certify: bool = False
+    ) -> Sweep:
+        """Move one driver evenly, the rest follows; where it cannot go on, the sweep ends there and says why.
+
+        Args:
+            driver: Name of a driver.
+            lo: First value [rad, mm].
+            hi: Last value.
+            steps: How many values, both ends included.
+            at: Values of other drivers; at rest by default.
+            certify: Prove that each step stays on its branch (about ten times the work).
+
+        Returns:
+            Values, configurations, poses, strength and findings.
+
+        Raises:
+            UnknownJointError: If there is no such driver.
+            LoopError: E_LOOP_OPEN.
+        """
+        return sweep(self, driver, lo, hi, steps, at, certify=certify)
+
+    def feasible_range(self, driver: str, *, at: Mapping[str, float] | None = None) -> FeasibleRange:
+        """Return how far a driver can go from rest: its own limits, dead points, and limits of the joints that follow.
+
+        Args:
+            driver: Name of a driver.
+            at: Values of other drivers; at rest by default.
+
+        Raises:
+            UnknownJointError: If there is no such driver.
+            LoopError: E_LOOP_OPEN.
+        """
+        return feasible_range(self, driver, at)
+
+    def assembly_modes(self, q: npt.ArrayLike | None = None, *, starts: int = 80) -> tuple[Configuration, ...]:
+        """Return the ways found of assembling the mechanism at the drivers' values; the rest pose's own branch first.
+
+        Args:
+            q: Values of the drivers `(nq,)`; at rest by default.
+            starts: Random starts; a way that none of them falls into is not found.
+        """
+        values = self.rest if q is None else self._drivers_array(q)
+        if self.is_tree:
+            return (self.configuration(values),)
+        return tuple(Configuration(self.joints, Q) for Q in self.branch.modes(values, starts))
+
+    def redundancy(self) -> tuple[Redundancy, ...]:
+        """Return the constraints of each loop that the others imply, and which joints to release for real-life tolerance."""
+        if self.is_tree:
+            return ()
+        b = self.branch
+        return redundancies(self.parts, self.ground, self.layout, b.system, b.analysis, b.Q_rest)
+
+    def reach(self, part: str, target: SE3 | npt.ArrayLike, T_part_frame: SE3 | None = None, *, starts: int = 8) -> Reach:
+        """Return a configuration within limits that brings a frame of a part to a target, or how near it comes and what stops it.
+
+        Args:
+            part: The part that carries the frame.
+            target: A pose in the ground frame, or a point `(3,)` [mm], which leaves the orientation free.
+            T_part_frame: The frame in the part; the part's own frame by default.
+            starts: How many random configurations to try besides the rest pose.
+        """
+        return reach(self, part, target, SE3.identity() if T_part_frame is None else T_part_frame, starts)
 
     def part_index(self, part: str) -> int:
         """Return the place of a part in the array of poses.
@@ -157,7 +269,14 @@ class Mechanism:
 
     def _columns(self, q: npt.ArrayLike) -> FloatArray:
         """Return the coordinates of all joints `(*batch, n_columns)` at the drivers' values."""
-        return self.layout.normalized(self._drivers_array(q))
+        values = self._drivers_array(q)
+        if self.is_tree:
+            return self.layout.normalized(values)
+        if not np.isfinite(values).all():
+            raise KinematicsError("E_NONFINITE: a coordinate is NaN or infinite.")
+        batch = values.shape[:-1]
+        flat = values.reshape(math.prod(batch), self.nq)
+        return self.branch.configurations(flat).reshape(*batch, self.layout.n_columns)
 
     def _drivers_array(self, q: npt.ArrayLike) -> FloatArray:
         values = np.asarray(q, dtype=np.float64)

@@ -1,0 +1,108 @@
+"""What there is to say about loops and couplings: open, locked, shaky, singular, idle, redundant."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from articad.errors import LoopError
+from articad.findings import Finding
+from articad.kinematics.joints import Joint
+from articad.kinematics.mobility import NEAR_SINGULAR, idle_parts, redundancies
+
+if TYPE_CHECKING:
+    from articad.kinematics.branch import Branch
+    from articad.kinematics.mechanism import Mechanism
+
+_MOST_LOOPS_RELEASED = 4  # a proposal costs a few ms per joint; larger mechanisms get it when they ask for it
+
+
+def loop_findings(mechanism: Mechanism) -> list[Finding]:
+    """Return the findings about a mechanism's loops and couplings at rest."""
+    try:
+        branch = mechanism.branch
+    except LoopError as error:
+        return list(error.findings)
+    return [*_driver_findings(branch), *_mobility_findings(branch), *_redundancy_findings(mechanism)]
+
+
+def _driver_findings(branch: Branch) -> list[Finding]:
+    analysis = branch.analysis
+    if analysis.mobility == 0 and branch.refused:
+        return [_locked(branch, joint) for joint in branch.refused]
+    names = ", ".join(c.name for c in branch.drivers)
+    found = []
+    for joint in branch.refused:
+        message = f"Joint {joint.name!r} is marked as a driver, but the {analysis.mobility} freedom(s) are driven already by {names}."
+        hint = "Mark as drivers as many independent joints as there are freedoms."
+        found.append(Finding(code="E_DRIVER", where=f"joints.{joint.name}", message=message, hint=hint, value=analysis.mobility))
+    return found
+
+
+def _locked(branch: Branch, driver: Joint) -> Finding:
+    """Say why a loop cannot move: usually an axis that is tilted against the others."""
+    sigma = branch.analysis.near
+    message = f"mobility 0: driver {driver.name!r} cannot move; the smallest singular value is {sigma:.2g}"
+    loops = [loop for loop in branch.system.loops if driver.name in {joint.name for joint in loop.joints}]
+    for loop in loops[:1]:
+        joint, tilt = _most_tilted(branch, loop.joints)
+        if 0 < tilt < math.radians(5):  # more is no misalignment but a spatial loop
+            message += f" and belongs to the axis of {joint.parent}.{joint.parent_connector}, tilted by {math.degrees(tilt):.3f}°"
+    parts = loops[0].parts if loops else (driver.parent, driver.child)
+    hint = "Make the hinge axes parallel, or release a joint of the loop."
+    return Finding(code="E_LOOP_LOCKED", where=f"joints.{driver.name}", message=f"{message}.", hint=hint, parts=parts, value=sigma)
+
+
+def _most_tilted(branch: Branch, joints: tuple[Joint, ...]) -> tuple[Joint, float]:
+    """Return the joint whose axis differs most from the loop's common one at rest, and by how much [rad]."""
+    system = branch.system
+    T = system.arrays.matrices(branch.Q[None])[:, 0]
+    axes = np.array([(T[system.parts.index(j.parent)] @ j.T_parent_connector.matrix)[:3, 2] for j in joints])
+    axes *= np.where(axes @ axes[0] < 0, -1.0, 1.0)[:, None]
+    common = np.median(axes, axis=0)
+    tilt = np.arctan2(np.linalg.norm(np.cross(axes, common), axis=1), axes @ common)
+    worst = int(np.argmax(tilt))
+    return joints[worst], float(tilt[worst])
+
+
+def _mobility_findings(branch: Branch) -> list[Finding]:
+    analysis, system = branch.analysis, branch.system
+    where = f"joints.{system.loops[0].joint.name}" if system.loops else "couplings"
+    parts = system.loops[0].parts if system.loops else ()
+    found = []
+    if analysis.shaky:
+        message = f"The linkage has {analysis.first_order} freedom(s) to first order only: it is rigid, but barely."
+        found.append(Finding(code="W_SHAKY", where=where, message=message, hint="Change a length.", parts=parts))
+    elif analysis.first_order > analysis.mobility:
+        message = f"The rest pose is singular: {analysis.first_order} freedoms to first order, {analysis.mobility} in general position."
+        hint = "Choose a rest pose in which the links are not in line."
+        found.append(Finding(code="W_NEAR_SINGULAR", where=where, message=message, hint=hint, parts=parts, value=0.0, limit=NEAR_SINGULAR))
+    elif analysis.near < NEAR_SINGULAR:
+        message = f"The rest pose is near-singular: σ = {analysis.near:.2g} of the largest."
+        hint = "Look for a misaligned axis or a dead point nearby."
+        found.append(
+            Finding(code="W_NEAR_SINGULAR", where=where, message=message, hint=hint, parts=parts, value=analysis.near, limit=NEAR_SINGULAR)
+        )
+    for group in idle_parts(system, analysis):
+        message = f"{' and '.join(group)} can move while all other parts stand still."
+        hint = "This is right for a leg that may spin; otherwise fix it."
+        found.append(Finding(code="W_IDLE_FREEDOM", where=f"parts.{group[0]}", message=message, hint=hint, parts=group))
+    return found
+
+
+def _redundancy_findings(mechanism: Mechanism) -> list[Finding]:
+    branch = mechanism.branch
+    few = len(branch.system.loops) <= _MOST_LOOPS_RELEASED
+    found = []
+    for one in redundancies(
+        mechanism.parts, mechanism.ground, mechanism.layout, branch.system, branch.analysis, branch.Q_rest, release=few
+    ):
+        message = f"Loop {'-'.join(one.loop)} has {one.count} constraint(s) that it does not need: {', '.join(one.directions)}."
+        changes = " and ".join(f"{name!r} to {new}" for name, new in one.release)
+        hint = (
+            f"In real life, release {changes}." if changes else "In real life, release joints of the loop to balls or cylindrical joints."
+        )
+        found.append(Finding(code="I_REDUNDANT", where=f"joints.{one.joint}", message=message, hint=hint, parts=one.loop, value=one.count))
+    return found

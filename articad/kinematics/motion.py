@@ -1,0 +1,334 @@
+"""What a driver can do: sweeps, feasible ranges, and how sure they are."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+
+from articad.connectors import SE3, FloatArray
+from articad.errors import KinematicsError, UnknownJointError
+from articad.findings import Finding, Findings
+from articad.kinematics.branch import Branch, shown
+from articad.kinematics.configuration import Configuration
+from articad.kinematics.continuation import Stop, Trace
+from articad.kinematics.joints import LIMIT_SLACK, Coordinate, JointType, swing, twist
+from articad.kinematics.track import Track
+
+if TYPE_CHECKING:
+    from articad.kinematics.mechanism import Mechanism
+
+_MOST_TURNS = 12  # of an endless driver, after which a motion that has not come back is not followed further
+_LONGEST_TRAVEL = 100.0  # lengths L that an unlimited slider is followed
+_SAME = 1e-6  # rad, or lengths L: a configuration that has come back
+_SAMPLES_PER_STEP = 4  # between two nodes, where limits of other joints are looked at
+_SPLITS, _ROUNDS = 16, 10  # a limit is located to 16⁻¹⁰ of a step
+
+
+@dataclass(frozen=True)
+class FeasibleRange:
+    """How far a driver can go from rest, the others standing still.
+
+    Attributes:
+        driver: Which coordinate.
+        lower: Smallest value [rad, mm]; −inf where it turns for ever.
+        upper: Largest value.
+        lower_reason: What ends it: "declared limit", "dead point", "singular", "limit of <coordinate>", "endless", "not followed further".
+        upper_reason: Likewise.
+        findings: E_DEAD_POINT, E_LOOP_LIMIT or E_SINGULAR where the declared range is larger.
+    """
+
+    driver: Coordinate
+    lower: float
+    upper: float
+    lower_reason: str
+    upper_reason: str
+    findings: Findings
+
+
+@dataclass(frozen=True, eq=False)
+class Sweep:
+    """A driver's motion at even steps.
+
+    Attributes:
+        mechanism: Whose motion.
+        driver: Which coordinate moves.
+        values: `(n,)` [rad, mm]: the asked-for values that were reached, in order.
+        configuration: Coordinates of all joints `(n)`.
+        strength: "certified" if every step is proved to stay on the branch, else "sampled".
+        reason: Why it is not certified; or what proves it.
+        tube: Radius round each predictor in which the only solution lies: the largest one [rad, lengths L]; 0 for a tree.
+        findings: Dead points, singularities and limits on the way.
+    """
+
+    mechanism: Mechanism
+    driver: Coordinate
+    values: FloatArray
+    configuration: Configuration
+    strength: Literal["certified", "sampled"]
+    reason: str
+    tube: float
+    findings: Findings
+
+    @property
+    def ok(self) -> bool:
+        """True when the whole range was reached without a finding."""
+        return self.findings.ok
+
+    def poses(self) -> SE3:
+        """Return the poses `(n, N)` of all parts [mm]."""
+        return self.mechanism.arrays.poses(self.configuration.columns)
+
+
+def sweep(mechanism: Mechanism, driver: str, lo: float, hi: float, steps: int, at: Mapping[str, float] | None, *, certify: bool) -> Sweep:
+    """Move one driver from `lo` to `hi`; see `Mechanism.sweep`."""
+    if steps < 1 or not math.isfinite(lo) or not math.isfinite(hi):
+        raise KinematicsError(f"A sweep needs finite ends and at least one step; given [{lo}, {hi}] in {steps} steps.")
+    index = driver_index(mechanism, driver)
+    coordinate = mechanism.drivers[index]
+    values = np.linspace(lo, hi, steps)
+    q = start_values(mechanism, at)
+    track = track_of(mechanism, index, q, certify=certify)
+    if track is None:
+        columns = np.tile(mechanism.configuration(q).columns, (steps, 1))
+        columns[:, mechanism.driver_columns[index]] = values
+        configuration = Configuration(mechanism.joints, columns)
+        findings = Findings(_limit_findings(coordinate, configuration, values))
+        return Sweep(mechanism, coordinate, values, configuration, "certified", "a tree has one branch", 0.0, findings)
+    branch = mechanism.branch
+    Q, reached, proved = track.evaluate(values)
+    found = [] if reached.all() else [_stop_finding(track, coordinate, float(v)) for v in (lo, hi)]
+    base = mechanism.configuration(q).columns
+    configuration = Configuration(mechanism.joints, branch.system.into_all(base, Q[reached]))
+    found += _limit_findings(coordinate, configuration, values[reached])
+    certified = bool(certify and proved[reached].all() and reached.any())
+    tube = _largest_tube(track, values[reached]) if certified else 0.0
+    reason = _reason(track, coordinate, values[reached], certify=certify, certified=certified)
+    findings = Findings(f for f in found if f is not None)
+    return Sweep(mechanism, coordinate, values[reached], configuration, "certified" if certified else "sampled", reason, tube, findings)
+
+
+def _reason(track: Track, coordinate: Coordinate, values: FloatArray, *, certify: bool, certified: bool) -> str:
+    if certified:
+        return "Kantorovich: each step has one solution near its predictor; implied constraints of a loop are checked at the nodes"
+    if not certify:
+        return "followed by predictor and corrector with three guards; certify=True proves the branch"
+    if not values.size:
+        return "no value was reached"
+    ends = [track.value(sign, track.side(float(v)).nodes[-1].s) for sign, v in ((1, values.max()), (-1, values.min()))]
+    places = " and ".join(dict.fromkeys(shown(end, coordinate.unit) for end in ends))
+    return f"the proof needs steps below 1e-7 next to a dead point: it holds up to {places}"
+
+
+def _largest_tube(track: Track, values: FloatArray) -> float:
+    radius = 0.0
+    for value in (values.max(), values.min()):
+        nodes = track.side(float(value)).nodes
+        for a, b in itertools.pairwise(nodes):
+            radius = max(radius, float(track.follower.tube(a, np.asarray(b.s - a.s))))
+    return radius
+
+
+def feasible_range(mechanism: Mechanism, driver: str, at: Mapping[str, float] | None) -> FeasibleRange:
+    """Return how far a driver can go; see `Mechanism.feasible_range`."""
+    index = driver_index(mechanism, driver)
+    coordinate = mechanism.drivers[index]
+    q = start_values(mechanism, at)
+    track = track_of(mechanism, index, q)
+    if track is None:
+        lower, upper = coordinate.lower, coordinate.upper
+        reasons = ["endless" if math.isinf(v) else "declared limit" for v in (lower, upper)]
+        return FeasibleRange(coordinate, lower, upper, reasons[0], reasons[1], Findings())
+    branch = mechanism.branch
+    sides: dict[int, tuple[float, str]] = {}
+    for sign in (1, -1):
+        if -sign in sides and sides[-sign][1] == "endless":
+            sides[sign] = (sign * math.inf, "endless")
+        else:
+            sides[sign] = _side_range(branch, track, coordinate, sign)
+    (upper, upper_reason), (lower, lower_reason) = sides[1], sides[-1]
+    found = _range_findings(coordinate, lower, upper, lower_reason, upper_reason)
+    return FeasibleRange(coordinate, lower, upper, lower_reason, upper_reason, Findings(found))
+
+
+def _side_range(branch: Branch, track: Track, coordinate: Coordinate, sign: int) -> tuple[float, str]:
+    bound = coordinate.upper if sign > 0 else coordinate.lower
+    declared = math.isfinite(bound)
+    came_back = False
+    if declared:
+        trace = track.side(bound) if sign * (bound - track.start) > 0 else None
+    else:
+        trace, came_back = _followed(track, coordinate, sign)
+    if trace is None:  # at rest on its limit
+        return track.start, "declared limit"
+    end, reason = track.value(sign, trace.end), str(trace.stop)
+    if trace.stop is Stop.ARRIVED:
+        end, reason = (bound, "declared limit") if declared else (end, "not followed further")
+    cut = _first_violation(branch, track, trace, sign, coordinate)
+    if cut is not None:
+        return cut
+    return (sign * math.inf, "endless") if came_back else (end, reason)
+
+
+def _followed(track: Track, coordinate: Coordinate, sign: int) -> tuple[Trace, bool]:
+    """Follow an unlimited driver until the configuration comes back."""
+    system = track.follower.system
+    if coordinate.unit != "rad":
+        return track.side(track.start + sign * _LONGEST_TRAVEL * system.length), False
+    angles = ~system.layout.is_length
+    for turn in range(1, _MOST_TURNS + 1):
+        trace = track.side(track.start + sign * 2 * math.pi * turn)
+        if trace.stop is not Stop.ARRIVED:
+            return trace, False
+        step = system.step_between(track.Q, trace.Q_end)
+        step[angles] = np.mod(step[angles] + math.pi, 2 * math.pi) - math.pi
+        if np.abs(step).max() < _SAME:
+            return trace, True
+    return trace, False
+
+
+def _first_violation(branch: Branch, track: Track, trace: Trace, sign: int, coordinate: Coordinate) -> tuple[float, str] | None:
+    """Return where another joint first leaves its limits, and which one; None if none does."""
+    stations = [node.s for node in trace.nodes] + ([trace.end] if trace.end > trace.nodes[-1].s else [])
+    if len(stations) == 1:  # stopped where it stands
+        return None
+    fine = np.unique(np.concatenate([np.linspace(a, b, _SAMPLES_PER_STEP + 1) for a, b in itertools.pairwise(stations)]))
+    names, margins = _margins(branch, track, sign, fine, coordinate)
+    if not names or not (margins < -LIMIT_SLACK).any():
+        return None
+    for _ in range(_ROUNDS):
+        first = int(np.argmax((margins < -LIMIT_SLACK).any(axis=0)))
+        if first == 0:
+            break
+        a, b = fine[first - 1], fine[first]
+        fine = np.linspace(a, b, _SPLITS + 1)
+        names, margins = _margins(branch, track, sign, fine, coordinate)
+        if not (margins < -LIMIT_SLACK).any():
+            break
+    first = int(np.argmax((margins < -LIMIT_SLACK).any(axis=0)))
+    worst = int(np.argmin(margins[:, first]))
+    return track.value(sign, float(fine[max(0, first - 1)])), f"limit of {names[worst]}"
+
+
+def _margins(branch: Branch, track: Track, sign: int, s: FloatArray, coordinate: Coordinate) -> tuple[list[str], FloatArray]:
+    """Return for every bounded coordinate but the driver's how far it is inside its limits, `(names, len(s))`."""
+    values = np.array([track.value(sign, float(x)) for x in s])
+    Q, reached, _ = track.evaluate(values)
+    layout = branch.system.layout
+    names: list[str] = []
+    rows: list[FloatArray] = []
+    for joint in layout.joints:
+        own = Q[:, layout.columns[joint.name]]
+        if joint.type is JointType.BALL:
+            if joint.limits.cone is not None:
+                names.append(f"{joint.name}.swing")
+                rows.append(joint.limits.cone - np.asarray(swing(own)))
+            if joint.limits.twist is not None:
+                names.append(f"{joint.name}.twist")
+                rows.append(np.minimum(twist(own) - joint.limits.twist[0], joint.limits.twist[1] - twist(own)))
+            continue
+        for i, c in enumerate(joint.columns):
+            if c.name != coordinate.name and (math.isfinite(c.lower) or math.isfinite(c.upper)):
+                names.append(c.name)
+                rows.append(np.minimum(own[:, i] - c.lower, c.upper - own[:, i]))
+    margins = np.array(rows).reshape(len(names), len(s))
+    margins[:, ~reached] = np.inf
+    return names, margins
+
+
+def _range_findings(c: Coordinate, lower: float, upper: float, lower_reason: str, upper_reason: str) -> list[Finding]:
+    """Say where the declared range is larger than what the loop allows."""
+    codes = {"dead point": "E_DEAD_POINT", "singular": "E_SINGULAR"}
+    found = []
+    for reason, value in ((lower_reason, lower), (upper_reason, upper)):
+        code = codes.get(reason, "E_LOOP_LIMIT" if reason.startswith("limit of ") else None)
+        bounded = math.isfinite(c.lower) or math.isfinite(c.upper)
+        if code is None or (not bounded and code == "E_DEAD_POINT"):  # an endless driver follows as far as the loop lets it
+            continue
+        declared = f"[{shown(c.lower, c.unit)}, {shown(c.upper, c.unit)}]"
+        reached = f"[{shown(lower, c.unit)}, {shown(upper, c.unit)}]"
+        why = {"E_DEAD_POINT": "a dead point", "E_SINGULAR": "a singular configuration"}.get(code, f"the {reason}")
+        message = f"driver {c.name!r} declared {declared} but the loop reaches only {reached}: {why} at {shown(value, c.unit)}."
+        hint = f"Set these limits: {reached}."
+        found.append(Finding(code=code, where=f"joints.{c.joint}", message=message, hint=hint, value=value, unit=c.unit))
+    return found
+
+
+def _stop_finding(track: Track, c: Coordinate, asked: float) -> Finding | None:
+    trace = track.side(asked)
+    if trace.stop is Stop.ARRIVED:
+        return None
+    sign = 1 if asked >= track.start else -1
+    end = track.value(sign, trace.end)
+    code = "E_DEAD_POINT" if trace.stop is Stop.DEAD_POINT else "E_SINGULAR"
+    message = f"driver {c.name!r} was asked for {shown(asked, c.unit)} but the loop reaches only {shown(end, c.unit)}."
+    return Finding(code=code, where=f"joints.{c.joint}", message=message, hint="Stay on this side of it.", value=end, unit=c.unit)
+
+
+def _limit_findings(c: Coordinate, configuration: Configuration, values: FloatArray) -> list[Finding]:
+    """Return one finding per coordinate that leaves its limits, at its worst."""
+    found = []
+    for error in configuration.violations():
+        if error.joint == c.name:
+            continue
+        joint = error.joint.split(".")[0]
+        column = next((i for i, k in enumerate(k.name for j in configuration.joints for k in j.columns) if k == error.joint), None)
+        at = int(np.argmin(np.abs(configuration.columns[:, column] - error.value))) if column is not None else 0
+        limits = f"[{shown(error.lower, error.unit)}, {shown(error.upper, error.unit)}]"
+        message = (
+            f"at {c.name}={shown(float(values[at]), c.unit)} joint {error.joint!r} leaves {limits} ({shown(error.value, error.unit)})."
+        )
+        hint = "Narrow the driver's limits, or widen the joint's."
+        pose = {c.name: float(values[at])}
+        found.append(
+            Finding(code="E_LOOP_LIMIT", where=f"joints.{joint}", message=message, hint=hint, value=error.value, unit=error.unit, pose=pose)
+        )
+    return found
+
+
+# --- shared
+
+
+def driver_index(mechanism: Mechanism, driver: str) -> int:
+    """Return the place of a driver among the columns of q.
+
+    Raises:
+        UnknownJointError: If no driver has this name.
+        KinematicsError: If it is one component of a ball.
+    """
+    names = [c.name for c in mechanism.drivers]
+    if driver not in names:
+        raise UnknownJointError(driver, names)
+    index = names.index(driver)
+    if mechanism.drivers[index].unit == "1":
+        raise KinematicsError(f"{driver!r} is a component of a quaternion; a ball has no range of its own components.")
+    return index
+
+
+def start_values(mechanism: Mechanism, at: Mapping[str, float] | None) -> FloatArray:
+    """Return q with some drivers set and the others at rest."""
+    q = mechanism.rest.copy()
+    names = [c.name for c in mechanism.drivers]
+    for name, value in (at or {}).items():
+        if name not in names:
+            raise UnknownJointError(name, names)
+        q[names.index(name)] = value
+    return q
+
+
+def track_of(mechanism: Mechanism, index: int, q: FloatArray, *, certify: bool = False) -> Track | None:
+    """Return the way of a driver through q; None if nothing follows it, as in a tree."""
+    if mechanism.is_tree:
+        return None
+    branch = mechanism.branch
+    places = np.flatnonzero(branch.system.columns == mechanism.driver_columns[index])
+    if not places.size or not branch.system.active[branch.system.layout.freedom_of(int(places[0]))]:
+        return None
+    if np.array_equal(q, mechanism.rest):
+        return branch.track(int(places[0]), certify=certify)
+    start = branch.system.to_system(branch.configurations(q[None])[0])
+    return branch.track(int(places[0]), certify=certify, Q=start)
