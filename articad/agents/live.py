@@ -84,6 +84,7 @@ class LiteLLM:
         self._vision_model = self._qualified(vision_model) if vision_model else None
         self._temperature, self._timeout, self._tries, self._sleep = temperature, timeout, tries, sleep
         self._takes_no_schema: set[str] = set()
+        self._blind: set[str] = set()
         for name in {self._model, *self._models.values(), *filter(None, [self._vision_model])}:
             self._require_key(name)
 
@@ -117,9 +118,10 @@ class LiteLLM:
     # ------------------------------------------------------------------ one call
 
     def _asked(self, model: str, request: Request) -> Reply:
+        blind = model in self._blind or (self._api_base is None and request.has_images and not self._sees(model))
         arguments: Json = {
             "model": model,
-            "messages": [_as_chat(message) for message in request.messages],
+            "messages": [_as_chat(_in_words(message) if blind else message) for message in request.messages],
             "timeout": self._timeout,
             "num_retries": 0,
             "max_retries": 0,
@@ -140,11 +142,27 @@ class LiteLLM:
         try:
             response = self._litellm.completion(**arguments)
         except self._litellm.BadRequestError as error:
-            if "response_format" not in arguments or not re.search(r"response_format|json_schema|schema", str(error)):
+            if not self._learned(model, str(error), arguments, request, blind=blind):
                 raise
-            self._takes_no_schema.add(model)
             return self._asked(model, request)
         return self._read(response, model)
+
+    def _learned(self, model: str, said: str, arguments: Json, request: Request, *, blind: bool) -> bool:
+        """Note what a model does not take, from how it refused; return whether to ask again without it."""
+        if "response_format" in arguments and re.search(r"response_format|schema", said):
+            self._takes_no_schema.add(model)
+            return True
+        drawn = any(_is_drawn(part) for message in request.messages for part in message.parts)
+        if drawn and not blind and re.search(r"image|vision|multimodal", said, re.IGNORECASE):
+            self._blind.add(model)
+            return True
+        return False
+
+    def _sees(self, model: str) -> bool:
+        try:
+            return bool(self._litellm.supports_vision(model=model))
+        except Exception:  # noqa: BLE001 - an unknown model
+            return False
 
     def _read(self, response: Any, model: str) -> Reply:
         text = response.choices[0].message.content
@@ -249,6 +267,15 @@ def _pause(error: Exception, number: int) -> float:
         return min(float(asked), LONGEST_WAIT_S)
     wait: float = FIRST_WAIT_S * 2 ** (number - 1) * random.uniform(0.8, 1.2)  # noqa: S311 - spreads parallel retries
     return min(wait, LONGEST_WAIT_S)
+
+
+def _is_drawn(part: Text | Image) -> bool:
+    return isinstance(part, Image) and part.recipe is not None
+
+
+def _in_words(message: Message) -> Message:
+    """Return a message without the pictures that articad drew: they help, but the words beside them say enough."""
+    return Message(message.speaker, tuple(Text("(not shown)") if _is_drawn(part) else part for part in message.parts))
 
 
 def _as_chat(message: Message) -> Json:

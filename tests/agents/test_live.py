@@ -75,6 +75,17 @@ def test_a_schema_goes_along_and_where_it_is_refused_into_the_prompt() -> None:
             assert request["messages"][0]["content"].endswith(json.dumps(SCHEMA))
 
 
+def test_a_model_that_cannot_see_is_asked_without_our_pictures_but_never_without_the_users() -> None:
+    refusal = Canned(status=400, body=b'{"error": {"message": "this model does not support image input"}}')
+    drawn = Request("part", "part/lid/2", (user("Mend it:", Image(b"png", recipe={"view": "iso"})),))
+    with openai_stub([refusal, Canned("ok"), Canned("ok"), refusal]) as stub:
+        llm, _ = live(stub.address)
+        assert llm.complete(drawn).text == llm.complete(drawn).text == "ok"
+        assert [request["messages"][0]["content"] for request in stub.received[1:]] == ["Mend it:\n\n(not shown)"] * 2
+        with pytest.raises(TransportError, match="image input"):
+            llm.complete(question(image=True))
+
+
 @pytest.mark.parametrize("status", [429, 500, 503])
 def test_a_busy_provider_is_asked_again_after_a_pause(status: int) -> None:
     with openai_stub([Canned(status=status, body=b"{}"), Canned(status=status, body=b"{}"), Canned("at last")]) as stub:
