@@ -155,33 +155,79 @@ def _random_joint(rng: np.random.Generator, name: str, kind: JointType, ends: tu
             return declare.universal(name, *ends, a=(-1.0, 1.0), b=(-0.8, 1.2), mate=mate)
 
 
-def closed(kind: Callable[[Attachment, Attachment], Joint], *, angle: float = 1.0, turned: bool = False) -> Assembly:
-    """A crank, a coupler and a third link, closed by a joint of the given kind onto the ground; rests closed.
+def closed(kind: Callable[[Attachment, Attachment], Joint], *, turned: bool = False) -> Assembly:
+    """A chain of three slides and three screws, free in all six directions, closed by a joint of the given kind; rests closed.
 
-    The planar chain of revolutes is 30, 90 and 70 mm long over a span of 100 mm (the four-bar of the reference values), and the
-    closing joint meets it at its rest value wherever that is: its frame on the ground is computed, not chosen.
+    The slides and screws come first and carry the tree, so the given joint closes the loop; `turned` declares it to the ground.
     """
-    base = block("base", (120, 20, 4), a=frame(at=(0, 0, 5)))
-    crank, coupler, rocker = (block(name, (length, 6, 4), a=frame(), b=frame(at=(length, 0, 0))) for name, length in _LINKS)
-    joints = [
-        declare.revolute("crank", base["a"], crank["a"], limits="endless", rest=angle, driver=True),
-        declare.revolute("pin_b", crank["b"], coupler["a"], limits="endless", rest=-0.6),
-        declare.revolute("pin_c", coupler["b"], rocker["a"], limits="endless", rest=-0.9),
+    axes: list[Any] = [(1, 0, 0), (0, 1, 0), (0, 0, 1)]
+    names = ["base", *(f"part_{i}" for i in range(1, 7))]
+    frames = [frame(at=(10 + 2 * i, 5 - i, 3 * i), z=axes[i % 3]) for i in range(6)]
+    parts = [
+        block(
+            name,
+            (20 + 5 * i, 8, 6),
+            **({"root": frames[i - 1]} if i else {}),
+            **({"tip": frames[i]} if i < 6 else {"end": frame(at=(0, 9, 4))}),
+        )
+        for i, name in enumerate(names)
     ]
-    tip = frame(at=(5, 0, 5))
+    joints: list[Joint] = []
+    for i in range(6):
+        ends = (parts[i]["tip"], parts[i + 1]["root"])
+        if i < 3:
+            joints.append(declare.slider(f"slide_{i}", *ends, limits=(-50.0, 50.0), rest=4.0 + i))
+        else:
+            joints.append(declare.screw(f"screw_{i}", *ends, lead=2.0 + i, limits=(-9.0, 9.0), rest=0.3 * i))
+    return _closed_by(kind, parts, joints, end="end", turned=turned)
+
+
+def four_bar(limits: Any = "endless") -> Assembly:
+    """Links of 30, 90 and 70 mm over a span, hinged in a plane; it rests closed at a crank of 60°."""
+    lengths = (("crank", 30), ("coupler", 90), ("rocker", 70))
+    parts = [
+        block("base", (120, 20, 4), tip=frame()),
+        *(block(name, (size, 6, 4), root=frame(), tip=frame(at=(size, 0, 0))) for name, size in lengths),
+    ]
+    joints = [
+        declare.revolute("a", parts[0]["tip"], parts[1]["root"], limits="endless", rest=math.pi / 3, driver=True),
+        declare.revolute("b", parts[1]["tip"], parts[2]["root"], limits="endless", rest=-0.6),
+        declare.revolute("c", parts[2]["tip"], parts[3]["root"], limits="endless", rest=-0.9),
+    ]
+    return _closed_by(lambda near, far: declare.revolute("d", near, far, limits=limits), parts, joints, end="tip")
+
+
+def rigid_ring() -> Assembly:
+    """Three parts fixed to each other in a ring, with a drawer on the side."""
+    parts = [block("base", tip=frame()), *(block(f"part_{i}", root=frame(), tip=frame(at=(30, 5, i))) for i in range(2))]
+    joints = [declare.fixed(f"f_{i}", parts[i]["tip"], parts[i + 1]["root"]) for i in range(2)]
+    drawer = block("drawer", root=frame(at=(0, 0, 90)))
+    slide = declare.slider("slide", parts[0]["tip"], drawer["root"], limits=(0.0, 9.0))
+    return _closed_by(lambda near, far: declare.fixed("d", near, far), parts, joints, end="tip", beside=((drawer, slide),))
+
+
+def _closed_by(
+    kind: Callable[[Attachment, Attachment], Joint],
+    parts: list[Part],
+    joints: list[Joint],
+    *,
+    end: str,
+    turned: bool = False,
+    beside: tuple[tuple[Part, Joint], ...] = (),
+) -> Assembly:
+    """Close the chain from the ground to the last part's connector `end`, by a frame on the ground that is where that comes to rest."""
+    base, last = parts[0], parts[-1]
+    tip = SE3.identity()
     for joint in joints:
-        tip = tip @ SE3.from_translation(joint.T_parent_connector.translation * (joint.name != "crank")) @ SE3.rot_z(joint.rest[0])
-    tip = SE3.trans(-5, 0, 0) @ tip @ SE3.trans(70, 0, 0)
-    if turned:
-        closing = kind(rocker["b"], base["a"])
-        T_base = tip @ closing.motion(closing.rest) @ flip(closing.mate)
-        closing = replace(closing, child_connector="d", T_child_connector=T_base)
-    else:
-        closing = kind(base["a"], rocker["b"])
-        T_base = tip @ flip(closing.mate) @ closing.motion(closing.rest).inverse()
-        closing = replace(closing, parent_connector="d", T_parent_connector=T_base)
-    base = _with(base, "d", T_base)
-    return Assembly.from_parts("loop", parts=[base, crank, coupler, rocker], joints=[*joints, closing], ground="base")
-
-
-_LINKS = (("crank_arm", 30), ("coupler", 90), ("rocker", 70))
+        tip = tip @ joint.T_parent_connector @ joint.motion(joint.rest) @ flip(joint.mate) @ joint.T_child_connector.inverse()
+    tip = tip @ last.connectors[end].frame
+    draft = kind(last[end], base["tip"]) if turned else kind(base["tip"], last[end])
+    motion = draft.motion(draft.rest) @ flip(draft.mate)
+    T_base = tip @ (motion if turned else motion.inverse())
+    parts = [_with(base, "close", T_base), *parts[1:]]
+    ends = (
+        {"child_connector": "close", "T_child_connector": T_base} if turned else {"parent_connector": "close", "T_parent_connector": T_base}
+    )
+    closing: Joint = replace(draft, **ends)  # type: ignore[arg-type]
+    more_parts, more_joints = [part for part, _ in beside], [joint for _, joint in beside]
+    return Assembly.from_parts("loop", parts=[*parts, *more_parts], joints=[*joints, closing, *more_joints], ground="base")

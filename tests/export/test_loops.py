@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from itertools import product
 from pathlib import Path
@@ -13,17 +12,16 @@ import pytest
 from lxml import etree
 
 from articad.assembly import Assembly
+from articad.export.lowering import lower
 from articad.export.mjcf import write_mjcf
 from articad.export.urdf import write_urdf
 from articad.kinematics import declare
-from tests.assemblies import closed
+from tests.assemblies import closed, four_bar, rigid_ring
 
 Closing = Callable[[Any, Any], Any]
-HALF_PI = math.pi / 2
 
-# each kind, and how many directions of the closing point and frame it leaves free
+# each kind, and how many freedoms it leaves to a chain that is free in all six directions
 KINDS: dict[str, tuple[Closing, int]] = {
-    "fixed": (lambda a, b: declare.fixed("d", a, b), 0),
     "endless revolute": (lambda a, b: declare.revolute("d", a, b, limits="endless", mate="opposed"), 1),
     "revolute": (lambda a, b: declare.revolute("d", a, b, limits=(-3, 3), rest=0.5, mate="opposed"), 1),
     "slider": (lambda a, b: declare.slider("d", a, b, limits=(-20, 20), rest=5.0), 1),
@@ -72,36 +70,30 @@ def test_loops_of_every_kind_are_closed_at_home(kind: str, declared: str, tmp_pa
 
 @pytest.mark.engines
 @pytest.mark.parametrize("kind", KINDS)
-def test_a_closing_joint_takes_as_many_directions_as_it_should(kind: str, tmp_path: Path) -> None:
-    """Three parallel hinges move in their plane only: what the closing joint leaves free there is what remains."""
-    closing, _ = KINDS[kind]
+def test_a_closing_joint_leaves_the_freedoms_that_it_has(kind: str, tmp_path: Path) -> None:
+    closing, freedoms = KINDS[kind]
     model, data = loaded(closed(closing), tmp_path)
     _, J = equality_rows(model, data)
     scale = np.where(model.jnt_type[model.dof_jntid] == 2, 0.01, 1.0)  # slides in cm, so that the rank is one of like numbers
     s = np.linalg.svd(J * scale, compute_uv=False)
-    mobility = model.nv - int((s > 1e-7 * s[0]).sum())
-    # three links in a plane have three freedoms; the closing joint's axes are those of the plane's normal
-    expected = {
-        "fixed": 0,
-        "slider": 0,
-        "endless revolute": 1,
-        "revolute": 1,
-        "cylindrical": 1,
-        "ball": 1,
-        "screw": 0,
-        "planar": 3,
-        "universal": 0,
-    }
 
-    assert mobility == expected[kind]
+    assert model.nv - int((s > 1e-7 * s[0]).sum()) == freedoms
 
 
 @pytest.mark.engines
-@pytest.mark.parametrize("kind", ["endless revolute", "revolute", "cylindrical"])
-def test_a_loop_stays_closed_while_it_falls(kind: str, tmp_path: Path) -> None:
+def test_a_ring_of_fixed_joints_is_welded(tmp_path: Path) -> None:
+    bundle = write_mjcf(rigid_ring())
+
+    assert bundle.files[bundle.main].count(b"<weld ") == 1
+    assert not bundle.losses
+
+
+@pytest.mark.engines
+@pytest.mark.parametrize("limits", ["endless", (-3.0, 3.0)])
+def test_a_four_bar_stays_closed_while_it_falls(limits: Any, tmp_path: Path) -> None:
     import mujoco
 
-    model, data = loaded(closed(KINDS[kind][0]), tmp_path)
+    model, data = loaded(four_bar(limits), tmp_path)
     model.opt.gravity[:] = 0, -9.81, 0
     start = data.qpos.copy()
     for _ in range(500):
@@ -132,7 +124,12 @@ def test_the_limits_of_a_ball_that_closes_a_loop_are_lost_in_mjcf() -> None:
     ]
 
 
-POINTS = {"fixed": 3, "endless revolute": 2, "ball": 1, "cylindrical": 0}
+POINTS: dict[str, tuple[Assembly, int]] = {
+    "a ring": (rigid_ring(), 3),
+    "a hinge": (closed(KINDS["endless revolute"][0]), 2),
+    "a ball": (closed(KINDS["ball"][0], turned=True), 1),
+    "a slide": (closed(KINDS["cylindrical"][0]), 0),
+}
 
 
 @pytest.mark.engines
@@ -140,25 +137,24 @@ POINTS = {"fixed": 3, "endless revolute": 2, "ball": 1, "cylindrical": 0}
 def test_points_that_close_a_loop_meet_at_rest(kind: str, flavour: Any, tmp_path: Path) -> None:
     import pinocchio as pin
 
-    assembly = closed(KINDS[kind][0])
+    assembly, count = POINTS[kind]
     bundle = write_urdf(assembly, loops=flavour)
     bundle.write(tmp_path)
     root = etree.fromstring(bundle.files[bundle.main])
     model = pin.buildModelFromUrdf(str(tmp_path / bundle.main))  # unchanged, whatever the flavour
     data = model.createData()
     q = pin.neutral(model)
-    for name, value in (("crank", 1.0), ("pin_b", -0.6), ("pin_c", -0.9)):
-        joint = model.joints[model.getJointId(name)]
-        q[joint.idx_q : joint.idx_q + 2] = math.cos(value), math.sin(value)
+    for freedom in (freedom for joint in lower(assembly).joints for freedom in joint.freedoms):
+        q[model.joints[model.getJointId(freedom.name)].idx_q] = freedom.rest
     pin.framesForwardKinematics(model, data, q)
     points = isaac_points(root) if flavour == "isaac" else drake_points(root)
 
-    assert len(points) == POINTS[kind]
+    assert len(points) == count
     for (near, p_near), (far, p_far) in points:
         placed = [data.oMf[model.getFrameId(link)].act(np.array(p)) for link, p in ((near, p_near), (far, p_far))]
         assert np.abs(placed[0] - placed[1]).max() < 1e-12
     lost = [loss for loss in bundle.losses if loss.where == "joints.d"]
-    assert lost[0].refused == (POINTS[kind] == 0)
+    assert [loss.refused for loss in lost] == [count == 0]
 
 
 def isaac_points(root: Any) -> list[Any]:
