@@ -8,11 +8,13 @@ CORNER = (Align.MIN, Align.CENTER, Align.MAX)
 def build(part):
     d = part.dimensions
     floor, length = -d["plate_gap"], d["right"] - d["left"]
-    base = Pos(d["left"], 0, floor) * Box(length, d["plate_width"], d["plate_thickness"], align=CORNER)
+    base = Pos(d["left"], 0, floor) * Box(length, 2 * (d["rail_y"] + d["margin"]), d["plate_thickness"], align=CORNER)
 
     lug = Rot(X=90) * Cylinder(d["lug_width"] / 2, d["lug_thickness"])
     lug += Box(d["lug_width"], d["lug_thickness"], -floor, align=HIGH)
     lug -= Rot(X=90) * Cylinder(d["bore_radius"], 2 * d["lug_thickness"])
+
+    base += Pos(0, 0, floor) * Box(d["lug_width"] / 2, 2 * d["lug_y"], d["lug_width"] / 2, align=LOW)  # tie
 
     start, end, size = d["rail_start"], d["rail_end"], d["rail_size"]
     rail = Pos((start + end) / 2, 0, -d["rail_z"]) * Box(end - start + d["post_length"], size, size)

@@ -8,7 +8,7 @@ def build(part):
     length, thick, inside = d["length"], d["thickness"], d["bar_y"]
     outline = Pos(length / 2, 0) * SlotCenterToCenter(length, d["width"])
     bars = extrude(Plane.XZ.offset(inside) * outline, thick) + extrude(Plane.XZ.offset(-inside - thick) * outline, thick)
-    for x in (length / 2 - d["tube_offset"], length / 2 + d["tube_offset"]):
+    for x in (0.2 * length, 0.8 * length):
         bars += Pos(x, 0, 0) * Rot(X=90) * Cylinder(d["tube_radius"], 2 * inside + thick)
     for x in (0, length / 2, length):
         for side in (-1, 1):
