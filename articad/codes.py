@@ -310,6 +310,12 @@ CODES: dict[str, Code] = {
     "W_BUILD_UNCHECKED": Code(
         "build", "code", "A check of the built part was not finished in time.", "Simplify the part, or give the kernel more time."
     ),
+    "I_BUILD_UNCHECKED": Code(
+        "build",
+        None,
+        "The kernel cannot say whether the faces of a solid cut each other.",
+        "Nothing, while volumes and pictures look right.",
+    ),
     "E_SANDBOX": Code(
         "build",
         None,

@@ -31,7 +31,7 @@ from articad.kernels.results import PoisonedError, number, numbers, read_bytes, 
 from articad.kernels.zygote import Outcome, Zygote, ZygoteDiedError, ends_by
 
 ANGLE_DEG = 5.0  # of the mesh, where the deflection allows more
-WORKER = 1  # raised when the worker measures or meshes otherwise, so that what it built before is built again
+WORKER = 3  # raised when the worker measures or meshes otherwise, so that what it built before is built again
 MESH_VOLUME_SHARE = 1.0  # times area and deflection: by which a mesh's volume may differ from the solid's
 RESULT_FILES = {"npz": "part.npz", "brep": "part.brep", "step": "part.step"}
 _MAGIC = {"brep": b"\nCASCADE Topology", "step": b"ISO-10303-21;"}
@@ -102,6 +102,14 @@ class Build123dKernel:
     def _scratch(self) -> tempfile.TemporaryDirectory[str]:
         return tempfile.TemporaryDirectory(prefix="articad-worker-")
 
+    def warm_up(self) -> None:
+        """Start the worker's process now, so that the first part need not wait for it.
+
+        Raises:
+            KernelUnavailableError: If build123d cannot be loaded; says which library is missing.
+        """
+        self._zygote.start()
+
     def close(self) -> None:
         """End the worker's process; the next part starts it again."""
         self._zygote.close()
@@ -121,8 +129,8 @@ class Build123dKernel:
         part, source = str(brief["name"]), script.decode("utf-8", errors="replace")
         limits = self.limits if probe else replace(self.limits, probe_seconds=0.0)
         with self._job(source, brief, deflection) as job:
-            ran = self._run("script", job, {"shape": "shape.bin"}, limits)
             try:
+                ran = self._run("script", job, {"shape": "shape.bin"}, limits)
                 if not ran.report or ran.report[0].get("ok") is not True:
                     error: KernelError = script_failure(part, source, ran.report, ran.outcome, ran.crash, limits)
                     error.partial = self._pieces(job)

@@ -54,12 +54,14 @@ def solid_findings(brief: Json, shape: Json) -> Iterator[Finding]:
     if shape.get("valid") is not True:
         yield _finding("E_INVALID_SOLID", name, "The kernel's own check finds the solid invalid.", advice)
     elif shape.get("intersects_itself") is True:
-        yield _finding("E_INVALID_SOLID", name, "The solid's faces cut each other.", advice)
+        near = shape.get("near_mm")
+        where = "" if near is None else f" near {_tuple(numbers(near, 3))}"
+        yield _finding("E_INVALID_SOLID", name, f"The solid's faces cut each other{where}.", advice)
     elif shape.get("closed") is not True:
         yield _finding("E_INVALID_SOLID", name, "The solid's surface cannot be meshed without gaps.", advice)
     elif shape.get("intersects_itself") is None:
-        message = "Whether the solid's faces cut each other was not determined in time."
-        yield _finding("W_BUILD_UNCHECKED", name, message, "Simplify swept and lofted features if overlap volumes look wrong.")
+        message = "Whether the solid's faces cut each other could not be determined."
+        yield _finding("I_BUILD_UNCHECKED", name, message, "Simplify swept, lofted and lettered features if overlap volumes look wrong.")
     yield from _envelope_findings(name, brief.get("envelope_mm"), numbers(shape.get("bbox_mm"), 2, 3))
 
 

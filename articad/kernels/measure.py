@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from OCP.BinTools import BinTools
 from OCP.Bnd import Bnd_Box
-from OCP.BOPAlgo import BOPAlgo_ArgumentAnalyzer
+from OCP.BOPAlgo import BOPAlgo_ArgumentAnalyzer, BOPAlgo_CheckStatus
 from OCP.BRep import BRep_Builder
 from OCP.BRepBndLib import BRepBndLib
 from OCP.BRepBuilderAPI import BRepBuilderAPI_Transform
@@ -39,10 +39,13 @@ STEP_TIME = "2000-01-01T00:00:00"
 _STEP_TIME_FIELD = re.compile(rb"(FILE_NAME\('(?:[^']|'')*',\s*')[^']*'")
 
 
+Json = dict[str, Any]
+
+
 class Measured(NamedTuple):
     """What is left of a shape: numbers for `result.json`, and files by name."""
 
-    report: dict[str, Any]
+    report: Json
     files: dict[str, bytes]
 
 
@@ -84,7 +87,7 @@ def measure(shape: TopoDS_Shape, *, deflection: float, angle: float, name: str, 
     """
     solids = list(_found(shape, TopAbs_SOLID))
     loose = sum(1 for _ in _found(shape, TopAbs_FACE, avoid=TopAbs_SOLID)) + sum(1 for _ in _found(shape, TopAbs_EDGE, avoid=TopAbs_FACE))
-    report: dict[str, Any] = {"ok": True, "solids": len(solids), "loose": loose}
+    report: Json = {"ok": True, "solids": len(solids), "loose": loose}
     if len(solids) != 1:
         return Measured(report, {})
     solid = TopoDS.Solid(solids[0])
@@ -115,13 +118,11 @@ def pieces(shape: TopoDS_Shape, *, deflection: float, angle: float) -> Measured:
     return Measured(report, {"npz": _npz(together)})
 
 
-def properties(solid: TopoDS_Shape) -> dict[str, Any]:
+def properties(solid: TopoDS_Shape) -> Json:
     """Return volume, area, centre, inertia about the centre at density one, and bounding box, from the B-rep."""
     surface, volume = GProp_GProps(), _volume(solid)
     BRepGProp.SurfaceProperties_s(solid, surface)
-    center, inertia, box = volume.CentreOfMass(), volume.MatrixOfInertia(), Bnd_Box()
-    BRepBndLib.AddOptimal_s(solid, box, useTriangulation=False, useShapeTolerance=False)
-    box.SetGap(0.0)
+    center, inertia, box = volume.CentreOfMass(), volume.MatrixOfInertia(), _box(solid)
     return {
         "volume_mm3": volume.Mass(),
         "area_mm2": surface.Mass(),
@@ -131,8 +132,11 @@ def properties(solid: TopoDS_Shape) -> dict[str, Any]:
     }
 
 
-def intersects_itself(solid: TopoDS_Shape) -> bool:
-    """Return whether faces or edges of a solid cut each other. May take long; a caller bounds it from outside."""
+def self_intersection(solid: TopoDS_Shape) -> Json:
+    """Say whether faces or edges of a solid cut each other; None where the kernel gives up, as it does on some spline faces.
+
+    A face that cuts itself, as in a sweep along too tight a bend, is not found. May take long: a caller bounds it.
+    """
     analyzer = BOPAlgo_ArgumentAnalyzer()
     analyzer.SetShape1(solid)
     analyzer.ArgumentTypeMode = False
@@ -140,7 +144,11 @@ def intersects_itself(solid: TopoDS_Shape) -> bool:
     analyzer.RebuildFaceMode = False
     analyzer.SelfInterMode = True
     analyzer.Perform()
-    return bool(analyzer.HasFaulty())
+    for result in analyzer.GetCheckResult():
+        if result.GetCheckStatus() == BOPAlgo_CheckStatus.BOPAlgo_SelfIntersect:
+            shapes = list(result.GetFaultyShapes1())
+            return {"intersects_itself": True, "near_mm": _center(shapes[-1]) if shapes else None}
+    return {"intersects_itself": None if analyzer.HasFaulty() else False}
 
 
 def step_file(shape: TopoDS_Shape, name: str) -> bytes:
@@ -175,7 +183,7 @@ def solids_of(shape: TopoDS_Shape) -> list[TopoDS_Shape]:
     return list(_found(shape, TopAbs_SOLID))
 
 
-def to_json(report: dict[str, Any]) -> bytes:
+def to_json(report: Json) -> bytes:
     """Return one line of JSON; a number that is not finite becomes null, which no reader takes for a number."""
     return json.dumps(_finite(report), allow_nan=False, separators=(",", ":")).encode() + b"\n"
 
@@ -204,6 +212,18 @@ def _volume(solid: TopoDS_Shape) -> GProp_GProps:
     volume = GProp_GProps()
     BRepGProp.VolumeProperties_s(solid, volume)
     return volume
+
+
+def _box(shape: TopoDS_Shape) -> Bnd_Box:
+    box = Bnd_Box()
+    BRepBndLib.AddOptimal_s(shape, box, useTriangulation=False, useShapeTolerance=False)
+    box.SetGap(0.0)
+    return box
+
+
+def _center(shape: TopoDS_Shape) -> list[float] | None:
+    box = _box(shape)
+    return None if box.IsVoid() else [(low + high) / 2 for low, high in zip(_xyz(box.CornerMin()), _xyz(box.CornerMax()), strict=True)]
 
 
 def _moved(solid: TopoDS_Shape, matrix: list[list[float]]) -> TopoDS_Shape:

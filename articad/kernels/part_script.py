@@ -22,6 +22,7 @@ from articad.kernels.tessellation import Same
 FILE = "part.py"  # the name that a script's code bears: tracebacks are cut down to it
 PROBE_STEP = 0.02  # the contract's 2 %
 PROBE_ZERO_MM, PROBE_ZERO_DEG = 0.1, 1.0  # by which a dimension that is zero is moved
+PROBE_LEAST_SECONDS, PROBE_PATIENCE = 3.0, 10.0  # a dimension moved by 2 % does not make a script ten times as slow
 SAME = 1e-9  # relative change of a number that is rounding
 PARTIAL_SOLIDS = 32  # of a failed script that are kept
 _TEXT = 2000  # characters of a message that are kept
@@ -68,7 +69,9 @@ def run(script: str, part: Json, *, seconds: float, probe_seconds: float, report
         return
     shape(measure.binary(solid))
     report({"ok": True, "connectors": connectors, "seconds": time.monotonic() - started})
-    if probe_seconds > 0:
+    if probe_seconds > 0 and _is_one_solid(solid):
+        own = time.monotonic() - started
+        probe_seconds = min(probe_seconds, max(PROBE_LEAST_SECONDS, PROBE_PATIENCE * own * (len(part["dimensions"]) + 1)))
         signal.setitimer(signal.ITIMER_REAL, probe_seconds)
         for outcome in _probe(namespace, part, _fingerprint(solid, connectors), probe_seconds):
             report({"probe": outcome})
@@ -88,7 +91,8 @@ def described(error: BaseException) -> Json:
         "message": str(error)[:_TEXT],
         "line": line,
         "frames": frames[-20:],
-        "denied": isinstance(error, OSError),  # a script has no business with the system: whatever failed there was forbidden
+        # a script has no business with the system: whatever failed there was forbidden; build123d's exporters hide the cause
+        "denied": isinstance(error, OSError) or str(error).startswith("Failed to write"),
         "module": error.name if isinstance(error, ImportError) else None,
         "refused": own and isinstance(error, (ValueError, AssertionError)),
     }
@@ -102,10 +106,10 @@ def _built(namespace: Json, part: Json) -> tuple[Any, dict[str, Json]]:
     """Call `build(part)` and return the kernel's shape and plain connectors."""
     build = namespace.get("build")
     if not callable(build):
-        raise NotAPart("the script defines no function build(part)")
+        raise NotAPart("The script defines no function build(part)")
     result = build(_as_object(part))
     if not (isinstance(result, (tuple, list)) and len(result) == 2):
-        raise NotAPart(f"build(part) returned {_kind(result)}, not (shape, connectors)")
+        raise NotAPart(f"The function build(part) returned {_kind(result)}, not (shape, connectors)")
     problems: list[str] = []
     shape = _kernel_shape(result[0], problems)
     connectors = _plain_connectors(result[1], problems)
@@ -128,26 +132,27 @@ def _as_object(part: Json) -> SimpleNamespace:
 
 def _kernel_shape(value: Any, problems: list[str]) -> Any:
     shapes = list(value) if isinstance(value, (list, tuple)) else [value]
-    wrapped = [shape.wrapped for shape in shapes if isinstance(shape, Shape) and shape.wrapped is not None]
-    if len(wrapped) < len(shapes) or not shapes:
+    if not all(isinstance(shape, Shape) for shape in shapes):
         hint = "; return its .part" if hasattr(value, "part") else ""
-        problems.append(f"the shape is {_kind(value)}, not a build123d Part, Solid or Compound{hint}")
+        problems.append(f"The shape is {_kind(value)}, not a build123d Part, Solid or Compound{hint}")
         return None
+    wrapped = [shape.wrapped for shape in shapes if not shape.is_null]
     return wrapped[0] if len(wrapped) == 1 else measure.compound(wrapped)
 
 
 def _plain_connectors(value: Any, problems: list[str]) -> dict[str, Json]:
     if not isinstance(value, Mapping):
-        problems.append(f"the connectors are {_kind(value)}, not a dict of name to {{'o', 'z', 'x'}}")
+        problems.append(f"The connectors are {_kind(value)}, not a dict of name to {{'o', 'z', 'x'}}")
         return {}
     connectors: dict[str, Json] = {}
     for name, entry in value.items():
         if not isinstance(entry, Mapping) or not {"o", "z"} <= set(entry) <= {"o", "z", "x"}:
-            problems.append(f"connector {str(name)[:60]!r} is {_kind(entry)}, not a dict with 'o', 'z' and perhaps 'x'")
+            found = f"a dict with {', '.join(map(repr, entry)) or 'nothing'}"[:200] if isinstance(entry, Mapping) else _kind(entry)
+            problems.append(f"Connector {str(name)[:60]!r} is {found}; it must be a dict with 'o', 'z' and perhaps 'x'")
             continue
         vectors = {axis: _vector(entry[axis]) for axis in ("o", "z", "x") if entry.get(axis) is not None}
         wrong = [axis for axis, vector in vectors.items() if vector is None]
-        problems += [f"{axis} of connector {str(name)[:60]!r} is not three finite numbers" for axis in wrong]
+        problems += [f"In connector {str(name)[:60]!r}, {axis} is not three finite numbers" for axis in wrong]
         connectors[str(name)[:60]] = {"o": vectors.get("o"), "z": vectors.get("z"), "x": vectors.get("x")}
     return connectors
 
@@ -196,11 +201,9 @@ def _moves(name: str, value: float) -> Iterator[float]:
 def _tried(namespace: Json, part: Json, before: list[float]) -> Json:
     try:
         shape, connectors = _built(namespace, part)
-        count = len(measure.solids_of(shape))
-        if count != 1:
-            return {"outcome": "broken", "error": {"type": "", "message": f"gives {count} solids", "line": None}}
-        if not BRepCheck_Analyzer(shape).IsValid():
-            return {"outcome": "broken", "error": {"type": "", "message": "gives a solid that is not valid", "line": None}}
+        if not _is_one_solid(shape):
+            message = f"it gives {len(measure.solids_of(shape))} solids, not one that is valid"
+            return {"outcome": "broken", "error": {"type": "", "message": message, "line": None}}
     except NotAPart as wrong:
         return {"outcome": "broken", "error": {"type": "", "message": "; ".join(wrong.problems)[:_TEXT], "line": None}}
     except Exception as error:  # noqa: BLE001 - a script may raise anything
@@ -212,6 +215,10 @@ def _tried(namespace: Json, part: Json, before: list[float]) -> Json:
         abs(a - b) <= SAME * max(abs(b), 1e-6 * scale, 1e-3) for a, b in zip(after, before, strict=True)
     )
     return {"outcome": "unused" if same else "changed"}
+
+
+def _is_one_solid(shape: Any) -> bool:
+    return len(measure.solids_of(shape)) == 1 and bool(BRepCheck_Analyzer(shape).IsValid())
 
 
 def _fingerprint(shape: Any, connectors: dict[str, Json]) -> list[float]:
@@ -242,7 +249,7 @@ def _solids_in(values: list[Any]) -> Iterator[Any]:
     for value in values:
         held = getattr(value, "part", value)  # a builder's part so far
         for shape in held if isinstance(held, (list, tuple)) else [held]:
-            if not isinstance(shape, Shape) or shape.wrapped is None:
+            if not isinstance(shape, Shape) or shape.is_null:
                 continue
             for solid in measure.solids_of(shape.wrapped):
                 if len(seen) < PARTIAL_SOLIDS and Same(solid) not in seen and BRepCheck_Analyzer(solid).IsValid():

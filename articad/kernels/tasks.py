@@ -47,7 +47,7 @@ def measure_shape(request: Json, files: dict[str, int]) -> None:
     _write(files["report"], measure.to_json(measured.report))
     if measured.report.get("valid") and measured.files:
         signal.setitimer(signal.ITIMER_REAL, SELF_INTERSECTION_SECONDS)
-        _write(files["report"], measure.to_json({"intersects_itself": measure.intersects_itself(measure.solids_of(shape)[0])}))
+        _write(files["report"], measure.to_json(measure.self_intersection(measure.solids_of(shape)[0])))
 
 
 TASKS = {"script": run_script, "measure": measure_shape, "pieces": measure_shape}

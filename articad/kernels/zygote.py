@@ -100,6 +100,15 @@ class Zygote:
         """The process that was started, for tests and for people; None before the first job."""
         return None if self._process is None else self._process.pid
 
+    def start(self) -> None:
+        """Start the process now, if it does not run.
+
+        Raises:
+            KernelUnavailableError: If it could not be started.
+        """
+        with self._lock:
+            self._started()
+
     def close(self) -> None:
         """End the zygote and whatever it runs; the next job starts another one."""
         with self._lock:

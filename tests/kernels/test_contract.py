@@ -1,0 +1,219 @@
+"""A part script is told every breach of its contract at once, each with its numbers."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from articad.errors import BuildError, ContractError, KernelError
+from articad.findings import Finding, Findings
+from articad.kernels.build123d import Build123dKernel
+from articad.kernels.results import read_mesh
+from tests.kernels.conftest import Build, frame
+
+A = {"a": frame()}
+A_RETURNED = "{'a': {'o': (0, 0, 0), 'z': (0, 0, 1)}}"
+
+
+def findings(build: Build, body: str, **changes: Any) -> Findings:
+    try:
+        return build(body, **changes).findings
+    except KernelError as error:
+        return error.findings
+
+
+def only(found: Findings, code: str) -> Finding:
+    assert found.codes == (code,), str(found)
+    return found[0]
+
+
+def test_a_part_that_keeps_its_contract_has_no_finding(build: Build) -> None:
+    part = build(f"return Box(d['w'], 20, 5), {A_RETURNED}", connectors=A, dimensions={"w": 10.0}, envelope_mm=[10, 20, 5], probe=True)
+
+    assert part.findings == Findings()
+    assert part.connectors["a"].frame.allclose(part.connectors["a"].frame.identity())
+
+
+def test_all_breaches_come_at_once(build: Build) -> None:
+    body = "return Box(10, 10, 10) + Pos(50, 0, 0) * Box(1, 1, 1), {'b': {'o': (0, 0, 0), 'z': (0, 0, 1)}}"
+
+    with pytest.raises(ContractError) as caught:
+        build(body, connectors=A, envelope_mm=[10, 10, 10])
+
+    assert sorted(caught.value.findings.codes) == ["E_CONNECTOR_EXTRA", "E_CONNECTOR_MISSING", "E_NOT_ONE_SOLID"]
+    assert caught.value.parts == ("lug",)
+    assert all(finding.route == "code" for finding in caught.value.findings)
+
+
+@pytest.mark.parametrize(
+    ("body", "says"),
+    [
+        ("x = 1", "returned None"),
+        ("return Box(1, 1, 1)", r"returned a Box, not \(shape, connectors\)"),
+        ("return 'box', {}", "is a str, not a build123d"),
+        ("with BuildPart() as p:\n    Box(1, 1, 1)\nreturn p, {}", r"return its \.part"),
+        ("return Box(1, 1, 1), []", "connectors are a list"),
+        ("return Box(1, 1, 1), {'a': (0, 0, 0)}", "Connector 'a' is a tuple"),
+        ("return Box(1, 1, 1), {'a': {'o': (0, 0, 0)}}", "is a dict with 'o'; it must be"),
+        ("return Box(1, 1, 1), {'a': {'o': (0, 0), 'z': (0, 0, 1)}}", "o is not three finite numbers"),
+        ("return Box(1, 1, 1), {'a': {'o': (0, 0, nan), 'z': (0, 0, 1)}}", "o is not three finite numbers"),
+    ],
+)
+def test_what_is_no_part_is_E_NO_BUILD(build: Build, body: str, says: str) -> None:
+    with pytest.raises(BuildError, match=says) as caught:
+        build(body, connectors=A)
+
+    assert set(caught.value.findings.codes) == {"E_NO_BUILD"}
+
+
+def test_a_script_without_build_is_E_NO_BUILD(kernel: Build123dKernel, brief: dict[str, Any]) -> None:
+    with pytest.raises(BuildError, match=r"no function build\(part\)"):
+        kernel.build(b"x = 1\n", brief)
+
+
+def test_axes_that_make_no_frame_are_told(build: Build) -> None:
+    found = findings(build, "return Box(1, 1, 1), {'a': {'o': (0, 0, 0), 'z': (0, 0, 1), 'x': (0, 0, 2)}}", connectors=A)
+
+    assert found.codes == ("E_NO_BUILD",)
+    assert found[0].where == "parts.lug.connectors.a"
+
+
+def test_a_builders_part_and_one_solid_compounds_are_shapes(build: Build) -> None:
+    for body in (
+        "with BuildPart() as p:\n    Box(1, 2, 3)\nreturn p.part, {}",
+        "return Compound(children=[Box(1, 2, 3)]), {}",
+        "return Box(1, 2, 3).solid(), {}",
+        "return [Box(1, 2, 3)], {}",
+        "return Part() + Box(1, 2, 3), {}",
+    ):
+        assert build(body).solid.volume == pytest.approx(6)
+
+
+@pytest.mark.parametrize(
+    ("body", "code"),
+    [
+        ("return Box(9, 9, 9) - Box(10, 10, 10), {}", "E_EMPTY_SOLID"),
+        ("return Part(), {}", "E_EMPTY_SOLID"),
+        ("return Box(0.05, 0.05, 0.05), {}", "E_EMPTY_SOLID"),
+        ("return Rectangle(3, 4), {}", "E_NOT_ONE_SOLID"),
+        ("return Compound(children=[Box(1, 1, 1), Pos(5, 0, 0) * Rectangle(1, 1).face()]), {}", "E_NOT_ONE_SOLID"),
+        ("return Box(9, 9, 9) + Pos(9, 9, 0) * Box(9, 9, 9), {}", "E_NOT_ONE_SOLID"),
+    ],
+)
+def test_what_is_not_one_solid_is_told(build: Build, body: str, code: str) -> None:
+    assert only(findings(build, body), code)
+
+
+def test_faces_that_cut_each_other_are_told(build: Build) -> None:
+    """A tube along a path that crosses itself: OCCT's own check calls it valid."""
+    body = (
+        "path = Wire([Line((0, 0), (20, 0)).edge(), CenterArc((20, 6), 6, -90, 270).edge(), Line((14, 6), (14, -10)).edge()])\n"
+        "return sweep(Plane((0, 0, 0), z_dir=(1, 0, 0)) * Circle(1), path=path), {}"
+    )
+
+    finding = only(findings(build, body), "E_INVALID_SOLID")
+
+    assert "cut each other near" in finding.message
+
+
+def test_faces_that_the_kernel_gives_up_on_are_told_as_unchecked(build: Build) -> None:
+    found = build("return Box(20, 20, 4) + Pos(0, 0, 2) * extrude(Text('t', 10), 1), {}").findings
+
+    only(found, "I_BUILD_UNCHECKED")
+
+
+def test_envelope_is_held_to_two_per_cent(build: Build) -> None:
+    assert build("return Box(10.19, 20, 5), {}", envelope_mm=[10, 20, 5]).findings == Findings()
+
+    finding = only(findings(build, "return Box(10.21, 20, 5), {}", envelope_mm=[10, 20, 5]), "E_ENVELOPE")
+
+    assert finding.value == pytest.approx(10.21)
+    assert finding.limit == 10
+    assert "along x" in finding.message
+
+
+# ---------------------------------------------------------------------- the dimension probe
+
+
+def test_every_dimension_that_drives_the_part_passes_the_probe(build: Build) -> None:
+    body = (
+        "s = Box(d['w'], d['h'], 5)\n"
+        "for i in range(d['hole_count']):\n"
+        "    s -= Pos(4 * i - 4, d['y'], 0) * Cylinder(1, 9)\n"
+        "s = Rot(0, 0, d['turn_deg']) * s\n"
+        f"return s, {A_RETURNED.replace('(0, 0, 0)', '(d[chr(120)], 0, 0)')}"
+    )
+    dimensions = {"w": 30.0, "h": 10.0, "y": 0.0, "x": -3.0, "turn_deg": 0.0, "hole_count": 2}
+
+    part = build(body, connectors={"a": frame((-3, 0, 0))}, dimensions=dimensions, probe=True)
+
+    assert part.findings == Findings()
+
+
+def test_a_dimension_that_changes_nothing_is_told(build: Build) -> None:
+    found = build("return Box(d['w'], 10, 10), {}", dimensions={"w": 10.0, "dead": 3.0, "dead_count": 2}, probe=True).findings
+
+    assert found.codes == ("W_DIMENSION_UNUSED", "W_DIMENSION_UNUSED")
+    assert [finding.where for finding in found] == ["parts.lug.dimensions.dead", "parts.lug.dimensions.dead_count"]
+
+
+def test_a_dimension_that_may_move_one_way_only_is_fine(build: Build) -> None:
+    """A bore as wide as the wall allows cannot grow by 2 %, but it can shrink: where that is valid, says the contract."""
+    body = "if d['bore'] > 10:\n    raise RuntimeError('too wide')\nreturn Box(30, 30, 5) - Cylinder(d['bore'], 9), {}"
+
+    assert build(body, dimensions={"bore": 10.0}, probe=True).findings == Findings()
+
+
+def test_a_script_that_breaks_when_a_dimension_moves_is_not_editable(build: Build) -> None:
+    body = "s = Box(d['w'], 10, 10)\nedges = [e for e in s.edges() if e.center().X == 15.0]\nreturn fillet(edges[:1][0], 1), {}"
+
+    finding = only(findings(build, body, dimensions={"w": 30.0}, probe=True), "E_NOT_EDITABLE")
+
+    assert finding.where == "parts.lug.dimensions.w"
+    assert "IndexError" in finding.message
+    assert "line 9" in finding.message
+
+
+def test_falling_apart_when_a_dimension_moves_is_not_editable(build: Build) -> None:
+    body = "gap = 0 if d['w'] == 10 else 1\nreturn Box(d['w'], 10, 10) + Pos(10 + gap, 0, 0) * Box(10, 10, 10), {}"
+
+    finding = only(findings(build, body, dimensions={"w": 10.0}, probe=True), "E_NOT_EDITABLE")
+
+    assert "2 solids" in finding.message
+
+
+def test_a_script_may_refuse_a_change_in_its_own_words(build: Build) -> None:
+    body = "if d['pitch'] != 2 * d['module']:\n    raise ValueError('pitch must be twice the module')\nreturn Box(d['pitch'], 1, 1), {}"
+
+    found = build(body, dimensions={"pitch": 4.0, "module": 2.0}, probe=True).findings
+
+    assert found.codes == ("W_DIMENSION_REFUSED", "W_DIMENSION_REFUSED")
+    assert "pitch must be twice the module" in found[0].message
+
+
+def test_a_crash_in_the_probe_keeps_the_breach_and_names_the_dimension(build: Build) -> None:
+    body = "if d['w'] != 10:\n    import ctypes\n    ctypes.string_at(0)\nreturn Box(d['w'], d['h'], 5), {}"
+
+    found = findings(build, body, dimensions={"h": 3.0, "w": 10.0}, probe=True)
+
+    assert found.errors[0].code == "E_NOT_EDITABLE"
+    assert found.errors[0].where == "parts.lug.dimensions.w"
+
+
+def test_a_probe_that_does_not_end_does_not_lose_the_part(build: Build) -> None:
+    found = build("while d['w'] != 10:\n    pass\nreturn Box(d['w'], 5, 5), {}", dimensions={"w": 10.0}, probe=True).findings
+
+    finding = only(found, "W_BUILD_UNCHECKED")
+    assert "w" in finding.message
+
+
+def test_a_part_that_breaks_its_contract_hands_back_its_solids(build: Build) -> None:
+    with pytest.raises(ContractError) as caught:
+        build("return Box(10, 10, 10) + Pos(50, 0, 0) * Box(1, 1, 1), {}")
+
+    assert caught.value.partial is not None
+    mesh = read_mesh((caught.value.partial / "part.npz").read_bytes())
+    assert mesh.volume == pytest.approx(1001)
+    assert mesh.face is not None
+    assert set(mesh.face.tolist()) == {0, 1}
