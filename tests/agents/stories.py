@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import atexit
+import functools
 import json
+import tempfile
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
@@ -89,15 +92,20 @@ def sewing_box() -> Scripted:
     return Scripted(script)
 
 
-_KERNELS: list[Build123dKernel] = []
-
-
+@functools.cache
 def kernel() -> Build123dKernel:
     """One kernel for all tests of a process: its start takes two seconds."""
-    if not _KERNELS:
-        _KERNELS.append(Build123dKernel())
-    return _KERNELS[0]
+    return Build123dKernel()
 
 
 def cache(folder: Path) -> BuildCache:
+    """An empty cache of a test's own."""
     return BuildCache(folder / "cache")
+
+
+@functools.cache
+def shared_cache() -> BuildCache:
+    """One cache for all tests of a process that do not ask what is in it."""
+    folder = tempfile.TemporaryDirectory(prefix="articad-tests-")
+    atexit.register(folder.cleanup)
+    return BuildCache(Path(folder.name))

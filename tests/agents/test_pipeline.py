@@ -25,7 +25,7 @@ PNG = b"\x89PNG\r\n\x1a\n" + bytes(16)
 
 
 def made(tmp_path: Path, llm: Any, name: str = "run", prompt: str = FLAP_PROMPT, **options: Any) -> Run:
-    return generate(prompt, llm=llm, out=tmp_path / name, kernel=stories.kernel(), cache=stories.cache(tmp_path), **options)
+    return generate(prompt, llm=llm, out=tmp_path / name, kernel=stories.kernel(), cache=stories.shared_cache(), **options)
 
 
 def said(request: Request) -> str:
@@ -334,19 +334,19 @@ def test_a_replay_makes_every_file_but_the_trace_byte_for_byte(tmp_path: Path) -
 def test_a_prompt_that_drifted_is_reported_and_strictly_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     run = made(tmp_path, flap())
     monkeypatch.setattr(design_module, "_instructions", lambda: "Design it.")
-    result = replay(run.path, out=tmp_path / "again", kernel=stories.kernel(), cache=stories.cache(tmp_path))
+    result = replay(run.path, out=tmp_path / "again", kernel=stories.kernel(), cache=stories.shared_cache())
 
     assert result.findings.codes == ("I_PROMPT_DRIFT",)
     assert result.differences == ("llm/design.1.json",)
     with pytest.raises(ReplayMissError, match="design/1"):
-        replay(run.path, out=tmp_path / "strict", strict=True, kernel=stories.kernel(), cache=stories.cache(tmp_path))
+        replay(run.path, out=tmp_path / "strict", strict=True, kernel=stories.kernel(), cache=stories.shared_cache())
 
 
 def test_a_recording_without_an_answer_says_which(tmp_path: Path) -> None:
     run = made(tmp_path, flap())
     (run.path / "llm/part.flap.1.json").unlink()
     with pytest.raises(ReplayMissError, match="part/flap/1"):
-        replay(run.path, out=tmp_path / "again", kernel=stories.kernel(), cache=stories.cache(tmp_path))
+        replay(run.path, out=tmp_path / "again", kernel=stories.kernel(), cache=stories.shared_cache())
 
 
 def test_replay_is_a_model_like_any_other(tmp_path: Path) -> None:
