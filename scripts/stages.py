@@ -14,6 +14,7 @@ from typing import NamedTuple
 
 ROOT = Path(__file__).resolve().parent.parent
 PYTHON = sys.executable
+ENVIRONMENT = os.environ | {"PYTHONPATH": str(ROOT), "NO_MKDOCS_2_WARNING": "1"}
 
 
 class Outcome(NamedTuple):
@@ -28,7 +29,7 @@ def _command(*arguments: str) -> Callable[[], Outcome]:
     """Return a stage that counts as one check: it passes when the command exits 0."""
 
     def run() -> Outcome:
-        done = subprocess.run([PYTHON, *arguments], cwd=ROOT, check=False)
+        done = subprocess.run([PYTHON, *arguments], cwd=ROOT, env=ENVIRONMENT, check=False)
         return Outcome(1, 0) if done.returncode == 0 else Outcome(0, 1)
 
     return run
@@ -41,7 +42,7 @@ def _tests() -> Outcome:
         report = Path(folder, "report.xml")
         selection = ["-m", "not crash and not fuzz"]
         options = ["-q", "-n", jobs, "--durations=10", "--hypothesis-profile=ci", f"--junit-xml={report}"]
-        done = subprocess.run([PYTHON, "-m", "pytest", *selection, *options], cwd=ROOT, check=False)
+        done = subprocess.run([PYTHON, "-m", "pytest", *selection, *options], cwd=ROOT, env=ENVIRONMENT, check=False)
         if not report.is_file():
             return Outcome(0, 1)
         # Our own pytest wrote this file a moment ago.

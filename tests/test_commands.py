@@ -10,7 +10,9 @@ from typing import Any
 import pytest
 
 from articad import cli
+from articad.record import kernel_named
 from articad.run import Run
+from tests.agents import stories
 
 PLAN: dict[str, Any] = {
     "schema": "articad.plan/1",
@@ -72,8 +74,14 @@ def chest(tmp_path: Path) -> Path:
 
 
 @pytest.fixture
-def report(capsys: pytest.CaptureFixture[str]) -> Any:
-    """Run a command with --json and return its exit code and its report."""
+def report(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> Any:
+    """Run a command with --json, with a kernel that all tests share, and return its exit code and its report."""
+
+    def shared(name: str, **options: Any) -> Any:
+        return stories.kernel() if name == "build123d" else kernel_named(name, **options)
+
+    monkeypatch.setattr("articad.record.kernel_named", shared)
+    monkeypatch.setattr("articad.agents.pipeline.kernel_named", shared)
 
     def run(*arguments: object) -> tuple[int, dict[str, Any]]:
         code = cli.main([*map(str, arguments), "--json"])
@@ -220,3 +228,46 @@ def test_a_missing_key_is_named(tmp_path: Path, report: Any, monkeypatch: pytest
     assert failed["findings"][0]["code"] == "E_KEY_MISSING"
     assert "GEMINI_API_KEY" in failed["findings"][0]["message"] + failed["findings"][0]["hint"]
     assert not (tmp_path / "out").exists()
+
+
+@pytest.fixture
+def generated(tmp_path: Path, report: Any, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A run that a scripted model made."""
+    monkeypatch.setattr("articad.agents.live.LiteLLM", lambda *_, **__: stories.flap())
+    code, made = report("generate", stories.FLAP_PROMPT, "--model", "scripted", "--max-calls", "10", "--out", tmp_path / "generated")
+    assert (code, made["ok"]) == (0, True)
+    assert made["model"]["calls"] == 4
+    return tmp_path / "generated"
+
+
+def test_generate_leaves_a_run_like_build_s_and_its_recording(generated: Path) -> None:
+    run = Run.view(generated)
+    assert set(run.exports()) == {"urdf", "mjcf"}
+    assert run.replies() == ("design/1", "part/flap/1", "part/plate/1", "requirements")
+
+
+def test_replay_makes_it_again_without_a_model(generated: Path, tmp_path: Path, report: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    def forbidden(*_: object, **__: object) -> None:
+        raise AssertionError("a replay asks no model")
+
+    monkeypatch.setattr("articad.agents.live.LiteLLM", forbidden)
+    code, replayed = report("replay", generated, "--out", tmp_path / "again", "--strict")
+    assert (code, replayed["ok"], replayed["differences"]) == (0, True, [])
+
+
+def test_a_replay_that_differs_says_where_and_ends_with_1(generated: Path, tmp_path: Path, report: Any) -> None:
+    checks = generated / "checks.json"
+    checks.write_text(checks.read_text() + "\n")
+    code, replayed = report("replay", generated, "--out", tmp_path / "again")
+    assert (code, replayed["differences"]) == (1, ["checks.json"])
+
+
+def test_a_spent_budget_stops_the_run_and_the_same_command_goes_on(tmp_path: Path, report: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("articad.agents.live.LiteLLM", lambda *_, **__: stories.flap())
+    command = ["generate", stories.FLAP_PROMPT, "--model", "scripted", "--out", tmp_path / "out", "--max-calls"]
+    code, stopped = report(*command, 2)
+    assert code == 3
+    assert stopped["findings"][0]["code"] == "E_BUDGET"
+    code, finished = report(*command, 2)
+    assert code == 0
+    assert finished["model"]["calls"] == 2
