@@ -1,10 +1,13 @@
-from build123d import Align, Axis, Box, Cylinder, Plane, Pos, Rectangle, Rot, chamfer, loft
+from math import atan2, degrees
+
+from build123d import Align, Axis, Box, Cylinder, Pos, Rectangle, Rot, chamfer, extrude
 
 LOW = (Align.CENTER, Align.CENTER, Align.MIN)
 
 
 def frustum(width, z, top_width, top_z):
-    return loft([Plane.XY.offset(z) * Rectangle(width, width), Plane.XY.offset(top_z) * Rectangle(top_width, top_width)])
+    taper = degrees(atan2((width - top_width) / 2, top_z - z))
+    return Pos(0, 0, z) * extrude(Rectangle(width, width), top_z - z, taper=taper)
 
 
 def build(part):
@@ -22,7 +25,7 @@ def build(part):
     front = Pos(0, -face, ledge) * Box(2 * foot, 2 * foot, height, align=(Align.CENTER, Align.MAX, Align.MIN))
     ledge_board = Pos(0, wall - face, ledge - wall) * Box(2 * foot, 2 * foot, wall, align=(Align.CENTER, Align.MAX, Align.MIN))
     face_board = Pos(0, -face, ledge - wall) * Box(2 * foot, wall, height, align=(Align.CENTER, Align.MIN, Align.MIN))
-    shell = plinth + body - cavity - front + (ledge_board & body) + (face_board & body)
+    shell = plinth + body - [cavity, front] + [ledge_board & body, face_board & body]
 
     # bearings
     bearing = Pos(d["key_inside"], 0, d["key_height"]) * Rot(Y=90)
@@ -30,11 +33,9 @@ def build(part):
     key_bore = bearing * Cylinder(d["key_radius"] + d["clearance"], foot, align=LOW)
     arbor_bore = Pos(0, -face, d["pivot_height"]) * Rot(X=90) * Cylinder(d["arbor_radius"] + d["clearance"], 4 * wall)
     slot = Pos(0, d["slot_y"], ledge) * Box(d["slot_width"], d["slot_depth"], 4 * wall)
-    shell = shell + boss - key_bore - arbor_bore - slot
-
-    for x in (-d["foot_x"], d["foot_x"]):
-        for y in (-d["foot_x"], d["foot_x"]):
-            shell -= Pos(x, y, 0) * Cylinder(d["foot_hole_radius"], d["foot_hole_depth"], align=LOW)
+    feet = [(x, y) for x in (-d["foot_x"], d["foot_x"]) for y in (-d["foot_x"], d["foot_x"])]
+    foot_holes = [Pos(x, y, 0) * Cylinder(d["foot_hole_radius"], d["foot_hole_depth"], align=LOW) for x, y in feet]
+    shell = shell + boss - [key_bore, arbor_bore, slot, *foot_holes]
 
     # the two axes end half the axial play off their bearings
     connectors = {
