@@ -10,9 +10,8 @@ def build(part):
     radius, height = d["radius"], d["height"]
     knob = Cylinder(radius, height, align=LOW)
     knob = chamfer(knob.edges().sort_by(Axis.Z)[-1], 1.5)
-    for i in range(d["flute_count"]):
-        angle = 2 * pi * (i + 0.5) / d["flute_count"]
-        knob -= Pos(radius * cos(angle), radius * sin(angle), 0) * Cylinder(d["flute_radius"], 4 * height)
+    angles = [2 * pi * (i + 0.5) / d["flute_count"] for i in range(d["flute_count"])]
+    knob -= [Pos(radius * cos(angle), radius * sin(angle), 0) * Cylinder(d["flute_radius"], 4 * height) for angle in angles]
     knob -= Pos(radius / 3, 0, height) * Box(radius, d["slot_width"], 2, align=(Align.MIN, Align.CENTER, Align.CENTER))
 
     foot = -d["bearing"] - 1.5 * d["play"]  # shoulder for the clip, one play below the bearing

@@ -11,8 +11,8 @@ def build(part):
 
     rod = Pos(0, middle, -d["tail"]) * Box(width, thick, d["reach"] + d["tail"], align=LOW)
     pitch = (d["reach"] - d["weight_low"]) / (d["notch_count"] + 1)
-    for i in range(d["notch_count"]):
-        rod -= Pos(width / 2, middle, d["weight_low"] + (i + 1) * pitch) * Rot(Y=45) * Box(1, 2 * thick, 1)
+    notch = Rot(Y=45) * Box(1, 2 * thick, 1)
+    rod -= [Pos(width / 2, middle, d["weight_low"] + (i + 1) * pitch) * notch for i in range(d["notch_count"])]
 
     bob = Pos(0, middle - d["bob_thickness"] / 2, -d["tail"]) * BACK * Cylinder(d["bob_radius"], d["bob_thickness"], align=LOW)
     boss = Pos(0, -hub - thick, 0) * BACK * Cylinder(d["hub_radius"], hub + thick, align=LOW)

@@ -3,7 +3,7 @@ from build123d import Align, Axis, Box, Cylinder, Plane, Pos, Rectangle, Rot, Sp
 
 def taper(below, above):
     """Loft between two (width along y, depth along x, z) sections."""
-    return loft([Plane.XY.offset(z) * Rectangle(depth, width) for width, depth, z in (below, above)])
+    return loft([Plane.XY.offset(z) * Rectangle(depth, width) for width, depth, z in (below, above)], ruled=True)
 
 
 def build(part):
