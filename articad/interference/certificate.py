@@ -16,6 +16,7 @@ from typing import Any
 
 import numpy as np
 
+from articad.connectors.mate import flip
 from articad.connectors.se3 import SE3
 from articad.findings import Finding, Findings
 from articad.geometry.mesh import TriMesh
@@ -28,7 +29,7 @@ from articad.interference.relations import FitLike, WaiverLike, all_pairs
 from articad.interference.report import PairCheck, Strength, rounded
 from articad.interference.scene import Scene
 from articad.interference.verdict import judge
-from articad.kinematics.joints import Joint
+from articad.kinematics.joints import Joint, JointType
 from articad.kinematics.mechanism import Mechanism
 from articad.kinematics.tree import KinematicTree
 
@@ -74,6 +75,8 @@ class Certificate:
         meshes: The exact meshes that were proven with.
         deflections: Of these meshes [mm].
         mechanism: What moved.
+        asked: Names of the joints to be proven.
+        together: Whether joints were to be moved two at a time, too.
         queries: Distances asked for.
         seconds: Time spent.
     """
@@ -86,27 +89,26 @@ class Certificate:
     meshes: Mapping[str, TriMesh]
     deflections: Mapping[str, float]
     mechanism: Mechanism
+    asked: tuple[str, ...] = ()
+    together: bool = True
     queries: int = 0
     seconds: float = 0.0
 
     @property
     def ok(self) -> bool:
-        """True when everything asked for is proven and nothing collides."""
-        return self.findings.ok
+        """True when everything asked for is proven or waived, and nothing collides."""
+        return self.findings.ok and not self.findings.of("W_NOT_CERTIFIED")
 
     def to_json(self) -> dict[str, Any]:
         """Return the report `articad.certificate/1`."""
-        proven = {name for claim in self.claims for name in claim.parts}
         return {
             "schema": "articad.certificate/1",
             "ok": self.ok,
             "findings": [finding.to_json() for finding in self.findings],
             "epsilon_mm": self.epsilon,
-            "meshes": {
-                name: {"sha256": mesh.digest, "deflection_mm": self.deflections[name]}
-                for name, mesh in self.meshes.items()
-                if name in proven
-            },
+            "asked": list(self.asked),
+            "together": self.together,
+            "meshes": {name: {"sha256": mesh.digest, "deflection_mm": self.deflections[name]} for name, mesh in self.meshes.items()},
             "mechanism": mechanism_json(self.mechanism),
             "pairs": [pair.to_json() for pair in self.pairs],
             "ranges": [
@@ -118,8 +120,7 @@ class Certificate:
 
     def mesh_files(self) -> dict[str, bytes]:
         """Return the meshes that a checker needs, as `<part>.npz`; the same meshes give the same bytes."""
-        proven = {name for claim in self.claims for name in claim.parts}
-        return {f"{name}.npz": _npz(mesh) for name, mesh in self.meshes.items() if name in proven}
+        return {f"{name}.npz": _npz(mesh) for name, mesh in self.meshes.items()}
 
 
 def certify(
@@ -188,6 +189,8 @@ class _Certifying:
             self.scene.meshes,
             self.scene.deflections,
             self.mechanism,
+            tuple(joint.name for joint in self.mechanism.joints if freedoms(joint) and (self.asked is None or joint.name in self.asked)),
+            self.together,
             self.budget.queries,
             self.budget.spent,
         )
@@ -403,7 +406,11 @@ def constrained_joints(mechanism: Mechanism) -> frozenset[str]:
 
 
 def mechanism_json(mechanism: Mechanism) -> dict[str, Any]:
-    """Return parts, frames and joints as numbers: all that a checker needs to place two parts."""
+    """Return parts, frames and joints as numbers: all that a checker needs to place two parts.
+
+    A joint is `T_parent_child = parent_frame · Π exp(Σ (slide, turn)·q) · child_frame⁻¹`, the product over its steps in order; the
+    mate is in `child_frame`. Freedoms of one step are summed before the exponential: a ball swings about a vector.
+    """
     loops = {joint.name for joint in mechanism.loop_joints}
     return {
         "ground": mechanism.ground,
@@ -415,15 +422,33 @@ def mechanism_json(mechanism: Mechanism) -> dict[str, Any]:
                 "parent": joint.parent,
                 "child": joint.child,
                 "parent_frame": joint.T_parent_connector.matrix.tolist(),
-                "child_frame": joint.T_child_connector.matrix.tolist(),
-                "mate": str(joint.mate),
-                "lead_mm": joint.lead,
-                "cone": joint.limits.cone,
+                "child_frame": (joint.T_child_connector @ flip(joint.mate)).matrix.tolist(),
+                "cone": freedoms(joint)[0].upper if joint.type is JointType.BALL else None,
                 "loop": joint.name in loops,
+                "freedoms": _steps_json(joint),
             }
             for joint in mechanism.joints
         ],
     }
+
+
+def _steps_json(joint: Joint) -> list[dict[str, Any]]:
+    X, Y, Z, none = [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.0, 0.0, 0.0]
+    rise = [0.0, 0.0, joint.lead / (2 * math.pi)]
+    steps: dict[JointType, list[tuple[int, list[float], list[float]]]] = {
+        JointType.FIXED: [],
+        JointType.REVOLUTE: [(0, none, Z)],
+        JointType.SLIDER: [(0, Z, none)],
+        JointType.CYLINDRICAL: [(0, Z, none), (1, none, Z)],
+        JointType.SCREW: [(0, rise, Z)],
+        JointType.PLANAR: [(0, X, none), (0, Y, none), (1, none, Z)],
+        JointType.UNIVERSAL: [(0, none, X), (1, none, Y)],
+        JointType.BALL: [(0, none, X), (0, none, Y), (1, none, Z)],
+    }
+    return [
+        {"name": freedom.name, "joint": joint.name, "range": [freedom.lower, freedom.upper], "step": step, "slide": slide, "turn": turn}
+        for freedom, (step, slide, turn) in zip(freedoms(joint), steps[joint.type], strict=True)
+    ]
 
 
 def _unproven(parts: tuple[str, str], joints: tuple[str, ...], worst: Overlap, allowed: float, count: int) -> Finding:

@@ -89,7 +89,7 @@ def shrunk(mesh: TriMesh, depth: float) -> FloatArray:
 def split_by_radius(mesh: TriMesh, core: Core, radius: float, edge: float, shrink: float = 0.0) -> tuple[Surface, Surface, Surface]:
     """Cut a mesh's surface at a cylinder or sphere.
 
-    Triangles that cross it are quartered until no edge is longer than `edge`.
+    Triangles that may cross it are quartered until no edge is longer than `edge`.
 
     Args:
         mesh: In the part's frame.
@@ -106,9 +106,12 @@ def split_by_radius(mesh: TriMesh, core: Core, radius: float, edge: float, shrin
     none = np.empty((0, 3, 6))
     inside, crossing, outside = [none], [none], [none]
     while len(todo):
-        corners = todo[..., :3]
-        is_in = (core.radii(corners.reshape(-1, 3)).reshape(-1, 3) <= radius).all(axis=1)
-        is_out = ~is_in & (core.least_radii(corners) > radius)
+        local = core.local(todo[..., :3])
+        middle = local.mean(axis=1)
+        is_in = (np.linalg.norm(local, axis=2) <= radius).all(axis=1)
+        # certainly outside: no point of a triangle is further from its centre than a corner is
+        spread = np.linalg.norm(local - middle[:, None], axis=2).max(axis=1)
+        is_out = ~is_in & (np.linalg.norm(middle, axis=1) - spread > radius)
         inside.append(todo[is_in])
         outside.append(todo[is_out])
         mixed = todo[~is_in & ~is_out]
