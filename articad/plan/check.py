@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from articad.errors import ArticadError
 from articad.findings import Finding, Findings
 from articad.kinematics.graph import JointGraph
-from articad.kinematics.joints import Joint
 from articad.kinematics.mechanism import Mechanism
 from articad.plan.draft import Draft
 from articad.plan.rest import rest_findings
@@ -53,28 +54,9 @@ def _structure_findings(draft: Draft, so_far: Findings) -> list[Finding]:
         found += _freedom_findings(draft, sum(count for _, count in freedoms), account)
         found += _idle_marks(draft.graph)
         return found
-    found += _not_supported(draft, loop_joints)
-    if found or not so_far.ok:
+    if not so_far.ok:
         return found  # what does not meet at rest cannot be solved
-    return _mechanism_findings(draft)
-
-
-def _not_supported(draft: Draft, loop_joints: tuple[Joint, ...]) -> list[Finding]:
-    """Return what is valid but cannot be solved yet: the one gate, to be removed when mechanisms solve it."""
-    found = [
-        Finding(
-            code="E_NOT_SUPPORTED",
-            where=f"joints.{joint.name}",
-            message=f"Joint {joint.name!r} closes a loop; this version solves trees only.",
-            hint="Remove a joint of the loop.",
-            parts=(joint.parent, joint.child),
-        )
-        for joint in loop_joints
-    ]
-    for coupling in draft.plan.couplings:
-        message = f"Coupling {coupling.name!r} cannot be solved by this version."
-        found.append(Finding(code="E_NOT_SUPPORTED", where=f"couplings.{coupling.name}", message=message, hint="Remove the coupling."))
-    return found
+    return found + _mechanism_findings(draft)
 
 
 def _mechanism_findings(draft: Draft) -> list[Finding]:
@@ -83,16 +65,31 @@ def _mechanism_findings(draft: Draft) -> list[Finding]:
     try:
         mechanism = Mechanism(tuple(draft.parts), plan.ground, draft.joints, draft.couplings, draft.parts[plan.ground].T)
         found = list(mechanism.findings())
-        total = sum(joint.type.freedoms for joint in draft.joints)
+        if not any(finding.code == "E_LOOP_OPEN" for finding in found):
+            found += _freedom_findings(draft, mechanism.mobility, _account(mechanism))
+            found += mechanism.motion_findings()
+    except (ArticadError, np.linalg.LinAlgError) as error:
+        return list(getattr(error, "findings", ())) or [_not_supported(str(error))]
+    return found
+
+
+def _not_supported(reason: str) -> Finding:
+    """Return what is said of a plan that is valid but that this version cannot solve."""
+    hint = "Simplify the loops and couplings, or report this plan."
+    return Finding(code="E_NOT_SUPPORTED", where="plan", message=f"The mechanism cannot be solved: {reason}", hint=hint)
+
+
+def _account(mechanism: Mechanism) -> str:
+    """Say where the freedoms come from and where they go."""
+    total = sum(joint.type.freedoms for joint in mechanism.joints)
+    account = [f"sum of joint freedoms {total}"]
+    if mechanism.loop_joints:
         loops = ", ".join("-".join(mechanism.tree.path(joint.parent, joint.child)) for joint in mechanism.loop_joints)
-        account = f"sum of joint freedoms {total}"
-        if mechanism.loop_joints:
-            account += f", loop constraints of rank {total - mechanism.mobility - len(plan.couplings)}: loop {loops}"
-        if plan.couplings:
-            account += f", {len(plan.couplings)} couplings"
-        return found + _freedom_findings(draft, mechanism.mobility, account)
-    except ArticadError as error:
-        return list(error.findings)
+        rank = total - mechanism.mobility - len(mechanism.couplings)
+        account.append(f"loop constraints of rank {rank}: loop{'s' * (len(mechanism.loop_joints) > 1)} {loops}")
+    if mechanism.couplings:
+        account.append(f"couplings {len(mechanism.couplings)}")
+    return ", ".join(account)
 
 
 def _freedom_findings(draft: Draft, freedoms: int, account: str) -> list[Finding]:

@@ -15,6 +15,7 @@ from articad.plan.expressions import RESERVED, ExpressionError, cycle_error, par
 from articad.plan.schema import AssemblyPlan, Parameter, Pose
 
 NAN = math.nan
+LARGEST = 1e12  # mm, or any unit: a million kilometres
 _AXIS_ZERO = 1e-9  # length below which an axis has no direction, as in articad.connectors
 _DEFAULT_POSE = Pose()
 _IDENTITY = SE3.identity()
@@ -120,7 +121,7 @@ class Evaluation:
     def number(self, number: float | str, where: str, *path: str) -> float:
         """Return the value of a Number; NaN after reporting it at `where.path`, or silently if a parameter it uses is broken."""
         if not isinstance(number, str):
-            return float(number)
+            return self._sane(number, where, path)
         try:
             expression = parse(number)
             if self._broken and not self._broken.isdisjoint(expression.names):
@@ -128,16 +129,25 @@ class Evaluation:
             for name in expression.names:
                 if name not in self._given:
                     raise unknown_parameter(number, name, self._given)
-            return expression.evaluate(self.values)
+            return self._sane(expression.evaluate(self.values), where, path)
         except ExpressionError as error:
             self.findings.append(relocated(error.findings[0], ".".join((where, *path))))
             return NAN
 
+    def _sane(self, value: float, where: str, path: tuple[str, ...]) -> float:
+        """Return the value, or NaN after reporting it if nothing is that large: its square must still be a number."""
+        if -LARGEST <= value <= LARGEST:
+            return value
+        message, hint = (
+            f"{value:.6g} is larger than anything that is built.",
+            f"Give a number within ±{LARGEST:g}; lengths are millimetres.",
+        )
+        self.report("E_SCALE", ".".join((where, *path)), message, hint, value=value, limit=math.copysign(LARGEST, value))
+        return NAN
+
     def triple(self, vector: tuple[float | str, float | str, float | str], where: str, key: str) -> Triple:
         """Return the values of a Vector."""
         x, y, z = vector
-        if not (isinstance(x, str) or isinstance(y, str) or isinstance(z, str)):
-            return x, y, z
         return self.number(x, where, f"{key}[0]"), self.number(y, where, f"{key}[1]"), self.number(z, where, f"{key}[2]")
 
     def pose(self, pose: Pose, where: str) -> SE3 | None:

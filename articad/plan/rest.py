@@ -81,8 +81,8 @@ class _Mismatch:
         connector = joint.child_connector if on_child else joint.parent_connector
         self.spec = next(spec for spec in self.part.connector_specs if spec.name == connector)
         right = expected if on_child else actual @ _identity_or(joint).inverse()
-        in_assembly = self.spec.frame == "assembly" and not self.part.derived
-        self.right = right if in_assembly else _pose(draft, self.part.name).inverse() @ right
+        self.in_assembly = self.spec.frame == "assembly" and not self.part.derived
+        self.right = right if self.in_assembly else _pose(draft, self.part.name).inverse() @ right
 
     def findings(self, axis: float, roll: float, offset: float) -> list[Finding]:
         """Return what is wrong, given the angle between the axes [deg], the roll [deg] and the distance [mm]."""
@@ -111,8 +111,13 @@ class _Mismatch:
         return f"set {wanted}"
 
     def _axes(self) -> tuple[str, ...]:
-        """Return which axes to state: an x that is left to the rule follows by itself."""
-        return ("z",) if self.spec.x is None else ("z", "x")
+        """Return which axes to state: an x that is left to the rule follows by itself, and one that is right stays."""
+        if self.spec.x is None:
+            return ("z",)
+        frame = self.part.connectors[self.spec.name].frame
+        now = _pose(self.draft, self.part.name).rotate(frame.x_axis) if self.in_assembly else frame.x_axis
+        off = math.degrees(math.atan2(float(np.linalg.norm(np.cross(now, self.right.x_axis))), float(now @ self.right.x_axis)))
+        return ("z",) if off <= ANGLE_DEG else ("z", "x")
 
     def _flip(self, axis: float) -> Finding:
         mate = self.joint.mate
@@ -121,7 +126,7 @@ class _Mismatch:
         verb = "agree" if mate is Mate.OPPOSED else "oppose"
         message = f"z axes of {self.parent} and {self.child} {verb} at rest (angle {between:.1f}°) but mate is {str(mate)!r}."
         if 180.0 - axis <= ANGLE_DEG:
-            hint = f"Set mate to {str(other)!r}, or {self._set('z')}."
+            hint = f"Set mate to {str(other)!r}, or {self._set(*self._axes())}."
         else:
             hint = f"{_capital(self._set(*self._axes()))}."
         return self._finding("E_MATE_FLIP", message, hint, axis, ANGLE_DEG, "deg")

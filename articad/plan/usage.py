@@ -13,6 +13,7 @@ from articad.findings import Finding
 from articad.kinematics.joints import Joint, JointLimits, JointType
 from articad.plan.draft import Draft
 from articad.plan.motions import AXES
+from articad.plan.rest import OFFSET_MM
 from articad.plan.schema import DerivedJoint
 
 SMALLEST_MM = 0.5  # an assembly below this is in metres or inches
@@ -219,7 +220,7 @@ def scale_findings(draft: Draft) -> list[Finding]:
     ]
     diagonals = [math.hypot(*sides) for sides in draft.envelopes.values() if not any(map(math.isnan, sides))]
     size = max([_extent(np.array(origins)) if origins else 0.0, *diagonals])
-    if size == 0.0 or SMALLEST_MM <= size <= LARGEST_MM:
+    if size <= OFFSET_MM or SMALLEST_MM <= size <= LARGEST_MM:  # all connectors in one point say nothing of the size
         return []
     small = size < SMALLEST_MM
     hint = "Lengths are millimetres: were metres given?" if small else "Lengths are millimetres: were micrometres given?"

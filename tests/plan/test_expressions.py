@@ -29,7 +29,7 @@ class Oracle:
         self.values = values
 
     def take(self) -> str:
-        return self.tokens.pop(0)
+        return str(self.tokens.pop(0))
 
     def next(self) -> str:
         return self.tokens[0] if self.tokens else ""
@@ -71,8 +71,10 @@ class Oracle:
             return float(getattr(math, name)(math.remainder(arguments[0], 360) * math.pi / 180))
         if name in {"asin", "acos", "atan", "atan2"}:
             return float(getattr(math, name)(*arguments) * 180 / math.pi)
-        if name in {"abs", "min", "max"}:
-            return float({"abs": abs, "min": min, "max": max}[name](*arguments))
+        if name in {"min", "max"}:
+            return min(arguments) if name == "min" else max(arguments)
+        if name == "abs":
+            return abs(arguments[0])
         return float(getattr(math, name)(*arguments))
 
 
@@ -121,11 +123,13 @@ def test_an_expression_has_no_value_only_where_arithmetic_has_none(text: str) ->
     try:
         value = parse(text).evaluate(VALUES)
     except ExpressionError as error:
-        assert error.code == "E_NONFINITE"
-        # exact at multiples of 90 degrees, ours may divide by a zero that is rounding elsewhere
-        assert not math.isfinite(expected) or re.search("sin|cos|tan|floor|ceil|sqrt|/", text)
+        code, value = error.code, math.nan
     else:
-        assert math.isfinite(value)
+        code = None
+    assert (code is None) == math.isfinite(value)
+    assert code in {None, "E_NONFINITE"}
+    # exact at multiples of 90 degrees, ours may divide by a zero that is rounding elsewhere
+    assert code is None or not math.isfinite(expected) or re.search("sin|cos|tan|floor|ceil|sqrt|/", text)
 
 
 @given(st.floats(-1e6, 1e6), st.sampled_from(["sin", "cos", "tan", "atan"]))
@@ -222,18 +226,21 @@ def test_what_is_not_arithmetic_is_refused_at_its_position(text: str, position: 
 
 @pytest.mark.parametrize("text", ["(" * 99 + "1" + ")" * 99, "+" * 150 + "1", "1" * 200, "1+" * 99 + "1", "9" * 199])
 def test_no_text_of_allowed_length_breaks_the_parser(text: str) -> None:
-    try:
-        parse(text)
-    except ExpressionError as error:
-        assert "nested deeper" in error.message
+    assert code_of(text) in {None, "E_EXPRESSION"}
 
 
 @given(st.text(max_size=MAX_CHARACTERS))
 def test_any_text_is_an_expression_or_an_expression_error(text: str) -> None:
+    assert code_of(text) in {None, "E_EXPRESSION"}
+
+
+def code_of(text: str) -> str | None:
+    """Return the code with which a text is refused; None if it is an expression."""
     try:
         parse(text)
     except ExpressionError as error:
-        assert error.code == "E_EXPRESSION"
+        return error.code
+    return None
 
 
 def test_length_is_bounded() -> None:
