@@ -15,6 +15,7 @@ _MODULE_OF = {
     "Assembly": "assembly",
     "AssemblyPlan": "plan.schema",
     "Attachment": "connectors.attachment",
+    "Budget": "agents.llm",
     "Bundle": "export.bundle",
     "Checks": "interference.check",
     "Connector": "connectors.connector",
@@ -22,17 +23,23 @@ _MODULE_OF = {
     "Finding": "findings",
     "Findings": "findings",
     "Joint": "kinematics.joints",
+    "LiteLLM": "agents.live",
     "MassProperties": "geometry.part",
     "Mechanism": "kinematics.mechanism",
     "Part": "geometry.part",
+    "Replay": "agents.llm",
+    "Run": "run",
     "SE3": "connectors.se3",
+    "Scripted": "agents.llm",
     "TriMesh": "geometry.mesh",
     "ball": "kinematics.declare",
     "build": "assembly",
     "check_plan": "plan.check",
     "cylindrical": "kinematics.declare",
     "fixed": "kinematics.declare",
+    "generate": "agents.pipeline",
     "planar": "kinematics.declare",
+    "replay": "agents.pipeline",
     "revolute": "kinematics.declare",
     "screw": "kinematics.declare",
     "slider": "kinematics.declare",
@@ -61,6 +68,12 @@ def __dir__() -> list[str]:
 
 
 if TYPE_CHECKING:
+    from articad.agents.live import LiteLLM as LiteLLM
+    from articad.agents.llm import Budget as Budget
+    from articad.agents.llm import Replay as Replay
+    from articad.agents.llm import Scripted as Scripted
+    from articad.agents.pipeline import generate as generate
+    from articad.agents.pipeline import replay as replay
     from articad.assembly import Assembly as Assembly
     from articad.assembly import build as build
     from articad.connectors.attachment import Attachment as Attachment
@@ -89,3 +102,4 @@ if TYPE_CHECKING:
     from articad.kinematics.mechanism import Mechanism as Mechanism
     from articad.plan.check import check_plan as check_plan
     from articad.plan.schema import AssemblyPlan as AssemblyPlan
+    from articad.run import Run as Run

@@ -22,6 +22,8 @@ from articad.kernels.kernel import BuildCache, PartKernel
 from articad.kernels.parts import Progress, RealisedPart, build_parts, find_scripts
 from articad.kinematics.joints import Coordinate, Coupling, Joint, JointType
 from articad.kinematics.mechanism import Mechanism
+from articad.kinematics.motion import FeasibleRange, Sweep
+from articad.kinematics.reach import Reach
 from articad.plan.resolve import Fit, Material, ResolvedPlan, Waiver, resolve
 from articad.plan.schema import AssemblyPlan
 
@@ -288,9 +290,33 @@ class Assembly:
         Returns:
             `(6, nv)`: velocity of the frame's origin [mm] over angular velocity [rad], both in the ground frame.
         """
-        if isinstance(frame, str):
-            frame = self.parts[part].connectors[frame].frame
-        return self.mechanism.jacobian(np.asarray(q, dtype=np.float64), part, SE3.identity() if frame is None else frame)
+        return self.mechanism.jacobian(np.asarray(q, dtype=np.float64), part, self._frame(part, frame))
+
+    def motion(self, driver: str, lower: float, upper: float, *, steps: int = 60, at: Mapping[str, float] | None = None) -> Sweep:
+        """Move one driver evenly while the rest of the mechanism follows; see `Mechanism.sweep`.
+
+        Args:
+            driver: Name of a driver.
+            lower: First value [rad, mm].
+            upper: Last value.
+            steps: How many values, both ends included.
+            at: Values of other drivers; at rest by default.
+        """
+        return self.mechanism.sweep(driver, lower, upper, steps, at=at)
+
+    def feasible_range(self, driver: str, *, at: Mapping[str, float] | None = None) -> FeasibleRange:
+        """Return how far a driver can go from rest before a limit, a dead point or a singular pose stops it."""
+        return self.mechanism.feasible_range(driver, at=at)
+
+    def reach(self, part: str, target: SE3 | ArrayLike, frame: SE3 | str | None = None) -> Reach:
+        """Return a configuration within limits that brings a frame to a target, or how near it comes and what stops it.
+
+        Args:
+            part: Name of the part that carries the frame.
+            target: A pose in the ground frame, or a point `(3,)` [mm], which leaves the orientation free.
+            frame: Frame in the part, or the name of one of its connectors; the part's own frame by default.
+        """
+        return self.mechanism.reach(part, target, self._frame(part, frame))
 
     # ------------------------------------------------------------------ what is true of it
 
@@ -326,6 +352,11 @@ class Assembly:
     def __repr__(self) -> str:
         joints = ", ".join(f"{joint.name}: {joint.type}" for joint in self.joints if joint.type is not JointType.FIXED)
         return f"<Assembly {self.name}: {len(self.parts)} parts, {self.mechanism.mobility} freedoms ({joints})>"
+
+    def _frame(self, part: str, frame: SE3 | str | None) -> SE3:
+        if isinstance(frame, str):
+            return self.parts[part][frame].connector.frame
+        return SE3.identity() if frame is None else frame
 
     def _refuse_outside_limits(self, q: FloatArray, names: Iterable[str]) -> None:
         asked = set(names)
