@@ -9,8 +9,10 @@ import argparse
 import contextlib
 import difflib
 import os
+import signal
 import sys
-from collections.abc import Callable, Iterable, Sequence
+import threading
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any, Final, Literal, NamedTuple, NoReturn
 
 from articad import __version__
@@ -30,6 +32,7 @@ FINDINGS: Final = 1
 USAGE: Final = 2
 CANNOT_GO_ON: Final = 3
 INTERRUPTED: Final = 130  # 128 + SIGINT, as shells count
+_PATIENCE_S: Final = 1.0  # for other threads to notice that the program ends
 
 _WRITERS: Final = ("urdf", "mjcf")
 
@@ -544,11 +547,40 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
     terminal = Terminal(as_json=options.as_json, quiet=options.quiet, verbose=options.verbose, color=not options.colorless)
     try:
-        return _run(_COMMANDS[options.command], options, terminal)
+        with _prompt_interrupts(terminal):
+            return _run(_COMMANDS[options.command], options, terminal)
     except BrokenPipeError:  # the reader of our output went away, as `head` does: nothing is left to be said, at exit neither
         with contextlib.suppress(OSError, ValueError):
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return CANNOT_GO_ON
+
+
+@contextlib.contextmanager
+def _prompt_interrupts(terminal: Terminal) -> Iterator[None]:
+    """Make the first Ctrl-C end the program soon, even where threads wait for a part script or a model.
+
+    Python raises KeyboardInterrupt in the main thread, which then waits for the others. What was finished is on the disk,
+    whole, and the kernel's processes die with this one, so there is nothing to wait for.
+    """
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+
+    def leave() -> None:
+        terminal.interrupted()
+        os._exit(INTERRUPTED)
+
+    def interrupt(_signal: int, _frame: object) -> None:
+        timer = threading.Timer(_PATIENCE_S, leave)
+        timer.daemon = True
+        timer.start()
+        raise KeyboardInterrupt
+
+    before = signal.signal(signal.SIGINT, interrupt)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
 
 
 def _run(command: _Command, options: argparse.Namespace, terminal: Terminal) -> int:
@@ -564,7 +596,7 @@ def _run(command: _Command, options: argparse.Namespace, terminal: Terminal) -> 
         terminal.error(error)
         return CANNOT_GO_ON
     except KeyboardInterrupt:
-        terminal.failure(KeyboardInterrupt(), "interrupted; what was finished is kept.")
+        terminal.interrupted()
         return INTERRUPTED
     except BrokenPipeError:
         raise

@@ -150,6 +150,14 @@ class Terminal:
         if self.verbose:
             traceback.print_exception(error, file=self.err)
 
+    def interrupted(self) -> None:
+        """Say that the user stopped the program."""
+        if self._is_watched(self.err):
+            print("\x1b[?25h", end="", file=self.err)  # a bar that was cut off has hidden the cursor
+        self.failure(KeyboardInterrupt(), "interrupted; what was finished is kept.")
+        self.out.flush()
+        self.err.flush()
+
     # ------------------------------------------------------------------ progress
 
     @contextmanager

@@ -3,6 +3,10 @@
 from __future__ import annotations
 
 import json
+import signal
+import subprocess
+import sys
+import time
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -271,3 +275,19 @@ def test_a_spent_budget_stops_the_run_and_the_same_command_goes_on(tmp_path: Pat
     code, finished = report(*command, 2)
     assert code == 0
     assert finished["model"]["calls"] == 2
+
+
+def test_ctrl_c_ends_a_build_at_once_though_a_script_never_ends(chest: Path, tmp_path: Path) -> None:
+    (chest / "parts" / "lid.py").write_text("def build(part):\n    while True:\n        pass\n")
+    (chest / "parts" / "box.py").write_text(f"{BOX}# not in the cache yet\n")
+    command = [sys.executable, "-m", "articad.cli", "build", str(chest), "--out", str(tmp_path / "out")]
+    building = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    assert building.stderr is not None
+    assert "box: built" in building.stderr.readline()  # so the other script is at work
+    building.send_signal(signal.SIGINT)
+    started = time.monotonic()
+    _, told = building.communicate(timeout=60)
+    assert building.returncode == 130
+    assert time.monotonic() - started < 20  # it is 1 s on an idle machine; the script itself would be given 60
+    assert "interrupted" in told
+    assert "Traceback" not in told
