@@ -143,7 +143,7 @@ class Branch:
             return None
         if any(freedoms.start <= moving[0] < freedoms.stop for _, freedoms in layout.balls):
             return None
-        return next(c for c in range(layout.n_columns) if layout.freedom_of(c) == moving[0])
+        return layout.column_of_freedom(int(moving[0]))
 
     def _along_lines(self, step: FloatArray, wanted: FloatArray) -> FloatArray:
         """Follow straight lines in the space of several drivers."""
@@ -152,7 +152,7 @@ class Branch:
             trace = self.follower.trace(self.Q, step[i], 1.0)
             if trace.stop is not Stop.ARRIVED:
                 freedom = int(np.argmax(np.abs(step[i])))
-                column = next(c for c in range(self.system.layout.n_columns) if self.system.layout.freedom_of(c) == freedom)
+                column = self.system.layout.column_of_freedom(freedom)
                 self.refuse(trace, column, float(self.system.move(self.Q, step[i] * trace.end)[column]), float(wanted[i, column]))
             Q[i] = trace.Q_end
         # the drivers' own columns to the last bit
@@ -226,8 +226,10 @@ class Branch:
 
 
 def shown(value: float, unit: str) -> str:
-    """Return a value as findings show it: degrees or mm."""
-    return f"{math.degrees(value):.3f}°" if unit == "rad" else f"{value:.3f} mm"
+    """Return a value as findings show it: degrees, mm, or a plain number."""
+    if unit == "rad":
+        return f"{math.degrees(value):.3f}°"
+    return f"{value:.3f} mm" if unit == "mm" else f"{value:.4f}"
 
 
 def _freedoms(layout: Layout, columns: Sequence[int]) -> list[int]:

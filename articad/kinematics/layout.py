@@ -60,6 +60,12 @@ class Layout:
         start: int = self.freedoms[joint].start
         return start + (0 if self.joint(joint).type is JointType.BALL else column - first)
 
+    def column_of_freedom(self, freedom: int) -> int:
+        """Return a column that a freedom moves; a ball's freedoms give its first three."""
+        joint = next(joint for joint in self.joints if self.freedoms[joint.name].start <= freedom < self.freedoms[joint.name].stop)
+        column: int = self.columns[joint.name].start + freedom - self.freedoms[joint.name].start
+        return column
+
     def normalized(self, Q: FloatArray) -> FloatArray:
         """Return coordinates `(*batch, n_columns)` whose quaternions are of unit length.
 

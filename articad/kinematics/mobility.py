@@ -22,6 +22,7 @@ from articad.kinematics.loops import RANK_TOLERANCE, ClosureSystem
 NEAR_SINGULAR = 1e-3  # σ/σ₁ between the rank tolerance and this is reported: drift, or a dead point nearby
 _TRIES = 10
 _PERTURBATION = 0.3  # rad, or lengths L: along the freedoms, far enough to leave a singular configuration
+_STUCK = 1e-2  # rad, or lengths L: a perturbed configuration that closes nearer than this has not moved
 _INDEPENDENT = 1e-5  # share of a driver's freedom that others do not give already
 _STILL = 1e-7  # rad, or lengths L per unit of motion: a part that moves less stands still
 
@@ -59,12 +60,20 @@ def mobility_of(system: ClosureSystem, Q: FloatArray) -> Mobility:
     first = N.shape[1]
     best, at = N, Q
     rng = np.random.default_rng(0)
+    stuck = moved = 0
     for _ in range(_TRIES if first else 0):
         closed = system.close(system.move(Q, _PERTURBATION * (N @ rng.standard_normal(first))), system.active)
-        if closed.ok:
-            there, _ = motions(system, closed.Q)
-            if there.shape[1] < best.shape[1]:
-                best, at = there, closed.Q
+        if not closed.ok:
+            continue
+        if np.abs(system.step_between(Q, closed.Q)).max() < _STUCK:
+            stuck += 1
+            continue
+        moved += 1
+        there, _ = motions(system, closed.Q)
+        if there.shape[1] < best.shape[1]:
+            best, at = there, closed.Q
+    if stuck and not moved:  # every try fell back to where it began: it moves to first order only
+        best, at = N[:, :0], Q
     n_active = int(system.active.sum())
     near = float(nonzero.min()) if nonzero.size else 1.0
     return Mobility(best.shape[1], first, n_active - best.shape[1], at, best, near)
@@ -139,6 +148,8 @@ def _extended(basis: Sequence[FloatArray], rows: Sequence[FloatArray]) -> list[F
 def idle_parts(system: ClosureSystem, mobility: Mobility) -> tuple[tuple[str, ...], ...]:
     """Return parts, or pairs that a joint connects, which can move while everything else stands still."""
     arrays = system.arrays
+    if not mobility.mobility:
+        return ()
     names = list(system.parts)
     T = arrays.matrices(mobility.Q[None])
     v0, omega = arrays.twists(T, mobility.Q[None])

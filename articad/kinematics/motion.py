@@ -260,10 +260,10 @@ def _range_findings(c: Coordinate, lower: float, upper: float, lower_reason: str
 
 def _stop_finding(track: Track, c: Coordinate, asked: float) -> Finding | None:
     trace = track.side(asked)
-    if trace.stop is Stop.ARRIVED:
-        return None
     sign = 1 if asked >= track.start else -1
     end = track.value(sign, trace.end)
+    if trace.stop is Stop.ARRIVED or sign * (end - asked) >= 0:
+        return None
     code = "E_DEAD_POINT" if trace.stop is Stop.DEAD_POINT else "E_SINGULAR"
     message = f"driver {c.name!r} was asked for {shown(asked, c.unit)} but the loop reaches only {shown(end, c.unit)}."
     return Finding(code=code, where=f"joints.{c.joint}", message=message, hint="Stay on this side of it.", value=end, unit=c.unit)

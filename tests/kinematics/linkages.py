@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from articad.connectors import SE3, Mate
+from articad.connectors import SE3, Mate, flip
 from articad.kinematics import Coupling, Joint, JointLimits, JointType, Mechanism
 
 ENDLESS = (-math.inf, math.inf)
@@ -129,7 +129,30 @@ def scissor(stages: int, half: float = 100.0, *, phi: float = math.radians(15)) 
             joints.append(joint(f"left{i}", "revolute", (f"b{i - 1}", at(2 * half)), (a, at(0)), rest=[2 * phi - math.pi]))
             joints.append(joint(f"right{i}", "revolute", (f"a{i - 1}", at(2 * half)), (b, at(0)), rest=[math.pi - 2 * phi]))
         joints.append(joint(f"cross{i}", "revolute", (a, at(half)), (b, at(half)), rest=[math.pi - 2 * phi]))
+    last = stages - 1
+    parts += ["platform", "top_shoe"]  # carried by the upper end of b, level by the upper end of a in a second shoe
+    joints.append(joint("top_left", "revolute", (f"b{last}", at(2 * half)), ("platform", at(0)), rest=[phi - math.pi]))
+    joints.append(joint("top_right", "revolute", (f"a{last}", at(2 * half)), ("top_shoe", at(0)), rest=[-phi]))
+    joints.append(joint("top_slide", "slider", ("platform", foot), ("top_shoe", foot), rest=[2 * half * math.cos(phi)]))
     return Mechanism(parts, "base", joints)
+
+
+def from_rest(
+    name: str,
+    kind: str,
+    parent: str,
+    child: str,
+    W: SE3,
+    *,
+    rest: Sequence[float] | np.ndarray | None = None,
+    driver: bool = False,
+    mate: Mate = Mate.ALIGNED,
+    lead: float = 0.0,
+) -> Joint:
+    """Return a joint at the world frame W between parts whose frames are all the world's at rest: it is closed by construction."""
+    values = tuple(rest) if rest is not None else JointType(kind).neutral
+    C_c = W @ JointType(kind).motion(values, lead) @ flip(mate)
+    return joint(name, kind, (parent, W), (child, C_c), rest=values, driver=driver, mate=mate, lead=lead)
 
 
 def circles(p: np.ndarray, rp: float, q: np.ndarray, rq: float, branch: int) -> np.ndarray:
@@ -142,37 +165,82 @@ def circles(p: np.ndarray, rp: float, q: np.ndarray, rq: float, branch: int) -> 
     return meet
 
 
-def bennett(a: float = 100.0, b: float = 60.0, alpha: float = math.radians(50)) -> Mechanism:
-    """The skew four-bar that moves against all counting: sin β / b = sin α / a."""
+def watt(crank: float = math.radians(60), branch: tuple[int, int] = (1, 1)) -> Mechanism:
+    """A six-bar: the four-bar 30/90/70/100, a point (60, 40) of its coupler and one (90, -20) of its rocker carry links of 60 and 50."""
+    plain = four_bar(crank=crank, branch=branch[0])
+    coupler, rocker = four_bar_angles(30, 90, 70, 100, crank, branch[0])
+    p5 = np.array([30 * math.cos(crank), 30 * math.sin(crank)]) + turned(coupler, (60, 40))
+    p6 = np.array([100.0, 0.0]) + turned(rocker, (90, -20))
+    pin = circles(p5, 60, p6, 50, branch[1])
+    link5, link6 = (math.atan2(*(pin - p)[::-1]) for p in (p5, p6))
+    joints = [
+        *plain.joints,
+        joint("pin_5", "revolute", ("coupler", at(60, 40)), ("link5", at(0)), rest=[link5 - coupler]),
+        joint("pin_6", "revolute", ("rocker", at(90, -20)), ("link6", at(0)), rest=[link6 - rocker]),
+        joint("pin_7", "revolute", ("link5", at(60)), ("link6", at(50)), rest=[link6 - link5]),
+    ]
+    return Mechanism((*plain.parts, "link5", "link6"), "frame", joints)
+
+
+def turned(angle: float, p: tuple[float, float]) -> np.ndarray:
+    c, s = math.cos(angle), math.sin(angle)
+    return np.array([c * p[0] - s * p[1], s * p[0] + c * p[1]])
+
+
+STEWART_BASE = [at(100 * math.cos(a), 100 * math.sin(a)) for a in np.radians([-10, 10, 110, 130, 230, 250])]
+STEWART_TOP = [at(60 * math.cos(a), 60 * math.sin(a)) for a in np.radians([-50, 50, 70, 170, 190, 290])]
+
+
+def stewart(kind: str = "universal", height: float = 120.0) -> Mechanism:
+    """Six legs, each a universal (or ball) below, a driven slider and a ball above; rest above the centre."""
+    parts, joints = ["base", "top"], []
+    for i, (b, p) in enumerate(zip(STEWART_BASE, STEWART_TOP, strict=True)):
+        foot, head = b.translation, p.translation + np.array([0, 0, height])
+        W = SE3.from_axes(foot, head - foot)
+        length = float(np.linalg.norm(head - foot))
+        parts += [f"lower{i}", f"upper{i}"]
+        joints.append(from_rest(f"foot{i}", kind, "base", f"lower{i}", W))
+        joints.append(from_rest(f"leg{i}", "slider", f"lower{i}", f"upper{i}", W, rest=[length], driver=True))
+        joints.append(from_rest(f"head{i}", "ball", f"upper{i}", "top", SE3.from_axes(head, head - foot)))
+    return Mechanism(parts, "base", joints)
+
+
+def stewart_legs(T: SE3) -> np.ndarray:
+    """Return the leg lengths (6,) that hold the platform at T."""
+    return np.array([np.linalg.norm(T.apply(p.translation) - b.translation) for b, p in zip(STEWART_BASE, STEWART_TOP, strict=True)])
+
+
+def bennett(theta: float = 1.0, a: float = 100.0, b: float = 60.0, alpha: float = math.radians(50)) -> Mechanism:
+    """The skew four-bar that moves against all counting: sin β / b = sin α / a.
+
+    Neighbouring angles have tan(θ/2) tan(φ/2) = sin((α + β)/2) / sin((α − β)/2) but for sign, opposite ones are equal.
+    """
     beta = math.asin(b / a * math.sin(alpha))
+    phi = -2 * math.atan(math.sin((alpha + beta) / 2) / math.sin((alpha - beta) / 2) / math.tan(theta / 2))
     links = [(a, alpha), (b, beta), (a, alpha), (b, beta)]
-    parts = tuple(f"l{i}" for i in range(4))
     joints = []
-    for i in range(4):
-        length, twist = links[i]
+    for i, (length, twist) in enumerate(links):
         far = at(length) @ SE3.rot_x(twist)
-        joints.append(joint(f"j{i}", "revolute", (parts[i], far), (parts[(i + 1) % 4], at(0)), rest=[0.5], driver=i == 0))
-    return Mechanism(parts, "l0", joints)
+        rest = theta if i % 2 == 0 else phi
+        joints.append(joint(f"j{i}", "revolute", (f"l{i}", far), (f"l{(i + 1) % 4}", at(0)), rest=[rest], driver=i == 0))
+    return Mechanism(tuple(f"l{i}" for i in range(4)), "l0", joints)
 
 
-def bennett_closed(theta: float = 1.0) -> Mechanism:
-    """A Bennett linkage whose rest closes: opposite angles θ, φ with tan(θ/2) tan(φ/2) = sin((β + α)/2) / sin((β − α)/2)."""
-    a, b, alpha = 100.0, 60.0, math.radians(50)
-    beta = math.asin(b / a * math.sin(alpha))
-    phi = 2 * math.atan(math.sin((beta + alpha) / 2) / math.sin((beta - alpha) / 2) / math.tan(theta / 2))
-    open_ = bennett(a, b, alpha)
-    joints = [Joint(**{**j.__dict__, "rest": (theta if i % 2 == 0 else phi,)}) for i, j in enumerate(open_.joints)]
-    return Mechanism(open_.parts, "l0", joints)
+def parallelogram(crank: float = 1.0) -> Mechanism:
+    """A four-bar 30/80/30/80, flat at crank 0."""
+    return four_bar(30, 80, 30, 80, crank=crank)
 
 
-BASE = [
-    (80.0, 20.0),
-    (-22.67949192, 79.28203230),
-    (-57.32050808, 59.28203230),
-    (-57.32050808, -59.28203230),
-    (-22.67949192, -79.28203230),
-    (80.0, -20.0),
-]
+def misaligned(tilt: float) -> Mechanism:
+    """A four-bar that closes at rest, but one of its axes is tilted [rad] against the others."""
+    a, b, c, d = ((0.0, 0.0), (15.0, 25.98), (93.66, 69.7), (100.0, 0.0))
+    frames = [SE3.trans(*a, 0), SE3.trans(*b, 0), SE3.trans(*c, 0) @ SE3.rot_x(tilt), SE3.trans(*d, 0)]
+    names = ["frame", "crank", "coupler", "rocker", "frame"]
+    joints = [
+        from_rest(n, "revolute", names[i], names[i + 1], frames[i], driver=i == 0)
+        for i, n in enumerate(("crank", "pin_b", "pin_c", "rocker"))
+    ]
+    return Mechanism(names[:4], "frame", joints)
 
 
 def geared_four_bar() -> Mechanism:
@@ -184,3 +252,29 @@ def geared_four_bar() -> Mechanism:
     ]
     mesh = Coupling("mesh", "gear", "motor", "crank", -20 / 40, math.radians(60))
     return Mechanism(("frame", "pinion", "crank", "coupler", "rocker"), "frame", joints, [mesh])
+
+
+def gear_train() -> Mechanism:
+    """Two gears of 20 and 30 teeth, and a rack of module 2 on the second: no loop, two couplings."""
+    joints = [
+        joint("gear_a", "revolute", ("frame", at(0)), ("a", at(0))),
+        joint("gear_b", "revolute", ("frame", at(50)), ("b", at(0)), rest=[0.1]),
+        joint("rack", "slider", ("frame", SE3.from_axes((50, 30, 0), (1, 0, 0))), ("rack", SE3.from_axes((0, 0, 0), (1, 0, 0)))),
+    ]
+    couplings = [Coupling("mesh", "gear", "gear_a", "gear_b", -20 / 30, 0.1), Coupling("pinion", "rack", "gear_b", "rack", 30.0, -3.0)]
+    return Mechanism(("frame", "a", "b", "rack"), "frame", joints, couplings)
+
+
+def mismatch(mechanism: Mechanism, q: np.ndarray) -> tuple[float, float]:
+    """Return the largest [mm] and [rad] by which any joint misses `T_child C_c = T_parent C_p J F` at q: shares nothing with the solver."""
+    T = dict(zip(mechanism.parts, mechanism.poses(q), strict=True))
+    values = mechanism.configuration(q)
+    worst = np.zeros(2)
+    for j in mechanism.joints:
+        here = T[j.parent] @ j.T_parent_connector @ j.motion(values[j.name]) @ flip(j.mate)
+        there = T[j.child] @ j.T_child_connector
+        worst = np.maximum(worst, [here.distance_to(there), here.angle_to(there)])
+    for c in mechanism.couplings:
+        columns = {k.name: v for k, v in zip(mechanism.coordinates, values.columns, strict=True)}
+        worst[1] = max(worst[1], abs(columns[c.b] - c.ratio * columns[c.a] - c.offset))
+    return float(worst[0]), float(worst[1])
