@@ -144,9 +144,8 @@ def test_parts_out_of_focus_are_faded_and_highlights_are_red(rail: Assembly) -> 
 
     base = (45, 20)  # row, column: on the base, away from the cube
     assert faded[base].sum() > plain[base].sum() + 60, "nearer to paper"
-    red = (marked[..., 0] > 180) & (marked[..., 1] < 100)
-    assert red.sum() > 20
-    assert not ((plain[..., 0] > 180) & (plain[..., 1] < 100)).any()
+    red_before, red_after = (int(((image[..., 0] > 180) & (image[..., 1] < 100)).sum()) for image in (plain, marked))
+    assert red_after > red_before + 20
 
 
 def test_an_exploded_view_moves_parts_apart(rail: Assembly) -> None:
