@@ -140,7 +140,7 @@ def test_sheets_put_pictures_side_by_side(rail: Assembly) -> None:
 def test_parts_out_of_focus_are_faded_and_highlights_are_red(rail: Assembly) -> None:
     plain = np.asarray(render_views(rail, ["front"], size=80, labels=False, axes=False)["front"]).astype(int)
     faded = np.asarray(render_views(rail, ["front"], size=80, labels=False, axes=False, only=["cube"])["front"]).astype(int)
-    marked = np.asarray(render_views(rail, ["front"], size=80, labels=False, axes=False, highlights=[sphere(6)])["front"]).astype(int)
+    marked = np.asarray(render_views(rail, ["front"], size=80, labels=False, axes=False, highlights=[sphere(9)])["front"]).astype(int)
 
     base = (45, 20)  # row, column: on the base, away from the cube
     assert faded[base].sum() > plain[base].sum() + 60, "nearer to paper"
