@@ -8,7 +8,7 @@ from collections import defaultdict
 
 import numpy as np
 
-from articad.connectors import FloatArray
+from articad.connectors import SE3
 from articad.findings import Finding
 from articad.kinematics.joints import Joint, JointLimits, JointType
 from articad.plan.draft import Draft
@@ -212,14 +212,10 @@ def _limits_text(joint: Joint, limits: JointLimits) -> str:
 
 def scale_findings(draft: Draft) -> list[Finding]:
     """Return E_SCALE if the assembly's diagonal is that of a grain of dust or of a county."""
-    origins = [
-        part.T.apply(connector.frame.translation)
-        for part in draft.parts.values()
-        if part.T is not None
-        for connector in part.connectors.values()
-    ]
+    at = [(part.T, connector.frame) for part in draft.parts.values() if part.T is not None for connector in part.connectors.values()]
+    origins = SE3.stack([T for T, _ in at]).apply(np.array([frame.translation for _, frame in at])) if at else np.zeros((1, 3))
     diagonals = [math.hypot(*sides) for sides in draft.envelopes.values() if not any(map(math.isnan, sides))]
-    size = max([_extent(np.array(origins)) if origins else 0.0, *diagonals])
+    size = max([float(np.linalg.norm(np.ptp(origins, axis=0))), *diagonals])
     if size <= OFFSET_MM or SMALLEST_MM <= size <= LARGEST_MM:  # all connectors in one point say nothing of the size
         return []
     small = size < SMALLEST_MM
@@ -227,7 +223,3 @@ def scale_findings(draft: Draft) -> list[Finding]:
     message = f"The assembly is {size:.6g} mm across."
     limit = SMALLEST_MM if small else LARGEST_MM
     return [Finding(code="E_SCALE", where="plan", message=message, hint=hint, value=size, limit=limit, unit="mm")]
-
-
-def _extent(points: FloatArray) -> float:
-    return float(np.linalg.norm(points.max(axis=0) - points.min(axis=0)))

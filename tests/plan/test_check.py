@@ -880,3 +880,80 @@ def test_no_plan_of_the_form_makes_the_check_raise(data: st.DataObject) -> None:
     findings = check_plan(read)
     assert findings.to_json()["ok"] == findings.ok
     assert check_plan(read) == findings
+
+
+# ---------------------------------------------------------------- corners
+
+
+def test_a_parameter_that_cannot_be_read_is_reported_once() -> None:
+    plan = chest()
+    plan["parameters"].append({"name": "half", "value": "width /"})
+    part(plan, "box")["dimensions"]["half"] = "half"
+    finding = only(check(plan), "E_EXPRESSION")
+    assert finding.where == "parameters.half.value"
+    assert len(check(plan)) == 1
+
+
+def test_two_parameters_that_share_a_broken_one_name_only_that() -> None:
+    plan = chest()
+    plan["parameters"] += [{"name": "a", "value": "b + c"}, {"name": "b", "value": "c"}, {"name": "c", "value": "nothing"}]
+    assert [finding.where for finding in check(plan)] == ["parameters.c.value"]
+
+
+def test_a_derived_joint_names_the_sources_own_connector() -> None:
+    plan = document("wardrobe")
+    part(plan, "drawer_lower")["connectors"].append({"name": "other", "o": [0, 0, 0], "z": [0, -1, 0], "x": [1, 0, 0], "label": ""})
+    joint(plan, "slide_upper")["child"] = "drawer_upper.other"
+    finding = only(check(plan), "E_DERIVE_JOINT")
+    assert finding.hint == "Set child to drawer_upper.slide, or declare the joint in full."
+    assert finding.parts == ("drawer_upper", "drawer_lower")
+
+
+def test_a_derived_joint_without_any_image_is_to_be_declared_in_full() -> None:
+    plan = chest()
+    boards(plan)
+    plan["joints"].append({"name": "k", "derive": {"from": "hinge", "op": "rigid"}, "parent": "box.hinge", "child": "shelf.s"})
+    assert only(check(plan), "E_DERIVE_JOINT").hint == "Declare the joint in full, with its own type and limits."
+    joint(plan, "k")["child"] = "shlf.s"
+    assert check(plan).codes[0] == "E_PART_UNKNOWN"
+
+
+def test_a_part_that_derives_from_a_broken_one_is_not_reported_again() -> None:
+    plan = document("wardrobe")
+    part(plan, "door_right")["derive"]["from"] = "nothing"
+    plan["parts"].append({"name": "copy", "derive": {"from": "door_right", "op": "rigid", "move": {}}})
+    assert len(check(plan).of("E_DERIVE_UNKNOWN")) == 1
+
+
+def test_numbers_of_a_joint_that_fail_leave_the_others_judged() -> None:
+    plan = pair({"type": "ball", "cone_deg": "1 / 0", "twist_deg": [0, "sqrt(-1)"]}, 3)
+    assert {finding.where for finding in check(plan)} == {"joints.j.cone_deg", "joints.j.twist_deg[1]"}
+    plan = pair({"type": "revolute", "angle_deg": [0, 90], "velocity_deg_s": "x", "fit": {"gap_mm": [0, 1], "within_mm": 3}}, 1)
+    assert check(plan).codes == ("E_EXPRESSION",)
+
+
+def test_a_coupling_of_a_joint_whose_numbers_fail_is_left_alone() -> None:
+    plan = gears(type="gear", teeth=[1, 2], **TURNING)
+    joint(plan, "turn_large")["angle_deg"] = [0, "1 / 0"]
+    assert check(plan).codes == ("E_NONFINITE",)
+    plan = gears(type="gear", teeth=[1, "1 / 0"], **TURNING)
+    assert check(plan).codes == ("E_NONFINITE",)
+    plan = gears(type="gear", teeth=[1, 2], **TURNING)
+    part(plan, "frame")["rest_pose"] = {"axis": [0, 0, 0]}
+    assert check(plan).codes == ("E_AXIS_ZERO",)
+
+
+def test_what_a_joint_of_another_type_ties_is_described() -> None:
+    plan = gears(type="belt", radii_mm=[1, 2], joints=["turn_small", "slide.a"])
+    joint(plan, "slide").update(type="universal", a_deg=[-9, 9], b_deg=[-9, 9])
+    del joint(plan, "slide")["travel_mm"]
+    assert "slide.a is angle a of a universal joint" in only(check(plan), "E_COUPLING").message
+    plan = gears(type="rack", module_mm=1, teeth=9, **TURNING)
+    assert "turn_large is an angle about z" in only(check(plan), "E_COUPLING").message
+
+
+def test_numbers_that_nothing_has_are_refused() -> None:
+    plan = chest()
+    connector(plan, "box", "hinge")["o"] = [1e300, 0, 0]
+    finding = only(check(plan), "E_SCALE")
+    assert (finding.where, finding.value, finding.limit) == ("parts.box.connectors.hinge.o[0]", 1e300, 1e12)
