@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pytest
 from lxml import etree
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
@@ -142,8 +143,7 @@ class MujocoMjcf:
 
 def bullet_poses(path: Path, values: Mapping[str, float]) -> dict[str, FloatArray]:
     """Poses of a URDF as PyBullet reads it."""
-    import pybullet
-
+    pybullet = pytest.importorskip("pybullet", reason="PyBullet has no wheel for this Python")
     client = pybullet.connect(pybullet.DIRECT)
     try:
         body = pybullet.loadURDF(str(path), useFixedBase=True, physicsClientId=client)
