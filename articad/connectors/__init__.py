@@ -3,6 +3,7 @@
 Lengths are millimetres, angles radians. Names of frames: `T_a_b` maps coordinates of frame b into frame a.
 """
 
+from articad.connectors.attachment import Attachment
 from articad.connectors.connector import Connector, Drift, Plane
 from articad.connectors.mate import FLIP, Mate, child_pose, drift_of, flip, parent_pose, rest_mismatch
 from articad.connectors.quaternion import FloatArray
@@ -11,6 +12,7 @@ from articad.connectors.se3 import SE3, axis_findings, world_x
 __all__ = [
     "FLIP",
     "SE3",
+    "Attachment",
     "Connector",
     "Drift",
     "FloatArray",

@@ -1,0 +1,134 @@
+"""Interleaved timing: every method of a table is measured in turn in one process, so that ratios mean something on a busy machine."""
+
+from __future__ import annotations
+
+import gc
+import json
+import platform
+import statistics
+import sys
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+
+ROUNDS = 15
+ROUND_SECONDS = 0.05  # each method runs at least this long in a round
+
+
+@dataclass(frozen=True)
+class Goal:
+    """What a method's median is held against: at most (or at least) so many times another's."""
+
+    method: str
+    beside: str
+    at_most: float | None = None
+    at_least: float | None = None
+
+
+@dataclass(frozen=True)
+class Table:
+    """Medians of one measurement, and what was asked of them.
+
+    Attributes:
+        title: What was measured.
+        seconds: Median of one call by method.
+        goals: Ratios asked for.
+        notes: What else is worth knowing, one line each.
+    """
+
+    title: str
+    seconds: Mapping[str, float]
+    goals: tuple[Goal, ...] = ()
+    notes: tuple[str, ...] = ()
+
+    def ratio(self, goal: Goal) -> float:
+        """Return how many times the peer's median the method takes (for at_least: the peer takes of the method's)."""
+        if goal.at_least is not None:
+            return self.seconds[goal.beside] / self.seconds[goal.method]
+        return self.seconds[goal.method] / self.seconds[goal.beside]
+
+    def met(self, goal: Goal) -> bool:
+        """Whether the goal is met."""
+        ratio = self.ratio(goal)
+        return (goal.at_most is None or ratio <= goal.at_most) and (goal.at_least is None or ratio >= goal.at_least)
+
+    def print(self) -> None:
+        """Print the table and its goals."""
+        print(f"\n{self.title}")
+        width = max(map(len, self.seconds))
+        fastest = min(self.seconds.values())
+        for method, seconds in self.seconds.items():
+            print(f"  {method:<{width}}  {_shown(seconds):>10}  {seconds / fastest:8.2f}x")
+        for goal in self.goals:
+            if goal.at_least is not None:
+                asked, said = f">= {goal.at_least:g}x", f"{goal.beside} takes {self.ratio(goal):.2f}x of {goal.method}"
+            else:
+                asked, said = f"<= {goal.at_most:g}x", f"{goal.method} takes {self.ratio(goal):.2f}x of {goal.beside}"
+            print(f"  {'met   ' if self.met(goal) else 'MISSED'} {said} (goal {asked})")
+        for note in self.notes:
+            print(f"  {note}")
+
+    def to_json(self) -> dict[str, object]:
+        """Return the table for a file."""
+        return {
+            "title": self.title,
+            "seconds": dict(self.seconds),
+            "goals": [goal.__dict__ | {"ratio": self.ratio(goal), "met": self.met(goal)} for goal in self.goals],
+            "notes": list(self.notes),
+        }
+
+
+def measure(methods: Mapping[str, Callable[[], object]], *, rounds: int = ROUNDS) -> dict[str, float]:
+    """Return the median time of one call of each method [s], all measured in interleaved rounds."""
+    repeats = {}
+    for name, method in methods.items():
+        method()  # caches, lazy imports
+        start = time.perf_counter()
+        method()
+        repeats[name] = max(1, round(ROUND_SECONDS / max(time.perf_counter() - start, 1e-9)))
+    times: dict[str, list[float]] = {name: [] for name in methods}
+    gc.disable()
+    try:
+        for _ in range(rounds):
+            for name, method in methods.items():
+                start = time.perf_counter()
+                for _ in range(repeats[name]):
+                    method()
+                times[name].append((time.perf_counter() - start) / repeats[name])
+            gc.collect()
+    finally:
+        gc.enable()
+    return {name: statistics.median(values) for name, values in times.items()}
+
+
+def report(tables: list[Table], out: str | None = None) -> int:
+    """Print tables and the machine, write JSON if asked for, and return how many goals were missed."""
+    print(machine())
+    for table in tables:
+        table.print()
+    missed = sum(not table.met(goal) for table in tables for goal in table.goals)
+    asked = sum(len(table.goals) for table in tables)
+    print(f"\n{asked - missed} of {asked} goals met")
+    if out is not None:
+        Path(out).write_text(json.dumps({"machine": machine(), "tables": [table.to_json() for table in tables]}, indent=1))
+    return missed
+
+
+def machine() -> str:
+    """Return what was measured on: processor, Python, and the packages that matter."""
+    packages = []
+    for name in ("numpy", "pin", "mujoco", "python-fcl", "manifold3d", "trimesh", "embreex"):
+        try:
+            packages.append(f"{name} {version(name)}")
+        except PackageNotFoundError:
+            packages.append(f"{name} absent")
+    return f"{platform.machine()} {platform.system()}, Python {sys.version.split()[0]}, {', '.join(packages)}"
+
+
+def _shown(seconds: float) -> str:
+    for unit, scale in (("s", 1.0), ("ms", 1e-3), ("µs", 1e-6)):
+        if seconds >= scale:
+            return f"{seconds / scale:.3g} {unit}"
+    return f"{seconds / 1e-9:.3g} ns"
