@@ -251,7 +251,8 @@ class _Certifying:
         if collides:
             self.findings.append(self._collision(parts, joints, proof, looks, collides[0]))
             self._note_ranges(joints, proof)
-            self.claims += proof.claims
+            if proof.width() > 0:  # of a single coordinate the part before the collision is proven
+                self.claims += proof.claims
         else:
             self.findings += found
             if check.strength.kind != "waived":

@@ -192,7 +192,10 @@ class Chain:
             mover = self.movers[at]
             cloud = cloud.moved(constants[at + 1]) if towards_a else cloud.moved(_inverse(constants[at]))
             bounds = [(self.freedoms[c].lower, self.freedoms[c].upper) for c in mover.columns]
-            reach[list(mover.columns)] = _reach_of_joint(mover.joint, cloud, bounds)
+            speeds = _reach_of_joint(mover.joint, cloud, bounds)
+            if mover.joint.type is JointType.BALL and towards_a is mover.forward:
+                speeds[2] = cloud.from_axis  # the twist comes before the swing, so that here its axis stands still
+            reach[list(mover.columns)] = speeds
             cloud = cloud.shaken(_largest_travel(mover.joint, bounds))
         return reach
 

@@ -1,0 +1,553 @@
+"""Certified motion: known first contacts, what sampling misses, budgets; and a checker that refutes planted lies."""
+
+from __future__ import annotations
+
+import ast
+import copy
+import io
+import json
+import math
+import tokenize
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import manifold3d as m3
+import numpy as np
+import pytest
+
+from articad import verify_certificate
+from articad.connectors import SE3
+from articad.geometry import TriMesh, box, cylinder, merged, sphere, tube
+from articad.interference.certificate import Certificate, certify
+from articad.interference.check import check_pose
+from articad.interference.cover import Budget, cover_box, cover_line
+from articad.interference.motion import Chain, motion_matrix
+from articad.interference.proof import Prover
+from articad.interference.scene import Scene
+from articad.kinematics.joints import Joint, JointType
+from articad.kinematics.mechanism import Mechanism
+from articad.kinematics.tree import Edge, KinematicTree
+from articad.verify_certificate import verify, verify_file
+from tests.interference.mechanisms import (
+    IDENTITY,
+    Waiver,
+    at,
+    block_with_bore,
+    fixed,
+    joint,
+    manifold_mesh,
+    random_rotation,
+    without_triangle,
+)
+
+Z_DOWN_Y = SE3.from_axes([0.0, 0, 0], [0.0, -1, 0], [1.0, 0, 0])
+
+
+def proven(meshes: Mapping[str, TriMesh], connections: Sequence[Joint], *, bare: tuple[str, ...] = (), **options: Any) -> Certificate:
+    parts = (*bare, *meshes)
+    return certify(meshes, Mechanism(parts, parts[0], connections), **options)
+
+
+def refutations(certificate: Certificate, change: Callable[[dict[str, Any]], object] | None = None) -> list[str]:
+    document = json.loads(json.dumps(certificate.to_json()))
+    if change is not None:
+        document = copy.deepcopy(document)
+        change(document)
+    return verify(document, {name: (mesh.vertices, mesh.triangles) for name, mesh in certificate.meshes.items()})
+
+
+def bar_and_post() -> tuple[dict[str, TriMesh], float]:
+    """A bar 200 x 4 from the axis, and a post of diameter 0.2 at 150 mm and 45°; and the exact angle of first contact."""
+    n, r, reach, half = 64, 0.1, 150.0, 2.0
+    bar = box(200, 2 * half, 4, center=False).transformed(at(0, -half, -2))
+    post = cylinder(r, 60, n, phase=0.1).transformed(at(reach * math.cos(math.pi / 4), reach * math.sin(math.pi / 4)))
+    # the bar's upper edge y = half turns by q until the lowest vertex of the post, seen from the bar, is on it
+    corner = post.vertices[:, :2]
+
+    def clearance(q: float) -> float:
+        return float((-math.sin(q) * corner[:, 0] + math.cos(q) * corner[:, 1]).min() - half)
+
+    low, high = 0.0, math.pi / 4
+    for _ in range(80):
+        middle = (low + high) / 2
+        low, high = (middle, high) if clearance(middle) > 0 else (low, middle)
+    return {"post": post, "bar": bar}, low
+
+
+def hinge_with_stop(clearance: float = 0.0) -> dict[str, TriMesh]:
+    """An arm on a pin, and a stop that its edge meets."""
+    pin = m3.Manifold.cylinder(30, 5, 5, 64, center=True)
+    stop = m3.Manifold.cube([10, 10, 40], center=True).translate([-40, 0, 0])
+    foot = m3.Manifold.cube([60, 10, 10], center=True).translate([-20, 0, -20])
+    arm = m3.Manifold.cube([60, 10, 10]).translate([0, -5, -5]) + m3.Manifold.cylinder(10, 9, 9, 64, center=True)
+    bore = m3.Manifold.cylinder(30, 5 + clearance, 5 + clearance, 64, center=True)
+    return {"base": manifold_mesh(pin + stop + foot), "arm": manifold_mesh(arm - bore)}
+
+
+HINGE = joint("hinge", "revolute", "base", "arm")
+
+
+# --- first contact
+
+
+def test_the_first_contact_of_a_bar_with_a_post_is_exact_for_the_meshes() -> None:
+    meshes, exact = bar_and_post()
+    certificate = proven(meshes, [joint("turn", "revolute", "post", "bar", lower=(0.0,), upper=(6.0,))])
+    (finding,) = certificate.findings
+    assert finding.code == "E_MOTION_COLLISION"
+    assert finding.value == pytest.approx(exact, abs=1e-4)
+    assert certificate.ranges[0].lower == 0.0
+    assert exact - 1e-4 < certificate.ranges[0].upper <= exact
+    assert not certificate.ok
+    assert refutations(certificate) == []  # what is claimed, up to the contact, still holds
+
+
+def test_with_deflection_the_solids_contact_is_an_interval_whose_width_is_printed() -> None:
+    meshes, exact = bar_and_post()
+    certificate = proven(meshes, [joint("turn", "revolute", "post", "bar", lower=(0.0,), upper=(6.0,))], deflection=0.05)
+    (finding,) = certificate.findings
+    assert certificate.ranges[0].upper < exact - 0.09 / 150
+    assert finding.value == pytest.approx(exact, abs=1e-4)
+    assert "an interval of" in finding.message
+
+
+def test_a_hinge_in_contact_is_free_up_to_its_stop() -> None:
+    certificate = proven(hinge_with_stop(), [HINGE], deflection=0.01)
+    (finding,) = certificate.findings
+    # the arm's far edge (60, ±5) meets the stop's near face or edge; the exact angle is where the two edges cross
+    assert finding.code == "E_MOTION_COLLISION"
+    exact = _angle_of_first_overlap(hinge_with_stop())
+    assert abs(abs(finding.value or 0.0) - exact) < 1e-4
+    (known,) = certificate.ranges
+    assert known.upper < exact
+    assert known.lower > -exact
+    assert known.upper > exact - 0.01
+    inside = joint("hinge", "revolute", "base", "arm", lower=(known.lower + 1e-3,), upper=(known.upper - 1e-3,))
+    again = proven(hinge_with_stop(), [inside], deflection=0.01)
+    assert again.ok
+    assert refutations(again) == []
+
+
+def _angle_of_first_overlap(meshes: Mapping[str, TriMesh]) -> float:
+    """Where the solids beyond the pin begin to overlap, by bisection with booleans of bare boxes."""
+    stop = m3.Manifold.cube([10, 10, 40], center=True).translate([-40, 0, 0])
+    arm = m3.Manifold.cube([60, 10, 10]).translate([0, -5, -5])
+    low, high = 2.0, math.pi
+    for _ in range(50):
+        middle = (low + high) / 2
+        hit = (arm.rotate([0, 0, math.degrees(middle)]) ^ stop).volume() > 0
+        low, high = (low, middle) if hit else (middle, high)
+    return low
+
+
+@pytest.mark.parametrize("step", [math.radians(5), math.radians(1)])
+def test_a_thin_door_meets_a_wire_that_samples_miss(step: float) -> None:
+    wire = cylinder(0.05, 100, 12).transformed(at(200 * math.cos(1.234), 200 * math.sin(1.234)))
+    door = box(250, 0.2, 50, center=False).transformed(at(0, -0.1, -25))
+    joints = [fixed("held", "frame", "wire"), joint("swing", "revolute", "frame", "door", lower=(0.0,), upper=(2.0,))]
+    sampled = [
+        check_pose({"wire": wire, "door": door}, {"wire": IDENTITY, "door": SE3.rot_z(q)}, joints=[], over="pose").ok
+        for q in np.arange(0, 2.0, step)
+    ]
+    assert all(sampled)
+    certificate = proven({"wire": wire, "door": door}, joints, bare=("frame",))
+    (finding,) = certificate.findings
+    assert finding.code == "E_MOTION_COLLISION"
+    assert finding.value == pytest.approx(1.234 - 0.15 / 200, abs=1e-4)
+
+
+def test_a_part_that_starts_inside_another_is_not_certified() -> None:
+    certificate = proven({"case": box(100, 100, 100), "core": box(5, 5, 5)}, [joint("spin", "revolute", "case", "core")])
+    assert not certificate.ok
+    assert certificate.claims == ()
+
+
+def test_a_part_that_moves_into_another_and_would_be_inside_at_the_end_collides() -> None:
+    slide = joint("slide", "slider", "case", "core", lower=(0.0,), upper=(200.0,))
+    core = box(5, 5, 5).transformed(at(z=-200))
+    certificate = proven({"case": box(100, 100, 100), "core": core}, [slide])
+    (finding,) = certificate.findings
+    assert finding.code == "E_MOTION_COLLISION"
+    assert finding.value == pytest.approx(200 - 50 - 2.5, abs=1e-3)
+
+
+def test_touching_at_the_end_of_the_range_is_no_collision() -> None:
+    slide = joint("slide", "slider", "a", "b", lower=(-20.0,), upper=(0.0,), rest=(-10.0,))
+    certificate = proven({"a": box(10, 10, 10), "b": box(10, 10, 10).transformed(at(z=-10))}, [slide], deflection=0.01)
+    assert certificate.ok
+    assert refutations(certificate) == []
+
+
+# --- contact and clearance
+
+
+@pytest.mark.parametrize("clearance", [0.0, 0.02, 0.1])
+def test_a_shaft_in_its_bore_is_certified_over_a_full_turn(clearance: float) -> None:
+    meshes = {"block": block_with_bore(40, 10, 10 + clearance, 64), "shaft": cylinder(10, 20, 64, phase=0.03)}
+    certificate = proven(meshes, [joint("turn", "revolute", "block", "shaft")], deflection=0.0125)
+    assert certificate.ok
+    assert certificate.pairs[0].strength.kind == "certified"
+    assert refutations(certificate) == []
+
+
+def test_a_pin_in_a_blind_bore_is_certified() -> None:
+    bore = m3.Manifold.cylinder(8, 5.15, 5.15, 64).translate([0, 0, -8])
+    block = manifold_mesh(m3.Manifold.cube([40, 40, 20], center=True).translate([0, 0, -10]) - bore)
+    pin = manifold_mesh(m3.Manifold.cylinder(40, 5, 5, 64).translate([0, 0, -7.8]) + m3.Manifold.cube([50, 6, 6]).translate([0, -3, 20]))
+    certificate = proven({"block": block, "pin": pin}, [joint("turn", "revolute", "block", "pin")], deflection=0.01)
+    assert certificate.ok
+    assert refutations(certificate) == []
+
+
+def test_an_oversize_pin_is_static_overlap_and_no_motion_collision() -> None:
+    meshes = {"block": block_with_bore(40, 10, 5, 96), "pin": cylinder(5.3, 20, 96)}
+    certificate = proven(meshes, [joint("turn", "revolute", "block", "pin")], deflection=0.003)
+    assert certificate.findings.codes == ("E_STATIC_OVERLAP", "W_NOT_CERTIFIED")
+    assert not certificate.ok
+
+
+def test_a_press_fit_is_sampled_and_not_called_certified() -> None:
+    meshes = {"block": block_with_bore(40, 10, 5, 48), "pin": cylinder(5.1, 20, 48)}
+    certificate = proven(meshes, [joint("turn", "revolute", "block", "pin", lower=(-0.5,), upper=(0.5,))], deflection=0.003)
+    assert certificate.findings.codes == ("W_NOT_CERTIFIED",)
+    assert certificate.pairs[0].strength.kind == "sampled"
+    assert not certificate.ok
+
+
+def test_a_waiver_covers_a_pair_in_motion_up_to_its_depth() -> None:
+    meshes = {"block": block_with_bore(40, 10, 5, 48), "pin": cylinder(5.3, 20, 48)}
+    turn = joint("turn", "revolute", "block", "pin", lower=(-0.5,), upper=(0.5,))
+    certificate = proven(meshes, [turn], deflection=0.003, waivers=[Waiver(("block", "pin"), 0.4, "shrunk on")])
+    assert certificate.ok
+    assert certificate.pairs[0].strength.kind == "waived"
+    assert refutations(certificate) == []
+
+
+def test_a_drawer_that_slides_on_its_rails_without_clearance_is_certified() -> None:
+    carcass = manifold_mesh(
+        m3.Manifold.cube([100, 100, 50], center=True) - m3.Manifold.cube([90, 100, 40], center=True).translate([0, -5, 0])
+    )
+    drawer = box(90, 90, 40)
+    slide = joint("slide", "slider", "carcass", "drawer", at_parent=Z_DOWN_Y, at_child=Z_DOWN_Y, lower=(0.0,), upper=(20.0,))
+    certificate = proven({"carcass": carcass, "drawer": drawer}, [slide], deflection=0.01)
+    assert certificate.ok
+    assert certificate.pairs[0].verdict == "contact"
+    assert refutations(certificate) == []
+    too_far = joint("slide", "slider", "carcass", "drawer", at_parent=Z_DOWN_Y, at_child=Z_DOWN_Y, lower=(-3.0,), upper=(20.0,))
+    (finding,) = proven({"carcass": carcass, "drawer": drawer}, [too_far], deflection=0.01).findings
+    assert finding.code == "E_MOTION_COLLISION"
+    assert -0.2 < (finding.value or 0.0) < 0.0
+
+
+def test_a_ball_in_its_socket_is_certified_over_its_cone_and_a_full_twist() -> None:
+    ball = m3.Manifold.sphere(8, 48)
+    socket = manifold_mesh(m3.Manifold.cylinder(16, 14, 14, 48, center=True).translate([0, 0, -4]) - m3.Manifold.sphere(8.3, 48))
+    stud = manifold_mesh(ball + m3.Manifold.cylinder(60, 3, 3, 24).translate([0, 0, 4]))
+    knuckle = joint("knuckle", "ball", "socket", "stud", cone=0.35)
+    certificate = proven({"socket": socket, "stud": stud}, [knuckle], deflection=0.02)
+    assert certificate.ok
+    assert refutations(certificate) == []
+    wide = joint("knuckle", "ball", "socket", "stud", cone=1.4)
+    assert "E_MOTION_COLLISION" in proven({"socket": socket, "stud": stud}, [wide], deflection=0.02).findings.codes
+
+
+def test_a_rod_slides_and_turns_in_its_bush() -> None:
+    bush = tube(8.2, 20, 10, 48)
+    rod = manifold_mesh(m3.Manifold.cylinder(200, 8, 8, 48, center=True) + m3.Manifold.cube([6, 60, 12], center=True).translate([0, 0, 40]))
+    play = joint("play", "cylindrical", "bush", "rod", lower=(-20.0, -math.pi), upper=(20.0, math.pi))
+    certificate = proven({"bush": bush, "rod": rod}, [play], deflection=0.02)
+    assert certificate.ok
+    assert refutations(certificate) == []
+    too_far = joint("play", "cylindrical", "bush", "rod", lower=(-50.0, -math.pi), upper=(20.0, math.pi))
+    assert proven({"bush": bush, "rod": rod}, [too_far], deflection=0.02).findings.codes == ("E_MOTION_COLLISION",)
+
+
+# --- several joints, budgets, broken meshes
+
+
+def arm(reach: float) -> tuple[dict[str, TriMesh], list[Joint]]:
+    """Two links in one plane, and a wall that only both together can reach."""
+    links = {"base": box(20, 20, 2).transformed(at(z=-9)), "upper": box(100, 6, 6, center=False).transformed(at(4, -3, -3))}
+    links["fore"] = box(100, 6, 6, center=False).transformed(at(104, -3, 4))
+    links["base"] = merged([links["base"], box(5, 200, 30).transformed(at(reach, 0, 0))])
+    shoulder = joint("shoulder", "revolute", "base", "upper", lower=(-1.0,), upper=(1.0,), rest=(1.0,))
+    # both rest folded away from the wall
+    elbow = joint("elbow", "revolute", "upper", "fore", at_parent=at(100), at_child=at(100), lower=(-1.5,), upper=(1.5,), rest=(1.5,))
+    return links, [shoulder, elbow]
+
+
+def test_two_joints_that_collide_only_together_are_found() -> None:
+    links, joints = arm(165.0)
+    alone = proven(links, joints, pairs=False)
+    assert alone.ok
+    together = proven(links, joints, pairs=True)
+    assert "E_MOTION_COLLISION" in together.findings.codes
+    assert not together.ok
+
+
+def test_parts_that_no_joint_can_bring_together_are_certified_over_all_joints_at_once() -> None:
+    links, joints = arm(260.0)
+    certificate = proven(links, joints)
+    assert certificate.ok
+    (pair,) = [pair for pair in certificate.pairs if set(pair.parts) == {"base", "fore"}]
+    assert pair.over == ("shoulder", "elbow")
+    assert refutations(certificate) == []
+
+
+def test_only_the_joints_asked_for_are_proven() -> None:
+    links, joints = arm(260.0)
+    certificate = proven(links, joints, joints=["elbow"])
+    assert {name for pair in certificate.pairs for name in pair.over} == {"elbow"}
+    assert refutations(certificate) == []
+
+
+def test_a_spent_budget_names_the_pairs_left_and_is_not_ok() -> None:
+    links, joints = arm(260.0)
+    certificate = proven(links, joints, budget=0.0)
+    assert not certificate.ok
+    assert set(certificate.findings.codes) == {"E_NOT_CHECKED"}
+    left = {name for finding in certificate.findings for name in finding.parts}
+    assert left == {"base", "upper", "fore"}
+    assert all(pair.strength.kind == "not_checked" and pair.verdict == "unknown" for pair in certificate.pairs)
+
+
+def test_a_broken_mesh_is_not_checked_and_not_ok() -> None:
+    meshes = {"base": without_triangle(box(10, 10, 10)), "arm": box(10, 10, 10).transformed(at(50))}
+    certificate = proven(meshes, [HINGE])
+    assert certificate.findings.codes == ("E_NOT_CHECKED",)
+    assert not certificate.ok
+
+
+# --- the pieces it rests on
+
+
+@pytest.mark.parametrize("kind", [kind for kind in JointType if kind is not JointType.FIXED])
+def test_no_point_moves_faster_than_its_reach(kind: JointType) -> None:
+    rng = np.random.default_rng(list(JointType).index(kind))
+    count = 0 if kind is JointType.BALL else len(kind.coordinates)
+    first = joint(
+        "j",
+        kind,
+        "a",
+        "m",
+        at_parent=at(*rng.uniform(-20, 20, 3)) @ random_rotation(rng),
+        at_child=at(*rng.uniform(-20, 20, 3)) @ random_rotation(rng),
+        lower=(-1.0,) * count,
+        upper=(1.5,) * count,
+        cone=1.0,
+        lead=7.0,
+    )
+    second = joint("k", "cylindrical", "m", "b", at_parent=at(30) @ random_rotation(rng), lower=(-10.0, -2.0), upper=(5.0, 2.0))
+    tree = KinematicTree("a", [Edge(first, "a", "m"), Edge(second, "m", "b")])
+    points_a, points_b = rng.uniform(-30, 30, (20, 3)), rng.uniform(-30, 30, (20, 3))
+    for a, b in (("a", "b"), ("b", "a"), ("a", "m"), ("m", "a")):
+        chain = Chain(tree, a, b, ["j", "k"])
+        reach = chain.reach(points_a, points_b)
+        low, high = (np.array([getattr(f, key) for f in chain.freedoms]) for key in ("lower", "upper"))
+        for _ in range(60):
+            q = rng.uniform(low, high)
+            p = np.clip(q + rng.normal(size=len(q)) * rng.choice([1e-4, 0.1, 1.0]), low, high)
+            there, here = (chain.matrix(x) for x in (p, q))
+            apart = [np.linalg.norm(points_a[:, None] - (points_b @ T[:3, :3].T + T[:3, 3])[None], axis=2) for T in (here, there)]
+            assert np.abs(apart[0] - apart[1]).max() <= reach @ np.abs(p - q) + 1e-9
+
+
+def test_a_chain_places_parts_as_the_mechanism_does() -> None:
+    rng = np.random.default_rng(3)
+    joints = [
+        joint("j", "revolute", "g", "a", at_parent=random_rotation(rng), at_child=at(1, 2, 3)),
+        joint("k", "screw", "b", "a", at_parent=at(5, 6, 7) @ random_rotation(rng), at_child=random_rotation(rng), lead=4.0),
+        joint("p", "planar", "b", "c", at_child=at(3) @ random_rotation(rng)),
+        joint("u", "universal", "g", "d", at_parent=random_rotation(rng)),
+        joint("s", "ball", "d", "e", at_child=at(1, 1, 1), cone=1.0),
+    ]
+    mechanism = Mechanism(("g", "a", "b", "c", "d", "e"), "g", joints)
+    values = {name: rng.uniform(-1, 1) for name in ("j", "k", "p.x", "p.y", "p.angle", "u.a", "u.b", "s.sx", "s.sy", "s.twist")}
+    chain = Chain(mechanism.tree, "c", "e", ["k", "s"], values)
+    q = {name: value for name, value in values.items() if not name.startswith("s.")}
+    swing = motion_matrix(joints[4], [values[f"s.{key}"] for key in ("sx", "sy", "twist")])
+    q.update(zip(("s.qx", "s.qy", "s.qz", "s.qw"), SE3.from_matrix(swing).quaternion.tolist(), strict=True))
+    poses = dict(zip(mechanism.parts, mechanism.poses([q[c.name] for c in mechanism.drivers]), strict=True))
+    expected = (poses["c"].inverse() @ poses["e"]).matrix
+    np.testing.assert_allclose(chain.matrix([values[f.name] for f in chain.freedoms]), expected, atol=1e-12)
+
+
+@pytest.mark.parametrize("gap", [5.0, 1.0, 0.1, 0.01])
+def test_a_line_needs_few_more_distances_than_the_integral_says(gap: float) -> None:
+    def distance(q: Sequence[float] | np.ndarray) -> float:
+        return gap + 20 * (1 - math.cos(float(q[0])))
+
+    budget = Budget(60)
+    cover = cover_line(distance, (-math.pi, math.pi), 0.3, reach=200.0, budget=budget)
+    q = np.linspace(-math.pi, math.pi, 100_001)
+    least = np.trapezoid(200 / (2 * (gap + 20 * (1 - np.cos(q)))), q)
+    assert cover.is_complete
+    assert budget.queries <= 1.3 * least
+
+
+def test_boxes_stop_at_contact_and_at_the_budget() -> None:
+    def distance(q: Sequence[float] | np.ndarray) -> float:
+        return float(abs(q[0]) + abs(q[1]))
+
+    assert cover_box(distance, lambda _: 0.0, [(1, 2), (1, 2)], reach=[5.0, 5.0], budget=Budget(60)).is_complete
+    assert cover_box(distance, lambda _: 0.0, [(-1, 1), (-1, 1)], reach=[5.0, 5.0], budget=Budget(60)).contacts == [(0.0, 0.0)]
+    assert cover_box(distance, lambda _: 0.0, [(-1, 2), (-1, 2)], reach=[5.0, 5.0], budget=Budget(60), most=10).out_of_budget
+    assert cover_box(distance, lambda _: 0.0, [(-1, 2), (-1, 2)], reach=[5.0, 5.0], budget=Budget(0)).out_of_budget
+
+
+# --- the checker
+
+
+@pytest.fixture(scope="module")
+def honest() -> Certificate:
+    meshes = hinge_with_stop(0.0)
+    meshes["lid"] = box(20, 4, 4).transformed(at(40, 0, 30))
+    joints = [
+        joint("hinge", "revolute", "base", "arm", lower=(-1.0,), upper=(1.0,)),
+        joint("lift", "slider", "arm", "lid", lower=(0.0,), upper=(30.0,)),
+    ]
+    certificate = proven(meshes, joints, deflection=0.01)
+    assert certificate.ok
+    return certificate
+
+
+def boxed(document: dict[str, Any]) -> dict[str, Any]:
+    return max(document["claims"], key=lambda claim: len(claim["boxes"]))
+
+
+def widen_interval(document: dict[str, Any]) -> None:
+    row = boxed(document)["boxes"][0]
+    row[len(row) // 2] *= 1.5
+
+
+def enlarge_distance(document: dict[str, Any]) -> None:
+    boxed(document)["boxes"][0][-1] += 0.01
+
+
+def drop_box(document: dict[str, Any]) -> None:
+    boxes = boxed(document)["boxes"]
+    del boxes[len(boxes) // 2]
+
+
+def drop_pair(document: dict[str, Any]) -> None:
+    document["claims"] = [claim for claim in document["claims"] if set(claim["parts"]) != {"base", "lid"}]
+
+
+def swap_mesh(document: dict[str, Any]) -> None:
+    document["meshes"]["lid"]["sha256"] = document["meshes"]["arm"]["sha256"]
+
+
+def narrow_range(document: dict[str, Any]) -> None:
+    for claim in document["claims"]:
+        if "hinge" in claim["vary"]:
+            claim["vary"]["hinge"] = [-0.9, 1.0]
+
+
+def slow_down(document: dict[str, Any]) -> None:
+    claim = boxed(document)
+    claim["reach"] = {name: value * 0.9 for name, value in claim["reach"].items()}
+
+
+def forget_piece(document: dict[str, Any]) -> None:
+    document["claims"].remove(next(claim for claim in document["claims"] if claim["piece"] == "out"))
+
+
+def allow_more(document: dict[str, Any]) -> None:
+    for claim in document["claims"]:
+        claim["shrink_mm"] *= 3
+        claim["clear_mm"] *= 3
+
+
+def forget_deflection(document: dict[str, Any]) -> None:
+    for entry in document["meshes"].values():
+        entry["deflection_mm"] = 5.0
+
+
+def move_frame(document: dict[str, Any]) -> None:
+    document["mechanism"]["joints"][1]["parent_frame"][2][3] = -31.0
+
+
+def pretend_separation(document: dict[str, Any]) -> None:
+    claim = boxed(document)
+    claim.update(separation="radial", gap_mm=1.0, boxes=[])
+
+
+def invent_gap(document: dict[str, Any]) -> None:
+    claim = next(claim for claim in document["claims"] if claim["separation"])
+    claim["gap_mm"] += 1.0
+
+
+LIES = [
+    widen_interval, enlarge_distance, drop_box, drop_pair, swap_mesh, narrow_range, slow_down, forget_piece, allow_more, forget_deflection,
+    move_frame, pretend_separation, invent_gap,
+]  # fmt: skip
+
+
+def test_an_honest_certificate_is_accepted_and_holds_every_kind_of_claim(honest: Certificate) -> None:
+    assert refutations(honest) == []
+    assert {claim.piece for claim in honest.claims} >= {"whole", "in", "seam", "out"}
+    assert any(claim.boxes for claim in honest.claims)
+    assert any(claim.separation for claim in honest.claims)
+
+
+@pytest.mark.parametrize("lie", LIES, ids=lambda lie: lie.__name__)
+def test_a_planted_lie_is_refuted(honest: Certificate, lie: Callable[[dict[str, Any]], None]) -> None:
+    assert refutations(honest, lie)
+
+
+def test_a_swapped_mesh_file_is_refuted(honest: Certificate, tmp_path: Path) -> None:
+    (tmp_path / "meshes").mkdir()
+    for name, content in honest.mesh_files().items():
+        (tmp_path / "meshes" / name).write_bytes(content)
+    file = tmp_path / "certificate.json"
+    file.write_text(json.dumps(honest.to_json()))
+    assert verify_file(file, tmp_path / "meshes") == []
+    (tmp_path / "meshes" / "lid.npz").write_bytes(honest.mesh_files()["arm.npz"])
+    assert verify_file(file, tmp_path / "meshes") == ["mesh of lid is missing or another"]
+
+
+def test_a_claim_on_a_part_inside_another_is_refuted() -> None:
+    # the surfaces are apart all the way round, so distances alone would prove it
+    meshes = {"case": sphere(50, 24), "core": sphere(5, 12)}
+    mechanism = Mechanism(("case", "core"), "case", [joint("spin", "revolute", "case", "core")])
+    outside = certify({"case": sphere(50, 24), "core": sphere(5, 12).transformed(at(80))}, mechanism)
+    assert outside.ok
+    document = json.loads(json.dumps(outside.to_json()))
+    document["meshes"]["core"]["sha256"] = meshes["core"].digest
+    document["claims"] = [{**claim, "separation": "radial", "gap_mm": 1.0, "boxes": []} for claim in document["claims"]]
+    assert any("inside" in reason for reason in verify(document, {name: (m.vertices, m.triangles) for name, m in meshes.items()}))
+
+
+def test_the_certificate_is_the_same_bytes_twice(honest: Certificate) -> None:
+    again = certify(honest.meshes, honest.mechanism, deflection=honest.deflections)
+    assert json.dumps(again.to_json()) == json.dumps(honest.to_json())
+    assert again.mesh_files() == honest.mesh_files()
+
+
+def test_the_checker_has_at_most_200_lines_of_code_and_knows_only_numpy_and_fcl() -> None:
+    source = Path(verify_certificate.__file__).read_text()
+    tree = ast.parse(source)
+    imported = {alias.name.split(".")[0] for node in ast.walk(tree) if isinstance(node, ast.Import) for alias in node.names}
+    imported |= {str(node.module).split(".")[0] for node in ast.walk(tree) if isinstance(node, ast.ImportFrom)}
+    assert imported <= {"__future__", "hashlib", "itertools", "json", "math", "pathlib", "typing", "fcl", "numpy"}
+    documentation: set[int] = set()
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef) and ast.get_docstring(node) is not None:
+            documentation.update(range(node.body[0].lineno, (node.body[0].end_lineno or 0) + 1))
+    silent = (tokenize.COMMENT, tokenize.NL, tokenize.NEWLINE, tokenize.INDENT, tokenize.DEDENT, tokenize.ENDMARKER)
+    lines = {
+        line
+        for token in tokenize.generate_tokens(io.StringIO(source).readline)
+        if token.type not in silent
+        for line in range(token.start[0], token.end[0] + 1)
+    }
+    assert len(lines - documentation) <= 200
+
+
+def test_a_surface_cut_at_a_cylinder_still_is_the_whole_surface() -> None:
+    short = joint("hinge", "revolute", "base", "arm", lower=(-0.5,), upper=(0.5,))
+    scene = Scene.of(hinge_with_stop(), [short])
+    prover = Prover(scene, KinematicTree("base", [Edge(short, "base", "arm")]), ("arm", "base"), ("hinge",))
+    proof = prover.prove()
+    assert {claim.piece for claim in proof.claims} == {"in", "seam", "out"}
