@@ -383,6 +383,20 @@ def test_a_rigid_copy_moves_the_rest_pose_only() -> None:
     assert (upper.derivation.op, upper.derivation.S) == ("rigid", None)
 
 
+def test_a_move_acts_in_the_assemblys_frame_after_the_sources_rest_pose() -> None:
+    plan = pair({"type": "fixed"}, 0)
+    part(plan, "b")["rest_pose"] = {"at": [100, 0, 0], "angle_deg": 90}
+    for name, derive in (
+        ("once", {"from": "b", "op": "rigid", "move": {"at": [10, 0, 0]}}),
+        ("row", {"from": "b", "op": "pattern", "count": 2, "step": {"at": [10, 0, 0]}}),
+    ):
+        plan["parts"].append({"name": name, "derive": derive})
+    plan["joints"] += [{"name": name, "type": "fixed", "parent": "a.c", "child": f"{name}.c"} for name in ("once", "row_1", "row_2")]
+    parts = resolved(plan).parts
+    for name, x in (("once", 110), ("row_1", 110), ("row_2", 120)):
+        np.testing.assert_allclose(parts[name].T_rest.translation, [x, 0, 0], atol=1e-12)
+
+
 def pattern(count: Any = 3, step: Json | None = None) -> Json:
     """Return a ring of pegs."""
     plan = pair({"type": "fixed"}, 0)
@@ -559,6 +573,20 @@ def test_auto_places_a_part_from_its_joint_whichever_way_that_is_declared(mate: 
     np.testing.assert_allclose(result.parts["knob"].T_rest.translation, tip, atol=1e-9)
     for name, pose in result.mechanism.rest_poses().items():
         assert pose.allclose(result.parts[name].T_rest), name
+
+
+@pytest.mark.parametrize("mate", ["aligned", "opposed"])
+def test_auto_places_the_parent_of_a_joint_that_is_declared_the_other_way(mate: str) -> None:
+    plan = pair({"type": "revolute", "angle_deg": [-90, 90], "rest_deg": 30, "mate": mate, "parent": "b.c", "child": "a.c"}, 1)
+    connector(plan, "a", "c").update(o=[0, 0, 50], x=X)
+    connector(plan, "b", "c").update(o=[5, 0, 0], x=X)
+    part(plan, "b")["rest_pose"] = "auto"
+    assert check(plan).codes == ("I_REST_AUTO",)
+    result = resolved(plan)
+    turn = math.radians(-30 if mate == "aligned" else 30)
+    np.testing.assert_allclose(result.parts["b"].T_rest.rotate([1, 0, 0]), [math.cos(turn), math.sin(turn), 0], atol=1e-12)
+    assert max(rolls(result)) < 1e-12
+    assert result.mechanism.rest_poses()["b"].allclose(result.parts["b"].T_rest)
 
 
 def test_a_part_that_hangs_on_an_image_of_an_auto_part_is_placed() -> None:
