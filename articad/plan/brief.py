@@ -16,7 +16,7 @@ from typing import Any
 from articad.connectors import Connector, world_x
 from articad.kinematics.joints import Joint, JointType
 from articad.plan.motions import AXES
-from articad.plan.resolve import ResolvedPart, ResolvedPlan
+from articad.plan.resolve import Fit, ResolvedPart, ResolvedPlan
 
 Json = dict[str, Any]
 
@@ -117,25 +117,26 @@ def _axes(connector: Connector) -> Json:
 def _joints(resolved: ResolvedPlan, part: str, connector: str) -> list[Json]:
     """Return the joints at a connector as a script sees them, in order of declaration."""
     found = []
-    for joint in resolved.joints:
-        parent, child = (joint.parent, joint.parent_connector), (joint.child, joint.child_connector)
-        for side, end, other in (("parent", parent, child), ("child", child, parent)):
-            if end == (part, connector):
-                fit = resolved.fits.get(joint.name)
-                found.append(
-                    {
-                        "name": joint.name,
-                        "type": str(joint.type),
-                        "side": side,
-                        "mate": str(joint.mate),
-                        "limits": _limits(joint),
-                        "fit": None
-                        if fit is None
-                        else {"gap_mm": [fit.gap_min, fit.gap_max], "within_mm": fit.within, "contact": fit.contact},
-                        "other": ".".join(other),
-                    }
-                )
+    for joint, side in resolved.joints_at.get((part, connector), ()):
+        parent, child = f"{joint.parent}.{joint.parent_connector}", f"{joint.child}.{joint.child_connector}"
+        fit = resolved.fits.get(joint.name)
+        found.append(
+            {
+                "name": joint.name,
+                "type": str(joint.type),
+                "side": side,
+                "mate": str(joint.mate),
+                "limits": _limits(joint),
+                "fit": None if fit is None else _fit(fit),
+                "other": child if side == "parent" else parent,
+            }
+        )
     return found
+
+
+def _fit(fit: Fit) -> Json:
+    gap = None if fit.gap_min is None or fit.gap_max is None else [_plain(fit.gap_min), _plain(fit.gap_max)]
+    return {"gap_mm": gap, "within_mm": fit.within, "contact": fit.contact}
 
 
 def _limits(joint: Joint) -> Json:

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Literal
 
 from articad.connectors import SE3, Connector, FloatArray
 from articad.errors import PlanError
@@ -19,6 +20,8 @@ from articad.plan.derive import Operation
 from articad.plan.draft import Draft
 from articad.plan.joint_forms import Contact
 from articad.plan.schema import AssemblyPlan, KernelName, PartSpec
+
+Side = Literal["parent", "child"]
 
 
 @dataclass(frozen=True)
@@ -151,6 +154,19 @@ class ResolvedPlan:
     materials: Mapping[str, Material]
     ground: str
     findings: Findings = field(default_factory=Findings)
+
+    @cached_property
+    def joints_at(self) -> Mapping[tuple[str, str], tuple[tuple[Joint, Side], ...]]:
+        """The joints at each (part, connector) with the side that it is on, in order of declaration."""
+        found: dict[tuple[str, str], tuple[tuple[Joint, Side], ...]] = {}
+        for joint in self.joints:
+            sides: tuple[tuple[tuple[str, str], Side], ...] = (
+                ((joint.parent, joint.parent_connector), "parent"),
+                ((joint.child, joint.child_connector), "child"),
+            )
+            for end, side in sides:
+                found[end] = (*found.get(end, ()), (joint, side))
+        return found
 
     @cached_property
     def mechanism(self) -> Mechanism:

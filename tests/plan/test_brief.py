@@ -81,6 +81,12 @@ def test_limits_are_told_under_the_plans_names_and_in_its_units(form: Json, limi
     assert brief(resolved(pair(form, 0)), "b")["envelope_mm"] is None
 
 
+def test_a_fit_without_a_gap_says_so() -> None:
+    form = {"type": "revolute", "angle_deg": [0, 1], "fit": {"contact": "required", "within_mm": 4}}
+    told = brief(resolved(pair(form, 1)), "a")["connectors"]["c"]["joints"][0]
+    assert told["fit"] == {"gap_mm": None, "within_mm": 4.0, "contact": "required"}
+
+
 def test_an_x_that_the_plan_leaves_open_does_not_depend_on_where_the_part_stands() -> None:
     plan = pair({"type": "revolute", "angle_deg": [0, 90]}, 1)
     for name in ("a", "b"):
