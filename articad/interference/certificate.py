@@ -22,9 +22,9 @@ from articad.findings import Finding, Findings
 from articad.geometry.mesh import TriMesh
 from articad.interference.claims import Claim
 from articad.interference.cover import Budget, cover_line
-from articad.interference.motion import Chain, Freedom, freedoms
+from articad.interference.motion import Chain, freedoms
 from articad.interference.overlap import NOTHING, Overlap, overlap
-from articad.interference.proof import Proof, Prover
+from articad.interference.proof import Proof, Prover, beyond
 from articad.interference.relations import FitLike, WaiverLike, all_pairs
 from articad.interference.report import PairCheck, Strength, rounded
 from articad.interference.scene import Scene
@@ -36,7 +36,6 @@ from articad.kinematics.tree import KinematicTree
 DEFAULT_EPSILON_MM = 1e-3
 DEFAULT_BUDGET_S = 600.0
 WIDE_BOXES = 256  # boxes spent on all joints at once before they are taken one by one
-LOOKS = 48  # poses looked at beyond the one where a proof stopped
 _ENTRY_MM = 1e-6  # distance at which meshes are said to touch
 
 
@@ -344,6 +343,7 @@ class Looks:
         self.proof = proof
         self.chain = Chain(tree, *parts, joints)
         self.bodies = scene.bodies[parts[0]], scene.bodies[parts[1]]
+        self.allowed = scene.tolerated(*parts)
         self.count = 0
 
     def worst(self) -> tuple[Overlap, dict[str, float] | None]:
@@ -357,20 +357,10 @@ class Looks:
         return worst, where
 
     def _points(self) -> Iterator[tuple[float, ...]]:
-        """Yield poses from where a proof stopped, or from rest where it could not begin, towards the bounds of each coordinate."""
-        names = [freedom.name for freedom in self.chain.freedoms]
-        starts = [tuple(contact[name] for name in names) for contact in self.proof.contacts]
-        for start in starts:
-            for at, freedom in enumerate(self.chain.freedoms):
-                for end in self._ends(start[at], freedom):
-                    # quadratic: contact that is just entered is looked at more closely than what lies far beyond
-                    for share in np.linspace(0.0, 1.0, LOOKS // len(names)) ** 2:
-                        yield (*start[:at], start[at] + share * (end - start[at]), *start[at + 1 :])
-
-    def _ends(self, value: float, freedom: Freedom) -> tuple[float, ...]:
-        if len(self.chain.freedoms) > 1 or value == freedom.rest:
-            return freedom.lower, freedom.upper
-        return (freedom.upper,) if value > freedom.rest else (freedom.lower,)
+        """Yield poses from where a proof stopped, or from rest where it could not begin."""
+        speeds = self.chain.reach(self.bodies[0].mesh.vertices, self.bodies[1].mesh.vertices)
+        for contact in self.proof.contacts:
+            yield from beyond(self.chain, speeds, [contact[freedom.name] for freedom in self.chain.freedoms], self.allowed)
 
     def entry(self, allowed: float, pose: Mapping[str, float] | None) -> tuple[str, float, float]:
         """Return the coordinate, where the meshes first meet, and the end of what is proven, towards the pose of the collision.

@@ -30,13 +30,13 @@ FloatArray = NDArray[np.float64]
 
 PARALLEL = 1e-12  # |sine| of the angle of two axes that are declared parallel, after the arithmetic of a few frames
 SEPARATION_SLACK_MM = 1e-9  # rounding in an invariant gap
-DIRECT_QUERIES = 300  # a line that needs no more distances is walked with the whole surface
-CHEAP_QUERIES = 60  # a cut that needs no more is taken without looking for a better one
-BEYOND = (0.0, 1e-3, 1e-2, 0.03, 0.1, 0.3, 1.0)  # shares of the way to the bound at which a stopped proof is looked into
+DIRECT_QUERIES = 500  # a line that needs no more distances is walked with the whole surface
+CHEAP_QUERIES = 300  # a cut that needs no more is taken without looking for a better one
+LOOK_GROWTH = 1.6  # poses beyond the one where a proof stopped lie ever further apart, so that thin parts are not jumped over
 MOST_LINE = 20_000  # queries after which a line is given up
 MOST_BOXES = 20_000  # boxes after which several coordinates are given up
-RADIUS_SHARES = (0.02, 0.05, 0.1, 0.18, 0.3, 0.5)  # of the reach: radii tried for the cut
-EDGE_SHARE = 0.15  # of the radius: longest edge of triangles left crossing the cut
+RADIUS_SHARES = (0.05, 0.12, 0.25, 0.5)  # of the reach: radii tried for the cut
+EDGE_SHARE = 0.25  # of the radius: longest edge of triangles left crossing the cut
 _TURNING = (JointType.REVOLUTE, JointType.CYLINDRICAL, JointType.SCREW)
 
 
@@ -148,16 +148,11 @@ class Prover:
     def _collides(self, proof: Proof) -> bool:
         """Return whether the two overlap beyond what is allowed soon after a proof stopped, so that no weaker claim can hold."""
         for patch, values in proof.stopped:
-            chain = patch.view.chain
-            for at, freedom in enumerate(chain.freedoms):
-                for end in (freedom.lower, freedom.upper):
-                    if (end - values[at]) * (values[at] - freedom.rest) < 0:
-                        continue
-                    for share in BEYOND:
-                        point = (*values[:at], values[at] + share * (end - values[at]), *values[at + 1 :])
-                        found = overlap(patch.view.body_a, patch.view.body_b, SE3.from_matrix(chain.matrix(point)))
-                        if found.depth > self.allowed and found.volume > UNRELATED_VOLUME_MM3:
-                            return True
+            view = patch.view
+            for point in beyond(view.chain, view.speeds, values, self.allowed):
+                found = overlap(view.body_a, view.body_b, SE3.from_matrix(view.chain.matrix(point)))
+                if found.depth > self.allowed and found.volume > UNRELATED_VOLUME_MM3:
+                    return True
         return False
 
     def _attempts(self, view: View, start: Overlap) -> Iterator[list[Patch]]:
@@ -232,6 +227,19 @@ def _travel(chain: Chain, mover: Mover) -> tuple[float, float]:
             return 0.0, 0.0
 
 
+def beyond(chain: Chain, speeds: FloatArray, start: Sequence[float], depth: float) -> Iterator[tuple[float, ...]]:
+    """Yield poses from one on towards the bounds of each coordinate, away from rest: the first within the motion by `depth` [mm]."""
+    yield tuple(start)
+    for at, freedom in enumerate(chain.freedoms):
+        ends = [end for end in (freedom.lower, freedom.upper) if (end - start[at]) * (start[at] - freedom.rest) >= 0]
+        for end in ends:
+            step = depth / (2 * max(float(speeds[at]), 1e-9))
+            while step < abs(end - start[at]):
+                yield (*start[:at], start[at] + step * (1 if end > start[at] else -1), *start[at + 1 :])
+                step *= LOOK_GROWTH
+            yield (*start[:at], end, *start[at + 1 :])
+
+
 class View:
     """One part as the one whose surface is looked at, the other as what moves past it."""
 
@@ -289,9 +297,14 @@ class View:
         surface = Surface.of(self.body_a.mesh, shrink) if shrink else self.whole
         return Patch(self, surface, piece, shrink)
 
+    @cached_property
+    def speeds(self) -> FloatArray:
+        """Reach of the whole parts."""
+        return self.chain.reach(self.body_a.mesh.vertices, self.body_b.mesh.vertices)
+
     def cost(self, spare: float, radius: float | None = None) -> float:
         """Estimate the queries for a line or box at a constant distance."""
-        reach = self.chain.reach(self.body_a.mesh.vertices, self.body_b.mesh.vertices)
+        reach = self.speeds
         if radius is not None:
             reach = np.minimum(reach, [1.0 if r == 1.0 else radius for r in reach])
         widths = np.array([freedom.upper - freedom.lower for freedom in self.chain.freedoms])
