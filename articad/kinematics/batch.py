@@ -23,7 +23,7 @@ IndexArray = npt.NDArray[np.intp]
 
 _FEW = 32  # configurations up to which matrices win over rows (measured: break-even 25 … 50)
 _CHUNK = 1024  # configurations per pass: the rows of one joint then stay in the first-level cache
-_TURNING = frozenset({JointType.REVOLUTE, JointType.CYLINDRICAL, JointType.SCREW, JointType.PLANAR})
+_TURNING = frozenset({JointType.REVOLUTE, JointType.CYLINDRICAL, JointType.SCREW})
 
 
 class Crossing(NamedTuple):
@@ -46,8 +46,11 @@ def crossing(joint: Joint, near: int, far: int, *, backwards: bool) -> Crossing:
     return Crossing(joint, near, far, np.ones(len(joint.type.coordinates)), joint.T_parent_connector, F @ joint.T_child_connector.inverse())
 
 
-class Motions:
-    """J(q) of many joints as matrices, filled type by type.
+class Transforms:
+    """A · J(q) · B of many crossings as matrices.
+
+    A joint that turns and slides about its z axis is affine in (1, cos θ, sin θ, d), so all of these are one product with
+    constants; the others are filled one by one.
 
     Args:
         crossings: The joints.
@@ -55,56 +58,60 @@ class Motions:
     """
 
     def __init__(self, crossings: Sequence[Crossing], layout: Layout) -> None:
-        turning: list[tuple[int, int, float]] = []  # joint, column, factor
-        sliding: list[tuple[int, int, float]] = []
-        level: list[tuple[int, int, int]] = []  # joint, row, column
-        self.balls: list[tuple[int, slice, FloatArray]] = []
-        self.universals: list[tuple[int, int]] = []
+        n = len(crossings)
+        self._angle, self._travel = np.zeros(n, dtype=np.intp), np.zeros(n, dtype=np.intp)  # columns; the factor is 0 where there is none
+        self._turns, self._slides = np.zeros((n, 1)), np.zeros((n, 1))
+        self._constants = np.zeros((n, 4, 16))
+        self._others: list[tuple[int, JointType, slice, FloatArray, FloatArray, FloatArray]] = []
         for k, c in enumerate(crossings):
-            columns = layout.columns[c.joint.name]
-            first, last = columns.start, columns.stop - 1
+            columns, A, B = layout.columns[c.joint.name], c.A.matrix, c.B.matrix
+            if c.joint.type in {JointType.BALL, JointType.PLANAR, JointType.UNIVERSAL}:
+                self._others.append((k, c.joint.type, columns, c.signs, A, B))
+                continue
+            self._constants[k] = [(A @ M @ B).ravel() for M in _AFFINE]
             if c.joint.type in _TURNING:
-                turning.append((k, last, c.signs[-1]))
-            if c.joint.type in {JointType.SLIDER, JointType.CYLINDRICAL}:
-                sliding.append((k, first, c.signs[0]))
-            elif c.joint.type is JointType.SCREW:
-                sliding.append((k, first, c.signs[0] * c.joint.lead / (2 * math.pi)))
-            elif c.joint.type is JointType.PLANAR:
-                level += [(k, 0, first), (k, 1, first + 1)]
-            elif c.joint.type is JointType.BALL:
-                self.balls.append((k, columns, c.signs))
-            elif c.joint.type is JointType.UNIVERSAL:
-                self.universals.append((k, first))
-        self.count = len(crossings)
-        self.turning = _table(turning)
-        self.sliding = _table(sliding)
-        self.level = np.array(level, dtype=np.intp).reshape(-1, 3).T
+                self._angle[k], self._turns[k] = columns.stop - 1, c.signs[-1]
+            if c.joint.type is JointType.SCREW:
+                self._travel[k], self._slides[k] = columns.start, c.signs[0] * c.joint.lead / (2 * math.pi)
+            elif c.joint.type in {JointType.SLIDER, JointType.CYLINDRICAL}:
+                self._travel[k], self._slides[k] = columns.start, c.signs[0]
 
-    def matrices(self, rows: FloatArray) -> FloatArray:
-        """Return M `(n_joints, batch, 4, 4)` for coordinates as rows `(n_columns, batch)`."""
-        M = np.zeros((self.count, rows.shape[1], 4, 4))
-        M[:, :, (0, 1, 2, 3), (0, 1, 2, 3)] = 1.0
-        k, column, factor = self.turning
-        if k.size:
-            angle = rows[column] * factor
-            cosine, sine = np.cos(angle), np.sin(angle)
-            M[k, :, 0, 0], M[k, :, 1, 1], M[k, :, 1, 0], M[k, :, 0, 1] = cosine, cosine, sine, -sine
-        k, column, factor = self.sliding
-        if k.size:
-            M[k, :, 2, 3] = rows[column] * factor
-        if self.level.size:
-            joint, row, source = self.level
-            M[joint, :, row, 3] = rows[source]
-        for ball, columns, signs in self.balls:
-            M[ball, :, :3, :3] = quaternion.to_matrix((rows[columns] * signs[:, None]).T)
-        for universal, first in self.universals:
-            M[universal, :, :3, :3] = _universal(rows[first], rows[first + 1])
-        return M
+    def __call__(self, rows: FloatArray) -> FloatArray:
+        """Return `(n_joints, batch, 4, 4)` for coordinates as rows `(n_columns, batch)`."""
+        n, batch = len(self._angle), rows.shape[1]
+        if not rows.shape[0]:
+            rows = np.zeros((1, batch))  # fixed joints alone: their factors are zero
+        factors = np.empty((n, batch, 4))
+        angle = rows[self._angle] * self._turns
+        factors[..., 0], factors[..., 1], factors[..., 2] = 1.0, np.cos(angle), np.sin(angle)
+        factors[..., 3] = rows[self._travel] * self._slides
+        X: FloatArray = (factors @ self._constants).reshape(n, batch, 4, 4)
+        for k, joint_type, columns, signs, A, B in self._others:
+            X[k] = A @ _motion(joint_type, rows[columns] * signs[:, None]) @ B
+        return X
 
 
-def _table(entries: list[tuple[int, int, float]]) -> tuple[IndexArray, IndexArray, FloatArray]:
-    k, column, factor = zip(*entries, strict=True) if entries else ((), (), ())
-    return np.array(k, dtype=np.intp), np.array(column, dtype=np.intp), np.array(factor, dtype=np.float64)[:, None]
+# the motion about and along z is [0] + cos θ [1] + sin θ [2] + d [3]
+_AFFINE = np.zeros((4, 4, 4))
+_AFFINE[0, (2, 3), (2, 3)] = 1.0
+_AFFINE[1, (0, 1), (0, 1)] = 1.0
+_AFFINE[2, (1, 0), (0, 1)] = 1.0, -1.0
+_AFFINE[3, 2, 3] = 1.0
+
+
+def _motion(joint_type: JointType, rows: FloatArray) -> FloatArray:
+    """Return J(q) `(batch, 4, 4)` of a ball, planar or universal joint for its coordinates as rows."""
+    M = np.zeros((rows.shape[1], 4, 4))
+    M[:, (0, 1, 2, 3), (0, 1, 2, 3)] = 1.0
+    if joint_type is JointType.BALL:
+        M[:, :3, :3] = quaternion.to_matrix(rows.T)
+    elif joint_type is JointType.UNIVERSAL:
+        M[:, :3, :3] = _universal(rows[0], rows[1])
+    else:
+        cosine, sine = np.cos(rows[2]), np.sin(rows[2])
+        M[:, 0, 0], M[:, 1, 1], M[:, 1, 0], M[:, 0, 1] = cosine, cosine, sine, -sine
+        M[:, 0, 3], M[:, 1, 3] = rows[0], rows[1]
+    return M
 
 
 def _universal(a: FloatArray, b: FloatArray) -> FloatArray:
@@ -122,18 +129,23 @@ class TreeArrays:
         tree: How the parts hang together.
         layout: Of all coordinates; the tree's joints are among them.
         T_ground: Pose of the ground part.
+        closing: Joints that close loops: each adds a ghost of its child, C_c included, behind the parts in `matrices`.
     """
 
-    def __init__(self, parts: Sequence[str], tree: KinematicTree, layout: Layout, T_ground: SE3) -> None:
+    def __init__(self, parts: Sequence[str], tree: KinematicTree, layout: Layout, T_ground: SE3, closing: Sequence[Joint] = ()) -> None:
         index = {part: i for i, part in enumerate(parts)}
         self.layout = layout
         self.n_parts = len(parts)
         self.ground = index[tree.ground]
         self.T_ground = T_ground
         self.crossings = tuple(crossing(e.joint, index[e.parent], index[e.part], backwards=e.reversed) for e in tree.edges)
-        self.motions = Motions(self.crossings, layout)
-        self._A = _stacked([c.A for c in self.crossings])
-        self._B = _stacked([c.B for c in self.crossings])
+        ghosts = [
+            Crossing(joint, index[joint.parent], self.n_parts + i, np.ones(len(joint.rest)), joint.T_parent_connector, flip(joint.mate))
+            for i, joint in enumerate(closing)
+        ]
+        self._transforms = Transforms((*self.crossings, *ghosts), layout)
+        self._steps = tuple((c.near, c.far) for c in (*self.crossings, *ghosts))
+        self._ground_matrix = T_ground.matrix
         self._rows = [_RowStep(c, layout.columns[c.joint.name]) for c in self.crossings]
         self.twists = Twists(layout, index)
         self.carried = np.zeros((self.n_parts, layout.n_freedoms))  # ±1 where a freedom moves a part
@@ -142,12 +154,12 @@ class TreeArrays:
             self.carried[c.far, layout.freedoms[c.joint.name]] = -1.0 if edge.reversed else 1.0
 
     def matrices(self, Q: FloatArray) -> FloatArray:
-        """Return the poses of all parts as `(N, batch, 4, 4)` for coordinates `(batch, n_columns)`."""
-        T = np.empty((self.n_parts, len(Q), 4, 4))
-        T[self.ground] = self.T_ground.matrix
-        X = self._A @ self.motions.matrices(Q.T) @ self._B
-        for k, c in enumerate(self.crossings):
-            np.matmul(T[c.near], X[k], out=T[c.far])
+        """Return the poses of all parts, then of all ghosts, as `(N, batch, 4, 4)` for coordinates `(batch, n_columns)`."""
+        T = np.empty((len(self._steps) + 1, len(Q), 4, 4))
+        T[self.ground] = self._ground_matrix
+        X = self._transforms(Q.T)
+        for k, (near, far) in enumerate(self._steps):
+            np.matmul(T[near], X[k], out=T[far])
         return T
 
     def poses(self, Q: FloatArray) -> SE3:
@@ -171,10 +183,6 @@ class TreeArrays:
             step.place(out[step.near], out[step.far], q)
         w = out[:, 6:7]
         out[:, 3:] *= np.copysign(1.0, w)
-
-
-def _stacked(poses: Sequence[SE3]) -> FloatArray:
-    return np.array([pose.matrix for pose in poses]).reshape(-1, 1, 4, 4)
 
 
 class _RowStep:
@@ -291,8 +299,8 @@ class Twists:
         self._connector = np.array([C for _, C in frames]).reshape(-1, 1, 4, 4)
         self._frame = np.array(frame_of, dtype=np.intp)
         self._axis = np.array(axis_of, dtype=np.intp)
-        self._angular = np.array(angular, dtype=np.float64)[:, None, None]
-        self._linear = 1.0 - self._angular + np.array(pitch, dtype=np.float64)[:, None, None]
+        self.angular = np.array(angular, dtype=np.float64)[:, None, None]
+        self.linear = 1.0 - self.angular + np.array(pitch, dtype=np.float64)[:, None, None]
 
     def __call__(self, T: FloatArray, Q: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return v0 [mm/s], the velocity at the ground's origin, and ω [rad/s], both `(n_freedoms, batch, 3)`.
@@ -301,15 +309,19 @@ class Twists:
             T: Poses of the parts `(N, batch, 4, 4)`.
             Q: Coordinates `(batch, n_columns)`.
         """
+        axes, origins = self.axes(T, Q)
+        omega = axes * self.angular
+        return quaternion.cross(origins, omega) + axes * self.linear, omega
+
+    def axes(self, T: FloatArray, Q: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return the direction of each freedom and a point of its axis [mm], both `(n_freedoms, batch, 3)`."""
         P = T[self._part] @ self._connector
         for frame, first in self.planar:
             P[frame, :, :3, 3] += P[frame, :, :3, 0] * Q[:, first, None] + P[frame, :, :3, 1] * Q[:, first + 1, None]
         for frame, first in self.universal:
             a = Q[:, first, None]
             P[frame, :, :3, 1] = P[frame, :, :3, 1] * np.cos(a) + P[frame, :, :3, 2] * np.sin(a)
-        axes = P[self._frame, :, :3, self._axis]
-        omega = axes * self._angular
-        return quaternion.cross(P[self._frame, :, :3, 3], omega) + axes * self._linear, omega
+        return P[self._frame, :, :3, self._axis], P[self._frame, :, :3, 3]
 
 
 # axis of the parent connector, 1 = turns about it and 0 = slides along it, whether the lead advances it, whether other coordinates move it

@@ -87,6 +87,8 @@ class Layout:
 
     def integrate(self, Q: FloatArray, step: FloatArray) -> FloatArray:
         """Return the coordinates `(*batch, n_columns)` after moving by `step` `(*batch, n_freedoms)`; balls by exp(step)."""
+        if not self.balls:
+            return Q + step
         moved = np.empty_like(np.broadcast_to(Q, (*np.broadcast_shapes(Q.shape[:-1], step.shape[:-1]), self.n_columns)))
         moved[..., self._plain_columns] = Q[..., self._plain_columns] + step[..., self._plain_freedoms]
         for columns, freedoms in self.balls:
@@ -96,6 +98,8 @@ class Layout:
 
     def difference(self, start: FloatArray, end: FloatArray) -> FloatArray:
         """Return the step `(*batch, n_freedoms)` that leads from `start` to `end`; balls the short way."""
+        if not self.balls:
+            return end - start
         batch = np.broadcast_shapes(start.shape[:-1], end.shape[:-1])
         step = np.empty((*batch, self.n_freedoms))
         step[..., self._plain_freedoms] = end[..., self._plain_columns] - start[..., self._plain_columns]

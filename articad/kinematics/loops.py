@@ -15,8 +15,8 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from articad.connectors import SE3, FloatArray, flip, quaternion
-from articad.kinematics.batch import Motions, TreeArrays, crossing
+from articad.connectors import SE3, FloatArray, quaternion
+from articad.kinematics.batch import TreeArrays
 from articad.kinematics.joints import Coupling, Joint
 from articad.kinematics.layout import Layout
 from articad.kinematics.tree import Edge, KinematicTree
@@ -31,6 +31,7 @@ _DROPPED = 1e-10  # σ/σ₁ below which a direction is left out of a step
 _LARGEST_STEP = 0.5  # rad, or lengths L: the linear model is worth nothing beyond
 _DAMPING_FALL, _DAMPING_RISE = 0.2, 8.0  # of a step that helped, and of one that did not
 _DAMPING_START = 1e-3
+_STRAIGHT = 1e-7  # rad: a mismatch so small that the logarithm's Jacobian is the identity for every purpose here
 _NEAR_PI = -0.9  # cos θ below which the logarithm is taken by quaternions instead of the sine
 _FALLBACK_LENGTH = 100.0  # mm, where no part has two connectors apart
 
@@ -97,7 +98,7 @@ class ClosureSystem:
         self.parts = subtree.parts
         self.loops = tuple(_loop(subtree, joint) for joint in loop_joints)
         self.length = _characteristic_length(self.layout.joints)
-        self.arrays = TreeArrays(subtree.parts, subtree, self.layout, SE3.identity())
+        self.arrays = TreeArrays(subtree.parts, subtree, self.layout, SE3.identity(), loop_joints)
         self.scale: FloatArray = np.where(self.layout.is_length, self.length, 1.0)
         self._compile_loops(subtree, loop_joints)
         self._compile_couplings()
@@ -106,17 +107,19 @@ class ClosureSystem:
 
     def _compile_loops(self, tree: KinematicTree, loop_joints: Sequence[Joint]) -> None:
         index = {part: i for i, part in enumerate(tree.parts)}
-        crossings = [crossing(joint, index[joint.parent], index[joint.child], backwards=False) for joint in loop_joints]
-        self._near = np.array([c.near for c in crossings], dtype=np.intp)
-        self._far = np.array([c.far for c in crossings], dtype=np.intp)
-        self._motions = Motions(crossings, self.layout)
-        self._C_p = _matrices([joint.T_parent_connector for joint in loop_joints])
-        self._F = _matrices([flip(joint.mate) for joint in loop_joints])
-        self._C_c = _matrices([joint.T_child_connector for joint in loop_joints])
-        sides = self.arrays.carried[self._far] - self.arrays.carried[self._near]
+        self._far = np.array([index[joint.child] for joint in loop_joints], dtype=np.intp)
+        near = np.array([index[joint.parent] for joint in loop_joints], dtype=np.intp)
+        self._C_c = np.array([joint.T_child_connector.matrix for joint in loop_joints]).reshape(-1, 1, 4, 4)
+        sides = self.arrays.carried[self._far] - self.arrays.carried[near]
         for row, joint in zip(sides, loop_joints, strict=True):
             row[self.layout.freedoms[joint.name]] = -1.0
         self._sides: FloatArray = sides.reshape(-1, self.layout.n_freedoms)
+        # what a freedom's axis, and its moment about B, count in the residual: (loops, 1, freedoms, 1)
+        weight = (self._sides * self.scale)[:, None, :, None]
+        angular, linear = (part[:, 0, 0][:, None] for part in (self.arrays.twists.angular, self.arrays.twists.linear))
+        self._spin_weight: FloatArray = weight * angular
+        self._turn_weight: FloatArray = self._spin_weight / self.length
+        self._slide_weight: FloatArray = weight * linear / self.length
 
     def _compile_couplings(self) -> None:
         n = len(self.couplings)
@@ -137,40 +140,51 @@ class ClosureSystem:
     def evaluate(self, Q: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return residuals `(batch, rows)` and their Jacobian `(batch, rows, freedoms)`, scaled, at `Q` `(batch, columns)`."""
         batch, n, loops = len(Q), self.layout.n_freedoms, len(self.loops)
-        r = np.empty((batch, self.n_rows))
-        J = np.empty((batch, self.n_rows, n))
+        r, J = np.empty((batch, self.n_rows)), np.empty((batch, self.n_rows, n))
         if loops:
             T = self.arrays.matrices(Q)
-            R_Ag, p_B, t, phi = self._mismatch(T, Q)
-            v0, omega = self.arrays.twists(T, Q)
-            spin = np.ascontiguousarray(omega.transpose(1, 2, 0))  # (batch, 3, freedoms)
-            lin = R_Ag @ (v0.transpose(1, 2, 0) - _skew(p_B) @ spin)
-            ang = (_log_jacobian(phi) @ R_Ag) @ spin
-            blocks = np.concatenate([lin / self.length, ang], axis=-2) * (self._sides * self.scale)[:, None, None, :]
-            J[:, : 6 * loops] = blocks.swapaxes(0, 1).reshape(batch, 6 * loops, n)
-            r[:, : 6 * loops] = np.concatenate([t / self.length, phi], axis=-1).swapaxes(0, 1).reshape(batch, 6 * loops)
-        r[:, 6 * loops :] = (Q @ self._coupling_columns.T - self._coupling_offset) / self._coupling_unit
-        J[:, 6 * loops :] = self._coupling_jacobian
+            R_A, p_B, t, phi = self._mismatch(T)
+            axes, origins = (part.swapaxes(0, 1) for part in self.arrays.twists.axes(T, Q))  # (batch, freedoms, 3)
+            moments = quaternion.cross(axes, p_B[:, :, None, :] - origins)
+            lin = (moments * self._turn_weight + axes * self._slide_weight) @ R_A
+            ang = (axes * self._spin_weight) @ R_A
+            if np.abs(phi).max(initial=0.0) > _STRAIGHT:  # rate of the rotation vector: (I − ½[φ] + c [φ]²) of the spin
+                around = phi[:, :, None, :]
+                once = quaternion.cross(around, ang)
+                ang = ang - 0.5 * once + quaternion.inverse_coefficient(phi)[:, :, None, :] * quaternion.cross(around, once)
+            blocks = J[:, : 6 * loops].reshape(batch, loops, 6, n)
+            blocks[:, :, :3], blocks[:, :, 3:] = lin.transpose(1, 0, 3, 2), ang.transpose(1, 0, 3, 2)
+            self._fill_mismatch(r, t, phi)
+        if self.couplings:
+            r[:, 6 * loops :] = self._coupling_residual(Q)
+            J[:, 6 * loops :] = self._coupling_jacobian
         return r, J
 
     def residual(self, Q: FloatArray) -> FloatArray:
         """Return the residuals alone `(batch, rows)`."""
         r = np.empty((len(Q), self.n_rows))
-        loops = len(self.loops)
-        if loops:
-            _, _, t, phi = self._mismatch(self.arrays.matrices(Q), Q)
-            r[:, : 6 * loops] = np.concatenate([t / self.length, phi], axis=-1).swapaxes(0, 1).reshape(len(Q), 6 * loops)
-        r[:, 6 * loops :] = (Q @ self._coupling_columns.T - self._coupling_offset) / self._coupling_unit
+        if self.loops:
+            _, _, t, phi = self._mismatch(self.arrays.matrices(Q))
+            self._fill_mismatch(r, t, phi)
+        if self.couplings:
+            r[:, 6 * len(self.loops) :] = self._coupling_residual(Q)
         return r
 
-    def _mismatch(self, T: FloatArray, Q: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-        """Return R_A⁻¹, the point of B, and M = A⁻¹B as translation and rotation vector; all `(loops, batch, …)`."""
-        A = T[self._near] @ self._C_p @ self._motions.matrices(Q.T) @ self._F
+    def _mismatch(self, T: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+        """Return R_A, the point of B, and M = A⁻¹B as translation and rotation vector; all `(loops, batch, …)`."""
+        A = T[self.arrays.n_parts :]
         B = T[self._far] @ self._C_c
-        R_Ag = A[..., :3, :3].swapaxes(-1, -2)
-        p_B = B[..., :3, 3]
-        t = (R_Ag @ (p_B - A[..., :3, 3])[..., None])[..., 0]
-        return R_Ag, p_B, t, _rotation_log(R_Ag @ B[..., :3, :3])
+        R_A, p_B = A[..., :3, :3], B[..., :3, 3]
+        t = ((p_B - A[..., :3, 3])[..., None, :] @ R_A)[..., 0, :]
+        return R_A, p_B, t, _rotation_log(R_A.swapaxes(-1, -2) @ B[..., :3, :3])
+
+    def _fill_mismatch(self, r: FloatArray, t: FloatArray, phi: FloatArray) -> None:
+        blocks = r[:, : 6 * len(self.loops)].reshape(len(r), len(self.loops), 6)
+        blocks[..., :3], blocks[..., 3:] = (t / self.length).swapaxes(0, 1), phi.swapaxes(0, 1)
+
+    def _coupling_residual(self, Q: FloatArray) -> FloatArray:
+        residual: FloatArray = (Q @ self._coupling_columns.T - self._coupling_offset) / self._coupling_unit
+        return residual
 
     def gaps(self, Q: FloatArray) -> FloatArray:
         """Return the distance `(loops,)` [mm] between each ghost and its connector at `Q` `(columns,)`."""
@@ -330,10 +344,6 @@ def _places(all_slices: dict[str, slice], kept: dict[str, slice]) -> IndexArray:
     return np.array([i for name in kept for i in range(all_slices[name].start, all_slices[name].stop)], dtype=np.intp)
 
 
-def _matrices(poses: Sequence[SE3]) -> FloatArray:
-    return np.array([pose.matrix for pose in poses]).reshape(-1, 1, 4, 4)
-
-
 def _characteristic_length(joints: Sequence[Joint]) -> float:
     """Return the median distance [mm] between connectors of one part; any length within a factor of 100 does as well."""
     origins: dict[str, list[FloatArray]] = {}
@@ -343,13 +353,6 @@ def _characteristic_length(joints: Sequence[Joint]) -> float:
     lengths = [float(np.linalg.norm(p - points[0])) for points in origins.values() for p in points[1:]]
     lengths = [length for length in lengths if length > 1e-6]
     return float(np.median(lengths)) if lengths else _FALLBACK_LENGTH
-
-
-def _skew(v: FloatArray) -> FloatArray:
-    S = np.zeros((*v.shape, 3))
-    S[..., 0, 1], S[..., 0, 2], S[..., 1, 2] = -v[..., 2], v[..., 1], -v[..., 0]
-    S[..., 1, 0], S[..., 2, 0], S[..., 2, 1] = v[..., 2], -v[..., 1], v[..., 0]
-    return S
 
 
 def _rotation_log(R: FloatArray) -> FloatArray:
@@ -363,10 +366,3 @@ def _rotation_log(R: FloatArray) -> FloatArray:
     factor = np.where(tiny, 1.0, np.arctan2(sine, cosine) / np.where(tiny, 1.0, sine))
     phi: FloatArray = 0.5 * twice_sine * factor[..., None]
     return phi
-
-
-def _log_jacobian(phi: FloatArray) -> FloatArray:
-    """Return the matrices that take a spin in the outer frame to the rate of the rotation vector: I − ½[φ] + c [φ]²."""
-    S = _skew(phi)
-    J: FloatArray = np.eye(3) - 0.5 * S + quaternion.inverse_coefficient(phi)[..., None] * (S @ S)
-    return J
