@@ -385,5 +385,17 @@ CODES: dict[str, Code] = {
         "export", None, "A closed loop cannot be written as mimic joints within 0.1 mm.", "Use another way to write loops, or MJCF."
     ),
     "E_READ": Code("import", None, "A file cannot be read.", "Check the file at the named place."),
+    "W_IMPORT_MESH": Code(
+        "import", None, "A mesh of a foreign file is left out.", "Put the mesh where the file names it, or allow its folder."
+    ),
+    "W_IMPORT_LIMITS": Code(
+        "import", None, "A joint's limits in a foreign file are missing or reversed.", "Give lower and upper in the file."
+    ),
+    "W_IMPORT_DROPPED": Code(
+        "import", None, "Something in a foreign file has no counterpart and is left out.", "Nothing, if it is not needed."
+    ),
+    "I_IMPORT_FUSED": Code(
+        "import", None, "A chain of joints over bare links is read as one joint.", "Read with fuse off to keep them apart."
+    ),
     "E_UNSAFE_PATH": Code("import", None, "A file names a path outside its own folder.", "Keep meshes beside the file."),
 }

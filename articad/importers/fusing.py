@@ -1,0 +1,274 @@
+"""Chains of one-freedom joints over bare links, fused back into the joints that they stand for.
+
+A bare link has no shape, at most a gram of mass, one joint before it and one after it, and both meet in one point. Then, with X the rotation
+between the two joints' frames: a slide and a turn about one axis are a cylindrical joint, or a screw where the slide follows the turn;
+two turns about axes at right angles are a universal joint, three are a ball; two slides and a turn at right angles are planar.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from articad.connectors.se3 import SE3
+from articad.findings import Finding
+from articad.geometry.mass import MassProperties
+from articad.importers.raw import RawJoint, RawLink, RawModel, RawTie
+from articad.kinematics.joints import JointType
+
+FloatArray = NDArray[np.float64]
+
+BARE_MASS_KG = 1e-3  # at most: exporters give carriers a little mass, because engines refuse none
+SAME_POINT_MM = 1e-6
+SAME_AXIS = 1e-9  # rad, and sine of the angle
+
+_SLIDE, _TURN = JointType.SLIDER, JointType.REVOLUTE
+
+
+def fused(model: RawModel) -> RawModel:
+    """Return the model with every chain over bare links that is one of our joints made that joint."""
+    bare = _bare_links(model)
+    before: dict[str, RawJoint] = {joint.child: joint for joint in model.joints}
+    found: dict[str, tuple[RawJoint, tuple[RawJoint, ...]]] = {}  # by the name of the chain's last joint
+    used: set[str] = set()
+    for last in model.joints:
+        chain = [last]
+        while len(chain) < 3 and chain[0].parent in bare and chain[0].parent in before:
+            chain.insert(0, before[chain[0].parent])
+        if last.child in bare and _continues(model, last, bare):
+            continue  # a longer chain ends further out
+        for start in range(len(chain) - 1):
+            joints = tuple(chain[start:])
+            if used & {joint.name for joint in joints}:
+                continue
+            joint = _fuse(joints, model.ties)
+            if joint is not None:
+                found[last.name] = joint, joints
+                used |= {part.name for part in joints}
+                break
+    return _replaced(model, found)
+
+
+def _bare_links(model: RawModel) -> set[str]:
+    """Return the links that could be carriers: no shape, next to no mass, one tree joint on each side, no constraint."""
+    degree: dict[str, list[int]] = {name: [0, 0] for name in model.links}
+    for joint in model.joints:
+        for link, side in ((joint.child, 0), (joint.parent, 1)):
+            if link in degree:
+                degree[link][side] += 2 if joint.closing else 1
+    return {
+        name
+        for name, link in model.links.items()
+        if degree[name] == [1, 1]
+        and not link.visuals
+        and not link.collisions
+        and (link.mass is None or link.mass.mass <= BARE_MASS_KG)
+        and name != model.ground
+    }
+
+
+def _continues(model: RawModel, last: RawJoint, bare: set[str]) -> bool:
+    """True when the joint beyond `last` belongs to the same chain."""
+    beyond = next(joint for joint in model.joints if joint.parent == last.child)
+    return beyond.type in {_SLIDE, _TURN} and last.type in {_SLIDE, _TURN} and last.child in bare
+
+
+def _meet(joints: tuple[RawJoint, ...]) -> bool:
+    """True when every link between the joints has both of them at one point."""
+    return all(float(np.linalg.norm(a.frame_c.translation - b.frame_p.translation)) <= SAME_POINT_MM for a, b in pairwise(joints))
+
+
+def _fuse(joints: tuple[RawJoint, ...], ties: list[RawTie]) -> RawJoint | None:
+    kinds = tuple(joint.type for joint in joints)
+    rule = _RULES.get(kinds)
+    tied = {tie.follower for tie in ties} | {tie.leader for tie in ties}
+    inner = [tie for tie in ties if {tie.follower, tie.leader} == {joint.name for joint in joints}]
+    if (
+        rule is None
+        or (rule is not _fuse_cylindrical and not _meet(joints))
+        or (tied & {joint.name for joint in joints} and not (len(inner) == 1 and rule is _fuse_cylindrical))
+    ):
+        return None
+    return rule(joints, inner)
+
+
+def _between(first: RawJoint, second: RawJoint) -> SE3:
+    """Return X, the rotation from the first joint's moving frame to the second joint's fixed one."""
+    return SE3.from_quaternion((first.frame_c.inverse() @ second.frame_p).quaternion)
+
+
+def _fuse_cylindrical(joints: tuple[RawJoint, ...], inner: list[RawTie]) -> RawJoint | None:
+    """Slide and turn, in either order, along ± one axis: M₁ X M₂(q) = M₁ M₂(± q) X."""
+    first, second = joints
+    X = first.frame_c.inverse() @ second.frame_p  # may lie anywhere on the axis: it commutes with slides along it and turns about it
+    if math.hypot(*X.z_axis[:2]) > SAME_AXIS or math.hypot(*X.translation[:2]) > SAME_POINT_MM:
+        return None
+    sign = 1.0 if X.z_axis[2] > 0 else -1.0
+    slide, turn = (first, second) if first.type is _SLIDE else (second, first)
+    turned = {second.name: sign, first.name: 1.0}
+    whole = replace(
+        first,
+        name=_common_name(joints),
+        type=JointType.CYLINDRICAL,
+        child=second.child,
+        frame_c=second.frame_c @ X.inverse(),
+        ranges=(_signed(slide.ranges[0], turned[slide.name]), _signed(turn.ranges[0], turned[turn.name])),
+        rest=tuple(turned[joint.name] * joint.rest[0] for joint in (slide, turn) if joint.rest),
+        effort=(*slide.effort[:1], *turn.effort[:1]),
+        velocity=(*slide.velocity[:1], *turn.velocity[:1]),
+    )
+    if not inner:
+        return whole
+    tie = inner[0]
+    ratio, offset = (tie.ratio, tie.offset) if tie.follower == slide.name else (1 / tie.ratio, -tie.offset / tie.ratio)
+    along = turned[slide.name] * offset
+    return replace(
+        whole,
+        type=JointType.SCREW,
+        frame_p=first.frame_p @ SE3.trans(0.0, 0.0, along),
+        ranges=(whole.ranges[1],),
+        rest=whole.rest[1:],
+        lead=ratio * turned[slide.name] * turned[turn.name] * math.tau,
+        effort=turn.effort[:1],
+        velocity=turn.velocity[:1],
+    )
+
+
+def _fuse_universal(joints: tuple[RawJoint, ...], _inner: list[RawTie]) -> RawJoint | None:
+    """Two turns about axes at right angles: M₁ X M₂ = W Rx(a) Ry(b) W⁻¹ X with W x and W y along the two axes."""
+    first, second = joints
+    X = _between(first, second)
+    if abs(X.z_axis[2]) > SAME_AXIS:
+        return None
+    W = _frame_of(np.array([0.0, 0.0, 1.0]), X.z_axis)
+    return replace(
+        first,
+        name=_common_name(joints),
+        type=JointType.UNIVERSAL,
+        child=second.child,
+        frame_p=first.frame_p @ W,
+        frame_c=second.frame_c @ X.inverse() @ W,
+        ranges=(*first.ranges, *second.ranges),
+        rest=(*first.rest, *second.rest),
+        effort=(*first.effort[:1], *second.effort[:1]),
+        velocity=(*first.velocity[:1], *second.velocity[:1]),
+    )
+
+
+def _fuse_three(joints: tuple[RawJoint, ...], kind: JointType) -> tuple[RawJoint, float] | None:
+    """Return a joint of three motions about or along x, y, ±z, and the sign of the last."""
+    first, second, third = joints
+    X, Y = _between(first, second), _between(second, third)
+    axes = np.array([0.0, 0.0, 1.0]), X.z_axis, (X @ Y).z_axis
+    W = _frame_of(axes[0], axes[1])
+    along = float(axes[2] @ W.z_axis)
+    if abs(float(axes[0] @ axes[1])) > SAME_AXIS or abs(abs(along) - 1) > SAME_AXIS:
+        return None
+    whole = replace(
+        first,
+        name=_common_name(joints),
+        type=kind,
+        child=third.child,
+        frame_p=first.frame_p @ W,
+        frame_c=third.frame_c @ (X @ Y).inverse() @ W,
+        effort=tuple(effort for joint in joints for effort in joint.effort[:1]),
+        velocity=tuple(velocity for joint in joints for velocity in joint.velocity[:1]),
+    )
+    return whole, math.copysign(1.0, along)
+
+
+def _fuse_planar(joints: tuple[RawJoint, ...], _inner: list[RawTie]) -> RawJoint | None:
+    found = _fuse_three(joints, JointType.PLANAR)
+    if found is None:
+        return None
+    joint, sign = found
+    *rest, angle = _rests(joints)
+    return replace(joint, ranges=(*joints[0].ranges, *joints[1].ranges, _signed(joints[2].ranges[0], sign)), rest=(*rest, sign * angle))
+
+
+def _fuse_ball(joints: tuple[RawJoint, ...], _inner: list[RawTie]) -> RawJoint | None:
+    """Three turns about x, y, ±z. The box of their limits becomes the cone that it contains and the twist about z."""
+    found = _fuse_three(joints, JointType.BALL)
+    if found is None:
+        return None
+    joint, sign = found
+    cone = min(max(min(abs(bound) for one in joints[:2] for bound in one.ranges[0]), 1e-3), math.pi)
+    twist = _signed(joints[2].ranges[0], sign)
+    free = math.isinf(twist[0]) or math.isinf(twist[1]) or twist[1] - twist[0] >= math.tau
+    x, y, z = _rests(joints)
+    rest = tuple(float(v) for v in (SE3.rot_x(x) @ SE3.rot_y(y) @ SE3.rot_z(sign * z)).quaternion)
+    return replace(
+        joint, ranges=(), rest=rest, cone=cone, twist=None if free else (min(twist[0], 0.0), max(twist[1], 0.0)), effort=(), velocity=()
+    )
+
+
+def _rests(joints: tuple[RawJoint, ...]) -> list[float]:
+    """Return where each joint rests: where it says so, else as near to zero as its limits allow."""
+    return [joint.rest[0] if joint.rest else min(max(0.0, joint.ranges[0][0]), joint.ranges[0][1]) for joint in joints]
+
+
+_Rule = Callable[[tuple[RawJoint, ...], list[RawTie]], RawJoint | None]
+
+_RULES: dict[tuple[JointType, ...], _Rule] = {
+    (_SLIDE, _TURN): _fuse_cylindrical,
+    (_TURN, _SLIDE): _fuse_cylindrical,
+    (_TURN, _TURN): _fuse_universal,
+    (_SLIDE, _SLIDE, _TURN): _fuse_planar,
+    (_TURN, _TURN, _TURN): _fuse_ball,
+}
+
+
+def _frame_of(x: FloatArray, y: FloatArray) -> SE3:
+    """Return the rotation that takes x and y to two unit vectors at right angles."""
+    return SE3.from_axes(np.zeros(3), np.cross(x, y), x) if np.linalg.norm(np.cross(x, y)) > 1e-3 else SE3.identity()
+
+
+def _signed(bounds: tuple[float, float], sign: float) -> tuple[float, float]:
+    return bounds if sign > 0 else (-bounds[1], -bounds[0])
+
+
+def _common_name(joints: tuple[RawJoint, ...]) -> str:
+    """Return `elbow` of `elbow__t` and `elbow__r`, else the last joint's name."""
+    stems = {joint.name.rpartition("__")[0] for joint in joints}
+    stem = stems.pop()
+    return stem if stem and not stems else joints[-1].name
+
+
+def _with_masses(model: RawModel, chain: tuple[RawJoint, ...]) -> RawLink:
+    """Return the chain's last link with the masses of its carriers, where all values are zero."""
+    link = model.links[chain[-1].child]
+    if link.mass is None:
+        return link
+    bodies, T = [link.mass], SE3.identity()
+    for joint, before in zip(chain[:0:-1], chain[-2::-1], strict=True):
+        T = T @ joint.frame_c @ joint.frame_p.inverse()
+        carrier = model.links[before.child].mass
+        if carrier is not None:
+            bodies.append(carrier.moved(T))
+    return replace(link, mass=MassProperties.combined(bodies))
+
+
+def _replaced(model: RawModel, found: dict[str, tuple[RawJoint, tuple[RawJoint, ...]]]) -> RawModel:
+    gone = {joint.name for _, joints in found.values() for joint in joints}
+    carriers = {joint.child for _, joints in found.values() for joint in joints[:-1]}
+    joints = [
+        found[joint.name][0] if joint.name in found else joint for joint in model.joints if joint.name in found or joint.name not in gone
+    ]
+    ties = [tie for tie in model.ties if not {tie.follower, tie.leader} <= gone]
+    findings = [
+        Finding(
+            code="I_IMPORT_FUSED",
+            where=f"joints.{joint.name}",
+            message=f"{' and '.join(repr(part.name) for part in chain)} are one {joint.type} joint {joint.name!r}.",
+            hint="Read with fuse off to keep them apart.",
+        )
+        for joint, chain in found.values()
+    ]
+    links = {name: link for name, link in model.links.items() if name not in carriers}
+    links |= {joint.child: _with_masses(model, chain) for joint, chain in found.values()}
+    return replace(model, links=links, joints=joints, ties=ties, findings=[*model.findings, *findings])

@@ -1,0 +1,318 @@
+"""MJCF in: articad's own by its records, any other as MuJoCo compiles it, with its defaults, includes and frames resolved."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from itertools import product
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from articad.assembly import Assembly
+from articad.connectors.se3 import SE3
+from articad.findings import Finding
+from articad.geometry.mass import MassProperties
+from articad.geometry.mesh import TriMesh
+from articad.geometry.part import DEFAULT_COLOR, Shape
+from articad.geometry.shapes import box, cylinder, sphere
+from articad.importers.fusing import fused
+from articad.importers.raw import ENDLESS, IDENTITY, RawJoint, RawLink, RawModel, RawTie, aligned, assemble, floating
+from articad.importers.reading import MAX_LINKS, MM_PER_M, Folder, read_xml, unreadable
+from articad.importers.records import assembly_of, read_records
+from articad.kinematics.joints import JointType
+
+FloatArray = NDArray[np.float64]
+
+MAX_INCLUDES = 100
+MAX_COPIES = 1000  # of <replicate>, <composite> and the like
+_RECORD_PREFIX = "articad."
+
+
+def read_mjcf(path: str | Path, *, root: str | Path | None = None, metadata: bool = True, fuse: bool = True) -> Assembly:
+    """Read an MJCF file.
+
+    Bodies become parts in their own frames, the world is the ground; joints keep their names and values, a free joint becomes three
+    slides and a ball, several joints of one body a chain over bare parts. Equality constraints of points, bodies and joints close loops
+    and couple joints.
+
+    Args:
+        path: The file.
+        root: Folder that meshes and includes may be read from; the file's own by default.
+        metadata: Use the records that articad left in its own files, so that they come back as they were.
+        fuse: Without metadata, make chains over bare links one joint where we have it.
+
+    Raises:
+        ReadError: If the file is not MJCF, names files outside the root, or is no mechanism.
+    """
+    path = Path(path)
+    folder = Folder.of(path, None if root is None else Path(root))
+    document = read_xml(path)
+    if document.tag != "mujoco":
+        raise unreadable(path, f"line {document.sourceline}", f"The root element is <{document.tag}>, not <mujoco>.")
+    texts = [text.get("data", "") for text in document.iterfind("custom/text") if text.get("name", "").startswith(_RECORD_PREFIX)]
+    if metadata and texts:
+        return assembly_of(read_records(texts, path), folder, path)
+    _require_safe(document, folder, path, [path.resolve()])
+    model = _Reader(_compiled(path), document.get("model") or path.stem).model()
+    return assemble(fused(model) if fuse else model, path)
+
+
+def _require_safe(document: Any, folder: Folder, path: Path, seen: list[Path]) -> None:
+    """Refuse files outside the root, before MuJoCo opens any; includes are followed."""
+    folders = [element.get(name, "") for element in document.iter("compiler") for name in ("meshdir", "texturedir", "assetdir")]
+    bodies = sum(1 for _ in document.iter("body"))
+    if bodies > MAX_LINKS:
+        raise unreadable(path, "", f"It has {bodies} bodies; {MAX_LINKS} are the most.")
+    for element in document.iter():
+        _require_few_copies(element, path)
+        names = [value for name, value in element.attrib.items() if name.startswith("file") and value]
+        for name, base in product(names, dict.fromkeys(["", *folders])):
+            if not (folder.here / base / name).resolve().is_relative_to(folder.root):
+                raise unreadable(path, f"line {element.sourceline}", f"{name!r} leads out of {folder.root}.", "E_UNSAFE_PATH")
+    for element in document.iter("include"):
+        target = (path.resolve().parent / element.get("file", "")).resolve()
+        if not target.is_file():
+            target = (folder.here / element.get("file", "")).resolve()
+        if target in seen or len(seen) > MAX_INCLUDES:
+            raise unreadable(path, f"line {element.sourceline}", f"{element.get('file')!r} is included again; includes must not go round.")
+        if target.is_file():
+            seen.append(target)
+            _require_safe(read_xml(target), folder, target, seen)
+
+
+def _require_few_copies(element: Any, path: Path) -> None:
+    counts = [int(word) for word in element.get("count", "1").split() if word.isdigit()]
+    if math.prod(counts) > MAX_COPIES:
+        raise unreadable(path, f"line {element.sourceline}", f"It asks for {math.prod(counts)} copies; {MAX_COPIES} are the most.")
+
+
+def _compiled(path: Path) -> Any:
+    import mujoco  # noqa: PLC0415 - only readers of MJCF need it
+
+    try:
+        return mujoco.MjModel.from_xml_path(str(path))
+    except (ValueError, mujoco.FatalError) as error:
+        raise unreadable(path, "", f"MuJoCo does not take it: {error}") from None
+
+
+class _Reader:
+    """Turns a compiled model into links and joints."""
+
+    def __init__(self, compiled: Any, name: str) -> None:
+        import mujoco  # noqa: PLC0415
+
+        self.m, self.mujoco = compiled, mujoco
+        self.data = mujoco.MjData(compiled)
+        home = mujoco.mj_name2id(compiled, mujoco.mjtObj.mjOBJ_KEY, "home")
+        if home >= 0:
+            mujoco.mj_resetDataKeyframe(compiled, self.data, home)
+        mujoco.mj_kinematics(compiled, self.data)
+        self.bodies = self._unique(mujoco.mjtObj.mjOBJ_BODY, compiled.nbody, "body")
+        self.joints = self._unique(mujoco.mjtObj.mjOBJ_JOINT, compiled.njnt, "joint")
+        self.raw = RawModel(name, self.bodies[0])
+
+    def model(self) -> RawModel:
+        """Return everything that the compiled model holds."""
+        for body in range(self.m.nbody):
+            self.raw.links[self.bodies[body]] = self._link(body)
+        for body in range(1, self.m.nbody):
+            self._add_joints(body)
+        for row in range(self.m.neq):
+            if self.m.eq_active0[row]:
+                self._add_equality(row)
+        return self.raw
+
+    def _unique(self, kind: Any, count: int, word: str) -> list[str]:
+        names = [self.mujoco.mj_id2name(self.m, kind, index) for index in range(count)]
+        taken = set(names)
+        for index, name in enumerate(names):
+            if not name:
+                free = f"{word}_{index}"
+                while free in taken:
+                    free += "_"
+                names[index] = free
+                taken.add(free)
+        return names
+
+    def _drop(self, where: str, message: str) -> None:
+        hint = "Nothing, if it is not needed."
+        self.raw.findings.append(Finding(code="W_IMPORT_DROPPED", where=where, message=message, hint=hint))
+
+    # ------------------------------------------------------------------ links
+
+    def _link(self, body: int) -> RawLink:
+        m, name = self.m, self.bodies[body]
+        mass = None
+        if body and m.body_mass[body] > 0:
+            principal = MassProperties(float(m.body_mass[body]), np.zeros(3), np.diag(m.body_inertia[body]) * MM_PER_M**2)
+            mass = principal.moved(_pose(m.body_ipos[body], m.body_iquat[body]))
+        visuals: list[Shape] = []
+        collisions: list[Shape] = []
+        color = DEFAULT_COLOR
+        for geom in range(m.body_geomadr[body], m.body_geomadr[body] + m.body_geomnum[body]):
+            shape = self._shape(geom, name)
+            if shape is not None:
+                collides = m.geom_contype[geom] or m.geom_conaffinity[geom]
+                (collisions if collides else visuals).append(shape)
+                color = shape.color or color
+        return RawLink(name, mass, tuple(visuals), tuple(collisions), color)
+
+    def _shape(self, geom: int, body: str) -> Shape | None:
+        mesh = self._mesh(geom)
+        if mesh is None:
+            self._drop(f"parts.{body}", f"A geom of type {self.mujoco.mjtGeom(self.m.geom_type[geom]).name} is left out.")
+            return None
+        material = self.m.geom_matid[geom]
+        rgba = self.m.mat_rgba[material] if material >= 0 else self.m.geom_rgba[geom]
+        color = "#" + "".join(f"{round(255 * min(max(float(channel), 0.0), 1.0)):02x}" for channel in rgba[:3])
+        name = self.mujoco.mj_id2name(self.m, self.mujoco.mjtObj.mjOBJ_GEOM, geom) or ""
+        return Shape(mesh, _pose(self.m.geom_pos[geom], self.m.geom_quat[geom]), color, name)
+
+    def _mesh(self, geom: int) -> TriMesh | None:  # noqa: PLR0911 - one per kind of geom
+        kinds = self.mujoco.mjtGeom
+        a, b, c = (float(size) * MM_PER_M for size in self.m.geom_size[geom])
+        kind = self.m.geom_type[geom]
+        if kind == kinds.mjGEOM_BOX:
+            return box(2 * a, 2 * b, 2 * c)
+        if kind == kinds.mjGEOM_SPHERE:
+            return sphere(a)
+        if kind == kinds.mjGEOM_CYLINDER:
+            return cylinder(a, 2 * b)
+        if kind == kinds.mjGEOM_CAPSULE:
+            ball = sphere(a)
+            return TriMesh(ball.vertices + np.sign(ball.vertices[:, 2:]) * [0, 0, b], ball.triangles)
+        if kind == kinds.mjGEOM_ELLIPSOID:
+            return TriMesh(sphere(1.0).vertices * [a, b, c], sphere(1.0).triangles)
+        if kind != kinds.mjGEOM_MESH:
+            return None
+        mesh = self.m.geom_dataid[geom]
+        vertices = self.m.mesh_vert[self.m.mesh_vertadr[mesh] :][: self.m.mesh_vertnum[mesh]]
+        triangles = self.m.mesh_face[self.m.mesh_faceadr[mesh] :][: self.m.mesh_facenum[mesh]]
+        return TriMesh(vertices.astype(np.float64) * MM_PER_M, triangles)
+
+    # ------------------------------------------------------------------ joints
+
+    def _add_joints(self, body: int) -> None:
+        """Add the joints between a body and its parent: a chain over bare links where there are several."""
+        m = self.m
+        start = _pose(m.body_pos[body], m.body_quat[body])
+        parent, child = self.bodies[m.body_parentid[body]], self.bodies[body]
+        indices = list(range(m.body_jntadr[body], m.body_jntadr[body] + m.body_jntnum[body])) if m.body_jntnum[body] else []
+        if not indices:
+            self.raw.joints.append(RawJoint(self._free_name(f"{child}_fixed"), JointType.FIXED, parent, child, start, IDENTITY))
+            return
+        for place, index in enumerate(indices):
+            last = place == len(indices) - 1
+            far = child if last else self._bare_link(f"{child}__d{place + 1}")
+            self._add_joint(index, parent, far, start)
+            parent, start = far, IDENTITY
+
+    def _add_joint(self, index: int, parent: str, child: str, start: SE3) -> None:
+        m, kinds, name = self.m, self.mujoco.mjtJoint, self.joints[index]
+        kind, at = m.jnt_type[index], m.jnt_qposadr[index]
+        qpos, reference = self.data.qpos, m.qpos0
+        if kind == kinds.mjJNT_FREE:  # its values are a pose in the world, wherever the body stands in the file
+            links, joints = floating(name, parent, child, IDENTITY, IDENTITY)
+            self.raw.links |= {link.name: link for link in links}
+            rests = [*((float(qpos[at + i]) * MM_PER_M,) for i in range(3)), _xyzw(qpos[at + 3 : at + 7])]
+            self.raw.joints += [_resting(joint, rest) for joint, rest in zip(joints, rests, strict=True)]
+            return
+        anchor = SE3.from_translation(m.jnt_pos[index] * MM_PER_M)
+        limited = bool(m.jnt_limited[index])
+        low, high = (float(bound) for bound in m.jnt_range[index])
+        if kind == kinds.mjJNT_BALL:
+            reach = min(high, math.pi) if limited else math.pi
+            if limited:
+                self._drop(
+                    f"joints.{name}", f"The limit of {high:.6g} rad on the whole turn of ball {name!r} becomes its cone and its twist."
+                )
+            twist = (-reach, reach) if limited else None
+            rest = _xyzw(qpos[at : at + 4])
+            self.raw.joints.append(
+                RawJoint(name, JointType.BALL, parent, child, start @ anchor, anchor, cone=reach, twist=twist, rest=rest)
+            )
+            return
+        slides = kind == kinds.mjJNT_SLIDE
+        unit = MM_PER_M if slides else 1.0
+        R = anchor @ aligned(m.jnt_axis[index])
+        zero = float(reference[at]) * unit  # the value that the file's own pose has
+        back = SE3.trans(0.0, 0.0, -zero) if slides else SE3.rot_z(-zero)
+        bounds = (low * unit, high * unit) if limited else ENDLESS
+        joint_type = JointType.SLIDER if slides else JointType.REVOLUTE
+        value = (float(qpos[at]) * unit,)
+        self.raw.joints.append(RawJoint(name, joint_type, parent, child, start @ R @ back, R, (bounds,), rest=value))
+
+    def _bare_link(self, wanted: str) -> str:
+        while wanted in self.raw.links:
+            wanted += "_"
+        self.raw.links[wanted] = RawLink(wanted)
+        return wanted
+
+    def _free_name(self, wanted: str) -> str:
+        taken = {*self.joints, *(joint.name for joint in self.raw.joints)}
+        while wanted in taken:
+            wanted += "_"
+        return wanted
+
+    # ------------------------------------------------------------------ constraints
+
+    def _add_equality(self, row: int) -> None:
+        m, kinds = self.m, self.mujoco.mjtEq
+        name = self._free_name(self.mujoco.mj_id2name(m, self.mujoco.mjtObj.mjOBJ_EQUALITY, row) or f"equality_{row}")
+        kind = kinds(int(m.eq_type[row]))
+        if kind == kinds.mjEQ_JOINT:
+            self._add_tie(row, name)
+        elif kind in {kinds.mjEQ_CONNECT, kinds.mjEQ_WELD}:
+            self._add_closing(row, name)
+        else:
+            self._drop(f"equality.{name}", f"An equality of type {kind.name} is left out.")
+
+    def _add_tie(self, row: int, name: str) -> None:
+        m = self.m
+        first, second = m.eq_obj1id[row], m.eq_obj2id[row]
+        c0, c1, *higher = (float(c) for c in m.eq_data[row][:5])
+        if second < 0 or any(higher):
+            self._drop(f"equality.{name}", f"Equality {name!r} is not a straight line between two joints; it is left out.")
+            return
+        zero1, zero2 = (float(m.qpos0[m.jnt_qposadr[joint]]) for joint in (first, second))
+        unit1, unit2 = (MM_PER_M if m.jnt_type[joint] == self.mujoco.mjtJoint.mjJNT_SLIDE else 1.0 for joint in (first, second))
+        offset = (zero1 + c0 - c1 * zero2) * unit1
+        self.raw.ties.append(RawTie(self.joints[first], self.joints[second], c1 * unit1 / unit2, offset))
+
+    def _add_closing(self, row: int, name: str) -> None:
+        """Add a point or a body that two bodies share, with frames that agree in the rest pose."""
+        m = self.m
+        sites = m.eq_objtype[row] == self.mujoco.mjtObj.mjOBJ_SITE
+        ids = [int(m.eq_obj1id[row]), int(m.eq_obj2id[row])]
+        bodies = [int(m.site_bodyid[index]) for index in ids] if sites else ids
+        T = [_rotation_pose(self.data.xpos[body], self.data.xmat[body]) for body in bodies]
+        if bodies[0] == bodies[1]:
+            self._drop(f"equality.{name}", f"Equality {name!r} ties a body to itself; it is left out.")
+            return
+        first, second = (self.bodies[body] for body in bodies)
+        if m.eq_type[row] == self.mujoco.mjtEq.mjEQ_WELD:
+            self.raw.joints.append(RawJoint(name, JointType.FIXED, first, second, IDENTITY, T[1].inverse() @ T[0], closing=True))
+            return
+        anchors = [m.site_pos[index] for index in ids] if sites else [m.eq_data[row][:3], m.eq_data[row][3:6]]
+        near, far = (SE3.from_quaternion(T[i].inverse().quaternion, anchors[i] * MM_PER_M) for i in range(2))
+        self.raw.joints.append(RawJoint(name, JointType.BALL, first, second, near, far, cone=math.pi, closing=True))
+
+
+def _resting(joint: RawJoint, rest: tuple[float, ...]) -> RawJoint:
+    return replace(joint, rest=rest)
+
+
+def _pose(position: FloatArray, wxyz: FloatArray) -> SE3:
+    return SE3.from_quaternion(_xyzw(wxyz), np.asarray(position, dtype=np.float64) * MM_PER_M)
+
+
+def _rotation_pose(position: FloatArray, matrix: FloatArray) -> SE3:
+    return SE3.from_rotation(np.asarray(matrix).reshape(3, 3), np.asarray(position) * MM_PER_M)
+
+
+def _xyzw(wxyz: FloatArray) -> tuple[float, float, float, float]:
+    w, x, y, z = (float(value) for value in wxyz)
+    return x, y, z, w

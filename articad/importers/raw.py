@@ -1,0 +1,233 @@
+"""What foreign files hold, in one form: links, and joints between frames on them; then an assembly.
+
+Links keep their own frames, so that anyone can compare poses with other readers. A joint of a file relates its two links by
+`T_child = T_parent · frame_p · J(q) · frame_c⁻¹`, where J turns about or slides along z like all our joints.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from articad.assembly import Assembly
+from articad.connectors.connector import Connector
+from articad.connectors.mate import FLIP, Mate
+from articad.connectors.se3 import SE3
+from articad.errors import ArticadError
+from articad.findings import Finding, Findings
+from articad.geometry.mass import MassProperties
+from articad.geometry.part import DEFAULT_COLOR, Part, Shape
+from articad.importers.reading import MAX_LINKS, unreadable
+from articad.kinematics.joints import Coupling, Joint, JointLimits, JointType
+from articad.kinematics.mechanism import Mechanism
+
+FloatArray = NDArray[np.float64]
+
+IDENTITY = SE3.identity()
+ENDLESS = (-math.inf, math.inf)
+
+
+@dataclass(frozen=True, eq=False)
+class RawLink:
+    """A link or body.
+
+    Attributes:
+        name: As the file has it.
+        mass: In the link's frame; None where the file gives none.
+        visuals: What is drawn.
+        collisions: What collides.
+        color: "#rrggbb".
+    """
+
+    name: str
+    mass: MassProperties | None = None
+    visuals: tuple[Shape, ...] = ()
+    collisions: tuple[Shape, ...] = ()
+    color: str = DEFAULT_COLOR
+
+
+@dataclass(frozen=True, eq=False)
+class RawJoint:
+    """A joint between two links, in mm and rad.
+
+    Attributes:
+        name: As the file has it.
+        type: One of ours.
+        parent: Name of the link that carries `frame_p`.
+        child: Name of the other.
+        frame_p: In the parent link's frame.
+        frame_c: In the child link's frame.
+        ranges: Limits of each coordinate; empty for a ball and a fixed joint.
+        cone: Of a ball.
+        twist: Of a ball.
+        lead: Of a screw.
+        rest: Wanted rest values; the nearest within the limits are taken.
+        effort: [N·mm] or [N], None where the file gives none.
+        velocity: [rad/s] or [mm/s], likewise.
+        closing: True when it was a constraint in the file, not a joint of its tree.
+    """
+
+    name: str
+    type: JointType
+    parent: str
+    child: str
+    frame_p: SE3
+    frame_c: SE3
+    ranges: tuple[tuple[float, float], ...] = ()
+    cone: float | None = None
+    twist: tuple[float, float] | None = None
+    lead: float = 0.0
+    rest: tuple[float, ...] = ()
+    effort: tuple[float | None, ...] = ()
+    velocity: tuple[float | None, ...] = ()
+    closing: bool = False
+
+
+@dataclass(frozen=True)
+class RawTie:
+    """value(follower) = ratio · value(leader) + offset, in mm and rad."""
+
+    follower: str
+    leader: str
+    ratio: float
+    offset: float
+
+
+@dataclass
+class RawModel:
+    """Everything that was read.
+
+    Attributes:
+        name: Of the robot.
+        ground: Name of the root link.
+        links: By name, in the file's order.
+        joints: In the file's order.
+        ties: Between joints of one coordinate.
+        findings: What could not be taken over.
+    """
+
+    name: str
+    ground: str
+    links: dict[str, RawLink] = field(default_factory=dict)
+    joints: list[RawJoint] = field(default_factory=list)
+    ties: list[RawTie] = field(default_factory=list)
+    findings: list[Finding] = field(default_factory=list)
+
+
+def aligned(axis: FloatArray) -> SE3:
+    """Return a rotation that takes z to `axis`, the identity or half a turn where it is ±z."""
+    x, y, z = axis / np.linalg.norm(axis)
+    if x == 0 and y == 0:
+        return IDENTITY if z > 0 else FLIP
+    return SE3.from_axes(np.zeros(3), axis)
+
+
+def floating(name: str, parent: str, child: str, frame_p: SE3, frame_c: SE3) -> tuple[list[RawLink], list[RawJoint]]:
+    """Return a free body's six freedoms as three endless slides and a free ball over three bare links."""
+    links = [RawLink(f"{name}__d{i + 1}") for i in range(3)]
+    names = [parent, *(link.name for link in links)]
+    joints = []
+    for i, axis in enumerate(np.eye(3)):
+        R = aligned(axis)
+        start = frame_p @ R if i == 0 else R
+        joints.append(RawJoint(f"{name}__{'xyz'[i]}", JointType.SLIDER, names[i], names[i + 1], start, R, (ENDLESS,)))
+    joints.append(RawJoint(f"{name}__ball", JointType.BALL, names[3], child, IDENTITY, frame_c, cone=math.pi))
+    return links, joints
+
+
+def assemble(model: RawModel, path: Path) -> Assembly:
+    """Return the assembly of what was read.
+
+    Raises:
+        ReadError: If it is too large, or is no mechanism.
+    """
+    if len(model.links) > MAX_LINKS:
+        raise unreadable(path, "", f"It has {len(model.links)} links; {MAX_LINKS} are the most.")
+    connectors: dict[str, dict[str, Connector]] = {name: {} for name in model.links}
+    for joint in model.joints:
+        for link, frame in ((joint.parent, joint.frame_p), (joint.child, joint.frame_c)):
+            if link not in connectors:
+                raise unreadable(path, f"joint {joint.name!r}", f"Its link {link!r} is not in the file.")
+            connectors[link][joint.name] = Connector(joint.name, frame)
+    ties = _consistent_ties(model)
+    rests = _rest_values(model.joints, ties)
+    joints = [_joint(joint, rests[joint.name], model.findings) for joint in model.joints]
+    couplings = [
+        Coupling(f"{tie.follower}_follows_{tie.leader}", "linear", tie.leader, tie.follower, tie.ratio, tie.offset) for tie in ties
+    ]
+    parts = {
+        name: Part(name, connectors[name], link.visuals, link.collisions, None, link.mass, link.color) for name, link in model.links.items()
+    }
+    try:
+        mechanism = Mechanism(tuple(parts), model.ground, joints, couplings)
+        mechanism.rest  # noqa: B018 - loops must close before anything is promised
+    except ArticadError as error:
+        raise unreadable(path, "", f"It makes no mechanism: {error.message}") from error
+    return Assembly(model.name, mechanism, parts, findings=Findings(model.findings))
+
+
+def _consistent_ties(model: RawModel) -> list[RawTie]:
+    """Drop ties of joints that are not there or have several coordinates."""
+    single = {joint.name for joint in model.joints if len(joint.ranges) == 1}
+    kept = []
+    for tie in model.ties:
+        if {tie.follower, tie.leader} <= single and tie.ratio != 0 and tie.follower != tie.leader:
+            kept.append(tie)
+        else:
+            message = f"{tie.follower!r} cannot follow {tie.leader!r}: one of them has no coordinate of that name, or the ratio is zero."
+            model.findings.append(
+                Finding(code="W_IMPORT_DROPPED", where=f"joints.{tie.follower}", message=message, hint="Correct the file.")
+            )
+    return kept
+
+
+def _rest_values(joints: list[RawJoint], ties: list[RawTie]) -> dict[str, tuple[float, ...]]:
+    """Return rest values: those wanted, moved into the limits; followers where their leaders put them."""
+    rests: dict[str, tuple[float, ...]] = {}
+    for joint in joints:
+        if joint.type is JointType.BALL:
+            rests[joint.name] = joint.rest or (0.0, 0.0, 0.0, 1.0)
+            continue
+        wanted = joint.rest or (0.0,) * len(joint.ranges)
+        rests[joint.name] = tuple(min(max(value, low), high) for value, (low, high) in zip(wanted, joint.ranges, strict=True))
+    for _ in range(len(ties)):  # a chain of followers settles in as many rounds as it has links
+        before = dict(rests)
+        for tie in ties:
+            rests[tie.follower] = (tie.ratio * rests[tie.leader][0] + tie.offset,)
+        if rests == before:
+            break
+    return rests
+
+
+def _joint(joint: RawJoint, rest: tuple[float, ...], findings: list[Finding]) -> Joint:
+    ranges = []
+    for (low, high), value in zip(joint.ranges, rest, strict=False):
+        if not low <= value <= high:
+            message = f"Joint {joint.name!r} follows another out of its limits [{low:.6g}, {high:.6g}] at rest; they were widened."
+            findings.append(Finding(code="W_IMPORT_LIMITS", where=f"joints.{joint.name}", message=message, hint="Correct the limits."))
+        ranges.append((min(low, value), max(high, value)))
+    return Joint(
+        name=joint.name,
+        type=joint.type,
+        parent=joint.parent,
+        child=joint.child,
+        parent_connector=joint.name,
+        child_connector=joint.name,
+        T_parent_connector=joint.frame_p,
+        T_child_connector=joint.frame_c,
+        mate=Mate.ALIGNED,
+        limits=JointLimits(tuple(low for low, _ in ranges), tuple(high for _, high in ranges), joint.cone, joint.twist),
+        rest=rest,
+        lead=joint.lead,
+        effort=joint.effort,
+        velocity=joint.velocity,
+    )
+
+
+def with_ranges(joint: RawJoint, *ranges: tuple[float, float]) -> RawJoint:
+    """Return the joint with other limits."""
+    return replace(joint, ranges=ranges)

@@ -1,0 +1,133 @@
+"""Files of unknown origin: XML without entities, paths that stay in their folder, sizes that stay bounded."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from lxml import etree
+
+from articad.errors import ArticadError, ReadError
+from articad.findings import Finding
+from articad.geometry.mesh import TriMesh
+from articad.geometry.mesh_files import read_mesh
+
+MAX_XML_BYTES = 64 << 20  # a robot of 10,000 links is 20 MB; more is a mistake or an attack
+MAX_LINKS = 20_000
+MM_PER_M = 1000.0
+
+
+def unreadable(path: Path | str, where: str, reason: str, code: str = "E_READ") -> ReadError:
+    """Return the error that says where a file is wrong, and how."""
+    finding = Finding(
+        code=code, where=f"{path}: {where}" if where else str(path), message=reason, hint="Correct the file at the named place."
+    )
+    return ReadError(f"{path}: {where}: {reason}" if where else f"{path}: {reason}", path=str(path), where=where, findings=[finding])
+
+
+def read_xml(path: Path) -> Any:
+    """Return the root element of an XML file, without comments.
+
+    Raises:
+        ReadError: If it is missing, too large, not XML, or declares entities.
+    """
+    try:
+        if path.stat().st_size > MAX_XML_BYTES:
+            raise unreadable(path, "", f"The file is larger than {MAX_XML_BYTES >> 20} MiB.")
+        content = path.read_bytes()
+    except OSError as error:
+        raise unreadable(path, "", f"It cannot be read: {error.strerror}.") from None
+    return parse_xml(content, path)
+
+
+def parse_xml(content: bytes, path: Path) -> Any:
+    """Return the root element of XML text; nothing that it names is loaded, and no entity is expanded."""
+    # huge_tree lifts the depth limit of 256, which a chain of bodies exceeds; without entities there is nothing else to blow up
+    parser = etree.XMLParser(resolve_entities=False, no_network=True, load_dtd=False, huge_tree=True, remove_comments=True, remove_pis=True)
+    # slips that are widespread, and that other readers forgive: version 0.0, a zero byte at the end
+    content = re.sub(rb"^\s*<\?xml[^>]*?version\s*=\s*[\"']0\.\d[\"'][^>]*\?>", b"", content.rstrip(b"\0\r\n\t "))
+    try:
+        root = etree.fromstring(content, parser)
+    except (etree.XMLSyntaxError, ValueError) as error:
+        raise unreadable(path, f"line {getattr(error, 'lineno', 1)}", f"It is not XML: {error}.") from None
+    if root is None:
+        raise unreadable(path, "line 1", "It holds no element.")
+    if root.getroottree().docinfo.internalDTD is not None and root.getroottree().docinfo.internalDTD.entities():
+        raise unreadable(path, "line 1", "It declares entities, which are not expanded.")
+    return root
+
+
+@dataclass
+class Folder:
+    """Where a file may take other files from, and what could not be taken.
+
+    Attributes:
+        root: Nothing above it is read.
+        here: Folder of the file; relative names start there.
+        findings: Meshes that were left out, and why.
+    """
+
+    root: Path
+    here: Path
+    findings: list[Finding] = field(default_factory=list)
+    _meshes: dict[tuple[Path, float], TriMesh | None] = field(default_factory=dict)
+
+    @classmethod
+    def of(cls, path: Path, root: Path | None) -> Folder:
+        """Return the folder of a file; its own is the root unless another is given."""
+        here = path.resolve().parent
+        return cls((root or here).resolve(), here)
+
+    def find(self, name: str) -> Path:
+        """Return the file that a name means: relative to the file or the root, `file://`, or `package://name/...`.
+
+        Raises:
+            ReadError: E_UNSAFE_PATH if it leads out of the root; E_READ if there is no such file.
+        """
+        for candidate in self._candidates(name):
+            target = candidate.resolve()
+            if not target.is_relative_to(self.root):
+                raise unreadable(name, "", f"This name leads out of {self.root}.", "E_UNSAFE_PATH")
+            if target.is_file():
+                return target
+        raise unreadable(name, "", f"There is no such file below {self.root}.")
+
+    def _candidates(self, name: str) -> list[Path]:
+        if "\0" in name or not name:
+            raise unreadable(repr(name), "", "This is not a file name.")
+        if name.startswith("package://"):
+            package, _, rest = name.removeprefix("package://").partition("/")
+            above = [folder for folder in (self.here, *self.here.parents) if folder.is_relative_to(self.root)]
+            named = [folder / rest for folder in above if folder.name == package]
+            return [*named, *(folder / package / rest for folder in above), *(folder / rest for folder in above)]
+        plain = Path(name.removeprefix("file://"))
+        return [plain] if plain.is_absolute() else [self.here / plain, self.root / plain]
+
+    def mesh(self, name: str, scale: tuple[float, float, float], where: str) -> TriMesh | None:
+        """Return a mesh in mm, or None and a finding.
+
+        Args:
+            name: As the file names it.
+            scale: Millimetres per unit of the mesh file, along its axes.
+            where: What wants it.
+        """
+        try:
+            path = self.find(name)
+            uniform = scale[0] if scale[0] == scale[1] == scale[2] > 0 else 1.0
+            key = (path, uniform)
+            if key not in self._meshes:
+                self._meshes[key] = None
+                self._meshes[key] = read_mesh(path, scale=uniform)
+            mesh = self._meshes[key]
+        except ArticadError as error:
+            if any(finding.code == "E_UNSAFE_PATH" for finding in error.findings):
+                raise
+            message = f"Mesh {name!r} is left out: {error.message}"
+            self.findings.append(Finding(code="W_IMPORT_MESH", where=where, message=message, hint="Put the mesh where the file names it."))
+            return None
+        if mesh is not None and uniform == 1.0 and scale != (1.0, 1.0, 1.0):
+            stretched = TriMesh(mesh.vertices * scale, mesh.triangles)
+            return stretched if scale[0] * scale[1] * scale[2] > 0 else stretched.flipped()
+        return mesh

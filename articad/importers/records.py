@@ -1,0 +1,175 @@
+"""The way back: an assembly from the records that articad's exporters leave in foreign files (`articad.export.metadata`)."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from articad.assembly import Assembly
+from articad.connectors.connector import Connector
+from articad.connectors.mate import Mate
+from articad.connectors.se3 import SE3
+from articad.errors import ArticadError
+from articad.geometry.mass import MassProperties
+from articad.geometry.mesh import TriMesh
+from articad.geometry.part import Part, Shape, Solid
+from articad.importers.reading import Folder, unreadable
+from articad.kinematics.joints import Coupling, Joint, JointLimits, JointType
+from articad.kinematics.mechanism import Mechanism
+from articad.plan.resolve import Fit, Material, Waiver
+
+VERSION = 1
+
+Record = dict[str, Any]
+Scale = tuple[float, float, float]
+
+_UNIT: Scale = (1.0, 1.0, 1.0)  # articad writes meshes in mm
+
+
+def read_records(texts: Iterable[str], path: Path) -> list[Record]:
+    """Return the records that a file holds.
+
+    Raises:
+        ReadError: If one is not a JSON object with a kind, or of a later version.
+    """
+    records = []
+    for text in texts:
+        try:
+            record = json.loads(text, parse_constant=_refused_number)
+        except (ValueError, RecursionError) as error:
+            raise unreadable(path, "articad metadata", f"A record is not JSON: {error}.") from None
+        if not isinstance(record, dict) or not isinstance(record.get("kind"), str):
+            raise unreadable(path, "articad metadata", "A record is not an object with a kind.")
+        records.append(record)
+    for record in records:
+        if record["kind"] == "assembly" and record.get("version") != VERSION:
+            raise unreadable(path, "articad metadata", f"Version {record.get('version')!r} is not {VERSION}; a newer articad wrote it.")
+    return records
+
+
+def assembly_of(records: list[Record], folder: Folder, path: Path) -> Assembly:
+    """Return the assembly that the records describe, with the meshes of the files that they name.
+
+    Raises:
+        ReadError: If records are missing, or do not have the form that articad writes.
+    """
+    try:
+        return _assembly(records, folder)
+    except (KeyError, TypeError, ValueError, IndexError, OverflowError) as error:
+        raise unreadable(path, "articad metadata", f"The records are incomplete: {type(error).__name__} {error}.") from None
+    except ArticadError as error:
+        if any(finding.code == "E_UNSAFE_PATH" for finding in error.findings):
+            raise
+        raise unreadable(path, "articad metadata", f"The records make no assembly: {error.message}") from error
+
+
+def _assembly(records: list[Record], folder: Folder) -> Assembly:
+    by_kind: dict[str, list[Record]] = {}
+    for record in records:
+        by_kind.setdefault(record["kind"], []).append(record)
+    (head,) = by_kind["assembly"]
+    parts = {record["name"]: _part(record, folder) for record in by_kind.get("part", [])}
+    mechanism = Mechanism(
+        tuple(parts),
+        head["ground"],
+        [_joint(record) for record in by_kind.get("joint", [])],
+        [_coupling(record) for record in by_kind.get("coupling", [])],
+        T_ground=_frame(head["frame"]),
+    )
+    return Assembly(
+        name=head["name"],
+        mechanism=mechanism,
+        parts=parts,
+        materials={record["name"]: Material(**_without_kind(record)) for record in by_kind.get("material", [])},
+        fits={record["joint"]: Fit(**_without_kind(record, "joint")) for record in by_kind.get("fit", [])},
+        waivers=tuple(Waiver(**_without_kind(record) | {"parts": tuple(record["parts"])}) for record in by_kind.get("waiver", [])),
+        deflection=head["deflection"],
+    )
+
+
+def _part(record: Record, folder: Folder) -> Part:
+    where = f"parts.{record['name']}"
+
+    def mesh(file: str | None) -> TriMesh | None:
+        return None if file is None else folder.mesh(file, _UNIT, where)
+
+    def shapes(rows: list[Record]) -> tuple[Shape, ...]:
+        found = ((row, mesh(row["file"])) for row in rows)
+        return tuple(Shape(body, _frame(row["frame"]), row["color"], row["name"]) for row, body in found if body is not None)
+
+    return Part(
+        record["name"],
+        {row["name"]: _connector(row) for row in record["connectors"]},
+        shapes(record["visuals"]),
+        shapes(record["collisions"]),
+        _solid(record["solid"], mesh),
+        None if record["mass"] is None else _mass(record["mass"]),
+        record["color"],
+        record["material"],
+    )
+
+
+def _solid(record: Record | None, mesh: Any) -> Solid | None:
+    body = None if record is None else mesh(record["file"])
+    if record is None or body is None:
+        return None
+    numbers = (record["deflection"], record["volume"], record["area"])
+    return Solid(body, None, None, *numbers, np.array(record["com"], dtype=np.float64), np.array(record["inertia"]), body.bounds)
+
+
+def _mass(record: Record) -> MassProperties:
+    return MassProperties(record["kg"], np.array(record["com"]), np.array(record["inertia"]))
+
+
+def _connector(record: Record) -> Connector:
+    return Connector(record["name"], _frame(record["frame"]), record["label"], record["type"], record["roll_free"])
+
+
+def _joint(record: Record) -> Joint:
+    twist = record["twist"]
+    return Joint(
+        name=record["name"],
+        type=JointType(record["type"]),
+        parent=record["parent"],
+        child=record["child"],
+        parent_connector=record["parent_connector"],
+        child_connector=record["child_connector"],
+        T_parent_connector=_frame(record["parent_frame"]),
+        T_child_connector=_frame(record["child_frame"]),
+        mate=Mate(record["mate"]),
+        limits=JointLimits(
+            tuple(-math.inf if value is None else float(value) for value in record["lower"]),
+            tuple(math.inf if value is None else float(value) for value in record["upper"]),
+            record["cone"],
+            None if twist is None else (float(twist[0]), float(twist[1])),
+        ),
+        rest=tuple(float(value) for value in record["rest"]),
+        lead=record["lead"],
+        driver=record["driver"],
+        effort=tuple(record["effort"]),
+        velocity=tuple(record["velocity"]),
+    )
+
+
+def _coupling(record: Record) -> Coupling:
+    return Coupling(record["name"], record["type"], record["a"], record["b"], record["ratio"], record["offset"])
+
+
+def _frame(numbers: list[float]) -> SE3:
+    x, y, z, *xyzw = (float(number) for number in numbers)
+    if len(numbers) != 7 or not all(map(math.isfinite, numbers)) or not abs(math.hypot(*xyzw) - 1) < 1e-12:
+        return SE3.from_quaternion(xyzw, [x, y, z])  # refuses what is no rotation
+    return SE3.from_unit_array(np.array([x, y, z, *xyzw]))
+
+
+def _without_kind(record: Record, *more: str) -> Record:
+    return {key: value for key, value in record.items() if key not in {"kind", *more}}
+
+
+def _refused_number(name: str) -> float:
+    raise ValueError(f"{name} is not a number")

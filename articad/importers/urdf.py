@@ -1,0 +1,268 @@
+"""URDF in: articad's own by its records, any other by its links and joints."""
+
+from __future__ import annotations
+
+import io
+import logging
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from lxml import etree
+from numpy.typing import NDArray
+
+from articad.assembly import Assembly
+from articad.connectors.se3 import SE3
+from articad.errors import InvalidSolidError
+from articad.findings import Finding
+from articad.geometry.mass import MassProperties
+from articad.geometry.mesh import TriMesh
+from articad.geometry.part import DEFAULT_COLOR, Shape
+from articad.geometry.shapes import box, cylinder, sphere
+from articad.importers.fusing import fused
+from articad.importers.raw import ENDLESS, IDENTITY, RawJoint, RawLink, RawModel, RawTie, aligned, assemble, floating
+from articad.importers.reading import MAX_LINKS, MM_PER_M, Folder, read_xml, unreadable
+from articad.importers.records import assembly_of, read_records
+from articad.kinematics.joints import JointType
+
+FloatArray = NDArray[np.float64]
+
+_SHAPES = {"box", "cylinder", "sphere", "mesh"}
+_JOINT_TYPES = {"fixed", "revolute", "continuous", "prismatic", "planar", "floating", "spherical"}
+
+
+def read_urdf(path: str | Path, *, root: str | Path | None = None, metadata: bool = True, fuse: bool = True) -> Assembly:
+    """Read a URDF file.
+
+    Links become parts in their own frames, joints keep their names and values. `mimic` becomes a coupling, `planar` a planar joint,
+    `floating` three slides and a ball. Meshes that are missing are left out with a finding.
+
+    Args:
+        path: The file; xacro must be expanded.
+        root: Folder that meshes may be read from; the file's own by default. `package://name/…` is looked up below it.
+        metadata: Use the records that articad left in its own files, so that they come back as they were.
+        fuse: Without metadata, make chains over bare links of small mass one joint: cylindrical, screw, universal, planar, ball.
+
+    Raises:
+        ReadError: If the file is not URDF, names files outside the root, or is no mechanism.
+    """
+    path = Path(path)
+    folder = Folder.of(path, None if root is None else Path(root))
+    document = read_xml(path)
+    if document.tag != "robot":
+        raise unreadable(path, f"line {document.sourceline}", f"The root element is <{document.tag}>, not <robot>.")
+    texts = [element.text or "" for element in document.iterfind("articad")]
+    if metadata and texts:
+        return assembly_of(read_records(texts, path), folder, path)
+    model = _model(document, folder, path)
+    return assemble(fused(model) if fuse else model, path)
+
+
+def _model(document: Any, folder: Folder, path: Path) -> RawModel:
+    _require_numbers(document, path)
+    findings = _strip(document, path)
+    robot = _parse(document, path)
+    model = RawModel(robot.name or path.stem, _root(robot, path), findings=[*findings])
+    colors = {material.name: _color(material) for material in robot.materials}
+    for link in robot.links:
+        if link.name in model.links:
+            raise unreadable(path, f"link {link.name!r}", "Two links have this name.")
+        model.links[link.name] = _link(link, colors, folder)
+    types = {joint.name: joint.type for joint in robot.joints}
+    for joint in robot.joints:
+        _add_joint(model, joint, types, path)
+    model.findings += folder.findings
+    return model
+
+
+def _parse(document: Any, path: Path) -> Any:
+    """Let yourdfpy read the cleaned document; whatever it stumbles over is the file's fault."""
+    import yourdfpy  # noqa: PLC0415 - half a second, and only readers need it
+
+    content = etree.tostring(document)
+    logger = logging.getLogger("yourdfpy.urdf")
+    level = logger.level
+    logger.setLevel(logging.CRITICAL)
+    try:
+        return yourdfpy.URDF.load(
+            io.BytesIO(content), build_scene_graph=False, build_collision_scene_graph=False, load_meshes=False, load_collision_meshes=False
+        ).robot
+    except Exception as error:
+        raise unreadable(path, "", f"It is not URDF: {type(error).__name__} {error}.") from error
+    finally:
+        logger.setLevel(level)
+
+
+def _strip(document: Any, path: Path) -> list[Finding]:
+    """Take out what other programs' elements hold, and shapes that have no mesh; return what was lost."""
+    if len(document) > 8 * MAX_LINKS:
+        raise unreadable(path, "", f"It has {len(document)} elements; {8 * MAX_LINKS} are the most.")
+    findings = []
+    for element in list(document):
+        if element.tag not in {"link", "joint", "material"}:
+            document.remove(element)
+    for shape in [*document.iterfind("link/visual"), *document.iterfind("link/collision")]:
+        geometry = shape.find("geometry")
+        if geometry is None or not len(geometry) or geometry[0].tag not in _SHAPES:
+            what = geometry[0].tag if geometry is not None and len(geometry) else "nothing"
+            where = f"links.{shape.getparent().get('name')}"
+            message = f"A shape of {what} is left out."
+            findings.append(Finding(code="W_IMPORT_DROPPED", where=where, message=message, hint="Use a box, cylinder, sphere or mesh."))
+            shape.getparent().remove(shape)
+    return findings
+
+
+def _require_numbers(document: Any, path: Path) -> None:
+    """Refuse NaN, infinities and numbers beyond reason, wherever they stand; yourdfpy would take them."""
+    names = ("xyz", "rpy", "value", "size", "radius", "length", "scale", "lower", "upper", "effort", "velocity", "multiplier", "offset")
+    moments = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
+    for element in document.iter():
+        for name in (*names, *moments):
+            text = element.get(name)
+            if text is None or element.tag in {"gazebo", "articad"}:
+                continue
+            try:
+                numbers = [float(word) for word in (text.replace(",", " ") if name in {"size", "scale"} else text).split()]
+            except ValueError:
+                if element.tag in {"origin", "axis", "limit", "mass", "inertia", "mimic", "box", "cylinder", "sphere", "mesh"}:
+                    raise unreadable(path, f"line {element.sourceline}", f"{name}={text!r} is not a number.") from None
+                continue
+            if len(numbers) not in _COUNTS.get(name, (1,)) and element.tag in {"origin", "axis", "mesh", "box"}:
+                raise unreadable(path, f"line {element.sourceline}", f"{name}={text!r} has {len(numbers)} numbers.")
+            infinite_limit = element.tag == "limit"  # an infinite limit is none
+            if any(math.isnan(number) or (abs(number) > _LARGEST and not infinite_limit) for number in numbers):
+                raise unreadable(path, f"line {element.sourceline}", f"{name}={text!r} is beyond reason.")
+
+
+_COUNTS = {"xyz": (3,), "rpy": (3,), "size": (3,), "scale": (1, 3)}
+_LARGEST = 1e12  # m, kg, N: beyond it arithmetic on poses means nothing
+
+
+def _root(robot: Any, path: Path) -> str:
+    children = {joint.child for joint in robot.joints}
+    roots = [link.name for link in robot.links if link.name not in children]
+    if len(roots) != 1:
+        raise unreadable(path, "", f"It has {len(roots)} root links ({', '.join(map(str, roots[:5]))}); one is needed.")
+    return str(roots[0])
+
+
+def _link(link: Any, colors: dict[str, str], folder: Folder) -> RawLink:
+    where = f"parts.{link.name}"
+    visuals = _shapes(link.visuals, colors, folder, where)
+    collisions = _shapes(link.collisions, colors, folder, where)
+    color = next((shape.color for shape in visuals if shape.color), DEFAULT_COLOR)
+    return RawLink(link.name, _mass(link.inertial, where, folder.findings), visuals, collisions, color)
+
+
+def _mass(inertial: Any, where: str, findings: list[Finding]) -> MassProperties | None:
+    if inertial is None or inertial.mass is None:
+        return None
+    T = _pose(inertial.origin)
+    inertia = np.zeros((3, 3)) if inertial.inertia is None else np.array(inertial.inertia, dtype=np.float64)
+    if inertial.mass < 0:
+        message = f"A mass of {inertial.mass} kg is left out."
+        findings.append(Finding(code="W_IMPORT_DROPPED", where=where, message=message, hint="Give a positive mass."))
+        return None
+    return MassProperties(inertial.mass, np.zeros(3), (inertia + inertia.T) / 2 * MM_PER_M**2).moved(T)
+
+
+def _shapes(rows: Any, colors: dict[str, str], folder: Folder, where: str) -> tuple[Shape, ...]:
+    shapes = []
+    for row in rows:
+        try:
+            mesh = _mesh(row.geometry, folder, where)
+        except InvalidSolidError as error:
+            message = f"A shape is left out: {error.message}"
+            folder.findings.append(Finding(code="W_IMPORT_DROPPED", where=where, message=message, hint="Give it a size."))
+            continue
+        if mesh is not None:
+            material = getattr(row, "material", None)
+            color = None if material is None else _color(material) or colors.get(material.name) or None
+            shapes.append(Shape(mesh, _pose(row.origin), color or None, row.name or ""))
+    return tuple(shapes)
+
+
+def _mesh(geometry: Any, folder: Folder, where: str) -> TriMesh | None:
+    if geometry.box is not None:
+        return box(*(float(size) * MM_PER_M for size in geometry.box.size))
+    if geometry.cylinder is not None:
+        return cylinder(geometry.cylinder.radius * MM_PER_M, geometry.cylinder.length * MM_PER_M)
+    if geometry.sphere is not None:
+        return sphere(geometry.sphere.radius * MM_PER_M)
+    scale = np.ones(3) if geometry.mesh.scale is None else np.broadcast_to(geometry.mesh.scale, 3)
+    x, y, z = (float(factor) * MM_PER_M for factor in scale)
+    return folder.mesh(geometry.mesh.filename or "", (x, y, z), where)
+
+
+def _color(material: Any) -> str:
+    color = getattr(material, "color", None)
+    if color is None or color.rgba is None:
+        return ""
+    return "#" + "".join(f"{round(255 * min(max(float(channel), 0.0), 1.0)):02x}" for channel in color.rgba[:3])
+
+
+def _pose(matrix: FloatArray | None) -> SE3:
+    """Return a pose in mm of one in m; the rotation comes from angles, so it is one."""
+    if matrix is None:
+        return IDENTITY
+    return SE3.from_rotation(matrix[:3, :3], matrix[:3, 3] * MM_PER_M)
+
+
+def _add_joint(model: RawModel, joint: Any, types: dict[str, str], path: Path) -> None:
+    if joint.type not in _JOINT_TYPES:
+        raise unreadable(path, f"joint {joint.name!r}", f"Type {joint.type!r} is not one of {', '.join(sorted(_JOINT_TYPES))}.")
+    origin = _pose(joint.origin)
+    axis = np.array([1.0, 0.0, 0.0] if joint.axis is None else joint.axis, dtype=np.float64)
+    if joint.type == "floating":
+        links, joints = floating(joint.name, joint.parent, joint.child, origin, IDENTITY)
+        model.links |= {link.name: link for link in links}
+        model.joints += joints
+        return
+    if joint.type == "spherical":  # not URDF, but written and read by some
+        model.joints.append(RawJoint(joint.name, JointType.BALL, joint.parent, joint.child, origin, IDENTITY, cone=math.pi))
+        return
+    if joint.type == "fixed":
+        model.joints.append(RawJoint(joint.name, JointType.FIXED, joint.parent, joint.child, origin, IDENTITY))
+        return
+    if not np.linalg.norm(axis) > 1e-9:
+        raise unreadable(path, f"joint {joint.name!r}", "Its axis has no direction.")
+    R = aligned(axis)
+    ends = (joint.parent, joint.child, origin @ R, R)
+    if joint.type == "planar":
+        model.joints.append(RawJoint(joint.name, JointType.PLANAR, *ends, (ENDLESS, ENDLESS, ENDLESS)))
+        return
+    slides = joint.type == "prismatic"
+    unit = MM_PER_M if slides else 1.0
+    limit = joint.limit
+    effort = None if limit is None or not limit.effort else abs(limit.effort) * (1.0 if slides else MM_PER_M)
+    velocity = None if limit is None or not limit.velocity else abs(limit.velocity) * unit
+    bounds = _range(model, joint, unit)
+    kind = JointType.SLIDER if slides else JointType.REVOLUTE
+    model.joints.append(RawJoint(joint.name, kind, *ends, (bounds,), effort=(effort,), velocity=(velocity,)))
+    if joint.mimic is not None:
+        model.ties.append(_tie(joint, types))
+
+
+def _range(model: RawModel, joint: Any, unit: float) -> tuple[float, float]:
+    limit = joint.limit
+    if joint.type == "continuous":
+        return ENDLESS
+    lower, upper = (None, None) if limit is None else (limit.lower, limit.upper)
+    if lower is None and upper is None:
+        message = f"Joint {joint.name!r} has no limits; it is taken as endless."
+    elif (lower or 0.0) > (upper or 0.0):
+        message = f"Joint {joint.name!r} has limits [{lower}, {upper}] that are reversed; it is taken as endless."
+    else:
+        return (lower or 0.0) * unit, (upper or 0.0) * unit
+    model.findings.append(Finding(code="W_IMPORT_LIMITS", where=f"joints.{joint.name}", message=message, hint="Give lower and upper."))
+    return ENDLESS
+
+
+def _tie(joint: Any, types: dict[str, str]) -> RawTie:
+    """Return what a joint follows, in mm and rad on both sides."""
+    mimic = joint.mimic
+    ratio = 1.0 if mimic.multiplier is None else mimic.multiplier
+    offset = 0.0 if mimic.offset is None else mimic.offset
+    mine, its = (MM_PER_M if types.get(name) == "prismatic" else 1.0 for name in (joint.name, mimic.joint))
+    return RawTie(joint.name, mimic.joint, ratio * mine / its, offset * mine)

@@ -1,0 +1,188 @@
+"""Hostile and broken files: a named error, nothing outside the folder, bounded time."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from articad.errors import ReadError
+from articad.export.mjcf import write_mjcf
+from articad.export.urdf import write_urdf
+from articad.importers import reading, urdf
+from articad.importers.mjcf import read_mjcf
+from articad.importers.urdf import read_urdf
+from tests.assemblies import geared_pair
+
+LINKS = '<link name="a"/><link name="b"/>'
+BOMB = '<!DOCTYPE r [<!ENTITY a "aaaaaaaaaa"><!ENTITY b "&a;&a;&a;&a;&a;&a;&a;&a;">]>'
+
+
+def robot(body: str) -> str:
+    return f'<robot name="r">{body}</robot>'
+
+
+def joint(inside: str, kind: str = "revolute", ends: str = '<parent link="a"/><child link="b"/>') -> str:
+    return robot(f'{LINKS}<joint name="j" type="{kind}">{ends}{inside}</joint>')
+
+
+URDFS = {
+    "empty": ("", "not XML"),
+    "truncated": ("<robot name='r'><link name='a'>", "not XML"),
+    "another root": ("<mujoco/>", "not <robot>"),
+    "entities": (f"{BOMB}<robot name='r'><link name='&b;'/></robot>", "entities"),
+    "no link": (robot(""), "0 root links"),
+    "two roots": (robot(LINKS), "2 root links"),
+    "a circle": (robot(f'{LINKS}<joint name="j" type="fixed"><parent link="a"/><child link="b"/></joint>'
+                       '<joint name="k" type="fixed"><parent link="b"/><child link="a"/></joint>'), "0 root links"),
+    "a circle beside the tree": (
+        robot(f'{LINKS}<link name="c"/><joint name="j" type="fixed"><parent link="b"/><child link="c"/></joint>'
+              '<joint name="k" type="fixed"><parent link="c"/><child link="b"/></joint>'),
+        "no mechanism",
+    ),
+    "a link twice": (robot('<link name="a"/><link name="a"/>'), "Two links|root links"),
+    "an unknown link": (joint("", ends='<parent link="a"/><child link="nowhere"/>'), "root links|not in the file"),
+    "an unknown type": (joint("", "helical"), "not one of"),
+    "no axis": (joint('<axis xyz="0 0 0"/><limit lower="0" upper="1"/>'), "no direction"),
+    "NaN": (joint('<origin xyz="nan 0 0"/><limit lower="0" upper="1"/>'), "beyond reason"),
+    "a huge number": (joint('<origin xyz="1e300 0 0"/><limit lower="0" upper="1"/>'), "beyond reason"),
+    "not a number": (joint('<origin xyz="x 0 0"/>'), "not a number"),
+    "two numbers": (joint('<origin xyz="1 2"/>'), "has 2 numbers"),
+    "records of no form": (robot("<articad>{}</articad>"), "no object with a kind|not an object"),
+    "records that are not JSON": (robot("<articad>[</articad>"), "not JSON"),
+    "records with NaN": (robot('<articad>{"kind": "part", "x": NaN}</articad>'), "not JSON"),
+    "deep records": (robot("<articad>" + "[" * 100_000 + "</articad>"), "not JSON"),
+    "records without an assembly": (robot('<articad>{"kind": "part"}</articad>'), "incomplete"),
+    "records of the future": (robot('<articad>{"kind": "assembly", "version": 9}</articad>'), "newer"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", URDFS)
+def test_a_broken_urdf_is_a_named_error(name: str, tmp_path: Path) -> None:
+    text, reason = URDFS[name]
+    path = tmp_path / "a.urdf"
+    path.write_text(text)
+
+    with pytest.raises(ReadError, match=reason) as error:
+        read_urdf(path)
+    assert error.value.findings.codes == ("E_READ",)
+
+
+MJCFS = {
+    "another root": ("<robot/>", "not <mujoco>"),
+    "not MJCF": ("<mujoco><nonsense/></mujoco>", "MuJoCo does not take it"),
+    "a file outside": ('<mujoco><asset><mesh name="m" file="../../etc/passwd"/></asset></mujoco>', "leads out"),
+    "an absolute file": ('<mujoco><asset><hfield name="m" file="/etc/passwd"/></asset></mujoco>', "leads out"),
+    "an outside folder": ('<mujoco><compiler meshdir="../.."/><asset><mesh name="m" file="x.stl"/></asset></mujoco>', "leads out"),
+    "an outside include": ('<mujoco><include file="../b.xml"/></mujoco>', "leads out"),
+    "an include of itself": ('<mujoco><include file="a.xml"/></mujoco>', "must not go round"),
+    "many copies": ('<mujoco><worldbody><replicate count="1000000"><body/></replicate></worldbody></mujoco>', "copies"),
+    "many copies in three directions": ('<mujoco><worldbody><flexcomp count="100 100 100"/></worldbody></mujoco>', "copies"),
+}
+
+
+@pytest.mark.parametrize("name", MJCFS)
+def test_a_broken_mjcf_is_a_named_error(name: str, tmp_path: Path) -> None:
+    text, reason = MJCFS[name]
+    path = tmp_path / "a.xml"
+    path.write_text(text)
+
+    with pytest.raises(ReadError, match=reason):
+        read_mjcf(path)
+
+
+def test_includes_are_followed(tmp_path: Path) -> None:
+    (tmp_path / "b.xml").write_text(
+        '<mujoco><worldbody><body name="b"><geom size="1"/><joint name="j" axis="0 0 1"/></body></worldbody></mujoco>'
+    )
+    (tmp_path / "a.xml").write_text('<mujoco><include file="b.xml"/></mujoco>')
+
+    assert list(read_mjcf(tmp_path / "a.xml").parts) == ["world", "b"]
+
+
+@pytest.mark.parametrize("name", ["../out.stl", "/etc/hosts", "package://x/../../../../etc/hosts", "file:///etc/hosts"])
+def test_a_mesh_outside_is_refused_not_read(name: str, tmp_path: Path) -> None:
+    folder = tmp_path / "in"
+    folder.mkdir()
+    (tmp_path / "out.stl").write_text("solid")
+    (folder / "a.urdf").write_text(robot(f'<link name="a"><visual><geometry><mesh filename="{name}"/></geometry></visual></link>'))
+
+    with pytest.raises(ReadError, match="leads out") as error:
+        read_urdf(folder / "a.urdf")
+    assert error.value.findings.codes == ("E_UNSAFE_PATH",)
+
+
+@pytest.mark.parametrize("write", [write_urdf, write_mjcf])
+def test_records_cannot_name_files_outside(write: Any, tmp_path: Path) -> None:
+    bundle = write(geared_pair())
+    text = bundle.files[bundle.main].decode().replace("meshes/rack.stl", "../../rack.stl")
+    (tmp_path / "a").mkdir()
+    path = tmp_path / "a" / bundle.main
+    path.write_text(text)
+
+    with pytest.raises(ReadError, match="leads out"):
+        (read_urdf if write is write_urdf else read_mjcf)(path)
+
+
+def test_a_missing_mesh_is_left_out_with_a_finding(tmp_path: Path) -> None:
+    path = tmp_path / "a.urdf"
+    path.write_text(robot('<link name="a"><visual><geometry><mesh filename="nothing.stl"/></geometry></visual></link>'))
+    assembly = read_urdf(path)
+
+    assert assembly.findings.codes == ("W_IMPORT_MESH",)
+    assert not assembly.parts["a"].visuals
+
+
+def test_packages_are_looked_up_below_the_root(tmp_path: Path) -> None:
+    bundle = write_urdf(geared_pair())
+    text = bundle.files[bundle.main].replace(b"meshes/", b"package://my_robot/meshes/")
+    root = tmp_path / "my_robot"
+    bundle.write(root)
+    (root / "urdf").mkdir()
+    (root / "urdf" / "a.urdf").write_bytes(text)
+
+    assembly = read_urdf(root / "urdf" / "a.urdf", root=tmp_path, metadata=False)
+    assert not assembly.findings.of("W_IMPORT_MESH")
+    assert all(part.visuals for part in assembly.parts.values())
+
+
+def test_a_file_that_is_not_there(tmp_path: Path) -> None:
+    with pytest.raises(ReadError, match="No such file"):
+        read_urdf(tmp_path / "a.urdf")
+
+
+def test_a_file_that_is_too_large(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(reading, "MAX_XML_BYTES", 10)
+    (tmp_path / "a.urdf").write_text(robot(LINKS))
+
+    with pytest.raises(ReadError, match="larger than"):
+        read_urdf(tmp_path / "a.urdf")
+
+
+def test_a_hundred_thousand_links(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(urdf, "MAX_LINKS", 1000)
+    (tmp_path / "a.urdf").write_text(robot("".join(f'<link name="l{i}"/>' for i in range(100_000))))
+
+    with pytest.raises(ReadError, match="are the most"):
+        read_urdf(tmp_path / "a.urdf")
+
+
+def test_missing_and_reversed_limits_are_endless_with_a_finding(tmp_path: Path) -> None:
+    for limit in ("", '<limit lower="1" upper="-1" effort="1" velocity="1"/>'):
+        (tmp_path / "a.urdf").write_text(joint(f'<axis xyz="0 0 1"/>{limit}'))
+        assembly = read_urdf(tmp_path / "a.urdf")
+
+        assert assembly.findings.codes == ("W_IMPORT_LIMITS",)
+        assert assembly.joints[0].limits.upper == (float("inf"),)
+
+
+def test_a_changed_record_is_refused_by_the_mechanism(tmp_path: Path) -> None:
+    bundle = write_urdf(geared_pair())
+    record = {"kind": "coupling", "name": "x", "type": "gear", "a": "nobody", "b": "a", "ratio": 1.0, "offset": 0.0}
+    text = bundle.files[bundle.main].replace(b"</robot>", f"<articad>{json.dumps(record)}</articad></robot>".encode())
+    (tmp_path / "a.urdf").write_bytes(text)
+
+    with pytest.raises(ReadError, match="make no assembly"):
+        read_urdf(tmp_path / "a.urdf")
