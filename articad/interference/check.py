@@ -65,7 +65,7 @@ def check_scene(
 ) -> Checks:
     """Check one pose of a scene; see `check_pose`."""
     placed = {name: poses[name] for name in scene.bodies}
-    findings = [_broken_finding(name, reason) for name, reason in scene.broken.items()]
+    findings = [broken_finding(name, reason) for name, reason in scene.broken.items()]
     pairs: dict[tuple[str, str], PairCheck] = {}
     for a, b in scene.candidates(placed):
         if over != "rest" and scene.relations.rigid.together(a, b):
@@ -76,7 +76,7 @@ def check_scene(
         gap = distance(scene.bodies[a], scene.bodies[b], relative(placed[a], placed[b])) if gaps and not found.volume else None
         pairs[a, b], finding = judge(scene, (a, b), found, over=over, pose=pose, gap=gap)
         findings += finding
-    pairs.update(_unknown_pairs(scene, over))
+    pairs.update(unknown_pairs(scene, over))
     if over == "rest":
         holding = Holding(scene, placed, pairs)
         findings += holding.fixed_apart()
@@ -87,7 +87,8 @@ def check_scene(
     return Checks(Findings(findings), tuple(ordered), scene.deflection, over, tuple(scene.bodies), bare)
 
 
-def _broken_finding(name: str, reason: str) -> Finding:
+def broken_finding(name: str, reason: str) -> Finding:
+    """Return the finding that a mesh is no solid."""
     return Finding(
         code="E_MESH_OPEN",
         where=f"parts.{name}",
@@ -97,7 +98,7 @@ def _broken_finding(name: str, reason: str) -> Finding:
     )
 
 
-def _unknown_pairs(scene: Scene, over: str) -> dict[tuple[str, str], PairCheck]:
+def unknown_pairs(scene: Scene, over: str | tuple[str, ...]) -> dict[tuple[str, str], PairCheck]:
     """Return a verdict "unknown" for every pair with a broken mesh: it is never taken for no interference."""
     names = list(scene.bodies)
     unknown = {}

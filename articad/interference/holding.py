@@ -19,7 +19,7 @@ TOUCH_MM = 0.1  # surfaces that are fixed to each other may be this far apart: g
 NEAR_MM = 5.0  # a part within this distance of another is held by it: runners, shadow gaps
 NEAR_LEAST_MM = 0.5  # … but for small parts the limit is a tenth of their size, and at least this
 NEAR_SHARE = 0.1
-_NEAR_SAMPLES = 256  # vertices compared before FCL is asked whether two parts are near
+_NEAR_SAMPLES = 48  # vertices compared before FCL is asked whether two parts are near
 
 
 class Holding:

@@ -24,7 +24,7 @@ FloatArray = NDArray[np.float64]
 VOLUME_NOISE_MM3 = 1e-9  # touching faces of centimetres leave up to 1e-12; a real overlap of 1e-6 mm has more
 DIRECT_TRIANGLES = 4000  # up to here a boolean costs less than FCL's search for contact (measured: 0.6x at 2k, 2.7x at 20k)
 _DEPTH_PIECES = 24  # pieces of an overlap whose depth is sampled, the largest first
-_DEPTH_SAMPLES = 96  # vertices, and as many centres of triangles, at which the depth of one piece is sampled
+_DEPTH_SAMPLES = 48  # vertices, and as many centres of triangles, at which the depth of one piece is sampled
 
 
 @dataclass(frozen=True)
@@ -81,11 +81,36 @@ def intersection(a: Body, b: Body, T_a_b: SE3) -> Any:
 
 def measured(a: Body, b: Body, T_a_b: SE3) -> Overlap:
     """Measure the overlap, asking the cheaper library first: large meshes that do not touch cost one FCL search."""
+    return overlap(a, b, T_a_b) if may_overlap(a, b, T_a_b.matrix[:3]) else NOTHING
+
+
+def may_overlap(a: Body, b: Body, T_a_b: FloatArray) -> bool:
+    """Return False when FCL and a look at containment exclude an overlap; small meshes go to the boolean at once.
+
+    Args:
+        a: A body.
+        b: Another.
+        T_a_b: Where it stands as seen from a, `(3, 4)`.
+    """
     if max(len(a.mesh.triangles), len(b.mesh.triangles)) <= DIRECT_TRIANGLES:
-        return overlap(a, b, T_a_b)
-    if not surfaces_touch(a, b, T_a_b) and not one_contains_the_other(a, b, T_a_b):
-        return NOTHING
-    return overlap(a, b, T_a_b)
+        return True
+    b.moving.setTransform(fcl.Transform(T_a_b[:, :3], T_a_b[:, 3]))
+    if fcl.collide(a.standing, b.moving, fcl.CollisionRequest(), fcl.CollisionResult()) > 0:
+        return True
+    T = np.eye(4)
+    T[:3] = T_a_b
+    return one_contains_the_other(a, b, SE3.from_matrix(T))
+
+
+def volume(a: Body, b: Body, T_a_b: FloatArray) -> float:
+    """Return the common volume alone [mm³], of bodies without fault.
+
+    Args:
+        a: A body.
+        b: Another.
+        T_a_b: Where it stands as seen from a, `(3, 4)`.
+    """
+    return float((a.manifold ^ b.manifold.transform(T_a_b)).volume())
 
 
 def surfaces_touch(a: Body, b: Body, T_a_b: SE3) -> bool:

@@ -74,14 +74,15 @@ class Scene:
         return self.relations.tolerated(a, b, self.deflection_of(a, b))
 
     @cached_property
-    def _boxes(self) -> tuple[FloatArray, FloatArray]:
+    def local_boxes(self) -> tuple[FloatArray, FloatArray]:
+        """Centres and half sides of the bodies' boxes in their own frames, `(N, 3)` each [mm]."""
         bounds = np.array([body.mesh.bounds if len(body.mesh.triangles) else np.zeros((2, 3)) for body in self.bodies.values()])
         bounds = bounds.reshape(-1, 2, 3)
         return (bounds[:, 0] + bounds[:, 1]) / 2, (bounds[:, 1] - bounds[:, 0]) / 2
 
     def boxes_at(self, poses: Mapping[str, SE3]) -> tuple[FloatArray, FloatArray]:
         """Return lower and upper corners of the parts' boxes in the ground frame, `(N, 3)` each [mm]."""
-        centres, halves = self._boxes
+        centres, halves = self.local_boxes
         R = np.array([poses[name].rotation for name in self.bodies]).reshape(-1, 3, 3)
         t = np.array([poses[name].translation for name in self.bodies]).reshape(-1, 3)
         middle = np.einsum("nij,nj->ni", R, centres) + t

@@ -1,0 +1,240 @@
+"""Sampled motion: one joint at a time, two on a grid, or all at scattered points. It says "sampled", for that is what it is.
+
+A pair is asked again only where its relative pose is new: while one joint moves, most pairs keep theirs.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from itertools import combinations, product
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from articad.connectors.se3 import SE3
+from articad.errors import KinematicsError
+from articad.findings import Finding, Findings
+from articad.geometry.mesh import TriMesh
+from articad.interference.check import broken_finding, unknown_pairs
+from articad.interference.motion import Freedom, driver_values, freedoms
+from articad.interference.overlap import VOLUME_NOISE_MM3, Overlap, may_overlap, overlap, volume
+from articad.interference.relations import FitLike, WaiverLike
+from articad.interference.report import Checks, PairCheck, Strength
+from articad.interference.scene import Scene
+from articad.interference.verdict import UNRELATED_VOLUME_MM3, judge
+from articad.kinematics.joints import Joint
+from articad.kinematics.mechanism import Mechanism
+
+FloatArray = NDArray[np.float64]
+
+DEFAULT_STEPS = 60
+_KEY_DIGITS = 9  # of millimetres and of rotation entries: relative poses that agree so far are one
+_DEEPEST = 2  # poses of largest volume at which the depth of a pair is measured
+_PRIMES = (2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53, 59, 61, 67, 71)
+
+
+@dataclass
+class _Track:
+    """What was seen of one pair: volume by relative pose, and where."""
+
+    volumes: dict[bytes, float] = field(default_factory=dict)
+    poses: dict[bytes, tuple[FloatArray, int]] = field(default_factory=dict)
+    seen: int = 0
+
+
+def sweep(
+    meshes: Mapping[str, TriMesh],
+    mechanism: Mechanism,
+    *,
+    joints: Sequence[str] | None = None,
+    steps: int = DEFAULT_STEPS,
+    together: bool = False,
+    samples: int = 0,
+    waivers: Sequence[WaiverLike] = (),
+    deflection: Mapping[str, float] | float = 0.0,
+    fits: Mapping[str, FitLike] | None = None,
+) -> Checks:
+    """Sample the motion of every driver over its range, the others at rest.
+
+    Args:
+        meshes: By part, in the part's frame; parts without geometry are left out.
+        mechanism: Moves them.
+        joints: Names of those to sweep; all that drive by default.
+        steps: Poses per coordinate.
+        together: Whether to sweep every two coordinates on a grid as well, of √steps each way.
+        samples: Further poses scattered over all coordinates at once, in a low-discrepancy sequence.
+        waivers: Overlaps that the plan allows.
+        deflection: How far meshes are from their solids [mm], by part or the same for all.
+        fits: By joint name.
+
+    Returns:
+        A report whose strengths all are "sampled"; a collision carries its pose.
+    """
+    scene = Scene.of(meshes, mechanism.joints, waivers=waivers, deflection=deflection, fits=fits)
+    return Sweep(scene, mechanism).run(joints, steps=steps, together=together, samples=samples)
+
+
+class Sweep:
+    """Sampling of one scene; what it has seen of a relative pose it does not ask again.
+
+    Args:
+        scene: Bodies and relations.
+        mechanism: Places the parts.
+    """
+
+    def __init__(self, scene: Scene, mechanism: Mechanism) -> None:
+        self.scene, self.mechanism = scene, mechanism
+        self.queries = 0
+        self._known: dict[tuple[str, str], dict[bytes, float]] = {}
+        driving = dict.fromkeys(coordinate.joint for coordinate in mechanism.drivers)
+        by_name = {joint.name: joint for joint in mechanism.joints}
+        self.driving: tuple[Joint, ...] = tuple(by_name[name] for name in driving)
+
+    def run(self, joints: Sequence[str] | None, *, steps: int, together: bool, samples: int) -> Checks:
+        """Sweep and report; see `sweep`."""
+        chosen = [joint for joint in self.driving if joints is None or joint.name in joints]
+        ranges = [freedom for joint in chosen for freedom in freedoms(joint)]
+        over = tuple(freedom.name for freedom in ranges)
+        broken = Findings(broken_finding(name, reason) for name, reason in self.scene.broken.items())
+        report = Checks(broken, tuple(unknown_pairs(self.scene, over).values()), self.scene.deflection, over, tuple(self.scene.bodies))
+        for freedom in ranges:
+            values = np.linspace(freedom.lower, freedom.upper, max(steps, 2))
+            step = float(values[1] - values[0])
+            report += self.sampled([{freedom.name: value} for value in values.tolist()], (freedom.name,), step)
+        if together:
+            side = max(2, round(steps**0.5))
+            for pair in combinations(ranges, 2):
+                grid = product(*(np.linspace(freedom.lower, freedom.upper, side).tolist() for freedom in pair))
+                names: tuple[str, ...] = (pair[0].name, pair[1].name)
+                report += self.sampled([dict(zip(names, point, strict=True)) for point in grid], names, None)
+        if samples and ranges:
+            names = tuple(freedom.name for freedom in ranges)
+            report += self.sampled([dict(zip(names, point, strict=True)) for point in scattered(ranges, samples)], names, None)
+        return report
+
+    def sampled(self, points: Sequence[Mapping[str, float]], over: tuple[str, ...], step: float | None) -> Checks:
+        """Check poses given by values of freedoms, the others at rest."""
+        try:
+            poses = self.mechanism.poses(np.array([self.columns(point) for point in points])).data
+        except KinematicsError as error:
+            return self._unreached(error, over)
+        matrices = _matrices(poses[:, [self.mechanism.part_index(name) for name in self.scene.bodies]])
+        tracks = self._tracks(matrices)
+        findings: list[Finding] = []
+        pairs: list[PairCheck] = []
+        strength = Strength.sampled(len(points), step)
+        for (a, b), track in tracks.items():
+            check, found = self._judged((a, b), track, points, over, strength)
+            pairs.append(check)
+            findings += found
+        bare = tuple(name for name in self.mechanism.parts if name not in self.scene.bodies)
+        return Checks(Findings(findings), tuple(pairs), self.scene.deflection, over, tuple(self.scene.bodies), bare)
+
+    def columns(self, point: Mapping[str, float]) -> list[float]:
+        """Return the drivers' values `(nq,)` for values of some freedoms, the others at rest."""
+        row: list[float] = []
+        for joint in self.driving:
+            values = driver_values(joint, [point.get(freedom.name, freedom.rest) for freedom in freedoms(joint)])
+            driven = {coordinate.name for coordinate in self.mechanism.drivers if coordinate.joint == joint.name}
+            row += [value for name, value in zip(joint.column_names, values, strict=True) if name in driven]
+        return row
+
+    def _tracks(self, matrices: FloatArray) -> dict[tuple[str, str], _Track]:
+        """Measure the overlap volume of every candidate pair at every pose, each relative pose once."""
+        names = list(self.scene.bodies)
+        low, high = _boxes(self.scene, matrices)
+        tracks: dict[tuple[str, str], _Track] = {}
+        for i, j in combinations(range(len(names)), 2):
+            a, b = names[i], names[j]
+            if self.scene.relations.rigid.together(a, b) or a in self.scene.broken or b in self.scene.broken:
+                continue
+            near = np.flatnonzero(((low[:, i] <= high[:, j]) & (low[:, j] <= high[:, i])).all(axis=1))
+            if not len(near):
+                continue
+            R, t = matrices[near, i, :3, :3].transpose(0, 2, 1), matrices[near, j, :3, 3] - matrices[near, i, :3, 3]
+            relative = np.concatenate([R @ matrices[near, j, :3, :3], (R @ t[:, :, None])], axis=2)
+            keys = np.round(relative, _KEY_DIGITS) + 0.0
+            track = tracks[a, b] = _Track(seen=len(matrices))
+            for at, key_row, pose in zip(near.tolist(), keys, relative, strict=True):
+                key = key_row.tobytes()
+                if key not in track.volumes:
+                    track.volumes[key] = self._volume(a, b, key, pose)
+                    track.poses[key] = (pose, at)
+            if len(near) < len(matrices):
+                track.volumes.setdefault(b"", 0.0)  # where the boxes are apart there is nothing
+        return tracks
+
+    def _volume(self, a: str, b: str, key: bytes, pose: FloatArray) -> float:
+        known = self._known.setdefault((a, b), {})
+        if key not in known:
+            self.queries += 1
+            body_a, body_b = self.scene.bodies[a], self.scene.bodies[b]
+            known[key] = volume(body_a, body_b, pose) if may_overlap(body_a, body_b, pose) else 0.0
+        return known[key]
+
+    def _judged(
+        self, parts: tuple[str, str], track: _Track, points: Sequence[Mapping[str, float]], over: tuple[str, ...], strength: Strength
+    ) -> tuple[PairCheck, list[Finding]]:
+        largest = sorted(track.poses, key=lambda key: -track.volumes[key])[:_DEEPEST]
+        worst, where = Overlap(), None
+        for key in largest:
+            if track.volumes[key] > max(UNRELATED_VOLUME_MM3, VOLUME_NOISE_MM3):
+                pose, at = track.poses[key]
+                found = overlap(self.scene.bodies[parts[0]], self.scene.bodies[parts[1]], _as_se3(pose))
+                if found.depth > worst.depth:
+                    worst, where = found, points[at]
+        if where is None and largest and track.volumes[largest[0]] > VOLUME_NOISE_MM3:
+            worst = Overlap(track.volumes[largest[0]], 0.0, 1)
+        baseline = min(track.volumes.values(), default=0.0)
+        check, findings = judge(self.scene, parts, worst, over=over, strength=strength, pose=where, baseline=baseline)
+        return check, findings
+
+    def _unreached(self, error: KinematicsError, over: tuple[str, ...]) -> Checks:
+        finding = Finding(
+            code="E_NOT_CHECKED",
+            where=f"joints.{over[0].split('.')[0]}",
+            message=f"The motion over {', '.join(over)} cannot be sampled: {error.message}",
+            hint="Narrow the limits to what the mechanism can reach.",
+        )
+        return Checks(Findings([*error.findings, finding]), (), self.scene.deflection, over, tuple(self.scene.bodies))
+
+
+def scattered(ranges: Sequence[Freedom], count: int) -> Iterable[tuple[float, ...]]:
+    """Return points of a Halton sequence over ranges: they fill any number of dimensions more evenly than random ones.
+
+    Beyond 20 dimensions the primes repeat, shifted.
+    """
+    columns = []
+    for at, freedom in enumerate(ranges):
+        shares = np.array([_radical_inverse(index + 1 + 409 * (at // len(_PRIMES)), _PRIMES[at % len(_PRIMES)]) for index in range(count)])
+        columns.append(freedom.lower + shares * (freedom.upper - freedom.lower))
+    return [tuple(row) for row in np.array(columns).T.tolist()]
+
+
+def _radical_inverse(index: int, base: int) -> float:
+    result, share = 0.0, 1.0
+    while index:
+        share /= base
+        result += share * (index % base)
+        index //= base
+    return result
+
+
+def _matrices(poses: FloatArray) -> FloatArray:
+    """Turn poses `(n, N, 7)` into matrices `(n, N, 3, 4)`."""
+    return np.asarray(SE3(np.ascontiguousarray(poses)).matrix)[..., :3, :]
+
+
+def _boxes(scene: Scene, matrices: FloatArray) -> tuple[FloatArray, FloatArray]:
+    centres, halves = scene.local_boxes
+    middle = np.einsum("snij,nj->sni", matrices[..., :3], centres) + matrices[..., 3]
+    reach = np.einsum("snij,nj->sni", np.abs(matrices[..., :3]), halves)
+    return middle - reach, middle + reach
+
+
+def _as_se3(pose: FloatArray) -> SE3:
+    T: Any = np.eye(4)
+    T[:3] = pose
+    return SE3.from_matrix(T)

@@ -1,0 +1,129 @@
+"""Sampled motion: what it finds, what it says of its strength, and that it asks each relative pose once."""
+
+from __future__ import annotations
+
+import math
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from articad.geometry import box, cylinder
+from articad.interference.motion import freedoms
+from articad.interference.scene import Scene
+from articad.interference.sweep import Sweep, scattered, sweep
+from articad.kinematics.mechanism import Mechanism
+from tests.interference.mechanisms import Waiver, at, block_with_bore, fixed, joint, without_triangle
+
+BAR = box(100, 6, 6, center=False).transformed(at(4, -3, -3))
+POST = cylinder(3, 60, 24).transformed(at(70, 40))
+SWING = joint("swing", "revolute", "frame", "bar", lower=(0.0,), upper=(1.2,))
+SCENE = {"post": POST, "bar": BAR}
+JOINTS = [fixed("held", "frame", "post"), SWING]
+
+
+def test_a_collision_within_the_range_is_found_with_its_pose_and_called_sampled() -> None:
+    report = sweep(SCENE, Mechanism(("frame", "post", "bar"), "frame", JOINTS), steps=60)
+    (finding,) = report.findings
+    assert finding.code == "E_MOTION_COLLISION"
+    assert finding.pose is not None
+    assert finding.pose["swing"] == pytest.approx(math.atan2(40, 70), abs=0.05)
+    pair = report.pair("post", "bar")
+    assert pair is not None
+    assert pair.strength.kind == "sampled"
+    assert pair.strength.poses == 60
+    assert pair.strength.step == pytest.approx(1.2 / 59)
+    assert pair.over == ("swing",)
+
+
+def test_a_range_that_ends_before_is_clean() -> None:
+    short = joint("swing", "revolute", "frame", "bar", lower=(0.0,), upper=(0.3,))
+    assert sweep(SCENE, Mechanism(("frame", "post", "bar"), "frame", [JOINTS[0], short])).ok
+
+
+def test_an_oversize_pin_overlaps_statically_and_does_not_collide() -> None:
+    meshes = {"block": block_with_bore(40, 10, 5, 48), "pin": cylinder(5.3, 20, 48)}
+    report = sweep(meshes, Mechanism(("block", "pin"), "block", [joint("turn", "revolute", "block", "pin")]), steps=12, deflection=0.01)
+    assert report.findings.codes == ("E_STATIC_OVERLAP",)
+
+
+def test_a_pair_that_overlaps_more_and_more_collides() -> None:
+    slide = joint("slide", "slider", "a", "b", lower=(0.0,), upper=(20.0,))
+    meshes = {"a": box(10, 10, 10), "b": box(10, 10, 10).transformed(at(z=-20))}
+    report = sweep(meshes, Mechanism(("a", "b"), "a", [slide]), steps=21)
+    (finding,) = report.findings
+    assert finding.code == "E_MOTION_COLLISION"
+    assert finding.pose == {"slide": 20.0}
+
+
+def test_two_joints_on_a_grid_find_what_one_at_a_time_does_not() -> None:
+    links = {
+        "base": box(5, 200, 30).transformed(at(165)),
+        "upper": box(100, 6, 6, center=False).transformed(at(4, -3, -3)),
+        "fore": box(100, 6, 6, center=False).transformed(at(104, -3, 4)),
+    }
+    joints = [
+        joint("shoulder", "revolute", "base", "upper", lower=(-1.0,), upper=(1.0,), rest=(1.0,)),
+        joint("elbow", "revolute", "upper", "fore", at_parent=at(100), at_child=at(100), lower=(-1.5,), upper=(1.5,), rest=(1.5,)),
+    ]
+    mechanism = Mechanism(tuple(links), "base", joints)
+    assert sweep(links, mechanism, steps=50).ok
+    assert not sweep(links, mechanism, steps=100, together=True).ok
+    assert not sweep(links, mechanism, steps=5, samples=60).ok
+
+
+def test_each_relative_pose_is_asked_once() -> None:
+    names = [f"p{i}" for i in range(6)]
+    joints = [joint(f"j{i}", "revolute", a, b, at_parent=at(9), lower=(-0.1,), upper=(0.1,)) for i, (a, b) in enumerate(pairwise(names))]
+    mechanism = Mechanism(tuple(names), "p0", joints)
+    scene = Scene.of(dict.fromkeys(names, box(10, 2, 2)), joints)
+    sampler = Sweep(scene, mechanism)
+    sampler.run(["j0"], steps=20, together=False, samples=0)
+    # neighbours across the other joints keep their relative pose: one query each; across j0 one per step
+    assert sampler.queries <= 20 + 4
+    before = sampler.queries
+    sampler.run(["j0"], steps=20, together=False, samples=0)
+    assert sampler.queries == before
+
+
+def test_cached_volumes_are_those_of_every_pose_asked_anew() -> None:
+    mechanism = Mechanism(("frame", "post", "bar"), "frame", JOINTS)
+    worst = max(
+        (
+            pair.volume
+            for q in np.linspace(0, 1.2, 30)
+            for pair in Sweep(Scene.of(SCENE, JOINTS), mechanism).sampled([{"swing": float(q)}], ("swing",), None).pairs
+        ),
+    )
+    assert sweep(SCENE, mechanism, steps=30).pairs[0].volume == pytest.approx(worst)
+
+
+def test_large_meshes_are_swept_with_the_same_verdict() -> None:
+    fine = cylinder(3, 60, 1500).transformed(at(70, 40))
+    assert len(fine.triangles) > 4000
+    report = sweep({"post": fine, "bar": BAR}, Mechanism(("frame", "post", "bar"), "frame", JOINTS), steps=60)
+    assert report.findings.codes == ("E_MOTION_COLLISION",)
+
+
+def test_waived_pairs_pass_and_broken_ones_are_unknown() -> None:
+    mechanism = Mechanism(("frame", "post", "bar"), "frame", JOINTS)
+    assert sweep(SCENE, mechanism, waivers=[Waiver(("bar", "post"), 10.0, "a notch is cut later")]).ok
+    broken = sweep({"post": without_triangle(POST), "bar": BAR}, mechanism)
+    assert broken.findings.codes == ("E_MESH_OPEN",)
+    assert [pair.verdict for pair in broken.pairs] == ["unknown"]
+
+
+def test_a_ball_is_swept_over_cone_and_twist() -> None:
+    joints = [fixed("held", "frame", "post"), joint("knuckle", "ball", "frame", "bar", cone=0.8)]
+    mechanism = Mechanism(("frame", "post", "bar"), "frame", joints)
+    report = sweep(SCENE, mechanism, steps=40)
+    assert {pair.over for pair in report.pairs} <= {("knuckle.sx",), ("knuckle.sy",), ("knuckle.twist",)}
+    assert not report.ok  # twist alone reaches the post
+
+
+def test_scattered_points_fill_a_square_more_evenly_than_chance() -> None:
+    ranges = [*freedoms(SWING), *freedoms(SWING)]
+    points = np.array(list(scattered(ranges, 256))) / 1.2
+    counts, _, _ = np.histogram2d(points[:, 0], points[:, 1], bins=8, range=[[0, 1], [0, 1]])
+    assert counts.min() >= 2
+    assert counts.max() <= 6
