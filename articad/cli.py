@@ -132,6 +132,7 @@ _EXPORT = _argument("--export", metavar="FORMATS", dest="formats", type=_formats
 _SANDBOX = _argument(
     "--sandbox", choices=["strict", "weak"], default=None, help="weak runs part scripts with less isolation than landlock or bwrap"
 )
+_PICTURES = _argument("--no-pictures", dest="pictures", action="store_false", help="draw neither parts nor motion")
 _BUILD_ARGUMENTS = (
     _OUT,
     _argument("--kernel", choices=["build123d", "freecad"], default=None, help="what builds part scripts (the plan's own choice)"),
@@ -141,6 +142,7 @@ _BUILD_ARGUMENTS = (
     _SANDBOX,
     _JOBS,
     _FORCE,
+    _PICTURES,
 )
 _MODEL_ARGUMENTS = (
     _argument("--image", metavar="FILE", dest="images", action="append", default=[], help="a picture that belongs to the request"),
@@ -164,7 +166,7 @@ def _build(options: argparse.Namespace, terminal: Terminal) -> Report:
     from pathlib import Path
 
     from articad.plan.schema import AssemblyPlan
-    from articad.record import record_assembly, record_checks, record_export
+    from articad.record import record_assembly, record_checks, record_export, record_pictures
     from articad.run import RunRequest, open_or_create
 
     plan = AssemblyPlan.load(options.plan)
@@ -178,6 +180,8 @@ def _build(options: argparse.Namespace, terminal: Terminal) -> Report:
         record_checks(run, _verified(assembly, options.verify))
         for name in options.formats:
             record_export(run, assembly, name)
+        if options.pictures:
+            record_pictures(run, assembly)
     return _reported(run, terminal)
 
 
@@ -255,6 +259,7 @@ def _export(options: argparse.Namespace, terminal: Terminal) -> Report:
     _SANDBOX,
     _JOBS,
     _FORCE,
+    _PICTURES,
 )
 def _generate(options: argparse.Namespace, terminal: Terminal) -> Report:
     from articad.agents.live import LiteLLM
@@ -278,6 +283,8 @@ def _generate(options: argparse.Namespace, terminal: Terminal) -> Report:
             jobs=options.jobs,
             progress=tell,
         )
+    if options.pictures:
+        _draw(run)
     report = _reported(run, terminal)
     price = "of unknown price" if budget.cost_unknown_of else f"${budget.cost:.4f}"
     terminal.say(f"Model: {budget.calls} calls, {budget.tokens} tokens, {price}.")
@@ -334,6 +341,7 @@ def _replay(options: argparse.Namespace, terminal: Terminal) -> Report:
     _argument(
         "--explode", metavar="SHARE", type=float, default=0.0, help="move parts apart by this share of their distance from the middle"
     ),
+    _argument("--overlaps", action="store_true", help="draw what parts have in common in red, over everything"),
     _argument("--size", metavar="PIXELS", type=_positive, default=512, help="width and height of a picture (512)"),
     _argument("--renderer", choices=["embree", "pyvista"], default="embree", help="pyvista is smoother, where OpenGL can be had"),
     _argument("--out", metavar="DIR", default="pictures", help="where to write (pictures)"),
@@ -359,6 +367,7 @@ def _render(options: argparse.Namespace, terminal: Terminal) -> Report:
             section=options.section,
             explode=options.explode,
             renderer=options.renderer,
+            show_overlaps=options.overlaps,
         )
     for file in files:
         terminal.say(str(file))
@@ -448,6 +457,15 @@ def _loaded(target: str, options: argparse.Namespace, terminal: Terminal) -> Ass
     folder = Path(target) if Path(target).is_dir() else Path(target).parent
     with terminal.progress("Building", total=len(plan.parts)) as tell:
         return Assembly.from_plan(plan, folder / "parts", kernel=kernel_named(plan.kernel, sandbox=_sandbox(options)), progress=tell)
+
+
+def _draw(run: Run) -> None:
+    """Draw what a finished run has made; its parts come from the cache."""
+    from articad.record import assembly_of, record_pictures
+    from articad.run import Run
+
+    with Run.open(run.path) as opened:
+        record_pictures(opened, assembly_of(opened))
 
 
 def _sandbox(options: argparse.Namespace) -> Literal["strict", "weak"]:

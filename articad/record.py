@@ -26,6 +26,7 @@ Report = dict[str, Any]
 Sandbox = Literal["strict", "weak"]
 
 WRITERS: Final[dict[str, Callable[..., Bundle]]] = {"urdf": write_urdf, "mjcf": write_mjcf}
+_PICTURE_PIXELS: Final = 256  # of a picture kept in a run: enough to recognise, cheap enough to draw each time
 _KERNEL_FILES: Final = ("part.npz", "part.brep", "part.step")
 
 
@@ -89,6 +90,18 @@ def record_checks(run: Run, checks: Checks) -> None:
     run.save_checks(checks.to_json())
     for finding in checks.findings:
         run.trace_finding(finding)
+
+
+def record_pictures(run: Run, assembly: Assembly) -> None:
+    """Keep views of every part that has a script, and the motion of every joint that drives; nothing that is drawn here is a result."""
+    from articad.render import filmstrip, motion_gif, png, render_motion, render_part  # noqa: PLC0415 - only where pictures are drawn
+
+    for name, realised in assembly.realised.items():
+        if realised.derived_from is None:
+            run.save_views(name, {view: png(image) for view, image in render_part(assembly.parts[name], size=_PICTURE_PIXELS).items()})
+    for joint in dict.fromkeys(driver.joint for driver in assembly.drivers):
+        frames = render_motion(assembly, joint, size=_PICTURE_PIXELS, supersample=1)
+        run.save_motion(joint, png(filmstrip(frames)), motion_gif(frames))
 
 
 def written(assembly: Assembly, format_name: str, *, strict: bool = False, loops: Loops = "none") -> Bundle:

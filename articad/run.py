@@ -59,6 +59,7 @@ _IMAGES, _PLANS, _PARTS, _REMOVED, _ATTEMPTS, _REPLIES, _SUPERSEDED, _EXPORT = (
 )
 _SCRIPT, _BRIEF, _CONNECTORS, _PART, _STL = "script.py", "brief.json", "connectors.json", "part.json", "part.stl"
 _OUTCOME, _PICTURE = "outcome.json", "partial.png"
+_VIEWS, _MOTION = "views", "motion"
 _TEMPORARY = re.compile(r"\..+\.tmp-[0-9a-f]{8}$")
 
 _SLUG_LENGTH = 40  # characters of the prompt in a run's name: enough to recognise it in a listing
@@ -386,6 +387,16 @@ class Run:
             reports[file.parent.name] = report | {"folder": str(file.parent), "main": str(file.parent / main)}
         return reports
 
+    def save_views(self, part: str, pictures: Mapping[str, bytes]) -> None:
+        """Keep pictures of a part, as PNG by view."""
+        for view, content in pictures.items():
+            self._write(f"{_PARTS}/{part}/{_VIEWS}/{view}.png", content)
+
+    def save_motion(self, joint: str, strip: bytes, animation: bytes) -> None:
+        """Keep the pictures of a joint's motion: a filmstrip as PNG and an animation as GIF."""
+        self._write(f"{_MOTION}/{joint}.png", strip)
+        self._write(f"{_MOTION}/{joint}.gif", animation)
+
     # ------------------------------------------------------------------ the trace
 
     def trace(self, event: Event, **fields: object) -> None:
@@ -404,8 +415,9 @@ class Run:
                 yield json.loads(line)
 
     def hashes(self) -> dict[str, str]:
-        """Return the sha256 of every file but the trace, by its path in the run."""
+        """Return the sha256 of every file by its path in the run, but for the trace and the pictures, which are drawn from the rest."""
         files = (file for file in sorted(self.path.rglob("*")) if file.is_file() and file.name != _TRACE)
+        files = (file for file in files if file.parent.name != _VIEWS and file.parent != self.path / _MOTION)
         return {file.relative_to(self.path).as_posix(): hashlib.sha256(file.read_bytes()).hexdigest() for file in files}
 
     # ------------------------------------------------------------------ reading and writing

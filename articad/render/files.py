@@ -27,6 +27,7 @@ def write_views(
     section: str | None = None,
     explode: float = 0.0,
     renderer: Renderer = "embree",
+    show_overlaps: bool = False,
 ) -> list[Path]:
     """Write `<view>.png` for each view.
 
@@ -36,7 +37,9 @@ def write_views(
     _require_known("view", views, VIEWS)
     _require_known("part", only or (), assembly.parts)
     try:
-        pictures = render_views(assembly, views, size=size, only=only, section=section, explode=explode, renderer=renderer)
+        pictures = render_views(
+            assembly, views, size=size, only=only, section=section, explode=explode, renderer=renderer, show_overlaps=show_overlaps
+        )
     except ValueError as error:
         raise ArticadError(str(error), stage="render") from error
     return [_written(folder / f"{view}.png", png(image)) for view, image in pictures.items()]

@@ -15,10 +15,11 @@ from articad.connectors.se3 import SE3
 from articad.errors import KernelUnavailableError, UnknownJointError
 from articad.geometry.mesh import TriMesh
 from articad.geometry.part import Part
-from articad.kinematics.joints import Joint, JointType
+from articad.kinematics.joints import Coordinate, Joint, JointType
 from articad.render import vtk
 from articad.render.annotate import annotate
 from articad.render.camera import Camera
+from articad.render.overlaps import overlap_meshes
 from articad.render.raycast import cast
 from articad.render.scene import Scene, Section, scene_of
 from articad.render.shade import overlaid, reduced, shade
@@ -85,6 +86,7 @@ def render_views(
     section: str | Section | None = None,
     explode: float = 0.0,
     highlights: Sequence[TriMesh] = (),
+    show_overlaps: bool = False,
     supersample: int = 2,
     labels: bool = True,
     axes: bool = True,
@@ -100,14 +102,16 @@ def render_views(
         only: Parts shown in full; the others are faded.
         section: A cutting plane, or its short form such as `x` or `-y=12.5`.
         explode: How far parts are moved apart, as a share of their distance from the middle.
-        highlights: Meshes in the ground frame drawn over everything, such as overlaps.
+        highlights: Meshes in the ground frame drawn over everything.
+        show_overlaps: Draw what parts have in common in red, over everything.
         supersample: Rays per pixel in each direction.
         labels: Write the parts' names.
         axes: Draw the joints' axes.
         renderer: As in `picture`.
     """
     poses = _poses(assembly, assembly.mechanism.rest if q is None else q)
-    scene = scene_of(assembly.parts, poses, joints=assembly.joints, only=only, highlights=highlights)
+    marks = [*highlights, *(overlap_meshes(assembly.parts, poses) if show_overlaps else ())]
+    scene = scene_of(assembly.parts, poses, joints=assembly.joints, only=only, highlights=marks)
     if explode:
         scene = scene.exploded(explode)
     cut = Section.parse(section, scene.bounds) if isinstance(section, str) else section
@@ -164,8 +168,9 @@ def motion_frames(assembly: Assembly, joint: str, count: int = FRAMES) -> tuple[
         if driver.joint != joint:
             continue
         free = 2 * math.pi if driver.unit == "rad" else _FREE_TRAVEL * size
-        lower = driver.lower if math.isfinite(driver.lower) else driver.rest
-        upper = driver.upper if math.isfinite(driver.upper) else lower + free
+        lower, upper = _range(assembly, driver)
+        lower = lower if math.isfinite(lower) else driver.rest
+        upper = upper if math.isfinite(upper) else lower + free
         for value in np.linspace(lower, upper, count):
             q = np.array(assembly.mechanism.rest, dtype=np.float64)
             q[column] = value
@@ -265,6 +270,14 @@ def png(image: Image.Image) -> bytes:
     stream = io.BytesIO()
     image.save(stream, format="PNG", optimize=False)
     return stream.getvalue()
+
+
+def _range(assembly: Assembly, driver: Coordinate) -> tuple[float, float]:
+    """Return how far a driver really goes: in a loop, a dead point or another joint may stop it before its own limits."""
+    if assembly.mechanism.is_tree:
+        return driver.lower, driver.upper
+    feasible = assembly.feasible_range(driver.name)
+    return feasible.lower, feasible.upper
 
 
 def _ball_frames(assembly: Assembly, joint: Joint, count: int) -> tuple[list[str], FloatArray]:
