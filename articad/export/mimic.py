@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from articad.errors import ExportError
+from articad.errors import ExportError, KinematicsError
 from articad.export.lowering import Follows, LoweredModel
 from articad.findings import Finding
 from articad.geometry.part import Part
@@ -37,7 +37,10 @@ def linear_followers(assembly: Assembly, model: LoweredModel) -> dict[str, Follo
     if driver.name not in freedoms:
         raise _refused(assembly, f"Its driver {driver.name!r} closes a loop, so it is not in the file.", None)
     samples = _samples(driver.lower, driver.upper, driver.rest)
-    columns = mechanism.configuration(samples[:, None]).columns
+    try:
+        columns = mechanism.configuration(samples[:, None]).columns
+    except KinematicsError as error:
+        raise _refused(assembly, f"It does not reach its whole range: {error.message}", None) from error
     names = [coordinate.name for coordinate in mechanism.coordinates]
     fitted = columns.copy()
     lines = {}
