@@ -31,10 +31,11 @@ from articad.kernels.results import PoisonedError, number, numbers, read_bytes, 
 from articad.kernels.zygote import Outcome, Zygote, ZygoteDiedError, ends_by
 
 ANGLE_DEG = 5.0  # of the mesh, where the deflection allows more
-WORKER = 3  # raised when the worker measures or meshes otherwise, so that what it built before is built again
+WORKER = 4  # raised when the worker measures or meshes otherwise, so that what it built before is built again
 MESH_VOLUME_SHARE = 1.0  # times area and deflection: by which a mesh's volume may differ from the solid's
 RESULT_FILES = {"npz": "part.npz", "brep": "part.brep", "step": "part.step"}
 _MAGIC = {"brep": b"\nCASCADE Topology", "step": b"ISO-10303-21;"}
+MEASURE_SPARE_SECONDS = 30.0  # beyond a script's own, for the checks that follow once the files are written
 _ATTEMPTS = 2  # a zygote that dies under a job is started again once
 _CRASH_BYTES = 65536
 
@@ -89,6 +90,11 @@ class Build123dKernel:
         """The isolation that scripts run under."""
         return isolation.level_of(self._layers)
 
+    @property
+    def pid(self) -> int | None:
+        """The worker's process, or bubblewrap's round it; None before it is started."""
+        return self._zygote.pid
+
     @cached_property
     def _layers(self) -> frozenset[str]:
         available = isolation.available()
@@ -128,12 +134,13 @@ class Build123dKernel:
         self._require_sandbox()
         part, source = str(brief["name"]), script.decode("utf-8", errors="replace")
         limits = self.limits if probe else replace(self.limits, probe_seconds=0.0)
-        with self._job(source, brief, deflection) as job:
+        request = {"script": source, "part": dict(brief), "deflection_mm": deflection, "angle_deg": ANGLE_DEG}
+        with self._job() as job:
             try:
-                ran = self._run("script", job, {"shape": "shape.bin"}, limits)
+                ran = self._run("script", job, request, {"shape": "shape.bin"}, limits)
                 if not ran.report or ran.report[0].get("ok") is not True:
                     error: KernelError = script_failure(part, source, ran.report, ran.outcome, ran.crash, limits)
-                    error.partial = self._pieces(job)
+                    error.partial = self._pieces(job, deflection)
                     raise error
                 return self._judged(job, brief, ran, folder or self._new_folder(), deflection, inspect)
             except PoisonedError as poison:
@@ -143,17 +150,18 @@ class Build123dKernel:
         """Return the part under a rigid motion or a reflection `(4, 4)`; see `PartKernel.moved`."""
         matrix = np.asarray(matrix, dtype=np.float64)
         assert built.solid.brep is not None
-        with self._job("", built.brief, built.solid.deflection) as job:
+        name, deflection = str(built.brief.get("name", "part")), built.solid.deflection
+        with self._job() as job:
             shutil.copyfile(built.solid.brep, job / "shape.bin")
-            shape = self._measured(job, form="brep", name=str(built.brief.get("name", "part")), matrix=matrix.tolist())
-            mesh_shape = self._checked(job, shape, built.solid.deflection)
+            shape = self._measured(job, form="brep", name=name, deflection=deflection, matrix=matrix.tolist())
+            numbers_of_it = self._checked(job, shape, deflection)
             reflects = np.linalg.det(matrix[:3, :3]) < 0
             connectors = {
                 name: connector.mirrored(matrix) if reflects else connector.moved(SE3.from_matrix(matrix))
                 for name, connector in built.connectors.items()
             }
             target = folder or self._new_folder()
-            self._leave(job, target, mesh_shape, connectors, built.findings, built.brief, built.solid.deflection, built.sandbox)
+            self._leave(job, target, numbers_of_it, connectors, built.findings, built.brief, deflection, built.sandbox)
         return BuiltPart.load(target)
 
     def mirror(self, built: BuiltPart, S: ArrayLike) -> BuiltPart:
@@ -168,10 +176,10 @@ class Build123dKernel:
         """
         self._require_sandbox()
         folder = self._new_folder()
-        with self._job("", {"name": path.stem}, deflection) as job:
+        with self._job() as job:
             try:
                 shutil.copyfile(path, job / "shape.bin")
-                shape = self._measured(job, form="step", name="part", matrix=None)
+                shape = self._measured(job, form="step", name="part", deflection=deflection)
                 findings = Findings(solid_findings({"name": path.stem}, shape))
                 if not findings.ok:
                     raise ReadError(f"{path.name}: {findings.errors[0].message}", path=str(path), findings=findings)
@@ -191,11 +199,9 @@ class Build123dKernel:
         raise SandboxError(f"{message} {hint}", findings=[Finding(code="E_SANDBOX", where="sandbox", message=message, hint=hint)])
 
     @contextlib.contextmanager
-    def _job(self, script: str, brief: Mapping[str, Any], deflection: float) -> Iterator[Path]:
+    def _job(self) -> Iterator[Path]:
         folder = self._new_folder()
-        job = {"schema": "articad.job/1", "kernel": self.name, "task": "build", "script": script, "part": dict(brief)}
         try:
-            (folder / "job.json").write_text(json.dumps(job | {"deflection_mm": deflection, "angle_deg": ANGLE_DEG}))
             yield folder
         finally:
             shutil.rmtree(folder, ignore_errors=True)
@@ -203,14 +209,24 @@ class Build123dKernel:
     def _new_folder(self) -> Path:
         return Path(tempfile.mkdtemp(dir=self._scratch.name))
 
-    def _run(self, task: str, job: Path, files: Mapping[str, str], limits: isolation.Limits) -> _Ran:
-        """Run one task; `files` maps the task's names to files of the job's folder. A dead zygote is replaced once."""
+    def _run(self, task: str, job: Path, request: Json, files: Mapping[str, str], limits: isolation.Limits) -> _Ran:
+        """Run one task. A zygote that dies under it is replaced once.
+
+        Args:
+            task: Its name.
+            job: Folder of the job.
+            request: What the task is told: `job.json`.
+            files: The task's names for files of the folder; those that are there are read, the others written.
+            limits: What it may use.
+        """
+        (job / "job.json").write_text(json.dumps({"schema": "articad.job/1", "kernel": self.name, "task": task} | request))
         report, crash = f"{task}.report", f"{task}.crash"
-        names = {"job": "job.json", "report": report, "crash": crash} | dict(files)
+        inputs = {"job": "job.json"} | {name: file for name, file in files.items() if (job / file).exists()}
+        outputs = {"report": report, "crash": crash} | {name: file for name, file in files.items() if name not in inputs}
         for attempt in range(_ATTEMPTS):
-            for name in (report, crash):
-                (job / name).write_bytes(b"")
-            opened = {name: os.open(job / file, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o600) for name, file in names.items()}
+            opened = {name: os.open(job / file, os.O_RDONLY | os.O_CLOEXEC) for name, file in inputs.items()}
+            writing = os.O_WRONLY | os.O_CREAT | os.O_TRUNC | os.O_CLOEXEC
+            opened |= {name: os.open(job / file, writing, 0o600) for name, file in outputs.items()}
             try:
                 outcome = self._zygote.run(task, opened, limits)
                 break
@@ -224,19 +240,18 @@ class Build123dKernel:
                     os.close(descriptor)
         if outcome.refused:
             raise KernelError(f"No process could be started for a part: {outcome.refused}.")
-        said = (job / crash).read_bytes()[:_CRASH_BYTES].decode(errors="replace")
+        said = read_bytes(job / crash)[:_CRASH_BYTES].decode(errors="replace")
         return _Ran(outcome, read_lines(job / report), said)
 
-    def _measured(self, job: Path, *, form: str, name: str, matrix: list[list[float]] | None) -> Json:
+    def _measured(self, job: Path, *, form: str, name: str, deflection: float, matrix: list[list[float]] | None = None) -> Json:
         """Have a shape measured, meshed and written by a process that ran no script; return its report.
 
         Raises:
             BuildError: If the kernel fails on it.
         """
-        request = json.loads((job / "job.json").read_text()) | {"form": form, "name": name, "matrix": matrix, "script": ""}
-        (job / "job.json").write_text(json.dumps(request))
-        limits = replace(self.limits, probe_seconds=30.0)
-        ran = self._run("measure", job, {"shape": "shape.bin"} | RESULT_FILES, limits)
+        request = {"form": form, "name": name, "matrix": matrix, "deflection_mm": deflection, "angle_deg": ANGLE_DEG}
+        limits = replace(self.limits, probe_seconds=MEASURE_SPARE_SECONDS)
+        ran = self._run("measure", job, request, {"shape": "shape.bin"} | RESULT_FILES, limits)
         shape: Json = {}
         for line in ran.report:
             shape |= line
@@ -263,7 +278,7 @@ class Build123dKernel:
         part, said = str(brief["name"]), ran.report[0]
         found: list[Finding] = []
         connectors = read_connectors(brief, said.get("connectors"), found)
-        shape = self._measured(job, form="bin", name=part, matrix=None)
+        shape = self._measured(job, form="bin", name=part, deflection=deflection)
         found += solid_findings(brief, shape)
         if inspect is not None and "bbox_mm" in shape:
             found += inspect(connectors, numbers(shape["bbox_mm"], 2, 3))
@@ -274,19 +289,18 @@ class Build123dKernel:
         findings = Findings(found)
         if not findings.ok:
             error = ContractError("\n".join(map(str, findings.errors)), findings=findings, parts=(part,))
-            error.partial = self._pieces(job)
+            error.partial = self._pieces(job, deflection)
             raise error
         self._leave(job, folder, self._checked(job, shape, deflection), connectors, findings, brief, deflection, self.level)
         return BuiltPart.load(folder)
 
-    def _pieces(self, job: Path) -> Path | None:
+    def _pieces(self, job: Path, deflection: float) -> Path | None:
         """Return a folder with the mesh of whatever solids a failed script left."""
         try:
             if not (job / "shape.bin").stat().st_size:
                 return None
-            request = json.loads((job / "job.json").read_text()) | {"form": "bin"}
-            (job / "job.json").write_text(json.dumps(request))
-            ran = self._run("pieces", job, {"shape": "shape.bin", "npz": "pieces.npz"}, self.limits)
+            request = {"form": "bin", "deflection_mm": deflection, "angle_deg": ANGLE_DEG}
+            ran = self._run("pieces", job, request, {"shape": "shape.bin", "npz": "pieces.npz"}, self.limits)
             if not ran.report or not ran.report[0].get("solids"):
                 return None
             content = read_bytes(job / "pieces.npz")

@@ -9,6 +9,7 @@ import io
 import json
 import math
 import re
+import zipfile
 from collections.abc import Iterator
 from typing import Any, NamedTuple
 
@@ -36,6 +37,7 @@ from articad.kernels.tessellation import Mesh, Same, is_closed, tessellate
 
 EMPTY_MM3 = 1e-3  # the contract's smallest volume
 STEP_TIME = "2000-01-01T00:00:00"
+ZIP_TIME = (2000, 1, 1, 0, 0, 0)
 _STEP_TIME_FIELD = re.compile(rb"(FILE_NAME\('(?:[^']|'')*',\s*')[^']*'")
 
 
@@ -233,8 +235,13 @@ def _moved(solid: TopoDS_Shape, matrix: list[list[float]]) -> TopoDS_Shape:
 
 
 def _npz(mesh: Mesh) -> bytes:
+    """Return what `numpy.load` reads, the same bytes under every version of Python and NumPy, whose `savez` differ."""
     stream = io.BytesIO()
-    np.savez(stream, vertices=mesh.vertices, triangles=mesh.triangles, face=mesh.face)
+    with zipfile.ZipFile(stream, "w") as archive:
+        for name, array in (("vertices", mesh.vertices), ("triangles", mesh.triangles), ("face", mesh.face)):
+            content = io.BytesIO()
+            np.lib.format.write_array(content, np.ascontiguousarray(array), version=(1, 0), allow_pickle=False)
+            archive.writestr(zipfile.ZipInfo(f"{name}.npy", date_time=ZIP_TIME), content.getvalue())
     return stream.getvalue()
 
 

@@ -24,6 +24,7 @@ from articad.kernels import sandbox
 from articad.kernels.libraries import install_line, missing_libraries
 
 START_SECONDS = 180.0  # the import takes 2 s, on a cold and busy disk 10 s
+SILENCE_SECONDS = 30.0  # after which a zygote that should have killed a job is taken for dead
 _ANSWER = 4096
 _ROOT = str(Path(__file__).parents[2])
 # -P and -s: neither the folder it is started in nor the user's own packages are on the path. -B: nothing is written beside sources.
@@ -93,7 +94,12 @@ class Zygote:
             except OSError as error:
                 del self._waiting[number]
                 raise ZygoteDiedError from error
-        return answer.result()
+        try:
+            return answer.result(limits.seconds + limits.probe_seconds + SILENCE_SECONDS)
+        except TimeoutError as error:  # stopped or spoiled by a script, on a machine whose layers cannot prevent it
+            self._waiting.pop(number, None)
+            self._kill(control)
+            raise ZygoteDiedError from error
 
     @property
     def pid(self) -> int | None:
@@ -128,6 +134,11 @@ class Zygote:
         self._control = ready.result()
         atexit.register(self.close)
         return self._control
+
+    def _kill(self, control: socket.socket) -> None:
+        with self._lock:
+            if self._control is control and self._process is not None:
+                self._process.kill()
 
     def _stop(self) -> None:
         if self._control is not None:
@@ -167,7 +178,7 @@ class Zygote:
             while message := ours.recv(_ANSWER):
                 answer = json.loads(message)
                 future = waiting.pop(answer["id"], None)
-                if future is not None:
+                if future is not None and not future.done():
                     future.set_result(_outcome(answer))
         for future in list(waiting.values()):
             if not future.done():

@@ -1,0 +1,295 @@
+"""Attacks on the sandbox, each harmless where it succeeds; used by the tests and by `scripts/attack-table`.
+
+An attack is the body of a function that returns something true when it got through. Whatever it raises means that it
+was stopped. `TARGET` holds what it aims at: files, ports and processes that `Range` sets up for it.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import dataclasses
+import json
+import os
+import socket
+import subprocess
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any, Self
+
+from articad.errors import BuildError, KernelError
+from articad.kernels.build123d import Build123dKernel
+from articad.kernels.sandbox import Limits
+
+MARK = "articad-secret-9f2c61"  # what no attack may see
+LIMITS = Limits(seconds=3.0, probe_seconds=0.0, memory=2 * 2**30, file_size=8 * 2**20)
+LEVELS: tuple[tuple[str, ...], ...] = (
+    (),
+    ("seccomp",),
+    ("bwrap",),
+    ("landlock",),
+    ("bwrap", "seccomp"),
+    ("landlock", "seccomp"),
+    ("bwrap", "landlock", "seccomp"),
+)
+_BRIEF: dict[str, Any] = {"name": "part", "description": "", "material": "steel", "envelope_mm": None, "dimensions": {}, "connectors": {}}
+
+ATTACKS = {
+    "read /etc/passwd": "return open('/etc/passwd').read()",
+    "read a secret file": "return open(TARGET['secret']).read()",
+    "list the home folder": "return os.listdir(TARGET['home'])",
+    "read through a result file's folder": "return [name for name in os.listdir('/proc/self/cwd')] and open('/proc/self/cwd/job.json').read()",
+    "read through a symbolic link": "os.symlink(TARGET['secret'], '/tmp/articad-link')\nreturn open('/tmp/articad-link').read()",
+    "read through a hard link": "os.link(TARGET['secret'], '/tmp/articad-link')\nreturn open('/tmp/articad-link').read()",
+    "API key in own environment": "return TARGET['mark'] in str(dict(os.environ))",
+    "API key in other processes' environments": (
+        "for pid in os.listdir('/proc'):\n"
+        "    if pid.isdigit():\n"
+        "        try:\n"
+        "            if TARGET['mark'].encode() in open(f'/proc/{pid}/environ', 'rb').read():\n"
+        "                return True\n"
+        "        except OSError:\n"
+        "            pass\n"
+        "return False"
+    ),
+    "write a file outside": "open(TARGET['folder'] + '/written', 'w').write('x')\nreturn True",
+    "write with the kernel's own writers": (
+        "from OCP.BRepTools import BRepTools\n"
+        "from build123d import Box\n"
+        "return BRepTools.Write_s(Box(1, 1, 1).wrapped, TARGET['folder'] + '/kernel.brep')"
+    ),
+    "append to a file outside": "open(TARGET['secret'], 'a').write('x')\nreturn True",
+    "remove a file outside": "os.unlink(TARGET['spare'])\nreturn True",
+    "change a file's mode": "os.chmod(TARGET['spare'], 0o777)\nreturn True",
+    "make many files": (
+        "made = 0\n"
+        "for folder in ('.', '/tmp', '/dev/shm', '/var/tmp', TARGET['folder']):\n"
+        "    for n in range(50):\n"
+        "        try:\n"
+        "            open(f'{folder}/articad-{n}', 'w').close()\n"
+        "            made += 1\n"
+        "            os.unlink(f'{folder}/articad-{n}')\n"
+        "        except OSError:\n"
+        "            break\n"
+        "return made"
+    ),
+    "fill the disk": (
+        "total = 0\n"
+        "for number in range(3, 64):\n"
+        "    try:\n"
+        "        for _ in range(64):\n"
+        "            total += os.write(number, bytes(2**20))\n"
+        "    except OSError:\n"
+        "        pass\n"
+        "return total > 40 * 2**20"
+    ),
+    "fill memory files": "f = os.memfd_create('x')\nreturn os.write(f, bytes(2**20)) > 0",
+    "TCP connection": "socket.create_connection(('127.0.0.1', TARGET['tcp']), 1)\nreturn True",
+    "TCP server": "s = socket.socket()\ns.bind(('127.0.0.1', 0))\ns.listen()\nreturn True",
+    "UDP datagram": "s = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)\nreturn s.sendto(b'x', ('127.0.0.1', TARGET['udp']))",
+    "unix socket": "s = socket.socket(socket.AF_UNIX)\ns.connect(TARGET['unix'])\nreturn True",
+    "abstract unix socket": "s = socket.socket(socket.AF_UNIX)\ns.connect(TARGET['abstract'])\nreturn True",
+    "run a shell": "return subprocess.run(['/bin/sh', '-c', 'exit 0']).returncode == 0",
+    "replace itself by a shell": "os.execv('/bin/sh', ['sh', '-c', 'echo > ' + TARGET['folder'] + '/written'])",
+    "fork": "pid = os.fork()\nif pid == 0:\n    os._exit(0)\nos.waitpid(pid, 0)\nreturn True",
+    "leave a process behind": (
+        "if os.fork() == 0:\n    os.setsid()\n    if os.fork() == 0:\n        time.sleep(20)\n    os._exit(0)\nos.wait()\nreturn False"
+    ),
+    "kill another process": "os.kill(TARGET['victim'], signal.SIGKILL)\nreturn True",
+    "signal the worker": "os.kill(os.getppid(), signal.SIGCONT)\nreturn True",
+    "signal through fcntl": (
+        "import fcntl\nr, w = os.pipe()\nfcntl.fcntl(r, fcntl.F_SETOWN, TARGET['victim'])\nreturn fcntl.fcntl(r, fcntl.F_GETOWN) != 0"
+    ),
+    "trace the worker": (
+        "libc, parent = ctypes.CDLL(None, use_errno=True), os.getppid()\n"
+        "seized = libc.ptrace(0x4206, parent, 0, 0) == 0\n"  # PTRACE_SEIZE, which does not stop it
+        "return seized"
+    ),
+    "read the worker's memory": "return open(f'/proc/{os.getppid()}/mem', 'rb') is not None",
+    "raise its own limits": (
+        "import resource\nresource.setrlimit(resource.RLIMIT_FSIZE, (-1, -1))\nreturn resource.getrlimit(resource.RLIMIT_FSIZE)[0] == -1"
+    ),
+    "mount": "return ctypes.CDLL(None, use_errno=True).mount(b'none', TARGET['empty'].encode(), b'tmpfs', 0, None) == 0",
+    "remount the root for writing": "return ctypes.CDLL(None).mount(b'none', b'/', None, 32 | 4096, None) == 0 and os.access('/', os.W_OK)",
+    "user namespace": "return ctypes.CDLL(None, use_errno=True).unshare(0x10000000) == 0",
+    "leave by chroot": "os.chroot('/')\nreturn True",
+    "fill memory": "return len(bytearray(6 * 2**30))",
+    "loop for ever": "while True:\n    pass",
+    "sleep for ever": "time.sleep(1000)",
+    "flood stdout": "for _ in range(200):\n    os.write(1, bytes(2**20))\n    os.write(2, bytes(2**20))\nreturn False",
+    "patch the kernel's measurements": (
+        "from OCP.BRepGProp import BRepGProp\n"
+        "import sys\n"
+        "for module in list(sys.modules.values()):\n"
+        "    if hasattr(module, 'VolumeProperties_s'):\n"
+        "        module.VolumeProperties_s = lambda *a: None\n"
+        "try:\n"
+        "    BRepGProp.VolumeProperties_s = lambda *a: None\n"
+        "except Exception:\n"
+        "    pass\n"
+        "import gc\n"
+        "for thing in gc.get_objects():\n"
+        "    if isinstance(thing, dict) and 'properties' in thing and 'tessellate' in thing:\n"
+        "        thing['properties'] = lambda s: {'volume_mm3': 12345.0}\n"
+        "return False"
+    ),
+    "forge the report": (
+        'forged = b\'{"ok":true,"connectors":{},"volume_mm3":12345}\\n\'\n'
+        "for number in range(3, 20):\n"
+        "    try:\n"
+        "        os.pwrite(number, forged, 0)\n"
+        "    except OSError:\n"
+        "        pass\n"
+        "return False"
+    ),
+}
+
+
+class Range:
+    """What attacks aim at, set up in a folder of its own."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+
+    def __enter__(self) -> Self:
+        folder = self.folder
+        for name in ("home", "empty"):
+            (folder / name).mkdir()
+        (folder / "secret").write_text(MARK)
+        (folder / "home" / "key").write_text(MARK)
+        self._stack = contextlib.ExitStack()
+        self.tcp = self._socket(socket.AF_INET, socket.SOCK_STREAM, ("127.0.0.1", 0))
+        self.udp = self._socket(socket.AF_INET, socket.SOCK_DGRAM, ("127.0.0.1", 0))
+        self._socket(socket.AF_UNIX, socket.SOCK_STREAM, str(folder / "unix"))
+        abstract = f"\0articad-{os.getpid()}-{folder.name}"
+        self._socket(socket.AF_UNIX, socket.SOCK_STREAM, abstract)
+        self.victim = self._new_victim()
+        self.target = {
+            "mark": MARK,
+            "secret": str(folder / "secret"),
+            "spare": str(folder / "spare"),
+            "home": str(folder / "home"),
+            "folder": str(folder),
+            "empty": str(folder / "empty"),
+            "tcp": self.tcp.getsockname()[1],
+            "udp": self.udp.getsockname()[1],
+            "unix": str(folder / "unix"),
+            "abstract": abstract,
+        }
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._stack.close()
+        self._end_victim()
+
+    def _socket(self, family: int, kind: int, address: Any) -> socket.socket:
+        made = self._stack.enter_context(socket.socket(family, kind))
+        made.bind(address)
+        if kind == socket.SOCK_STREAM:
+            made.listen()
+        return made
+
+    def _new_victim(self) -> subprocess.Popen[bytes]:
+        return subprocess.Popen(["/bin/sleep", "1000"], env={"KEY": MARK})
+
+    def _end_victim(self) -> None:
+        self.victim.kill()
+        self.victim.wait()
+
+    def open_to(self, name: str, kernel: Build123dKernel) -> str:
+        """Run an attack; return how it got through, or nothing if it was stopped."""
+        if self.victim.poll() is not None:
+            self.victim = self._new_victim()
+        (self.folder / "spare").write_text("spare")
+        (self.folder / "spare").chmod(0o600)
+        target = self.target | {"victim": self.victim.pid}
+        before = descendants(kernel)
+        started = time.monotonic()
+        told = self._told(name, kernel, target)
+        took = time.monotonic() - started
+        signs = {
+            told: "BREACH" in told,
+            "a file was written": any((self.folder / written).exists() for written in ("written", "kernel.brep")),
+            "the secret was changed": (self.folder / "secret").read_text() != MARK,
+            "a file was removed": not (self.folder / "spare").exists(),
+            "a process was killed": self.victim.poll() is not None,
+            "a process was left behind": not settles(lambda: descendants(kernel) <= before),
+            f"it ran for {took:.1f} s": took > LIMITS.seconds + 4.0,
+            "results were forged": "12345" in told,
+        }
+        self._restore()
+        return "; ".join(sign for sign, seen in signs.items() if seen)
+
+    def _told(self, name: str, kernel: Build123dKernel, target: dict[str, Any]) -> str:
+        try:
+            return f"volume {kernel.build(script(ATTACKS[name], target), _BRIEF, probe=False).solid.volume:.6g}"
+        except BuildError as error:
+            return str(error)
+        except KernelError as error:
+            return f"BREACH: the worker ended: {error}"
+
+    def _restore(self) -> None:
+        (self.folder / "secret").write_text(MARK)
+        for written in (*(self.folder / name for name in ("written", "kernel.brep")), Path("/tmp/articad-link")):
+            written.unlink(missing_ok=True)
+        subprocess.run(["/bin/umount", str(self.folder / "empty")], capture_output=True, check=False)
+
+
+def script(attack: str, target: dict[str, Any]) -> bytes:
+    """Return a part script that attacks first and builds a cube of 1 mm³ then."""
+    body = "".join(f"    {line}\n" for line in attack.splitlines())
+    return (
+        "import ctypes, os, signal, socket, subprocess, time\n"
+        "from build123d import Box\n"
+        f"TARGET = {json.loads(json.dumps(target))!r}\n\n"
+        f"def attack():\n{body}\n"
+        "def build(part):\n"
+        "    try:\n"
+        "        got = attack()\n"
+        "    except Exception:\n"
+        "        got = None\n"
+        "    if got:\n"
+        "        raise RuntimeError('BREACH: ' + repr(got)[:80])\n"
+        "    return Box(1, 1, 1), {}\n"
+    ).encode()
+
+
+@contextlib.contextmanager
+def kernel_at(layers: tuple[str, ...]) -> Iterator[Build123dKernel]:
+    """Start a kernel that puts on these layers and no others."""
+    kernel = Build123dKernel(sandbox="weak", layers=layers)
+    kernel.limits = dataclasses.replace(LIMITS)
+    os.environ["ARTICAD_TEST_API_KEY"] = MARK
+    try:
+        kernel.warm_up()
+        yield kernel
+    finally:
+        kernel.close()
+        del os.environ["ARTICAD_TEST_API_KEY"]
+
+
+def descendants(kernel: Build123dKernel) -> set[int]:
+    """Return every process below the kernel's own."""
+    children: dict[int, list[int]] = {}
+    for path in Path("/proc").iterdir():
+        if path.name.isdigit():
+            with contextlib.suppress(OSError, ValueError, IndexError):
+                parent = int((path / "stat").read_text().rpartition(")")[2].split()[1])
+                children.setdefault(parent, []).append(int(path.name))
+    found: set[int] = set()
+    waiting = [kernel.pid] if kernel.pid is not None else []
+    while waiting:
+        for child in children.get(waiting.pop(), ()):
+            found.add(child)
+            waiting.append(child)
+    return found
+
+
+def settles(claim: Callable[[], bool], seconds: float = 2.0) -> bool:
+    """Return whether a claim becomes true in time."""
+    until = time.monotonic() + seconds
+    while not claim():
+        if time.monotonic() > until:
+            return False
+        time.sleep(0.05)
+    return True

@@ -1,0 +1,132 @@
+"""No attack gets through a level that scripts are run under; below that they are refused."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from articad.errors import SandboxError
+from articad.kernels import sandbox, seccomp
+from articad.kernels.build123d import Build123dKernel
+from tests.kernels.attacks import ATTACKS, Range, kernel_at
+
+ENOUGH = [layers for layers in (("bwrap", "landlock", "seccomp"), ("landlock", "seccomp")) if set(layers) <= sandbox.available()]
+
+
+@pytest.fixture(scope="module", params=ENOUGH, ids="+".join)
+def fortress(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Range, Build123dKernel]]:
+    with Range(tmp_path_factory.mktemp("range")) as targets, kernel_at(request.param) as kernel:
+        yield targets, kernel
+
+
+@pytest.mark.parametrize("attack", ATTACKS)
+def test_attack_is_stopped(fortress: tuple[Range, Build123dKernel], attack: str) -> None:
+    targets, kernel = fortress
+
+    assert targets.open_to(attack, kernel) == ""
+
+
+def test_attacks_can_succeed(tmp_path: Path) -> None:
+    """The suite itself is no sham: with nothing but limits, most of these get through."""
+    with Range(tmp_path) as targets, kernel_at(()) as kernel:
+        for attack in (
+            "read a secret file",
+            "write a file outside",
+            "kill another process",
+            "TCP connection",
+            "fork",
+            "remove a file outside",
+        ):
+            assert targets.open_to(attack, kernel) != "", attack
+
+
+def test_levels_are_named_by_their_layers() -> None:
+    assert sandbox.level_of({"seccomp", "landlock", "bwrap"}) == "bwrap+landlock+seccomp"
+    assert sandbox.level_of({"seccomp", "landlock"}) == "landlock+seccomp"
+    assert sandbox.level_of({"seccomp"}) == "weak"
+    assert sandbox.level_of(()) == "weak"
+
+
+def test_scripts_are_refused_without_landlock_or_bubblewrap(brief: dict[str, Any], monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sandbox, "available", lambda: frozenset({"seccomp"}))
+    monkeypatch.setattr(sandbox, "missing", lambda: ("bubblewrap: not installed", "Landlock: this kernel does not offer it"))
+    kernel = Build123dKernel()
+
+    with pytest.raises(SandboxError, match=r"bubblewrap: not installed; Landlock.*apt-get install bubblewrap.*--sandbox weak") as caught:
+        kernel.build(b"", brief)
+
+    assert caught.value.findings.codes == ("E_SANDBOX",)
+    assert kernel.pid is None  # nothing was started
+
+
+def test_weak_runs_scripts_and_says_so(brief: dict[str, Any]) -> None:
+    kernel = Build123dKernel(sandbox="weak", layers=())
+    try:
+        built = kernel.build(b"from build123d import Box\ndef build(part):\n    return Box(1, 1, 1), {}\n", brief)
+    finally:
+        kernel.close()
+
+    assert built.sandbox == "weak"
+
+
+def test_level_is_recorded(kernel: Build123dKernel, brief: dict[str, Any]) -> None:
+    built = kernel.build(b"from build123d import Box\ndef build(part):\n    return Box(1, 1, 1), {}\n", brief)
+
+    assert built.sandbox == sandbox.level()
+
+
+def test_environment_chooses_the_sandbox(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("ARTICAD_SANDBOX", "weak")
+    assert Build123dKernel().mode == "weak"
+    assert Build123dKernel(sandbox="strict").mode == "strict"
+
+    monkeypatch.setenv("ARTICAD_SANDBOX", "lax")
+    with pytest.raises(SandboxError, match="strict and weak"):
+        Build123dKernel()
+
+
+def test_without_user_namespaces_landlock_still_holds() -> None:
+    """In a user namespace that may make no others, as in many containers, bubblewrap fails its trial and is left out."""
+    code = "from articad.kernels import sandbox; print(sandbox.level(), '|', *sandbox.missing())"
+    inside = f"echo 0 > /proc/sys/user/max_user_namespaces && exec {sys.executable} -c {code!r}"
+    tried = subprocess.run(["unshare", "--user", "--map-root-user", "sh", "-c", inside], capture_output=True, text=True, check=False)
+    if tried.returncode != 0:
+        pytest.skip(f"no user namespaces here at all: {tried.stderr[:100]}")
+
+    level = tried.stdout.partition("|")[0].strip()
+    assert "bwrap" not in level
+    assert level == sandbox.level_of(sandbox.available() - {"bwrap"})
+
+
+HEADERS = {"x86_64": "/usr/include/x86_64-linux-gnu/asm/unistd_64.h", "aarch64": "/usr/include/asm-generic/unistd.h"}
+
+
+@pytest.mark.parametrize("machine", HEADERS)
+def test_system_call_numbers_are_those_of_the_kernels_headers(machine: str) -> None:
+    header = Path(HEADERS[machine])
+    if not header.exists():
+        pytest.skip("linux-libc-dev is not installed")
+    defined = {name: int(number) for name, number in re.findall(r"#define __NR(?:3264)?_(\w+)\s+(\d+)", header.read_text())}
+    defined.setdefault("newfstatat", defined.get("fstatat", -1))
+
+    for name, number in seccomp._ARCHITECTURES[machine].calls.items():
+        assert defined[name] == number, name
+
+
+@pytest.mark.parametrize("machine", ["x86_64", "aarch64"])
+def test_every_jump_of_the_filter_lands_inside_it(machine: str) -> None:
+    code = seccomp.program(machine, 42)
+    lines = [code[at : at + 8] for at in range(0, len(code), 8)]
+
+    assert len(lines) < 4096  # the kernel's bound
+    for at, line in enumerate(lines):
+        operation, if_true, if_false = int.from_bytes(line[:2], "little"), line[2], line[3]
+        if operation & 0x07 == 0x05:
+            assert at + 1 + max(if_true, if_false) < len(lines)
+    assert int.from_bytes(lines[-1][:2], "little") == 0x06  # it ends in a return
