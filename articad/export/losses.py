@@ -13,7 +13,9 @@ from articad.errors import UnrepresentableError
 from articad.export.bundle import Loss
 from articad.findings import Finding
 
-Format = Literal["urdf", "mjcf"]
+Format = Literal["urdf", "mjcf", "glb", "3mf", "step"]
+
+MECHANISM_FORMATS: tuple[Format, ...] = ("urdf", "mjcf")  # hold joints; the others hold shapes
 
 
 class Row(NamedTuple):
@@ -115,6 +117,20 @@ TABLE: dict[str, dict[Format, Row]] = {
     "coupling.loop": {
         "urdf": Row("metadata", "the coupling names a joint that closes a loop, or ties joints that are tied already", refused=True),
         "mjcf": Row("an equality of joints"),
+    },
+    # --- what formats of shapes make of motion and mass
+    "motion": {
+        "glb": Row("an animation of every joint that drives", "joints and their limits: glTF has none", refused=True),
+        "3mf": Row("parts one by one", "joints and limits: 3MF has none", refused=True),
+        "step": Row("parts placed as they rest", "joints and limits: STEP readers know none", refused=True),
+    },
+    "mass": {
+        "glb": Row("nothing", "mass and inertia: glTF has none"),
+        "3mf": Row("nothing", "mass and inertia: 3MF has none"),
+        "step": Row("a solid, whose density is not told", "mass and inertia"),
+    },
+    "brep.missing": {
+        "step": Row("nothing", "the part has no B-rep, and a mesh is no solid of STEP: it is left out", refused=True),
     },
     # --- parts
     "mass.missing": {

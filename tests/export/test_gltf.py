@@ -1,0 +1,113 @@
+"""GLB is read back by trimesh and by hand: places, colours and animations."""
+
+from __future__ import annotations
+
+import json
+import struct
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import trimesh
+from scipy.spatial.transform import Rotation
+
+from articad.assembly import Assembly
+from articad.errors import UnrepresentableError
+from articad.export.gltf import FRAMES, write_glb
+from articad.geometry.part import Part
+from tests.assemblies import all_joint_kinds, block, four_bar, geared_pair
+
+Y_UP = Rotation.from_euler("x", -90, degrees=True).as_matrix()
+
+
+def parts_of(content: bytes) -> tuple[dict[str, Any], bytes]:
+    magic, version, total = struct.unpack_from("<4sII", content)
+    length, kind = struct.unpack_from("<I4s", content, 12)
+    assert (magic, version, total, kind) == (b"glTF", 2, len(content), b"JSON")
+    return json.loads(content[20 : 20 + length]), content[20 + length + 8 :]
+
+
+def values(document: dict[str, Any], binary: bytes, accessor: int) -> Any:
+    entry = document["accessors"][accessor]
+    view = document["bufferViews"][entry["bufferView"]]
+    width = {"SCALAR": 1, "VEC3": 3, "VEC4": 4}[entry["type"]]
+    dtype = {5126: "<f4", 5125: "<u4"}[entry["componentType"]]
+    return np.frombuffer(binary, dtype, entry["count"] * width, view["byteOffset"]).reshape(-1, width)
+
+
+def test_parts_stand_where_they_rest_in_metres_and_y_up(tmp_path: Path) -> None:
+    assembly = all_joint_kinds()
+    bundle = write_glb(assembly)
+    bundle.write(tmp_path)
+    scene = trimesh.load_scene(tmp_path / bundle.main)
+
+    for name, pose in assembly.mechanism.rest_poses().items():
+        T, _ = scene.graph[name]
+        assert np.allclose(T[:3, 3], Y_UP @ pose.translation / 1000, atol=1e-7)
+        assert np.allclose(T[:3, :3], Y_UP @ pose.rotation, atol=1e-6)
+    assert np.allclose(scene.geometry["base"].extents, [0.1, 0.1, 0.01])
+
+
+def test_every_joint_that_drives_has_an_animation_that_begins_at_rest() -> None:
+    assembly = all_joint_kinds()
+    document, binary = parts_of(write_glb(assembly).files["all_kinds.glb"])
+    rest = assembly.mechanism.rest_poses()
+
+    assert {animation["name"] for animation in document["animations"]} == {driver.joint for driver in assembly.drivers}
+    for animation in document["animations"]:
+        for channel in animation["channels"]:
+            sampler = animation["samplers"][channel["target"]["node"] and channel["sampler"]]
+            path = channel["target"]["path"]
+            output = values(document, binary, sampler["output"])
+            pose = rest[document["nodes"][channel["target"]["node"]]["name"]]
+            expected = pose.translation / 1000 if path == "translation" else pose.quaternion
+            assert len(output) == FRAMES
+            assert np.allclose(output[0], expected, atol=1e-6) or np.allclose(output[0], -expected, atol=1e-6)
+            assert np.allclose(output[0], output[-1], atol=1e-6) or np.allclose(output[0], -output[-1], atol=1e-6)
+            assert (np.abs(np.diff(output, axis=0)).max(axis=0) < 0.5).all()  # no jumps
+
+
+def test_a_hinge_swings_through_its_whole_range() -> None:
+    assembly = all_joint_kinds()
+    document, binary = parts_of(write_glb(assembly).files["all_kinds.glb"])
+    animation = next(one for one in document["animations"] if one["name"] == "hinge")
+    node = next(index for index, node in enumerate(document["nodes"]) if node["name"] == "hinge")
+    sampler = next(c["sampler"] for c in animation["channels"] if c["target"] == {"node": node, "path": "rotation"})
+    turned = Rotation.from_quat(values(document, binary, animation["samplers"][sampler]["output"]))
+    angles = (turned[0].inv() * turned).magnitude()
+
+    assert angles.max() == pytest.approx(1.5, abs=1e-3)  # from 0.5 to 2 one way, to −1 the other
+
+
+def test_equal_meshes_share_their_data_and_colours_are_linear() -> None:
+    document, _ = parts_of(write_glb(geared_pair()).files["geared.glb"])
+    meshes = {mesh["name"]: mesh["primitives"][0]["attributes"] for mesh in document["meshes"]}
+
+    assert meshes["wheel_a"] == meshes["wheel_b"]
+    assert meshes["wheel_a"] != meshes["rack"]
+    assert document["materials"][0]["pbrMetallicRoughness"]["baseColorFactor"][0] == pytest.approx(0.2541, abs=1e-4)
+
+
+def test_a_loop_that_cannot_go_its_range_has_no_animation() -> None:
+    document, _ = parts_of(write_glb(four_bar()).files["loop.glb"])
+
+    assert "animations" not in document
+
+
+def test_motion_and_mass_are_lost_and_strict_refuses_motion() -> None:
+    bundle = write_glb(geared_pair())
+
+    assert {loss.where for loss in bundle.losses if loss.refused} == {"joints.a", "joints.b", "joints.s"}
+    with pytest.raises(UnrepresentableError):
+        write_glb(geared_pair(), strict=True)
+    write_glb(Assembly.from_parts("one", parts=[block("one")], joints=[], ground="one"), strict=True)
+
+
+def test_a_part_without_shape_is_a_bare_node() -> None:
+    document, binary = parts_of(
+        write_glb(Assembly.from_parts("e", parts=[Part.without_geometry("a")], joints=[], ground="a")).files["e.glb"]
+    )
+
+    assert document["nodes"][1] == {"name": "a", "translation": [0, 0, 0], "rotation": [0, 0, 0, 1]}
+    assert not binary
