@@ -18,7 +18,10 @@ def cross(a: FloatArray, b: FloatArray) -> FloatArray:
     """Return a × b over the last axis; several times faster than `numpy.cross` on small arrays."""
     ax, ay, az = a[..., 0], a[..., 1], a[..., 2]
     bx, by, bz = b[..., 0], b[..., 1], b[..., 2]
-    return np.stack([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx], axis=-1)
+    x = ay * bz - az * by
+    product = np.empty((*x.shape, 3))
+    product[..., 0], product[..., 1], product[..., 2] = x, az * bx - ax * bz, ax * by - ay * bx
+    return product
 
 
 def multiply(p: FloatArray, q: FloatArray) -> FloatArray:

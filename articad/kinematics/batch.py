@@ -9,7 +9,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import NamedTuple
+from functools import cached_property
+from typing import NamedTuple, overload
 
 import numpy as np
 import numpy.typing as npt
@@ -22,7 +23,7 @@ from articad.kinematics.tree import KinematicTree
 IndexArray = npt.NDArray[np.intp]
 
 _FEW = 32  # configurations up to which matrices win over rows (measured: break-even 25 … 50)
-_CHUNK = 1024  # configurations per pass: the rows of one joint then stay in the first-level cache
+_CHUNK = 512  # configurations per pass: the rows of one joint then stay in the first-level cache
 _TURNING = frozenset({JointType.REVOLUTE, JointType.CYLINDRICAL, JointType.SCREW})
 
 
@@ -37,13 +38,46 @@ class Crossing(NamedTuple):
     B: SE3
 
 
-def crossing(joint: Joint, near: int, far: int, *, backwards: bool) -> Crossing:
-    """Return a joint as crossed from its declared parent, or backwards from its declared child."""
-    F = flip(joint.mate)
-    if backwards:  # T_p = T_c · C_c F⁻¹ · J⁻¹ · C_p⁻¹
-        signs = joint.type.reversal_signs(Mate.ALIGNED)
-        return Crossing(joint, near, far, signs, joint.T_child_connector @ F.inverse(), joint.T_parent_connector.inverse())
-    return Crossing(joint, near, far, np.ones(len(joint.type.coordinates)), joint.T_parent_connector, F @ joint.T_child_connector.inverse())
+class Crossings(Sequence[Crossing]):
+    """Joints as a tree crosses them, their constants computed together.
+
+    Args:
+        joints: As declared.
+        near: Index of the part from which each is crossed.
+        far: Index of the part to which it leads.
+        backwards: True where it is crossed from its declared child.
+    """
+
+    def __init__(self, joints: Sequence[Joint], near: Sequence[int], far: Sequence[int], backwards: Sequence[bool]) -> None:
+        C_p = _stack([joint.T_parent_connector for joint in joints])
+        flipped = _stack([joint.T_child_connector for joint in joints]) @ _stack(
+            [flip(joint.mate) for joint in joints]
+        )  # F is its own inverse
+        back = np.array(backwards, dtype=bool)[:, None]
+        # T_c = T_p · C_p · J · (C_c F)⁻¹, and T_p = T_c · C_c F · J⁻¹ · C_p⁻¹
+        self.A = SE3.from_unit_array(np.where(back, flipped.data, C_p.data))
+        self.B = SE3.from_unit_array(np.where(back, C_p.data, flipped.data)).inverse()
+        signs = [
+            joint.type.reversal_signs(Mate.ALIGNED) if b else np.ones(len(joint.rest)) for joint, b in zip(joints, backwards, strict=True)
+        ]
+        self._rows = tuple(
+            Crossing(joint, near[k], far[k], signs[k], SE3.from_unit_array(self.A.data[k]), SE3.from_unit_array(self.B.data[k]))
+            for k, joint in enumerate(joints)
+        )
+
+    @overload
+    def __getitem__(self, index: int) -> Crossing: ...
+    @overload
+    def __getitem__(self, index: slice) -> tuple[Crossing, ...]: ...
+    def __getitem__(self, index: int | slice) -> Crossing | tuple[Crossing, ...]:
+        return self._rows[index]
+
+    def __len__(self) -> int:
+        return len(self._rows)
+
+
+def _stack(poses: Sequence[SE3]) -> SE3:
+    return SE3.stack(poses) if poses else SE3.identity((0,))
 
 
 class Transforms:
@@ -57,18 +91,18 @@ class Transforms:
         layout: Of the coordinates that are given.
     """
 
-    def __init__(self, crossings: Sequence[Crossing], layout: Layout) -> None:
+    def __init__(self, crossings: Crossings, layout: Layout) -> None:
         n = len(crossings)
+        A, B = crossings.A.matrix, crossings.B.matrix
         self._angle, self._travel = np.zeros(n, dtype=np.intp), np.zeros(n, dtype=np.intp)  # columns; the factor is 0 where there is none
         self._turns, self._slides = np.zeros((n, 1)), np.zeros((n, 1))
-        self._constants = np.zeros((n, 4, 16))
+        self._constants = (A[:, None] @ _AFFINE @ B[:, None]).reshape(n, 4, 16)
         self._others: list[tuple[int, JointType, slice, FloatArray, FloatArray, FloatArray]] = []
         for k, c in enumerate(crossings):
-            columns, A, B = layout.columns[c.joint.name], c.A.matrix, c.B.matrix
+            columns = layout.columns[c.joint.name]
             if c.joint.type in {JointType.BALL, JointType.PLANAR, JointType.UNIVERSAL}:
-                self._others.append((k, c.joint.type, columns, c.signs, A, B))
+                self._others.append((k, c.joint.type, columns, c.signs, A[k], B[k]))
                 continue
-            self._constants[k] = [(A @ M @ B).ravel() for M in _AFFINE]
             if c.joint.type in _TURNING:
                 self._angle[k], self._turns[k] = columns.stop - 1, c.signs[-1]
             if c.joint.type is JointType.SCREW:
@@ -129,7 +163,7 @@ class TreeArrays:
         tree: How the parts hang together.
         layout: Of all coordinates; the tree's joints are among them.
         T_ground: Pose of the ground part.
-        closing: Joints that close loops: each adds a ghost of its child, C_c included, behind the parts in `matrices`.
+        closing: Joints that close loops: each adds a ghost of its child behind the parts in `matrices`.
     """
 
     def __init__(self, parts: Sequence[str], tree: KinematicTree, layout: Layout, T_ground: SE3, closing: Sequence[Joint] = ()) -> None:
@@ -138,20 +172,24 @@ class TreeArrays:
         self.n_parts = len(parts)
         self.ground = index[tree.ground]
         self.T_ground = T_ground
-        self.crossings = tuple(crossing(e.joint, index[e.parent], index[e.part], backwards=e.reversed) for e in tree.edges)
-        ghosts = [
-            Crossing(joint, index[joint.parent], self.n_parts + i, np.ones(len(joint.rest)), joint.T_parent_connector, flip(joint.mate))
-            for i, joint in enumerate(closing)
-        ]
-        self._transforms = Transforms((*self.crossings, *ghosts), layout)
-        self._steps = tuple((c.near, c.far) for c in (*self.crossings, *ghosts))
+        edges = tree.edges
+        near = [*(index[edge.parent] for edge in edges), *(index[joint.parent] for joint in closing)]
+        far = [*(index[edge.part] for edge in edges), *(self.n_parts + i for i in range(len(closing)))]
+        backwards = [*(edge.reversed for edge in edges), *(False for _ in closing)]
+        crossings = Crossings([*(edge.joint for edge in edges), *closing], near, far, backwards)
+        self.crossings = crossings[: len(edges)]
+        self._transforms = Transforms(crossings, layout)
+        self._steps = tuple(zip(near, far, strict=True))
         self._ground_matrix = T_ground.matrix
-        self._rows = [_RowStep(c, layout.columns[c.joint.name]) for c in self.crossings]
         self.twists = Twists(layout, index)
         self.carried = np.zeros((self.n_parts, layout.n_freedoms))  # ±1 where a freedom moves a part
         for edge, c in zip(tree.edges, self.crossings, strict=True):
             self.carried[c.far] = self.carried[c.near]
             self.carried[c.far, layout.freedoms[c.joint.name]] = -1.0 if edge.reversed else 1.0
+
+    @cached_property
+    def _rows(self) -> list[_RowStep]:
+        return [_RowStep(c, self.layout.columns[c.joint.name]) for c in self.crossings]
 
     def matrices(self, Q: FloatArray) -> FloatArray:
         """Return the poses of all parts, then of all ghosts, as `(N, batch, 4, 4)` for coordinates `(batch, n_columns)`."""
@@ -181,8 +219,7 @@ class TreeArrays:
         out[self.ground] = self.T_ground.data[:, None]
         for step in self._rows:
             step.place(out[step.near], out[step.far], q)
-        w = out[:, 6:7]
-        out[:, 3:] *= np.copysign(1.0, w)
+            out[step.far, 3:] *= np.copysign(1.0, out[step.far, 6])  # while it is in the cache
 
 
 class _RowStep:
@@ -279,24 +316,24 @@ class Twists:
     """
 
     def __init__(self, layout: Layout, part_index: dict[str, int]) -> None:
-        frames: list[tuple[int, FloatArray]] = []  # parent part and parent connector of each frame
+        frames: list[int] = []  # joint of each frame
         self.planar: list[tuple[int, int]] = []  # frame to be shifted, first column
         self.universal: list[tuple[int, int]] = []  # frame to be turned, first column
         frame_of, axis_of, angular, pitch = [], [], [], []
-        for joint in layout.joints:
-            base = (part_index[joint.parent], joint.T_parent_connector.matrix)
-            frames.append(base)
+        for k, joint in enumerate(layout.joints):
+            frames.append(k)
             frame, first = len(frames) - 1, layout.columns[joint.name].start
             for axis, turns, advance, moved in _AXES[joint.type]:
                 if moved:
-                    frames.append(base)
+                    frames.append(k)
                     (self.planar if joint.type is JointType.PLANAR else self.universal).append((len(frames) - 1, first))
                 frame_of.append(len(frames) - 1 if moved else frame)
                 axis_of.append(axis)
                 angular.append(turns)
                 pitch.append(advance * joint.lead / (2 * math.pi))
-        self._part = np.array([part for part, _ in frames], dtype=np.intp)
-        self._connector = np.array([C for _, C in frames]).reshape(-1, 1, 4, 4)
+        joints = layout.joints
+        self._part = np.array([part_index[joints[k].parent] for k in frames], dtype=np.intp)
+        self._connector = _stack([joints[k].T_parent_connector for k in frames]).matrix[:, None]
         self._frame = np.array(frame_of, dtype=np.intp)
         self._axis = np.array(axis_of, dtype=np.intp)
         self.angular = np.array(angular, dtype=np.float64)[:, None, None]

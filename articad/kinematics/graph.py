@@ -96,6 +96,10 @@ class JointGraph:
 
     def findings(self) -> Findings:
         """Return everything that is wrong with the graph."""
+        return self._findings
+
+    @cached_property
+    def _findings(self) -> Findings:
         found = [*self._name_findings(), *self._joint_findings()]
         if self.ground not in self.parts:
             hint = f"Choose one of {_listed(self.parts)}.{did_you_mean(self.ground, self.parts)}"

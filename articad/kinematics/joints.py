@@ -366,7 +366,7 @@ def _joint_findings(joint: Joint) -> list[Finding]:
     found: list[Finding] = []
     if not joint.type.freedoms and joint.driver:
         found.append(finding("W_DRIVER", "a fixed joint cannot drive.", "Remove the mark."))
-    if not np.isfinite([*joint.rest, joint.lead]).all():
+    if not all(map(math.isfinite, (*joint.rest, joint.lead))):
         found.append(finding("E_NONFINITE", "rest values and lead must be finite.", "Give finite numbers."))
     if joint.type is JointType.SCREW and joint.lead == 0:
         found.append(finding("E_LEAD_ZERO", "a screw without lead.", "Give the advance per turn in mm, or use a revolute joint."))
@@ -384,6 +384,8 @@ def _joint_findings(joint: Joint) -> list[Finding]:
 
 def _range_findings(joint: Joint, finding: _FindingMaker) -> list[Finding]:
     found: list[Finding] = []
+    if all(lo <= rest <= hi for lo, rest, hi in zip(joint.limits.lower, joint.rest, joint.limits.upper, strict=True)):
+        return found
     for c in joint.columns:
         show = _shown(c.unit)
         given = f"[{show(c.lower)}, {show(c.upper)}]"

@@ -25,7 +25,7 @@ class Layout:
 
     def __init__(self, joints: Sequence[Joint]) -> None:
         self.joints = tuple(joints)
-        self.coordinates: tuple[Coordinate, ...] = tuple(c for joint in joints for c in joint.columns)
+        self.coordinates: tuple[Coordinate, ...] = tuple(c for joint in self.joints for c in joint.columns)
         self.columns: dict[str, slice] = {}
         self.freedoms: dict[str, slice] = {}
         column = freedom = 0

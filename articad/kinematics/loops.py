@@ -26,6 +26,7 @@ IndexArray = npt.NDArray[np.intp]
 
 CLOSED = 1e-10  # |t|/L and rad: a loop with a smaller residual is closed
 RESIDUAL_TARGET = 1e-12  # where the iteration stops, before one more polishing step
+_ROUNDING = 1e-15  # |r| that no step improves
 RANK_TOLERANCE = 1e-7  # σ/σ₁ of a constraint that is none: rounding leaves 1e-12, a real constraint 1e-5
 _DROPPED = 1e-10  # σ/σ₁ below which a direction is left out of a step
 _LARGEST_STEP = 0.5  # rad, or lengths L: the linear model is worth nothing beyond
@@ -109,7 +110,7 @@ class ClosureSystem:
         index = {part: i for i, part in enumerate(tree.parts)}
         self._far = np.array([index[joint.child] for joint in loop_joints], dtype=np.intp)
         near = np.array([index[joint.parent] for joint in loop_joints], dtype=np.intp)
-        self._C_c = np.array([joint.T_child_connector.matrix for joint in loop_joints]).reshape(-1, 1, 4, 4)
+        self._C_c = np.array([joint.T_child_connector.matrix for joint in (*loop_joints, *loop_joints)]).reshape(-1, 1, 4, 4)
         sides = self.arrays.carried[self._far] - self.arrays.carried[near]
         for row, joint in zip(sides, loop_joints, strict=True):
             row[self.layout.freedoms[joint.name]] = -1.0
@@ -172,8 +173,8 @@ class ClosureSystem:
 
     def _mismatch(self, T: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
         """Return R_A, the point of B, and M = A⁻¹B as translation and rotation vector; all `(loops, batch, …)`."""
-        A = T[self.arrays.n_parts :]
-        B = T[self._far] @ self._C_c
+        both = np.concatenate([T[self.arrays.n_parts :], T[self._far]]) @ self._C_c
+        A, B = both[: len(self.loops)], both[len(self.loops) :]
         R_A, p_B = A[..., :3, :3], B[..., :3, 3]
         t = ((p_B - A[..., :3, 3])[..., None, :] @ R_A)[..., 0, :]
         return R_A, p_B, t, _rotation_log(R_A.swapaxes(-1, -2) @ B[..., :3, :3])
@@ -236,7 +237,7 @@ class ClosureSystem:
                 if norm < CLOSED or mu > 1e12:  # at the rounding floor, or at a minimum that is no solution
                     return Closed(Q, norm, done)
                 mu *= _DAMPING_RISE
-        if polish and where.size and 0 < norm <= CLOSED:
+        if polish and where.size and _ROUNDING < norm <= CLOSED:
             Q, norm = self._polished(Q, r, J, where)
         return Closed(Q, norm, done)
 
@@ -357,12 +358,13 @@ def _characteristic_length(joints: Sequence[Joint]) -> float:
 
 def _rotation_log(R: FloatArray) -> FloatArray:
     """Return rotation vectors `(*batch, 3)` of matrices: by the sine where that is accurate, which is where loops are closed."""
-    twice_sine = np.stack([R[..., 2, 1] - R[..., 1, 2], R[..., 0, 2] - R[..., 2, 0], R[..., 1, 0] - R[..., 0, 1]], axis=-1)
+    twice_sine = np.empty(R.shape[:-1])
+    twice_sine[..., 0] = R[..., 2, 1] - R[..., 1, 2]
+    twice_sine[..., 1] = R[..., 0, 2] - R[..., 2, 0]
+    twice_sine[..., 2] = R[..., 1, 0] - R[..., 0, 1]
     cosine = 0.5 * (R[..., 0, 0] + R[..., 1, 1] + R[..., 2, 2] - 1.0)
     if cosine.size and cosine.min() < _NEAR_PI:
         return quaternion.log(quaternion.from_matrix(R))
-    sine = 0.5 * np.sqrt((twice_sine * twice_sine).sum(axis=-1))
-    tiny = sine < 1e-8
-    factor = np.where(tiny, 1.0, np.arctan2(sine, cosine) / np.where(tiny, 1.0, sine))
-    phi: FloatArray = 0.5 * twice_sine * factor[..., None]
+    sine = 0.5 * np.sqrt((twice_sine * twice_sine).sum(axis=-1)) + 1e-300  # never zero, and never seen
+    phi: FloatArray = twice_sine * (0.5 * np.arctan2(sine, cosine) / sine)[..., None]
     return phi

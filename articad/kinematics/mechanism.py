@@ -299,8 +299,10 @@ class Mechanism:
 
 
 def _coupling_findings(mechanism: Mechanism) -> list[Finding]:
+    found: list[Finding] = []
+    if not mechanism.couplings:
+        return found
     columns = {name: joint for joint in mechanism.joints for name in joint.column_names}
-    found = []
     for coupling in mechanism.couplings:
         where = f"couplings.{coupling.name}"
         for name in dict.fromkeys((coupling.a, coupling.b)):
