@@ -184,7 +184,7 @@ def realise(resolved_part: ResolvedPart, built: BuiltPart) -> tuple[Part, Findin
     tree parent, C*·C⁻¹·G, and what is left at the others is drift (kinematics §1).
 
     Returns:
-        The part and the findings of drift, `E_CONNECTOR_DRIFT` where it is beyond the table.
+        The part and what of its drift `built.findings` does not say already, `E_CONNECTOR_DRIFT` where it is beyond the table.
     """
     T = seating(resolved_part, built.connectors, primary_connector(resolved_part, built.brief))
     solid = built.solid if T.allclose(SE3.identity(), mm=SEATED_MM, rad=SEATED_RAD) else built.solid.moved(T)
@@ -196,7 +196,9 @@ def realise(resolved_part: ResolvedPart, built: BuiltPart) -> tuple[Part, Findin
         color=resolved_part.color,
         material=resolved_part.material.name,
     )
-    return part, drift_findings(resolved_part, built.brief, built.connectors, built.solid.bbox)
+    known = {(finding.code, finding.where) for finding in built.findings}
+    drift = drift_findings(resolved_part, built.brief, built.connectors, built.solid.bbox)
+    return part, Findings(finding for finding in drift if (finding.code, finding.where) not in known)
 
 
 def finding_from_json(form: Mapping[str, Any]) -> Finding:

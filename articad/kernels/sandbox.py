@@ -130,7 +130,7 @@ def bubblewrap_command(command: list[str]) -> list[str]:
     return [
         shutil.which("bwrap") or "bwrap",
         *("--unshare-all", "--unshare-user", "--uid", "65534", "--gid", "65534", "--cap-drop", "ALL"),
-        *_disable_user_namespaces(),
+        *disable_user_namespaces(),
         *("--new-session", "--die-with-parent", "--hostname", "sandbox"),
         *mounts,
         *("--dev", "/dev", "--remount-ro", "/dev", "--chdir", "/", "--remount-ro", "/"),
@@ -139,7 +139,7 @@ def bubblewrap_command(command: list[str]) -> list[str]:
 
 
 @cache
-def _disable_user_namespaces() -> tuple[str, ...]:
+def disable_user_namespaces() -> tuple[str, ...]:
     """Return bubblewrap's flag against user namespaces inside, which 0.8.0 and later have."""
     command = [shutil.which("bwrap") or "bwrap", "--help"]
     shown = subprocess.run(command, env={}, capture_output=True, timeout=_PROBE_SECONDS, check=False)  # noqa: S603
