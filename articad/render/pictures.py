@@ -37,6 +37,9 @@ MOTION_VIEWS = ("iso", "iso_left", "front", "right", "top", "iso_back", "iso_bel
 FRAMES = 8
 _PROBE_SIZE = 96  # pixels of the pictures by which a view is chosen
 _FREE_TRAVEL = 0.1  # of the assembly's size: how far a travel without limits is shown
+_MOST_MOTIONS = 8  # of a sheet
+_SHEET_FRAMES = 5  # of which the first and the last but one are shown: an endless joint's last is its first again
+_BETWEEN = (205, 208, 212)
 _GAP = 6  # pixels between the pictures of a sheet
 _GIF_MILLISECONDS = 60
 
@@ -241,11 +244,35 @@ def before_after(before: Scene, after: Scene, view: str = "iso", *, size: int = 
     return contact_sheet(pair, 2)
 
 
+def product_sheet(assembly: Assembly, *, size: int = 480) -> Image.Image:
+    """Return one picture from which one can tell what a product is and which joint moves which way.
+
+    Two views with names and axes, then for each driving joint its first and last keyframe, from where the motion is seen best.
+
+    Args:
+        assembly: What to draw.
+        size: Width and height of the two views [pixels]; a keyframe is half as large.
+    """
+    views = list(render_views(assembly, ("iso", "front"), size=size).values())
+    ends: list[Image.Image] = []
+    for joint in list(dict.fromkeys(driver.joint for driver in assembly.drivers))[:_MOST_MOTIONS]:
+        frames = render_motion(assembly, joint, frames=_SHEET_FRAMES, size=(size - _GAP) // 2)
+        ends += [frames[0], frames[_SHEET_FRAMES - 2]]
+    top = contact_sheet(views, 2)
+    if not ends:
+        return top
+    bottom = contact_sheet(ends, 4)
+    sheet = Image.new("RGB", (top.width, top.height + _GAP + bottom.height), _BETWEEN)
+    sheet.paste(top, (0, 0))
+    sheet.paste(bottom, (0, top.height + _GAP))
+    return sheet
+
+
 def contact_sheet(pictures: Sequence[Image.Image], columns: int) -> Image.Image:
     """Return pictures of one size side by side in rows."""
     width, height = pictures[0].size
     rows = math.ceil(len(pictures) / columns)
-    sheet = Image.new("RGB", (columns * (width + _GAP) - _GAP, rows * (height + _GAP) - _GAP), (205, 208, 212))
+    sheet = Image.new("RGB", (columns * (width + _GAP) - _GAP, rows * (height + _GAP) - _GAP), _BETWEEN)
     for index, entry in enumerate(pictures):
         sheet.paste(entry, ((index % columns) * (width + _GAP), (index // columns) * (height + _GAP)))
     return sheet

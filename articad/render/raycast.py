@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -94,7 +95,7 @@ def _first_hits(
     indices = [index for index in indices if len(scene.items[index].mesh.triangles)]
     if not indices or not count:
         return item, distance, normal, cut
-    embree = _embree_scene(scene, indices, camera)
+    embree = _embree_scene(scene, tuple(indices), tuple(camera.centre))
     toward = -camera.eye
     direction = np.broadcast_to(toward.astype(np.float32), (count, 3)).copy()
     begin = (origins + start[:, None] * toward).astype(np.float32)
@@ -113,14 +114,15 @@ def _first_hits(
             toward_viewer = -toward_viewer
         # Each solid alone: where two touch, the first of all surfaces does not tell inside which of them the ray began.
         for index in indices:
-            alone = _embree_scene(scene, [index], camera).run(begin, direction, dists=dists.copy(), output=1)
+            alone = _embree_scene(scene, (index,), tuple(camera.centre)).run(begin, direction, dists=dists.copy(), output=1)
             inside = (alone["geomID"] >= 0) & (alone["Ng"].astype(np.float64) @ camera.eye < 0) & (start > step) & (end > start)
             item[inside], distance[inside], normal[inside] = index, start[inside], toward_viewer
             cut |= inside
     return item, distance, normal, cut
 
 
-def _embree_scene(scene: Scene, indices: list[int], camera: Camera) -> Any:
+@lru_cache(maxsize=4)  # one scene is drawn from several sides; its tree costs as much as a picture
+def _embree_scene(scene: Scene, indices: tuple[int, ...], centre: tuple[float, ...]) -> Any:
     # Embree costs 0.1 s to load and is not on every platform.
     from embreex import rtcore_scene  # noqa: PLC0415
     from embreex.mesh_construction import TriangleMesh  # noqa: PLC0415
@@ -128,6 +130,6 @@ def _embree_scene(scene: Scene, indices: list[int], camera: Camera) -> Any:
     embree = rtcore_scene.EmbreeScene(robust=True)  # no ray slips between two triangles
     for index in indices:
         entry = scene.items[index]
-        vertices = np.ascontiguousarray(entry.vertices - camera.centre, dtype=np.float32)
+        vertices = np.ascontiguousarray(entry.vertices - np.array(centre), dtype=np.float32)
         TriangleMesh(embree, vertices, np.ascontiguousarray(entry.mesh.triangles, dtype=np.int32))
     return embree

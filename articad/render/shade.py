@@ -33,8 +33,10 @@ def shade(scene: Scene, camera: Camera, buffers: Buffers) -> Picture:
     base = colors[index]
     light = _light(camera, buffers.normal)
     picture = base * light[..., None]
-    picture = np.where(buffers.cut[..., None], _cut_face(base), picture)
-    picture = np.where(faded[index][..., None], picture + _FADE * (PAPER - picture), picture)
+    if buffers.cut.any():
+        picture = np.where(buffers.cut[..., None], _cut_face(base), picture)
+    if faded.any():
+        picture = np.where(faded[index][..., None], picture + _FADE * (PAPER - picture), picture)
     picture = np.where(seen[..., None], picture, PAPER)
     strength = _edges(camera, buffers) * np.where(faded[index] & seen, 0.35, 0.85)
     picture += strength[..., None] * (INK - picture)

@@ -1,0 +1,53 @@
+"""Draws the gallery of the documentation: builds every example and writes its sheet to docs/images/gallery.
+
+.venv/bin/python scripts/gallery.py [NAME ...]
+"""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+from articad.assembly import Assembly
+from articad.plan.schema import AssemblyPlan
+from articad.render import png, product_sheet
+
+ROOT = Path(__file__).resolve().parents[1]
+IMAGES = ROOT / "docs" / "images" / "gallery"
+PAGE = ROOT / "docs" / "gallery.md"
+COLOURS = 128  # of a sheet's palette: half the bytes, and no eye sees it
+
+
+def main(names: list[str]) -> int:
+    """Draw the named examples, or all, and write the page."""
+    examples = sorted(path.parent for path in (ROOT / "examples").glob("*/plan.json"))
+    IMAGES.mkdir(parents=True, exist_ok=True)
+    for folder in examples:
+        if not names or folder.name in names:
+            assembly = Assembly.from_plan(AssemblyPlan.load(folder), folder / "parts")
+            (IMAGES / f"{folder.name}.png").write_bytes(png(product_sheet(assembly).quantize(COLOURS)))
+            print(folder.name)
+    PAGE.write_text(_page([folder for folder in examples if (IMAGES / f"{folder.name}.png").is_file()]))
+    return 0
+
+
+def _page(folders: list[Path]) -> str:
+    lines = [
+        "# Gallery",
+        "",
+        "Every example of the repository, drawn by `scripts/gallery.py` from the plan and the part scripts, with no display or GPU:",
+        "two views, then the two ends of each driver's motion. Axes point along +z of the parent connector; arrows turn by the right hand.",
+        "",
+    ]
+    for folder in folders:
+        plan = AssemblyPlan.load(folder)
+        joints = sum(joint.type != "fixed" for joint in plan.joints if hasattr(joint, "type"))
+        title = plan.name.replace("_", " ").capitalize()
+        lines += [f"## {title}", "", plan.description or title, ""]
+        lines += [f"![{title}: views and motions](images/gallery/{folder.name}.png)", ""]
+        lines += [f"`articad build examples/{folder.name}` · {len(plan.parts)} entries in the plan, {joints} joints that move.", ""]
+    return "\n".join(lines).rstrip() + "\n"
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
