@@ -214,12 +214,13 @@ def _kernel() -> Item:
 
 
 def _freecad() -> Item:
-    asked = os.environ.get("ARTICAD_FREECAD")
-    found = asked if asked and Path(asked).exists() else None
-    found = found or next(filter(None, map(shutil.which, ("freecadcmd", "FreeCADCmd", "freecad"))), None)
-    if found:
-        return Item("FreeCAD", "ok", found)
-    return Item("FreeCAD", "optional", "not found; only needed for FreeCAD's own feature trees", "Set ARTICAD_FREECAD to FreeCAD >= 1.0.")
+    from articad.kernels import freecad_install  # noqa: PLC0415 - the report must come even where this import fails
+
+    try:
+        freecad = freecad_install.find()
+    except KernelUnavailableError as error:
+        return Item("FreeCAD", "optional", f"{error.findings[0].message} Only needed for FreeCAD's own feature trees.", error.how_to_get)
+    return Item("FreeCAD", "ok", f"{freecad.version_text} at {freecad.where}")
 
 
 def _sandbox() -> Item:

@@ -1,0 +1,284 @@
+"""Find FreeCAD 1.0 or later, and run programs inside it: each in a process of its own, confined where bubblewrap works.
+
+FreeCAD may be the system's own, an extracted AppImage, a conda environment, or a whole Debian tree, as
+`scripts/install-freecad` makes where the distribution's FreeCAD is older. What runs inside it never imports articad;
+results come back through files, for FreeCAD writes what it likes to its standard output.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import signal
+import subprocess
+from collections.abc import Collection, Iterator, Sequence
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+
+from articad.errors import KernelUnavailableError
+from articad.findings import Finding
+from articad.kernels import sandbox
+
+OLDEST = (1, 0)  # the first FreeCAD with assemblies of its own
+HOW_TO_GET = "Run scripts/install-freecad as root (2.3 GB, about 3 minutes), or set ARTICAD_FREECAD to FreeCAD 1.0 or later"
+_NAMES = ("freecadcmd", "FreeCADCmd", "freecad.cmd")
+_INSIDE = ("usr/bin", "bin", ".")  # where a tree, an AppImage and a conda environment have the program
+_SECONDS = 60.0  # for its version; a cold disk needs 5 s
+_VERSION = re.compile(r"FreeCAD,?\s+(?:Version:?\s+)?(\d+)\.(\d+)(?:\.(\d+))?")
+_ENVIRONMENT = {
+    "HOME": "/tmp",  # noqa: S108 - a private one inside; FreeCAD keeps its settings at home
+    "LANG": "C.UTF-8",
+    "LC_ALL": "C.UTF-8",  # without it FreeCAD crashes at start
+    "PYTHONHASHSEED": "0",
+    "SOURCE_DATE_EPOCH": "946684800",
+    "OMP_NUM_THREADS": "1",
+    "OPENBLAS_NUM_THREADS": "1",
+    "QT_QPA_PLATFORM": "offscreen",
+}
+_SYSTEM = ("/usr", "/bin", "/lib", "/lib32", "/lib64", "/libx32", "/sbin", "/etc")
+
+
+@dataclass(frozen=True)
+class Limits:
+    """What a process inside FreeCAD may use.
+
+    Attributes:
+        seconds: Wall clock.
+        memory: Address space [bytes]; FreeCAD itself takes 1 GiB of it.
+        file_size: Of each file it writes [bytes].
+        scratch: Of its private /tmp [bytes].
+    """
+
+    seconds: float = 120.0
+    memory: int = 4 * 2**30
+    file_size: int = 256 * 2**20
+    scratch: int = 512 * 2**20
+
+
+@dataclass(frozen=True)
+class Ended:
+    """How a process inside FreeCAD ended.
+
+    Attributes:
+        code: Its exit code; negative for a signal.
+        late: It was killed at its deadline.
+        said: The end of what it wrote, for people only.
+    """
+
+    code: int
+    late: bool
+    said: str
+
+    @property
+    def ok(self) -> bool:
+        """True when it came to its end; whether it did its work, only its result can say."""
+        return self.code == 0
+
+
+@dataclass(frozen=True)
+class FreeCAD:
+    """One FreeCAD on this machine.
+
+    Attributes:
+        program: Its command-line program, as seen from inside `root`.
+        root: A whole system's tree that it lives in; None for a program of this system.
+        prefix: A folder outside the system's own that it needs; None for the system's.
+    """
+
+    program: str
+    root: Path | None = None
+    prefix: Path | None = None
+
+    @property
+    def version(self) -> tuple[int, int, int] | None:
+        """Its version, or None when it does not start."""
+        return _version_of(self)
+
+    @property
+    def version_text(self) -> str:
+        """Its version as text."""
+        return "unknown" if self.version is None else ".".join(map(str, self.version))
+
+    @property
+    def where(self) -> str:
+        """The program, for people."""
+        return self.program if self.root is None else f"{self.root}{self.program}"
+
+    def run(
+        self,
+        program: Path,
+        *,
+        folder: Path | None = None,
+        files: Collection[int] = (),
+        arguments: Sequence[str] = (),
+        limits: Limits | None = None,
+    ) -> Ended:
+        """Run a Python file inside FreeCAD; it sees its arguments as `ARGUMENTS`, and no network.
+
+        Args:
+            program: The Python file; standard library and FreeCAD's modules only.
+            folder: Shown to it as its working folder, to read and to write; without it there is nothing to write but a
+                private /tmp.
+            files: Open files that it inherits under the same numbers.
+            arguments: Words for it.
+            limits: What it may use.
+
+        Raises:
+            KernelUnavailableError: If it must run in a tree of its own and bubblewrap does not work.
+        """
+        limits = limits or Limits()
+        confined = sandbox.bubblewrap_problem() is None
+        if self.root is not None and not confined:
+            raise unavailable(f"FreeCAD in {self.root} needs bubblewrap, which does not work here ({sandbox.bubblewrap_problem()})")
+        shown = "/program.py" if confined else str(program.resolve())
+        boot = f"ARGUMENTS={list(map(str, arguments))!r};exec(compile(open({shown!r}).read(),{program.name!r},'exec'))"
+        inner = [self.program, "-c", boot]
+        command = [*_limited(limits), *(self._confined(inner, program, folder, limits) if confined else inner)]
+        environment = {} if confined else _ENVIRONMENT | {"PATH": os.environ.get("PATH", ""), "HOME": str(folder or "/nonexistent")}
+        return _ran(command, environment, None if confined else folder, files, limits.seconds)
+
+    def _confined(self, inner: Sequence[str], program: Path, folder: Path | None, limits: Limits) -> list[str]:
+        work = ["--bind", str(folder), "/work", "--chdir", "/work"] if folder is not None else ["--chdir", "/tmp"]  # noqa: S108 - a private one
+        variables = [word for name, value in _ENVIRONMENT.items() for word in ("--setenv", name, value)]
+        return [
+            shutil.which("bwrap") or "bwrap",
+            *self._mounts(),
+            *("--size", str(limits.scratch), "--tmpfs", "/tmp", "--proc", "/proc", "--dev", "/dev"),  # noqa: S108 - a private one
+            *("--ro-bind", str(program.resolve()), "/program.py"),
+            *("--unshare-all", "--unshare-user", "--uid", "65534", "--gid", "65534", "--cap-drop", "ALL"),
+            *sandbox.disable_user_namespaces(),
+            *("--new-session", "--die-with-parent", "--hostname", "sandbox", "--clearenv"),
+            *("--setenv", "PATH", "/usr/bin:/bin", *variables),
+            *work,
+            *inner,
+        ]
+
+    def _mounts(self) -> Iterator[str]:
+        """Yield what is shown: the libraries and settings of a system, never its homes or data."""
+        root = self.root or Path("/")
+        for path in _SYSTEM:
+            source = root / path[1:]
+            if source.is_symlink():
+                yield from ("--symlink", str(source.readlink()), path)
+            elif source.exists():
+                yield from ("--ro-bind", str(source), path)
+        if self.prefix is not None:
+            yield from ("--ro-bind", str(self.prefix), str(self.prefix))
+
+
+def find() -> FreeCAD:
+    """Return the FreeCAD to use: `$ARTICAD_FREECAD`, the PATH, the tree that scripts/install-freecad makes, conda, an AppImage.
+
+    Raises:
+        KernelUnavailableError: If there is none of 1.0 or later; says where it was looked for and how to get it.
+    """
+    return _found(os.environ.get("ARTICAD_FREECAD", ""), os.environ.get("PATH", ""), os.environ.get("CONDA_PREFIX", ""), str(tree()))
+
+
+def tree() -> Path:
+    """Return the folder that scripts/install-freecad fills."""
+    return Path(os.environ.get("XDG_DATA_HOME") or Path.home() / ".local" / "share") / "articad" / "freecad"
+
+
+def unavailable(why: str, looked_in: Sequence[str] = ()) -> KernelUnavailableError:
+    """Return the error that says why there is no FreeCAD to use and what to do."""
+    message = f"{why[:1].upper()}{why[1:]}."
+    finding = Finding(code="E_KERNEL_UNAVAILABLE", where="kernels.freecad", message=message, hint=f"{HOW_TO_GET}.")
+    return KernelUnavailableError(f"{message} {HOW_TO_GET}.", findings=[finding], looked_in=looked_in, how_to_get=HOW_TO_GET)
+
+
+@cache
+def _found(asked: str, path: str, conda: str, data: str) -> FreeCAD:
+    looked_in, older = [], []
+    for label, candidate in _candidates(asked, path, conda, data):
+        looked_in.append(label)
+        if candidate is None:
+            continue
+        version = candidate.version
+        if version is not None and version[:2] >= OLDEST:
+            return candidate
+        older.append(f"{candidate.where} {'is ' + candidate.version_text if version else 'does not start'}")
+        if label.startswith("$"):
+            break  # what was asked for by name is not replaced by something else
+    why = f"FreeCAD 1.0 or later was not found{': ' + ', '.join(older) if older else ''}"
+    raise unavailable(why, looked_in)
+
+
+def _candidates(asked: str, path: str, conda: str, data: str) -> Iterator[tuple[str, FreeCAD | None]]:
+    if asked:
+        yield f"$ARTICAD_FREECAD ({asked})", _at(Path(asked))
+    for name in _NAMES:
+        found = shutil.which(name, path=path)
+        if found:
+            yield f"{name} on the PATH", _program(Path(found))
+    yield data, _at(Path(data))
+    if conda:
+        yield f"conda environment {conda}", _at(Path(conda))
+    for image in sorted(Path(data).parent.glob("*.AppImage")):
+        yield f"{image}: run it with --appimage-extract and set ARTICAD_FREECAD to the folder", None
+
+
+def _at(place: Path) -> FreeCAD | None:
+    """Return the FreeCAD in a program, a system's tree, an extracted AppImage or an environment."""
+    if place.is_file():
+        return _program(place)
+    whole = (place / "etc").is_dir() and (place / "usr" / "lib").is_dir() and not (place / "AppRun").exists()
+    for inside in _INSIDE:
+        for name in _NAMES:
+            program = place / inside / name
+            if whole and (program.is_symlink() or program.is_file()):  # a link may only lead somewhere inside the tree
+                return FreeCAD(f"/{inside}/{name}", root=place)
+            if program.is_file():
+                return FreeCAD(str(program.absolute()), prefix=place.absolute())
+    return None
+
+
+def _program(path: Path) -> FreeCAD:
+    home = path.resolve().parent.parent
+    own = home.is_relative_to("/usr") or home == Path("/")
+    return FreeCAD(str(path), prefix=None if own else home)
+
+
+@cache
+def _version_of(freecad: FreeCAD) -> tuple[int, int, int] | None:
+    command = [freecad.program, "--version"]
+    try:
+        if freecad.root is not None:
+            command = freecad._confined(command, Path(__file__), None, Limits())  # noqa: SLF001 - of this module
+        ended = _ran(command, _ENVIRONMENT | {"PATH": "/usr/bin:/bin"}, None, (), _SECONDS)
+    except OSError:
+        return None
+    match = _VERSION.search(ended.said)
+    return None if match is None else (int(match[1]), int(match[2]), int(match[3] or 0))
+
+
+def _limited(limits: Limits) -> list[str]:
+    prlimit = shutil.which("prlimit")
+    if prlimit is None:
+        return []
+    cpu = int(limits.seconds * 2) + 1
+    bounds = {"as": limits.memory, "fsize": limits.file_size, "cpu": cpu, "nofile": 256, "core": 0}
+    return [prlimit, *(f"--{name}={value}" for name, value in bounds.items())]
+
+
+def _ran(command: Sequence[str], environment: dict[str, str], folder: Path | None, files: Collection[int], seconds: float) -> Ended:
+    process = subprocess.Popen(  # noqa: S603 - the words are ours
+        command,
+        env=environment,
+        cwd=folder,
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        pass_fds=tuple(files),
+        start_new_session=True,
+    )
+    late = False
+    try:
+        output = process.communicate(timeout=seconds)[0]
+    except subprocess.TimeoutExpired:
+        late = True
+        os.killpg(process.pid, signal.SIGKILL)
+        output = process.communicate()[0]
+    return Ended(process.returncode, late, output[-8000:].decode(errors="replace"))
