@@ -1,0 +1,351 @@
+"""Root causes: what is wrong with the geometry, read from the geometry, before any model is asked.
+
+Each finding of an overlap or collision is looked at where it is: a hole that was not bored, a slot that was not cut, a pivot on
+the face of a part that turns, a part too long for its place, axes too close for what turns about them, a part in several pieces.
+The cause says who must act, the plan's author (design) or the script's (code), which number to change, and by how much.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from articad.connectors.se3 import SE3
+from articad.findings import Finding, Findings
+from articad.interference.body import Body, winding_numbers
+from articad.interference.motion import Chain, freedoms
+from articad.interference.overlap import VOLUME_NOISE_MM3, distance, intersection
+from articad.interference.scene import Scene
+from articad.interference.surface import Core
+from articad.interference.verdict import UNRELATED_VOLUME_MM3
+from articad.kinematics.joints import Joint, JointType
+from articad.kinematics.tree import KinematicTree
+
+FloatArray = NDArray[np.float64]
+
+CLEARANCE_MM = 0.2  # proposed on the radius of a bore and either side of a slot
+ROUND_SHARE = 0.9  # of the cylinder about the axis: an overlap that fills so much of it is a pin
+PROBE_SHARE = 0.05  # of the size of an overlap: how far beside it material is looked for
+END_MM = 0.05  # an overlap that ends this close to a part's own end is that end
+LONG_SHARE = 0.5  # of a part's length: a part that is in another by more is not merely too long
+NEAR_REST = np.deg2rad(20)  # a part that turns on its own face meets its neighbour early
+FACE_SHARE = 0.1  # of a part's size: an axis nearer to its surface is on its face
+PARALLEL = 1e-3  # |sine| between axes whose distance is called a pitch
+_EXPLAINED = ("E_OVERLAP", "E_STATIC_OVERLAP", "W_STATIC_OVERLAP", "E_MOTION_COLLISION")
+_TURNING = (JointType.REVOLUTE, JointType.CYLINDRICAL, JointType.SCREW)
+
+
+def diagnose(scene: Scene, tree: KinematicTree, findings: Sequence[Finding]) -> Findings:
+    """Assign a cause, an actor and a number to each finding where geometry tells them, and add parts that are in pieces.
+
+    Args:
+        scene: What was checked.
+        tree: Joints between the parts; at rest where a finding gives no pose.
+        findings: Of a check, a sweep or a certificate.
+    """
+    explained = [_explained(scene, tree, finding) for finding in findings]
+    pieces = [finding for name, body in scene.bodies.items() if (finding := _in_pieces(name, body)) is not None]
+    return Findings([*explained, *pieces])
+
+
+def _explained(scene: Scene, tree: KinematicTree, finding: Finding) -> Finding:
+    known = all(name in scene.bodies and name not in scene.broken for name in finding.parts)
+    if finding.code not in _EXPLAINED or len(finding.parts) != 2 or finding.cause is not None or not known:
+        return finding
+    case = Case(scene, tree, finding)
+    moving: tuple[Callable[[], Finding | None], ...] = (case.pitch, case.pivot_on_face, case.overrun)
+    standing: tuple[Callable[[], Finding | None], ...] = (case.unbored_hole, case.missing_slot, case.envelope)
+    for cause in (*moving, *standing) if finding.code == "E_MOTION_COLLISION" else standing:
+        explanation = cause()
+        if explanation is not None:
+            return explanation
+    return finding
+
+
+@dataclass(frozen=True)
+class _Region:
+    """Where two parts overlap, in the first part's frame.
+
+    Attributes:
+        vertices: Of the largest piece, `(V, 3)` [mm].
+        volume: Of it [mm³].
+    """
+
+    vertices: FloatArray
+    volume: float
+
+    @property
+    def centre(self) -> FloatArray:
+        """Middle of its box."""
+        return np.asarray((self.vertices.min(axis=0) + self.vertices.max(axis=0)) / 2)
+
+
+class Case:
+    """One finding with the geometry at its place."""
+
+    def __init__(self, scene: Scene, tree: KinematicTree, finding: Finding) -> None:
+        self.scene, self.tree, self.finding = scene, tree, finding
+        self.a, self.b = finding.parts
+        self.body_a, self.body_b = scene.bodies[self.a], scene.bodies[self.b]
+        pose = dict(finding.pose or {})
+        joints = tree.joints_between(self.a, self.b)
+        self.moving = [joint for joint in joints if any(freedom.name in pose for freedom in freedoms(joint))]
+        self.chain = Chain(tree, self.a, self.b, [joint.name for joint in self.moving])
+        rest = {freedom.name: freedom.rest for freedom in self.chain.freedoms}
+        self.values = [pose.get(name, value) for name, value in rest.items()]
+        self.T = self.chain.matrix(self.values)
+        self.direct: Joint | None = next(iter(scene.relations.between(self.a, self.b)), None)
+
+    # ------------------------------------------------------------------ causes of an overlap that is always there
+
+    def unbored_hole(self) -> Finding | None:
+        """A pin stands in solid material: what they share is a cylinder about the joint's axis."""
+        axis = self._axis()
+        if axis is None or self.region is None:
+            return None
+        radius = float(axis.radii(self.region.vertices).max())
+        low, high = axis.heights(self.region.vertices)
+        if self.region.volume < ROUND_SHARE * np.pi * radius**2 * (high - low):
+            return None
+        middle = axis.frame[:3, 3] + axis.frame[:3, 2] * (low + high) / 2
+        beside = [
+            middle + radius * 1.15 * (np.cos(t) * axis.frame[:3, 0] + np.sin(t) * axis.frame[:3, 1]) for t in np.arange(6) * np.pi / 3
+        ]
+        solid = self._with_most_material(np.array(beside))
+        bore = 2 * (radius + CLEARANCE_MM)
+        return self._because(
+            "unbored_hole",
+            "code",
+            f"{self._other(solid)} stands {high - low:.4g} mm deep in solid material of {solid}, which has no hole there.",
+            f"Bore {solid} along the axis with a diameter of {bore:.4g} mm, {high - low:.4g} mm deep (the pin's is {2 * radius:.4g} mm).",
+            value=2 * radius,
+            limit=bore,
+        )
+
+    def missing_slot(self) -> Finding | None:
+        """A tongue stands in solid material: along the axis about which it turns there is material on both sides of it."""
+        if self.region is None or self.direct is None or self.direct.type not in _TURNING:
+            return None
+        direction = self._frame_of(self.direct)[:3, 2]
+        along = self.region.vertices @ direction
+        low, high, centre = float(along.min()), float(along.max()), self.region.centre
+        thickness = high - low
+        step = max(PROBE_SHARE * thickness, 1e-3)
+        both = np.array([centre + direction * (place - centre @ direction) for place in (low - step, high + step)])
+        for name in (self.a, self.b):
+            if (self._material(name, both) > 0.5).all() and (self._material(self._other(name), both) < 0.5).all():
+                width = thickness + 2 * CLEARANCE_MM
+                return self._because(
+                    "missing_slot",
+                    "code",
+                    f"{self._other(name)}, {thickness:.4g} mm thick, stands in solid material of {name}.",
+                    f"Cut a slot {width:.4g} mm wide into {name} where {self._other(name)} turns.",
+                    value=thickness,
+                    limit=width,
+                )
+        return None
+
+    def envelope(self) -> Finding | None:
+        """A part is too long: what they share ends where the part itself ends, and is thin against its length."""
+        if self.region is None:
+            return None
+        best: tuple[float, str, int, float, float] | None = None
+        for name, to_part in ((self.a, np.eye(4)), (self.b, np.linalg.inv(self.T))):
+            points = self.region.vertices @ to_part[:3, :3].T + to_part[:3, 3]
+            low, high = self.scene.bodies[name].mesh.bounds
+            for k in range(3):
+                depth, length = float(np.ptp(points[:, k])), float(high[k] - low[k])
+                ends = points[:, k].min() - low[k] < END_MM or high[k] - points[:, k].max() < END_MM
+                if ends and depth < LONG_SHARE * length and (best is None or depth < best[0]):
+                    best = depth, name, k, length, length - depth
+        if best is None:
+            return None
+        depth, name, k, length, room = best
+        return self._because(
+            "envelope",
+            "design",
+            f"{name} is {length:.6g} mm long in its {'xyz'[k]} and ends {depth:.4g} mm inside {self._other(name)}.",
+            f"Make {name} {depth:.4g} mm shorter in its {'xyz'[k]}, {room:.6g} mm, less a gap; or move it by as much.",
+            value=length,
+            limit=room,
+        )
+
+    # ------------------------------------------------------------------ causes of a collision in motion
+
+    def pitch(self) -> Finding | None:
+        """Two parts turn about parallel axes that are closer than their radii together."""
+        turning = [joint for joint in self.tree.joints_between(self.a, self.b) if joint.type in _TURNING]
+        if self.direct is not None or len(turning) < 2:
+            return None
+        first, last = Core(self._frame_of(turning[0])), Core(self._frame_of(turning[-1]))
+        direction = first.frame[:3, 2]
+        offset = last.frame[:3, 3] - first.frame[:3, 3]
+        if np.linalg.norm(np.cross(direction, last.frame[:3, 2])) > PARALLEL:
+            return None
+        between = float(np.linalg.norm(offset - (offset @ direction) * direction))
+        placed_b = self.body_b.mesh.vertices @ self.T[:3, :3].T + self.T[:3, 3]
+        reach = float(first.radii(self.body_a.mesh.vertices).max()) + float(last.radii(placed_b).max())
+        if between >= reach or between == 0.0:
+            return None
+        return self._because(
+            "pitch",
+            "design",
+            f"The axes of {turning[0].name} and {turning[-1].name} are {between:.4g} mm apart, but {self.a} and {self.b} reach "
+            f"{reach:.4g} mm together.",
+            f"Move the axes {reach - between:.4g} mm further apart, to more than {reach:.4g} mm, or shorten what turns.",
+            value=between,
+            limit=reach,
+        )
+
+    def pivot_on_face(self) -> Finding | None:
+        """A part turns about an axis on its own face, so that its corner enters the neighbour at once."""
+        joint = self.direct
+        if joint is None or joint.type not in _TURNING or len(self.moving) != 1:
+            return None
+        if abs(self._entry() - self.chain.freedoms[-1].rest) > NEAR_REST:
+            return None
+        axis_a, axis_b = Core(self._frame_of(joint)), Core(joint.T_child_connector.matrix)
+        if joint.parent != self.a:
+            axis_b = Core(joint.T_parent_connector.matrix)
+        inset, name = min((_face_distance(axis_a, self.body_a), self.a), (_face_distance(axis_b, self.body_b), self.b))
+        if inset > FACE_SHARE * self.scene.bodies[name].diagonal:
+            return None
+        deepest = self._deepest_along()
+        return self._because(
+            "pivot_on_face",
+            "design",
+            f"The axis of {joint.name} lies {inset:.4g} mm from a face of {name}, so that its edge turns into {self._other(name)} "
+            f"up to {deepest:.4g} mm deep.",
+            f"Move the axis {deepest:.4g} mm out of the face, towards the side it opens to, or round the edge by as much.",
+            value=inset,
+            limit=inset + deepest,
+        )
+
+    def overrun(self) -> Finding | None:
+        """A slider runs further than there is room."""
+        joint = self.direct
+        if joint is None or joint.type not in (JointType.SLIDER, JointType.CYLINDRICAL) or len(self.moving) != 1:
+            return None
+        (travel, *_), value = self.chain.freedoms, self.values[0]
+        if value == travel.rest:
+            return None
+        bound = travel.upper if value > travel.rest else travel.lower
+        excess = abs(bound - value)
+        if excess == 0.0:
+            excess, value = abs(self.finding.value or 0.0), bound
+        return self._because(
+            "envelope",
+            "design",
+            f"{joint.name} runs to {bound:.6g} mm, but there is room to {value:.6g} mm only.",
+            f"Shorten the travel by {excess:.4g} mm, or make {self.b} as much shorter.",
+            value=bound,
+            limit=value,
+        )
+
+    # ------------------------------------------------------------------ geometry
+
+    @cached_property
+    def region(self) -> _Region | None:
+        """The largest piece of what the two have in common."""
+        pieces = intersection(self.body_a, self.body_b, SE3.from_matrix(self.T)).decompose()
+        if not pieces:
+            return None
+        largest: Any = max(pieces, key=lambda piece: float(piece.volume()))
+        if float(largest.volume()) <= VOLUME_NOISE_MM3:
+            return None
+        return _Region(np.asarray(largest.to_mesh64().vert_properties)[:, :3], float(largest.volume()))
+
+    def _axis(self) -> Core | None:
+        """Return the axis of the joint between the two, in the first part's frame."""
+        if self.direct is None or self.direct.type in (JointType.BALL, JointType.PLANAR, JointType.UNIVERSAL):
+            return None
+        return Core(self._frame_of(self.direct))
+
+    def _frame_of(self, joint: Joint) -> FloatArray:
+        """Return a joint's parent connector in the first part's frame, at the finding's pose."""
+        values = {freedom.name: value for freedom, value in zip(self.chain.freedoms, self.values, strict=True)}
+        chain = Chain(self.tree, self.a, joint.parent, (), values)
+        return np.asarray(chain.matrix(()) @ joint.T_parent_connector.matrix)
+
+    def _material(self, name: str, points: FloatArray) -> FloatArray:
+        """Return 1 where points of the first part's frame are inside a part."""
+        if name == self.b:
+            inverse = np.linalg.inv(self.T)
+            points = points @ inverse[:3, :3].T + inverse[:3, 3]
+        return winding_numbers(points, self.scene.bodies[name].corners)
+
+    def _with_most_material(self, points: FloatArray) -> str:
+        return max((self.a, self.b), key=lambda name: float(self._material(name, points).sum()))
+
+    def _other(self, name: str) -> str:
+        return self.b if name == self.a else self.a
+
+    def _entry(self) -> float:
+        """Return the value of the last coordinate from which on the two overlap, between rest and here."""
+        free, hit = self.chain.freedoms[-1].rest, self.values[-1]
+        for _ in range(20):
+            middle = (free + hit) / 2
+            T = SE3.from_matrix(self.chain.matrix([*self.values[:-1], middle]))
+            overlaps = float(intersection(self.body_a, self.body_b, T).volume()) > UNRELATED_VOLUME_MM3
+            free, hit = (free, middle) if overlaps else (middle, hit)
+        return hit
+
+    def _deepest_along(self) -> float:
+        """Return the deepest overlap between here and the bound, looked at in a few poses [mm]."""
+        freedom = self.chain.freedoms[-1]
+        value = self.values[-1]
+        end = freedom.upper if value >= freedom.rest else freedom.lower
+        end = freedom.rest + np.clip(end - freedom.rest, -np.pi / 2, np.pi / 2)
+        deepest = 0.0
+        for q in np.linspace(value, end, 9).tolist():
+            T = SE3.from_matrix(self.chain.matrix([*self.values[:-1], q]))
+            for piece in intersection(self.body_a, self.body_b, T).decompose():
+                deepest = max(deepest, 2 * float(piece.volume()) / max(float(piece.surface_area()), 1e-12))
+        return deepest
+
+    def _because(self, cause: str, route: Any, message: str, hint: str, *, value: float, limit: float) -> Finding:
+        return replace(
+            self.finding,
+            cause=cause,
+            route=route,
+            message=f"{self.finding.message} {message}",
+            hint=hint,
+            value=value,
+            limit=limit,
+            unit="mm",
+        )
+
+
+def _face_distance(core: Core, body: Body) -> float:
+    """Return how far an axis is from the nearest side of a body that is parallel to it [mm]."""
+    flat = body.corners @ core.frame[:3, 2]
+    spans = np.ptp(flat, axis=1) > 1e-9 * max(body.diagonal, 1.0)  # caps are met by every axis
+    return float(core.least_radii(body.corners[spans]).min(initial=np.inf))
+
+
+def _in_pieces(name: str, body: Body) -> Finding | None:
+    """Return the finding that a part is several solids."""
+    solids = [shell for shell in body.components if shell.volume > 0]
+    if len(solids) < 2:
+        return None
+    first, second = Body(solids[0]), Body(solids[1])
+    gap = distance(first, second, SE3.identity())
+    apart = f"{gap:.4g} mm apart" if gap > 0 else "not fused where they meet"
+    return Finding(
+        code="E_NOT_ONE_SOLID",
+        where=f"parts.{name}",
+        parts=(name,),
+        message=f"{name} is {len(solids)} solids, the first two {apart}.",
+        hint="Fuse the bodies so that they overlap" + (f": close the gap of {gap:.4g} mm." if gap > 0 else ", by at least 0.01 mm."),
+        value=gap,
+        limit=0.0,
+        unit="mm",
+        cause="multi_solid",
+        route="code",
+        stage="interference",
+    )
