@@ -351,6 +351,12 @@ CODES: dict[str, Code] = {
     ),
     "I_WAIVED": Code("interference", None, "An overlap is allowed by a waiver of the plan.", "Nothing, while the reason holds."),
     "E_NOT_CHECKED": Code("interference", None, "A check that was asked for was not done.", "Give it a larger budget, or what it needs."),
+    "W_NOT_INSERTABLE": Code(
+        "interference",
+        "design",
+        "A part cannot be put in place in a straight line.",
+        "Open one side, split a part, or make it snap or turn into place.",
+    ),
     "W_NOT_CERTIFIED": Code(
         "motion", "design", "Two parts touch too closely for their motion to be proven free; it was sampled.", "Give them a clearance."
     ),
