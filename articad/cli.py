@@ -34,7 +34,8 @@ CANNOT_GO_ON: Final = 3
 INTERRUPTED: Final = 130  # 128 + SIGINT, as shells count
 _PATIENCE_S: Final = 1.0  # for other threads to notice that the program ends
 
-_WRITERS: Final = ("urdf", "mjcf")
+_FORMATS: Final = ("urdf", "mjcf", "glb")  # the keys of `articad.record.WRITERS`, which --help must not load
+_USUAL: Final = ("urdf", "mjcf")
 
 
 class _Command(NamedTuple):
@@ -82,8 +83,8 @@ def _formats(text: str) -> tuple[str, ...]:
     """Read `urdf,mjcf`."""
     names = tuple(dict.fromkeys(name.strip() for name in text.split(",") if name.strip()))
     for name in names:
-        if name not in _WRITERS:
-            raise argparse.ArgumentTypeError(f"unknown format {name!r}{_closest(name, _WRITERS)}; there are {', '.join(_WRITERS)}")
+        if name not in _FORMATS:
+            raise argparse.ArgumentTypeError(f"unknown format {name!r}{_closest(name, _FORMATS)}; there are {', '.join(_FORMATS)}")
     return names
 
 
@@ -128,7 +129,7 @@ _SANDBOX = _argument(
 )
 _JOBS = _argument("--jobs", metavar="N", type=_positive, default=None, help="parts built at once (all processors)")
 _FORCE = _argument("--force", action="store_true", help="build every part anew, whatever the cache holds")
-_EXPORT = _argument("--export", metavar="FORMATS", dest="formats", type=_formats, default=_WRITERS, help="formats to write (urdf,mjcf)")
+_EXPORT = _argument("--export", metavar="FORMATS", dest="formats", type=_formats, default=_USUAL, help="formats to write (urdf,mjcf)")
 _SANDBOX = _argument(
     "--sandbox", choices=["strict", "weak"], default=None, help="weak runs part scripts with less isolation than landlock or bwrap"
 )
@@ -222,7 +223,7 @@ def _check(options: argparse.Namespace, terminal: Terminal) -> Report:
     "export",
     "Write a finished run in other formats.",
     _argument("run", metavar="RUN"),
-    _argument("--to", metavar="FORMATS", dest="formats", type=_formats, required=True, help="formats to write, such as urdf,mjcf"),
+    _argument("--to", metavar="FORMATS", dest="formats", type=_formats, required=True, help="formats to write, of urdf, mjcf, glb"),
     _argument("--out", metavar="DIR", help="where to write, a folder for each format; by default RUN/export"),
     _argument("--strict", action="store_true", help="refuse what a format cannot hold, instead of reporting it as lost"),
     _argument("--loops", choices=["none", "isaac", "drake", "mimic"], default="none", help="how URDF closes loops (none)"),

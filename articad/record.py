@@ -9,6 +9,7 @@ from articad.assembly import Assembly
 from articad.connectors.connector import Connector
 from articad.errors import KernelUnavailableError, ReadError
 from articad.export.bundle import Bundle
+from articad.export.gltf import write_glb
 from articad.export.mjcf import write_mjcf
 from articad.export.urdf import Loops, write_urdf
 from articad.findings import Finding
@@ -25,7 +26,7 @@ from articad.run import Run
 Report = dict[str, Any]
 Sandbox = Literal["strict", "weak"]
 
-WRITERS: Final[dict[str, Callable[..., Bundle]]] = {"urdf": write_urdf, "mjcf": write_mjcf}
+WRITERS: Final[dict[str, Callable[..., Bundle]]] = {"urdf": write_urdf, "mjcf": write_mjcf, "glb": write_glb}
 _PICTURE_PIXELS: Final = 256  # of a picture kept in a run: enough to recognise, cheap enough to draw each time
 _KERNEL_FILES: Final = ("part.npz", "part.brep", "part.step")
 

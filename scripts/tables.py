@@ -6,9 +6,10 @@ import re
 import sys
 from itertools import groupby
 from pathlib import Path
+from typing import get_args
 
 from articad.codes import CODES
-from articad.export.losses import TABLE
+from articad.export.losses import TABLE, Format
 
 REFERENCE = Path(__file__).resolve().parent.parent / "docs" / "reference"
 NOTE = "<!-- Written by scripts/tables.py from the code; edit that. -->\n"
@@ -52,7 +53,9 @@ def losses() -> str:
         "What each feature of an assembly becomes in each format, and what a reader that does not know articad's metadata does not see. An export reports the rows",
         "that concern it; with `strict` it refuses those marked so, where motion, mass or shape would change. What has no entry in *lost* is held exactly.",
     ]
-    for format_name in ("urdf", "mjcf"):
+    for format_name in get_args(Format):
+        if not any(format_name in rows for rows in TABLE.values()):
+            continue
         lines += ["", f"## {format_name.upper()}", "", "| feature | becomes | lost | strict |", "|---|---|---|---|"]
         for key, rows in TABLE.items():
             if format_name in rows:

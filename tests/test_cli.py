@@ -14,6 +14,7 @@ import pytest
 from articad import __version__, cli
 from articad.errors import PlanError
 from articad.findings import Finding
+from articad.record import WRITERS
 from articad.terminal import Report, Terminal
 
 FINDING = Finding(code="E_DUP_NAME", where="parts[1]", message="'lid' is used twice.", hint="Rename one.")
@@ -105,6 +106,10 @@ def test_wrong_usage_ends_with_2_and_says_what_was_meant(capsys: pytest.CaptureF
         cli.main(arguments)
     assert ended.value.code == 2
     assert words in capsys.readouterr().err
+
+
+def test_the_formats_are_those_that_can_be_written() -> None:
+    assert set(cli._FORMATS) == set(WRITERS)
 
 
 def test_the_version_is_the_package_s(capsys: pytest.CaptureFixture[str]) -> None:
