@@ -10,6 +10,7 @@ and scripts are refused unless that was asked for. Standard library only: this m
 
 from __future__ import annotations
 
+import contextlib
 import ctypes
 import os
 import resource
@@ -161,12 +162,13 @@ def _visible_paths() -> list[str]:
 def _executable_homes() -> Iterator[str]:
     """Yield the folders that the interpreter's links pass through: an environment links to a Python that may link on."""
     path = Path(sys.executable)
-    for _ in range(8):
-        if not path.is_symlink():
-            return
-        path = Path(os.path.normpath(path.parent / path.readlink()))
-        if path.parent.name == "bin":
-            yield str(path.parent.parent)
+    with contextlib.suppress(OSError):  # a link into a folder that may not be looked into
+        for _ in range(8):
+            if not path.is_symlink():
+                return
+            path = Path(os.path.normpath(path.parent / path.readlink()))
+            if path.parent.name == "bin":
+                yield str(path.parent.parent)
 
 
 def readable_paths() -> tuple[str, ...]:

@@ -26,7 +26,7 @@ DIAGONAL = math.sqrt(WIDTH**2 + 40**2 + 4**2)  # 72 mm: the fixed bounds hold, n
 def plan(
     latch: dict[str, Any] | None = None, joint: str = "revolute", width: float = WIDTH, envelope: list[float] | None = None
 ) -> ResolvedPlan:
-    limits: dict[str, Any] = {"revolute": {"angle_deg": [0, 90]}, "ball": {"cone_deg": 30}}[joint]
+    limits: dict[str, Any] = {"angle_deg": [0, 90]} if joint == "revolute" else {"cone_deg": 30}
     latch = {"name": "latch", "o": [50, 0, 10], "z": [0, 1, 0], "x": [1, 0, 0]} if latch is None else latch
     form: dict[str, Any] = {
         "schema": "articad.plan/1",
