@@ -1,0 +1,127 @@
+"""What certified motion costs: distance queries and seconds on the scenes of the design, beside the least that could be.
+
+    python benchmarks/certify.py
+
+For a line at distance d(q) and reach R, two-sided intervals need at least ∫ R dq / 2 d(q) distances; the goal is 1.3 times that.
+The rotor and the rod are proven twice: as `certify` does it, with what is invariant first, and by distances alone.
+"""
+
+from __future__ import annotations
+
+import math
+import resource
+import time
+
+import manifold3d as m3
+import numpy as np
+
+from articad.connectors import SE3
+from articad.geometry import TriMesh, box, cylinder, tube
+from articad.interference.certificate import certify
+from articad.interference.check import check_pose
+from articad.interference.cover import Budget, cover_line
+from articad.interference.motion import Chain
+from articad.interference.surface import Surface, surface_distance
+from articad.kinematics.joints import Joint, JointLimits, JointType
+from articad.kinematics.mechanism import Mechanism
+
+GIB = 2**30
+
+
+def revolute(name: str, parent: str, child: str, lower: float = -math.pi, upper: float = math.pi) -> Joint:
+    frame = SE3.identity()
+    return Joint(
+        name=name,
+        type=JointType.REVOLUTE,
+        parent=parent,
+        child=child,
+        parent_connector="p",
+        child_connector="c",
+        T_parent_connector=frame,
+        T_child_connector=frame,
+        limits=JointLimits((lower,), (upper,)),
+        rest=(max(lower, min(0.0, upper)),),
+    )
+
+
+def mesh_of(manifold: m3.Manifold) -> TriMesh:
+    mesh = manifold.to_mesh64()
+    return TriMesh(np.array(mesh.vert_properties)[:, :3], np.array(mesh.tri_verts).astype(np.int32))
+
+
+def by_distances(a: TriMesh, b: TriMesh, joint: Joint) -> tuple[float, int, float, float]:
+    """Walk the whole range with distances alone; return seconds, queries, the least that could be, and how far it came."""
+    mechanism = Mechanism(("a", "b"), "a", [joint])
+    chain = Chain(mechanism.tree, "a", "b", [joint.name])
+    here, there = Surface.of(a), Surface.of(b)
+    reach = float(chain.reach(here.points, there.points)[0])
+    (freedom,) = chain.freedoms
+
+    def distance(values: object) -> float:
+        return surface_distance(here, there, chain.matrix(values))  # type: ignore[arg-type]
+
+    budget = Budget(600.0)
+    started = time.perf_counter()
+    cover = cover_line(distance, (freedom.lower, freedom.upper), freedom.rest, reach=reach, budget=budget)
+    seconds = time.perf_counter() - started
+    # only between what was reached, so that a contact does not make the integral infinite
+    samples = np.linspace(cover.lower, cover.upper, 400)
+    gaps = np.maximum([distance((q,)) for q in samples], 1e-3)
+    return seconds, budget.queries, float(np.trapezoid(reach / (2 * gaps), samples)), math.degrees(cover.upper)
+
+
+def scenes() -> dict[str, tuple[TriMesh, TriMesh, Joint, float]]:
+    """Return scenes with the seconds that each may take."""
+    bar = box(200, 10, 10, center=False).transformed(SE3.from_translation([0.0, -5, -5]))
+    post = cylinder(0.1, 60, 64).transformed(SE3.from_axis_angle([0, 0, 1], 0.8) @ SE3.from_translation([150.0, 0, 0]))
+    rotor, ring = mesh_of(m3.Manifold.cylinder(20, 100, 100, 256, center=True)), tube(100.5, 120, 20, 256)
+    bush = mesh_of(m3.Manifold.cube([30, 30, 12], center=True) - m3.Manifold.cylinder(40, 8.25, 8.25, 64, center=True))
+    rod = m3.Manifold.cylinder(400, 8, 8, 64, center=True)
+    for z in (-120, 0, 120):
+        player = m3.Manifold.cube([22, 90, 22], center=True).translate([0, -30, z + 30])
+        rod += player
+    return {
+        "bar against a post of 0.2 mm": (post, bar, revolute("turn", "a", "b", 0.0, 2.0), 2.0),
+        "football rod, full turn": (bush, mesh_of(rod), revolute("spin", "a", "b"), 2.0),
+        "rotor in a ring, R 100, gap 0.5": (ring, rotor, revolute("spin", "a", "b"), 20.0),
+    }
+
+
+def main() -> None:
+    print(
+        f"{'scene':<34}{'certify s':>10}{'queries':>9}{'goal s':>8}{'distances s':>13}{'queries':>9}{'least':>8}{'ratio':>7}{'to deg':>10}"
+    )
+    for name, (a, b, joint, goal) in scenes().items():
+        mechanism = Mechanism(("a", "b"), "a", [joint])
+        started = time.perf_counter()
+        certificate = certify({"a": a, "b": b}, mechanism)
+        seconds = time.perf_counter() - started
+        walked, queries, least, reached = by_distances(a, b, joint)
+        print(
+            f"{name:<34}{seconds:>10.3f}{certificate.queries:>9}{goal:>8.0f}{walked:>13.3f}{queries:>9}{least:>8.0f}"
+            f"{queries / max(least, 1.0):>7.2f}{reached:>10.4f}"
+        )
+        for finding in certificate.findings:
+            print(f"    {finding}")
+    memory()
+
+
+def memory() -> None:
+    """Check 50 different parts of 20k triangles each, and print the peak."""
+    meshes, poses = {}, {}
+    for k in range(50):
+        solid = m3.Manifold.cube([20, 20, 20], center=True) - m3.Manifold.cylinder(40, 5 + 0.01 * k, 5 + 0.01 * k, 64, center=True)
+        meshes[f"p{k}"] = mesh_of(solid.refine_to_length(0.85))
+        poses[f"p{k}"] = SE3.from_translation([20.0 * (k % 10), 20.0 * (k // 10), 0.0])
+    count = sum(len(mesh.triangles) for mesh in meshes.values()) // len(meshes)
+    started = time.perf_counter()
+    report = check_pose(meshes, poses, joints=[])
+    seconds = time.perf_counter() - started
+    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024
+    print(
+        f"\n50 parts of {count} triangles, touching: {len(report.pairs)} pairs in {seconds:.1f} s, ok {report.ok}, peak {peak / GIB:.2f} GiB (goal < 1)"
+    )
+
+
+if __name__ == "__main__":
+    main()
