@@ -387,6 +387,9 @@ CODES: dict[str, Code] = {
     ),
     "E_WRITE": Code("export", None, "A file cannot be written.", "Free space or permissions at the named place; finished work is kept."),
     "E_RUN": Code("import", None, "A run directory cannot be used.", "Name another directory, or wait for the process that uses it."),
+    "W_PRINT_CLEARANCE": Code(
+        "export", "design", "A joint's gap is smaller than the printing process needs.", "Widen the gap, or use another process."
+    ),
     "E_MIMIC_FIT": Code(
         "export", None, "A closed loop cannot be written as mimic joints within 0.1 mm.", "Use another way to write loops, or MJCF."
     ),

@@ -1,0 +1,168 @@
+"""3MF print pack: one file per part, lying on its best face, closed meshes only, with the clearance that a process needs checked."""
+
+from __future__ import annotations
+
+import io
+import zipfile
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+from lxml import etree
+from numpy.typing import NDArray
+
+from articad.connectors.se3 import SE3
+from articad.export.bundle import Bundle
+from articad.export.losses import Feature, losses_of, refuse
+from articad.export.markup import child, document, number
+from articad.export.names import Names
+from articad.findings import Finding, Findings
+from articad.geometry.mesh import TriMesh
+from articad.kinematics.joints import JointType
+
+if TYPE_CHECKING:
+    from articad.assembly import Assembly
+
+FloatArray = NDArray[np.float64]
+Process = Literal["fdm", "sla", "sls"]
+
+CLEARANCE_MM: dict[Process, float] = {"fdm": 0.2, "sla": 0.1, "sls": 0.3}
+"""Smallest gap between two surfaces that each process prints apart reliably."""
+SAME_PLANE_MM = 0.01  # faces this close to the lowest point lie on the bed
+SAME_DIRECTION = 1e-3  # rad: normals that count as one
+CANDIDATES = 12  # directions tried as "down", those with the most flat area first
+_CORE = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02"
+_TIME = (2000, 1, 1, 0, 0, 0)  # the same part gives the same bytes
+_CONTENT_TYPES = (
+    b'<?xml version="1.0" encoding="UTF-8"?>\n<Types xmlns="http://schemas.openxmlformats.org/package/2006/content-types">'
+    b'<Default Extension="rels" ContentType="application/vnd.openxmlformats-package.relationships+xml"/>'
+    b'<Default Extension="model" ContentType="application/vnd.ms-package.3dmanufacturing-3dmodel+xml"/></Types>'
+)
+_RELATIONS = (
+    b'<?xml version="1.0" encoding="UTF-8"?>\n<Relationships xmlns="http://schemas.openxmlformats.org/package/2006/relationships">'
+    b'<Relationship Target="/3D/3dmodel.model" Id="rel0" Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/></Relationships>'
+)
+
+
+def write_3mf(assembly: Assembly, *, strict: bool = False, process: Process = "fdm") -> Bundle:
+    """Write one 3MF file per part, in mm, turned so that it stands on the largest flat face that it can stand on.
+
+    Args:
+        assembly: What to write; parts without a closed mesh are left out with a finding.
+        strict: Refuse losses of motion, mass or shape; a printed part is no joint, so only a single body passes.
+        process: How it will be printed: joints whose declared gap is smaller than the process needs are findings.
+
+    Returns:
+        `<part>.3mf` for each part, the losses, and findings about clearance.
+
+    Raises:
+        UnrepresentableError: If `strict` and there is such a loss.
+    """
+    losses = losses_of("3mf", _features(assembly))
+    if strict:
+        refuse(losses)
+    files: dict[str, bytes] = {}
+    findings = list(_clearances(assembly, process))
+    names = Names()
+    for name, part in assembly.parts.items():
+        if part.mesh is None or not part.mesh.is_closed:
+            message = f"Part {name!r} has no closed mesh, so it cannot be printed."
+            findings.append(
+                Finding(code="E_MESH_OPEN", where=f"parts.{name}", parts=(name,), message=message, hint="Close the mesh.", stage="export")
+            )
+            continue
+        files[f"{names.claim(name)}.3mf"] = _package(lying(part.mesh), name, part.color)
+    return Bundle(files, losses, Findings(findings))
+
+
+def lying(mesh: TriMesh) -> TriMesh:
+    """Return the mesh on the plane z = 0, on the flat face of the largest area that is at its bottom, else as it is."""
+    best, largest = SE3.identity(), -1.0
+    for down in _flat_directions(mesh):
+        turned = _turned_down(down)
+        z = turned.apply(mesh.vertices)[:, 2]
+        on_bed = (z[mesh.triangles] < z.min() + SAME_PLANE_MM).all(axis=1)
+        area = float(np.linalg.norm(mesh.normals_of_twice_area[on_bed], axis=1).sum())
+        if area > largest * (1 + 1e-9):
+            best, largest = turned, area
+    placed = mesh.transformed(best)
+    low, high = placed.bounds
+    return placed.transformed(SE3.trans(-(low[0] + high[0]) / 2, -(low[1] + high[1]) / 2, -low[2]))
+
+
+def _flat_directions(mesh: TriMesh) -> list[FloatArray]:
+    """Return outward normals by the area that has them, largest first; as it was built comes first among equals."""
+    twice = mesh.normals_of_twice_area
+    area = np.linalg.norm(twice, axis=1)
+    order = np.argsort(-area, kind="stable")
+    found: list[tuple[float, FloatArray]] = [(0.0, np.array([0.0, 0.0, -1.0]))]
+    for index in order[:2000]:  # flat faces are made of large triangles; small ones belong to curved faces
+        if area[index] <= 0:
+            break
+        normal = twice[index] / area[index]
+        match = next((place for place, (_, other) in enumerate(found) if np.linalg.norm(normal - other) < SAME_DIRECTION), None)
+        if match is None:
+            found.append((float(area[index]), normal))
+        else:
+            found[match] = found[match][0] + float(area[index]), found[match][1]
+    return [normal for _, normal in sorted(found, key=lambda entry: -entry[0])[:CANDIDATES]]
+
+
+def _turned_down(normal: FloatArray) -> SE3:
+    """Return the shortest turn that takes a direction to −z."""
+    axis = np.cross(normal, [0.0, 0.0, -1.0])
+    sine = float(np.linalg.norm(axis))
+    if sine < SAME_DIRECTION:
+        return SE3.identity() if normal[2] < 0 else SE3.rot_x(np.pi)
+    return SE3.from_axis_angle(axis / sine, np.arctan2(sine, -normal[2]))
+
+
+def _package(mesh: TriMesh, name: str, color: str) -> bytes:
+    """Return a 3MF package with one object."""
+    root = etree.Element(f"{{{_CORE}}}model", {"unit": "millimeter"}, nsmap={None: _CORE})
+    tag = f"{{{_CORE}}}"
+    resources = child(root, f"{tag}resources")
+    base = child(resources, f"{tag}basematerials", {"id": "1"})
+    child(base, f"{tag}base", {"name": color, "displaycolor": color.upper()})
+    body = child(resources, f"{tag}object", {"id": "2", "type": "model", "name": name, "pid": "1", "pindex": "0"})
+    shape = child(body, f"{tag}mesh")
+    vertices, triangles = child(shape, f"{tag}vertices"), child(shape, f"{tag}triangles")
+    for x, y, z in mesh.vertices.tolist():
+        child(vertices, f"{tag}vertex", {"x": number(x), "y": number(y), "z": number(z)})
+    for a, b, c in mesh.triangles.tolist():
+        child(triangles, f"{tag}triangle", {"v1": str(a), "v2": str(b), "v3": str(c)})
+    child(child(root, f"{tag}build"), f"{tag}item", {"objectid": "2"})
+    stream = io.BytesIO()
+    with zipfile.ZipFile(stream, "w", zipfile.ZIP_DEFLATED, compresslevel=6) as package:
+        for path, content in (("[Content_Types].xml", _CONTENT_TYPES), ("_rels/.rels", _RELATIONS), ("3D/3dmodel.model", document(root))):
+            entry = zipfile.ZipInfo(path, _TIME)
+            entry.compress_type = zipfile.ZIP_DEFLATED
+            package.writestr(entry, content)
+    return stream.getvalue()
+
+
+def _clearances(assembly: Assembly, process: Process) -> list[Finding]:
+    """Return a finding for each joint whose declared gap is smaller than the process needs."""
+    needed = CLEARANCE_MM[process]
+    findings = []
+    for joint in assembly.joints:
+        fit = assembly.fits.get(joint.name)
+        if joint.type is JointType.FIXED or fit is None or fit.gap_min is None or fit.gap_min >= needed:
+            continue
+        findings.append(
+            Finding(
+                code="W_PRINT_CLEARANCE",
+                where=f"joints.{joint.name}",
+                parts=(joint.parent, joint.child),
+                value=fit.gap_min,
+                limit=needed,
+                unit="mm",
+                message=f"Joint {joint.name!r} is promised a gap of {fit.gap_min:.6g} mm; {process.upper()} prints {needed:.6g} mm apart.",
+                hint="Widen the gap, print the parts one by one and finish them, or use another process.",
+            )
+        )
+    return findings
+
+
+def _features(assembly: Assembly) -> list[Feature]:
+    features = [Feature("motion", f"joints.{joint.name}") for joint in assembly.joints if joint.type is not JointType.FIXED]
+    return features + [Feature("mass", f"parts.{name}") for name, part in assembly.parts.items() if part.mass is not None]
