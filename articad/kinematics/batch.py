@@ -182,10 +182,16 @@ class TreeArrays:
         self._steps = tuple(zip(near, far, strict=True))
         self._ground_matrix = T_ground.matrix
         self.twists = Twists(layout, index)
-        self.carried = np.zeros((self.n_parts, layout.n_freedoms))  # ±1 where a freedom moves a part
-        for edge, c in zip(tree.edges, self.crossings, strict=True):
-            self.carried[c.far] = self.carried[c.near]
-            self.carried[c.far, layout.freedoms[c.joint.name]] = -1.0 if edge.reversed else 1.0
+        self._backwards = tuple(backwards[: len(edges)])
+
+    @cached_property
+    def carried(self) -> FloatArray:
+        """±1 where a freedom moves a part, −1 where it is crossed backwards: `(N, n_freedoms)`; 11 MB for 1000 parts, so made when asked."""
+        carried = np.zeros((self.n_parts, self.layout.n_freedoms))
+        for c, backwards in zip(self.crossings, self._backwards, strict=True):
+            carried[c.far] = carried[c.near]
+            carried[c.far, self.layout.freedoms[c.joint.name]] = -1.0 if backwards else 1.0
+        return carried
 
     @cached_property
     def _rows(self) -> list[_RowStep]:

@@ -178,15 +178,20 @@ class Follower:
         if correction > _CORRECTOR_SHARE * h * float(np.abs(node.rate).max()) + ROUNDING:
             return None
         lin = self.linearized(closed.Q)
-        after = self.node(node.s + h, closed.Q, lin, direction)
-        k = self.rank
-        U = lin.U[:, :k].copy()
-        if k and np.linalg.det(basis.T @ U) < 0:
-            U[:, 0] *= -1.0
-        turned = float(np.sign(np.linalg.det(U.T @ lin.J[:, self.where]))) if k == len(self.where) and k else 0.0
+        U, turned = self._orientation(basis, lin)
         if sign * turned < 0:
             return None
-        return after, U, turned or sign
+        return self.node(node.s + h, closed.Q, lin, direction), U, turned or sign
+
+    def _orientation(self, basis: FloatArray, lin: _Linear) -> tuple[FloatArray, float]:
+        """Return the constraints' basis, carried along from the last one, and the sign of their determinant in it (0: none)."""
+        k = self.rank
+        U = lin.U[:, :k].copy()
+        if not k or k < len(self.where):
+            return U, 0.0
+        if np.linalg.det(basis.T @ U) < 0:
+            U[:, 0] *= -1.0
+        return U, float(np.sign(np.linalg.det(U.T @ lin.J[:, self.where])))
 
     # --- dead points
 

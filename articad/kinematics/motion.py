@@ -22,9 +22,7 @@ from articad.kinematics.track import Track
 if TYPE_CHECKING:
     from articad.kinematics.mechanism import Mechanism
 
-_MOST_TURNS = 12  # of an endless driver, after which a motion that has not come back is not followed further
 _LONGEST_TRAVEL = 100.0  # lengths L that an unlimited slider is followed
-_SAME = 1e-6  # rad, or lengths L: a configuration that has come back
 _SAMPLES_PER_STEP = 4  # between two nodes, where limits of other joints are looked at
 _SPLITS, _ROUNDS = 16, 10  # a limit is located to 16⁻¹⁰ of a step
 
@@ -106,7 +104,7 @@ def sweep(mechanism: Mechanism, driver: str, lo: float, hi: float, steps: int, a
     configuration = Configuration(mechanism.joints, branch.system.into_all(base, Q[reached]))
     found += _limit_findings(coordinate, configuration, values[reached])
     certified = bool(certify and proved[reached].all() and reached.any())
-    tube = _largest_tube(track, values[reached]) if certified else 0.0
+    tube = track.largest_tube() if certified else 0.0
     reason = _reason(track, coordinate, values[reached], certify=certify, certified=certified)
     findings = Findings(f for f in found if f is not None)
     return Sweep(mechanism, coordinate, values[reached], configuration, "certified" if certified else "sampled", reason, tube, findings)
@@ -122,15 +120,6 @@ def _reason(track: Track, coordinate: Coordinate, values: FloatArray, *, certify
     ends = [track.value(sign, track.side(float(v)).nodes[-1].s) for sign, v in ((1, values.max()), (-1, values.min()))]
     places = " and ".join(dict.fromkeys(shown(end, coordinate.unit) for end in ends))
     return f"the proof needs steps below 1e-7 next to a dead point: it holds up to {places}"
-
-
-def _largest_tube(track: Track, values: FloatArray) -> float:
-    radius = 0.0
-    for value in (values.max(), values.min()):
-        nodes = track.side(float(value)).nodes
-        for a, b in itertools.pairwise(nodes):
-            radius = max(radius, float(track.follower.tube(a, np.asarray(b.s - a.s))))
-    return radius
 
 
 def feasible_range(mechanism: Mechanism, driver: str, at: Mapping[str, float] | None) -> FeasibleRange:
@@ -176,19 +165,10 @@ def _side_range(branch: Branch, track: Track, coordinate: Coordinate, sign: int)
 
 def _followed(track: Track, coordinate: Coordinate, sign: int) -> tuple[Trace, bool]:
     """Follow an unlimited driver until the configuration comes back."""
-    system = track.follower.system
     if coordinate.unit != "rad":
-        return track.side(track.start + sign * _LONGEST_TRAVEL * system.length), False
-    angles = ~system.layout.is_length
-    for turn in range(1, _MOST_TURNS + 1):
-        trace = track.side(track.start + sign * 2 * math.pi * turn)
-        if trace.stop is not Stop.ARRIVED:
-            return trace, False
-        step = system.step_between(track.Q, trace.Q_end)
-        step[angles] = np.mod(step[angles] + math.pi, 2 * math.pi) - math.pi
-        if np.abs(step).max() < _SAME:
-            return trace, True
-    return trace, False
+        return track.side(track.start + sign * _LONGEST_TRAVEL * track.follower.system.length), False
+    came_back = track.period(sign) is not None
+    return track.side(track.start + sign * 2 * math.pi), came_back
 
 
 def _first_violation(branch: Branch, track: Track, trace: Trace, sign: int, coordinate: Coordinate) -> tuple[float, str] | None:

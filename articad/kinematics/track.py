@@ -2,14 +2,31 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
 
 from articad.connectors import FloatArray
 from articad.kinematics.continuation import ROUNDING, Follower, Stop, Trace
 from articad.kinematics.loops import CLOSED, BoolArray, IndexArray
+
+_MOST_TURNS = 12  # of a driver, after which a motion that has not come back is not expected to
+_SAME = 1e-9  # rad, mm: a configuration that has come back
+
+
+class Period(NamedTuple):
+    """How a motion repeats itself.
+
+    Attributes:
+        length: Travel of the driver [rad].
+        advance: What one repetition adds to the coordinates: whole turns `(columns,)`.
+    """
+
+    length: float
+    advance: FloatArray
 
 
 @dataclass(eq=False)
@@ -28,6 +45,7 @@ class Track:
     column: int
     certify: bool = False
     _sides: dict[int, Trace] = field(default_factory=dict)
+    _periods: dict[int, Period | None] = field(default_factory=dict)
 
     @property
     def start(self) -> float:
@@ -55,6 +73,11 @@ class Track:
             self._sides[sign] = trace
         return trace
 
+    def largest_tube(self) -> float:
+        """Return the largest radius [rad, lengths L] round a predictor within which the only solution of a step lies, as far as traced."""
+        steps = (step for trace in self._sides.values() for step in itertools.pairwise(trace.nodes))
+        return max((float(self.follower.tube(a, np.asarray(b.s - a.s))) for a, b in steps), default=0.0)
+
     def direction(self, sign: int) -> FloatArray:
         """Return the scaled velocity of the driver towards growing (+1) or falling (−1) values."""
         direction = np.zeros(self.follower.system.layout.n_freedoms)
@@ -78,11 +101,46 @@ class Track:
         reached, proved = np.zeros(len(values), dtype=bool), np.zeros(len(values), dtype=bool)
         for sign in (1, -1):
             mine = np.flatnonzero((values >= self.start) if sign > 0 else (values < self.start))
-            if mine.size:
-                far = values[mine].max() if sign > 0 else values[mine].min()
-                trace = self.side(float(far))
-                Q[mine], reached[mine], proved[mine] = self._on_side(trace, values[mine])
+            if not mine.size:
+                continue
+            within, turns, advance = self._reduced(values[mine], sign)
+            far = within.max() if sign > 0 else within.min()
+            Q[mine], reached[mine], proved[mine] = self._on_side(self.side(float(far)), within)
+            if advance is not None:
+                Q[mine] += turns[:, None] * advance
+                Q[mine, self.column] = values[mine]
         return Q, reached, proved
+
+    def period(self, sign: int) -> Period | None:
+        """Return after which travel of a turning driver the configuration comes back; None if it does not within 12 turns."""
+        if sign not in self._periods:
+            self._periods[sign] = self._found_period(sign)
+        return self._periods[sign]
+
+    def _found_period(self, sign: int) -> Period | None:
+        layout = self.follower.system.layout
+        if layout.coordinates[self.column].unit != "rad":
+            return None
+        angles = np.array([c.unit == "rad" for c in layout.coordinates])
+        for turns in range(1, _MOST_TURNS + 1):
+            trace = self.side(self.start + sign * 2 * math.pi * turns)
+            if trace.stop is not Stop.ARRIVED:
+                return None
+            node = next(node for node in trace.nodes if node.s >= 2 * math.pi * turns - ROUNDING)
+            change = node.Q - self.Q
+            advance = np.where(angles, 2 * math.pi * np.round(change / (2 * math.pi)), 0.0)
+            if np.abs(change - advance).max() < _SAME:
+                return Period(2 * math.pi * turns, advance)
+        return None
+
+    def _reduced(self, values: FloatArray, sign: int) -> tuple[FloatArray, FloatArray, FloatArray | None]:
+        """Return values within the first period, how many periods were left out, and what one adds to the coordinates."""
+        away = np.abs(values - self.start)
+        period = self.period(sign) if away.max() > 2 * math.pi * (1 + 1e-9) else None
+        if period is None:
+            return values, np.zeros(len(values)), None
+        turns = np.floor(away / period.length)
+        return values - sign * turns * period.length, turns, period.advance
 
     def _on_side(self, trace: Trace, values: FloatArray) -> tuple[FloatArray, BoolArray, BoolArray]:
         system = self.follower.system
@@ -90,8 +148,6 @@ class Track:
         reached = s <= trace.end * (1 + 1e-15)
         guess, left = self._hermite(trace, s)
         beyond = reached & (s > trace.nodes[-1].s)
-        for i in np.flatnonzero(beyond):
-            guess[i] = self._near_fold(trace, float(s[i]))
         guess[:, self.column] = values
         at = np.flatnonzero(reached)
         closed, norm = system.close_many(guess[at], self.follower.dependent, iterations=12)
@@ -106,7 +162,10 @@ class Track:
         return guess, reached, proved
 
     def _hermite(self, trace: Trace, s: FloatArray) -> tuple[FloatArray, IndexArray]:
-        """Return cubic guesses at the parameters s, and the index of each one's left node."""
+        """Return cubic guesses at the parameters s, and the index of each one's left node.
+
+        Between the last node and a dead point the guess is the last node, which is on the branch's side of it.
+        """
         system, nodes = self.follower.system, trace.nodes
         stations = np.array([node.s for node in nodes])
         Q, rate = np.array([node.Q for node in nodes]), np.array([node.rate for node in nodes])
@@ -131,10 +190,3 @@ class Track:
                 1 + 1e-12
             )
         return inside
-
-    def _near_fold(self, trace: Trace, s: float) -> FloatArray:
-        """Return a guess between the last node and the dead point, on the node's side of it: s falls with the square of the arc."""
-        node = trace.nodes[-1]
-        share = 1.0 - math.sqrt(max(0.0, (trace.end - s) / (trace.end - node.s)))
-        to_fold = self.follower.system.step_between(node.Q, trace.Q_end)
-        return self.follower.system.move(node.Q, share * to_fold)

@@ -8,7 +8,8 @@ import pytest
 
 from articad.connectors import SE3
 from articad.errors import KinematicsError, UnknownJointError
-from articad.kinematics import JointLimits, JointType, Mechanism
+from articad.kinematics import JointLimits, JointType, Mechanism, continuation
+from articad.kinematics.continuation import Follower
 from tests.kinematics.linkages import (
     at,
     bennett,
@@ -84,6 +85,48 @@ def test_near_a_change_point_no_step_falls_onto_the_other_branch(epsilon: float)
     assert rocker_errors(sweep.values, sweep.configuration["rocker"][:, 0], lengths) < 3e-9
 
 
+@pytest.mark.parametrize(("sigma", "orientation", "stays"), [(True, False, True), (False, True, True), (False, False, False)])
+def test_either_guard_alone_keeps_the_branch_and_none_loses_it(
+    monkeypatch: pytest.MonkeyPatch, sigma: bool, orientation: bool, stays: bool
+) -> None:
+    monkeypatch.setattr(continuation, "_CORRECTOR_SHARE", 1e9)
+    if not sigma:
+        monkeypatch.setattr(continuation, "_SIGMA_SHARE", 1e9)
+    if not orientation:
+        monkeypatch.setattr(Follower, "_orientation", lambda self, _, lin: (lin.U[:, : self.rank], 0.0))
+    lengths = (30.0, 80.0, 50.0001, 100.0)
+    sweep = four_bar(*lengths, crank=1.0).sweep("crank", 1 - 2 * math.pi, 1 + 2 * math.pi, 181)
+    error = rocker_errors(sweep.values, sweep.configuration["rocker"][:, 0], lengths)
+    assert (error < 3e-9) is stays
+    if not stays:
+        assert error == pytest.approx(2.8548, abs=1e-3)
+
+
+def test_a_step_whose_corrector_is_as_long_as_its_predictor_is_refused() -> None:
+    follower = four_bar(60, 50, 50, 100, crank=0.3).branch.track(0).follower
+    start = follower.system.layout.rest
+    direction = np.array([1.0, 0, 0, 0])
+    lin = follower.linearized(start)
+    node = follower.node(0.0, start, lin, direction)
+    assert follower._step(node, 0.1, direction, lin.U[:, :3], 0.0, last=False) is not None
+    assert follower._step(node, 0.9, direction, lin.U[:, :3], 0.0, last=False) is None  # nearly at the dead point
+    assert follower._step(node, 3.0, direction, lin.U[:, :3], 0.0, last=False) is None  # beyond it: nothing closes
+
+
+def test_many_turns_repeat_the_first_and_angles_go_on_counting() -> None:
+    mechanism = four_bar()
+    far = 1.3 + 2 * math.pi * 100_000
+    near, there = mechanism.configuration([1.3]), mechanism.configuration([far])
+    assert there["crank"][0] == far
+    assert there["rocker"][0] == pytest.approx(near["rocker"][0], abs=1e-9)
+    assert there["pin_b"][0] == pytest.approx(near["pin_b"][0] - 2 * math.pi * 100_000, abs=1e-9)
+    assert mechanism.poses([-far]).allclose(mechanism.poses([-1.3]), mm=1e-6, rad=1e-9)
+    geared = geared_four_bar()
+    assert geared.poses([0.4 + 40 * math.pi]).allclose(geared.poses([0.4]), mm=1e-9, rad=1e-11)
+    assert geared.branch.track(0).period(1).length == pytest.approx(4 * math.pi)  # type: ignore[union-attr]
+    assert four_bar(60, 50, 50, 100, crank=0.3).branch.track(0).period(1) is None
+
+
 def test_a_sweep_ends_at_a_dead_point_and_says_where() -> None:
     mechanism = four_bar(60, 50, 50, 100, crank=0.3)
     sweep = mechanism.sweep("crank", -math.pi / 2, math.pi / 2, 181)
@@ -104,6 +147,8 @@ def test_values_next_to_a_dead_point_are_on_the_side_of_the_rest_pose() -> None:
         rocker = mechanism.configuration([value])["rocker"][0]
         # the angle depends on the square root of the distance, so rounding of 1e-16 shows as 1e-8
         assert rocker == pytest.approx(four_bar_angles(60, 50, 50, 100, value)[1], abs=1e-7)
+    end = mechanism.feasible_range("crank").upper
+    assert mismatch(mechanism, np.array([end]))[0] < 1e-8
 
 
 def test_near_the_dead_point_the_proof_ends_and_says_why() -> None:
