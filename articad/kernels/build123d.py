@@ -26,7 +26,7 @@ from articad.geometry.part import Solid
 from articad.kernels import sandbox as isolation
 from articad.kernels.contract import probe_findings, read_connectors, solid_findings
 from articad.kernels.failures import poisoned, script_failure
-from articad.kernels.kernel import BuiltPart, Inspect
+from articad.kernels.kernel import BuildCache, BuiltPart, Inspect
 from articad.kernels.results import PoisonedError, number, numbers, read_bytes, read_lines, read_mesh
 from articad.kernels.zygote import Outcome, Zygote, ZygoteDiedError, ends_by
 
@@ -168,25 +168,39 @@ class Build123dKernel:
         """Return the mirror image under `S (4, 4)`."""
         return self.moved(built, S)
 
-    def read_step(self, path: Path, deflection: float = 0.01) -> Solid:
+    def read_step(self, path: Path, deflection: float = 0.01, *, cache: BuildCache | None = None) -> Solid:
         """Read a STEP file that holds one solid; it is parsed in the sandbox like everything else.
+
+        Args:
+            path: The file.
+            deflection: Largest distance of the mesh from the solid [mm].
+            cache: Keeps what was read, by the file's content; by default the user's own.
 
         Raises:
             ReadError: If it is not STEP or does not hold exactly one valid solid.
         """
         self._require_sandbox()
-        folder = self._new_folder()
-        with self._job() as job:
-            try:
-                shutil.copyfile(path, job / "shape.bin")
-                shape = self._measured(job, form="step", name="part", deflection=deflection)
-                findings = Findings(solid_findings({"name": path.stem}, shape))
-                if not findings.ok:
-                    raise ReadError(f"{path.name}: {findings.errors[0].message}", path=str(path), findings=findings)
-                self._leave(job, folder, self._checked(job, shape, deflection), {}, findings, {"name": path.stem}, deflection, self.level)
-            except (OSError, PoisonedError, BuildError) as error:
-                raise ReadError(f"{path.name} is not a STEP file that can be read: {error}", path=str(path)) from error
+        cache = cache or BuildCache()
+        try:
+            content = path.read_bytes()
+            digest = hashlib.sha256(f"{self.version} {deflection!r} ".encode() + content).hexdigest()
+            if (folder := cache.get(digest)) is None:
+                with cache.writing(digest) as empty:
+                    self._read_step(path, content, deflection, empty)
+                folder = cache.root / digest
+        except (OSError, PoisonedError, BuildError) as error:
+            raise ReadError(f"{path.name} is not a STEP file that can be read: {error}", path=str(path)) from error
         return BuiltPart.load(folder).solid
+
+    def _read_step(self, path: Path, content: bytes, deflection: float, folder: Path) -> None:
+        brief = {"name": path.stem}
+        with self._job() as job:
+            (job / "shape.bin").write_bytes(content)
+            shape = self._measured(job, form="step", name="part", deflection=deflection)
+            findings = Findings(solid_findings(brief, shape))
+            if not findings.ok:
+                raise ReadError(f"{path.name}: {findings.errors[0].message}", path=str(path), findings=findings)
+            self._leave(job, folder, self._checked(job, shape, deflection), {}, findings, brief, deflection, self.level)
 
     # ------------------------------------------------------------------ one job
 

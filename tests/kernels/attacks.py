@@ -113,6 +113,18 @@ ATTACKS = {
     "remount the root for writing": "return ctypes.CDLL(None).mount(b'none', b'/', None, 32 | 4096, None) == 0 and os.access('/', os.W_OK)",
     "user namespace": "return ctypes.CDLL(None, use_errno=True).unshare(0x10000000) == 0",
     "leave by chroot": "os.chroot('/')\nreturn True",
+    "start threads without end": (
+        "import threading\n"
+        "stop = threading.Event()\n"
+        "started = 0\n"
+        "try:\n"
+        "    while started < 3000:\n"
+        "        threading.Thread(target=stop.wait, daemon=True).start()\n"
+        "        started += 1\n"
+        "finally:\n"
+        "    stop.set()\n"
+        "return started"
+    ),
     "fill memory": "return len(bytearray(6 * 2**30))",
     "loop for ever": "while True:\n    pass",
     "sleep for ever": "time.sleep(1000)",

@@ -118,7 +118,7 @@ def test_a_part_built_elsewhere_is_moved_files_and_all(kernel: Build123dKernel, 
     assert part.solid.bbox == pytest.approx(np.array([[0, 0, 0], [WIDTH, 4, 40]]), abs=1e-6)
     assert part.solid.com == pytest.approx([WIDTH / 2, 2, 20], abs=1e-6)
     assert part.solid.step is not None
-    assert kernel.read_step(part.solid.step).com == pytest.approx([WIDTH / 2, 2, 20], abs=1e-6)
+    assert kernel.read_step(part.solid.step, cache=cache).com == pytest.approx([WIDTH / 2, 2, 20], abs=1e-6)
     assert result.connectors["hinge"].frame.allclose(plan().parts["gate"].connectors["hinge"].frame, mm=1e-6, rad=1e-8)
 
 

@@ -14,8 +14,9 @@ import pytest
 from articad.connectors import Plane
 from articad.errors import ReadError
 from articad.geometry.mesh import TriMesh
+from articad.geometry.part import Solid
 from articad.kernels.build123d import Build123dKernel
-from articad.kernels.kernel import BuiltPart
+from articad.kernels.kernel import BuildCache, BuiltPart
 from tests.kernels.conftest import Build
 
 A, B, C = 30.0, 20.0, 10.0
@@ -174,7 +175,11 @@ def test_mirror_is_the_mirror_image(kernel: Build123dKernel, build: Build) -> No
     assert image.solid.inertia_mm5 == pytest.approx(expected.inertia_mm5, rel=1e-9, abs=1e-6)
     assert image.solid.mesh.volume > 0
     assert image.connectors["a"].frame.allclose(built.connectors["a"].mirrored(S).frame)
-    assert kernel.read_step(_step(image)).volume == pytest.approx(built.solid.volume, rel=1e-9)
+    assert read_step(kernel, _step(image)).volume == pytest.approx(built.solid.volume, rel=1e-9)
+
+
+def read_step(kernel: Build123dKernel, path: Path) -> Solid:
+    return kernel.read_step(path, cache=BuildCache(path.parent.parent / "read"))
 
 
 def _step(built: BuiltPart) -> Path:
@@ -185,7 +190,7 @@ def _step(built: BuiltPart) -> Path:
 def test_step_comes_back(kernel: Build123dKernel, build: Build) -> None:
     built = build(SHAPES["bored"])
 
-    read = kernel.read_step(_step(built))
+    read = read_step(kernel, _step(built))
 
     assert read.volume == pytest.approx(built.solid.volume, rel=1e-9)
     assert read.com == pytest.approx(built.solid.com, abs=1e-7)
@@ -197,7 +202,7 @@ def test_a_file_that_is_no_step_is_refused(kernel: Build123dKernel, tmp_path: Pa
     path.write_bytes(b"solid not a step file\n" * 100)
 
     with pytest.raises(ReadError, match=r"wrong\.step"):
-        kernel.read_step(path)
+        read_step(kernel, path)
 
 
 def test_step_of_several_solids_is_refused(kernel: Build123dKernel, build: Build, tmp_path: Path) -> None:
@@ -210,7 +215,7 @@ def test_step_of_several_solids_is_refused(kernel: Build123dKernel, build: Build
     path.write_text(f"{head}DATA;\n{body}{shifted}ENDSEC;\nEND-ISO-10303-21;\n")
 
     with pytest.raises(ReadError, match="2 solids"):
-        kernel.read_step(path)
+        read_step(kernel, path)
 
 
 def test_mesh_is_read_only(build: Build) -> None:
