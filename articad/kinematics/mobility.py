@@ -72,6 +72,8 @@ def mobility_of(system: ClosureSystem, Q: FloatArray) -> Mobility:
         there, _ = motions(system, closed.Q)
         if there.shape[1] < best.shape[1]:
             best, at = there, closed.Q
+        if best.shape[1] == 1:  # it moved, so it has a freedom, and no more than one
+            break
     if stuck and not moved:  # every try fell back to where it began: it moves to first order only
         best, at = N[:, :0], Q
     n_active = int(system.active.sum())
