@@ -53,8 +53,11 @@ def _key(joint: Joint) -> str:
 
 def _loop_features(joint: Joint) -> list[Feature]:
     where = f"joints.{joint.name}"
-    limited = joint.type is JointType.BALL and _key(joint) != "ball.free"
-    return [Feature("loop", where), *([Feature("loop.ball", where)] if limited else [])]
+    if joint.type is JointType.BALL and _key(joint) != "ball.free":
+        return [Feature("loop", where), Feature("loop.ball", where)]
+    if joint.type in {JointType.CYLINDRICAL, JointType.PLANAR}:
+        return [Feature("loop", where), Feature("loop.chain", where)]
+    return [Feature("loop", where)]
 
 
 def _coupling_features(assembly: Assembly) -> list[Feature]:

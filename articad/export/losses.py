@@ -13,9 +13,9 @@ from articad.errors import UnrepresentableError
 from articad.export.bundle import Loss
 from articad.findings import Finding
 
-Format = Literal["urdf", "mjcf", "glb", "3mf", "step"]
+Format = Literal["urdf", "mjcf", "sdf", "glb", "3mf", "step"]
 
-MECHANISM_FORMATS: tuple[Format, ...] = ("urdf", "mjcf")  # hold joints; the others hold shapes
+MECHANISM_FORMATS: tuple[Format, ...] = ("urdf", "mjcf", "sdf")  # hold joints; the others hold shapes
 
 
 class Row(NamedTuple):
@@ -48,11 +48,15 @@ class Feature(NamedTuple):
 
 TABLE: dict[str, dict[Format, Row]] = {
     # --- joints
-    "fixed": {"urdf": Row("a fixed joint"), "mjcf": Row("a body without joint inside its parent")},
-    "revolute": {"urdf": Row("a revolute joint"), "mjcf": Row("a hinge")},
-    "revolute.endless": {"urdf": Row("a continuous joint"), "mjcf": Row("a hinge without range")},
-    "slider": {"urdf": Row("a prismatic joint"), "mjcf": Row("a slide joint")},
-    "cylindrical": {"urdf": Row("a prismatic joint, a carrier link and a revolute joint"), "mjcf": Row("a slide and a hinge on one body")},
+    "fixed": {"urdf": Row("a fixed joint"), "mjcf": Row("a body without joint inside its parent"), "sdf": Row("a fixed joint")},
+    "revolute": {"urdf": Row("a revolute joint"), "mjcf": Row("a hinge"), "sdf": Row("a revolute joint")},
+    "revolute.endless": {"urdf": Row("a continuous joint"), "mjcf": Row("a hinge without range"), "sdf": Row("a continuous joint")},
+    "slider": {"urdf": Row("a prismatic joint"), "mjcf": Row("a slide joint"), "sdf": Row("a prismatic joint")},
+    "cylindrical": {
+        "urdf": Row("a prismatic joint, a carrier link and a revolute joint"),
+        "mjcf": Row("a slide and a hinge on one body"),
+        "sdf": Row("a prismatic joint, a carrier link and a revolute joint"),
+    },
     "ball": {
         "urdf": Row(
             "three revolute joints about x, y, z with two carrier links",
@@ -60,10 +64,12 @@ TABLE: dict[str, dict[Format, Row]] = {
             refused=True,
         ),
         "mjcf": Row("a ball joint", "cone and twist become one limit on the total angle, which contains them", refused=True),
+        "sdf": Row("a ball joint", "cone and twist: a ball of SDFormat has no limits", refused=True),
     },
     "ball.free": {
         "urdf": Row("three revolute joints about x, y, z with two carrier links"),
         "mjcf": Row("a ball joint"),
+        "sdf": Row("a ball joint"),
     },
     "ball.wide": {
         "urdf": Row(
@@ -72,6 +78,7 @@ TABLE: dict[str, dict[Format, Row]] = {
             refused=True,
         ),
         "mjcf": Row("a ball joint"),
+        "sdf": Row("a ball joint", "cone and twist: a ball of SDFormat has no limits", refused=True),
     },
     "screw": {
         "urdf": Row(
@@ -79,44 +86,75 @@ TABLE: dict[str, dict[Format, Row]] = {
             "readers that ignore <mimic> let the two move on their own",
         ),
         "mjcf": Row("a slide and a hinge on one body, tied by an equality of joints"),
+        "sdf": Row("a screw joint"),
     },
     "planar": {
         "urdf": Row("two prismatic joints and a revolute joint, with two carrier links"),
         "mjcf": Row("two slides and a hinge on one body"),
+        "sdf": Row("two prismatic joints and a revolute joint, with two carrier links"),
     },
-    "universal": {"urdf": Row("two revolute joints with a carrier link"), "mjcf": Row("two hinges on one body")},
+    "universal": {
+        "urdf": Row("two revolute joints with a carrier link"),
+        "mjcf": Row("two hinges on one body"),
+        "sdf": Row("a universal joint"),
+    },
     "limits.open": {
         "urdf": Row("a far limit, 1e6 rad or 1000 m away", "the joint is endless to that side"),
         "mjcf": Row("a far limit, 1e6 rad or 1000 m away", "the joint is endless to that side"),
+        "sdf": Row("a limit to one side only"),
     },
-    "slide.endless": {"urdf": Row("limits of ±1000 m", "the slide is endless"), "mjcf": Row("a slide joint without range")},
-    "velocity": {"urdf": Row("the velocity of <limit>"), "mjcf": Row("metadata", "MJCF has no limit on a joint's velocity")},
+    "slide.endless": {
+        "urdf": Row("limits of ±1000 m", "the slide is endless"),
+        "mjcf": Row("a slide joint without range"),
+        "sdf": Row("a prismatic joint without limits"),
+    },
+    "velocity": {
+        "urdf": Row("the velocity of <limit>"),
+        "mjcf": Row("metadata", "MJCF has no limit on a joint's velocity"),
+        "sdf": Row("the velocity of <limit>"),
+    },
     # --- loops and couplings
     "loop": {
         "urdf": Row("metadata", "URDF holds trees only: this joint is left out and its loop is open", refused=True),
         "mjcf": Row("equality constraints between sites"),
+        "sdf": Row("a joint like any other"),
     },
     "loop.points": {
         "urdf": Row(
             "points that two links share", "only the reader that was asked for closes the loop, and the closing joint has no limits there"
         ),
         "mjcf": Row("equality constraints between sites"),
+        "sdf": Row("a joint like any other"),
     },
     "loop.mimic": {
         "urdf": Row("<mimic> of the driver", "readers that ignore <mimic> open the loop"),
         "mjcf": Row("equality constraints between sites"),
+        "sdf": Row("a joint like any other"),
     },
     "loop.ball": {
         "urdf": Row("metadata"),
         "mjcf": Row("an equality of two points", "the cone and twist of a ball that closes a loop", refused=True),
+        "sdf": Row("a ball joint", "cone and twist: a ball of SDFormat has no limits", refused=True),
     },
     "coupling": {
         "urdf": Row("<mimic>", "readers that ignore <mimic> let the joints move on their own"),
         "mjcf": Row("an equality of joints"),
+        "sdf": Row("<mimic>", "readers that ignore <mimic> let the joints move on their own"),
     },
     "coupling.loop": {
         "urdf": Row("metadata", "the coupling names a joint that closes a loop, or ties joints that are tied already", refused=True),
         "mjcf": Row("an equality of joints"),
+        "sdf": Row("metadata", "the coupling names a joint that closes a loop, or ties joints that are tied already", refused=True),
+    },
+    "loop.rest": {
+        "urdf": Row("the tree where all values are zero"),
+        "mjcf": Row("a key at rest"),
+        "sdf": Row("a model that is posed at rest", "values are measured from rest, where the loops are closed, not from zero"),
+    },
+    "loop.chain": {
+        "urdf": Row("metadata"),
+        "mjcf": Row("equality constraints between sites"),
+        "sdf": Row("metadata", "SDFormat has no joint of this kind, and a chain cannot close a loop: it is left out", refused=True),
     },
     # --- what formats of shapes make of motion and mass
     "motion": {
@@ -136,8 +174,9 @@ TABLE: dict[str, dict[Format, Row]] = {
     "mass.missing": {
         "urdf": Row("1e-4 kg", "the mass of a moving part is not known", refused=True),
         "mjcf": Row("1e-4 kg", "the mass of a moving part is not known", refused=True),
+        "sdf": Row("1e-4 kg", "the mass of a moving part is not known", refused=True),
     },
-    "shape.missing": {"urdf": Row("a link without shapes"), "mjcf": Row("a body without geoms")},
+    "shape.missing": {"urdf": Row("a link without shapes"), "mjcf": Row("a body without geoms"), "sdf": Row("a link without shapes")},
     "hull": {
         "urdf": Row(
             "collision meshes",
@@ -146,17 +185,20 @@ TABLE: dict[str, dict[Format, Row]] = {
         "mjcf": Row(
             "an excluded pair", "MuJoCo collides with convex hulls; those of these two parts overlap at rest, so they do not collide at all"
         ),
+        "sdf": Row("collision meshes"),
     },
-    "color": {"urdf": Row("<material>"), "mjcf": Row("a material")},
+    "color": {"urdf": Row("<material>"), "mjcf": Row("a material"), "sdf": Row("a material")},
     "friction": {
         "urdf": Row("metadata", "URDF has no friction between surfaces: readers use their own"),
         "mjcf": Row("the geoms' friction"),
+        "sdf": Row("friction of the collision's surface"),
     },
-    "connector": {"urdf": Row("metadata"), "mjcf": Row("a site")},
-    "fit": {"urdf": Row("metadata"), "mjcf": Row("metadata")},
+    "connector": {"urdf": Row("metadata"), "mjcf": Row("a site"), "sdf": Row("metadata")},
+    "fit": {"urdf": Row("metadata"), "mjcf": Row("metadata"), "sdf": Row("metadata")},
     "name": {
         "urdf": Row("a name of letters, digits and underscores", "the name as given, which is kept in the metadata"),
         "mjcf": Row("a name of letters, digits and underscores", "the name as given, which is kept in the metadata"),
+        "sdf": Row("a name of letters, digits and underscores", "the name as given, which is kept in the metadata"),
     },
 }
 

@@ -1,0 +1,222 @@
+"""SDFormat 1.10 for Gazebo: links posed in the model's frame, joints as a graph, loops closed by joints like any other."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+from lxml import etree
+
+from articad.connectors.se3 import SE3
+from articad.export.bundle import Bundle
+from articad.export.follow import followers
+from articad.export.inertia import Inertial
+from articad.export.losses import Feature, losses_of, refuse
+from articad.export.lowering import Follows, Freedom, Link, LoweredJoint, LoweredModel, Placed, lower
+from articad.export.markup import child, document, number, numbers, rgba, rpy
+from articad.export.meshes import MM_TO_M, MeshFiles
+from articad.export.metadata import dumps, records
+from articad.kinematics.joints import JointType
+
+if TYPE_CHECKING:
+    from articad.assembly import Assembly
+
+VERSION = "1.10"
+MIMIC_VERSION = "1.11"  # the first with <mimic>
+ARTICAD = "https://articad.invalid/sdf"  # SDFormat wants foreign elements in a namespace
+
+_NATIVE = {
+    JointType.FIXED: "fixed",
+    JointType.REVOLUTE: "revolute",
+    JointType.SLIDER: "prismatic",
+    JointType.BALL: "ball",
+    JointType.UNIVERSAL: "universal",
+    JointType.SCREW: "screw",
+}
+
+
+def write_sdf(assembly: Assembly, *, strict: bool = False) -> Bundle:
+    """Write an assembly as an SDFormat model.
+
+    A tree is posed where all values are zero, as in URDF. A model with loops is posed at rest, where its loops are closed, and values and
+    limits are measured from there. Cylindrical and planar joints become chains over carrier links.
+
+    Args:
+        assembly: What to write.
+        strict: Refuse what SDFormat holds only with a loss of motion, mass or shape.
+
+    Returns:
+        `<name>.sdf`, `meshes/…`, and the losses.
+
+    Raises:
+        UnrepresentableError: If `strict` and there is such a loss.
+    """
+    model = lower(assembly)
+    losses = losses_of("sdf", [*model.features, *([Feature("loop.rest", "joints")] if model.loops else [])])
+    if strict:
+        refuse(losses)
+    writer = _Writer(assembly, model)
+    return Bundle({f"{model.name}.sdf": document(writer.document()), **writer.files.files}, losses)
+
+
+class _Writer:
+    def __init__(self, assembly: Assembly, model: LoweredModel) -> None:
+        self.assembly, self.model, self.files = assembly, model, MeshFiles()
+        self.at_rest = bool(model.loops)
+        self.follows = followers(model, [driver.name for driver in assembly.mechanism.drivers])
+        self.poses: dict[str, SE3] = {}
+        # links and joints share one space of names, so a joint that bears a link's name gives way
+        self.taken = {link.name for link in model.links} | {name for joint in model.joints for name in joint.carriers}
+
+    def document(self) -> Any:
+        root = etree.Element(
+            "sdf", {"version": MIMIC_VERSION if self.assembly.mechanism.couplings else VERSION}, nsmap={"articad": ARTICAD}
+        )
+        model = child(root, "model", {"name": self.model.name, "canonical_link": self.model.links[0].name})
+        carried = {joint.child: joint for joint in self.model.joints}
+        for link in self.model.links:
+            joint = carried.get(link.name)
+            if joint is None:
+                self.poses[link.name] = SE3.identity()
+                self._link(model, link, link.inertial)
+                child(child(model, "joint", {"name": self._joint_name("to_world"), "type": "fixed"}), "parent", text="world")
+                child(model[-1], "child", text=link.name)
+                continue
+            self._tree_joint(model, link, joint)
+        for loop in self.model.loops:
+            if loop.joint.type in _NATIVE:  # at rest its two frames meet, so the child's is enough
+                self._joint(model, loop.name, loop, loop.parent, loop.child, loop.freedoms, loop.T_child_joint)
+        kept = child(model, f"{{{ARTICAD}}}records")
+        for record in records(self.assembly, self.model, self.files.by_digest):
+            child(kept, f"{{{ARTICAD}}}record", {"kind": str(record["kind"])}, dumps(record))
+        return root
+
+    def _joint_name(self, name: str) -> str:
+        while name in self.taken:
+            name = f"{name}_joint"
+        return name
+
+    def _tree_joint(self, model: Any, link: Link, joint: LoweredJoint) -> None:
+        """Write a link, the joint above it, and carriers between them where SDFormat has no such joint."""
+        native = joint.joint.type in _NATIVE
+        count = 0 if native else len(joint.freedoms) - 1
+        inertial = link.inertial or (Inertial.carrier() if link.moves else None)
+        whole, carrier = (inertial, Inertial.carrier()) if inertial is None else inertial.without_carriers(count)
+        T = self.poses[joint.parent] @ joint.T_parent_joint
+        if native:
+            self.poses[link.name] = T @ self._rest_motion(joint)
+            self._link(model, link, whole)
+            self._joint(model, joint.name, joint, joint.parent, joint.child, joint.freedoms, None)
+            return
+        names = [joint.parent, *joint.carriers[:count], joint.child]
+        for index, freedom in enumerate(joint.freedoms):
+            T = T @ (_motion(freedom) if self.at_rest else SE3.identity())
+            name = names[index + 1]
+            self.poses[name] = T
+            if index < count:
+                element = child(model, "link", {"name": name})
+                child(element, "pose", text=_pose(T))
+                _inertial(element, carrier)
+            else:
+                self._link(model, link, whole)
+            one = replace(joint, joint=replace(joint.joint, type=_single(freedom)))
+            self._joint(model, freedom.name, one, names[index], name, (freedom,), None)
+
+    def _rest_motion(self, joint: LoweredJoint) -> SE3:
+        """Return how far the joint has moved in the pose that is written."""
+        if not self.at_rest or joint.joint.type is JointType.FIXED:
+            return SE3.identity()
+        motion = joint.joint.motion(joint.joint.rest)
+        in_metres = SE3.from_quaternion(motion.quaternion, motion.translation / 1000.0)
+        return in_metres.inverse() if joint.backwards else in_metres
+
+    def _link(self, model: Any, link: Link, inertial: Inertial | None) -> None:
+        element = child(model, "link", {"name": link.name})
+        child(element, "pose", text=_pose(self.poses[link.name]))
+        if inertial is not None:
+            _inertial(element, inertial)
+        for index, placed in enumerate(link.visuals):
+            visual = self._shape(element, "visual", index, placed, link.name)
+            material = child(visual, "material")
+            for kind in ("ambient", "diffuse"):
+                child(material, kind, text=rgba(placed.color))
+        for index, placed in enumerate(link.collisions):
+            collision = self._shape(element, "collision", index, placed, link.name)
+            if link.friction is not None:
+                ode = child(child(child(collision, "surface"), "friction"), "ode")
+                for name in ("mu", "mu2"):
+                    child(ode, name, text=number(link.friction))
+
+    def _shape(self, link: Any, tag: str, index: int, placed: Placed, name: str) -> Any:
+        element = child(link, tag, {"name": f"{tag}_{index}"})
+        child(element, "pose", text=_pose(placed.T_link_shape))
+        mesh = child(child(element, "geometry"), "mesh")
+        child(mesh, "uri", text=self.files.path(placed.shape.mesh, name))
+        child(mesh, "scale", text=numbers([MM_TO_M] * 3))
+        return element
+
+    def _joint(
+        self, model: Any, name: str, joint: LoweredJoint, parent: str, child_link: str, freedoms: tuple[Freedom, ...], pose: SE3 | None
+    ) -> None:
+        kind = joint.joint.type
+        turning = freedoms[-1] if kind is JointType.SCREW and not joint.backwards else freedoms[0] if freedoms else None
+        native = _NATIVE[kind]
+        if kind is JointType.REVOLUTE and turning is not None and math.isinf(turning.lower) and math.isinf(turning.upper):
+            native = "continuous"
+        element = child(model, "joint", {"name": self._joint_name(name), "type": native})
+        child(element, "parent", text=parent)
+        child(element, "child", text=child_link)
+        if pose is not None:
+            child(element, "pose", text=_pose(pose))
+        if kind is JointType.SCREW:
+            child(element, "screw_thread_pitch", text=number(joint.joint.lead / 1000.0))
+        if kind in {JointType.FIXED, JointType.BALL}:
+            return
+        axes = freedoms if kind is JointType.UNIVERSAL else (turning,)
+        for tag, freedom in zip(("axis", "axis2"), axes, strict=False):
+            if freedom is not None:
+                self._axis(element, tag, freedom)
+
+    def _axis(self, joint: Any, tag: str, freedom: Freedom) -> None:
+        element = child(joint, tag)
+        child(element, "xyz", text=numbers(freedom.axis))
+        zero = freedom.rest if self.at_rest else 0.0
+        limit = child(element, "limit")
+        for name, bound in (("lower", freedom.lower), ("upper", freedom.upper)):
+            if math.isfinite(bound):
+                child(limit, name, text=number(bound - zero))
+        child(limit, "effort", text=number(freedom.load.effort))
+        child(limit, "velocity", text=number(freedom.load.velocity))
+        child(child(element, "dynamics"), "damping", text=number(freedom.load.damping))
+        tie: Follows | None = self.follows.get(freedom.name)
+        if tie is not None and freedom.follows is None:
+            mimic = child(element, "mimic", {"joint": self._joint_name(tie.leader)})
+            child(mimic, "multiplier", text=number(tie.ratio))
+            child(mimic, "offset", text=number(tie.offset))
+            child(mimic, "reference", text="0")
+
+
+def _single(freedom: Freedom) -> JointType:
+    return JointType.SLIDER if freedom.kind == "slide" else JointType.REVOLUTE
+
+
+def _motion(freedom: Freedom) -> SE3:
+    """Return the motion of one freedom at rest [m]."""
+    if freedom.kind == "slide":
+        return SE3.from_translation(freedom.axis * freedom.rest)
+    return SE3.from_axis_angle(freedom.axis, freedom.rest)
+
+
+def _pose(T: SE3) -> str:
+    return f"{numbers(T.translation)} {numbers(rpy(T))}"
+
+
+def _inertial(link: Any, inertial: Inertial) -> None:
+    element = child(link, "inertial")
+    child(element, "pose", text=f"{numbers(inertial.com)} 0 0 0")
+    child(element, "mass", text=number(inertial.mass))
+    moments = child(element, "inertia")
+    for i in range(3):
+        for j in range(i, 3):
+            child(moments, f"i{'xyz'[i]}{'xyz'[j]}", text=number(inertial.inertia[i, j]))
