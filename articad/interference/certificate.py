@@ -18,10 +18,12 @@ import numpy as np
 
 from articad.connectors.mate import flip
 from articad.connectors.se3 import SE3
+from articad.errors import KinematicsError
 from articad.findings import Finding, Findings
 from articad.geometry.mesh import TriMesh
 from articad.interference.claims import Claim
 from articad.interference.cover import Budget, cover_line
+from articad.interference.linkage import LOOKS, LinkageProver
 from articad.interference.motion import Chain, freedoms
 from articad.interference.overlap import NOTHING, Overlap, overlap
 from articad.interference.proof import Proof, Prover, beyond
@@ -76,6 +78,8 @@ class Certificate:
         mechanism: What moved.
         asked: Names of the joints to be proven.
         together: Whether joints were to be moved two at a time, too.
+        followed: What is proven along the drivers of loops and couplings; it rests on the tubes of kinematics, which no checker repeats.
+        constrained: Names of the joints of loops and couplings.
         queries: Distances asked for.
         seconds: Time spent.
     """
@@ -90,6 +94,8 @@ class Certificate:
     mechanism: Mechanism
     asked: tuple[str, ...] = ()
     together: bool = True
+    followed: tuple[Claim, ...] = ()
+    constrained: frozenset[str] = frozenset()
     queries: int = 0
     seconds: float = 0.0
 
@@ -105,7 +111,8 @@ class Certificate:
             "ok": self.ok,
             "findings": [finding.to_json() for finding in self.findings],
             "epsilon_mm": self.epsilon,
-            "asked": list(self.asked),
+            "asked": [name for name in self.asked if name not in self.constrained],
+            "linkage": sorted(self.constrained),
             "together": self.together,
             "meshes": {name: {"sha256": mesh.digest, "deflection_mm": self.deflections[name]} for name, mesh in self.meshes.items()},
             "mechanism": mechanism_json(self.mechanism),
@@ -115,6 +122,7 @@ class Certificate:
                 for r in self.ranges
             ],
             "claims": [claim.to_json() for claim in self.claims],
+            "followed": [claim.to_json() for claim in self.followed],
         }
 
     def mesh_files(self) -> dict[str, bytes]:
@@ -163,6 +171,7 @@ class _Certifying:
     verdicts: list[PairCheck] = field(default_factory=list)
     claims: list[Claim] = field(default_factory=list)
     ranges: dict[str, Range] = field(default_factory=dict)
+    followed: list[Claim] = field(default_factory=list)
     left: dict[tuple[str, ...], list[tuple[str, str]]] = field(default_factory=dict)
     _constrained: frozenset[str] = frozenset()
 
@@ -171,7 +180,7 @@ class _Certifying:
     ) -> None:
         self.scene, self.mechanism, self.asked = scene, mechanism, asked
         self.together, self.epsilon, self.budget = together, epsilon, budget
-        self.findings, self.verdicts, self.claims, self.ranges, self.left = [], [], [], {}, {}
+        self.findings, self.verdicts, self.claims, self.followed, self.ranges, self.left = [], [], [], [], {}, {}
         self._constrained = constrained_joints(mechanism)
 
     def run(self) -> Certificate:
@@ -190,6 +199,8 @@ class _Certifying:
             self.mechanism,
             tuple(joint.name for joint in self.mechanism.joints if freedoms(joint) and (self.asked is None or joint.name in self.asked)),
             self.together,
+            tuple(self.followed),
+            self._constrained,
             self.budget.queries,
             self.budget.spent,
         )
@@ -202,9 +213,10 @@ class _Certifying:
         if a in self.scene.broken or b in self.scene.broken:
             self._refuse((a, b), tuple(wanted), "; ".join(self.scene.broken[name] for name in (a, b) if name in self.scene.broken))
             return
-        if self._constrained.intersection(moving):
-            self._refuse((a, b), tuple(wanted), "their joints are tied by a loop or coupling; use a sampled sweep")
-            return
+        tied = [name for name in moving if name in self._constrained]
+        if tied:
+            self._follow(a, b, tuple(tied))
+        wanted = [name for name in wanted if name not in tied]
         if len(wanted) > 1 and self._prove(a, b, tuple(wanted), most=WIDE_BOXES, tentative=True):
             return
         for sets in self._smaller(wanted):
@@ -237,6 +249,45 @@ class _Certifying:
         else:
             self._stopped((a, b), joints, proof)
         return False
+
+    def _follow(self, a: str, b: str, tied: tuple[str, ...]) -> None:
+        """Prove one pair along each driver of the loops and couplings between them, the others at rest."""
+        for index, coordinate in enumerate(self.mechanism.drivers):
+            if coordinate.joint not in self._constrained or (self.asked is not None and coordinate.joint not in self.asked):
+                continue
+            if self.budget.is_spent:
+                self.left.setdefault((coordinate.joint,), []).append((a, b))
+                continue
+            try:
+                prover = LinkageProver(self.scene, self.mechanism, (a, b), tied, index, epsilon=self.epsilon, budget=self.budget)
+                proof = prover.prove()
+            except (KinematicsError, KeyError, ValueError) as error:
+                self._refuse((a, b), (coordinate.joint,), f"the linkage cannot be followed: {error}")
+                continue
+            self._followed((a, b), prover, proof)
+
+    def _followed(self, parts: tuple[str, str], prover: LinkageProver, proof: Proof) -> None:
+        joint, name = prover.coordinate.joint, prover.coordinate.name
+        if proof.is_complete:
+            self.followed += proof.claims
+            contact = "contact" if proof.overlap.volume > 0 or any(claim.shrink for claim in proof.claims) else "clear"
+            self._verdict(parts, (joint,), Strength.certified(proof.epsilon), proof.overlap, contact)
+        elif proof.out_of_budget and not proof.contacts:
+            self.left.setdefault((joint,), []).append(parts)
+            return
+        else:
+            worst, value = prover.worst(proof)
+            pose = None if value is None else {name: value}
+            check, found = judge(
+                self.scene, parts, worst, over=(joint,), pose=pose, baseline=proof.overlap.volume, strength=Strength.sampled(LOOKS)
+            )
+            self.verdicts.append(check)
+            self.findings += found
+            if not any(finding.code == "E_MOTION_COLLISION" for finding in found) and check.strength.kind != "waived":
+                self.findings.append(_unproven(parts, (joint,), worst, check.allowed, LOOKS))
+        if proof.lower is not None and proof.upper is not None:
+            known = self.ranges.get(name, Range(name, *prover.bounds, prover.bounds))
+            self.ranges[name] = replace(known, lower=max(known.lower, proof.lower), upper=min(known.upper, proof.upper))
 
     def _stopped(self, parts: tuple[str, str], joints: tuple[str, ...], proof: Proof) -> None:
         """Say what is where a proof stopped: a collision, or contact that only samples can judge."""

@@ -36,6 +36,7 @@ class Claim:
         separation: "along" when the two keep apart along the common axis, "radial" when by their radii; then there are no boxes.
         gap: Of such a separation [mm].
         boxes: They cover `vary`, else.
+        spans: Along a driver of loops: its values in each box, whose centre and half sides are those of the joints in `reach`.
     """
 
     parts: tuple[str, str]
@@ -53,10 +54,11 @@ class Claim:
     separation: Separation | None = None
     gap: float = 0.0
     boxes: tuple[CoverBox, ...] = ()
+    spans: tuple[tuple[float, float], ...] = ()
 
     def to_json(self) -> dict[str, Any]:
         """Return the JSON object of a certificate; numbers in full, for a checker computes with them."""
-        return {
+        document = {
             "parts": list(self.parts),
             "vary": {name: list(bounds) for name, bounds in self.vary.items()},
             "hold": dict(self.hold),
@@ -73,3 +75,6 @@ class Claim:
             "gap_mm": self.gap,
             "boxes": [[*box.centre, *box.half, box.distance] for box in self.boxes],
         }
+        if self.spans:
+            document["spans"] = [list(span) for span in self.spans]
+        return document

@@ -72,6 +72,8 @@ class Cover:
         upper: The same above it.
         contacts: Values at which the distance was not above the margin, one per end of a line.
         out_of_budget: True when it was given up.
+        spans: Along a driver that others follow: its values within each box.
+        stopped_at: The driver's value at each contact.
     """
 
     boxes: list[CoverBox] = field(default_factory=list)
@@ -79,6 +81,8 @@ class Cover:
     upper: float = 0.0
     contacts: list[tuple[float, ...]] = field(default_factory=list)
     out_of_budget: bool = False
+    spans: list[tuple[float, float]] = field(default_factory=list)
+    stopped_at: list[float] = field(default_factory=list)
 
     @property
     def is_complete(self) -> bool:

@@ -69,6 +69,7 @@ class Proof:
         out_of_budget: True when time or queries ran out.
         epsilon: How deep the solids might overlap nevertheless [mm].
         stopped: The pieces at which it stopped, with the values.
+        stopped_at: Along a driver of loops, its value at each of these.
     """
 
     parts: tuple[str, str]
@@ -81,6 +82,7 @@ class Proof:
     out_of_budget: bool = False
     epsilon: float = 0.0
     stopped: tuple[tuple[Patch, tuple[float, ...]], ...] = ()
+    stopped_at: tuple[float, ...] = ()
 
     def width(self) -> float:
         """Return how much of a single coordinate is proven [rad or mm]."""
@@ -133,7 +135,7 @@ class Prover:
             return Proof(self.parts, self.joints, contacts=(dict(first.start),), overlap=start)
         whole = first.whole_claim()
         if whole is not None:
-            return Proof(self.parts, self.joints, (whole,), *first.range, overlap=start)
+            return Proof(self.parts, self.joints, (whole,), *self.range_of(first), overlap=start)
         failed: list[Proof] = []
         for pieces in self._attempts(first, start):
             proof = self._run(pieces, start, most)
@@ -177,7 +179,8 @@ class Prover:
         claims: list[Claim] = []
         contacts: list[Mapping[str, float]] = []
         stopped: list[tuple[Patch, tuple[float, ...]]] = []
-        lower, upper = patches[0].view.range
+        stopped_at: list[float] = []
+        lower, upper = self.range_of(patches[0].view)
         spent = False
         for patch in patches:
             if patch.surface.is_empty:
@@ -187,10 +190,11 @@ class Prover:
             if separated is not None:
                 claims.append(patch.claim(separated, (), start))
                 continue
-            cover = patch.cover(most)
+            cover = self.cover_patch(patch, most)
             spent = spent or cover.out_of_budget
             contacts += [patch.view.named(values) for values in cover.contacts]
             stopped += [(patch, values) for values in cover.contacts]
+            stopped_at += cover.stopped_at
             claims.append(patch.claim(None, cover, start))
             if lower is not None and upper is not None:
                 lower, upper = max(lower, cover.lower), min(upper, cover.upper)
@@ -198,8 +202,32 @@ class Prover:
                 break
         shrink = max(patch.shrink for patch in patches)
         return Proof(
-            self.parts, self.joints, tuple(claims), lower, upper, tuple(contacts), start, spent, shrink or self.epsilon, tuple(stopped)
+            parts=self.parts,
+            joints=self.joints,
+            claims=tuple(claims),
+            lower=lower,
+            upper=upper,
+            contacts=tuple(contacts),
+            overlap=start,
+            out_of_budget=spent,
+            epsilon=shrink or self.epsilon,
+            stopped=tuple(stopped),
+            stopped_at=tuple(stopped_at),
         )
+
+    def range_of(self, view: View) -> tuple[float | None, float | None]:
+        """Return the bounds of the coordinate that moves, if there is one only."""
+        return view.range
+
+    def cover_patch(self, patch: Patch, most: int | None) -> Cover:
+        """Clear the range of motion for one piece of surface."""
+        return patch.cover(most)
+
+    def vary(self, view: View, cover: Cover | None) -> dict[str, tuple[float, float]]:
+        """Return the range of each coordinate that was cleared, `cover` None for all of it."""
+        if cover is not None and len(view.chain.freedoms) == 1:
+            return {view.chain.freedoms[0].name: (cover.lower, cover.upper)}
+        return {freedom.name: (freedom.lower, freedom.upper) for freedom in view.chain.freedoms}
 
 
 def _cheapest(options: Iterator[tuple[float, list[Patch]]]) -> list[list[Patch]]:
@@ -443,14 +471,13 @@ class Patch:
     def claim(self, separated: tuple[Separation, float] | None, cover: Cover | tuple[()], start: Overlap) -> Claim:
         """Return what was proven."""
         chain = self.view.chain
-        boxes = tuple(dict.fromkeys(cover.boxes)) if isinstance(cover, Cover) else ()
-        vary = {freedom.name: (freedom.lower, freedom.upper) for freedom in chain.freedoms}
-        if isinstance(cover, Cover) and len(chain.freedoms) == 1:
-            vary = {chain.freedoms[0].name: (cover.lower, cover.upper)}
+        spans = tuple(cover.spans) if isinstance(cover, Cover) else ()
+        boxes = tuple(cover.boxes if spans else dict.fromkeys(cover.boxes)) if isinstance(cover, Cover) else ()
+        found = cover if isinstance(cover, Cover) else None
         reach = {} if self.surface.is_empty else {f.name: float(r) for f, r in zip(chain.freedoms, self.reach, strict=True)}
         return Claim(
             parts=(self.view.a, self.view.b),
-            vary=vary,
+            vary=self.view.prover.vary(self.view, found),
             hold=chain.hold,
             start=self.view.start,
             overlap=start.volume,
@@ -464,4 +491,5 @@ class Patch:
             separation=None if separated is None else separated[0],
             gap=0.0 if separated is None else separated[1],
             boxes=boxes,
+            spans=spans,
         )

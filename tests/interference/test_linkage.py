@@ -1,0 +1,144 @@
+"""Motion of loops and couplings, proven along their drivers."""
+
+from __future__ import annotations
+
+import json
+import math
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from articad.connectors import SE3
+from articad.geometry import TriMesh, box, cylinder, merged
+from articad.interference.certificate import Certificate, certify
+from articad.interference.cover import Budget
+from articad.interference.linkage import LinkageProver
+from articad.interference.overlap import overlap
+from articad.interference.scene import Scene
+from articad.kinematics.joints import Coupling, Joint
+from articad.kinematics.mechanism import Mechanism
+from articad.verify_certificate import verify
+from tests.interference.mechanisms import at, joint
+
+CRANK, COUPLER, ROCKER, SPAN = 30.0, 90.0, 70.0, 100.0
+REST = math.radians(60)
+
+
+def link(p: np.ndarray, q: np.ndarray, z: float) -> TriMesh:
+    angle = math.atan2(q[1] - p[1], q[0] - p[0])
+    middle = (p + q) / 2
+    return box(float(np.linalg.norm(q - p)) + 8, 8, 4).transformed(at(middle[0], middle[1], z) @ SE3.rot_z(angle))
+
+
+def four_bar(layers: tuple[float, float, float], extra: TriMesh | None = None) -> tuple[dict[str, TriMesh], list[Joint]]:
+    """Crank, coupler and rocker in their layers; `extra` is added to the crank."""
+    O, D = np.zeros(2), np.array([SPAN, 0.0])
+    B = CRANK * np.array([math.cos(REST), math.sin(REST)])
+    e = float(np.linalg.norm(D - B))
+    u = (COUPLER**2 - ROCKER**2 + e * e) / (2 * e)
+    along = (D - B) / e
+    C = B + u * along + math.sqrt(COUPLER**2 - u * u) * np.array([-along[1], along[0]])
+    crank = link(O, B, layers[0])
+    meshes = {
+        "frame": link(O, D, -10.0),
+        "crank": crank if extra is None else merged([crank, extra]),
+        "coupler": link(B, C, layers[1]),
+        "rocker": link(C, D, layers[2]),
+    }
+    pins = [
+        ("crank", "frame", "crank", O),
+        ("pin_b", "crank", "coupler", B),
+        ("pin_c", "coupler", "rocker", C),
+        ("rock", "frame", "rocker", D),
+    ]
+    joints = [
+        joint(name, "revolute", parent, child, at_parent=at(*place), at_child=at(*place), lower=(-math.inf,), upper=(math.inf,))
+        for name, parent, child, place in pins
+    ]
+    return meshes, joints
+
+
+def proven(meshes: dict[str, TriMesh], joints: list[Joint], couplings: tuple[Coupling, ...] = ()) -> Certificate:
+    return certify(meshes, Mechanism(tuple(meshes), next(iter(meshes)), joints, couplings), deflection=0.01)
+
+
+def test_a_four_bar_in_layers_is_certified_over_a_full_turn() -> None:
+    meshes, joints = four_bar((0.0, 5.0, 10.0))
+    certificate = proven(meshes, joints)
+    assert certificate.ok
+    assert all(pair.strength.kind == "certified" for pair in certificate.pairs)
+    assert len(certificate.pairs) == 6
+    assert certificate.ranges[0].upper - certificate.ranges[0].lower == pytest.approx(2 * math.pi)
+    assert (
+        verify(json.loads(json.dumps(certificate.to_json())), {n: (m.vertices, m.triangles) for n, m in certificate.meshes.items()}) == []
+    )
+
+
+def test_links_of_one_layer_that_pass_each_other_are_certified_by_tubes() -> None:
+    meshes, joints = four_bar((0.0, 5.0, 0.0))
+    certificate = proven(meshes, joints)
+    assert certificate.ok
+    (claim,) = [claim for claim in certificate.followed if set(claim.parts) == {"crank", "rocker"}]
+    assert len(claim.boxes) > 10
+    spans = sorted(claim.spans)
+    assert all(after[0] == pytest.approx(before[1], abs=1e-9) for before, after in pairwise(spans))
+
+
+def test_every_solution_lies_in_the_box_of_its_span() -> None:
+    meshes, joints = four_bar((0.0, 5.0, 0.0))
+    mechanism = Mechanism(tuple(meshes), "frame", joints)
+    prover = LinkageProver(
+        Scene.of(meshes, joints), mechanism, ("crank", "rocker"), ["crank", "pin_b", "pin_c", "rock"], 0, budget=Budget(60)
+    )
+    proof = prover.prove()
+    assert proof.is_complete
+    (claim,) = proof.claims
+    rng = np.random.default_rng(0)
+    names = list(claim.reach)
+    for box_, span in zip(claim.boxes, claim.spans, strict=True):
+        for value in rng.uniform(*span, 3):
+            Q = mechanism.configuration(np.array([value]))
+            actual = np.array([Q.values[name][0] for name in names])
+            assert (np.abs(actual - box_.centre) <= np.array(box_.half) + 1e-9).all()
+
+
+def test_a_collision_within_a_loop_is_found_with_the_drivers_value() -> None:
+    # a knob on the crank's pin reaches into the rocker's layer, where the rocker has a finger
+    knob = cylinder(3, 8, 24).transformed(at(CRANK * math.cos(REST), CRANK * math.sin(REST), 1.0))
+    meshes, joints = four_bar((5.0, 10.0, 0.0), knob)
+    meshes["rocker"] = merged([meshes["rocker"], box(73, 4, 4, center=False).transformed(at(20.0, 16.0, -2.0))])
+    certificate = proven(meshes, joints)
+    collisions = certificate.findings.of("E_MOTION_COLLISION")
+    assert collisions
+    assert set(collisions[0].parts) == {"crank", "rocker"}
+    mechanism = Mechanism(tuple(meshes), "frame", joints)
+    scene = Scene.of(meshes, joints)
+    free = certificate.ranges[0]
+    for value in np.linspace(free.lower, free.upper, 60):
+        poses = dict(zip(mechanism.parts, mechanism.poses(np.array([value])), strict=True))
+        assert overlap(scene.bodies["crank"], scene.bodies["rocker"], poses["crank"].inverse() @ poses["rocker"]).volume < 1e-6
+    assert not certificate.ok
+
+
+def test_wheels_tied_by_a_gear_are_followed() -> None:
+    joints = [
+        joint("one", "revolute", "frame", "left", lower=(-math.inf,), upper=(math.inf,)),
+        joint("two", "revolute", "frame", "right", at_parent=at(50), at_child=at(50), lower=(-math.inf,), upper=(math.inf,)),
+    ]
+    # two paddles in one plane that miss each other only because they turn together
+    left = box(56, 4, 4)
+    right = box(4, 56, 4).transformed(at(50))
+    meshes = {"frame": box(80, 8, 4).transformed(at(25, 0, -10)), "left": left, "right": right}
+    tied = proven(meshes, joints, (Coupling(name="mesh", kind="gear", a="one", b="two", ratio=-1.0, offset=0.0),))
+    assert tied.ok
+    assert {pair.strength.kind for pair in tied.pairs} == {"certified"}
+    loose = proven(meshes, joints)
+    assert "E_MOTION_COLLISION" in loose.findings.codes
+
+
+def test_a_spent_budget_leaves_loops_unchecked_and_says_so() -> None:
+    meshes, joints = four_bar((0.0, 5.0, 0.0))
+    certificate = certify(meshes, Mechanism(tuple(meshes), "frame", joints), budget=0.0)
+    assert not certificate.ok
+    assert set(certificate.findings.codes) == {"E_NOT_CHECKED"}
