@@ -1,0 +1,87 @@
+"""One file in, another out: every reader with every writer, and what is lost on the way."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Final
+
+from articad.assembly import Assembly
+from articad.errors import ExportError, ReadError
+from articad.export.bundle import Bundle
+from articad.export.gltf import write_glb
+from articad.export.mjcf import write_mjcf
+from articad.export.sdf import write_sdf
+from articad.export.step import write_step
+from articad.export.threemf import write_3mf
+from articad.export.urdf import write_urdf
+from articad.findings import Finding
+from articad.importers.mjcf import read_mjcf
+from articad.importers.urdf import read_urdf
+
+WRITERS: Final[Mapping[str, Callable[..., Bundle]]] = {
+    "urdf": write_urdf,
+    "mjcf": write_mjcf,
+    "sdf": write_sdf,
+    "step": write_step,
+    "glb": write_glb,
+    "3mf": write_3mf,
+}
+"""Writer of each format: `write(assembly, *, strict=False) -> Bundle`."""
+
+READERS: Final[Mapping[str, Callable[..., Assembly]]] = {".urdf": read_urdf, ".xml": read_mjcf, ".mjcf": read_mjcf}
+"""Reader of each file name's ending."""
+
+FORMAT_OF: Final[Mapping[str, str]] = {
+    ".urdf": "urdf",
+    ".xml": "mjcf",
+    ".mjcf": "mjcf",
+    ".sdf": "sdf",
+    ".step": "step",
+    ".stp": "step",
+    ".glb": "glb",
+    ".3mf": "3mf",
+}
+"""Format that a file name's ending asks for."""
+
+
+def read(path: str | Path, *, root: str | Path | None = None) -> Assembly:
+    """Read an assembly from a file in any format that articad reads.
+
+    Args:
+        path: A URDF or MJCF file.
+        root: Folder that meshes may be read from; the file's own by default.
+
+    Raises:
+        ReadError: If the format is not read, or the file cannot be.
+    """
+    path = Path(path)
+    reader = READERS.get(path.suffix.lower())
+    if reader is None:
+        message = f"{path}: {path.suffix or 'no'} extension is not one of {', '.join(READERS)}."
+        finding = Finding(code="E_READ", where=str(path), message=message, hint="Convert it first, or correct its name.")
+        raise ReadError(message, path=str(path), findings=[finding])
+    return reader(path, root=root)
+
+
+def convert(source: str | Path, target: str | Path, *, strict: bool = False, root: str | Path | None = None) -> tuple[Assembly, Bundle]:
+    """Convert a file; nothing is written yet.
+
+    Args:
+        source: The file to read.
+        target: The file to write; its ending says the format, its folder is where `bundle.write(...)` should put the rest.
+        strict: Refuse losses of motion, mass or shape.
+        root: Folder that meshes may be read from.
+
+    Returns:
+        What was read, with its findings, and what is to be written, with its losses.
+
+    Raises:
+        ReadError: If the source cannot be read.
+        ExportError: If the target's format is not written, or `strict` refuses it.
+    """
+    suffix = Path(target).suffix.lower()
+    if suffix not in FORMAT_OF:
+        raise ExportError(f"{target}: {suffix or 'no'} extension is not one of {', '.join(FORMAT_OF)}.")
+    assembly = read(source, root=root)
+    return assembly, WRITERS[FORMAT_OF[suffix]](assembly, strict=strict)
