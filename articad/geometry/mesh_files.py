@@ -71,18 +71,21 @@ def read_mesh(path: str | Path, scale: float = 1.0) -> TriMesh:
 def write_stl(mesh: TriMesh) -> bytes:
     """Return the mesh as binary STL, float32, in the mesh's unit."""
     corners = mesh.vertices[mesh.triangles]
-    normals = mesh.normals_of_twice_area
-    lengths = np.sqrt(np.einsum("ij,ij->i", normals, normals))
-    lengths[lengths == 0] = 1.0
-    records = np.zeros(len(mesh.triangles), dtype=_STL_RECORD)
-    records["normal"] = normals / lengths[:, None]
-    records["corners"] = corners
+    u, v = (corners[:, 1] - corners[:, 0]).T, (corners[:, 2] - corners[:, 0]).T
+    normal = np.stack([u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]])
+    length = np.sqrt((normal * normal).sum(axis=0))
+    length[length == 0] = 1.0  # a flat triangle has no normal, and zeros say so
+    numbers = np.empty((len(corners), 12), dtype="<f4")
+    numbers[:, :3] = (normal / length).T
+    numbers[:, 3:] = corners.reshape(-1, 9)
+    records = np.zeros((len(corners), _STL_RECORD.itemsize), dtype=np.uint8)
+    records[:, : 4 * 12] = numbers.view(np.uint8)
     return STL_HEADER + struct.pack("<I", len(records)) + records.tobytes()
 
 
 def write_obj(mesh: TriMesh) -> bytes:
-    """Return the mesh as OBJ text; numbers are written in full, so that reading gives the same mesh bit for bit."""
-    vertices = ("v %r %r %r\n" * len(mesh.vertices)) % tuple(mesh.vertices.ravel().tolist())
+    """Return the mesh as OBJ text with nine significant digits: a micrometre at a kilometre."""
+    vertices = ("v %.9g %.9g %.9g\n" * len(mesh.vertices)) % tuple((mesh.vertices + 0.0).ravel().tolist())
     triangles = ("f %d %d %d\n" * len(mesh.triangles)) % tuple((mesh.triangles.ravel() + 1).tolist())
     return f"# articad, mm\n{vertices}{triangles}".encode("ascii")
 
