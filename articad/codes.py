@@ -325,6 +325,15 @@ CODES: dict[str, Code] = {
     "E_KERNEL_UNAVAILABLE": Code(
         "build", None, "The kernel that builds parts is not available.", "Install what is named; `articad doctor` shows what is there."
     ),
+    "E_FREECAD": Code(
+        "export", None, "FreeCAD failed on a document, or holds some of it invalid.", "Open the document and look at the marked objects."
+    ),
+    "W_FREECAD_SOLVER": Code(
+        "export",
+        None,
+        "FreeCAD's own solver does not agree with the exact placements that were written.",
+        "Nothing in the file is wrong for that; do not let FreeCAD move the parts.",
+    ),
     # --- interference and fits
     "E_OVERLAP": Code("interference", "design", "Two parts overlap at rest.", "Move one of them, or shorten it."),
     "W_STATIC_OVERLAP": Code(

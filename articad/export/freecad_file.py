@@ -1,0 +1,179 @@
+"""A FreeCAD file made the same each time, and visible when opened.
+
+FreeCAD without a display writes no GuiDocument.xml: everything would open hidden, and joints without their icons. It
+also writes dates, a random Uid and the user's name. All of this is settled here, on the file: it is a zip of XML and B-rep.
+"""
+
+from __future__ import annotations
+
+import io
+import re
+import uuid
+import zipfile
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from xml.sax.saxutils import quoteattr
+
+from lxml import etree
+
+EPOCH = "2000-01-01T00:00:00Z"
+_ZIP_TIME = (2000, 1, 1, 0, 0, 0)
+_NAMESPACE = uuid.UUID("6d1d9a3e-0c1b-5b6e-9b35-0a2f4f1c7c11")  # of the Uids that stand in for random ones
+_FIRST_ID = 0x1000
+_TAG = re.compile(rb"(:H-?)([0-9a-f]+)")
+_DATES = {"CreationDate", "LastModifiedDate"}
+_PEOPLE = {"CreatedBy", "LastModifiedBy", "Company"}
+_NOTHING = "bnVsbA=="  # base64 of null: what FreeCAD itself writes for a view provider without state
+_SHOWN = (  # besides parts and assemblies, what carries a shape of its own
+    "PartDesign::Body",
+    "Part::Feature",
+    "Part::Mirroring",
+    "Mesh::Feature",
+)
+_GROUPS = ("App::Part", "App::Link", "Assembly::AssemblyObject", "Assembly::JointGroup")
+
+
+@dataclass(frozen=True)
+class Look:
+    """What an opened document shows.
+
+    Attributes:
+        colors: "#rrggbb" by object.
+        hidden: Objects that are not shown though their kind is.
+        joints: Objects that are joints.
+        grounded: The object that grounds a part, if there is one.
+        bodies: Bodies, whose tip is shown.
+    """
+
+    colors: Mapping[str, str] = field(default_factory=dict)
+    hidden: Sequence[str] = ()
+    joints: Sequence[str] = ()
+    grounded: str | None = None
+    tips: Sequence[str] = ()
+
+
+def normalised(content: bytes, look: Look | None = None) -> bytes:
+    """Return a FreeCAD file with fixed dates, Uids and order, and with what it shows when opened.
+
+    Args:
+        content: The file as FreeCAD wrote it.
+        look: What it shows; None leaves GuiDocument.xml out.
+    """
+    with zipfile.ZipFile(io.BytesIO(content)) as archive:
+        files = {name: archive.read(name) for name in archive.namelist() if name not in ("GuiDocument.xml", "thumbnails/Thumbnail.png")}
+    root = etree.fromstring(files["Document.xml"], _parser())
+    _settle(root)
+    files = _renumbered(root, files)
+    types = {item.get("name"): item.get("type") for item in root.iterfind("Objects/Object")}
+    if look is not None:
+        _show(root, types, look)
+        files["GuiDocument.xml"] = _gui(types, look)
+    files["Document.xml"] = etree.tostring(root, xml_declaration=True, encoding="utf-8", standalone=False)
+    return packed(files)
+
+
+def packed(files: Mapping[str, bytes]) -> bytes:
+    """Return a zip of files, Document.xml first as FreeCAD reads it, GuiDocument.xml after it, all of one date."""
+    stream = io.BytesIO()
+    first = [name for name in ("Document.xml", "GuiDocument.xml") if name in files]
+    with zipfile.ZipFile(stream, "w", zipfile.ZIP_DEFLATED, compresslevel=6) as archive:
+        for name in [*first, *(name for name in files if name not in first)]:
+            entry = zipfile.ZipInfo(name, _ZIP_TIME)
+            entry.compress_type, entry.external_attr = zipfile.ZIP_DEFLATED, 0o644 << 16
+            archive.writestr(entry, files[name])
+    return stream.getvalue()
+
+
+def _parser() -> etree.XMLParser:
+    return etree.XMLParser(resolve_entities=False, no_network=True, load_dtd=False, huge_tree=True)
+
+
+def _settle(root: etree._Element) -> None:
+    """Replace what differs from run to run: dates, people, Uids, paths."""
+    for name in _DATES | _PEOPLE | {"TransientDir", "FileName"}:
+        for text in root.iterfind(f"Properties/Property[@name='{name}']/String"):
+            text.set("value", EPOCH if name in _DATES else "")
+    for number, uid in enumerate(root.iter("Uuid")):
+        uid.set("value", str(uuid.uuid5(_NAMESPACE, str(number))))
+    for item in root.iterfind("Objects/Object[@Touched]"):
+        del item.attrib["Touched"]
+    for needs in root.iter("ObjectDeps"):  # FreeCAD orders them by address
+        needs[:] = sorted(needs, key=lambda need: need.get("Name"))
+
+
+def _renumbered(root: etree._Element, files: Mapping[str, bytes]) -> dict[str, bytes]:
+    """Number the objects from a fixed number on: FreeCAD starts anywhere, and names edges and faces by these numbers."""
+    items = root.findall("Objects/Object[@id]")
+    ids = {int(item.get("id")): _FIRST_ID + number for number, item in enumerate(sorted(items, key=lambda item: int(item.get("id"))))}
+    for item in items:
+        item.set("id", str(ids[int(item.get("id"))]))
+
+    def mapped(match: re.Match[bytes]) -> bytes:
+        number = int(match[2], 16)
+        return match[1] + (b"%x" % ids[number] if number in ids else match[2])
+
+    named = {}
+    for name, content in files.items():
+        maps = name.endswith(".Map.txt") or name.startswith("StringHasher")
+        named[name] = _TAG.sub(mapped, content) if maps else content
+    for element in root.iter():
+        for key, value in element.attrib.items():
+            if ":H" in value:
+                element.set(key, _TAG.sub(mapped, value.encode()).decode())
+    return named
+
+
+def _is_shown(name: str, kind: str, look: Look) -> bool:
+    if name in look.hidden:
+        return False
+    return kind in _SHOWN or kind in _GROUPS or name in look.joints or name == look.grounded or name in look.tips
+
+
+def _show(root: etree._Element, types: Mapping[str, str], look: Look) -> None:
+    """Set the Visibility that objects keep besides their view providers."""
+    for item in root.iterfind("ObjectData/Object"):
+        name = item.get("name")
+        for flag in item.iterfind("Properties/Property[@name='Visibility']/Bool"):
+            flag.set("value", "true" if _is_shown(name, types.get(name, ""), look) else "false")
+
+
+def _gui(types: Mapping[str, str], look: Look) -> bytes:
+    providers = [_provider(name, kind, look) for name, kind in types.items()]
+    lines = [
+        "<?xml version='1.0' encoding='utf-8'?>",
+        "<!--\n FreeCAD Document, see https://www.freecad.org for more information...\n-->",
+        '<Document SchemaVersion="1" HasExpansion="1">',
+        f'    <Expand count="1">\n        <Expand name="{next((n for n, k in types.items() if k == "Assembly::AssemblyObject"), "")}"/>\n    </Expand>',
+        f'    <ViewProviderData Count="{len(providers)}">',
+        *providers,
+        "    </ViewProviderData>",
+        '    <Camera settings="  OrthographicCamera { viewportMapping ADJUST_CAMERA orientation 0.74290609 0.30772209 0.59447283 1.2171158 }"/>',
+        "</Document>",
+    ]
+    return "\n".join(lines).encode() + b"\n"
+
+
+def _provider(name: str, kind: str, look: Look) -> str:
+    shown = "true" if _is_shown(name, kind, look) else "false"
+    properties = [f'<Property name="Visibility" type="App::PropertyBool"><Bool value="{shown}"/></Property>']
+    if name in look.colors:
+        red, green, blue = (int(look.colors[name][start : start + 2], 16) for start in (1, 3, 5))
+        packed_color = (red << 24 | green << 16 | blue << 8) & 0xFFFFFFFF
+        properties.append(f'<Property name="ShapeColor" type="App::PropertyColor"><PropertyColor value="{packed_color}"/></Property>')
+    if name in look.joints or name == look.grounded:
+        provider = "ViewProviderGroundedJoint" if name == look.grounded else "ViewProviderJoint"
+        proxy = f'<Python value="{_NOTHING}" encoded="yes" module="JointObject" class="{provider}"/>'
+        properties.append(f'<Property name="Proxy" type="App::PropertyPythonObject">{proxy}</Property>')
+    inner = "".join(f"\n                {line}" for line in properties)
+    expanded = "1" if kind in ("Assembly::AssemblyObject", "Assembly::JointGroup") else "0"
+    return (
+        f'        <ViewProvider name={quoteattr(name)} expanded="{expanded}">\n'
+        f'            <Properties Count="{len(properties)}" TransientCount="0">{inner}\n            </Properties>\n        </ViewProvider>'
+    )
+
+
+def python_classes(content: bytes) -> set[str]:
+    """Return the Python classes that opening a FreeCAD file would make objects of."""
+    with zipfile.ZipFile(io.BytesIO(content)) as archive:
+        document = archive.read("Document.xml").decode(errors="replace")
+    return {f"{module}.{name}" for module, name in re.findall(r'<Python [^>]*module="([^"]*)"[^>]*class="([^"]*)"', document)}

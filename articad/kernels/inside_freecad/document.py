@@ -1,0 +1,283 @@
+"""Write an assembly as a FreeCAD document: `job.json` in, `assembly.FCStd` and `report.json` out, in the working folder.
+
+Runs inside FreeCAD 1.0 or later and never imports articad. Every placement is given; FreeCAD's solver is asked at the
+end only to see that it agrees. The references of joints are written as FreeCAD 1.0 has them: 1.1 migrates them when it
+opens the file, while 1.0 cannot read 1.1's.
+"""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import FreeCAD as App
+import JointObject
+import Part
+
+Json = dict[str, Any]
+
+_JOINT_TYPES = {
+    "fixed": "Fixed",
+    "revolute": "Revolute",
+    "slider": "Slider",
+    "cylindrical": "Cylindrical",
+    "ball": "Ball",
+    "screw": "Cylindrical",  # with a coupling of type Screw beside it
+    "planar": "Distance",  # of two coordinate systems: keeps their planes together
+    "universal": "Ball",  # with a Perpendicular beside it
+    "perpendicular": "Perpendicular",
+    "gear": "Gears",
+    "belt": "Belt",
+    "rack": "RackPinion",
+    "thread": "Screw",
+}
+_LINKED = ("rigid", "pattern")
+
+
+def main() -> None:
+    """Read the job, write the document, report."""
+    job = json.loads(Path("job.json").read_text())
+    writer = _Writer(job)
+    report = writer.write()
+    Path("report.json").write_text(json.dumps(report))
+
+
+def placement(numbers: list[float]) -> Any:
+    """Return the placement of seven numbers: mm, quaternion xyzw."""
+    return App.Placement(App.Vector(*numbers[:3]), App.Rotation(*numbers[3:]))
+
+
+class _Writer:
+    def __init__(self, job: Json) -> None:
+        self.job = job
+        self.document = App.newDocument("assembly")
+        self.document.Label = job["name"]
+        self.document.UndoMode = 0
+        self.parts: dict[str, Any] = {}  # part -> what stands in the assembly
+        self.containers: dict[str, Any] = {}  # part -> the App::Part that holds its shape and connectors, shared by links
+        self.shapes: dict[str, Any] = {}  # part -> the object with its shape
+        self.connectors: dict[tuple[str, str], Any] = {}
+        self.colors: dict[str, str] = {}  # object -> colour
+        self.hidden: list[str] = []
+
+    def write(self) -> Json:
+        self._parameters()
+        self.assembly = self.document.addObject("Assembly::AssemblyObject", "Assembly")
+        self.assembly.Type = "Assembly"
+        self.assembly.Label = self.job["name"]
+        _text(self.assembly, "ArticadRecords", "\n".join(self.job["records"]), "articad's records, for the way back", hidden=True)
+        for part in self.job["parts"]:
+            self._part(part)
+        self.document.recompute()
+        self._place()
+        group = self.assembly.newObject("Assembly::JointGroup", "Joints")
+        grounded = group.newObject("App::FeaturePython", "GroundedJoint")
+        JointObject.GroundedJoint(grounded, self.parts[self.job["ground"]])
+        self.joints = [self._joint(group, joint) for joint in self.job["joints"]]
+        self.document.recompute()
+        self.document.recompute()
+        self._place()
+        code, moved = self._solved()
+        self._place()
+        self._touch_nothing()
+        self.document.saveAs("/work/assembly.FCStd" if Path("/work/job.json").exists() else str(Path("assembly.FCStd").resolve()))
+        invalid = [item.Name for item in self.document.Objects if "Invalid" in item.State]
+        return {
+            "version": list(App.Version()[:3]),
+            "solve": code,
+            "moved": moved,
+            "invalid": invalid,
+            "colors": self.colors,
+            "hidden": self.hidden,
+            "parts": {name: item.Name for name, item in self.parts.items()},
+            "joints": [joint.Name for joint in self.joints],
+            "grounded": grounded.Name,
+        }
+
+    # ------------------------------------------------------------------ parameters
+
+    def _parameters(self) -> None:
+        if not self.job["parameters"]:
+            return
+        values = self.document.addObject("App::VarSet", "Parameters")
+        for row in self.job["parameters"]:
+            note = f"{row['description']} [{row['unit']}]".strip()
+            _float(values, f"p_{row['name']}", row["value"], "Parameters", note)
+        for row in self.job["parameters"]:
+            if row["expression"]:
+                values.setExpression(f"p_{row['name']}", row["expression"])
+        self.document.recompute()
+
+    def _dimensions(self, part: Json, container: Any, values: Any) -> None:
+        if not part["dimensions"]:
+            return
+        if values is None:
+            values = self.document.addObject("App::VarSet", f"Dimensions_{part['object']}")
+        values.Label = f"{part['name']} dimensions"
+        for row in part["dimensions"]:
+            name = f"d_{row['name']}"
+            if name not in values.PropertiesList:
+                _float(values, name, row["value"], "Dimensions", "")
+            setattr(values, name, row["value"])
+            if row["expression"]:
+                values.setExpression(name, row["expression"])
+        container.addObject(values)
+
+    # ------------------------------------------------------------------ parts
+
+    def _part(self, part: Json) -> None:
+        name = part["name"]
+        if part["kind"] == "link":
+            link = self.assembly.newObject("App::Link", part["object"])
+            link.LinkedObject = self.containers[part["source"]]
+            self.parts[name], self.containers[name] = link, self.containers[part["source"]]
+            self.shapes[name] = self.shapes[part["source"]]
+            for connector in part["connectors"]:
+                self.connectors[name, connector["name"]] = self.connectors[part["source"], connector["name"]]
+        else:
+            container = self.assembly.newObject("App::Part", part["object"])
+            self.parts[name] = self.containers[name] = container
+            self.shapes[name] = self._shape(part, container)
+            self.colors[self.shapes[name].Name] = part["color"]
+            for connector in part["connectors"]:
+                self._connector(part, container, connector)
+        item = self.parts[name]
+        item.Label = name
+        item.Placement = placement(part["placement"])
+        _text(item, "ArticadPart", name, "Name of the part")
+        _text(item, "ArticadMaterial", part["material"] or "", "Name of its material")
+
+    def _shape(self, part: Json, container: Any) -> Any:
+        kind = part["kind"]
+        if kind == "body":
+            return self._body(part, container)
+        if kind == "mirror":
+            self._dimensions(part, container, None)
+            source = container.newObject("App::Link", f"{part['object']}_source")
+            source.LinkedObject = self.shapes[part["source"]]
+            self.hidden.append(source.Name)
+            image = container.newObject("Part::Mirroring", f"{part['object']}_body")
+            image.Source = source
+            image.Base, image.Normal = App.Vector(*part["plane"]["point"]), App.Vector(*part["plane"]["normal"])
+            return image
+        if kind == "mesh":
+            import Mesh  # noqa: PLC0415 - only where a part is no more than triangles
+
+            feature = container.newObject("Mesh::Feature", f"{part['object']}_body")
+            feature.Mesh = Mesh.Mesh(part["file"])
+            return feature
+        feature = container.newObject("Part::Feature", f"{part['object']}_body")
+        if kind == "shape":
+            self._dimensions(part, container, None)
+            shape = Part.Shape()
+            shape.importBrep(part["file"])
+            feature.Shape = shape
+        return feature
+
+    def _body(self, part: Json, container: Any) -> Any:
+        """Copy a body with its features, and the dimensions that drive it, from the document that a part script left."""
+        source = App.openDocument(str(Path(part["file"]).resolve()), True)
+        before = {item.Name for item in self.document.Objects}
+        self.document.copyObject([source.getObject(part["body"])], True)
+        App.closeDocument(source.Name)
+        copied = [item for item in self.document.Objects if item.Name not in before]
+        (body,) = [item for item in copied if item.TypeId == "PartDesign::Body"]
+        values = [item for item in copied if item.TypeId == "App::VarSet"]
+        body.Label = f"{part['name']} body"
+        body.Placement = placement(part["seat"]) * body.Placement
+        container.addObject(body)
+        grouped = {member.Name for member in body.Group}
+        for item in copied:  # sheets and the like that a script made beside its body
+            if item not in values and item is not body and item.Name not in grouped and item.TypeId == "Spreadsheet::Sheet":
+                container.addObject(item)
+        self.hidden += [item.Name for item in copied if item.TypeId == "PartDesign::CoordinateSystem"]
+        self._dimensions(part, container, values[0] if values else None)
+        return body
+
+    def _connector(self, part: Json, container: Any, connector: Json) -> None:
+        system = container.newObject("PartDesign::CoordinateSystem", connector["object"])
+        system.Label = f"{part['name']}.{connector['name']}"
+        system.Placement = placement(connector["placement"])
+        _text(system, "ArticadConnector", connector["name"], "Name of the connector")
+        _text(system, "ArticadLabel", connector["label"], "What it is on the part")
+        self.connectors[part["name"], connector["name"]] = system
+        if part["kind"] == "mirror":
+            for axis, expression in zip("xyz", self._reflected(part, connector["name"]), strict=True):
+                system.setExpression(f"Placement.Base.{axis}", expression)
+        for axis, expression in connector["expressions"].items():
+            system.setExpression(f"Placement.Base.{axis}", expression)
+
+    def _reflected(self, part: Json, connector: str) -> list[str]:
+        """Return the origin of the source's connector, reflected, as expressions: it follows an edit of the source."""
+        source, image = self.connectors[part["source"], connector].Name, self.shapes[part["name"]].Name
+        normal = part["plane"]["normal"]
+        along = " + ".join(
+            f"({n!r}) * ({source}.Placement.Base.{axis} - {image}.Base.{axis})" for axis, n in zip("xyz", normal, strict=True) if n
+        )
+        return [
+            f"{source}.Placement.Base.{axis}" + (f" - 2 * ({n!r}) * ({along})" if n else "") for axis, n in zip("xyz", normal, strict=True)
+        ]
+
+    def _place(self) -> None:
+        for part in self.job["parts"]:
+            self.parts[part["name"]].Placement = placement(part["placement"])
+
+    # ------------------------------------------------------------------ joints
+
+    def _joint(self, group: Any, joint: Json) -> Any:
+        item = group.newObject("App::FeaturePython", joint["object"])
+        JointObject.Joint(item, JointObject.JointTypes.index(_JOINT_TYPES[joint["type"]]))
+        item.Label = joint["label"]
+        item.Activated = joint["active"]
+        _text(item, "ArticadJoint", joint["name"], "Name of the joint or coupling")
+        item.Offset1, item.Offset2 = placement(joint["offset_1"]), placement(joint["offset_2"])  # before the references: see solve
+        for name, value in joint["limits"].items():
+            setattr(item, f"Enable{name}", True)
+            setattr(item, name, value)
+        for name, value in joint["distances"].items():
+            setattr(item, name, value)
+        item.Reference1 = self._reference(joint["parent"], joint["parent_connector"])
+        item.Reference2 = self._reference(joint["child"], joint["child_connector"])
+        item.Proxy.updateJCSPlacements(item)
+        for name, expression in joint["expressions"].items():
+            item.setExpression(name, expression)
+        return item
+
+    def _reference(self, part: str, connector: str) -> list[Any]:
+        head, tail = self.parts[part].Name, f"{self.connectors[part, connector].Name}."
+        if tuple(map(int, App.Version()[:2])) >= (1, 1):
+            return [self.parts[part], [tail, tail]]
+        path = f"{head}.{tail}"
+        return [self.assembly, [path, path]]
+
+    # ------------------------------------------------------------------ FreeCAD's own opinion
+
+    def _solved(self) -> tuple[int, Json]:
+        """Ask FreeCAD's solver; return its code and how far it moved each part [mm, rad]."""
+        code = self.assembly.solve()
+        moved = {}
+        for part in self.job["parts"]:
+            before, after = placement(part["placement"]), self.parts[part["name"]].Placement
+            difference = before.inverse() * after
+            axis = difference.Rotation.Q
+            angle = 2.0 * (axis[0] ** 2 + axis[1] ** 2 + axis[2] ** 2) ** 0.5
+            moved[part["name"]] = [(after.Base - before.Base).Length, angle]
+        return code, moved
+
+    def _touch_nothing(self) -> None:
+        for item in self.document.Objects:
+            item.purgeTouched()
+
+
+def _float(item: Any, name: str, value: float, group: str, note: str) -> None:
+    item.addProperty("App::PropertyFloat", name, group, note)
+    setattr(item, name, value)
+
+
+def _text(item: Any, name: str, value: str, note: str, *, hidden: bool = False) -> None:
+    item.addProperty("App::PropertyString", name, "articad", note, 4 if hidden else 0)
+    setattr(item, name, value)
+
+
+main()

@@ -1,0 +1,119 @@
+"""Open a FreeCAD document in a new process and say what is in it: `job.json` in, `report.json` out, in the working folder.
+
+The job names a file and steps, done in order: `solve`; `perturb`, which moves one part, solves, reports and puts
+everything back; `set`, which changes a parameter and recomputes; `look`, which reports; `save`. Nothing here imports
+articad: what is reported is judged outside.
+"""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import FreeCAD as App
+
+Json = dict[str, Any]
+
+
+def main() -> None:
+    """Read the job, do its steps, report."""
+    job = json.loads(Path("job.json").read_text())
+    document = App.openDocument(str(Path(job["file"]).resolve()), True)
+    report: Json = {"version": list(App.Version()[:3]), "steps": []}
+    for step in job["steps"]:
+        report["steps"].append(_STEPS[step["do"]](document, step))
+    Path("report.json").write_text(json.dumps(report))
+
+
+def _assembly(document: Any) -> Any:
+    (found,) = [item for item in document.Objects if item.TypeId == "Assembly::AssemblyObject"][:1]
+    return found
+
+
+def _parts(document: Any) -> dict[str, Any]:
+    return {item.ArticadPart: item for item in document.Objects if "ArticadPart" in item.PropertiesList}
+
+
+def _look(document: Any, _: Json) -> Json:
+    """Report placements, connectors, boxes and invalid objects."""
+    parts = _parts(document)
+    return {
+        "parts": {name: _seven(item.Placement) for name, item in parts.items()},
+        "connectors": {name: _connectors(item) for name, item in parts.items()},
+        "boxes": {name: _box(item) for name, item in parts.items()},
+        "volumes": {name: _volume(item) for name, item in parts.items()},
+        "invalid": [item.Name for item in document.Objects if "Invalid" in item.State],
+        "touched": [item.Name for item in document.Objects if "Touched" in item.State],
+        "joints": {item.Label: item.JointType for item in document.Objects if hasattr(item, "JointType")},
+        "objects": sorted(f"{item.TypeId} {item.Name}" for item in document.Objects),
+    }
+
+
+def _connectors(part: Any) -> Json:
+    container = part.LinkedObject if part.TypeId == "App::Link" else part
+    return {item.ArticadConnector: _seven(item.Placement) for item in container.Group if "ArticadConnector" in item.PropertiesList}
+
+
+def _shape(part: Any) -> Any:
+    container = part.LinkedObject if part.TypeId == "App::Link" else part
+    for item in container.Group:
+        if item.TypeId in ("PartDesign::Body", "Part::Feature", "Part::Mirroring"):
+            return item.Shape
+    return None
+
+
+def _box(part: Any) -> list[list[float]] | None:
+    """Return the exact bounding box in the part's own frame [mm]."""
+    shape = _shape(part)
+    if shape is None or shape.isNull():
+        return None
+    box = shape.optimalBoundingBox(False)
+    return [[box.XMin, box.YMin, box.ZMin], [box.XMax, box.YMax, box.ZMax]]
+
+
+def _volume(part: Any) -> float | None:
+    shape = _shape(part)
+    return None if shape is None or shape.isNull() else shape.Volume
+
+
+def _solve(document: Any, _: Json) -> Json:
+    """Ask FreeCAD's solver, and report where the parts are."""
+    code = _assembly(document).solve()
+    return {"code": code, "parts": {name: _seven(item.Placement) for name, item in _parts(document).items()}}
+
+
+def _perturb(document: Any, step: Json) -> Json:
+    """Move one part by `by`, solve, report, and put everything back."""
+    parts = _parts(document)
+    before = {name: item.Placement for name, item in parts.items()}
+    moved = parts[step["part"]]
+    by = App.Placement(App.Vector(*step["by"][:3]), App.Rotation(*step["by"][3:]))
+    moved.Placement = moved.Placement * by
+    report = _solve(document, step)
+    for name, item in parts.items():
+        item.Placement = before[name]
+    return report
+
+
+def _set(document: Any, step: Json) -> Json:
+    """Change parameters of the VarSet, recompute, and report."""
+    for name, value in step["values"].items():
+        setattr(document.getObject("Parameters"), f"p_{name}", value)
+    document.recompute()
+    document.recompute()
+    return _look(document, step) | {"code": _assembly(document).solve()}
+
+
+def _save(document: Any, step: Json) -> Json:
+    document.saveAs(str(Path(step["file"]).resolve()))
+    return {}
+
+
+def _seven(placement: Any) -> list[float]:
+    return [*placement.Base, *placement.Rotation.Q]
+
+
+_STEPS = {"look": _look, "solve": _solve, "perturb": _perturb, "set": _set, "save": _save}
+
+main()
