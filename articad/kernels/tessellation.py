@@ -13,7 +13,7 @@ from OCP.BRep import BRep_Builder, BRep_Tool
 from OCP.BRepMesh import BRepMesh_IncrementalMesh
 from OCP.BRepTools import BRepTools
 from OCP.TopAbs import TopAbs_EDGE, TopAbs_FACE, TopAbs_FORWARD, TopAbs_REVERSED
-from OCP.TopExp import TopExp, TopExp_Explorer
+from OCP.TopExp import TopExp_Explorer
 from OCP.TopLoc import TopLoc_Location
 from OCP.TopoDS import TopoDS, TopoDS_Face
 
@@ -75,8 +75,8 @@ def is_closed(triangles: NDArray[np.int32]) -> bool:
 def _welded(shape: Any) -> Mesh:
     """Collect the triangulations of all faces, sharing the nodes that topology shares.
 
-    Nodes are joined along edges and at vertices of the B-rep, not where coordinates happen to agree: two sheets that
-    touch stay apart, and the mesh stays a manifold.
+    Nodes are joined along the edges of the B-rep, and so at its vertices, not where coordinates happen to agree: two
+    sheets that touch stay apart, and the mesh stays a manifold.
     """
     nodes, triangles, faces, joints = [np.empty((0, 3))], [np.empty((0, 3), np.int64)], [np.empty(0, np.int32)], _Joints()
     offset, index = 0, 0
@@ -103,7 +103,6 @@ class _Joints:
     def __init__(self) -> None:
         self.pairs: list[tuple[int, int]] = []
         self.first_of_edge: dict[Same, list[int]] = {}
-        self.first_of_vertex: dict[Same, int] = {}
 
     def add_face(self, face: Any, triangulation: Any, location: Any, offset: int) -> None:
         explorer = TopExp_Explorer(face, TopAbs_EDGE)
@@ -115,16 +114,12 @@ class _Joints:
             explorer.Next()
 
     def _add_edge(self, edge: Any, own: list[int]) -> None:
-        forward = TopoDS.Edge(edge.Oriented(TopAbs_FORWARD))
         if BRep_Tool.Degenerated_s(edge):  # the pole of a sphere: an edge of no length, all one point
             self.pairs += [(own[0], node) for node in own[1:]]
         else:
             first = self.first_of_edge.setdefault(Same(edge), own)
             if len(first) == len(own):
                 self.pairs += zip(first, own, strict=True)
-        for vertex, node in ((TopExp.FirstVertex_s(forward), own[0]), (TopExp.LastVertex_s(forward), own[-1])):
-            if not vertex.IsNull():
-                self.pairs.append((self.first_of_vertex.setdefault(Same(vertex), node), node))
 
     def roots(self, count: int) -> NDArray[np.int64]:
         """Return for each node the smallest node that it is joined to, `(count,)`."""

@@ -26,6 +26,7 @@ from articad.kernels import sandbox
 
 MESSAGE = 65536  # bytes of a request; a job itself travels in a file
 FILES = 8  # open files beside a request, at most
+_PR_SET_DUMPABLE, _PR_SET_CHILD_SUBREAPER = 4, 36
 FENCE_SECONDS = 2.0  # a job that survives its own alarm is killed this much later
 
 Json = dict[str, Any]
@@ -130,7 +131,7 @@ def main() -> None:
     """Import the kernel, say so, serve."""
     control = socket.socket(fileno=0)
     sandbox.die_with_parent(signal.SIGKILL, os.getppid())
-    _make_subreaper()
+    _prepare_process()
     try:
         from articad.kernels.tasks import TASKS  # noqa: PLC0415 - the import that each fork is spared; it may fail
     except ImportError as error:
@@ -185,5 +186,7 @@ def _children() -> set[int]:
         return set()
 
 
-def _make_subreaper() -> None:
-    ctypes.CDLL(None).prctl(36, 1, 0, 0, 0)  # PR_SET_CHILD_SUBREAPER: processes left behind are ours to kill
+def _prepare_process() -> None:
+    libc = ctypes.CDLL(None)
+    libc.prctl(_PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0)  # processes that a job leaves behind are ours to kill
+    libc.prctl(_PR_SET_DUMPABLE, 0, 0, 0, 0)  # no job may trace this process or read its memory, whatever layers there are

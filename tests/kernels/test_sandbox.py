@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import os
 import re
+import struct
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -130,3 +132,70 @@ def test_every_jump_of_the_filter_lands_inside_it(machine: str) -> None:
         if operation & 0x07 == 0x05:
             assert at + 1 + max(if_true, if_false) < len(lines)
     assert int.from_bytes(lines[-1][:2], "little") == 0x06  # it ends in a return
+
+
+EPERM, EACCES, ENOSYS, ALLOW, KILL = 1, 13, 38, "allow", "kill"
+PID = 4242
+ARGUMENTS: list[tuple[str, tuple[int, ...], object]] = [
+    ("read", (0,), ALLOW),
+    ("openat", (0, 0, os.O_RDONLY | os.O_CLOEXEC), ALLOW),
+    ("openat", (0, 0, os.O_WRONLY), EACCES),
+    ("openat", (0, 0, os.O_RDWR), EACCES),
+    ("openat", (0, 0, os.O_RDONLY | os.O_CREAT), EACCES),
+    ("openat", (0, 0, os.O_RDONLY | os.O_TRUNC), EACCES),
+    ("openat2", (), ENOSYS),
+    ("clone3", (), ENOSYS),
+    ("clone", (0x3D0F00,), ALLOW),  # what pthread_create asks for
+    ("clone", (0x1200011,), EPERM),  # what fork asks for
+    ("clone", (0x10000000,), EPERM),  # a user namespace
+    ("tgkill", (PID, 1, 6), ALLOW),
+    ("tgkill", (PID + 1, 1, 9), EPERM),
+    ("fcntl", (3, 1), ALLOW),
+    ("fcntl", (3, 8, 1), EPERM),  # F_SETOWN
+    ("ioctl", (0, 0x5401), ALLOW),
+    ("ioctl", (0, 0x5412), EPERM),  # TIOCSTI
+    ("prctl", (15,), ALLOW),
+    ("prctl", (4, 1), EPERM),  # PR_SET_DUMPABLE
+    ("prlimit64", (0, 7, 0, 1), ALLOW),
+    ("prlimit64", (0, 7, 1, 0), EPERM),
+    ("prlimit64", (0, 7, 1 << 40, 0), EPERM),
+]
+UNLISTED = {
+    "x86_64": {"socket": 41, "execve": 59, "kill": 62, "ptrace": 101, "mount": 165, "fork": 57, "io_uring_setup": 425, "memfd_create": 319},
+    "aarch64": {"socket": 198, "execve": 221, "kill": 129, "ptrace": 117, "mount": 40, "io_uring_setup": 425, "memfd_create": 279},
+}
+
+
+def judged(machine: str, number: int, arguments: tuple[int, ...], token: int | None = None) -> object:
+    """Run the filter as the kernel does: classic BPF over struct seccomp_data."""
+    known = {"x86_64": 0xC000003E, "aarch64": 0xC00000B7}
+    words = struct.pack("<IIQ6Q", number, known[machine] if token is None else token, 0, *arguments, *[0] * (6 - len(arguments)))
+    lines = list(struct.iter_unpack("<HBBI", seccomp.program(machine, PID)))
+    at, accumulator = 0, 0
+    while True:
+        operation, if_true, if_false, value = lines[at]
+        at += 1
+        if operation == 0x20:
+            accumulator = struct.unpack_from("<I", words, value)[0]
+        elif operation == 0x06:
+            return {0x7FFF0000: ALLOW, 0x80000000: KILL}.get(value, value & 0xFFFF)
+        else:
+            holds = {0x15: accumulator == value, 0x35: accumulator >= value, 0x45: bool(accumulator & value)}[operation]
+            at += if_true if holds else if_false
+
+
+@pytest.mark.parametrize("machine", ["x86_64", "aarch64"])
+def test_the_filter_decides_by_call_and_argument(machine: str) -> None:
+    numbers = seccomp._ARCHITECTURES[machine].calls
+
+    for name, arguments, verdict in ARGUMENTS:
+        assert judged(machine, numbers[name], arguments) == verdict, (name, arguments)
+    for name, number in UNLISTED[machine].items():
+        assert judged(machine, number, ()) == EPERM, name
+    assert judged(machine, 0, (), token=0x40000003) == KILL  # 32-bit x86
+
+
+def test_the_second_abi_of_x86_64_is_closed() -> None:
+    assert judged("x86_64", 0x40000000, ()) == KILL
+    assert judged("x86_64", 2, (0, os.O_WRONLY)) == EACCES  # the old open
+    assert judged("x86_64", 2, (0, os.O_RDONLY)) == ALLOW

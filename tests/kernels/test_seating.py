@@ -166,6 +166,16 @@ def test_roll_that_the_plan_leaves_open_is_no_drift(kernel: Build123dKernel, cac
     assert built(open_roll, script(x=""), kernel, cache)[2] == Findings()
 
 
+def test_a_turn_that_the_plan_leaves_open_does_not_turn_the_part(kernel: Build123dKernel, cache: BuildCache) -> None:
+    """The bolt hangs by a connector without x: whatever x its script states, the bolt stays as it was built."""
+    source = b"from build123d import *\ndef build(part):\n    return Pos(50, 5, 10) * Box(1, 9, 3), {'a': {'o': (50, 0, 10), 'z': (0, 1, 0), 'x': (1, 0, 1)}}\n"
+    resolved = plan(latch={"name": "latch", "o": [50, 0, 10], "z": [0, 1, 0]})
+
+    bolt = build_part(resolved, "bolt", source, kernel=kernel, cache=cache)
+
+    assert bolt.solid.bbox == pytest.approx(np.array([[49.5, 0.5, 8.5], [50.5, 9.5, 11.5]]), abs=1e-6)
+
+
 def test_drift_comes_together_with_the_other_breaches(kernel: Build123dKernel, cache: BuildCache) -> None:
     with pytest.raises(ContractError) as caught:
         build_part(plan(envelope=[WIDTH, 4, 50]), "gate", script(latch="Pos(9, 0, 0)"), kernel=kernel, cache=cache)
