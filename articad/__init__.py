@@ -44,6 +44,7 @@ _MODULE_OF = {
     "screw": "kinematics.declare",
     "slider": "kinematics.declare",
     "universal": "kinematics.declare",
+    "write_freecad": "export.freecad",
     "write_mjcf": "export.mjcf",
     "write_urdf": "export.urdf",
 }
@@ -81,6 +82,7 @@ if TYPE_CHECKING:
     from articad.connectors.se3 import SE3 as SE3
     from articad.errors import ArticadError as ArticadError
     from articad.export.bundle import Bundle as Bundle
+    from articad.export.freecad import write_freecad as write_freecad
     from articad.export.mjcf import write_mjcf as write_mjcf
     from articad.export.urdf import write_urdf as write_urdf
     from articad.findings import Finding as Finding

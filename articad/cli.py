@@ -34,7 +34,15 @@ CANNOT_GO_ON: Final = 3
 INTERRUPTED: Final = 130  # 128 + SIGINT, as shells count
 _PATIENCE_S: Final = 1.0  # for other threads to notice that the program ends
 
-_FORMATS: Final = ("urdf", "mjcf", "glb")  # the keys of `articad.record.WRITERS`, which --help must not load
+_FORMATS: Final = (
+    "urdf",
+    "mjcf",
+    "freecad",
+    "step",
+    "glb",
+    "3mf",
+    "sdf",
+)  # the keys of `articad.record.WRITERS`, which --help must not load
 _USUAL: Final = ("urdf", "mjcf")
 
 
@@ -223,7 +231,7 @@ def _check(options: argparse.Namespace, terminal: Terminal) -> Report:
     "export",
     "Write a finished run in other formats.",
     _argument("run", metavar="RUN"),
-    _argument("--to", metavar="FORMATS", dest="formats", type=_formats, required=True, help="formats to write, of urdf, mjcf, glb"),
+    _argument("--to", metavar="FORMATS", dest="formats", type=_formats, required=True, help=f"formats to write, of {', '.join(_FORMATS)}"),
     _argument("--out", metavar="DIR", help="where to write, a folder for each format; by default RUN/export"),
     _argument("--strict", action="store_true", help="refuse what a format cannot hold, instead of reporting it as lost"),
     _argument("--loops", choices=["none", "isaac", "drake", "mimic"], default="none", help="how URDF closes loops (none)"),
@@ -373,6 +381,30 @@ def _render(options: argparse.Namespace, terminal: Terminal) -> Report:
     for file in files:
         terminal.say(str(file))
     return {"schema": "articad.pictures/1", "ok": True, "files": [str(file) for file in files], "findings": []}
+
+
+@_command(
+    "convert",
+    "Convert a URDF or MJCF file into another format.",
+    _argument("source", metavar="IN", help="a .urdf or .xml file"),
+    _argument("target", metavar="OUT", help="its ending says the format: .urdf .xml .sdf .step .glb .3mf"),
+    _argument("--strict", action="store_true", help="refuse what the format cannot hold, instead of reporting it as lost"),
+)
+def _convert(options: argparse.Namespace, terminal: Terminal) -> Report:
+    from dataclasses import replace
+    from pathlib import Path
+
+    from articad import summaries
+    from articad.convert import FORMAT_OF, convert
+
+    target = Path(options.target)
+    assembly, bundle = convert(options.source, target, strict=options.strict)
+    bundle = replace(bundle, files={target.name if path == bundle.main else path: content for path, content in bundle.files.items()})
+    bundle.write(target.parent)
+    report = bundle.to_json() | {"folder": str(target.parent), "main": str(target)}
+    terminal.findings(assembly.findings + bundle.findings)
+    summaries.print_exports({FORMAT_OF[target.suffix.lower()]: report}, terminal)
+    return report | {"findings": [finding.to_json() for finding in assembly.findings + bundle.findings]}
 
 
 @_command(

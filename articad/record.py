@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any, Final, Literal
 
+from articad import convert
 from articad.assembly import Assembly
 from articad.connectors.connector import Connector
 from articad.errors import KernelUnavailableError, ReadError
 from articad.export.bundle import Bundle
-from articad.export.gltf import write_glb
-from articad.export.mjcf import write_mjcf
+from articad.export.freecad import write_freecad
 from articad.export.urdf import Loops, write_urdf
 from articad.findings import Finding
 from articad.geometry.mesh_files import write_stl
@@ -26,7 +26,7 @@ from articad.run import Run
 Report = dict[str, Any]
 Sandbox = Literal["strict", "weak"]
 
-WRITERS: Final[dict[str, Callable[..., Bundle]]] = {"urdf": write_urdf, "mjcf": write_mjcf, "glb": write_glb}
+WRITERS: Final[Mapping[str, Callable[..., Bundle]]] = {**convert.WRITERS, "freecad": write_freecad}
 _PICTURE_PIXELS: Final = 256  # of a picture kept in a run: enough to recognise, cheap enough to draw each time
 _KERNEL_FILES: Final = ("part.npz", "part.brep", "part.step")
 

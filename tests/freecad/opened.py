@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import tempfile
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -75,9 +76,20 @@ def residual(joint: Joint, parts: dict[str, SE3]) -> tuple[float, float]:
     }[str(joint.type)]
 
 
-def worst(assembly: Assembly, parts: dict[str, SE3]) -> tuple[float, float]:
-    """Return the largest residuals over all joints [mm, rad]."""
-    rows = [residual(joint, parts) for joint in assembly.joints]
+def worst(assembly: Assembly, parts: dict[str, SE3], connectors: dict[str, dict[str, list[float]]] | None = None) -> tuple[float, float]:
+    """Return the largest residuals over all joints [mm, rad], with the connectors of the assembly or those of a document."""
+    joints = assembly.joints
+    if connectors is not None:
+        held = {part: frames(rows) for part, rows in connectors.items()}
+        joints = tuple(
+            replace(
+                joint,
+                T_parent_connector=held[joint.parent][joint.parent_connector],
+                T_child_connector=held[joint.child][joint.child_connector],
+            )
+            for joint in joints
+        )
+    rows = [residual(joint, parts) for joint in joints]
     return max(row[0] for row in rows), max(row[1] for row in rows)
 
 

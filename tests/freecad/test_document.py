@@ -1,0 +1,122 @@
+"""FreeCAD documents: what FreeCAD itself, in a new process, finds in the files that we write."""
+
+from __future__ import annotations
+
+import io
+import zipfile
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import articad as ac
+from articad.errors import ExportError, KernelUnavailableError, UnrepresentableError
+from articad.export import freecad as export
+from articad.export.freecad import write_freecad
+from articad.export.freecad_file import python_classes
+from articad.kernels import freecad_install
+from tests.freecad import opened
+
+pytestmark = [pytest.mark.freecad, opened.needs_freecad]
+EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
+SMALL_MM, SMALL_RAD = 1e-6, 1e-8
+
+
+@cache
+def assembly(name: str) -> ac.Assembly:
+    return ac.build(ac.AssemblyPlan.load(EXAMPLES / name / "plan.json"), EXAMPLES / name / "parts")
+
+
+@cache
+def content(name: str) -> bytes:
+    bundle = write_freecad(assembly(name))
+    assert bundle.findings.ok
+    assert not bundle.findings, bundle.findings
+    return bundle.files[bundle.main]
+
+
+@pytest.mark.parametrize("name", ["wardrobe", "metronome", "desk_lamp", "four_bar"])
+def test_a_new_process_solves_without_moving_a_part_and_mends_every_disturbance(name: str) -> None:
+    made = assembly(name)
+    rng = np.random.default_rng(7)
+    moving = [part for part in made.parts if part != made.ground]
+    shakes = [{"do": "perturb", "part": part, "by": opened.shaken(rng)} for part in moving]
+    look, solved, *mended = opened.steps(content(name), {"do": "look"}, {"do": "solve"}, *shakes)
+    rest = dict(made.at())
+    assert look["invalid"] == look["touched"] == []
+    assert solved["code"] == 0
+    mm, rad = opened.moved(rest, opened.frames(solved["parts"]))
+    assert mm <= SMALL_MM
+    assert rad <= SMALL_RAD
+    mm, rad = opened.worst(made, opened.frames(look["parts"]))
+    assert mm <= 1e-9
+    assert rad <= 1e-9
+    for part, after in zip(moving, mended, strict=True):
+        mm, rad = opened.worst(made, opened.frames(after["parts"]))
+        assert after["code"] == 0, part
+        assert mm <= SMALL_MM, part
+        assert rad <= SMALL_RAD, part
+
+
+def test_the_residuals_see_a_part_that_is_out_of_place() -> None:
+    made = assembly("metronome")
+    rest = dict(made.at())
+    rest["pendulum"] = rest["pendulum"] @ ac.SE3.trans(0.0, 0.001, 0.0)
+    assert opened.worst(made, rest)[0] > 9e-4
+
+
+def test_the_same_assembly_gives_the_same_bytes() -> None:
+    again = write_freecad(assembly("wardrobe"))
+    assert again.files[again.main] == content("wardrobe")
+
+
+def test_the_file_is_visible_and_names_no_person_time_or_foreign_class() -> None:
+    with zipfile.ZipFile(io.BytesIO(content("wardrobe"))) as archive:
+        assert archive.namelist()[:2] == ["Document.xml", "GuiDocument.xml"]
+        assert {entry.date_time for entry in archive.infolist()} == {(2000, 1, 1, 0, 0, 0)}
+        gui, document = archive.read("GuiDocument.xml").decode(), archive.read("Document.xml").decode()
+    joints = len(assembly("wardrobe").joints)
+    assert gui.count('class="ViewProviderJoint"') == joints
+    assert gui.count('class="ViewProviderGroundedJoint"') == 1
+    assert "/work" not in document
+    assert python_classes(content("wardrobe")) == {"JointObject.Joint", "JointObject.GroundedJoint"}
+
+
+def test_parameters_move_connectors_parts_and_limits() -> None:
+    before, after = opened.steps(content("wardrobe"), {"do": "look"}, {"do": "set", "values": {"width": 1000.0}})
+    assert after["invalid"] == []
+    assert after["code"] == 0
+    wider = assembly("wardrobe").with_parameters(width=1000.0)
+    for part in ("cabinet", "door_left", "drawer_lower"):
+        for name, connector in wider.parts[part].connectors.items():
+            assert after["connectors"][part][name][:3] == pytest.approx(connector.frame.translation, abs=1e-9)
+    assert before["connectors"]["cabinet"] != after["connectors"]["cabinet"]
+    mm, rad = opened.worst(wider, opened.frames(after["parts"]), after["connectors"])
+    assert mm <= SMALL_MM
+    assert rad <= SMALL_RAD
+
+
+def test_what_freecad_does_not_hold_is_a_loss_and_strict_refuses_it() -> None:
+    losses = write_freecad(assembly("geared_four_bar")).losses
+    assert any(loss.where.startswith("couplings.") and loss.refused for loss in losses)
+    with pytest.raises(UnrepresentableError):
+        write_freecad(assembly("geared_four_bar"), strict=True)
+
+
+def test_a_freecad_that_fails_is_an_error_with_its_last_words(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    broken = tmp_path / "broken.py"
+    broken.write_text("import sys\nprint('no such thing', flush=True)\nsys.exit(3)\n")
+    monkeypatch.setattr(export, "PROGRAM", broken)
+    with pytest.raises(ExportError, match="no such thing") as raised:
+        write_freecad(assembly("metronome"))
+    assert [finding.code for finding in raised.value.findings] == ["E_FREECAD"]
+
+
+def test_without_freecad_the_remedy_is_one_sentence(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setenv("ARTICAD_FREECAD", str(tmp_path))
+    monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path))
+    monkeypatch.setenv("PATH", str(tmp_path))
+    with pytest.raises(KernelUnavailableError, match="scripts/install-freecad") as raised:
+        freecad_install.find()
+    assert raised.value.looked_in
