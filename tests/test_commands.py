@@ -211,6 +211,21 @@ def test_export_writes_beside_or_elsewhere_the_same_bytes(chest: Path, tmp_path:
     assert Path(exported["exports"]["urdf"]["main"]).is_file()
 
 
+def test_convert_writes_the_file_that_was_named(chest: Path, tmp_path: Path, report: Any) -> None:
+    assert report("build", chest, "--out", tmp_path / "out", "--export", "urdf")[0] == 0
+    target = tmp_path / "mujoco" / "model.xml"
+    code, converted = report("convert", tmp_path / "out" / "export" / "urdf" / "chest.urdf", target)
+    assert (code, converted["schema"], converted["main"]) == (0, "articad.losses/1", str(target))
+    mujoco = pytest.importorskip("mujoco")
+    assert mujoco.MjModel.from_xml_path(str(target)).njnt == 1
+
+
+def test_an_ending_that_is_not_a_format_is_an_error_that_lists_them(chest: Path, tmp_path: Path, report: Any) -> None:
+    code, failed = report("convert", chest / "plan.json", tmp_path / "x.dwg")
+    assert code == 3
+    assert ".urdf" in failed["error"]["message"]
+
+
 @pytest.mark.parametrize("command", [["export", "--to", "urdf"], ["replay"]], ids=lambda words: words[0])
 def test_what_is_not_a_run_is_an_error(command: list[str], tmp_path: Path, report: Any) -> None:
     code, failed = report(*command, tmp_path)
