@@ -45,7 +45,7 @@ LIBRARIES = tuple(Library(soname, package, _NEEDED_BY.get(soname, "the B-rep ker
 # Distribution -> what it does for articad. Reported with versions; all of them come with `pip install articad`.
 _PACKAGES = {
     "numpy": "everything",
-    "scipy": "loops",
+    "scipy": "pieces of meshes",
     "pin": "kinematics",
     "yourdfpy": "URDF read back",
     "trimesh": "foreign meshes",

@@ -137,9 +137,7 @@ arm.poses(arm.rest), arm.jacobian(arm.rest, "arm")
 
 
 @pytest.mark.parametrize(("distribution", "module"), FIXED.items())
-def test_every_fixed_package_is_declared_and_imported(distribution: str, module: str, request: pytest.FixtureRequest) -> None:
-    if module == "scipy":
-        request.applymarker(pytest.mark.xfail(strict=True, reason="comes with the solver of closed loops"))
+def test_every_fixed_package_is_declared_and_imported(distribution: str, module: str) -> None:
     declared = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["dependencies"]
     assert any(line.startswith(distribution) for line in declared), f"{distribution} is not declared"
     assert any(module in imported_by(source) for source in SOURCES), f"{module} is imported by no module"
