@@ -403,6 +403,9 @@ CODES: dict[str, Code] = {
         "export", None, "A closed loop cannot be written as mimic joints within 0.1 mm.", "Use another way to write loops, or MJCF."
     ),
     "E_READ": Code("import", None, "A file cannot be read.", "Check the file at the named place."),
+    "W_IMPORT_STALE": Code(
+        "import", None, "A file was edited after articad wrote it, so its records are not used.", "Edit the plan and export again."
+    ),
     "W_IMPORT_MESH": Code(
         "import", None, "A mesh of a foreign file is left out.", "Put the mesh where the file names it, or allow its folder."
     ),

@@ -138,23 +138,21 @@ class _Buffer:
 
 
 def _shaded(mesh: TriMesh) -> tuple[FloatArray, FloatArray, NDArray[np.int64]]:
-    """Return vertices, normals and indices: corners of one vertex whose faces meet smoothly share it, others are split.
-
-    Without B-rep faces every corner would need its neighbours; so each triangle is flat, and equal corners with equal normals are merged.
-    """
-    corners = mesh.vertices[mesh.triangles]
-    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    area = np.linalg.norm(normal, axis=1)
-    unit = normal / np.maximum(area, np.finfo(float).tiny)[:, None]
+    """Return vertices, normals and indices: corners whose faces meet smoothly share their vertex, those at creases get their own."""
+    twice = mesh.normals_of_twice_area
+    flat = twice / np.maximum(np.linalg.norm(twice, axis=1), np.finfo(float).tiny)[:, None]
     index = mesh.triangles.reshape(-1)
-    per_corner = np.repeat(unit, 3, axis=0)
     smooth = np.zeros((len(mesh.vertices), 3))
-    np.add.at(smooth, index, np.repeat(normal, 3, axis=0))
+    np.add.at(smooth, index, np.repeat(twice, 3, axis=0))
     smooth /= np.maximum(np.linalg.norm(smooth, axis=1), np.finfo(float).tiny)[:, None]
-    blended = np.where(((smooth[index] * per_corner).sum(axis=1) > CREASE_COSINE)[:, None], smooth[index], per_corner)
-    rows = np.concatenate([mesh.vertices[index], blended.astype(np.float32)], axis=1)
-    unique, inverse = np.unique(rows, axis=0, return_inverse=True)
-    return unique[:, :3], unique[:, 3:], inverse.reshape(-1)
+    corners = np.repeat(flat, 3, axis=0)
+    creased = np.flatnonzero((smooth[index] * corners).sum(axis=1) <= CREASE_COSINE)
+    used, inverse = np.unique(np.delete(index, creased), return_inverse=True)
+    indices = np.empty(len(index), dtype=np.int64)
+    indices[np.delete(np.arange(len(index)), creased)] = inverse
+    indices[creased] = len(used) + np.arange(len(creased))
+    positions = np.concatenate([mesh.vertices[used], mesh.vertices[index[creased]]])
+    return positions, np.concatenate([smooth[used], corners[creased]]), indices
 
 
 def _driving(assembly: Assembly) -> list[str]:

@@ -84,7 +84,8 @@ def hull_overlaps(shapes: Mapping[str, tuple[Shape, ...]], poses: Mapping[str, S
 
 def _hull(shape: Shape, T: SE3) -> tuple[manifold3d.Manifold, FloatArray, FloatArray]:
     points = (T @ shape.frame).apply(shape.mesh.vertices)
-    return manifold3d.Manifold.hull_points(points), points.min(axis=0), points.max(axis=0)
+    hull = manifold3d.Manifold.hull_points(points).simplify(HULL_DEPTH_MM / 10)
+    return hull, points.min(axis=0), points.max(axis=0)
 
 
 def _near(low_a: FloatArray, high_a: FloatArray, low_b: FloatArray, high_b: FloatArray) -> bool:

@@ -9,13 +9,14 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import asdict, is_dataclass
 from typing import TYPE_CHECKING, Any
 
 from articad.connectors.connector import Connector
 from articad.connectors.se3 import SE3
 from articad.export.lowering import Link, LoweredModel
+from articad.fingerprint import fingerprint
 from articad.geometry.part import Part
 from articad.kinematics.joints import Coupling, Joint
 
@@ -27,13 +28,14 @@ VERSION = 1
 Record = dict[str, Any]
 
 
-def records(assembly: Assembly, model: LoweredModel, files: Mapping[str, str]) -> list[Record]:
+def records(assembly: Assembly, model: LoweredModel, files: Mapping[str, str], written: Iterable[Any] = ()) -> list[Record]:
     """Return everything that a format does not hold by itself.
 
     Args:
         assembly: What is exported.
         model: Its lowering: the names under which parts and joints are found in the file.
         files: Path of each mesh in the bundle, by the mesh's digest.
+        written: The elements that say in the format's own words what the records say; whoever edits them makes the records stale.
     """
     links = {link.part.name: link for link in model.links}
     names = {lowered.joint.name: lowered.name for lowered in (*model.joints, *model.loops)}
@@ -46,6 +48,7 @@ def records(assembly: Assembly, model: LoweredModel, files: Mapping[str, str]) -
             "ground": mechanism.ground,
             "frame": _frame(mechanism.T_ground),
             "deflection": assembly.deflection,
+            "fingerprint": fingerprint(elements) if (elements := list(written)) else None,
         },
         *({"kind": "material", **asdict(material)} for material in assembly.materials.values()),
         *(_part(links[name], files) for name in mechanism.parts),

@@ -46,7 +46,7 @@ def write_mjcf(assembly: Assembly, *, strict: bool = False, meshes: MeshKind = "
     Args:
         assembly: What to write.
         strict: Refuse what MJCF holds only with a loss of motion, mass or shape.
-        meshes: Format of the mesh files: STL holds single precision, OBJ full numbers.
+        meshes: Format of the mesh files: STL holds single precision, OBJ nine digits.
         actuators: Give every driver a position servo of the joint's effort.
 
     Returns:
@@ -91,7 +91,7 @@ class _Writer:
         servos = self._actuators(root) if actuators else []
         self._home(root, world, servos)
         custom = child(root, "custom")
-        for number_, record in enumerate(records(self.assembly, self.model, self.files.by_digest)):
+        for number_, record in enumerate(records(self.assembly, self.model, self.files.by_digest, [world, *root.iterfind("equality")])):
             child(custom, "text", {"name": f"articad.{number_}.{record['kind']}", "data": dumps(record)})
         if not len(self.asset):
             root.remove(self.asset)

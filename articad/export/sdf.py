@@ -88,7 +88,7 @@ class _Writer:
             if loop.joint.type in _NATIVE:  # at rest its two frames meet, so the child's is enough
                 self._joint(model, loop.name, loop, loop.parent, loop.child, loop.freedoms, loop.T_child_joint)
         kept = child(model, f"{{{ARTICAD}}}records")
-        for record in records(self.assembly, self.model, self.files.by_digest):
+        for record in records(self.assembly, self.model, self.files.by_digest, [*model.iterfind("link"), *model.iterfind("joint")]):
             child(kept, f"{{{ARTICAD}}}record", {"kind": str(record["kind"])}, dumps(record))
         return root
 

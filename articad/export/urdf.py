@@ -41,7 +41,7 @@ def write_urdf(assembly: Assembly, *, strict: bool = False, meshes: MeshKind = "
     Args:
         assembly: What to write.
         strict: Refuse what URDF holds only with a loss of motion, mass or shape.
-        meshes: Format of the mesh files: STL holds single precision, OBJ full numbers.
+        meshes: Format of the mesh files: STL holds single precision, OBJ nine digits.
         loops: How closed loops are written besides the tree: not at all, as `<loop_joint>` for Isaac Sim, as `<drake:ball_constraint>`
             for Drake, or as `<mimic>` of the driver, where a linear relation is as good as 0.1 mm.
 
@@ -78,7 +78,7 @@ def write_urdf(assembly: Assembly, *, strict: bool = False, meshes: MeshKind = "
     for loop in model.loops:
         for point in tied.get(loop.name, ()):
             (_isaac if loops == "isaac" else _drake)(root, loop, point)
-    for record in records(assembly, model, files.by_digest):
+    for record in records(assembly, model, files.by_digest, [*root.iterfind("link"), *root.iterfind("joint")]):
         child(root, "articad", {"kind": str(record["kind"])}, dumps(record))
     return Bundle({f"{model.name}.urdf": document(root), **files.files}, losses)
 

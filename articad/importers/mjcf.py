@@ -21,7 +21,7 @@ from articad.geometry.shapes import box, cylinder, sphere
 from articad.importers.fusing import fused
 from articad.importers.raw import ENDLESS, IDENTITY, RawJoint, RawLink, RawModel, RawTie, aligned, assemble, floating
 from articad.importers.reading import MAX_LINKS, MM_PER_M, Folder, read_xml, unreadable
-from articad.importers.records import assembly_of, read_records
+from articad.importers.records import assembly_of, read_records, stale
 from articad.kinematics.joints import JointType
 
 FloatArray = NDArray[np.float64]
@@ -53,10 +53,15 @@ def read_mjcf(path: str | Path, *, root: str | Path | None = None, metadata: boo
     if document.tag != "mujoco":
         raise unreadable(path, f"line {document.sourceline}", f"The root element is <{document.tag}>, not <mujoco>.")
     texts = [text.get("data", "") for text in document.iterfind("custom/text") if text.get("name", "").startswith(_RECORD_PREFIX)]
+    edited: list[Finding] = []
     if metadata and texts:
-        return assembly_of(read_records(texts, path), folder, path)
+        records = read_records(texts, path)
+        edited = stale(records, [*document.iterfind("worldbody"), *document.iterfind("equality")], path)
+        if not edited:
+            return assembly_of(records, folder, path)
     _require_safe(document, folder, path, [path.resolve()])
     model = _Reader(_compiled(path), document.get("model") or path.stem).model()
+    model.findings += edited
     return assemble(fused(model) if fuse else model, path)
 
 

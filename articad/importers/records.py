@@ -15,6 +15,8 @@ from articad.connectors.connector import Connector
 from articad.connectors.mate import Mate
 from articad.connectors.se3 import SE3
 from articad.errors import ArticadError
+from articad.findings import Finding
+from articad.fingerprint import fingerprint
 from articad.geometry.mass import MassProperties
 from articad.geometry.mesh import TriMesh
 from articad.geometry.part import Part, Shape, Solid
@@ -50,6 +52,16 @@ def read_records(texts: Iterable[str], path: Path) -> list[Record]:
         if record["kind"] == "assembly" and record.get("version") != VERSION:
             raise unreadable(path, "articad metadata", f"Version {record.get('version')!r} is not {VERSION}; a newer articad wrote it.")
     return records
+
+
+def stale(records: list[Record], elements: Iterable[Any], path: Path) -> list[Finding]:
+    """Return a finding if somebody has edited the file since articad wrote it: then the file speaks, not the records."""
+    written = next((record.get("fingerprint") for record in records if record["kind"] == "assembly"), None)
+    if written is None or written == fingerprint(elements):
+        return []
+    message = f"{path.name} was edited after articad wrote it, so it is read like any other file, without articad's records."
+    hint = "Edit the plan instead and export again, or take the <articad> records out of the file."
+    return [Finding(code="W_IMPORT_STALE", where=str(path), message=message, hint=hint)]
 
 
 def assembly_of(records: list[Record], folder: Folder, path: Path) -> Assembly:

@@ -23,7 +23,7 @@ from articad.geometry.shapes import box, cylinder, sphere
 from articad.importers.fusing import fused
 from articad.importers.raw import ENDLESS, IDENTITY, RawJoint, RawLink, RawModel, RawTie, aligned, assemble, floating
 from articad.importers.reading import MAX_LINKS, MM_PER_M, Folder, read_xml, unreadable
-from articad.importers.records import assembly_of, read_records
+from articad.importers.records import assembly_of, read_records, stale
 from articad.kinematics.joints import JointType
 
 FloatArray = NDArray[np.float64]
@@ -53,9 +53,14 @@ def read_urdf(path: str | Path, *, root: str | Path | None = None, metadata: boo
     if document.tag != "robot":
         raise unreadable(path, f"line {document.sourceline}", f"The root element is <{document.tag}>, not <robot>.")
     texts = [element.text or "" for element in document.iterfind("articad")]
+    edited: list[Finding] = []
     if metadata and texts:
-        return assembly_of(read_records(texts, path), folder, path)
+        records = read_records(texts, path)
+        edited = stale(records, [*document.iterfind("link"), *document.iterfind("joint")], path)
+        if not edited:
+            return assembly_of(records, folder, path)
     model = _model(document, folder, path)
+    model.findings += edited
     return assemble(fused(model) if fuse else model, path)
 
 

@@ -165,7 +165,7 @@ def test_shapes_keep_their_colours_frames_and_files() -> None:
     assert len(root.findall("link/collision")) == 1
 
 
-def test_obj_files_hold_the_mesh_bit_for_bit(tmp_path: Path) -> None:
+def test_obj_files_hold_the_mesh(tmp_path: Path) -> None:
     bundle = write_mjcf(all_joint_kinds(), meshes="obj")
     bundle.write(tmp_path)
 
