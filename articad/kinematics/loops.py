@@ -32,7 +32,7 @@ _DROPPED = 1e-10  # σ/σ₁ below which a direction is left out of a step
 _LARGEST_STEP = 0.5  # rad, or lengths L: the linear model is worth nothing beyond
 _DAMPING_FALL, _DAMPING_RISE = 0.2, 8.0  # of a step that helped, and of one that did not
 _DAMPING_START = 1e-3
-_STRAIGHT = 1e-7  # rad: a mismatch so small that the logarithm's Jacobian is the identity for every purpose here
+_STRAIGHT = 1e-5  # rad: a mismatch so small that the square term of the logarithm's Jacobian is below rounding
 _NEAR_PI = -0.9  # cos θ below which the logarithm is taken by quaternions instead of the sine
 _FALLBACK_LENGTH = 100.0  # mm, where no part has two connectors apart
 
@@ -148,11 +148,7 @@ class ClosureSystem:
             axes, origins = (part.swapaxes(0, 1) for part in self.arrays.twists.axes(T, Q))  # (batch, freedoms, 3)
             moments = quaternion.cross(axes, p_B[:, :, None, :] - origins)
             lin = (moments * self._turn_weight + axes * self._slide_weight) @ R_A
-            ang = (axes * self._spin_weight) @ R_A
-            if np.abs(phi).max(initial=0.0) > _STRAIGHT:  # rate of the rotation vector: (I − ½[φ] + c [φ]²) of the spin
-                around = phi[:, :, None, :]
-                once = quaternion.cross(around, ang)
-                ang = ang - 0.5 * once + quaternion.inverse_coefficient(phi)[:, :, None, :] * quaternion.cross(around, once)
+            ang = (axes * self._spin_weight) @ (R_A @ _log_jacobian(phi))
             blocks = J[:, : 6 * loops].reshape(batch, loops, 6, n)
             blocks[:, :, :3], blocks[:, :, 3:] = lin.transpose(1, 0, 3, 2), ang.transpose(1, 0, 3, 2)
             self._fill_mismatch(r, t, phi)
@@ -306,9 +302,9 @@ def _norm(r: FloatArray) -> float:
 
 def _damped_step(s: FloatArray, b: FloatArray, Vt: FloatArray, damping: float, dropped: float = _DROPPED) -> FloatArray:
     """Return −V diag(s/(s² + λ²)) b, without the directions that have no singular value, capped in length."""
-    kept = s > dropped * s[0] if s.size and s[0] > 0 else np.zeros(s.shape, dtype=bool)
-    inverse = np.where(kept, s / np.where(kept, s * s + damping * damping, 1.0), 0.0)
-    y: FloatArray = -(Vt.T @ (inverse * b))
+    inverse = s / (s * s + (damping * damping + 1e-300))
+    inverse[s <= dropped * s[0]] = 0.0
+    y: FloatArray = -((inverse * b) @ Vt)
     largest = np.abs(y).max(initial=0.0)
     return y * (_LARGEST_STEP / largest) if largest > _LARGEST_STEP else y
 
@@ -358,13 +354,32 @@ def _characteristic_length(joints: Sequence[Joint]) -> float:
 
 def _rotation_log(R: FloatArray) -> FloatArray:
     """Return rotation vectors `(*batch, 3)` of matrices: by the sine where that is accurate, which is where loops are closed."""
-    twice_sine = np.empty(R.shape[:-1])
-    twice_sine[..., 0] = R[..., 2, 1] - R[..., 1, 2]
-    twice_sine[..., 1] = R[..., 0, 2] - R[..., 2, 0]
-    twice_sine[..., 2] = R[..., 1, 0] - R[..., 0, 1]
-    cosine = 0.5 * (R[..., 0, 0] + R[..., 1, 1] + R[..., 2, 2] - 1.0)
+    parts = R.reshape(*R.shape[:-2], 9) @ _SINE_AND_TRACE
+    cosine = 0.5 * parts[..., 3] - 0.5
     if cosine.size and cosine.min() < _NEAR_PI:
         return quaternion.log(quaternion.from_matrix(R))
-    sine = 0.5 * np.sqrt((twice_sine * twice_sine).sum(axis=-1)) + 1e-300  # never zero, and never seen
-    phi: FloatArray = twice_sine * (0.5 * np.arctan2(sine, cosine) / sine)[..., None]
+    axis = parts[..., :3]
+    sine = np.sqrt((axis * axis).sum(axis=-1)) + 1e-300  # never zero, and never seen
+    phi: FloatArray = axis * (np.arctan2(sine, cosine) / sine)[..., None]
     return phi
+
+
+def _log_jacobian(phi: FloatArray) -> FloatArray:
+    """Return what a row of spin is multiplied with to give the rate of the rotation vector: (I − ½[φ] + c [φ]²)ᵀ."""
+    S = _crossing(phi)
+    J: FloatArray = _EYE + 0.5 * S
+    if np.abs(phi).max(initial=0.0) > _STRAIGHT:
+        J += quaternion.inverse_coefficient(phi)[..., None] * (S @ S)
+    return J
+
+
+def _crossing(d: FloatArray) -> FloatArray:
+    """Return the matrices with a @ crossing(d) = a × d for rows a."""
+    return (d @ _EPSILON).reshape(*d.shape[:-1], 3, 3)
+
+
+_EYE = np.eye(3)
+_EPSILON = np.zeros((3, 9))  # (a × d)ⱼ = εⱼᵢₖ aᵢ dₖ
+for _k, _ij, _sign in ((0, 5, 1), (0, 7, -1), (1, 6, 1), (1, 2, -1), (2, 1, 1), (2, 3, -1)):
+    _EPSILON[_k, _ij] = -_sign
+_SINE_AND_TRACE = np.concatenate([0.5 * _EPSILON.T, np.eye(3).reshape(9, 1)], axis=1)

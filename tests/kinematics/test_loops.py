@@ -5,12 +5,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from articad.connectors import SE3, Mate
-from articad.errors import DeadPointError, KinematicsError, LoopError, PlanError
-from articad.kinematics import Coupling, Mechanism
+from articad.errors import DeadPointError, KinematicsError, LoopError
+from articad.kinematics import Coupling, JointType, Mechanism
 from articad.kinematics.loops import CLOSED, ClosureSystem
 from tests.kinematics.linkages import (
     at,
@@ -272,8 +272,10 @@ def closable_loops(draw: st.DrawFn) -> Mechanism:
     rng = np.random.default_rng(draw(st.integers(0, 2**32 - 1)))
     n = draw(st.integers(3, 6))
     kinds = [draw(st.sampled_from(KINDS)) for _ in range(n)]
-    total = sum({"fixed": 0, "revolute": 1, "slider": 1, "screw": 1, "cylindrical": 2, "universal": 2}.get(k, 3) for k in kinds)
-    assume(7 <= total <= 9)
+    while sum(JointType(k).freedoms for k in kinds) < 7:
+        kinds[min(range(n), key=lambda i: JointType(kinds[i]).freedoms)] = draw(st.sampled_from(["ball", "planar", "cylindrical"]))
+    while sum(JointType(k).freedoms for k in kinds) > 9:
+        kinds[max(range(n), key=lambda i: JointType(kinds[i]).freedoms)] = "revolute"
     parts = [f"p{i}" for i in range(n)]
     joints = []
     for i, kind in enumerate(kinds):
@@ -285,14 +287,10 @@ def closable_loops(draw: st.DrawFn) -> Mechanism:
         lead = 20.0 if kind == "screw" else 0.0
         joints.append(from_rest(f"j{i}", kind, near, far, random_pose(rng, 100.0), rest=rest, mate=mate, lead=lead))
     joints.append(from_rest("extra", "revolute", "p1", "extra", random_pose(rng, 50.0), rest=[0.2]))
-    try:
-        mechanism = Mechanism([*parts, "extra"], "p0", joints)
-    except PlanError:
-        assume(condition=False)
-    return mechanism
+    return Mechanism([*parts, "extra"], "p0", joints)
 
 
-@settings(max_examples=40)
+@settings(max_examples=30)
 @given(closable_loops(), st.integers(0, 2**16))
 def test_random_closable_loops_close_to_rounding_and_keep_their_drivers(mechanism: Mechanism, seed: int) -> None:
     assert mechanism.mobility >= 2  # the loop's and the branch's
@@ -309,11 +307,12 @@ def test_random_closable_loops_close_to_rounding_and_keep_their_drivers(mechanis
     assert np.allclose(columns, q, rtol=0, atol=1e-15)
 
 
-@settings(max_examples=15)
+@settings(max_examples=25)
 @given(closable_loops())
 def test_the_jacobian_of_a_loop_is_the_derivative_of_its_poses(mechanism: Mechanism) -> None:
-    assume(not any(c.unit == "1" for c in mechanism.drivers))
-    assume(mechanism.branch.analysis.near > 1e-2)
+    branch = mechanism.branch
+    if any(c.unit == "1" for c in mechanism.drivers) or branch.follower.linearized(branch.Q).s.min() < 0.1:
+        return  # beside a dead point differences show the curvature instead
     part, h = mechanism.parts[-1], 1e-5
     J = mechanism.jacobian(mechanism.rest, part, at(5, 6, 7))
     for k in range(mechanism.nq):
