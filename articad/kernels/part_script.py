@@ -222,10 +222,14 @@ def _is_one_solid(shape: Any) -> bool:
 
 
 def _fingerprint(shape: Any, connectors: dict[str, Json]) -> list[float]:
-    """Return volume, centre, bounding box and connectors as numbers."""
+    """Return volume, centre, bounding box, connectors and the squares of the radii of gyration as numbers.
+
+    The last see what moves in a pattern, which leaves all the others alone.
+    """
     numbers = measure.properties(shape)
+    gyration = [moment / numbers["volume_mm3"] for row in numbers["inertia_mm5"] for moment in row]
     frames = [number for name in sorted(connectors) for axis in ("o", "z", "x") for number in connectors[name][axis] or ()]
-    return [numbers["volume_mm3"], *numbers["com_mm"], *numbers["bbox_mm"][0], *numbers["bbox_mm"][1], *frames]
+    return [numbers["volume_mm3"], *numbers["com_mm"], *numbers["bbox_mm"][0], *numbers["bbox_mm"][1], *gyration, *frames]
 
 
 # ---------------------------------------------------------------------- what a failed script held
