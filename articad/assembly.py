@@ -15,8 +15,11 @@ from numpy.typing import ArrayLike, NDArray
 from articad.connectors.se3 import SE3
 from articad.errors import LimitError, PlanError, UnknownJointError
 from articad.findings import Findings
+from articad.geometry.mesh import TriMesh
 from articad.geometry.part import MassProperties, Part
+from articad.interference.certificate import DEFAULT_BUDGET_S, DEFAULT_EPSILON_MM, Certificate, certify
 from articad.interference.check import Checks, check_pose
+from articad.interference.sweep import sweep
 from articad.kernels.build123d import Build123dKernel
 from articad.kernels.kernel import BuildCache, PartKernel
 from articad.kernels.parts import Progress, RealisedPart, build_parts, find_scripts
@@ -325,14 +328,63 @@ class Assembly:
         at_rest = q is None
         poses = self.poses(self.mechanism.rest if q is None else q)
         return check_pose(
-            {name: part.mesh for name, part in self.parts.items() if part.mesh is not None},
+            self._meshes(),
             dict(Poses(self.mechanism.parts, poses)),
             joints=self.joints,
             waivers=self.waivers,
-            deflection={name: part.deflection for name, part in self.parts.items()},
+            deflection=self._deflections(),
             over="rest" if at_rest else "pose",
             fits=self.fits,
             ground=self.ground,
+        )
+
+    def sweep(self, joints: Sequence[str] | None = None, *, steps: int = 60, together: bool = False, samples: int = 0) -> Checks:
+        """Sample the motion of every driver over its range, the others at rest; a sample proves nothing between two poses.
+
+        Args:
+            joints: Names of the joints to move; all that drive by default.
+            steps: Poses per coordinate.
+            together: Whether to move every two coordinates on a grid as well.
+            samples: Further poses, scattered over all coordinates at once.
+        """
+        return sweep(
+            self._meshes(),
+            self.mechanism,
+            joints=joints,
+            steps=steps,
+            together=together,
+            samples=samples,
+            waivers=self.waivers,
+            deflection=self._deflections(),
+            fits=self.fits,
+        )
+
+    def certify(
+        self,
+        joints: Sequence[str] | None = None,
+        *,
+        pairs: bool = True,
+        epsilon: float = DEFAULT_EPSILON_MM,
+        budget: float = DEFAULT_BUDGET_S,
+    ) -> Certificate:
+        """Prove that no parts meet while joints move over their whole ranges; what the budget does not suffice for is "not checked".
+
+        Args:
+            joints: Names of the joints to be proven; all that move by default.
+            pairs: Whether joints are also moved two at a time.
+            epsilon: Distances up to here are contact [mm].
+            budget: Seconds.
+        """
+        return certify(
+            self._meshes(),
+            self.mechanism,
+            joints=joints,
+            pairs=pairs,
+            epsilon=epsilon,
+            budget=budget,
+            deflection=self._deflections(),
+            waivers=self.waivers,
+            fits=self.fits,
         )
 
     def mass(self, q: ArrayLike | None = None) -> MassProperties:
@@ -352,6 +404,12 @@ class Assembly:
     def __repr__(self) -> str:
         joints = ", ".join(f"{joint.name}: {joint.type}" for joint in self.joints if joint.type is not JointType.FIXED)
         return f"<Assembly {self.name}: {len(self.parts)} parts, {self.mechanism.mobility} freedoms ({joints})>"
+
+    def _meshes(self) -> dict[str, TriMesh]:
+        return {name: mesh for name, part in self.parts.items() if (mesh := part.mesh) is not None}
+
+    def _deflections(self) -> dict[str, float]:
+        return {name: part.deflection for name, part in self.parts.items()}
 
     def _frame(self, part: str, frame: SE3 | str | None) -> SE3:
         if isinstance(frame, str):
