@@ -31,7 +31,7 @@ from articad.kernels.results import PoisonedError, number, numbers, read_bytes, 
 from articad.kernels.zygote import Outcome, Zygote, ZygoteDiedError, ends_by
 
 ANGLE_DEG = 5.0  # of the mesh, where the deflection allows more
-WORKER = 4  # raised when the worker measures or meshes otherwise, so that what it built before is built again
+WORKER = 5  # raised when the worker measures or meshes otherwise, so that what it built before is built again
 MESH_VOLUME_SHARE = 1.0  # times area and deflection: by which a mesh's volume may differ from the solid's
 RESULT_FILES = {"npz": "part.npz", "brep": "part.brep", "step": "part.step"}
 _MAGIC = {"brep": b"\nCASCADE Topology", "step": b"ISO-10303-21;"}
@@ -52,7 +52,11 @@ class _Ran:
 
 
 class Build123dKernel:
-    """Builds part scripts with build123d in a sandbox. Threads may share one; nothing is started before the first part."""
+    """Builds part scripts with build123d in a sandbox.
+
+    Nothing is started before the first part. Threads may share a kernel, and kernels share the worker's process: it is
+    started once, which takes two seconds, and ends with this process if not by `close`.
+    """
 
     name = "build123d"
 
@@ -61,7 +65,7 @@ class Build123dKernel:
         *,
         sandbox: str | None = None,
         timeout: float = 60.0,
-        probe_timeout: float = 30.0,
+        probe_timeout: float = 120.0,
         memory: int = 3 * 2**30,
         layers: Collection[str] | None = None,
     ) -> None:
@@ -93,7 +97,8 @@ class Build123dKernel:
     @property
     def pid(self) -> int | None:
         """The worker's process, or bubblewrap's round it; None before it is started."""
-        return self._zygote.pid
+        zygote = self.__dict__.get("_zygote")
+        return None if zygote is None else zygote.pid
 
     @cached_property
     def _layers(self) -> frozenset[str]:
@@ -102,7 +107,9 @@ class Build123dKernel:
 
     @cached_property
     def _zygote(self) -> Zygote:
-        return Zygote(self._layers)
+        zygote = Zygote.shared(self._layers)
+        zygote.users.add(self)
+        return zygote
 
     @cached_property
     def _scratch(self) -> tempfile.TemporaryDirectory[str]:
@@ -117,8 +124,12 @@ class Build123dKernel:
         self._zygote.start()
 
     def close(self) -> None:
-        """End the worker's process; the next part starts it again."""
-        self._zygote.close()
+        """End the worker's process, unless another kernel of this process uses it; the next part starts it again."""
+        zygote = self.__dict__.pop("_zygote", None)
+        if zygote is not None:
+            zygote.users.discard(self)
+            if not zygote.users:
+                zygote.close()
 
     def build(
         self,

@@ -12,11 +12,12 @@ import socket
 import subprocess
 import sys
 import threading
+import weakref
 from collections.abc import Collection, Mapping
 from concurrent.futures import Future
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 from articad.errors import KernelUnavailableError
 from articad.findings import Finding
@@ -62,7 +63,17 @@ class Outcome:
 class Zygote:
     """One process that has the kernel imported and forks a confined one for each job; jobs may be handed in from many threads."""
 
+    _shared: ClassVar[dict[frozenset[str], Zygote]] = {}
+    _shared_lock = threading.Lock()
+
+    @classmethod
+    def shared(cls, layers: Collection[str]) -> Zygote:
+        """Return the one zygote of this process that puts on these layers."""
+        with cls._shared_lock:
+            return cls._shared.setdefault(frozenset(layers), cls(layers))
+
     def __init__(self, layers: Collection[str]) -> None:
+        self.users: weakref.WeakSet[object] = weakref.WeakSet()  # who would miss it
         self._layers = tuple(layer for layer in sandbox.LAYERS if layer in layers)
         self._lock = threading.Lock()
         self._numbers = itertools.count(1)

@@ -20,6 +20,7 @@ from typing import Any, Self
 from articad.errors import BuildError, KernelError
 from articad.kernels.build123d import Build123dKernel
 from articad.kernels.sandbox import Limits
+from tests.kernels.conftest import kernel_of_its_own
 
 MARK = "articad-secret-9f2c61"  # what no attack may see
 LIMITS = Limits(seconds=3.0, probe_seconds=0.0, memory=2 * 2**30, file_size=8 * 2**20)
@@ -269,7 +270,7 @@ def script(attack: str, target: dict[str, Any]) -> bytes:
 @contextlib.contextmanager
 def kernel_at(layers: tuple[str, ...]) -> Iterator[Build123dKernel]:
     """Start a kernel that puts on these layers and no others."""
-    kernel = Build123dKernel(sandbox="weak", layers=layers)
+    kernel = kernel_of_its_own(sandbox="weak", layers=layers)
     kernel.limits = dataclasses.replace(LIMITS)
     os.environ["ARTICAD_TEST_API_KEY"] = MARK
     try:

@@ -10,6 +10,7 @@ import pytest
 
 from articad.kernels.build123d import Build123dKernel
 from articad.kernels.kernel import BuiltPart
+from articad.kernels.zygote import Zygote
 
 Brief = dict[str, Any]
 Build = Callable[..., BuiltPart]
@@ -17,9 +18,17 @@ Build = Callable[..., BuiltPart]
 HEAD = "from build123d import *\nfrom math import *\n\n\ndef build(part):\n    d = part.dimensions\n"
 
 
+def kernel_of_its_own(**options: Any) -> Build123dKernel:
+    """Return a kernel that shares its process with no other."""
+    kernel = Build123dKernel(**options)
+    kernel.__dict__["_zygote"] = zygote = Zygote(kernel._layers)
+    zygote.users.add(kernel)
+    return kernel
+
+
 @pytest.fixture(scope="session")
 def kernel() -> Iterator[Build123dKernel]:
-    kernel = Build123dKernel(timeout=20.0)
+    kernel = kernel_of_its_own(timeout=20.0)
     yield kernel
     kernel.close()
 

@@ -17,7 +17,7 @@ from articad.geometry.mesh import TriMesh
 from articad.geometry.part import Solid
 from articad.kernels.build123d import Build123dKernel
 from articad.kernels.kernel import BuildCache, BuiltPart
-from tests.kernels.conftest import Build
+from tests.kernels.conftest import Build, kernel_of_its_own
 
 A, B, C = 30.0, 20.0, 10.0
 R, H = 7.0, 24.0
@@ -151,7 +151,7 @@ def test_files_are_those_that_the_contract_names(build: Build) -> None:
 
 def test_another_zygote_writes_the_same_bytes(build: Build) -> None:
     body = "s = Box(30, 20, 10) - Cylinder(4, 30)\nreturn fillet(s.edges().filter_by(Axis.Z), 2), {}"
-    other = Build123dKernel()
+    other = kernel_of_its_own()
     try:
         first, second = build(body), build(body, with_kernel=other)
     finally:

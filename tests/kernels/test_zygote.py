@@ -18,6 +18,7 @@ from articad.errors import KernelError, KernelUnavailableError
 from articad.kernels import libraries, zygote
 from articad.kernels.build123d import Build123dKernel
 from tests.kernels.attacks import descendants, settles
+from tests.kernels.conftest import kernel_of_its_own
 
 CUBE = b"from build123d import Box\ndef build(part):\n    return Box(1, 1, 1), {}\n"
 
@@ -67,7 +68,7 @@ def test_parts_are_built_side_by_side(kernel: Build123dKernel, brief: dict[str, 
 
 
 def test_closing_ends_every_process(brief: dict[str, Any]) -> None:
-    kernel = Build123dKernel()
+    kernel = kernel_of_its_own()
     kernel.build(CUBE, brief)
     pids = {kernel.pid or 0, *descendants(kernel)}
     assert all(map(is_running, pids))
@@ -75,21 +76,16 @@ def test_closing_ends_every_process(brief: dict[str, Any]) -> None:
     kernel.close()
 
     assert settles(lambda: not any(map(is_running, pids)))
-    assert kernel.build(CUBE, brief).solid.volume == pytest.approx(1)  # it may be used again
-    kernel.close()
 
 
-@pytest.mark.parametrize("end", ["kill", "raise"])
-def test_the_zygote_goes_with_its_owner(end: str) -> None:
+def test_the_zygote_goes_with_its_owner() -> None:
     code = (
-        "import os, signal, sys\n"
+        "import os, signal\n"
         "from articad.kernels.build123d import Build123dKernel\n"
         "kernel = Build123dKernel()\n"
         "kernel.warm_up()\n"
         "print(kernel.pid, flush=True)\n"
-        f"end = {end!r}\n"
-        "if end == 'kill':\n    os.kill(os.getpid(), signal.SIGKILL)\n"
-        "if end == 'raise':\n    raise SystemExit(3)\n"
+        "os.kill(os.getpid(), signal.SIGKILL)\n"
     )
     started = subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, cwd=Path(__file__).parents[2])
     assert started.stdout is not None
@@ -119,9 +115,25 @@ def test_a_fork_of_the_owner_starts_its_own(kernel: Build123dKernel, brief: dict
     assert kernel.pid == owned
 
 
+def test_kernels_share_a_process_until_the_last_one_closes(brief: dict[str, Any]) -> None:
+    first, second = Build123dKernel(layers=("landlock", "seccomp")), Build123dKernel(layers=("landlock", "seccomp"), timeout=9.0)
+    first.build(CUBE, brief)
+    second.build(CUBE, brief)
+    pid = first.pid
+    assert pid is not None
+    assert second.pid == pid
+
+    first.close()
+    assert is_running(pid)
+    assert second.build(CUBE, brief).solid.volume == pytest.approx(1)
+
+    second.close()
+    assert settles(lambda: not is_running(pid))
+
+
 def test_a_thread_that_ends_does_not_take_the_zygote_with_it(brief: dict[str, Any]) -> None:
     """The kernel's parent-death signal follows the thread that started a process, not its process."""
-    kernel = Build123dKernel()
+    kernel = kernel_of_its_own()
     thread = threading.Thread(target=kernel.warm_up)
     thread.start()
     thread.join()
@@ -150,14 +162,14 @@ def test_a_worker_that_cannot_import_its_kernel_says_so(monkeypatch: pytest.Monk
     monkeypatch.setattr(zygote, "_BOOT", broken)
 
     with pytest.raises(KernelUnavailableError, match="build123d"):
-        Build123dKernel().build(CUBE, brief)
+        kernel_of_its_own().build(CUBE, brief)
 
 
 def test_a_worker_that_ends_at_once_says_so(monkeypatch: pytest.MonkeyPatch, brief: dict[str, Any]) -> None:
     monkeypatch.setattr(zygote, "_BOOT", "raise SystemExit(1)")
 
     with pytest.raises(KernelError, match="ended before it was ready"):
-        Build123dKernel().build(CUBE, brief)
+        kernel_of_its_own().build(CUBE, brief)
 
 
 def test_missing_libraries_are_found_by_asking_the_loader(monkeypatch: pytest.MonkeyPatch) -> None:
