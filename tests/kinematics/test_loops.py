@@ -465,3 +465,20 @@ def test_several_drivers_meet_a_dead_point_together() -> None:
     assert caught.value.driver == "a"
     batch = mechanism.poses(np.array([[0.1, 0.1], [0.3, -0.3], [0.0, 0.0]]))
     assert batch[1].allclose(mechanism.poses([0.3, -0.3]), mm=1e-9, rad=1e-10)
+
+
+def test_a_ball_that_cannot_drive_is_refused_as_a_driver() -> None:
+    plain = four_bar()
+    joints = [
+        from_rest("crank", "revolute", "g", "a", at(0)),
+        from_rest("knee", "ball", "a", "b", at(10, 30)),
+        from_rest("rod", "ball", "b", "c", at(90, 40), driver=True),
+        from_rest("rocker", "revolute", "g", "c", at(100) @ SE3.rot_x(0.3)),
+    ]
+    mechanism = Mechanism(("g", "a", "b", "c"), "g", joints)
+    assert mechanism.mobility == 2  # the crank's, and the rod's idle spin
+    assert [c.name for c in mechanism.drivers] == ["crank"]
+    (found,) = mechanism.findings().of("E_DRIVER")
+    assert found.where == "joints.rod"
+    assert max(mismatch(mechanism, np.array([0.4]))) < CLOSES_MM
+    assert plain.findings().of("E_DRIVER") == ()
