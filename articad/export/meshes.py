@@ -16,8 +16,8 @@ MM_TO_M = 0.001  # the scale that formats apply to the files
 class MeshFiles:
     """Collects the meshes that a document names; equal ones share a file. `by_digest` holds the path of each mesh."""
 
-    def __init__(self, kind: MeshKind = "stl", folder: str = "meshes") -> None:
-        self.kind, self.folder = kind, folder
+    def __init__(self, kind: MeshKind = "stl", folder: str = "meshes", prefix: str = "") -> None:
+        self.kind, self.folder, self.prefix = kind, folder, prefix
         self.files: dict[str, bytes] = {}
         self._names = Names()
         self.by_digest: dict[str, str] = {}
@@ -30,3 +30,7 @@ class MeshFiles:
             self.by_digest[mesh.digest] = path
             self.files[path] = write_stl(mesh) if kind == "stl" else write_obj(mesh)
         return self.by_digest[mesh.digest]
+
+    def uri(self, mesh: TriMesh, name: str) -> str:
+        """Return how the document names the file of this mesh; see `path`."""
+        return self.prefix + self.path(mesh, name)

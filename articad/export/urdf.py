@@ -12,7 +12,7 @@ from articad.connectors.se3 import SE3
 from articad.export.bundle import Bundle
 from articad.export.closing import TiedPoint, tied_points
 from articad.export.follow import followers
-from articad.export.hulls import hull_overlaps, mating_pairs, same_group_pairs
+from articad.export.hulls import HullOverlap, hull_overlaps, mating_pairs, same_group_pairs
 from articad.export.inertia import Inertial
 from articad.export.losses import Feature, losses_of, refuse
 from articad.export.lowering import Follows, Freedom, Link, LoweredJoint, LoweredModel, Placed, lower
@@ -20,6 +20,8 @@ from articad.export.markup import child, document, number, numbers, rgba, rpy
 from articad.export.meshes import MM_TO_M, MeshFiles, MeshKind
 from articad.export.metadata import dumps, records
 from articad.export.mimic import linear_followers
+from articad.export.ros import add_control, package_files, require_package_name
+from articad.export.ros import srdf as disabled_pairs
 
 if TYPE_CHECKING:
     from articad.assembly import Assembly
@@ -31,7 +33,16 @@ DRAKE = "http://drake.mit.edu"  # the namespace of Drake's own elements
 FAR_M = 1e3  # URDF has no endless prismatic joint
 
 
-def write_urdf(assembly: Assembly, *, strict: bool = False, meshes: MeshKind = "stl", loops: Loops = "none") -> Bundle:
+def write_urdf(
+    assembly: Assembly,
+    *,
+    strict: bool = False,
+    meshes: MeshKind = "stl",
+    loops: Loops = "none",
+    package: str | None = None,
+    srdf: bool = False,
+    ros2_control: bool = False,
+) -> Bundle:
     """Write an assembly as URDF.
 
     Link frames are joint frames, the root link is the ground part, and every joint's value is ours in rad or m, so all zero is q = 0.
@@ -44,27 +55,52 @@ def write_urdf(assembly: Assembly, *, strict: bool = False, meshes: MeshKind = "
         meshes: Format of the mesh files: STL holds single precision, OBJ nine digits.
         loops: How closed loops are written besides the tree: not at all, as `<loop_joint>` for Isaac Sim, as `<drake:ball_constraint>`
             for Drake, or as `<mimic>` of the driver, where a linear relation is as good as 0.1 mm.
+        package: Name of a ROS 2 package to lay out: `urdf/`, `meshes/`, a manifest, and meshes named `package://…`.
+        srdf: Add `<name>.srdf` with the pairs of links that need no collision check.
+        ros2_control: Add a `<ros2_control>` system that commands the drivers' positions, on mock hardware.
 
     Returns:
         `<name>.urdf`, `meshes/…`, and the losses.
 
     Raises:
         UnrepresentableError: If `strict` and there is such a loss.
-        ExportError: E_MIMIC_FIT if `loops` is "mimic" and no linear relation is good enough.
+        ExportError: E_MIMIC_FIT if `loops` is "mimic" and no linear relation is good enough; or if ROS does not take the package's name.
     """
+    if package is not None:
+        require_package_name(package)
     model = lower(assembly)
     tied = {loop.name: tied_points(model, loop) for loop in model.loops} if loops in {"isaac", "drake"} else {}
-    losses = losses_of("urdf", (*_loop_features(model, loops, tied), *_hull_features(assembly, model)))
+    overlaps = _hull_overlaps(assembly, model)
+    losses = losses_of("urdf", (*_loop_features(model, loops, tied), *(_hull_feature(overlap) for overlap in overlaps)))
     if strict:
         refuse(losses)
-    files = MeshFiles(meshes)
-    root = etree.Element("robot", {"name": model.name}, nsmap={"drake": DRAKE} if loops == "drake" else None)
-    _compiler(root)
-    _materials(root, model)
-    carried = {joint.child: joint for joint in model.joints}
+    files = MeshFiles(meshes, prefix="" if package is None else f"package://{package}/")
     follows = followers(model, [driver.name for driver in assembly.mechanism.drivers])
     if loops == "mimic" and model.loops:
         follows |= linear_followers(assembly, model)
+    root = etree.Element("robot", {"name": model.name}, nsmap={"drake": DRAKE} if loops == "drake" else None)
+    _compiler(root)
+    _materials(root, model)
+    _tree(root, model, follows, files)
+    for loop in model.loops:
+        for point in tied.get(loop.name, ()):
+            (_isaac if loops == "isaac" else _drake)(root, loop, point)
+    for record in records(assembly, model, files.by_digest, [*root.iterfind("link"), *root.iterfind("joint")]):
+        child(root, "articad", {"kind": str(record["kind"])}, dumps(record))
+    if ros2_control:
+        add_control(root, assembly, model)
+    documents = {"urdf": document(root)} | ({"srdf": _disabled_pairs(assembly, model, overlaps)} if srdf else {})
+    if package is None:
+        main = {f"{model.name}.{kind}": content for kind, content in documents.items()}
+    else:
+        main = {f"{kind}/{model.name}.{kind}": content for kind, content in documents.items()}
+        main |= package_files(package, model.name, [*documents, files.folder])
+    return Bundle({**main, **files.files}, losses)
+
+
+def _tree(root: Any, model: LoweredModel, follows: dict[str, Follows], files: MeshFiles) -> None:
+    """Write links and joints, each joint after the link that it moves, carriers before it."""
+    carried = {joint.child: joint for joint in model.joints}
     for link in model.links:
         joint = carried.get(link.name)
         carriers = _carrier_count(joint)
@@ -75,12 +111,11 @@ def write_urdf(assembly: Assembly, *, strict: bool = False, meshes: MeshKind = "
         _link(root, link, whole, files)
         if joint is not None:
             _joints(root, joint, follows)
-    for loop in model.loops:
-        for point in tied.get(loop.name, ()):
-            (_isaac if loops == "isaac" else _drake)(root, loop, point)
-    for record in records(assembly, model, files.by_digest, [*root.iterfind("link"), *root.iterfind("joint")]):
-        child(root, "articad", {"kind": str(record["kind"])}, dumps(record))
-    return Bundle({f"{model.name}.urdf": document(root), **files.files}, losses)
+
+
+def _disabled_pairs(assembly: Assembly, model: LoweredModel, overlaps: list[HullOverlap]) -> bytes:
+    order, joints = assembly.mechanism.parts, assembly.mechanism.joints
+    return disabled_pairs(model, mating_pairs(joints, order), sorted(same_group_pairs(joints, order)), overlaps)
 
 
 def _compiler(root: Any) -> None:
@@ -132,7 +167,7 @@ def _inertial(link: Any, inertial: Inertial) -> None:
 def _shape(link: Any, tag: str, placed: Placed, name: str, files: MeshFiles) -> Any:
     element = child(link, tag)
     _origin(element, placed.T_link_shape)
-    mesh = {"filename": files.path(placed.shape.mesh, name), "scale": numbers([MM_TO_M] * 3)}
+    mesh = {"filename": files.uri(placed.shape.mesh, name), "scale": numbers([MM_TO_M] * 3)}
     child(child(element, "geometry"), "mesh", mesh)
     return element
 
@@ -207,12 +242,15 @@ def _loop_features(model: LoweredModel, loops: Loops, tied: Mapping[str, tuple[T
     ]
 
 
-def _hull_features(assembly: Assembly, model: LoweredModel) -> list[Feature]:
+def _hull_overlaps(assembly: Assembly, model: LoweredModel) -> list[HullOverlap]:
     """Return the pairs whose hulls overlap at rest and that readers do not skip by themselves, as they skip a parent and its child."""
     order = assembly.mechanism.parts
     chained = {frozenset((joint.joint.parent, joint.joint.child)) for joint in model.joints if len(joint.freedoms) > 1}
     mating = {pair for pair in mating_pairs(assembly.mechanism.joints, order) if frozenset(pair) not in chained}
     skip = mating | same_group_pairs(assembly.mechanism.joints, order)
     shapes = {link.part.name: tuple(placed.shape for placed in link.collisions) for link in model.links}
-    overlaps = hull_overlaps(shapes, assembly.mechanism.rest_poses(), skip=skip)
-    return [Feature("hull", "parts." + "+".join(overlap.parts), f"hulls share {overlap.volume:.3g} mm³") for overlap in overlaps]
+    return hull_overlaps(shapes, assembly.mechanism.rest_poses(), skip=skip)
+
+
+def _hull_feature(overlap: HullOverlap) -> Feature:
+    return Feature("hull", "parts." + "+".join(overlap.parts), f"hulls share {overlap.volume:.3g} mm³")

@@ -1,0 +1,95 @@
+"""What ROS 2 wants around a URDF: a package, pairs that need no collision check, and joints that controllers may drive."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any
+
+from lxml import etree
+
+from articad.errors import ExportError
+from articad.export.hulls import HullOverlap, Pair
+from articad.export.lowering import Freedom, LoweredModel
+from articad.export.markup import child, document, number
+
+if TYPE_CHECKING:
+    from articad.assembly import Assembly
+
+_PACKAGE_NAME = re.compile(r"[a-z][a-z0-9]*(_[a-z0-9]+)*")  # REP 144
+
+_CMAKE = """\
+cmake_minimum_required(VERSION 3.8)
+project({package})
+find_package(ament_cmake REQUIRED)
+install(DIRECTORY {folders} DESTINATION share/${{PROJECT_NAME}})
+ament_package()
+"""
+
+_MANIFEST = """\
+<?xml version="1.0"?>
+<package format="3">
+  <name>{package}</name>
+  <version>0.0.0</version>
+  <description>Description of {robot}, written by articad.</description>
+  <maintainer email="nobody@example.invalid">nobody</maintainer>
+  <license>unlicensed</license>
+  <buildtool_depend>ament_cmake</buildtool_depend>
+  <exec_depend>robot_state_publisher</exec_depend>
+  <export>
+    <build_type>ament_cmake</build_type>
+  </export>
+</package>
+"""
+
+
+def require_package_name(package: str) -> None:
+    """Refuse names that ROS does not take.
+
+    Raises:
+        ExportError: If it is not of lower-case words joined by single underscores.
+    """
+    if not _PACKAGE_NAME.fullmatch(package):
+        raise ExportError(
+            f"{package!r} is no name for a ROS package: use lower-case letters, digits and single underscores, such as 'desk_lamp'."
+        )
+
+
+def package_files(package: str, robot: str, folders: Iterable[str]) -> dict[str, bytes]:
+    """Return the manifest and the build file of an ament package that installs these folders."""
+    return {
+        "package.xml": _MANIFEST.format(package=package, robot=robot).encode(),
+        "CMakeLists.txt": _CMAKE.format(package=package, folders=" ".join(folders)).encode(),
+    }
+
+
+def srdf(model: LoweredModel, mating: Iterable[Pair], rigid: Iterable[Pair], overlaps: Iterable[HullOverlap]) -> bytes:
+    """Return the SRDF that disables collision checks between parts that share a joint, never move, or overlap as hulls."""
+    names = {link.part.name: link.name for link in model.links}
+    root = etree.Element("robot", {"name": model.name})
+    reasons: dict[frozenset[str], tuple[Pair, str]] = {}
+    for reason, pairs in (("Adjacent", mating), ("Never", rigid), ("Default", (overlap.parts for overlap in overlaps))):
+        for pair in pairs:
+            reasons.setdefault(frozenset(pair), (pair, reason))
+    for (a, b), reason in reasons.values():
+        child(root, "disable_collisions", {"link1": names[a], "link2": names[b], "reason": reason})
+    return document(root)
+
+
+def add_control(root: Any, assembly: Assembly, model: LoweredModel) -> None:
+    """Add a `<ros2_control>` system with a position command for every freedom that drives, on mock hardware."""
+    driven = {driver.name for driver in assembly.mechanism.drivers}
+    freedoms: list[Freedom] = [freedom for joint in model.joints for freedom in joint.freedoms if _is_driven(freedom, driven)]
+    system = child(root, "ros2_control", {"name": model.name, "type": "system"})
+    child(child(system, "hardware"), "plugin", text="mock_components/GenericSystem")
+    for freedom in freedoms:
+        joint = child(system, "joint", {"name": freedom.name})
+        child(joint, "command_interface", {"name": "position"})
+        position = child(joint, "state_interface", {"name": "position"})
+        child(position, "param", {"name": "initial_value"}, number(freedom.rest))
+        child(joint, "state_interface", {"name": "velocity"})
+
+
+def _is_driven(freedom: Freedom, driven: set[str]) -> bool:
+    """True for a driver's own coordinate; the angles of a ball have none, but they drive as well."""
+    return freedom.column in driven or (freedom.column is None and freedom.follows is None)
