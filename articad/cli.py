@@ -21,7 +21,6 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from articad.assembly import Assembly
-    from articad.interference.check import Checks
     from articad.kernels.kernel import BuildCache
     from articad.plan.schema import AssemblyPlan
     from articad.run import Run
@@ -113,6 +112,11 @@ def _parameter(text: str) -> tuple[str, float]:
         raise argparse.ArgumentTypeError(f"{value!r} in {text!r} is not a number") from None
 
 
+def _names(text: str) -> tuple[str, ...]:
+    """Read `a,b`."""
+    return tuple(name.strip() for name in text.split(",") if name.strip())
+
+
 def _amount(text: str) -> float:
     """Read a positive number."""
     try:
@@ -175,7 +179,7 @@ def _build(options: argparse.Namespace, terminal: Terminal) -> Report:
     from pathlib import Path
 
     from articad.plan.schema import AssemblyPlan
-    from articad.record import record_assembly, record_checks, record_export, record_pictures
+    from articad.record import record_assembly, record_certificate, record_checks, record_export, record_pictures
     from articad.run import RunRequest, open_or_create
 
     plan = AssemblyPlan.load(options.plan)
@@ -186,7 +190,9 @@ def _build(options: argparse.Namespace, terminal: Terminal) -> Report:
     with open_or_create(RunRequest(prompt=plan.name, options=choices), options.out) as run:
         run.save_plan(plan.dumps(), 0)
         record_assembly(run, assembly)
-        record_checks(run, _verified(assembly, options.verify))
+        record_checks(run, assembly.check() + assembly.sweep() if options.verify == "sampled" else assembly.check())
+        if options.verify == "certified":
+            record_certificate(run, assembly.certify())
         for name in options.formats:
             record_export(run, assembly, name)
         if options.pictures:
@@ -225,6 +231,51 @@ def _check(options: argparse.Namespace, terminal: Terminal) -> Report:
     report = checks.to_json()
     summaries.print_checks(report, terminal)
     return report
+
+
+@_command(
+    "certify",
+    "Prove that a run's parts do not meet while its joints move over their whole ranges.",
+    _argument("run", metavar="RUN"),
+    _argument("--joints", metavar="A,B", type=_names, default=None, help="those to be proven (all that move)"),
+    _argument("--pairs", action=argparse.BooleanOptionalAction, default=True, help="move joints two at a time as well (yes)"),
+    _argument(
+        "--budget", metavar="SECONDS", type=_amount, default=600.0, help="what is not proven by then is not checked, which is not ok (600)"
+    ),
+    _argument("--epsilon", metavar="MM", type=_amount, default=0.001, help="distances up to here are contact (0.001)"),
+)
+def _certify(options: argparse.Namespace, terminal: Terminal) -> Report:
+    from articad import summaries
+    from articad.record import assembly_of, record_certificate
+    from articad.run import Run
+
+    with Run.open(options.run) as run:
+        with terminal.progress("Reading") as tell:
+            assembly = assembly_of(run, progress=tell)
+        certificate = assembly.certify(options.joints, pairs=options.pairs, budget=options.budget, epsilon=options.epsilon)
+        report = record_certificate(run, certificate)
+        summaries.print_certificate(report, terminal)
+        terminal.say(f"Certificate: {run.path / 'certificate.json'}, {len(certificate.claims)} claims")
+    return report
+
+
+@_command(
+    "verify-certificate",
+    "Check a certificate without trusting whoever wrote it.",
+    _argument("file", metavar="FILE", help="certificate.json"),
+    _argument("--meshes", metavar="DIR", help="the meshes it is about, <part>.npz (the folder certificate/ beside it)"),
+)
+def _verify_certificate(options: argparse.Namespace, terminal: Terminal) -> Report:
+    from pathlib import Path
+
+    from articad.verify_certificate import verify_file
+
+    file = Path(options.file)
+    faults = verify_file(file, Path(options.meshes) if options.meshes else file.parent / "certificate")
+    for fault in faults:
+        terminal.say(f"  {fault}")
+    terminal.say(f"{file}: {'refuted' if faults else 'accepted'}.")
+    return {"schema": "articad.verification/1", "ok": not faults, "file": str(file), "faults": faults, "findings": []}
 
 
 @_command(
@@ -504,20 +555,6 @@ def _draw(run: Run) -> None:
 def _sandbox(options: argparse.Namespace) -> Literal["strict", "weak"]:
     """Return how much isolation is asked for: by the flag, else by $ARTICAD_SANDBOX."""
     return "weak" if (options.sandbox or os.environ.get("ARTICAD_SANDBOX")) == "weak" else "strict"
-
-
-def _verified(assembly: Assembly, verify: str) -> Checks:
-    """Return the checks that were asked for; what this version cannot do is a finding, not a pass."""
-    from dataclasses import replace
-
-    from articad.findings import Finding, Findings
-
-    checks = assembly.check()
-    if verify == "rest":
-        return checks
-    message = f"--verify {verify}: this version checks the rest pose only."
-    undone = Finding(code="E_NOT_CHECKED", where="motion", message=message, hint="Use --verify rest.")
-    return replace(checks, findings=Findings([*checks.findings, undone]))
 
 
 # ---------------------------------------------------------------------- the frame

@@ -15,6 +15,7 @@ from articad.export.urdf import Loops, write_urdf
 from articad.findings import Finding
 from articad.geometry.mesh_files import write_stl
 from articad.geometry.part import Solid
+from articad.interference.certificate import Certificate
 from articad.interference.check import Checks
 from articad.kernels.build123d import Build123dKernel
 from articad.kernels.kernel import BuildCache, PartKernel
@@ -105,6 +106,15 @@ def record_pictures(run: Run, assembly: Assembly) -> None:
         run.save_motion(joint, png(filmstrip(frames)), motion_gif(frames))
 
 
+def record_certificate(run: Run, certificate: Certificate) -> Report:
+    """Keep a certificate and its meshes; return its report."""
+    report = certificate.to_json()
+    run.save_certificate(report, certificate.mesh_files())
+    for finding in certificate.findings:
+        run.trace_finding(finding)
+    return report
+
+
 def written(assembly: Assembly, format_name: str, *, strict: bool = False, loops: Loops = "none") -> Bundle:
     """Return the assembly in a format of `WRITERS`; `loops` says how URDF closes loops.
 
@@ -133,15 +143,21 @@ def run_report(run: Run) -> Report:
     assembly, checks, exports = run.assembly(), run.checks(), run.exports()
     if assembly is None or checks is None:
         raise ReadError(f"{run.path} is not finished: it has no {'assembly' if assembly is None else 'checks'} yet.", path=str(run.path))
+    certificate = run.certificate()
+    proven = (
+        {}
+        if certificate is None
+        else {"certificate": {key: certificate[key] for key in ("schema", "ok", "findings", "epsilon_mm", "pairs", "ranges")}}
+    )
     return {
         "schema": "articad.build/1",
-        "ok": all(report["ok"] for report in (assembly, checks, *exports.values())),
+        "ok": all(report["ok"] for report in (assembly, checks, *proven.values(), *exports.values())),
         "run": str(run.path),
         "assembly": assembly,
         "checks": checks,
         "exports": exports,
         "findings": [],
-    }
+    } | proven
 
 
 def assembly_of(run: Run, *, cache: BuildCache | None = None, sandbox: Sandbox = "strict", progress: Progress | None = None) -> Assembly:

@@ -60,6 +60,7 @@ _IMAGES, _PLANS, _PARTS, _REMOVED, _ATTEMPTS, _REPLIES, _SUPERSEDED, _EXPORT = (
 _SCRIPT, _BRIEF, _CONNECTORS, _PART, _STL = "script.py", "brief.json", "connectors.json", "part.json", "part.stl"
 _OUTCOME, _PICTURE = "outcome.json", "partial.png"
 _VIEWS, _MOTION = "views", "motion"
+_CERTIFICATE, _CERTIFIED = "certificate.json", "certificate"
 _TEMPORARY = re.compile(r"\..+\.tmp-[0-9a-f]{8}$")
 
 _SLUG_LENGTH = 40  # characters of the prompt in a run's name: enough to recognise it in a listing
@@ -367,6 +368,17 @@ class Run:
     def save_checks(self, report: Json) -> None:
         """Keep the report `articad.checks/1`."""
         self._write_json(_CHECKS, report)
+
+    def certificate(self) -> Json | None:
+        """Return the report `articad.certificate/1`, or None."""
+        return self._read_json(_CERTIFICATE)
+
+    def save_certificate(self, report: Json, meshes: Mapping[str, bytes]) -> Path:
+        """Keep a certificate with the meshes that it is about, which a checker needs; return its file."""
+        for name, content in sorted(meshes.items()):
+            self._write(f"{_CERTIFIED}/{name}", content)
+        self._write_json(_CERTIFICATE, report)
+        return self.path / _CERTIFICATE
 
     def save_export(self, kind: str, files: Mapping[str, bytes], report: Json) -> Path:
         """Keep an exported format and what was lost in it; return its folder."""

@@ -16,6 +16,8 @@ def print_run(report: Report, terminal: Terminal) -> None:
     print_assembly(report["assembly"], terminal)
     print_checks(report["checks"], terminal)
     print_findings([*report["assembly"]["findings"], *report["checks"]["findings"]], terminal)
+    if "certificate" in report:
+        print_certificate(report["certificate"], terminal)
     print_exports(report["exports"], terminal)
     terminal.say(f"Run: {report['run']}")
 
@@ -55,6 +57,19 @@ def print_checks(report: Report, terminal: Terminal) -> None:
         )
     else:
         terminal.say("Largest overlap depth: 0 mm.")
+
+
+def print_certificate(report: Report, terminal: Terminal) -> None:
+    """Print what is proven, what is not, and how far each joint may move freely."""
+    known = _counts(pair["strength"]["kind"].replace("_", " ") for pair in report["pairs"])
+    verdict = "ok" if report["ok"] else "NOT ok"
+    terminal.say(f"Motion: {verdict}; {counted_things(len(report['pairs']), 'case', 'cases')} ({known or 'nothing moves'}).")
+    for free in report["ranges"]:
+        if free["free"] != free["declared"]:
+            terminal.say(
+                f"  {free['joint']}: free in [{free['free'][0]:.6g}, {free['free'][1]:.6g}], declared {free['declared']} (rad, mm)"
+            )
+    print_findings(report["findings"], terminal)
 
 
 def print_exports(exports: Mapping[str, Report], terminal: Terminal) -> None:

@@ -165,10 +165,36 @@ def test_a_collision_ends_with_1_and_its_finding(chest: Path, tmp_path: Path, re
     assert [pair["verdict"] for pair in built["checks"]["pairs"]] == ["overlap"]
 
 
-def test_a_check_that_this_version_cannot_do_is_not_passed(chest: Path, tmp_path: Path, report: Any) -> None:
+def test_motion_is_checked_as_strongly_as_was_asked(chest: Path, tmp_path: Path, report: Any) -> None:
+    kinds = {}
+    for verify in ("rest", "sampled", "certified"):
+        code, built = report("build", chest, "--verify", verify, "--out", tmp_path / verify)
+        assert (code, built["ok"]) == (0, True)
+        kinds[verify] = {pair["strength"]["kind"] for pair in built.get("certificate", built["checks"])["pairs"]}
+    assert kinds["rest"] <= kinds["sampled"] <= {"sampled"}
+    assert kinds["certified"] == {"certified"}
+
+
+def test_a_lid_that_opens_through_its_box_is_not_certified(chest: Path, tmp_path: Path, report: Any) -> None:
+    plan = PLAN | {"joints": [PLAN["joints"][0] | {"angle_deg": [-100, 20]}]}
+    (chest / "plan.json").write_text(json.dumps(plan))
     code, built = report("build", chest, "--verify", "certified", "--out", tmp_path / "out")
     assert code == 1
-    assert "E_NOT_CHECKED" in [finding["code"] for finding in built["checks"]["findings"]]
+    assert not built["certificate"]["ok"]
+    assert built["checks"]["ok"]
+
+
+def test_a_certificate_is_verified_and_a_forged_one_refuted(chest: Path, tmp_path: Path, report: Any) -> None:
+    out = tmp_path / "out"
+    assert report("build", chest, "--out", out)[0] == 0
+    code, certified = report("certify", out, "--budget", "60")
+    assert (code, certified["ok"]) == (0, True)
+    assert report("verify-certificate", out / "certificate.json")[0] == 0
+    certified["claims"] = certified["claims"][:-1]
+    (out / "certificate.json").write_text(json.dumps(certified))
+    code, verified = report("verify-certificate", out / "certificate.json")
+    assert (code, verified["ok"]) == (1, False)
+    assert verified["faults"]
 
 
 def test_check_needs_no_script(chest: Path, report: Any) -> None:
