@@ -1,0 +1,256 @@
+"""The FreeCAD kernel: part scripts that leave native, editable feature trees.
+
+Two confined FreeCAD processes a part: one runs the script and saves its document; a second opens that document, as a
+person would, judges its tree and moves each of its dimensions. The solid is then measured and meshed as every other
+kernel's is, by a process that ran no script. Nothing of FreeCAD's standard output is read, and no exit code is believed
+alone: a script succeeded when its document holds one valid body with nothing invalid in it.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import json
+import os
+import shutil
+import signal
+import zipfile
+from collections.abc import Iterator, Mapping
+from functools import cached_property
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+from lxml import etree
+from numpy.typing import ArrayLike
+
+from articad.connectors.se3 import SE3
+from articad.errors import ContractError
+from articad.findings import Finding, Findings
+from articad.kernels import freecad_install
+from articad.kernels import sandbox as isolation
+from articad.kernels.build123d import Build123dKernel
+from articad.kernels.contract import probe_findings, read_connectors, solid_findings
+from articad.kernels.failures import poisoned, script_failure
+from articad.kernels.freecad_install import Ended, FreeCAD, Limits
+from articad.kernels.kernel import BuiltPart, Inspect
+from articad.kernels.results import PoisonedError, numbers, read_bytes, read_lines
+from articad.kernels.zygote import Outcome
+
+DOCUMENT = "part.FCStd"
+SEAT = "seat.json"  # where the document's body stands in the part's frame: seven numbers
+RECIPE = 1  # raised when documents come out otherwise, so that what was built before is built again
+MAX_DOCUMENT_BYTES, MAX_UNPACKED_BYTES, MAX_ENTRIES = 64 * 2**20, 512 * 2**20, 10_000
+_PROGRAMS = Path(__file__).parent / "inside_freecad"
+_FAMILIES = ("PartDesign::", "Sketcher::", "Part::", "Spreadsheet::")  # of objects that a part may be made of
+_KINDS = {"App::VarSet", "App::Origin", "App::Line", "App::Plane", "App::Point", "App::LocalCoordinateSystem"}
+_START_SECONDS = 20.0  # for FreeCAD to start, on a cold and busy disk
+
+Json = dict[str, Any]
+
+
+class _Left(NamedTuple):
+    """What one process left: how it ended, what it reported."""
+
+    ended: Ended
+    report: list[Json]
+
+
+class FreeCADKernel(Build123dKernel):
+    """Builds part scripts with FreeCAD in a sandbox; what it leaves besides the usual files is `part.FCStd`."""
+
+    name = "freecad"
+
+    @cached_property
+    def freecad(self) -> FreeCAD:
+        """The FreeCAD that is used.
+
+        Raises:
+            KernelUnavailableError: If there is none of 1.0 or later.
+        """
+        return freecad_install.find()
+
+    @cached_property
+    def version(self) -> str:
+        """FreeCAD, the recipe of its documents, and whatever measures and meshes their solids."""
+        return f"freecad{self.freecad.version_text}.{RECIPE}+{super().version}"
+
+    @property
+    def level(self) -> str:
+        """The isolation that scripts run under."""
+        return "bwrap" if isolation.bubblewrap_problem() is None else isolation.WEAK
+
+    def warm_up(self) -> None:
+        """Find FreeCAD, so that its absence is told before anything is built.
+
+        Raises:
+            KernelUnavailableError: If there is none of 1.0 or later.
+        """
+        _ = self.freecad
+
+    def build(
+        self,
+        script: bytes,
+        brief: Mapping[str, Any],
+        *,
+        folder: Path | None = None,
+        deflection: float = 0.01,
+        probe: bool = True,
+        inspect: Inspect | None = None,
+    ) -> BuiltPart:
+        """Run a script and hold its part to the contract; see `PartKernel.build`."""
+        self._require_sandbox()
+        part, source = str(brief["name"]), script.decode("utf-8", errors="replace")
+        with self._job() as job:
+            try:
+                ran = self._inside("part", job, {"script": source, "part": dict(brief)}, (), (DOCUMENT,), self.limits.seconds)
+                said = ran.report[0] if ran.report else {}
+                if said.get("ok") is not True:
+                    raise script_failure(part, source, ran.report, _outcome(ran.ended), _crash(ran.ended), self.limits)
+                _require_harmless(read_bytes(job / DOCUMENT, MAX_DOCUMENT_BYTES))
+                return self._judged_document(job, brief, said, folder or self._new_folder(), deflection, inspect, probe=probe)
+            except PoisonedError as poison:
+                raise poisoned(part, source, str(poison)) from poison
+
+    def moved(self, built: BuiltPart, matrix: ArrayLike, folder: Path | None = None) -> BuiltPart:
+        """Return the part under a rigid motion or a reflection `(4, 4)`; a mirror image has no document of its own."""
+        target = folder or self._new_folder()
+        matrix = np.asarray(matrix, dtype=np.float64)
+        result = super().moved(built, matrix, target)
+        document = built.folder / DOCUMENT
+        if np.linalg.det(matrix[:3, :3]) > 0 and document.is_file():
+            shutil.copyfile(document, target / DOCUMENT)
+            seat = SE3.from_matrix(matrix)
+            if (built.folder / SEAT).is_file():
+                before = json.loads((built.folder / SEAT).read_text())
+                seat = seat @ SE3.from_quaternion(before[3:], before[:3])
+            (target / SEAT).write_text(json.dumps([float(number) for number in seat.data]))
+        return result
+
+    def _inside(self, program: str, job: Path, told: Json, reads: tuple[str, ...], writes: tuple[str, ...], seconds: float) -> _Left:
+        """Run one of our programs inside FreeCAD on files of the job's folder."""
+        (job / f"{program}.json").write_text(json.dumps(told))
+        names = (f"{program}.json", *reads, f"{program}.report", *writes)
+        with _opened(job, names, len(reads) + 1) as files:
+            limits = Limits(seconds=seconds + _START_SECONDS, memory=self.limits.memory + 2**30, file_size=self.limits.file_size)
+            ended = self.freecad.run(_PROGRAMS / f"{program}.py", files=files, arguments=[str(file) for file in files], limits=limits)
+        return _Left(ended, read_lines(job / f"{program}.report"))
+
+    def _judged_document(
+        self, job: Path, brief: Mapping[str, Any], said: Json, folder: Path, deflection: float, inspect: Inspect | None, *, probe: bool
+    ) -> BuiltPart:
+        """Open the document in a second process, measure its solid, and hold both to the contract.
+
+        Raises:
+            ContractError: With every breach at once.
+        """
+        part, entries = str(brief["name"]), said.get("connectors")
+        if not isinstance(entries, dict):
+            raise PoisonedError("connectors are expected where there are none")
+        seconds = self.limits.probe_seconds if probe else 0.0
+        told = {"connectors": entries, "dimensions": brief["dimensions"], "seconds": seconds}
+        looked = self._inside("probe", job, told, (DOCUMENT,), ("shape.bin",), seconds + self.limits.seconds)
+        tree = looked.report[0] if looked.report else {}
+        found = list(tree_findings(part, tree))
+        if tree.get("ok") is not True:
+            raise _breach(found or [_not_editable(part, "FreeCAD cannot open the saved document again.")], part)
+        framed = tree.get("connectors")
+        frames = framed if isinstance(framed, dict) else {}
+        connectors = read_connectors(brief, {name: frames.get(name, entry) for name, entry in entries.items()}, found)
+        shape = self._measured(job, form="brep", name=part, deflection=deflection)
+        found += solid_findings(brief, shape)
+        if inspect is not None and "bbox_mm" in shape:
+            found += inspect(connectors, numbers(shape["bbox_mm"], 2, 3))
+        if probe and not found:
+            outcomes = [line["probe"] for line in looked.report[1:] if isinstance(line.get("probe"), dict)]
+            ended = any("probed" in line for line in looked.report)
+            found += probe_findings(brief, outcomes, ended=ended, crashed="" if ended else "SIGSEGV")
+        findings = Findings(found)
+        if not findings.ok:
+            raise _breach(list(findings.errors), part)
+        self._leave(job, folder, self._checked(job, shape, deflection), connectors, findings, brief, deflection, self.level)
+        (folder / DOCUMENT).write_bytes(read_bytes(job / DOCUMENT, MAX_DOCUMENT_BYTES))
+        return BuiltPart.load(folder)
+
+
+def tree_findings(part: str, tree: Mapping[str, Any]) -> Iterator[Finding]:
+    """Yield what is wrong with the tree of features that the second process found."""
+    if "bodies" in tree:
+        yield _not_editable(part, f"The document has {tree['bodies']} bodies, not one.")
+        return
+    if tree.get("ok") is not True:
+        return
+    for name in list(tree.get("off_tip") or ())[:20]:
+        yield Finding(
+            code="E_FEATURE_OFF_TIP",
+            where=f"parts.{part}",
+            parts=(part,),
+            message=f"Feature {str(name)[:60]!r} is in the body but not in its solid: it is no ancestor of the tip.",
+            hint="After each pattern, set body.Tip to it before the next feature is added, or use the functions of `part`, which do.",
+        )
+    if tree.get("invalid"):
+        names = ", ".join(str(name)[:60] for name in tree["invalid"][:10])
+        yield _not_editable(part, f"{names} cannot be recomputed.")
+    if tree.get("sketched") is not True or tree.get("frozen"):
+        yield _not_editable(part, "The body is a frozen shape: no sketch drives it.")
+    untied = [str(name) for name in tree.get("untied") or ()]
+    if untied:
+        yield _not_editable(part, f"Dimension {', '.join(map(repr, untied[:10]))} drives nothing: no expression names it.")
+
+
+def _not_editable(part: str, message: str) -> Finding:
+    hint = "Build part.body from sketches: part.sketch, part.rectangle, part.pad and the like, with texts over dimensions for numbers."
+    return Finding(code="E_NOT_EDITABLE", where=f"parts.{part}", parts=(part,), message=message, hint=hint)
+
+
+def _breach(found: list[Finding], part: str) -> ContractError:
+    return ContractError("\n".join(map(str, found)), findings=found, parts=(part,))
+
+
+def _require_harmless(content: bytes) -> None:
+    """Refuse a document that is more than features: opening it would import modules by the names in it.
+
+    Raises:
+        PoisonedError: If it is.
+    """
+    try:
+        with zipfile.ZipFile(io.BytesIO(content)) as archive:
+            entries = archive.infolist()
+            if len(entries) > MAX_ENTRIES or sum(entry.file_size for entry in entries) > MAX_UNPACKED_BYTES:
+                raise PoisonedError("the document is too large")
+            parser = etree.XMLParser(resolve_entities=False, no_network=True, load_dtd=False)
+            root = etree.fromstring(archive.read("Document.xml"), parser)
+    except (zipfile.BadZipFile, KeyError, OSError, ValueError, etree.XMLSyntaxError, NotImplementedError, RuntimeError) as error:
+        raise PoisonedError("the document is not FreeCAD's") from error
+    for item in root.iterfind("Objects/Object"):
+        kind = item.get("type") or ""
+        if kind not in _KINDS and (not kind.startswith(_FAMILIES) or "Python" in kind):
+            raise PoisonedError(f"the document holds an object of type {kind[:60]}")
+    if next(root.iter("Python"), None) is not None:
+        raise PoisonedError("the document holds Python objects")
+    if any(link.get("file") for link in root.iter("XLink")):
+        raise PoisonedError("the document links to other files")
+
+
+@contextlib.contextmanager
+def _opened(job: Path, names: tuple[str, ...], reads: int) -> Iterator[list[int]]:
+    files: list[int] = []
+    try:
+        for place, name in enumerate(names):
+            mode = os.O_RDONLY if place < reads else os.O_WRONLY | os.O_CREAT | os.O_TRUNC
+            files.append(os.open(job / name, mode | os.O_CLOEXEC, 0o600))
+        yield files
+    finally:
+        for file in files:
+            os.close(file)
+
+
+def _outcome(ended: Ended) -> Outcome:
+    """Return an end in the words of the worker; FreeCAD turns a crash into exit code 1 itself."""
+    killed = ended.code - 128 if ended.code > 128 else -min(ended.code, 0)
+    crashed = signal.SIGSEGV if "SIGSEGV" in ended.said or "Segmentation" in ended.said else 0
+    return Outcome(None if killed or crashed else ended.code, int(killed or crashed), ended.late, 0)
+
+
+def _crash(ended: Ended) -> str:
+    return "worker: MemoryError" if "MemoryError" in ended.said or "bad_alloc" in ended.said else ""
