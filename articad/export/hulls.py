@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from articad.connectors.se3 import SE3
+from articad.geometry.mesh import TriMesh
 from articad.geometry.part import Shape
 from articad.kinematics.joints import Joint, JointType
 
@@ -57,6 +58,15 @@ def same_group_pairs(joints: tuple[Joint, ...], order: tuple[str, ...]) -> set[P
     """Return the pairs of parts that never move against each other."""
     group = rigid_groups(joints, order)
     return {(a, b) for a, b in combinations(order, 2) if group[a] == group[b]}
+
+
+def hull_of(shape: Shape) -> tuple[Shape, float]:
+    """Return a shape's convex hull, and by what share of its own volume the hull is larger; 0 where the mesh is open."""
+    solid = manifold3d.Manifold.hull_points(shape.mesh.vertices)
+    found = solid.to_mesh64()
+    mesh = TriMesh(np.array(found.vert_properties[:, :3], dtype=np.float64), np.array(found.tri_verts, dtype=np.int32))
+    own = shape.mesh.volume if shape.mesh.is_closed else 0.0
+    return Shape(mesh, shape.frame, shape.color, shape.name), max(0.0, mesh.volume / own - 1) if own > 0 else 0.0
 
 
 def hull_overlaps(shapes: Mapping[str, tuple[Shape, ...]], poses: Mapping[str, SE3], *, skip: set[Pair]) -> list[HullOverlap]:

@@ -187,6 +187,10 @@ TABLE: dict[str, dict[Format, Row]] = {
         ),
         "sdf": Row("collision meshes"),
     },
+    "collision.hull": {
+        name: Row("a convex hull to collide with", "dents, holes and slots of the part, which bodies cannot enter", refused=True)
+        for name in MECHANISM_FORMATS
+    },
     "color": {"urdf": Row("<material>"), "mjcf": Row("a material"), "sdf": Row("a material")},
     "friction": {
         "urdf": Row("metadata", "URDF has no friction between surfaces: readers use their own"),

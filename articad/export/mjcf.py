@@ -14,7 +14,19 @@ from articad.export.hulls import HullOverlap, hull_overlaps, mating_pairs, same_
 from articad.export.inertia import Inertial
 from articad.export.loads import GRAVITY_M_S2
 from articad.export.losses import Feature, losses_of, refuse
-from articad.export.lowering import Follows, Freedom, Link, LoweredJoint, LoweredModel, Placed, ball_total_angle, lower, metres
+from articad.export.lowering import (
+    Collision,
+    Follows,
+    Freedom,
+    Link,
+    LoweredJoint,
+    LoweredModel,
+    Placed,
+    ball_total_angle,
+    lower,
+    metres,
+    with_hulls,
+)
 from articad.export.markup import child, document, number, numbers, rgba, wxyz
 from articad.export.meshes import MM_TO_M, MeshFiles, MeshKind
 from articad.export.metadata import dumps, records
@@ -36,7 +48,9 @@ SERVO_ERROR_SLIDE = 0.005  # m, likewise
 FRICTION_SPIN, FRICTION_ROLL = 0.005, 0.0001  # MuJoCo's defaults beside the sliding friction [m]
 
 
-def write_mjcf(assembly: Assembly, *, strict: bool = False, meshes: MeshKind = "stl", actuators: bool = False) -> Bundle:
+def write_mjcf(
+    assembly: Assembly, *, strict: bool = False, meshes: MeshKind = "stl", actuators: bool = False, collision: Collision = "solid"
+) -> Bundle:
     """Write an assembly as MJCF.
 
     Body frames are joint frames, the one base body is the ground part, and every joint's value is ours in rad or m, so all zero is q = 0;
@@ -47,6 +61,7 @@ def write_mjcf(assembly: Assembly, *, strict: bool = False, meshes: MeshKind = "
         assembly: What to write.
         strict: Refuse what MJCF holds only with a loss of motion, mass or shape.
         meshes: Format of the mesh files: STL holds single precision, OBJ nine digits.
+        collision: Collide with the parts' own meshes, of which MuJoCo takes the hulls, or write the hulls and tell their error.
         actuators: Give every driver a position servo of the joint's effort.
 
     Returns:
@@ -55,7 +70,7 @@ def write_mjcf(assembly: Assembly, *, strict: bool = False, meshes: MeshKind = "
     Raises:
         UnrepresentableError: If `strict` and there is such a loss.
     """
-    model = lower(assembly)
+    model = with_hulls(lower(assembly)) if collision == "hull" else lower(assembly)
     overlaps = _hull_overlaps(assembly, model)
     losses = losses_of("mjcf", (*model.features, *(_hull_feature(overlap) for overlap in overlaps)))
     if strict:

@@ -15,7 +15,7 @@ from articad.export.follow import followers
 from articad.export.hulls import HullOverlap, hull_overlaps, mating_pairs, same_group_pairs
 from articad.export.inertia import Inertial
 from articad.export.losses import Feature, losses_of, refuse
-from articad.export.lowering import Follows, Freedom, Link, LoweredJoint, LoweredModel, Placed, lower
+from articad.export.lowering import Collision, Follows, Freedom, Link, LoweredJoint, LoweredModel, Placed, lower, with_hulls
 from articad.export.markup import child, document, number, numbers, rgba, rpy
 from articad.export.meshes import MM_TO_M, MeshFiles, MeshKind
 from articad.export.metadata import dumps, records
@@ -42,6 +42,7 @@ def write_urdf(
     package: str | None = None,
     srdf: bool = False,
     ros2_control: bool = False,
+    collision: Collision = "solid",
 ) -> Bundle:
     """Write an assembly as URDF.
 
@@ -57,6 +58,7 @@ def write_urdf(
             for Drake, or as `<mimic>` of the driver, where a linear relation is as good as 0.1 mm.
         package: Name of a ROS 2 package to lay out: `urdf/`, `meshes/`, a manifest, and meshes named `package://…`.
         srdf: Add `<name>.srdf` with the pairs of links that need no collision check.
+        collision: Collide with the parts' own meshes, or with their convex hulls, whose error is told.
         ros2_control: Add a `<ros2_control>` system that commands the drivers' positions, on mock hardware.
 
     Returns:
@@ -68,7 +70,7 @@ def write_urdf(
     """
     if package is not None:
         require_package_name(package)
-    model = lower(assembly)
+    model = with_hulls(lower(assembly)) if collision == "hull" else lower(assembly)
     tied = {loop.name: tied_points(model, loop) for loop in model.loops} if loops in {"isaac", "drake"} else {}
     overlaps = _hull_overlaps(assembly, model)
     losses = losses_of("urdf", (*_loop_features(model, loops, tied), *(_hull_feature(overlap) for overlap in overlaps)))

@@ -9,11 +9,14 @@ import pytest
 
 from articad.assembly import Assembly
 from articad.errors import UnrepresentableError
+from articad.export.hulls import hull_of
 from articad.export.losses import MECHANISM_FORMATS, TABLE, losses_of
 from articad.export.mjcf import write_mjcf
 from articad.export.sdf import write_sdf
 from articad.export.urdf import write_urdf
-from articad.geometry.part import Part
+from articad.geometry.mesh import TriMesh
+from articad.geometry.part import Part, Shape
+from articad.geometry.shapes import box, tube
 from articad.kinematics import declare
 from articad.kinematics.joints import Coupling, JointType
 from articad.plan.resolve import Material
@@ -175,3 +178,23 @@ def test_couplings_that_tie_twice_are_lost_in_urdf() -> None:
 
 def test_features_without_loss_report_nothing() -> None:
     assert losses_of("mjcf", []) == ()
+
+
+@pytest.mark.parametrize("writer", ["urdf", "mjcf"])
+def test_hulls_to_collide_with_are_written_and_their_error_told(writer: str) -> None:
+    base = replace(block("base", a=frame()), visuals=(Shape(tube(20, 30, 10)),), collisions=(Shape(tube(20, 30, 10)),))
+    part = block("part", a=frame(at=(0, 0, 100)))
+    assembly = Assembly.from_parts("p", parts=[base, part], joints=[JOINTS["revolute"](base["a"], part["a"])], ground="base")
+    bundle = WRITERS[writer](assembly, collision="hull")
+
+    assert [(loss.where, loss.kept) for loss in bundle.losses] == [("parts.base", "a convex hull to collide with (80 % more volume)")]
+    assert len([path for path in bundle.files if path.endswith(".stl")]) == 4
+    with pytest.raises(UnrepresentableError):
+        WRITERS[writer](assembly, collision="hull", strict=True)
+
+
+def test_the_hull_of_an_open_mesh_has_no_known_error() -> None:
+    solid = box(10, 10, 10)
+
+    assert hull_of(Shape(TriMesh(solid.vertices, solid.triangles[:-1])))[1] == 0
+    assert hull_of(Shape(solid))[0].mesh.volume == pytest.approx(1000)
