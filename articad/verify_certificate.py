@@ -208,11 +208,10 @@ class Pair:
             at = self.names.index(joint["freedoms"][0]["name"])
             if np.hypot(*np.maximum(np.maximum(low, -high), 0)[at : at + 2]) > joint["cone"] + ROUNDING:
                 return True
-        if ((bottom <= low + ROUNDING) & (top >= high - ROUNDING)).all(1).any():
-            return True
+        whole = bool(((bottom <= low + ROUNDING) & (top >= high - ROUNDING)).all(1).any())
         ends = [(e, k) for rows in (bottom, top) for row in rows for k, e in enumerate(row) if low[k] + ROUNDING < e < high[k] - ROUNDING]
-        if not ends:
-            return False
+        if whole or not ends:
+            return whole
         cut, axis = sorted(ends)[len(ends) // 2]
         here = np.arange(len(low)) == axis
         halves = [(low, np.where(here, cut, high)), (np.where(here, cut, low), high)]
@@ -224,15 +223,17 @@ class Pair:
         bounds = []
         for side in (1, -1):  # a cloud of points, each with a radius of doubt, goes from its own part to the other
             cloud, doubt, speed = points if side == 1 else self.corners_b_start.reshape(-1, 3), 0.0, {}
-            for step, before, behind, _ in self.way[::side]:
+            for step, before, behind, sign in self.way[::side]:
                 frame, moving = before if side == 1 else behind, [f for f in step if f["name"] in self.names]
-                local, ends = (cloud - frame[:3, 3]) @ frame[:3, :3], {f["name"]: max(map(abs, f["range"])) for f in moving}
+                local = (cloud - frame[:3, 3]) @ frame[:3, :3]
                 for f in moving:  # about one axis the distance from it counts, about several that from the centre
                     radius = np.linalg.norm(np.cross(local, f["turn"]) if len(step) == 1 else local, axis=1).max() + doubt
                     speed[f["name"]] = math.hypot(*f["slide"]) + any(f["turn"]) * radius
                 if any(any(f["turn"]) for f in moving):
                     cloud, doubt = frame[None, :3, 3], np.linalg.norm(local, axis=1).max() + doubt
-                doubt += sum(math.hypot(*f["slide"]) * ends[f["name"]] for f in moving)
+                for f in moving:  # slides reach furthest at their ends
+                    way = -side * sign * frame[:3, :3] @ f["slide"]
+                    cloud = np.concatenate([cloud + (end - self.claims[0]["start"][f["name"]]) * way for end in f["range"]])
             bounds.append([speed[name] for name in self.names])
         return np.min(bounds, axis=0)
 
@@ -248,9 +249,8 @@ class Pair:
 
     def gap_of_radii(self, surface: Any) -> float:
         """Return by how much one part keeps within a radius about the one joint that the other keeps out of."""
-        seen = self.axis[:3, :3] * [1.0, 1.0, self.dims - 2.0]  # along an axis: a flat picture
-        local = [(corners - self.axis[:3, 3]) @ seen for corners in (surface, self.corners_b_start)]
-        most = [np.linalg.norm(corners, axis=2).max() for corners in local]
-        least = [fcl.distance(model(corners), model(np.zeros((1, 3, 3)))) for corners in local]
+        flat = [(corners - self.axis[:3, 3]) @ (self.axis[:3, :3] * [1, 1, self.dims - 2]) for corners in (surface, self.corners_b_start)]
+        most = [np.linalg.norm(corners, axis=2).max() for corners in flat]
+        least = [fcl.distance(model(corners), model(np.zeros((1, 3, 3)))) for corners in flat]
         steady = len({f["joint"] for f in self.moving}) == 1 and not any(any(f["slide"][: self.dims]) for f in self.moving)
         return float(max(least[1] - most[0], least[0] - most[1])) if steady else -math.inf

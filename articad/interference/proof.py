@@ -21,7 +21,7 @@ from articad.interference.cover import Budget, Cover, box_distance, cover_box, c
 from articad.interference.motion import Chain, Mover, Values, motion_matrix
 from articad.interference.overlap import Overlap, measured, overlap
 from articad.interference.scene import Scene
-from articad.interference.surface import Core, Surface, split_by_radius, surface_distance
+from articad.interference.surface import Core, Surface, split_by_radius, surface_distance, whole_surface
 from articad.interference.verdict import UNRELATED_VOLUME_MM3
 from articad.kinematics.joints import JointType
 from articad.kinematics.tree import KinematicTree
@@ -29,6 +29,7 @@ from articad.kinematics.tree import KinematicTree
 FloatArray = NDArray[np.float64]
 
 PARALLEL = 1e-12  # |sine| of the angle of two axes that are declared parallel, after the arithmetic of a few frames
+FEW_BOXES = 24  # along a line: a bound that clears the range in so many is as good as the distance
 SEPARATION_SLACK_MM = 1e-9  # rounding in an invariant gap
 DIRECT_QUERIES = 500  # a line that needs no more distances is walked with the whole surface
 CHEAP_QUERIES = 300  # a cut that needs no more is taken without looking for a better one
@@ -292,12 +293,12 @@ class View:
     @cached_property
     def other(self) -> Surface:
         """The whole surface of the other part."""
-        return Surface.of(self.body_b.mesh)
+        return whole_surface(self.body_b.mesh)
 
     @cached_property
     def whole(self) -> Surface:
         """The whole surface of the first part."""
-        return Surface.of(self.body_a.mesh)
+        return whole_surface(self.body_a.mesh)
 
     @cached_property
     def distance_at_start(self) -> float:
@@ -426,8 +427,21 @@ class Patch:
         return surface_distance(self.surface, self.view.other, self.view.chain.matrix(values))
 
     def bound(self, values: Values) -> float:
-        """Return a lower bound of it from the two boxes [mm]."""
-        return box_distance(self.view.chain.matrix(values), self.surface.box, self.view.other.box)
+        """Return a lower bound of it from the two boxes, and where these meet from the polytopes around the two [mm]."""
+        T = self.view.chain.matrix(values)
+        boxes = box_distance(T, self.surface.box, self.view.other.box)
+        return boxes if boxes > self._near else max(boxes, self.surface.outer.distance(self.view.other.outer, T))
+
+    def distance_or_bound(self, values: Values) -> float:
+        """Return a lower bound of the distance where that clears much of the range at once, else the distance [mm]."""
+        known = self.bound(values)
+        return known if known > self._near else self.distance(values)
+
+    @cached_property
+    def _near(self) -> float:
+        """Distance above which a few boxes clear the range, so that an exact one is not worth its cost [mm]."""
+        widths = np.array([freedom.upper - freedom.lower for freedom in self.view.chain.freedoms])
+        return self.margin + float(self.reach @ widths) / FEW_BOXES
 
     def cover(self, most: int | None) -> Cover:
         """Clear the range of motion."""
@@ -436,7 +450,7 @@ class Patch:
         if len(freedoms) == 1:
             start, reach = freedoms[0].rest, float(self.reach[0])
             return cover_line(
-                self.distance,
+                self.distance_or_bound,
                 bounds[0],
                 start,
                 reach=reach,

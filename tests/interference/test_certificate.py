@@ -25,6 +25,7 @@ from articad.interference.cover import Budget, cover_box, cover_line
 from articad.interference.motion import Chain, motion_matrix
 from articad.interference.proof import Prover
 from articad.interference.scene import Scene
+from articad.interference.surface import Surface, surface_distance
 from articad.kinematics.joints import Joint, JointType
 from articad.kinematics.mechanism import Mechanism
 from articad.kinematics.tree import Edge, KinematicTree
@@ -551,3 +552,39 @@ def test_a_surface_cut_at_a_cylinder_still_is_the_whole_surface() -> None:
     prover = Prover(scene, KinematicTree("base", [Edge(short, "base", "arm")]), ("arm", "base"), ("hinge",))
     proof = prover.prove()
     assert {claim.piece for claim in proof.claims} == {"in", "seam", "out"}
+
+
+def test_the_polytope_around_a_surface_is_never_further_away_than_the_surface() -> None:
+    rng = np.random.default_rng(4)
+    shapes = [Surface.of(mesh) for mesh in (tube(5, 9, 12, 24), sphere(6, 16), hinge_with_stop()["arm"])]
+    for _ in range(150):
+        a, b = (shapes[i] for i in rng.integers(0, 3, 2))
+        T = (at(*rng.uniform(-40, 40, 3)) @ random_rotation(rng)).matrix
+        assert a.outer.distance(b.outer, T) <= surface_distance(a, b, T) + 1e-9
+
+
+def test_the_polytope_of_a_hollow_part_holds_what_is_inside_it() -> None:
+    ring, pin = Surface.of(tube(20, 30, 5, 48)), Surface.of(sphere(3, 12))
+    assert ring.outer.distance(pin.outer, np.eye(4)) == 0.0
+    assert pin.outer.distance(ring.outer, np.eye(4)) == 0.0
+    assert surface_distance(ring, pin, np.eye(4)) > 0
+
+
+def test_speeds_through_a_slider_that_does_not_rest_at_zero_are_accepted() -> None:
+    # a weight on a pendulum: it slides along the rod, away from the pivot, and rests far out
+    along = SE3.from_axes([0.0, 0, 20], [0.0, 0, 1], [1.0, 0, 0])
+    joints = [
+        joint("swing", "revolute", "case", "rod", at_parent=SE3.from_axes([0.0, 0, 0], [0.0, 1, 0], [1.0, 0, 0]),
+              at_child=SE3.from_axes([0.0, 0, 0], [0.0, 1, 0], [1.0, 0, 0]), lower=(-0.4,), upper=(0.4,)),
+        joint("tempo", "slider", "rod", "weight", at_parent=along, at_child=SE3.from_axes([0.0, 0, 60], [0.0, 0, 1], [1.0, 0, 0]),
+              lower=(-10.0,), upper=(60.0,), rest=(40.0,)),
+    ]  # fmt: skip
+    meshes = {
+        "case": box(4, 40, 160).transformed(at(75, 0, 40)),
+        "rod": box(4, 4, 150, center=False).transformed(at(-2, -2, 0)),
+        "weight": merged([tube(4, 10, 12, 24).transformed(at(z=60)), box(1, 1, 1).transformed(at(13, 0, 60))]),
+    }
+    certificate = proven(meshes, joints)
+    assert certificate.ok
+    assert any(len(claim.vary) == 2 and claim.boxes for claim in certificate.claims)
+    assert refutations(certificate) == []
