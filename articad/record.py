@@ -18,6 +18,7 @@ from articad.geometry.part import Solid
 from articad.interference.certificate import Certificate
 from articad.interference.check import Checks
 from articad.kernels.build123d import Build123dKernel
+from articad.kernels.freecad import FreeCADKernel
 from articad.kernels.kernel import BuildCache, PartKernel
 from articad.kernels.parts import Progress, RealisedPart
 from articad.plan.brief import brief
@@ -29,7 +30,7 @@ Sandbox = Literal["strict", "weak"]
 
 WRITERS: Final[Mapping[str, Callable[..., Bundle]]] = {**convert.WRITERS, "freecad": write_freecad}
 _PICTURE_PIXELS: Final = 256  # of a picture kept in a run: enough to recognise, cheap enough to draw each time
-_KERNEL_FILES: Final = ("part.npz", "part.brep", "part.step")
+_KERNEL_FILES: Final = ("part.npz", "part.brep", "part.step", "part.FCStd", "seat.json")
 
 
 def kernel_named(name: str, *, sandbox: Sandbox = "strict") -> PartKernel:
@@ -40,7 +41,11 @@ def kernel_named(name: str, *, sandbox: Sandbox = "strict") -> PartKernel:
     """
     if name == "build123d":
         return Build123dKernel(sandbox=sandbox)
-    message = f"This version cannot build parts with the kernel {name!r}; it has 'build123d'."
+    if name == "freecad":
+        kernel = FreeCADKernel(sandbox=sandbox)
+        kernel.warm_up()
+        return kernel
+    message = f"This version cannot build parts with the kernel {name!r}; it has 'build123d' and 'freecad'."
     finding = Finding(
         code="E_KERNEL_UNAVAILABLE", where="kernel", message=message, hint="Use --kernel build123d, with scripts parts/<part>.py."
     )
@@ -182,7 +187,8 @@ def _record_part(run: Run, assembly: Assembly, name: str, realised: RealisedPart
     built = realised.built
     # What depends on the machine and not on the part stands in the trace, so that a replay elsewhere compares equal.
     run.trace("build", part=name, sandbox=built.sandbox, cached=realised.cached, derived_from=realised.derived_from)
-    record: Report = {"kernel": assembly.resolved.plan.kernel, "editable": realised.derived_from is None, "shape": _shape_json(built.solid)}
+    kernel = run.request.options.get("kernel", assembly.resolved.plan.kernel)
+    record: Report = {"kernel": kernel, "editable": realised.derived_from is None, "shape": _shape_json(built.solid)}
     if realised.derived_from is not None:
         run.save_part(name, record=record | {"derived_from": realised.derived_from})
         return

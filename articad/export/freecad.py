@@ -109,7 +109,7 @@ class _Job:
             "task": "freecad",
             "name": self.assembly.name,
             "ground": self.assembly.ground,
-            "records": [dumps(record) for record in records(self.assembly, self.model, {})],
+            "records": [dumps(record) for record in records(self.assembly, self.model, {}, ())],
             "parameters": list(self._parameters()),
             "parts": parts,
             "joints": [*self._joints(), *self._couplings()],
