@@ -278,7 +278,7 @@ def kernel_at(layers: tuple[str, ...]) -> Iterator[Build123dKernel]:
         yield kernel
     finally:
         kernel.close()
-        del os.environ["ARTICAD_TEST_API_KEY"]
+        os.environ.pop("ARTICAD_TEST_API_KEY", None)
 
 
 def descendants(kernel: Build123dKernel) -> set[int]:
