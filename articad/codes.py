@@ -334,6 +334,10 @@ CODES: dict[str, Code] = {
         "FreeCAD's own solver does not agree with the exact placements that were written.",
         "Nothing in the file is wrong for that; do not let FreeCAD move the parts.",
     ),
+    "W_FREECAD_JOINT": Code(
+        "import", None, "A joint of a FreeCAD document was left out.", "Use Fixed, Revolute, Slider, Cylindrical or Ball between two parts."
+    ),
+    "W_FREECAD_SHAPE": Code("import", None, "The shape of a FreeCAD part is not one valid solid.", "Repair it in FreeCAD."),
     # --- interference and fits
     "E_OVERLAP": Code("interference", "design", "Two parts overlap at rest.", "Move one of them, or shorten it."),
     "W_STATIC_OVERLAP": Code(

@@ -28,7 +28,7 @@ REPAIRS: Final = 3
 ATTEMPT_SCHEMA: Final = "articad.attempt/1"
 _DIGITS = 6  # decimals of mm in a prompt: the last bits of a cosine differ between machines
 _SHOWN_CHARACTERS = 6000  # of a failure; tracebacks hold the script's own frames only, so this is rarely reached
-_EXAMPLES: Final = {"build123d": "lid_left.txt"}
+_EXAMPLES: Final = {"build123d": "lid_left.txt", "freecad": "door_left_freecad.txt"}
 
 Build = Callable[[str, bytes], RealisedPart]
 """Builds the script of a part, or raises `KernelError`."""

@@ -16,6 +16,7 @@ import shutil
 import signal
 import zipfile
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -25,8 +26,9 @@ from lxml import etree
 from numpy.typing import ArrayLike
 
 from articad.connectors.se3 import SE3
-from articad.errors import ContractError
+from articad.errors import BuildError, ContractError, ReadError
 from articad.findings import Finding, Findings
+from articad.geometry.part import Solid
 from articad.kernels import freecad_install
 from articad.kernels import sandbox as isolation
 from articad.kernels.build123d import Build123dKernel
@@ -171,6 +173,31 @@ class FreeCADKernel(Build123dKernel):
         self._leave(job, folder, self._checked(job, shape, deflection), connectors, findings, brief, deflection, self.level)
         (folder / DOCUMENT).write_bytes(read_bytes(job / DOCUMENT, MAX_DOCUMENT_BYTES))
         return BuiltPart.load(folder)
+
+
+class BrepReader(Build123dKernel):
+    """Reads B-rep of unknown origin in the confined worker."""
+
+    def read_brep(self, content: bytes, *, name: str, T: SE3, deflection: float, folder: Path | None = None) -> Solid:
+        """Return the one solid of a B-rep, moved by `T`.
+
+        Raises:
+            ReadError: If it is not B-rep or does not hold exactly one valid solid.
+        """
+        self._require_sandbox()
+        folder = folder or self._new_folder()
+        try:
+            with self._job() as job:
+                (job / "shape.bin").write_bytes(content)
+                shape = self._measured(job, form="brep", name=name, deflection=deflection, matrix=T.matrix.tolist())
+                findings = Findings(solid_findings({"name": name}, shape))
+                if not findings.ok:
+                    raise ReadError(findings.errors[0].message, path=name, findings=findings)
+                self._leave(job, folder, self._checked(job, shape, deflection), {}, findings, {"name": name}, deflection, self.level)
+        except (PoisonedError, BuildError) as error:
+            raise ReadError(f"The B-rep cannot be read: {error}", path=name) from error
+        solid = BuiltPart.load(folder).solid
+        return replace(solid, brep=None, step=None)  # the folder goes with the worker
 
 
 def tree_findings(part: str, tree: Mapping[str, Any]) -> Iterator[Finding]:

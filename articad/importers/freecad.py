@@ -1,0 +1,376 @@
+"""FreeCAD in: an Assembly document, written by articad or made by hand, without FreeCAD being there.
+
+The file is a zip of XML and B-rep: both are read here, the B-rep in the kernels' confined worker. Frames come from the
+document as it is now, so what was edited in FreeCAD is what comes back; what FreeCAD has no words for (cones, leads,
+labels, drivers, couplings, fits) comes from articad's records in it.
+"""
+
+from __future__ import annotations
+
+import io
+import math
+import re
+import zipfile
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+from articad.assembly import Assembly
+from articad.connectors.connector import Connector
+from articad.connectors.mate import FLIP, Mate
+from articad.connectors.se3 import SE3
+from articad.errors import ArticadError
+from articad.findings import Finding, Findings
+from articad.geometry.part import DEFAULT_COLOR, Part, Solid
+from articad.importers.reading import Folder, parse_xml, unreadable
+from articad.importers.records import assembly_of, read_records
+from articad.kernels.freecad import BrepReader
+from articad.kinematics.joints import Joint, JointLimits, JointType
+from articad.kinematics.mechanism import Mechanism
+
+MAX_BYTES, MAX_UNPACKED, MAX_ENTRIES = 512 * 2**20, 2**31, 100_000
+SAME_MM, SAME_RAD = 1e-9, 1e-12  # a frame this close to its record is the record's
+_TYPES = {
+    "Fixed": JointType.FIXED,
+    "Revolute": JointType.REVOLUTE,
+    "Slider": JointType.SLIDER,
+    "Cylindrical": JointType.CYLINDRICAL,
+    "Ball": JointType.BALL,
+}
+_CONTAINERS = ("App::Part", "App::Link", "PartDesign::Body", "Part::Feature", "Mesh::Feature")
+_SHAPES = ("PartDesign::Body", "Part::Feature", "Part::Mirroring", "Part::Box", "Part::Cylinder", "Part::Cut", "Part::MultiFuse")
+_LIMITS = {
+    JointType.REVOLUTE: ("Angle",),
+    JointType.SLIDER: ("Length",),
+    JointType.CYLINDRICAL: ("Length", "Angle"),
+}
+
+IDENTITY = SE3.identity()
+
+
+def read_freecad(path: str | Path, *, root: str | Path | None = None, metadata: bool = True, deflection: float = 0.01) -> Assembly:
+    """Read the assembly of a FreeCAD file.
+
+    Args:
+        path: The file, `.FCStd`.
+        root: Unused: a FreeCAD file holds all of its shapes.
+        metadata: Use the records that articad left in its own files, for what FreeCAD has no words for.
+        deflection: Largest distance of the meshes from the solids [mm].
+
+    Raises:
+        ReadError: If it is no FreeCAD file, or holds no assembly with a grounded part.
+    """
+    del root
+    path = Path(path)
+    document = _Document(path)
+    model = _Model(document, deflection)
+    text = document.text(model.assembly, "ArticadRecords") if metadata else ""
+    if text:
+        folder = Folder.of(path, None)
+        recorded = assembly_of(read_records(text.split("\n"), path), folder, path)
+        return _updated(model, recorded)
+    return model.assemble()
+
+
+class _Document:
+    """The XML of a FreeCAD file: objects by name, with their properties."""
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        try:
+            content = path.read_bytes()
+            self.archive = zipfile.ZipFile(io.BytesIO(content))
+            entries = self.archive.infolist()
+            if len(entries) > MAX_ENTRIES or len(content) > MAX_BYTES or sum(entry.file_size for entry in entries) > MAX_UNPACKED:
+                raise unreadable(path, "", "It is too large.")
+            self.root = parse_xml(self.archive.read("Document.xml"), path)
+        except OSError as error:
+            raise unreadable(path, "", f"It cannot be read: {error.strerror}.") from None
+        except (zipfile.BadZipFile, KeyError, NotImplementedError, RuntimeError, EOFError) as error:
+            raise unreadable(path, "", f"It is not a FreeCAD file: {error}.") from None
+        self.types = {item.get("name", ""): item.get("type", "") for item in self.root.iterfind("Objects/Object")}
+        self.items = {item.get("name", ""): item for item in self.root.iterfind("ObjectData/Object")}
+        self._properties = {
+            name: {row.get("name"): row for row in item.iterfind("Properties/Property")} for name, item in self.items.items()
+        }
+
+    def value(self, name: str, key: str, tag: str, attribute: str = "value") -> str | None:
+        row = self._properties.get(name, {}).get(key)
+        found = None if row is None else row.find(f".//{tag}")
+        return None if found is None else found.get(attribute)
+
+    def text(self, name: str, key: str) -> str:
+        return self.value(name, key, "String") or ""
+
+    def has(self, name: str, key: str) -> bool:
+        return key in self._properties.get(name, {})
+
+    def truth(self, name: str, key: str, *, default: bool = False) -> bool:
+        value = self.value(name, key, "Bool")
+        return default if value is None else value == "true"
+
+    def number(self, name: str, key: str) -> float:
+        try:
+            return float(self.value(name, key, "Float") or 0.0)
+        except ValueError:
+            raise unreadable(self.path, f"{name}.{key}", "It is not a number.") from None
+
+    def choice(self, name: str, key: str) -> str:
+        row = self._properties[name][key]
+        index = int(row.find(".//Integer").get("value"))
+        options = [option.get("value") for option in row.iterfind(".//Enum")]
+        return str(options[index]) if 0 <= index < len(options) else ""
+
+    def links(self, name: str, key: str) -> list[str]:
+        row = self._properties.get(name, {}).get(key)
+        if row is None:
+            return []
+        return [found.get("value") or found.get("name") or "" for found in row.iter() if found.tag in ("Link", "XLink")]
+
+    def placement(self, name: str, key: str = "Placement") -> SE3:
+        row = self._properties.get(name, {}).get(key)
+        found = None if row is None else row.find("PropertyPlacement")
+        if found is None:
+            return IDENTITY
+        try:
+            numbers = [float(found.get(axis)) for axis in ("Px", "Py", "Pz", "Q0", "Q1", "Q2", "Q3")]
+            return SE3.from_quaternion(numbers[3:], numbers[:3])
+        except (TypeError, ValueError, ArticadError):
+            raise unreadable(self.path, f"{name}.{key}", "It is not a placement.") from None
+
+    def reference(self, name: str, key: str) -> list[str]:
+        """Return the objects that a reference leads through, from the one it is stated at."""
+        row = self._properties.get(name, {}).get(key)
+        link = None if row is None else row.find(".//XLink")
+        if link is None:
+            return []
+        sub = link.find("Sub")
+        tail = (sub.get("value") if sub is not None else link.get("sub")) or ""
+        names = [link.get("name") or "", *tail.split(".")[:-1]]
+        return [step for step in names if step in self.items]
+
+
+class _Model:
+    """Parts, connectors and joints of a document, as they stand in it."""
+
+    def __init__(self, document: _Document, deflection: float) -> None:
+        self.document, self.deflection = document, deflection
+        assemblies = [name for name, kind in document.types.items() if kind == "Assembly::AssemblyObject"]
+        if not assemblies:
+            raise unreadable(document.path, "Document.xml", "It holds no assembly.")
+        self.assembly = assemblies[0]
+        members = document.links(self.assembly, "Group")
+        self.parts = {
+            self._name(item): item for item in members if document.types.get(item) in _CONTAINERS and not document.has(item, "JointType")
+        }
+        self.names = {item: name for name, item in self.parts.items()}
+        grounded = [document.links(item, "ObjectToGround") for item in document.items if document.has(item, "ObjectToGround")]
+        if not grounded or not grounded[0] or grounded[0][0] not in self.names:
+            raise unreadable(document.path, self.assembly, "No part of the assembly is grounded.")
+        self.ground = self.names[grounded[0][0]]
+        self.poses = {name: document.placement(item) for name, item in self.parts.items()}
+        self.findings: list[Finding] = []
+        self._solids: dict[str, Solid | None] = {}
+
+    def _name(self, item: str) -> str:
+        return self.document.text(item, "ArticadPart") or _plain(self.document.text(item, "Label") or item)
+
+    def container(self, item: str) -> str:
+        """Return what a link shows, or the object itself."""
+        seen: set[str] = set()
+        while self.document.types.get(item) == "App::Link" and item not in seen:
+            seen.add(item)
+            item = next(iter(self.document.links(item, "LinkedObject")), item)
+        return item
+
+    def connectors(self, name: str) -> dict[str, SE3]:
+        """Return the coordinate systems that articad made in a part."""
+        members = self.document.links(self.container(self.parts[name]), "Group")
+        return {text: self.document.placement(item) for item in members if (text := self.document.text(item, "ArticadConnector"))}
+
+    def solid(self, name: str) -> Solid | None:
+        """Return a part's solid in the part's own frame, measured by the confined worker."""
+        container = self.container(self.parts[name])
+        if container not in self._solids:
+            self._solids[container] = self._measured(container, name)
+        return self._solids[container]
+
+    def _measured(self, container: str, name: str) -> Solid | None:
+        own = self.document.types.get(container) in _SHAPES
+        members = (
+            [container] if own else [item for item in self.document.links(container, "Group") if self.document.types.get(item) in _SHAPES]
+        )
+        for item in members:
+            file = self.document.value(item, "Shape", "Part", "file")
+            if not file or file not in self.document.archive.namelist():
+                continue
+            # B-rep is written where its object stands; a body that is a part itself stands in the assembly
+            T = self.document.placement(item).inverse() if own else IDENTITY
+            try:
+                return BrepReader().read_brep(self.document.archive.read(file), name=name, T=T, deflection=self.deflection)
+            except ArticadError as error:
+                message = f"The shape of {item} is not one valid solid: {error.message[:200]}"
+                self.findings.append(
+                    Finding(code="W_FREECAD_SHAPE", where=f"parts.{name}", parts=(name,), message=message, hint="Repair it in FreeCAD.")
+                )
+        return None
+
+    # ------------------------------------------------------------------ joints
+
+    def joints(self) -> Iterator[tuple[str, Joint]]:
+        """Yield each active joint that has a type of ours, with its object."""
+        document = self.document
+        for item in document.items:
+            if not document.has(item, "JointType") or not document.truth(item, "Activated", default=True):
+                continue
+            kind = document.choice(item, "JointType")
+            sides = [self._side(item, number) for number in (1, 2)]
+            name = document.text(item, "ArticadJoint") or _plain(document.text(item, "Label") or item)
+            if kind not in _TYPES or None in sides:
+                if not document.text(item, "ArticadJoint"):
+                    why = "has no type of articad's" if kind not in _TYPES else "has a side that is no part of the assembly"
+                    self.findings.append(
+                        Finding(
+                            code="W_FREECAD_JOINT",
+                            where=f"joints.{name}",
+                            message=f"Joint {item} ({kind}) {why} and was left out.",
+                            hint="Use Fixed, Revolute, Slider, Cylindrical or Ball between two parts of the assembly.",
+                        )
+                    )
+                continue
+            yield item, self._joint(item, name, _TYPES[kind], *[side for side in sides if side is not None])
+
+    def _side(self, item: str, number: int) -> tuple[str, str, SE3] | None:
+        """Return the part, the connector's name and its frame in the part of one side of a joint."""
+        steps = self.document.reference(item, f"Reference{number}")
+        places = [place for place, step in enumerate(steps) if step in self.names]
+        if not places:
+            return None
+        frame, part = IDENTITY, steps[places[0]]
+        for step in steps[places[0] + 1 :]:
+            frame = frame @ self.document.placement(step)
+        last = steps[-1]
+        connector = self.document.text(last, "ArticadConnector")
+        named = connector or _plain(f"{self.document.text(item, 'Label') or item}_{number}")
+        offset = self.document.placement(item, f"Placement{number}")
+        return self.names[part], named, frame if connector else frame @ offset
+
+    def _joint(self, item: str, name: str, kind: JointType, parent: tuple[str, str, SE3], child: tuple[str, str, SE3]) -> Joint:
+        D = (self.poses[parent[0]] @ parent[2]).inverse() @ self.poses[child[0]] @ child[2]
+        mate = Mate.ALIGNED if D.rotation[2, 2] >= 0 else Mate.OPPOSED
+        motion = D @ (FLIP if mate is Mate.OPPOSED else IDENTITY)
+        R, along = motion.rotation, float(motion.translation[2])
+        turn = math.atan2(R[1, 0] - R[0, 1], R[0, 0] + R[1, 1])
+        rest: tuple[float, ...] = {
+            JointType.REVOLUTE: (turn,),
+            JointType.SLIDER: (along,),
+            JointType.CYLINDRICAL: (along, turn),
+            JointType.BALL: tuple(float(number) for number in motion.quaternion),
+        }.get(kind, ())
+        lower, upper = self._limits(item, kind, rest)
+        return Joint(
+            name=name,
+            type=kind,
+            parent=parent[0],
+            child=child[0],
+            parent_connector=parent[1],
+            child_connector=child[1],
+            T_parent_connector=parent[2],
+            T_child_connector=child[2],
+            limits=JointLimits(lower, upper),
+            rest=rest,
+            mate=mate,
+        )
+
+    def _limits(self, item: str, kind: JointType, rest: tuple[float, ...]) -> tuple[tuple[float, ...], tuple[float, ...]]:
+        lower, upper = [], []
+        for axis, value in zip(_LIMITS.get(kind, ()), rest, strict=False):
+            scale = math.radians(1.0) if axis == "Angle" else 1.0
+            ends = []
+            for end, endless in (("Min", -math.inf), ("Max", math.inf)):
+                held = self.document.truth(item, f"Enable{axis}{end}")
+                ends.append(self.document.number(item, f"{axis}{end}") * scale if held else endless)
+            lower.append(min(ends[0], value))  # FreeCAD lets a part rest outside its limits
+            upper.append(max(ends[1], value))
+        return tuple(lower), tuple(upper)
+
+    def assemble(self) -> Assembly:
+        """Return the assembly of a document that articad did not write."""
+        joints = [joint for _, joint in self.joints()]
+        parts = []
+        for name in self.parts:
+            frames = dict(self.connectors(name))
+            for joint in joints:
+                if joint.parent == name:
+                    frames[joint.parent_connector] = joint.T_parent_connector
+                if joint.child == name:
+                    frames[joint.child_connector] = joint.T_child_connector
+            solid = self.solid(name)
+            connectors = {key: Connector(key, frame) for key, frame in frames.items()}
+            parts.append(
+                Part.without_geometry(name, connectors)
+                if solid is None
+                else Part.from_solid(name, solid, connectors=connectors, color=DEFAULT_COLOR)
+            )
+        title = self.document.text(self.assembly, "Label") or self.document.path.stem
+        try:
+            made = Assembly.from_parts(_plain(title), parts=parts, joints=joints, ground=self.ground, T_ground=self.poses[self.ground])
+        except ArticadError as error:
+            raise unreadable(self.document.path, self.assembly, f"It is no mechanism: {error.message}") from error
+        return replace(made, findings=Findings(self.findings))
+
+
+def _updated(model: _Model, recorded: Assembly) -> Assembly:
+    """Return what the records say, with frames, limits and shapes as the document has them now."""
+    found = {joint.name: joint for _, joint in model.joints()}
+    connectors = {name: model.connectors(name) for name in model.parts}
+    parts = {name: _part_now(part, connectors.get(name, {}), model) for name, part in recorded.parts.items() if name in model.parts}
+    if set(parts) != set(recorded.parts) or model.ground != recorded.ground:
+        return model.assemble()  # parts were taken away: the records speak of something else
+    joints = [_joint_now(joint, found.get(joint.name), parts) for joint in recorded.joints]
+    mechanism = Mechanism(
+        tuple(parts),
+        recorded.ground,
+        joints,
+        recorded.mechanism.couplings,
+        T_ground=_near(model.poses[model.ground], recorded.mechanism.T_ground),
+    )
+    return replace(recorded, mechanism=mechanism, parts=parts, findings=Findings(model.findings))
+
+
+def _part_now(part: Part, frames: dict[str, SE3], model: _Model) -> Part:
+    connectors = {
+        name: replace(connector, frame=_near(frames.get(name, connector.frame), connector.frame))
+        for name, connector in part.connectors.items()
+    }
+    solid = model.solid(part.name)
+    if solid is None:
+        return replace(part, connectors=connectors)
+    shown = Part.from_solid(part.name, solid, connectors=connectors, color=part.color, material=part.material)
+    return replace(shown, mass=part.mass)
+
+
+def _joint_now(joint: Joint, found: Joint | None, parts: dict[str, Part]) -> Joint:
+    now = replace(
+        joint,
+        T_parent_connector=parts[joint.parent].connectors[joint.parent_connector].frame,
+        T_child_connector=parts[joint.child].connectors[joint.child_connector].frame,
+    )
+    if found is None or joint.type not in _LIMITS:
+        return now
+    limits = tuple(
+        tuple(old if math.isclose(new, old, rel_tol=1e-12, abs_tol=1e-12) else new for new, old in zip(new_row, old_row, strict=True))
+        for new_row, old_row in ((found.limits.lower, joint.limits.lower), (found.limits.upper, joint.limits.upper))
+    )
+    rest = tuple(old if abs(new - old) < SAME_MM else new for new, old in zip(found.rest, joint.rest, strict=True))
+    return replace(now, limits=JointLimits(limits[0], limits[1]), rest=rest)
+
+
+def _near(now: SE3, recorded: SE3) -> SE3:
+    return recorded if now.allclose(recorded, mm=SAME_MM, rad=SAME_RAD) else now
+
+
+def _plain(text: str) -> str:
+    """Return a label as a name of ours."""
+    name = re.sub(r"[^a-z0-9]+", "_", text.lower()).strip("_")
+    return name if name[:1].isalpha() else f"n{name}"
