@@ -1,7 +1,7 @@
 """One pose: which parts overlap, which float, which meshes cannot be judged.
 
 Bounding boxes choose the pairs; a boolean of the two solids gives the verdict (`articad.interference.overlap`).
-Definitions and tolerances: `docs/concepts/interference.md`.
+Definitions and tolerances: `docs/reference/certificate.md`.
 """
 
 from __future__ import annotations
