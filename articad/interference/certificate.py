@@ -269,7 +269,9 @@ class _Certifying:
     def _followed(self, parts: tuple[str, str], prover: LinkageProver, proof: Proof) -> None:
         joint, name = prover.coordinate.joint, prover.coordinate.name
         if proof.is_complete:
-            self.followed += proof.claims
+            # what is invariant rests on no tube, and a checker can tell
+            invariant = all(claim.separation is not None or not claim.reach for claim in proof.claims)
+            (self.claims if invariant else self.followed).extend(proof.claims)
             contact = "contact" if proof.overlap.volume > 0 or any(claim.shrink for claim in proof.claims) else "clear"
             self._verdict(parts, (joint,), Strength.certified(proof.epsilon), proof.overlap, contact)
         elif proof.out_of_budget and not proof.contacts:

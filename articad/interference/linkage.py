@@ -86,9 +86,9 @@ class LinkageProver(Prover):
         """Return the driver's range."""
         return self.bounds
 
-    def vary(self, view: View, cover: Cover | None) -> dict[str, tuple[float, float]]:  # noqa: ARG002
-        """Return the driver's range that was cleared."""
-        return {self.coordinate.name: self.bounds if cover is None else (cover.lower, cover.upper)}
+    def vary(self, view: View, cover: Cover | None) -> dict[str, tuple[float, float]]:
+        """Return the driver's range that was cleared; what keeps apart for good does so wherever any of the joints are."""
+        return super().vary(view, None) if cover is None else {self.coordinate.name: (cover.lower, cover.upper)}
 
     def cover_patch(self, patch: Patch, most: int | None) -> Cover:
         """Clear the driver's range outwards from rest."""

@@ -69,6 +69,8 @@ def test_a_four_bar_in_layers_is_certified_over_a_full_turn() -> None:
     assert certificate.ok
     assert all(pair.strength.kind == "certified" for pair in certificate.pairs)
     assert len(certificate.pairs) == 6
+    assert len(certificate.claims) == 6  # the layers keep apart wherever the links are, so that a checker can judge it
+    assert certificate.followed == ()
     assert certificate.ranges[0].upper - certificate.ranges[0].lower == pytest.approx(2 * math.pi)
     assert (
         verify(json.loads(json.dumps(certificate.to_json())), {n: (m.vertices, m.triangles) for n, m in certificate.meshes.items()}) == []
