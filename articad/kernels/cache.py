@@ -12,6 +12,8 @@ import time
 from collections.abc import Iterator
 from pathlib import Path
 
+from articad.errors import KernelError
+
 _SEAL = "seal.json"  # sha256 of every other file of the folder
 _TEMPORARY = ".building-"
 _STALE_SECONDS = 86400.0  # of a folder that some process left half-written
@@ -55,10 +57,16 @@ class BuildCache:
         """Give a new folder to write to; when the block ends without an error it becomes the folder of the digest.
 
         Where another process was first, its folder stays. After an error nothing is left.
+
+        Raises:
+            KernelError: If the disk is full or the folder cannot be written.
         """
-        self.root.mkdir(parents=True, exist_ok=True)
-        self._sweep()
-        folder = Path(tempfile.mkdtemp(prefix=_TEMPORARY, dir=self.root))
+        try:
+            self.root.mkdir(parents=True, exist_ok=True)
+            self._sweep()
+            folder = Path(tempfile.mkdtemp(prefix=_TEMPORARY, dir=self.root))
+        except OSError as error:
+            raise self._unwritable(error) from error
         try:
             yield folder
             seal = {path.name: _hash(path) for path in sorted(folder.iterdir())}
@@ -69,8 +77,15 @@ class BuildCache:
             except OSError:
                 if self.get(digest) is None:  # what stood in the way was spoiled and is gone now
                     folder.rename(self.root / digest)
+        except OSError as error:
+            raise self._unwritable(error) from error
         finally:
             shutil.rmtree(folder, ignore_errors=True)
+
+    def _unwritable(self, error: OSError) -> KernelError:
+        return KernelError(
+            f"Built parts cannot be kept in {self.root}: {error.strerror}. Set ARTICAD_CACHE to a folder that can be written."
+        )
 
     def keep_failed(self, digest: str, files: dict[str, bytes]) -> Path:
         """Keep what a failed build left, for a picture; the latest of each digest."""

@@ -13,7 +13,6 @@ from __future__ import annotations
 import contextlib
 import ctypes
 import os
-import resource
 import shutil
 import site
 import subprocess
@@ -96,6 +95,8 @@ def available() -> frozenset[str]:
 
 def missing() -> tuple[str, ...]:
     """Return, for each layer that does not work here, why not."""
+    if sys.platform != "linux":
+        return (f"part scripts run on Linux only, not on {sys.platform}: use a Linux container or WSL 2",)
     reasons = []
     if (problem := bubblewrap_problem()) is not None:
         reasons.append(f"bubblewrap: {problem}")
@@ -212,6 +213,8 @@ def die_with_parent(signal_number: int, parent: int) -> None:
 
 
 def _limit_resources(limits: Limits) -> None:
+    import resource  # noqa: PLC0415 - Windows has none, and this module is imported there
+
     # Twice the wall clock on every processor is only reached by threads that outlive the wall clock's own kill.
     cpu = int(2 * (limits.seconds + limits.probe_seconds) * (os.cpu_count() or 1)) + 1
     for what, value in (

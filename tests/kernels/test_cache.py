@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import multiprocessing
 import os
 import time
@@ -9,6 +10,7 @@ from pathlib import Path
 
 import pytest
 
+from articad.errors import KernelError
 from articad.kernels.cache import BuildCache, default_root
 
 
@@ -134,3 +136,21 @@ def test_no_root_is_a_cache_that_goes_with_its_object() -> None:
     del cache
 
     assert not root.exists()
+
+
+def test_a_folder_that_cannot_be_written_is_an_error_with_a_way_out(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("in the way")
+
+    with pytest.raises(KernelError, match="Set ARTICAD_CACHE"):
+        filled(BuildCache(tmp_path / "file" / "cache"), "d")
+
+
+def test_a_full_disk_is_an_error_and_leaves_nothing(tmp_path: Path) -> None:
+    def write_until_full() -> None:
+        with BuildCache(tmp_path).writing("d"):
+            raise OSError(errno.ENOSPC, "No space left on device")
+
+    with pytest.raises(KernelError, match="No space left on device"):
+        write_until_full()
+
+    assert list(tmp_path.iterdir()) == []

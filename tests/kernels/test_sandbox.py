@@ -67,6 +67,14 @@ def test_scripts_are_refused_without_landlock_or_bubblewrap(brief: dict[str, Any
     assert kernel.pid is None  # nothing was started
 
 
+def test_other_systems_are_refused_even_when_weak(brief: dict[str, Any], monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sys, "platform", "darwin")
+    monkeypatch.setattr(sandbox, "available", sandbox.available.__wrapped__)
+
+    with pytest.raises(SandboxError, match="on Linux only, not on darwin: use a Linux container or WSL 2"):
+        Build123dKernel(sandbox="weak").build(b"", brief)
+
+
 def test_weak_runs_scripts_and_says_so(brief: dict[str, Any]) -> None:
     kernel = Build123dKernel(sandbox="weak", layers=())
     try:
