@@ -18,8 +18,8 @@ def gear_outline(module, teeth, backlash):
     half = (pi * module / 2 - backlash / 2) / (2 * pitch) + involute(PRESSURE)  # angle of half a tooth, at the base
     start = max(base, root)
     flank = [(root, half)] if root < base else []  # radial below the base circle
-    for i in range(6):
-        radius = start + (tip - start) * i / 5
+    for i in range(5):
+        radius = start + (tip - start) * i / 4
         flank.append((radius, half - involute(acos(min(1, base / radius)))))
     points = []
     for k in range(teeth):
