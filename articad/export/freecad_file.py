@@ -19,8 +19,6 @@ from lxml import etree
 EPOCH = "2000-01-01T00:00:00Z"
 _ZIP_TIME = (2000, 1, 1, 0, 0, 0)
 _NAMESPACE = uuid.UUID("6d1d9a3e-0c1b-5b6e-9b35-0a2f4f1c7c11")  # of the Uids that stand in for random ones
-_FIRST_ID = 0x1000
-_TAG = re.compile(rb"(:H-?)([0-9a-f]+)")
 _DATES = {"CreationDate", "LastModifiedDate"}
 _PEOPLE = {"CreatedBy", "LastModifiedBy", "Company"}
 _NOTHING = "bnVsbA=="  # base64 of null: what FreeCAD itself writes for a view provider without state
@@ -63,7 +61,6 @@ def normalised(content: bytes, look: Look | None = None) -> bytes:
         files = {name: archive.read(name) for name in archive.namelist() if name not in ("GuiDocument.xml", "thumbnails/Thumbnail.png")}
     root = etree.fromstring(files["Document.xml"], _parser())
     _settle(root)
-    files = _renumbered(root, files)
     types = {item.get("name"): item.get("type") for item in root.iterfind("Objects/Object")}
     if look is not None:
         _show(root, types, look)
@@ -99,28 +96,8 @@ def _settle(root: etree._Element) -> None:
         del item.attrib["Touched"]
     for needs in root.iter("ObjectDeps"):  # FreeCAD orders them by address
         needs[:] = sorted(needs, key=lambda need: need.get("Name"))
-
-
-def _renumbered(root: etree._Element, files: Mapping[str, bytes]) -> dict[str, bytes]:
-    """Number the objects from a fixed number on: FreeCAD starts anywhere, and names edges and faces by these numbers."""
-    items = root.findall("Objects/Object[@id]")
-    ids = {int(item.get("id")): _FIRST_ID + number for number, item in enumerate(sorted(items, key=lambda item: int(item.get("id"))))}
-    for item in items:
-        item.set("id", str(ids[int(item.get("id"))]))
-
-    def mapped(match: re.Match[bytes]) -> bytes:
-        number = int(match[2], 16)
-        return match[1] + (b"%x" % ids[number] if number in ids else match[2])
-
-    named = {}
-    for name, content in files.items():
-        maps = name.endswith(".Map.txt") or name.startswith("StringHasher")
-        named[name] = _TAG.sub(mapped, content) if maps else content
-    for element in root.iter():
-        for key, value in element.attrib.items():
-            if ":H" in value:
-                element.set(key, _TAG.sub(mapped, value.encode()).decode())
-    return named
+        for need in needs:
+            need.tail = needs.text
 
 
 def _is_shown(name: str, kind: str, look: Look) -> bool:

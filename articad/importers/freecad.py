@@ -171,6 +171,7 @@ class _Model:
         self.poses = {name: document.placement(item) for name, item in self.parts.items()}
         self.findings: list[Finding] = []
         self._solids: dict[str, Solid | None] = {}
+        self._reader = BrepReader()
 
     def _name(self, item: str) -> str:
         return self.document.text(item, "ArticadPart") or _plain(self.document.text(item, "Label") or item)
@@ -207,7 +208,7 @@ class _Model:
             # B-rep is written where its object stands; a body that is a part itself stands in the assembly
             T = self.document.placement(item).inverse() if own else IDENTITY
             try:
-                return BrepReader().read_brep(self.document.archive.read(file), name=name, T=T, deflection=self.deflection)
+                return self._reader.read_brep(self.document.archive.read(file), name=name, T=T, deflection=self.deflection)
             except ArticadError as error:
                 message = f"The shape of {item} is not one valid solid: {error.message[:200]}"
                 self.findings.append(

@@ -189,7 +189,8 @@ class BrepReader(Build123dKernel):
         try:
             with self._job() as job:
                 (job / "shape.bin").write_bytes(content)
-                shape = self._measured(job, form="brep", name=name, deflection=deflection, matrix=T.matrix.tolist())
+                matrix = None if T.allclose(SE3.identity(), mm=0.0, rad=0.0) else T.matrix.tolist()
+                shape = self._measured(job, form="brep", name=name, deflection=deflection, matrix=matrix)
                 findings = Findings(solid_findings({"name": name}, shape))
                 if not findings.ok:
                     raise ReadError(findings.errors[0].message, path=name, findings=findings)

@@ -8,6 +8,8 @@ opens the file, while 1.0 cannot read 1.1's.
 from __future__ import annotations
 
 import json
+import re
+import zipfile
 from pathlib import Path
 from typing import Any
 
@@ -32,7 +34,7 @@ _JOINT_TYPES = {
     "rack": "RackPinion",
     "thread": "Screw",
 }
-_LINKED = ("rigid", "pattern")
+FIRST_ID = 100_000  # beyond 5000, where FreeCAD's own random start ends
 
 
 def main() -> None:
@@ -51,7 +53,7 @@ def placement(numbers: list[float]) -> Any:
 class _Writer:
     def __init__(self, job: Json) -> None:
         self.job = job
-        self.document = App.newDocument("assembly")
+        self.document = _numbered_from(FIRST_ID)
         self.document.Label = job["name"]
         self.document.UndoMode = 0
         self.parts: dict[str, Any] = {}  # part -> what stands in the assembly
@@ -81,7 +83,7 @@ class _Writer:
         code, moved = self._solved()
         self._place()
         self._touch_nothing()
-        self.document.saveAs("/work/assembly.FCStd" if Path("/work/job.json").exists() else str(Path("assembly.FCStd").resolve()))
+        self.document.saveAs(str(Path("assembly.FCStd").resolve()))
         invalid = [item.Name for item in self.document.Objects if "Invalid" in item.State]
         return {
             "version": list(App.Version()[:3]),
@@ -98,9 +100,10 @@ class _Writer:
     # ------------------------------------------------------------------ parameters
 
     def _parameters(self) -> None:
+        values = self.document.getObject("Parameters")
         if not self.job["parameters"]:
+            self.document.removeObject("Parameters")
             return
-        values = self.document.addObject("App::VarSet", "Parameters")
         for row in self.job["parameters"]:
             note = f"{row['description']} [{row['unit']}]".strip()
             _float(values, f"p_{row['name']}", row["value"], "Parameters", note)
@@ -268,6 +271,25 @@ class _Writer:
     def _touch_nothing(self) -> None:
         for item in self.document.Objects:
             item.purgeTouched()
+
+
+def _numbered_from(first: int) -> Any:
+    """Return a document whose objects are numbered from `first` on, with a VarSet `Parameters`.
+
+    FreeCAD starts at a random number and names edges and faces by it; a document that is opened goes on from its own.
+    """
+    seed = Path("seed.FCStd").resolve()
+    fresh = App.newDocument("fresh")
+    fresh.addObject("App::VarSet", "Parameters")
+    fresh.saveAs(str(seed))
+    App.closeDocument(fresh.Name)
+    with zipfile.ZipFile(seed) as archive:
+        files = {name: archive.read(name) for name in archive.namelist()}
+    files["Document.xml"] = re.sub(rb'(name="Parameters" id=")\d+', rb"\g<1>%d" % first, files["Document.xml"])
+    with zipfile.ZipFile(seed, "w") as archive:
+        for name, content in files.items():
+            archive.writestr(name, content)
+    return App.openDocument(str(seed))
 
 
 def _float(item: Any, name: str, value: float, group: str, note: str) -> None:
