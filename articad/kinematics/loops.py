@@ -44,16 +44,24 @@ class Closed(NamedTuple):
         Q: Coordinates `(n_columns,)`.
         residual: |r|.
         iterations: Linear systems solved.
+        J: Jacobian of the residuals by the freedoms that could move, scaled, `(rows, free)`.
     """
 
     Q: FloatArray
     residual: float
     iterations: int
+    J: FloatArray
 
     @property
     def ok(self) -> bool:
         """True when every loop is closed."""
         return self.residual <= CLOSED
+
+    @property
+    def rank(self) -> int:
+        """Independent constraints on the freedoms that could move."""
+        s = np.linalg.svd(self.J, compute_uv=False)
+        return int((s > RANK_TOLERANCE * s.max(initial=0.0)).sum())
 
 
 @dataclass(frozen=True)
@@ -231,11 +239,11 @@ class ClosureSystem:
                     Q, r, J, norm, mu = trial, r_trial, J_trial, norm_trial, mu * _DAMPING_FALL
                     break
                 if norm < CLOSED or mu > 1e12:  # at the rounding floor, or at a minimum that is no solution
-                    return Closed(Q, norm, done)
+                    return Closed(Q, norm, done, J[:, where])
                 mu *= _DAMPING_RISE
         if polish and where.size and _ROUNDING < norm <= CLOSED:
             Q, norm = self._polished(Q, r, J, where)
-        return Closed(Q, norm, done)
+        return Closed(Q, norm, done, J[:, where])
 
     def _polished(self, Q: FloatArray, r: FloatArray, J: FloatArray, where: IndexArray) -> tuple[FloatArray, float]:
         y = np.zeros(self.layout.n_freedoms)
