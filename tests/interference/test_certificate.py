@@ -354,6 +354,13 @@ def test_no_point_moves_faster_than_its_reach(kind: JointType) -> None:
             assert np.abs(apart[0] - apart[1]).max() <= reach @ np.abs(p - q) + 1e-9
 
 
+def test_a_point_on_the_axis_of_a_screw_moves_by_its_lead() -> None:
+    thread = joint("j", "screw", "a", "b", lower=(-1.0,), upper=(1.0,), lead=-7.0)
+    chain = Chain(KinematicTree("a", [Edge(thread, "a", "b")]), "a", "b", ["j"])
+    on_axis = np.array([[0.0, 0.0, 3.0]])
+    assert chain.reach(on_axis, on_axis) == pytest.approx([7.0 / (2 * math.pi)])
+
+
 def test_a_chain_places_parts_as_the_mechanism_does() -> None:
     rng = np.random.default_rng(3)
     joints = [
@@ -564,7 +571,7 @@ def test_the_polytope_around_a_surface_is_never_further_away_than_the_surface() 
 
 
 def test_the_polytope_of_a_hollow_part_holds_what_is_inside_it() -> None:
-    ring, pin = Surface.of(tube(20, 30, 5, 48)), Surface.of(sphere(3, 12))
+    ring, pin = Surface.of(tube(20, 30, 20, 48)), Surface.of(sphere(3, 12))
     assert ring.outer.distance(pin.outer, np.eye(4)) == 0.0
     assert pin.outer.distance(ring.outer, np.eye(4)) == 0.0
     assert surface_distance(ring, pin, np.eye(4)) > 0

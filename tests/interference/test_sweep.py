@@ -98,6 +98,13 @@ def test_cached_volumes_are_those_of_every_pose_asked_anew() -> None:
     assert sweep(SCENE, mechanism, steps=30).pairs[0].volume == pytest.approx(worst)
 
 
+def test_relative_poses_that_differ_by_less_than_a_millimetre_are_not_taken_for_one() -> None:
+    slide = joint("slide", "slider", "a", "b", lower=(0.0,), upper=(1.4,))
+    meshes = {"a": box(10, 10, 10), "b": box(10, 10, 10).transformed(at(z=-10))}
+    report = sweep(meshes, Mechanism(("a", "b"), "a", [slide]), steps=15)
+    assert report.pairs[0].volume == pytest.approx(140.0)
+
+
 def test_large_meshes_are_swept_with_the_same_verdict() -> None:
     fine = cylinder(3, 60, 1500).transformed(at(70, 40))
     assert len(fine.triangles) > 4000
