@@ -41,6 +41,7 @@ _FORMATS: Final = (
     "glb",
     "3mf",
     "sdf",
+    "usd",
 )  # the keys of `articad.record.WRITERS`, which --help must not load
 _USUAL: Final = ("urdf", "mjcf")
 
@@ -438,7 +439,7 @@ def _render(options: argparse.Namespace, terminal: Terminal) -> Report:
     "convert",
     "Convert a URDF or MJCF file into another format.",
     _argument("source", metavar="IN", help="a .urdf or .xml file"),
-    _argument("target", metavar="OUT", help="its ending says the format: .urdf .xml .sdf .step .glb .3mf"),
+    _argument("target", metavar="OUT", help="its ending says the format: .urdf .xml .sdf .usda .step .glb .3mf"),
     _argument("--strict", action="store_true", help="refuse what the format cannot hold, instead of reporting it as lost"),
 )
 def _convert(options: argparse.Namespace, terminal: Terminal) -> Report:

@@ -15,6 +15,7 @@ from articad.export.sdf import write_sdf
 from articad.export.step import write_step
 from articad.export.threemf import write_3mf
 from articad.export.urdf import write_urdf
+from articad.export.usd import write_usd
 from articad.findings import Finding
 from articad.importers.mjcf import read_mjcf
 from articad.importers.urdf import read_urdf
@@ -23,6 +24,7 @@ WRITERS: Final[Mapping[str, Callable[..., Bundle]]] = {
     "urdf": write_urdf,
     "mjcf": write_mjcf,
     "sdf": write_sdf,
+    "usd": write_usd,
     "step": write_step,
     "glb": write_glb,
     "3mf": write_3mf,
@@ -37,6 +39,7 @@ FORMAT_OF: Final[Mapping[str, str]] = {
     ".xml": "mjcf",
     ".mjcf": "mjcf",
     ".sdf": "sdf",
+    ".usda": "usd",
     ".step": "step",
     ".stp": "step",
     ".glb": "glb",

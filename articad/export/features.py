@@ -77,12 +77,15 @@ def _coupling_features(assembly: Assembly) -> list[Feature]:
 def _part_features(assembly: Assembly) -> list[Feature]:
     features = []
     still = rigid_with_ground(assembly)
+    used = {end for joint in assembly.joints for end in ((joint.parent, joint.parent_connector), (joint.child, joint.child_connector))}
     for name, part in assembly.parts.items():
         where = f"parts.{name}"
         if name not in still and (part.mass is None or part.mass.mass <= 0):
             features.append(Feature("mass.missing", where))
         if not part.visuals and not part.collisions:
             features.append(Feature("shape.missing", where))
+        if any((name, connector) not in used for connector in part.connectors):
+            features.append(Feature("connector", where))
         if part.material in assembly.materials:
             features.append(Feature("friction", where))
     return features

@@ -13,9 +13,9 @@ from articad.errors import UnrepresentableError
 from articad.export.bundle import Loss
 from articad.findings import Finding
 
-Format = Literal["urdf", "mjcf", "sdf", "glb", "3mf", "step"]
+Format = Literal["urdf", "mjcf", "sdf", "usd", "glb", "3mf", "step"]
 
-MECHANISM_FORMATS: tuple[Format, ...] = ("urdf", "mjcf", "sdf")  # hold joints; the others hold shapes
+MECHANISM_FORMATS: tuple[Format, ...] = ("urdf", "mjcf", "sdf", "usd")  # hold joints; the others hold shapes
 
 
 class Row(NamedTuple):
@@ -48,14 +48,30 @@ class Feature(NamedTuple):
 
 TABLE: dict[str, dict[Format, Row]] = {
     # --- joints
-    "fixed": {"urdf": Row("a fixed joint"), "mjcf": Row("a body without joint inside its parent"), "sdf": Row("a fixed joint")},
-    "revolute": {"urdf": Row("a revolute joint"), "mjcf": Row("a hinge"), "sdf": Row("a revolute joint")},
-    "revolute.endless": {"urdf": Row("a continuous joint"), "mjcf": Row("a hinge without range"), "sdf": Row("a continuous joint")},
-    "slider": {"urdf": Row("a prismatic joint"), "mjcf": Row("a slide joint"), "sdf": Row("a prismatic joint")},
+    "fixed": {
+        "urdf": Row("a fixed joint"),
+        "mjcf": Row("a body without joint inside its parent"),
+        "sdf": Row("a fixed joint"),
+        "usd": Row("a fixed joint"),
+    },
+    "revolute": {"urdf": Row("a revolute joint"), "mjcf": Row("a hinge"), "sdf": Row("a revolute joint"), "usd": Row("a revolute joint")},
+    "revolute.endless": {
+        "urdf": Row("a continuous joint"),
+        "mjcf": Row("a hinge without range"),
+        "sdf": Row("a continuous joint"),
+        "usd": Row("a revolute joint without limits"),
+    },
+    "slider": {
+        "urdf": Row("a prismatic joint"),
+        "mjcf": Row("a slide joint"),
+        "sdf": Row("a prismatic joint"),
+        "usd": Row("a prismatic joint"),
+    },
     "cylindrical": {
         "urdf": Row("a prismatic joint, a carrier link and a revolute joint"),
         "mjcf": Row("a slide and a hinge on one body"),
         "sdf": Row("a prismatic joint, a carrier link and a revolute joint"),
+        "usd": Row("a generic joint that slides along and turns about z"),
     },
     "ball": {
         "urdf": Row(
@@ -65,11 +81,13 @@ TABLE: dict[str, dict[Format, Row]] = {
         ),
         "mjcf": Row("a ball joint", "cone and twist become one limit on the total angle, which contains them", refused=True),
         "sdf": Row("a ball joint", "cone and twist: a ball of SDFormat has no limits", refused=True),
+        "usd": Row("a spherical joint with a cone", "the range of its twist"),
     },
     "ball.free": {
         "urdf": Row("three revolute joints about x, y, z with two carrier links"),
         "mjcf": Row("a ball joint"),
         "sdf": Row("a ball joint"),
+        "usd": Row("a spherical joint"),
     },
     "ball.wide": {
         "urdf": Row(
@@ -79,6 +97,7 @@ TABLE: dict[str, dict[Format, Row]] = {
         ),
         "mjcf": Row("a ball joint"),
         "sdf": Row("a ball joint", "cone and twist: a ball of SDFormat has no limits", refused=True),
+        "usd": Row("a spherical joint with a cone", "the range of its twist"),
     },
     "screw": {
         "urdf": Row(
@@ -87,37 +106,44 @@ TABLE: dict[str, dict[Format, Row]] = {
         ),
         "mjcf": Row("a slide and a hinge on one body, tied by an equality of joints"),
         "sdf": Row("a screw joint"),
+        "usd": Row("a generic joint that slides along and turns about z", "the lead: the two move on their own", refused=True),
     },
     "planar": {
         "urdf": Row("two prismatic joints and a revolute joint, with two carrier links"),
         "mjcf": Row("two slides and a hinge on one body"),
         "sdf": Row("two prismatic joints and a revolute joint, with two carrier links"),
+        "usd": Row("a generic joint that slides along x and y and turns about z"),
     },
     "universal": {
         "urdf": Row("two revolute joints with a carrier link"),
         "mjcf": Row("two hinges on one body"),
         "sdf": Row("a universal joint"),
+        "usd": Row("a generic joint that turns about x and y"),
     },
     "limits.open": {
         "urdf": Row("a far limit, 1e6 rad or 1000 m away", "the joint is endless to that side"),
         "mjcf": Row("a far limit, 1e6 rad or 1000 m away", "the joint is endless to that side"),
         "sdf": Row("a limit to one side only"),
+        "usd": Row("one infinite limit"),
     },
     "slide.endless": {
         "urdf": Row("limits of ±1000 m", "the slide is endless"),
         "mjcf": Row("a slide joint without range"),
         "sdf": Row("a prismatic joint without limits"),
+        "usd": Row("infinite limits"),
     },
     "velocity": {
         "urdf": Row("the velocity of <limit>"),
         "mjcf": Row("metadata", "MJCF has no limit on a joint's velocity"),
         "sdf": Row("the velocity of <limit>"),
+        "usd": Row("nothing", "UsdPhysics has no limit on a joint's velocity"),
     },
     # --- loops and couplings
     "loop": {
         "urdf": Row("metadata", "URDF holds trees only: this joint is left out and its loop is open", refused=True),
         "mjcf": Row("equality constraints between sites"),
         "sdf": Row("a joint like any other"),
+        "usd": Row("a joint that is excluded from the articulation"),
     },
     "loop.points": {
         "urdf": Row(
@@ -125,36 +151,43 @@ TABLE: dict[str, dict[Format, Row]] = {
         ),
         "mjcf": Row("equality constraints between sites"),
         "sdf": Row("a joint like any other"),
+        "usd": Row("a joint that is excluded from the articulation"),
     },
     "loop.mimic": {
         "urdf": Row("<mimic> of the driver", "readers that ignore <mimic> open the loop"),
         "mjcf": Row("equality constraints between sites"),
         "sdf": Row("a joint like any other"),
+        "usd": Row("a joint that is excluded from the articulation"),
     },
     "loop.ball": {
         "urdf": Row("metadata"),
         "mjcf": Row("an equality of two points", "the cone and twist of a ball that closes a loop", refused=True),
         "sdf": Row("a ball joint", "cone and twist: a ball of SDFormat has no limits", refused=True),
+        "usd": Row("a spherical joint with a cone", "the range of its twist"),
     },
     "coupling": {
         "urdf": Row("<mimic>", "readers that ignore <mimic> let the joints move on their own"),
         "mjcf": Row("an equality of joints"),
         "sdf": Row("<mimic>", "readers that ignore <mimic> let the joints move on their own"),
+        "usd": Row("nothing", "UsdPhysics ties no joints: they move on their own", refused=True),
     },
     "coupling.loop": {
         "urdf": Row("metadata", "the coupling names a joint that closes a loop, or ties joints that are tied already", refused=True),
         "mjcf": Row("an equality of joints"),
         "sdf": Row("metadata", "the coupling names a joint that closes a loop, or ties joints that are tied already", refused=True),
+        "usd": Row("nothing", "UsdPhysics ties no joints: they move on their own", refused=True),
     },
     "loop.rest": {
         "urdf": Row("the tree where all values are zero"),
         "mjcf": Row("a key at rest"),
         "sdf": Row("a model that is posed at rest", "values are measured from rest, where the loops are closed, not from zero"),
+        "usd": Row("bodies that are posed at rest"),
     },
     "loop.chain": {
         "urdf": Row("metadata"),
         "mjcf": Row("equality constraints between sites"),
         "sdf": Row("metadata", "SDFormat has no joint of this kind, and a chain cannot close a loop: it is left out", refused=True),
+        "usd": Row("a generic joint that is excluded from the articulation"),
     },
     # --- what formats of shapes make of motion and mass
     "motion": {
@@ -175,8 +208,14 @@ TABLE: dict[str, dict[Format, Row]] = {
         "urdf": Row("1e-4 kg", "the mass of a moving part is not known", refused=True),
         "mjcf": Row("1e-4 kg", "the mass of a moving part is not known", refused=True),
         "sdf": Row("1e-4 kg", "the mass of a moving part is not known", refused=True),
+        "usd": Row("1e-4 kg", "the mass of a moving part is not known", refused=True),
     },
-    "shape.missing": {"urdf": Row("a link without shapes"), "mjcf": Row("a body without geoms"), "sdf": Row("a link without shapes")},
+    "shape.missing": {
+        "urdf": Row("a link without shapes"),
+        "mjcf": Row("a body without geoms"),
+        "sdf": Row("a link without shapes"),
+        "usd": Row("a body without meshes"),
+    },
     "hull": {
         "urdf": Row(
             "collision meshes",
@@ -186,23 +225,36 @@ TABLE: dict[str, dict[Format, Row]] = {
             "an excluded pair", "MuJoCo collides with convex hulls; those of these two parts overlap at rest, so they do not collide at all"
         ),
         "sdf": Row("collision meshes"),
+        "usd": Row("convex hulls to collide with"),
     },
     "collision.hull": {
         name: Row("a convex hull to collide with", "dents, holes and slots of the part, which bodies cannot enter", refused=True)
         for name in MECHANISM_FORMATS
     },
-    "color": {"urdf": Row("<material>"), "mjcf": Row("a material"), "sdf": Row("a material")},
+    "color": {"urdf": Row("<material>"), "mjcf": Row("a material"), "sdf": Row("a material"), "usd": Row("displayColor")},
     "friction": {
         "urdf": Row("metadata", "URDF has no friction between surfaces: readers use their own"),
         "mjcf": Row("the geoms' friction"),
         "sdf": Row("friction of the collision's surface"),
+        "usd": Row("nothing", "friction between surfaces"),
     },
-    "connector": {"urdf": Row("metadata"), "mjcf": Row("a site"), "sdf": Row("metadata")},
-    "fit": {"urdf": Row("metadata"), "mjcf": Row("metadata"), "sdf": Row("metadata")},
+    "connector": {
+        "urdf": Row("metadata"),
+        "mjcf": Row("a site"),
+        "sdf": Row("metadata"),
+        "usd": Row("nothing", "connectors that no joint uses"),
+    },
+    "fit": {
+        "urdf": Row("metadata"),
+        "mjcf": Row("metadata"),
+        "sdf": Row("metadata"),
+        "usd": Row("nothing", "fits: they are promises to the maker, not to a simulator"),
+    },
     "name": {
         "urdf": Row("a name of letters, digits and underscores", "the name as given, which is kept in the metadata"),
         "mjcf": Row("a name of letters, digits and underscores", "the name as given, which is kept in the metadata"),
         "sdf": Row("a name of letters, digits and underscores", "the name as given, which is kept in the metadata"),
+        "usd": Row("a name of letters, digits and underscores", "the name as given"),
     },
 }
 

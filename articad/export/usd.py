@@ -1,0 +1,233 @@
+"""USD with UsdPhysics, as text: rigid bodies where they rest, joints between frames on them, loops left out of the articulation."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from articad.connectors.mate import flip
+from articad.connectors.se3 import SE3
+from articad.export.bundle import Bundle
+from articad.export.features import features_of
+from articad.export.losses import Feature, losses_of, refuse
+from articad.export.markup import number
+from articad.export.names import Names, valid_name
+from articad.geometry.mass import MassProperties
+from articad.geometry.mesh import TriMesh
+from articad.geometry.part import Part
+from articad.kinematics.joints import Joint, JointType
+
+if TYPE_CHECKING:
+    from articad.assembly import Assembly
+
+FloatArray = NDArray[np.float64]
+
+MM_PER_M = 1000.0
+CARRIER_MASS_KG = 1e-4  # of a moving part whose mass is not known
+_PRIMS = {
+    JointType.FIXED: "PhysicsFixedJoint",
+    JointType.REVOLUTE: "PhysicsRevoluteJoint",
+    JointType.SLIDER: "PhysicsPrismaticJoint",
+    JointType.BALL: "PhysicsSphericalJoint",
+}
+_FREE: dict[JointType, dict[str, int]] = {
+    JointType.CYLINDRICAL: {"transZ": 0, "rotZ": 1},
+    JointType.SCREW: {"transZ": -1, "rotZ": 0},
+    JointType.PLANAR: {"transX": 0, "transY": 1, "rotZ": 2},
+    JointType.UNIVERSAL: {"rotX": 0, "rotY": 1},
+}
+"""Free degrees of the joints that become a generic one, with the coordinate that each is; −1 where it follows another."""
+_DEGREES = ("transX", "transY", "transZ", "rotX", "rotY", "rotZ")
+
+
+def write_usd(assembly: Assembly, *, strict: bool = False) -> Bundle:
+    """Write an assembly as one `.usda` file in metres, z-up, with meshes inside.
+
+    Bodies keep the parts' own frames and are posed at rest. A joint's two local frames coincide where its values are zero, so limits are
+    ours, in degrees and metres. Cylindrical, planar, universal and screw joints become generic joints with their other degrees locked.
+
+    Args:
+        assembly: What to write.
+        strict: Refuse what USD holds only with a loss of motion, mass or shape.
+
+    Returns:
+        `<name>.usda` and the losses.
+
+    Raises:
+        UnrepresentableError: If `strict` and there is such a loss.
+    """
+    links, joints = Names(), Names()
+    root = valid_name(assembly.name)
+    bodies = {name: links.claim(name) for name in assembly.parts}
+    names = {joint.name: joints.claim(joint.name) for joint in assembly.joints}
+    losses = losses_of("usd", (*features_of(assembly), *_name_features(assembly, bodies, names)))
+    if strict:
+        refuse(losses)
+    rest = assembly.mechanism.rest_poses()
+    closing = {joint.name for joint in assembly.mechanism.loop_joints}
+    lines = [_HEADER.format(root=root)]
+    lines.append(f'def Xform "{root}" (\n    prepend apiSchemas = ["PhysicsArticulationRootAPI"]\n)\n{{')
+    for name, part in assembly.parts.items():
+        lines += _indented(_body(part, bodies[name], rest[name]))
+    lines += _indented(['def Scope "joints"', "{"])
+    ground = f"</{root}/{bodies[assembly.ground]}>"
+    lines += _indented(_joint_prim("PhysicsFixedJoint", "to_world", (None, ground), (rest[assembly.ground], SE3.identity()), []), 2)
+    for joint in assembly.joints:
+        ends = (f"</{root}/{bodies[joint.parent]}>", f"</{root}/{bodies[joint.child]}>")
+        lines += _indented(_joint(joint, names[joint.name], ends, closes=joint.name in closing), 2)
+    lines += ["    }", "}"]
+    return Bundle({f"{root}.usda": ("\n".join(lines) + "\n").encode("ascii")}, losses)
+
+
+_HEADER = """#usda 1.0
+(
+    defaultPrim = "{root}"
+    kilogramsPerUnit = 1
+    metersPerUnit = 1
+    upAxis = "Z"
+)
+"""
+
+
+def _body(part: Part, name: str, T: SE3) -> list[str]:
+    """Return a rigid body with its meshes."""
+    mass = part.mass if part.mass is not None and part.mass.mass > 0 else None
+    lines = [
+        f'def Xform "{name}" (',
+        '    prepend apiSchemas = ["PhysicsRigidBodyAPI", "PhysicsMassAPI"]',
+        ")",
+        "{",
+        *_indented(_mass(mass)),
+        f"    double3 xformOp:translate = {_tuple(T.translation / MM_PER_M)}",
+        f"    quatd xformOp:orient = {_quaternion(T)}",
+        '    uniform token[] xformOpOrder = ["xformOp:translate", "xformOp:orient"]',
+    ]
+    visuals, collisions = part.visuals or part.collisions, part.collisions or part.visuals
+    for index, shape in enumerate(visuals):
+        lines += _indented(_mesh(f"visual_{index}", shape.placed, shape.color or part.color))
+    for index, shape in enumerate(collisions):
+        lines += _indented(_mesh(f"collision_{index}", shape.placed, None))
+    return [*lines, "}"]
+
+
+def _mass(mass: MassProperties | None) -> list[str]:
+    if mass is None:
+        return [f"float physics:mass = {number(CARRIER_MASS_KG)}"]
+    moments, axes = np.linalg.eigh(mass.inertia)
+    if np.linalg.det(axes) < 0:
+        axes = axes * [1.0, 1.0, -1.0]
+    return [
+        f"float physics:mass = {number(mass.mass)}",
+        f"point3f physics:centerOfMass = {_tuple(mass.com / MM_PER_M)}",
+        f"float3 physics:diagonalInertia = {_tuple(moments / MM_PER_M**2)}",
+        f"quatf physics:principalAxes = {_quaternion(SE3.from_rotation(axes))}",
+    ]
+
+
+def _mesh(name: str, mesh: TriMesh, color: str | None) -> list[str]:
+    """Return a mesh: drawn in a colour, or collided with as its convex hull."""
+    points = ", ".join(_tuple(point) for point in (mesh.vertices / MM_PER_M).tolist())
+    lines = [f'def Mesh "{name}"'] if color is not None else [
+        f'def Mesh "{name}" (',
+        '    prepend apiSchemas = ["PhysicsCollisionAPI", "PhysicsMeshCollisionAPI"]',
+        ")",
+    ]  # fmt: skip
+    lines += [
+        "{",
+        f"    int[] faceVertexCounts = [{', '.join('3' * len(mesh.triangles))}]",
+        f"    int[] faceVertexIndices = [{', '.join(map(str, mesh.triangles.ravel().tolist()))}]",
+        f"    point3f[] points = [{points}]",
+        '    uniform token subdivisionScheme = "none"',
+    ]
+    if color is None:
+        lines += ['    uniform token physics:approximation = "convexHull"', '    uniform token purpose = "guide"']
+    else:
+        lines.append(f"    color3f[] primvars:displayColor = [{_tuple(_linear(color))}]")
+    return [*lines, "}"]
+
+
+def _joint(joint: Joint, name: str, ends: tuple[str, str], *, closes: bool) -> list[str]:
+    """Return a joint; its frame on the child is turned over with the mate, so that both coincide at zero."""
+    frames = (joint.T_parent_connector, joint.T_child_connector @ flip(joint.mate))
+    extra = ["bool physics:excludeFromArticulation = true"] if closes else []
+    kind = _PRIMS.get(joint.type)
+    if kind is None:
+        return _generic(joint, name, ends, frames, extra)
+    if joint.type is not JointType.FIXED:
+        extra.append('uniform token physics:axis = "Z"')
+    if joint.type is JointType.BALL:
+        cone = joint.limits.cone
+        if cone is not None and cone < math.pi:
+            extra += [f"float physics:coneAngle{i}Limit = {number(math.degrees(cone))}" for i in (0, 1)]
+    for lower, upper, unit in zip(joint.limits.lower, joint.limits.upper, joint.type.units, strict=False):
+        low, high = (_in_usd(bound, unit) for bound in (lower, upper))
+        extra += [f"float physics:lowerLimit = {low}", f"float physics:upperLimit = {high}"]
+    return _joint_prim(kind, name, ends, frames, extra)
+
+
+def _generic(joint: Joint, name: str, ends: tuple[str, str], frames: tuple[SE3, SE3], extra: list[str]) -> list[str]:
+    """Return a generic joint whose other degrees are locked: a lower limit above the upper one."""
+    schemas, limits = [], []
+    free = _FREE[joint.type]
+    for degree in _DEGREES:
+        index = free.get(degree)
+        if index is None:
+            low, high = "1", "-1"
+        elif index < 0:
+            continue
+        else:
+            unit = joint.type.units[index]
+            low, high = _in_usd(joint.limits.lower[index], unit), _in_usd(joint.limits.upper[index], unit)
+        schemas.append(f'"PhysicsLimitAPI:{degree}"')
+        limits += [f"float limit:{degree}:physics:low = {low}", f"float limit:{degree}:physics:high = {high}"]
+    return _joint_prim("PhysicsJoint", name, ends, frames, [*extra, *limits], schemas)
+
+
+def _joint_prim(
+    kind: str, name: str, ends: tuple[str | None, str], frames: tuple[SE3, SE3], extra: list[str], schemas: Iterable[str] = ()
+) -> list[str]:
+    listed = ", ".join(schemas)
+    head = [f'def {kind} "{name}" (', f"    prepend apiSchemas = [{listed}]", ")"] if listed else [f'def {kind} "{name}"']
+    relations = [f"rel physics:body{i} = {end}" for i, end in enumerate(ends) if end is not None]
+    places = [
+        line
+        for i, T in enumerate(frames)
+        for line in (f"point3f physics:localPos{i} = {_tuple(T.translation / MM_PER_M)}", f"quatf physics:localRot{i} = {_quaternion(T)}")
+    ]
+    return [*head, "{", *_indented([*relations, *places, *extra]), "}"]
+
+
+def _in_usd(bound: float, unit: str) -> str:
+    """Return a limit in degrees or m; infinite ones are a word of the format."""
+    if math.isinf(bound):
+        return "inf" if bound > 0 else "-inf"
+    return number(math.degrees(bound) if unit == "rad" else bound / MM_PER_M)
+
+
+def _tuple(values: Iterable[float]) -> str:
+    return "(" + ", ".join(number(value) for value in values) + ")"
+
+
+def _quaternion(T: SE3) -> str:
+    x, y, z, w = T.quaternion
+    return _tuple([w, x, y, z])
+
+
+def _linear(color: str) -> list[float]:
+    """Turn "#rrggbb" (sRGB) into the linear colour that USD wants."""
+    channels = [int(color[i : i + 2], 16) / 255 for i in (1, 3, 5)]
+    return [c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in channels]
+
+
+def _indented(lines: Iterable[str], levels: int = 1) -> list[str]:
+    return ["    " * levels + line for line in lines]
+
+
+def _name_features(assembly: Assembly, bodies: dict[str, str], joints: dict[str, str]) -> list[Feature]:
+    changed = [("parts", *item) for item in bodies.items()] + [("joints", *item) for item in joints.items()]
+    features = [Feature("name", f"{kind}.{old}", new) for kind, old, new in changed if old != new]
+    return features + ([Feature("name", "name", valid_name(assembly.name))] if valid_name(assembly.name) != assembly.name else [])

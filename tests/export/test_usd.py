@@ -1,0 +1,116 @@
+"""USD is read back by usd-core where it is installed: bodies, masses, limits, and frames that meet as the joints say."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from articad.assembly import Assembly
+from articad.connectors.se3 import SE3
+from articad.export.usd import write_usd
+from articad.geometry.part import Part
+from articad.kinematics import declare
+from tests.assemblies import all_joint_kinds, block, closed, four_bar, frame, geared_pair
+
+ASSEMBLIES = {
+    "all kinds": all_joint_kinds(),
+    "four-bar": four_bar((-3.0, 3.0)),
+    "closed by a planar": closed(lambda a, b: declare.planar("d", a, b, x=(-9, 9), y=(-9, 9), angle="endless")),
+}
+
+
+def text_of(assembly: Assembly) -> str:
+    bundle = write_usd(assembly)
+    return bundle.files[bundle.main].decode()
+
+
+def test_every_part_is_a_body_and_every_joint_a_prim() -> None:
+    assembly = all_joint_kinds()
+    text = text_of(assembly)
+
+    assert all(f'def Xform "{name}" (' in text for name in assembly.parts)
+    assert all(f' "{joint.name}"' in text for joint in assembly.joints)
+    assert text.count("PhysicsArticulationRootAPI") == 1
+    assert text.count("excludeFromArticulation") == 0
+    assert text_of(four_bar()).count("excludeFromArticulation") == 1
+
+
+def test_limits_are_degrees_and_metres_and_other_degrees_are_locked() -> None:
+    text = text_of(all_joint_kinds())
+    hinge = text.partition('def PhysicsRevoluteJoint "hinge"')[2].partition("}")[0]
+    drawer = text.partition('def PhysicsPrismaticJoint "drawer"')[2].partition("}")[0]
+    rod = text.partition('def PhysicsJoint "rod"')[2].partition("}")[0]
+    wheel = text.partition('def PhysicsRevoluteJoint "wheel"')[2].partition("}")[0]
+
+    assert f"lowerLimit = {math.degrees(-1.0)!r}" in hinge
+    assert "lowerLimit = 0.01\n" in drawer
+    assert "lowerLimit = -inf" in wheel
+    assert "limit:transX:physics:low = 1\n" in rod
+    assert "limit:transZ:physics:low = -0.05" in rod
+    assert "limit:rotZ:physics:high = inf" in rod
+
+
+def test_losses_of_couplings_and_screws_are_refused() -> None:
+    assert {loss.where for loss in write_usd(geared_pair()).losses if loss.refused} == {"couplings.mesh", "couplings.pinion"}
+    assert {loss.where for loss in write_usd(all_joint_kinds()).losses if loss.refused} == {"joints.nut", "joints.bolt"}
+
+
+def test_parts_without_mass_or_shape_and_names_that_change(tmp_path: Path) -> None:
+    base, bare = block("Base 1", a=frame()), Part.without_geometry("b", block("b", a=frame()).connectors)
+    assembly = Assembly.from_parts(
+        "x y", parts=[base, bare], joints=[declare.revolute("j", base["a"], bare["a"], limits=(0, 1))], ground="Base 1"
+    )
+    bundle = write_usd(assembly)
+
+    assert bundle.main == "x_y.usda"
+    assert {"parts.Base 1", "name", "parts.b"} <= {loss.where for loss in bundle.losses}
+    assert "float physics:mass = 0.0001" in text_of(assembly)
+
+
+def test_the_same_assembly_is_the_same_bytes() -> None:
+    assert write_usd(all_joint_kinds()).files == write_usd(all_joint_kinds()).files
+
+
+@pytest.mark.engines
+@pytest.mark.parametrize("name", ASSEMBLIES)
+def test_usd_core_reads_bodies_masses_and_joints_that_meet_at_rest(name: str, tmp_path: Path) -> None:
+    Usd: Any = pytest.importorskip("pxr.Usd", reason="usd-core is an extra")
+    UsdGeom: Any = pytest.importorskip("pxr.UsdGeom")
+    UsdPhysics: Any = pytest.importorskip("pxr.UsdPhysics")
+    assembly = ASSEMBLIES[name]
+    bundle = write_usd(assembly)
+    bundle.write(tmp_path)
+    stage = Usd.Stage.Open(str(tmp_path / bundle.main))
+    root = stage.GetDefaultPrim().GetPath()
+    assert UsdGeom.GetStageMetersPerUnit(stage) == 1.0
+    rest = assembly.mechanism.rest_poses()
+    bodies = {}
+    for part_name, part in assembly.parts.items():
+        prim = stage.GetPrimAtPath(root.AppendChild(part_name))
+        matrix = np.array(UsdGeom.Xformable(prim).ComputeLocalToWorldTransform(Usd.TimeCode.Default())).T
+        bodies[part_name] = matrix
+        assert prim.HasAPI(UsdPhysics.RigidBodyAPI)
+        assert part.mass is not None
+        assert UsdPhysics.MassAPI(prim).GetMassAttr().Get() == pytest.approx(part.mass.mass, rel=1e-6)
+        assert np.allclose(matrix[:3, :3], rest[part_name].rotation, atol=1e-9)
+        assert np.allclose(matrix[:3, 3], rest[part_name].translation / 1000, atol=1e-9)
+    configuration = assembly.mechanism.configuration(assembly.mechanism.rest)
+    for joint in assembly.joints:
+        prim = UsdPhysics.Joint(stage.GetPrimAtPath(root.AppendPath(f"joints/{joint.name}")))
+        near, far = (
+            bodies[joint.parent] @ matrix_of(prim.GetLocalPos0Attr().Get(), prim.GetLocalRot0Attr().Get()),
+            bodies[joint.child] @ matrix_of(prim.GetLocalPos1Attr().Get(), prim.GetLocalRot1Attr().Get()),
+        )
+        motion = joint.motion(configuration[joint.name]).matrix
+        motion[:3, 3] /= 1000
+        assert np.allclose(near @ motion, far, atol=1e-6)  # local frames are single precision in UsdPhysics
+
+
+def matrix_of(position: Any, rotation: Any) -> Any:
+    x, y, z = rotation.GetImaginary()
+    T = SE3.from_quaternion(np.array([x, y, z, rotation.GetReal()]) / math.hypot(x, y, z, rotation.GetReal()), [float(p) for p in position])
+    return T.matrix
