@@ -1,0 +1,136 @@
+"""The FreeCAD kernel: editable trees or a finding that says why not; and the same solids as the other kernel's."""
+
+from __future__ import annotations
+
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import articad as ac
+from articad.errors import BuildError, ContractError
+from articad.kernels.build123d import Build123dKernel
+from articad.kernels.freecad import FreeCADKernel, tree_findings
+from articad.kernels.kernel import BuiltPart
+from articad.plan.brief import brief
+from articad.plan.resolve import resolve
+from tests.freecad import opened
+
+pytestmark = [pytest.mark.freecad, opened.needs_freecad]
+EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
+PLATE: dict[str, Any] = {
+    "name": "plate",
+    "description": "",
+    "material": "steel",
+    "dimensions": {"width": 40.0, "thickness": 5.0, "hole_count": 4},
+    "envelope_mm": None,
+    "connectors": {},
+}
+GOOD = """
+def build(part):
+    part.box((0, 0, 0), ("width", "width", "thickness"))
+    hole = part.cylinder(("width / 5", "width / 2", 0), "+Z", 2, "thickness", cut=True)
+    part.linear_pattern([hole], "X", "width * 3 / 5", "hole_count")
+    return part.body, {}
+"""
+FROZEN = """
+import Part
+def build(part):
+    solid = part.document.addObject("Part::Feature", "Solid")
+    solid.Shape = Part.makeBox(40, 40, 5)
+    part.body.BaseFeature = solid
+    part.document.recompute()
+    return part.body, {}
+"""
+OFF_TIP = """
+def build(part):
+    part.box((0, 0, 0), ("width", "width", "thickness"))
+    hole = part.cylinder(("width / 5", "width / 2", 0), "+Z", 2, "thickness", cut=True)
+    part.linear_pattern([hole], "X", "width * 3 / 5", "hole_count")
+    part.body.Tip = hole
+    part.document.recompute()
+    return part.body, {}
+"""
+UNTIED = GOOD.replace('"thickness"))', "5))").replace('2, "thickness"', "2, 5")
+
+
+@cache
+def kernel() -> FreeCADKernel:
+    return FreeCADKernel()
+
+
+def build(script: str, part: dict[str, Any] = PLATE, *, probe: bool = True) -> BuiltPart:
+    return kernel().build(script.encode(), part, probe=probe)
+
+
+def codes(script: str, **options: Any) -> set[str]:
+    with pytest.raises((BuildError, ContractError)) as raised:
+        build(script, **options)
+    return {finding.code for finding in raised.value.findings}
+
+
+def test_a_plate_has_its_volume_and_every_dimension_drives_it() -> None:
+    built = build(GOOD)
+    assert not built.findings, built.findings
+    assert built.solid.volume == pytest.approx(40 * 40 * 5 - 4 * 3.141592653589793 * 4 * 5, rel=1e-9)
+    assert (built.folder / "part.FCStd").is_file()
+    assert built.sandbox == "bwrap"
+
+
+@pytest.mark.parametrize("name", ["leg", "drawer_lower"])
+def test_both_kernels_build_the_same_solid(name: str) -> None:
+    resolved = resolve(ac.AssemblyPlan.load(EXAMPLES / "wardrobe" / "plan.json"))
+    told = brief(resolved, name)
+    parts = EXAMPLES / "wardrobe" / "parts"
+    native = kernel().build((parts / f"{name}.freecad.py").read_bytes(), told, probe=False)
+    other = Build123dKernel().build((parts / f"{name}.py").read_bytes(), told, probe=False)
+    assert native.solid.volume == pytest.approx(other.solid.volume, rel=1e-6)
+    assert native.solid.bbox == pytest.approx(other.solid.bbox, abs=1e-6)
+    for connector, frame in other.connectors.items():
+        assert native.connectors[connector].frame.allclose(frame.frame, mm=1e-9, rad=1e-9)
+
+
+def test_a_frozen_shape_is_not_editable() -> None:
+    assert "E_NOT_EDITABLE" in codes(FROZEN, probe=False)
+
+
+def test_a_pattern_that_is_not_the_tip_is_named() -> None:
+    assert "E_FEATURE_OFF_TIP" in codes(OFF_TIP, probe=False)
+
+
+def test_a_dimension_that_no_expression_names_is_told() -> None:
+    with pytest.raises(ContractError, match="thickness"):
+        build(UNTIED, probe=False)
+
+
+@pytest.mark.parametrize(
+    ("script", "code"),
+    [
+        ("def build(part):\n    return part.nothing, {}\n", "E_SCRIPT_ERROR"),
+        ("def build(part:\n", "E_SCRIPT_ERROR"),
+        ("x = 1\n", "E_NO_BUILD"),
+        ("def build(part):\n    return 5, {}\n", "E_NO_BUILD"),
+        ("import articad\n", "E_SCRIPT_FORBIDDEN"),
+        ("open('/etc/pwned', 'w')\n", "E_SCRIPT_FORBIDDEN"),
+        ("import socket\nsocket.create_connection(('192.0.2.1', 80), 2)\n", "E_SCRIPT_FORBIDDEN"),
+        (GOOD.replace("return", "part.document.addObject('App::FeaturePython', 'Trojan')\n    return"), "E_SCRIPT_FORBIDDEN"),
+    ],
+)
+def test_what_goes_wrong_is_told_by_its_code(script: str, code: str) -> None:
+    assert codes(script, probe=False) == {code}
+
+
+def test_an_endless_script_ends_at_its_limit() -> None:
+    impatient = FreeCADKernel(timeout=-15.0)  # FreeCAD's own start is allowed 20 s more
+    with pytest.raises(BuildError) as raised:
+        impatient.build(b"while True: pass\n", PLATE)
+    assert [finding.code for finding in raised.value.findings] == ["E_SCRIPT_TIMEOUT"]
+
+
+def test_the_judgement_of_a_tree_needs_no_freecad() -> None:
+    tree = {"ok": True, "off_tip": ["Pattern"], "invalid": ["Pad"], "sketched": False, "untied": ["width"]}
+    found = [finding.code for finding in tree_findings("plate", tree)]
+    assert found.count("E_NOT_EDITABLE") == 3
+    assert found.count("E_FEATURE_OFF_TIP") == 1
+    assert [finding.code for finding in tree_findings("plate", {"ok": False, "bodies": 2})] == ["E_NOT_EDITABLE"]
