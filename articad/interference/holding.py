@@ -19,6 +19,7 @@ TOUCH_MM = 0.1  # surfaces that are fixed to each other may be this far apart: g
 NEAR_MM = 5.0  # a part within this distance of another is held by it: runners, shadow gaps
 NEAR_LEAST_MM = 0.5  # … but for small parts the limit is a tenth of their size, and at least this
 NEAR_SHARE = 0.1
+_NEAR_VERTICES = 600  # of each part, among which near ones are looked for
 _NEAR_SAMPLES = 48  # vertices compared before FCL is asked whether two parts are near
 
 
@@ -89,8 +90,8 @@ class Holding:
 
     def _vertices_within(self, a: str, b: str, limit: float) -> bool:
         """Return whether two vertices are that near: often true, and cheaper than a search of all triangles."""
-        p = self.scene.bodies[a].mesh.vertices
-        q = self._relative(a, b).apply(self.scene.bodies[b].mesh.vertices)
+        p, q = (self.scene.bodies[name].mesh.vertices for name in (a, b))
+        p, q = p[:: 1 + len(p) // _NEAR_VERTICES], self._relative(a, b).apply(q[:: 1 + len(q) // _NEAR_VERTICES])
         low, high = np.maximum(p.min(axis=0), q.min(axis=0)) - limit, np.minimum(p.max(axis=0), q.max(axis=0)) + limit
         p, q = (v[((v >= low) & (v <= high)).all(axis=1)] for v in (p, q))
         p, q = (v[:: max(1, len(v) // _NEAR_SAMPLES)] for v in (p, q))
