@@ -215,14 +215,15 @@ def render_motion(
 
 
 def best_view(scenes: Sequence[Scene], candidates: Sequence[str] = MOTION_VIEWS) -> str:
-    """Return the view that shows a motion best: what moves is seen, and moves far across the picture.
+    """Return the view that shows a motion best: much of the picture changes, and what moves goes far across it.
 
     Args:
         scenes: The same items in different places.
         candidates: Keys of `articad.render.VIEWS`; the first one wins a tie.
     """
     bounds = _envelope(scenes)
-    first, last = scenes[0].items, max(scenes, key=lambda scene: _displacement(scenes[0], scene)).items
+    farthest = max(scenes, key=lambda scene: _displacement(scenes[0], scene))
+    first, last = scenes[0].items, farthest.items
     moving = [index for index, item in enumerate(first) if not item.T_ground.allclose(last[index].T_ground)]
 
     def shown(view: str) -> float:
@@ -231,8 +232,8 @@ def best_view(scenes: Sequence[Scene], candidates: Sequence[str] = MOTION_VIEWS)
             float(np.linalg.norm(camera.project(first[index].vertices) - camera.project(last[index].vertices), axis=1).mean())
             for index in moving
         )
-        seen = sum(int(np.isin(cast(scene, camera).item, moving).sum()) for scene in (scenes[0], scenes[-1]))
-        return travel * seen
+        before, after = cast(scenes[0], camera).item, cast(farthest, camera).item
+        return travel * int((before != after).sum())
 
     return max(candidates, key=shown)
 
