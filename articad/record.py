@@ -30,6 +30,7 @@ Sandbox = Literal["strict", "weak"]
 
 WRITERS: Final[Mapping[str, Callable[..., Bundle]]] = {**convert.WRITERS, "freecad": write_freecad}
 _PICTURE_PIXELS: Final = 256  # of a picture kept in a run: enough to recognise, cheap enough to draw each time
+HURRIED: Final = {"W_BUILD_UNCHECKED"}  # found where the machine was too slow: in the trace alone, or no replay would be equal
 _KERNEL_FILES: Final = ("part.npz", "part.brep", "part.step", "part.FCStd", "seat.json")
 
 
@@ -58,6 +59,8 @@ def record_assembly(run: Run, assembly: Assembly) -> None:
         _record_part(run, assembly, name, realised)
     for stranger in sorted(set(run.part_names()) - set(assembly.parts)):
         run.remove_part(stranger)
+    for finding in assembly.findings.of(*HURRIED):
+        run.trace_finding(finding)
     run.save_assembly(assembly_report(assembly))
 
 
@@ -88,7 +91,7 @@ def assembly_report(assembly: Assembly) -> Report:
         "parts": parts,
         "joints": {joint.name: {"type": str(joint.type), "parent": joint.parent, "child": joint.child} for joint in assembly.joints},
         "drivers": drivers,
-        "findings": [finding.to_json() for finding in assembly.findings],
+        "findings": [finding.to_json() for finding in assembly.findings if finding.code not in HURRIED],
     }
 
 
@@ -118,6 +121,12 @@ def record_certificate(run: Run, certificate: Certificate) -> Report:
     for finding in certificate.findings:
         run.trace_finding(finding)
     return report
+
+
+def _hurried(run: Run) -> list[Report]:
+    """Return the findings that stand in the trace alone, each once."""
+    found = {event["where"]: event for event in run.events() if event.get("event") == "finding" and event.get("code") in HURRIED}
+    return [{key: value for key, value in event.items() if key not in {"t", "event"}} for event in found.values()]
 
 
 def written(assembly: Assembly, format_name: str, *, strict: bool = False, loops: Loops = "none") -> Bundle:
@@ -161,7 +170,7 @@ def run_report(run: Run) -> Report:
         "assembly": assembly,
         "checks": checks,
         "exports": exports,
-        "findings": [],
+        "findings": _hurried(run),
     } | proven
 
 

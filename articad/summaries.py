@@ -15,7 +15,7 @@ def print_run(report: Report, terminal: Terminal) -> None:
     """Print what a finished run made, how it was judged, and where it is."""
     print_assembly(report["assembly"], terminal)
     print_checks(report["checks"], terminal)
-    print_findings([*report["assembly"]["findings"], *report["checks"]["findings"]], terminal)
+    print_findings([*report["assembly"]["findings"], *report["checks"]["findings"], *report["findings"]], terminal)
     if "certificate" in report:
         print_certificate(report["certificate"], terminal)
     print_exports(report["exports"], terminal)
