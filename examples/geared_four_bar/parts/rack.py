@@ -13,7 +13,12 @@ def build(part):
     points = [(back, -half_length), (root, -half_length)]
     for k in range(count):
         y = (k + 0.5) * pitch - half_length
-        points += [(root, y - half + root * slope), (tip, y - half + tip * slope), (tip, y + half - tip * slope), (root, y + half - root * slope)]
+        points += [
+            (root, y - half + root * slope),
+            (tip, y - half + tip * slope),
+            (tip, y + half - tip * slope),
+            (root, y + half - root * slope),
+        ]
     points += [(root, half_length), (back, half_length)]
     rack = Pos(0, 0, low) * extrude(Polygon(*points, align=None), thick)
 

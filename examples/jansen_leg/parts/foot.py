@@ -5,6 +5,7 @@ from build123d import Align, Circle, Cylinder, Pos, SlotCenterToCenter, extrude
 LOW = (Align.CENTER, Align.CENTER, Align.MIN)
 UP = {"z": (0, 0, 1), "x": (1, 0, 0)}
 
+
 def bar(p, q, width):
     """Outline of a bar with round ends from p to q."""
     length, angle = hypot(q[0] - p[0], q[1] - p[1]), degrees(atan2(q[1] - p[1], q[0] - p[0]))

@@ -13,4 +13,6 @@ def build(part):
     for i in range(d["fin_count"]):
         x = -0.8 * radius + i * pitch
         head += fins & Pos(x, 0, 0) * Box(0.35 * pitch, 4 * radius, 2 * (height + d["fin_height"]), align=LOW)
-    return head + Cylinder(d["plug_radius"], height + d["plug_height"], align=LOW), {"face": {"o": (0, 0, 0), "z": (0, 0, 1), "x": (1, 0, 0)}}
+    return head + Cylinder(d["plug_radius"], height + d["plug_height"], align=LOW), {
+        "face": {"o": (0, 0, 0), "z": (0, 0, 1), "x": (1, 0, 0)}
+    }

@@ -2,7 +2,14 @@ from build123d import Align, Box, Cylinder, Pos, Rot
 
 LOW = (Align.CENTER, Align.CENTER, Align.MIN)
 HIGH = (Align.CENTER, Align.CENTER, Align.MAX)
-SEATS = (("red_keeper", -2.5), ("red_defence", -1.5), ("red_attack", 0.5), ("blue_keeper", 2.5), ("blue_defence", 1.5), ("blue_attack", -0.5))
+SEATS = (
+    ("red_keeper", -2.5),
+    ("red_defence", -1.5),
+    ("red_attack", 0.5),
+    ("blue_keeper", 2.5),
+    ("blue_defence", 1.5),
+    ("blue_attack", -0.5),
+)
 
 
 def build(part):

@@ -9,7 +9,9 @@ def build(part):
     arm, handle = Pos(0, 0), Pos(d["handle_x"], d["handle_z"])
     inside, cheek, width = d["cheek_y"], d["cheek"], d["handle_x"] - 2 * d["eye"]
 
-    outline = make_hull([*(arm * Circle(d["eye"])).edges(), *(handle * Circle(d["eye"])).edges(), *(Pos(d["handle_x"] / 2, floor + 1) * Rectangle(-width, 2)).edges()])
+    sill = Pos(d["handle_x"] / 2, floor + 1) * Rectangle(-width, 2)
+    shapes = [arm * Circle(d["eye"]), handle * Circle(d["eye"]), sill]
+    outline = make_hull([edge for shape in shapes for edge in shape.edges()])
     outline -= [place * Circle(d["bore_radius"]) for place in (arm, handle)]
     base = extrude(Plane.XZ.offset(inside) * outline, cheek) + extrude(Plane.XZ.offset(-inside - cheek) * outline, cheek)
 
