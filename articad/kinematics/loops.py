@@ -122,7 +122,7 @@ class ClosureSystem:
         sides = self.arrays.carried[self._far] - self.arrays.carried[near]
         for row, joint in zip(sides, loop_joints, strict=True):
             row[self.layout.freedoms[joint.name]] = -1.0
-        self._sides: FloatArray = sides.reshape(-1, self.layout.n_freedoms)
+        self._sides: FloatArray = sides.reshape(len(loop_joints), self.layout.n_freedoms)
         # what a freedom's axis, and its moment about B, count in the residual: (loops, 1, freedoms, 1)
         weight = (self._sides * self.scale)[:, None, :, None]
         angular, linear = (part[:, 0, 0][:, None] for part in (self.arrays.twists.angular, self.arrays.twists.linear))

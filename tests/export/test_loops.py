@@ -84,13 +84,7 @@ def test_a_closing_joint_leaves_the_freedoms_that_it_has(kind: str, tmp_path: Pa
     assert model.nv - int((s > 1e-7 * s[0]).sum()) == freedoms
 
 
-FIXED_RING = pytest.mark.xfail(
-    reason="a loop of fixed joints only has no freedoms, which the closure system does not take yet", strict=False
-)
-
-
 @pytest.mark.engines
-@FIXED_RING
 def test_a_ring_of_fixed_joints_is_welded(tmp_path: Path) -> None:
     bundle = write_mjcf(rigid_ring())
 
@@ -145,7 +139,7 @@ POINTS: dict[str, tuple[Assembly, int]] = {
 @pytest.mark.engines
 @pytest.mark.parametrize(
     ("kind", "flavour"),
-    [pytest.param(*case, marks=FIXED_RING if case[0] == "a ring" else ()) for case in product(POINTS, ["isaac", "drake"])],
+    list(product(POINTS, ["isaac", "drake"])),
 )
 def test_points_that_close_a_loop_meet_at_rest(kind: str, flavour: Any, tmp_path: Path) -> None:
     import pinocchio as pin
