@@ -81,7 +81,7 @@ def write_freecad(assembly: Assembly, *, strict: bool = False, freecad: FreeCAD 
             raise _failed(ended.said, late=ended.late)
         report = json.loads((folder / "report.json").read_text())
         content = (folder / "assembly.FCStd").read_bytes()
-    look = Look(report["colors"], tuple(report["hidden"]), tuple(report["joints"]), report["grounded"])
+    look = Look(report["colors"], tuple(report["hidden"]), tuple(report["joints"]), report["grounded"], tuple(report["tips"]))
     return Bundle({f"{writer.name}.FCStd": normalised(content, look)}, tuple(writer.losses), _opinion(report))
 
 

@@ -40,7 +40,7 @@ class Look:
         hidden: Objects that are not shown though their kind is.
         joints: Objects that are joints.
         grounded: The object that grounds a part, if there is one.
-        bodies: Bodies, whose tip is shown.
+        tips: Features that their bodies show.
     """
 
     colors: Mapping[str, str] = field(default_factory=dict)

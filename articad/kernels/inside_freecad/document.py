@@ -92,6 +92,7 @@ class _Writer:
             "invalid": invalid,
             "colors": self.colors,
             "hidden": self.hidden,
+            "tips": [item.Tip.Name for item in self.document.Objects if item.TypeId == "PartDesign::Body" and item.Tip is not None],
             "parts": {name: item.Name for name, item in self.parts.items()},
             "joints": [joint.Name for joint in self.joints],
             "grounded": grounded.Name,
@@ -143,6 +144,8 @@ class _Writer:
             self.parts[name] = self.containers[name] = container
             self.shapes[name] = self._shape(part, container)
             self.colors[self.shapes[name].Name] = part["color"]
+            if part["kind"] == "body":  # a body shows its tip
+                self.colors[self.shapes[name].Tip.Name] = part["color"]
             for connector in part["connectors"]:
                 self._connector(part, container, connector)
         item = self.parts[name]
