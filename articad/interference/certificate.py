@@ -37,6 +37,7 @@ from articad.kinematics.tree import KinematicTree
 
 DEFAULT_EPSILON_MM = 1e-3
 DEFAULT_BUDGET_S = 600.0
+FIRST_BOXES = 64  # spent on each pair along a driver, before those that need more hold up the others
 WIDE_BOXES = 256  # boxes spent on all joints at once before they are taken one by one
 _ENTRY_MM = 1e-6  # distance at which meshes are said to touch
 
@@ -172,6 +173,7 @@ class _Certifying:
     claims: list[Claim] = field(default_factory=list)
     ranges: dict[str, Range] = field(default_factory=dict)
     followed: list[Claim] = field(default_factory=list)
+    later: list[tuple[tuple[str, str], LinkageProver]] = field(default_factory=list)
     left: dict[tuple[str, ...], list[tuple[str, str]]] = field(default_factory=dict)
     _constrained: frozenset[str] = frozenset()
 
@@ -181,12 +183,18 @@ class _Certifying:
         self.scene, self.mechanism, self.asked = scene, mechanism, asked
         self.together, self.epsilon, self.budget = together, epsilon, budget
         self.findings, self.verdicts, self.claims, self.followed, self.ranges, self.left = [], [], [], [], {}, {}
+        self.later = []
         self._constrained = constrained_joints(mechanism)
 
     def run(self) -> Certificate:
         for a, b in all_pairs(name for name in self.mechanism.parts if name in self.scene.bodies):
             if not self.scene.relations.rigid.together(a, b):
                 self._pair(a, b)
+        for parts, prover in self.later:
+            if self.budget.is_spent:
+                self.left.setdefault((prover.coordinate.joint,), []).append(parts)
+            else:
+                self._followed(parts, prover, prover.prove())
         self._report_left()
         return Certificate(
             Findings(self.findings),
@@ -260,11 +268,14 @@ class _Certifying:
                 continue
             try:
                 prover = LinkageProver(self.scene, self.mechanism, (a, b), tied, index, epsilon=self.epsilon, budget=self.budget)
-                proof = prover.prove()
+                proof = prover.prove(most=FIRST_BOXES)
             except (KinematicsError, KeyError, ValueError) as error:
                 self._refuse((a, b), (coordinate.joint,), f"the linkage cannot be followed: {error}")
                 continue
-            self._followed((a, b), prover, proof)
+            if proof.out_of_budget and not proof.contacts:
+                self.later.append(((a, b), prover))
+            else:
+                self._followed((a, b), prover, proof)
 
     def _followed(self, parts: tuple[str, str], prover: LinkageProver, proof: Proof) -> None:
         joint, name = prover.coordinate.joint, prover.coordinate.name
