@@ -143,7 +143,8 @@ class Prover:
             if proof.is_complete:
                 return proof
             failed.append(proof)
-            if self.budget.is_spent or self._collides(proof):
+            hurried = most is not None and proof.out_of_budget and not proof.contacts
+            if self.budget.is_spent or hurried or self._collides(proof):
                 return proof
         # the last attempt allows contact; to say how far the parts are free, one that does not is better
         return max(failed[:-1] or failed, key=Proof.width)
