@@ -9,6 +9,7 @@ from typing import Final
 from articad.assembly import Assembly
 from articad.errors import ExportError, ReadError
 from articad.export.bundle import Bundle
+from articad.export.freecad import write_freecad
 from articad.export.gltf import write_glb
 from articad.export.mjcf import write_mjcf
 from articad.export.sdf import write_sdf
@@ -17,12 +18,14 @@ from articad.export.threemf import write_3mf
 from articad.export.urdf import write_urdf
 from articad.export.usd import write_usd
 from articad.findings import Finding
+from articad.importers.freecad import read_freecad
 from articad.importers.mjcf import read_mjcf
 from articad.importers.urdf import read_urdf
 
 WRITERS: Final[Mapping[str, Callable[..., Bundle]]] = {
     "urdf": write_urdf,
     "mjcf": write_mjcf,
+    "freecad": write_freecad,
     "sdf": write_sdf,
     "usd": write_usd,
     "step": write_step,
@@ -31,7 +34,7 @@ WRITERS: Final[Mapping[str, Callable[..., Bundle]]] = {
 }
 """Writer of each format: `write(assembly, *, strict=False) -> Bundle`."""
 
-READERS: Final[Mapping[str, Callable[..., Assembly]]] = {".urdf": read_urdf, ".xml": read_mjcf, ".mjcf": read_mjcf}
+READERS: Final[Mapping[str, Callable[..., Assembly]]] = {".urdf": read_urdf, ".xml": read_mjcf, ".mjcf": read_mjcf, ".fcstd": read_freecad}
 """Reader of each file name's ending."""
 
 FORMAT_OF: Final[Mapping[str, str]] = {
@@ -39,6 +42,7 @@ FORMAT_OF: Final[Mapping[str, str]] = {
     ".xml": "mjcf",
     ".mjcf": "mjcf",
     ".sdf": "sdf",
+    ".fcstd": "freecad",
     ".usda": "usd",
     ".step": "step",
     ".stp": "step",
@@ -52,7 +56,7 @@ def read(path: str | Path, *, root: str | Path | None = None) -> Assembly:
     """Read an assembly from a file in any format that articad reads.
 
     Args:
-        path: A URDF or MJCF file.
+        path: A URDF, MJCF or FreeCAD file.
         root: Folder that meshes may be read from; the file's own by default.
 
     Raises:

@@ -63,7 +63,7 @@ def write_freecad(assembly: Assembly, *, strict: bool = False, freecad: FreeCAD 
         One file, `<name>.FCStd`, the same bytes each time on the same FreeCAD; in the findings, whether its solver agrees.
 
     Raises:
-        KernelUnavailableError: If there is no FreeCAD 1.0 or later; `write_freecad_directly` needs none.
+        KernelUnavailableError: If there is no FreeCAD 1.0 or later.
         UnrepresentableError: If `strict` and something is lost.
         ExportError: If FreeCAD fails.
     """

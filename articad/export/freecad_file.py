@@ -70,11 +70,16 @@ def normalised(content: bytes, look: Look | None = None) -> bytes:
 
 
 def packed(files: Mapping[str, bytes]) -> bytes:
-    """Return a zip of files, Document.xml first as FreeCAD reads it, GuiDocument.xml after it, all of one date."""
+    """Return a zip of files, all of one date, in the order in which FreeCAD reads them.
+
+    Document.xml comes first and GuiDocument.xml after all shapes: FreeCAD reads forwards only, so that with GuiDocument.xml
+    before them every shape stays empty, though only where there is a display.
+    """
     stream = io.BytesIO()
-    first = [name for name in ("Document.xml", "GuiDocument.xml") if name in files]
     with zipfile.ZipFile(stream, "w", zipfile.ZIP_DEFLATED, compresslevel=6) as archive:
-        for name in [*first, *(name for name in files if name not in first)]:
+        ends = ("Document.xml", "GuiDocument.xml")
+        order = ["Document.xml", *(name for name in files if name not in ends), *(name for name in ends[1:] if name in files)]
+        for name in order:
             entry = zipfile.ZipInfo(name, _ZIP_TIME)
             entry.compress_type, entry.external_attr = zipfile.ZIP_DEFLATED, 0o644 << 16
             archive.writestr(entry, files[name])
