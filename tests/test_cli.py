@@ -12,6 +12,8 @@ from pathlib import Path
 import pytest
 
 from articad import __version__, cli
+from articad.commands.command import COMMANDS, Command
+from articad.commands.options import FORMATS
 from articad.errors import PlanError
 from articad.findings import Finding
 from articad.record import WRITERS
@@ -29,8 +31,8 @@ def probe(monkeypatch: pytest.MonkeyPatch) -> Callable[[Callable[[], Report]], N
             terminal.say("probing")
             return body()
 
-        command = cli._Command("probe", "Probe.", lambda _parser: None, run, needs_libraries=False)
-        monkeypatch.setitem(cli._COMMANDS, "probe", command)
+        command = Command("probe", "Probe.", lambda _parser: None, run, needs_libraries=False)
+        monkeypatch.setitem(COMMANDS, "probe", command)
 
     return install
 
@@ -109,7 +111,7 @@ def test_wrong_usage_ends_with_2_and_says_what_was_meant(capsys: pytest.CaptureF
 
 
 def test_the_formats_are_those_that_can_be_written() -> None:
-    assert set(cli._FORMATS) == set(WRITERS)
+    assert set(FORMATS) == set(WRITERS)
 
 
 def test_the_version_is_the_package_s(capsys: pytest.CaptureFixture[str]) -> None:

@@ -1,0 +1,8 @@
+"""The commands of `articad`, one module for each kind; a command imports what it needs when it runs.
+
+Importing this package registers them all.
+"""
+
+from __future__ import annotations
+
+from articad.commands import building, files, machine, models, pictures, proving  # noqa: F401 - registers them

@@ -1,0 +1,69 @@
+"""Build a plan; check it, or what was built of it."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from articad.commands.command import argument, command
+from articad.commands.options import BUILD_ARGUMENTS
+from articad.commands.steps import assembled, reported
+
+if TYPE_CHECKING:
+    from articad.terminal import Report, Terminal
+
+
+@command("build", "Build a plan's parts, assemble, check and export them.", argument("plan", metavar="PLAN_DIR"), *BUILD_ARGUMENTS)
+def _build(options: argparse.Namespace, terminal: Terminal) -> Report:
+    from articad.plan.schema import AssemblyPlan
+    from articad.record import record_assembly, record_certificate, record_checks, record_export, record_pictures
+    from articad.run import RunRequest, open_or_create
+
+    plan = AssemblyPlan.load(options.plan)
+    folder = Path(options.plan)
+    scripts = (folder if folder.is_dir() else folder.parent) / "parts"
+    choices = {"task": "build", "kernel": options.kernel or plan.kernel, "parameters": dict(options.parameters)}
+    assembly = assembled(plan, scripts, options, terminal)
+    with open_or_create(RunRequest(prompt=plan.name, options=choices), options.out) as run:
+        run.save_plan(plan.dumps(), 0)
+        record_assembly(run, assembly)
+        record_checks(run, assembly.check() + assembly.sweep() if options.verify == "sampled" else assembly.check())
+        if options.verify == "certified":
+            record_certificate(run, assembly.certify())
+        for name in options.formats:
+            record_export(run, assembly, name)
+        if options.pictures:
+            record_pictures(run, assembly)
+    return reported(run, terminal)
+
+
+@command("check", "Check a plan, or the plan and the geometry of a finished run.", argument("target", metavar="PLAN_DIR|RUN|FILE"))
+def _check(options: argparse.Namespace, terminal: Terminal) -> Report:
+    from articad import summaries
+    from articad.errors import PlanError
+    from articad.plan.check import check_plan
+    from articad.plan.schema import AssemblyPlan
+
+    try:
+        plan = AssemblyPlan.load(options.target)
+    except PlanError as error:  # what is wrong with a plan is what this command is asked for
+        if not error.findings:
+            raise
+        name, findings = str(options.target), error.findings
+    else:
+        name, findings = plan.name, check_plan(plan)
+    terminal.findings(findings)
+    terminal.say(f"{name}: {summaries.counted(findings)}.")
+    if not findings.ok or not (Path(options.target) / "request.json").is_file():
+        return findings.to_json()
+
+    from articad.record import assembly_of
+    from articad.run import Run
+
+    with Run.view(options.target) as run, terminal.progress("Reading") as tell:
+        checks = assembly_of(run, progress=tell).check()
+    terminal.findings(checks.findings)
+    report = checks.to_json()
+    summaries.print_checks(report, terminal)
+    return report

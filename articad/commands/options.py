@@ -1,0 +1,94 @@
+"""Arguments that several commands share, and the readers of their values."""
+
+from __future__ import annotations
+
+import argparse
+from typing import Final
+
+from articad.commands.command import argument, closest
+
+# The keys of `articad.record.WRITERS`, which --help must not load.
+FORMATS: Final = ("urdf", "mjcf", "freecad", "step", "glb", "3mf", "sdf", "usd")
+USUAL: Final = ("urdf", "mjcf")
+
+
+def formats(text: str) -> tuple[str, ...]:
+    """Read `urdf,mjcf`."""
+    names = tuple(dict.fromkeys(name.strip() for name in text.split(",") if name.strip()))
+    for name in names:
+        if name not in FORMATS:
+            raise argparse.ArgumentTypeError(f"unknown format {name!r}{closest(name, FORMATS)}; there are {', '.join(FORMATS)}")
+    return names
+
+
+def assignment(text: str) -> tuple[str, str]:
+    """Read `NAME=VALUE`."""
+    name, sign, value = text.partition("=")
+    if not (sign and name and value):
+        raise argparse.ArgumentTypeError(f"{text!r} is not of the form NAME=VALUE")
+    return name, value
+
+
+def parameter(text: str) -> tuple[str, float]:
+    """Read `NAME=NUMBER`."""
+    name, value = assignment(text)
+    try:
+        return name, float(value)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{value!r} in {text!r} is not a number") from None
+
+
+def names(text: str) -> tuple[str, ...]:
+    """Read `a,b`."""
+    return tuple(name.strip() for name in text.split(",") if name.strip())
+
+
+def amount(text: str) -> float:
+    """Read a positive number."""
+    try:
+        number = float(text)
+    except ValueError:
+        number = 0.0
+    if not 0 < number < float("inf"):
+        raise argparse.ArgumentTypeError(f"{text!r} is not a positive number")
+    return number
+
+
+def positive(text: str) -> int:
+    """Read a whole number of at least 1."""
+    if not (text.isdecimal() and int(text) >= 1):
+        raise argparse.ArgumentTypeError(f"{text!r} is not a whole number of at least 1")
+    return int(text)
+
+
+OUT = argument("--out", metavar="DIR", help="where to write; by default a new folder under runs/")
+SANDBOX = argument(
+    "--sandbox", choices=["strict", "weak"], default=None, help="weak runs part scripts with less isolation than landlock or bwrap"
+)
+JOBS = argument("--jobs", metavar="N", type=positive, default=None, help="parts built at once (all processors)")
+FORCE = argument("--force", action="store_true", help="build every part anew, whatever the cache holds")
+EXPORT = argument("--export", metavar="FORMATS", dest="formats", type=formats, default=USUAL, help="formats to write (urdf,mjcf)")
+PICTURES = argument("--no-pictures", dest="pictures", action="store_false", help="draw neither parts nor motion")
+BUILD_ARGUMENTS = (
+    OUT,
+    argument("--kernel", choices=["build123d", "freecad"], default=None, help="what builds part scripts (the plan's own choice)"),
+    argument("--set", metavar="NAME=VALUE", dest="parameters", type=parameter, action="append", default=[], help="replace a parameter"),
+    argument("--verify", choices=["rest", "sampled", "certified"], default="rest", help="how much motion is checked (rest)"),
+    EXPORT,
+    SANDBOX,
+    JOBS,
+    FORCE,
+    PICTURES,
+)
+MODEL_ARGUMENTS = (
+    argument("--image", metavar="FILE", dest="images", action="append", default=[], help="a picture that belongs to the request"),
+    argument("--part-image", metavar="NAME=FILE", dest="part_images", type=assignment, action="append", default=[], help="of one part"),
+    argument("--model", metavar="NAME", required=True, help="the model that writes plans and scripts, as LiteLLM names it"),
+    argument("--vision-model", metavar="NAME", help="the model that looks at pictures (the same)"),
+    argument("--api-base", metavar="URL", help="an OpenAI-compatible endpoint"),
+    argument("--rounds", metavar="N", type=positive, default=3, help="designs that are built and checked (3)"),
+    argument("--repairs", metavar="N", type=positive, default=3, help="attempts to mend one part (3)"),
+    argument("--max-calls", metavar="N", type=positive, default=60, help="model calls (60)"),
+    argument("--max-cost", metavar="USD", type=amount, default=None, help="cost of all calls (unlimited)"),
+    argument("--max-minutes", metavar="N", type=amount, default=60.0, help="wall clock (60)"),
+)

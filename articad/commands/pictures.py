@@ -1,0 +1,56 @@
+"""Draw an assembly and its motion."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from articad.commands.command import argument, command
+from articad.commands.options import SANDBOX, positive
+from articad.commands.steps import loaded
+
+if TYPE_CHECKING:
+    from articad.terminal import Report, Terminal
+
+
+@command(
+    "render",
+    "Draw a run, a plan or a URDF, MJCF or FreeCAD file from several sides, or a joint's motion.",
+    argument("target", metavar="RUN|PLAN_DIR|FILE"),
+    argument("--views", metavar="VIEWS", default="iso,front,right,top", help="views, each a picture (iso,front,right,top)"),
+    argument("--motion", metavar="JOINT", help="draw this joint's motion instead, as a filmstrip and an animation"),
+    argument("--parts", metavar="NAMES", help="parts shown in full; the others are faded"),
+    argument("--section", metavar="AXIS[=MM]", help="cut away what lies beyond x, y or z (such as -y=12.5)"),
+    argument(
+        "--explode", metavar="SHARE", type=float, default=0.0, help="move parts apart by this share of their distance from the middle"
+    ),
+    argument("--overlaps", action="store_true", help="draw what parts have in common in red, over everything"),
+    argument("--size", metavar="PIXELS", type=positive, default=512, help="width and height of a picture (512)"),
+    argument("--renderer", choices=["embree", "pyvista"], default="embree", help="pyvista is smoother, where OpenGL can be had"),
+    argument("--out", metavar="DIR", default="pictures", help="where to write (pictures)"),
+    SANDBOX,
+)
+def _render(options: argparse.Namespace, terminal: Terminal) -> Report:
+    from articad.render.files import write_motion, write_views
+
+    assembly = loaded(options.target, options, terminal)
+    out = Path(options.out)
+    if options.motion:
+        files = write_motion(assembly, options.motion, out, size=options.size)
+    else:
+        only = options.parts.split(",") if options.parts else None
+        files = write_views(
+            assembly,
+            [view for view in options.views.split(",") if view],
+            out,
+            size=options.size,
+            only=only,
+            section=options.section,
+            explode=options.explode,
+            renderer=options.renderer,
+            show_overlaps=options.overlaps,
+        )
+    for file in files:
+        terminal.say(str(file))
+    return {"schema": "articad.pictures/1", "ok": True, "files": [str(file) for file in files], "findings": []}

@@ -1,0 +1,56 @@
+"""Prove motion free of collisions; check such a proof without trusting it."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from articad.commands.command import argument, command
+from articad.commands.options import amount, names
+
+if TYPE_CHECKING:
+    from articad.terminal import Report, Terminal
+
+
+@command(
+    "certify",
+    "Prove that a run's parts do not meet while its joints move over their whole ranges.",
+    argument("run", metavar="RUN"),
+    argument("--joints", metavar="A,B", type=names, default=None, help="those to be proven (all that move)"),
+    argument("--pairs", action=argparse.BooleanOptionalAction, default=True, help="move joints two at a time as well (yes)"),
+    argument(
+        "--budget", metavar="SECONDS", type=amount, default=600.0, help="what is not proven by then is not checked, which is not ok (600)"
+    ),
+    argument("--epsilon", metavar="MM", type=amount, default=0.001, help="distances up to here are contact (0.001)"),
+)
+def _certify(options: argparse.Namespace, terminal: Terminal) -> Report:
+    from articad import summaries
+    from articad.record import assembly_of, record_certificate
+    from articad.run import Run
+
+    with Run.open(options.run) as run:
+        with terminal.progress("Reading") as tell:
+            assembly = assembly_of(run, progress=tell)
+        certificate = assembly.certify(options.joints, pairs=options.pairs, budget=options.budget, epsilon=options.epsilon)
+        report = record_certificate(run, certificate)
+        summaries.print_certificate(report, terminal)
+        terminal.say(f"Certificate: {run.path / 'certificate.json'}, {len(certificate.claims)} claims")
+    return report
+
+
+@command(
+    "verify-certificate",
+    "Check a certificate without trusting whoever wrote it.",
+    argument("file", metavar="FILE", help="certificate.json"),
+    argument("--meshes", metavar="DIR", help="the meshes it is about, <part>.npz (the folder certificate/ beside it)"),
+)
+def _verify_certificate(options: argparse.Namespace, terminal: Terminal) -> Report:
+    from articad.verify_certificate import verify_file
+
+    file = Path(options.file)
+    faults = verify_file(file, Path(options.meshes) if options.meshes else file.parent / "certificate")
+    for fault in faults:
+        terminal.say(f"  {fault}")
+    terminal.say(f"{file}: {'refuted' if faults else 'accepted'}.")
+    return {"schema": "articad.verification/1", "ok": not faults, "file": str(file), "faults": faults, "findings": []}

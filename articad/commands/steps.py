@@ -1,0 +1,85 @@
+"""Steps that several commands take: find an assembly, build it, print a finished run."""
+
+from __future__ import annotations
+
+import argparse
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING, Literal
+
+if TYPE_CHECKING:
+    from articad.assembly import Assembly
+    from articad.kernels.kernel import BuildCache
+    from articad.plan.schema import AssemblyPlan
+    from articad.run import Run
+    from articad.terminal import Report, Terminal
+
+
+def assembled(plan: AssemblyPlan, scripts: Path, options: argparse.Namespace, terminal: Terminal) -> Assembly:
+    """Build the parts with progress, and assemble them."""
+    from articad.assembly import Assembly
+    from articad.record import kernel_named
+
+    with terminal.progress("Building", total=len(plan.parts)) as tell:
+        return Assembly.from_plan(
+            plan,
+            scripts,
+            kernel=kernel_named(options.kernel or plan.kernel, sandbox=sandbox_level(options)),
+            jobs=options.jobs,
+            cache=build_cache(options),
+            progress=tell,
+            parameters=dict(options.parameters),
+        )
+
+
+def reported(run: Run, terminal: Terminal) -> Report:
+    """Print what a finished run holds, and return its report."""
+    from articad.record import run_report
+    from articad.summaries import print_run
+
+    report = run_report(run)
+    print_run(report, terminal)
+    return report
+
+
+def build_cache(options: argparse.Namespace) -> BuildCache:
+    """Return the user's cache of parts, or with --force an empty one."""
+    from articad.kernels.kernel import BuildCache
+
+    return BuildCache(None) if options.force else BuildCache()
+
+
+def loaded(target: str, options: argparse.Namespace, terminal: Terminal) -> Assembly:
+    """Return the assembly of a run, of a URDF, MJCF or FreeCAD file, or of a plan with its part scripts.
+
+    What the cache of parts holds is not built again.
+    """
+    from articad import convert
+    from articad.assembly import Assembly
+    from articad.plan.schema import AssemblyPlan
+    from articad.record import assembly_of, kernel_named
+    from articad.run import Run
+
+    if (Path(target) / "request.json").is_file():
+        with Run.view(target) as run, terminal.progress("Reading") as tell:
+            return assembly_of(run, progress=tell)
+    if Path(target).suffix.lower() in convert.READERS:
+        return convert.read(target)
+    plan = AssemblyPlan.load(target)
+    folder = Path(target) if Path(target).is_dir() else Path(target).parent
+    with terminal.progress("Building", total=len(plan.parts)) as tell:
+        return Assembly.from_plan(plan, folder / "parts", kernel=kernel_named(plan.kernel, sandbox=sandbox_level(options)), progress=tell)
+
+
+def draw(run: Run) -> None:
+    """Draw what a finished run has made; its parts come from the cache."""
+    from articad.record import assembly_of, record_pictures
+    from articad.run import Run
+
+    with Run.open(run.path) as opened:
+        record_pictures(opened, assembly_of(opened))
+
+
+def sandbox_level(options: argparse.Namespace) -> Literal["strict", "weak"]:
+    """Return how much isolation is asked for: by the flag, else by $ARTICAD_SANDBOX."""
+    return "weak" if (options.sandbox or os.environ.get("ARTICAD_SANDBOX")) == "weak" else "strict"
