@@ -3,24 +3,16 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping
-from typing import Annotated, Any, Final, Literal, TypeVar
+from typing import Annotated, Any, Final, Literal
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError
+from pydantic import BeforeValidator, Field
 
-from articad.agents.llm import LLM, Image, Message, Request, assistant, system, user
+from articad.agents.forms import Form, ask, reader, schema_of
+from articad.agents.llm import LLM, Image, system, user
 from articad.agents.prompts import prompt
-from articad.agents.replies import parse_object, unusable
-from articad.errors import OutputError
 from articad.run import RunRequest
 
 SCHEMA: Final = "articad.requirements/1"
-_Value = TypeVar("_Value")
-TRIES: Final = 3  # a model that misses the form three times does not find it
-
-
-class _Form(BaseModel):
-    model_config = ConfigDict(frozen=True, extra="forbid", validate_by_name=True, validate_by_alias=True)
 
 
 def _slug(value: Any) -> Any:
@@ -30,7 +22,7 @@ def _slug(value: Any) -> Any:
     return re.sub(r"[^a-z0-9]+", "_", value.lower()).strip("_")[:40].strip("_") or value
 
 
-class Component(_Form):
+class Component(Form):
     """A rigid piece, or several that are alike."""
 
     name: str
@@ -38,7 +30,7 @@ class Component(_Form):
     description: str
 
 
-class Motion(_Form):
+class Motion(Form):
     """What moves against what."""
 
     component: str
@@ -48,7 +40,7 @@ class Motion(_Form):
     range: str
 
 
-class Dimension(_Form):
+class Dimension(Form):
     """A number that the request states or a picture shows."""
 
     of: str
@@ -58,7 +50,7 @@ class Dimension(_Form):
     source: Literal["stated", "seen"]
 
 
-class Requirements(_Form):
+class Requirements(Form):
     """What is to be built.
 
     Attributes:
@@ -91,10 +83,7 @@ class Requirements(_Form):
 
 def response_schema() -> dict[str, Any]:
     """Return the JSON schema of a reply: the form without its version, which a model need not state."""
-    schema = Requirements.model_json_schema(by_alias=True)
-    schema["properties"].pop("schema")
-    plain: dict[str, Any] = _plain(schema, schema.get("$defs", {}))
-    return plain
+    return schema_of(Requirements, without=frozenset({"schema"}))
 
 
 def analyse(request: RunRequest, llm: LLM) -> Requirements:
@@ -104,7 +93,7 @@ def analyse(request: RunRequest, llm: LLM) -> Requirements:
         OutputError: If the model does not find the form in `TRIES` tries.
     """
     opening = (system(prompt("requirements")), user(_words(request), *pictures_of(request)))
-    return ask(llm, "requirements", "requirements", opening, _read, schema=response_schema())
+    return ask(llm, "requirements", "requirements", opening, reader(Requirements, ignore=frozenset({"schema"})), schema=response_schema())
 
 
 def pictures_of(request: RunRequest) -> tuple[Image, ...]:
@@ -112,61 +101,7 @@ def pictures_of(request: RunRequest) -> tuple[Image, ...]:
     return tuple(Image(image.content, image.media_type) for image in request.images if image.part is None)
 
 
-def ask(  # placeholder
-    llm: LLM,
-    role: str,
-    step: str,
-    opening: tuple[Message, ...],
-    read: Callable[[str, str], _Value],
-    *,
-    schema: Mapping[str, Any] | None = None,
-) -> _Value:
-    """Ask until the reply has the form asked for; a reply that has not goes back with what is wrong with it.
-
-    The first try is the step itself, later ones `<step>/2`, `<step>/3`.
-
-    Raises:
-        OutputError: If none of `TRIES` replies has the form.
-    """
-    messages = opening
-    for number in range(1, TRIES + 1):
-        address = step if number == 1 else f"{step}/{number}"
-        reply = llm.complete(Request(role, address, messages, schema))
-        try:
-            return read(reply.text, address)
-        except OutputError as error:
-            if number == TRIES:
-                raise
-            messages = (*opening, assistant(reply.text), user(prompt("form_repair", problem=error.message)))
-    raise AssertionError("the last try either returns or raises")
-
-
-def _read(text: str, step: str) -> Requirements:
-    document = parse_object(text, step=step)
-    try:
-        return Requirements.model_validate({name: value for name, value in document.items() if name != "schema"})
-    except ValidationError as error:
-        problems = [f"{'.'.join(map(str, detail['loc'])) or 'the object'}: {detail['msg']}" for detail in error.errors()]
-        raise unusable("; ".join(problems) + ".", text, step=step) from None
-
-
 def _words(request: RunRequest) -> str:
     seen = len(pictures_of(request))
     pictures = f"\n\n{seen} picture{'s' if seen > 1 else ''} of what is wanted follow{'' if seen > 1 else 's'}." if seen else ""
     return f"The request:\n\n{request.prompt.strip() or '(no words; see the pictures)'}{pictures}"
-
-
-def _plain(schema: Any, definitions: Mapping[str, Any]) -> Any:
-    """Return a schema with its references written out and its titles dropped: what every provider takes."""
-    if isinstance(schema, list):
-        return [_plain(item, definitions) for item in schema]
-    if not isinstance(schema, dict):
-        return schema
-    if "$ref" in schema:
-        return _plain(definitions[schema["$ref"].rsplit("/", 1)[-1]], definitions)
-    dropped = {"$defs", "title", "description"}
-    return {
-        name: ({key: _plain(value, definitions) for key, value in item.items()} if name == "properties" else _plain(item, definitions))
-        for name, item in schema.items()
-        if name not in dropped
-    }
