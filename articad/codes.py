@@ -385,6 +385,41 @@ CODES: dict[str, Code] = {
         "A model's reply does not have the form asked for.",
         "The reply and the form are shown; the request is repeated with the findings.",
     ),
+    "W_LOOK_SHAPE": Code(
+        "model", "code", "A model that looked at a part's pictures finds its shape not as specified.", "Compare the pictures with the plan."
+    ),
+    "W_LOOK_PROPORTION": Code(
+        "model",
+        "code",
+        "A model that looked at a part's pictures finds its proportions not as specified.",
+        "Compare the pictures with the plan.",
+    ),
+    "W_LOOK_ORIENTATION": Code(
+        "model",
+        "code",
+        "A model that looked at a part's pictures finds it turned or mirrored against its specification.",
+        "Compare the pictures with the plan.",
+    ),
+    "E_VERDICT_PLACEMENT": Code("model", None, "The judge finds parts missing, misplaced or of the wrong look.", "See what was expected."),
+    "E_VERDICT_INTERFERENCE": Code(
+        "model", None, "The judge finds parts in each other's way where no exact check has looked.", "See what was expected."
+    ),
+    "E_VERDICT_MOTION": Code("model", None, "The judge finds that the product does not move as was asked.", "See what was expected."),
+    "I_OVERRULED": Code(
+        "model", None, "A model's opinion that an exact check contradicts was left out.", "Nothing: geometry decides what can be measured."
+    ),
+    "W_ALTERNATIVES": Code(
+        "model", None, "A model had fewer structurally distinct ideas than were asked for.", "Choose among those there are, or ask again."
+    ),
+    "W_STALLED": Code(
+        "model",
+        None,
+        "The same finding came back after every strategy; nothing more was tried.",
+        "Mend plan or script by hand, or ask again.",
+    ),
+    "I_ABSORBED": Code(
+        "model", None, "A connector that a script placed slightly beside the plan's was taken into a new version of the plan.", "Nothing."
+    ),
     "E_REPLAY_MISS": Code(
         "model", None, "The recording has no reply for this request.", "Replay with the version that recorded it, or record again."
     ),
