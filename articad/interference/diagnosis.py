@@ -125,6 +125,7 @@ class Case:
             f"Bore {solid} along the axis with a diameter of {bore:.4g} mm, {high - low:.4g} mm deep (the pin's is {2 * radius:.4g} mm).",
             value=2 * radius,
             limit=bore,
+            culprit=solid,
         )
 
     def missing_slot(self) -> Finding | None:
@@ -147,6 +148,7 @@ class Case:
                     f"Cut a slot {width:.4g} mm wide into {name} where {self._other(name)} turns.",
                     value=thickness,
                     limit=width,
+                    culprit=name,
                 )
         return None
 
@@ -308,9 +310,13 @@ class Case:
                 deepest = max(deepest, 2 * float(piece.volume()) / max(float(piece.surface_area()), 1e-12))
         return deepest
 
-    def _because(self, cause: str, route: Any, message: str, hint: str, *, value: float, limit: float) -> Finding:
+    def _because(
+        self, cause: str, route: Any, message: str, hint: str, *, value: float, limit: float, culprit: str | None = None
+    ) -> Finding:
+        """Return the finding with its cause; where it is one part's script to be mended, that is the place."""
         return replace(
             self.finding,
+            where=self.finding.where if culprit is None else f"parts.{culprit}",
             cause=cause,
             route=route,
             message=f"{self.finding.message} {message}",
