@@ -1,0 +1,32 @@
+"""The project's examples: plans with part scripts, in the checkout or as the installed package carries them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Final
+
+from articad.errors import ReadError, did_you_mean
+from articad.findings import Finding
+
+_FOLDERS: Final = (Path(__file__).parent / "shipped_examples", Path(__file__).parents[1] / "examples")
+
+
+def names() -> tuple[str, ...]:
+    """Return the names of the examples."""
+    return tuple(sorted(file.parent.name for file in _root().glob("*/plan.json")))
+
+
+def folder(name: str) -> Path:
+    """Return an example's folder: `plan.json` and `parts/`.
+
+    Raises:
+        ReadError: If there is no example of this name.
+    """
+    if name not in names():
+        message = f"There is no example {name!r}.{did_you_mean(name, names())} There are {', '.join(names())}."
+        raise ReadError(message, path=name, findings=[Finding(code="E_READ", where=name, message=message, hint="Name one of these.")])
+    return _root() / name
+
+
+def _root() -> Path:
+    return next((folder for folder in _FOLDERS if folder.is_dir()), _FOLDERS[0])
