@@ -41,7 +41,7 @@ from articad.kernels.zygote import Outcome
 
 DOCUMENT = "part.FCStd"
 SEAT = "seat.json"  # where the document's body stands in the part's frame: seven numbers
-RECIPE = 1  # raised when documents come out otherwise, so that what was built before is built again
+RECIPE = 2  # raised when documents come out otherwise, so that what was built before is built again
 MAX_DOCUMENT_BYTES, MAX_UNPACKED_BYTES, MAX_ENTRIES = 64 * 2**20, 512 * 2**20, 10_000
 _PROGRAMS = Path(__file__).parent / "inside_freecad"
 _FAMILIES = ("PartDesign::", "Sketcher::", "Part::", "Spreadsheet::")  # of objects that a part may be made of

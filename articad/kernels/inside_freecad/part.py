@@ -25,6 +25,7 @@ FILE = "part.py"  # the name that a script's code bears: tracebacks are cut down
 SAVED = "/tmp/part.FCStd"  # noqa: S108 - private to this process
 _PLANES = {"XY": "XY_Plane", "XZ": "XZ_Plane", "YZ": "YZ_Plane"}
 _AXES = {"X": "X_Axis", "Y": "Y_Axis", "Z": "Z_Axis"}
+_SIDES = {"X": App.Vector(1, 0, 0), "Y": App.Vector(0, 1, 0), "Z": App.Vector(0, 0, 1)}
 _FUNCTIONS = {"abs", "acos", "asin", "atan", "atan2", "ceil", "cos", "floor", "hypot", "max", "min", "sin", "sqrt", "tan", "pi"}
 _NAME = re.compile(r"(?<![\w.])[A-Za-z_]\w*")
 
@@ -179,9 +180,19 @@ class Authoring:
         high = sketch.addGeometry(Part.LineSegment(b + side, a + side))
         for first, end_1, second, end_2 in ((one, 2, low, 1), (low, 2, other, 1), (other, 2, high, 1), (high, 2, one, 1)):
             sketch.addConstraint(Sketcher.Constraint("Tangent", first, end_1, second, end_2))
+        sketch.addConstraint(Sketcher.Constraint("Equal", one, other))  # else the other end keeps a radius of its own
         self._fix(sketch, one, 3, *start)
         self._fix(sketch, other, 3, *end)
         self._dimension(sketch, Sketcher.Constraint("Radius", one, r), radius)
+
+    def axis(self, sketch: Any, start: tuple[Value, Value], end: tuple[Value, Value]) -> str:
+        """Draw a line that is no outline; return the name by which a revolution turns about it."""
+        a, b = (App.Vector(self.number(x), self.number(y), 0) for x, y in (start, end))
+        count = sum(sketch.getConstruction(number) for number in range(sketch.GeometryCount))
+        line = sketch.addGeometry(Part.LineSegment(a, b), True)
+        self._fix(sketch, line, 1, *start)
+        self._fix(sketch, line, 2, *end)
+        return f"Axis{count}"
 
     def _fix(self, sketch: Any, index: int, position: int, x: Value, y: Value) -> None:
         """Hold a point at a place measured from the sketch's origin."""
@@ -214,12 +225,36 @@ class Authoring:
         return self._done(pocket)
 
     def revolution(self, sketch: Any, axis: str = "V", *, cut: bool = False, name: str = "Revolution") -> Any:
-        """Turn a sketch fully about its vertical ("V") or horizontal ("H") axis; `cut` takes away."""
+        """Turn a sketch fully about its vertical ("V") or horizontal ("H") axis, or one that `axis` drew; `cut` takes away."""
         feature = self.body.newObject("PartDesign::Groove" if cut else "PartDesign::Revolution", name)
         feature.Profile = sketch
-        feature.ReferenceAxis = (sketch, [f"{axis}_Axis"])
+        feature.ReferenceAxis = (sketch, [axis if axis.startswith("Axis") else f"{axis}_Axis"])
         feature.Angle = 360.0
         return self._done(feature)
+
+    def loft(self, sketch: Any, *others: Any, cut: bool = False, name: str = "Loft") -> Any:
+        """Span straight faces from one sketch to the next, each of one outline with as many corners; `cut` takes away."""
+        loft = self.body.newObject("PartDesign::SubtractiveLoft" if cut else "PartDesign::AdditiveLoft", name)
+        loft.Profile, loft.Sections, loft.Ruled = sketch, list(others), True
+        for other in others:
+            other.Visibility = False
+        return self._done(loft)
+
+    def sphere(self, center: Sequence[Value], radius: Value, *, cut: bool = False, name: str = "Sphere") -> Any:
+        """Add or cut a sphere."""
+        sphere = self.body.newObject("PartDesign::SubtractiveSphere" if cut else "PartDesign::AdditiveSphere", name)
+        self.tie(sphere, "Radius", radius)
+        for axis, value in zip("xyz", center, strict=True):
+            self.tie(sphere, f"Placement.Base.{axis}", value)
+        return self._done(sphere)
+
+    def fillet(self, side: str, radius: Value, *, name: str = "Fillet") -> Any:
+        """Round all edges of the outermost flat face that looks along +X, -X, +Y, -Y, +Z or -Z."""
+        return self._dressed("PartDesign::Fillet", side, "Radius", radius, name)
+
+    def chamfer(self, side: str, size: Value, *, name: str = "Chamfer") -> Any:
+        """Bevel all edges of the outermost flat face that looks along +X, -X, +Y, -Y, +Z or -Z."""
+        return self._dressed("PartDesign::Chamfer", side, "Size", size, name)
 
     def cylinder(self, at: Sequence[Value], axis: str, radius: Value, length: Value, *, cut: bool = False, name: str = "Cylinder") -> Any:
         """Add or cut a cylinder that starts at a point and runs along +X, +Y, +Z, -X, -Y or -Z."""
@@ -248,14 +283,20 @@ class Authoring:
         pattern.Angle = 360.0
         return self._counted(pattern, count)
 
-    def connector(self, name: str, o: Sequence[Value], z: Sequence[float], x: Sequence[float] | None = None) -> Any:
-        """Put a coordinate system into the body, its origin tied; return it for the dict of connectors."""
+    def connector(self, name: str, o: Sequence[Value], z: Sequence[Value], x: Sequence[Value] | None = None) -> Any:
+        """Put a coordinate system into the body, tied to the dimensions; return it for the dict of connectors."""
         system = self.body.newObject("PartDesign::CoordinateSystem", f"connector_{name}")
-        forward = App.Vector(*z)
-        right = App.Vector(*(x if x is not None else self.connectors[name].x))
-        system.Placement = App.Placement(App.Vector(), App.Rotation(right, forward.cross(right), forward, "ZXY"))
-        for axis, value in zip("xyz", o, strict=True):
-            self.tie(system, f"Placement.Base.{axis}", value)
+        right = x if x is not None else self.connectors[name].x
+        if not any(isinstance(value, str) for value in (*z, *right)):
+            forward, turned = App.Vector(*z), App.Vector(*right)
+            system.Placement = App.Placement(App.Vector(), App.Rotation(turned, forward.cross(turned), forward, "ZXY"))
+            for axis, value in zip("xyz", o, strict=True):
+                self.tie(system, f"Placement.Base.{axis}", value)
+            return system
+        axes = [f"vector({'; '.join(map(self._arithmetic, values))})" for values in (right, z)]
+        base = f"vector({'; '.join(map(self.length, o))})"
+        turn = f"create(<<rotation>>; {axes[0]}; vector(0; 0; 0); {axes[1]}; <<ZXY>>)"
+        system.setExpression("Placement", f"placement({base}; {turn})")
         return system
 
     def settle(self) -> None:
@@ -269,6 +310,20 @@ class Authoring:
         if cut:
             return self.pocket(sketch, length, back=along, name=name)
         return self.pad(sketch, length, back=not along, name=name)
+
+    def _dressed(self, kind: str, side: str, key: str, value: Value, name: str) -> Any:
+        self.settle()
+        below, outwards = self.body.Tip, _SIDES[side[-1]] * (-1 if side.startswith("-") else 1)
+        flat = []
+        for number, face in enumerate(below.Shape.Faces, start=1):
+            if isinstance(face.Surface, Part.Plane) and face.normalAt(0, 0).dot(outwards) > 1 - 1e-9:
+                flat.append((face.CenterOfMass.dot(outwards), f"Face{number}"))
+        if not flat:
+            raise ValueError(f"No flat face of the body looks along {side}")
+        feature = self.body.newObject(kind, name)
+        feature.Base = (below, [max(flat)[1]])
+        self.tie(feature, key, value)
+        return self._done(feature)
 
     def _axis(self, axis: str) -> Any:
         (found,) = [item for item in self.body.Origin.OriginFeatures if item.Role == _AXES[axis]]

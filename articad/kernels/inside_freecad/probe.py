@@ -16,7 +16,6 @@ import FreeCAD as App
 
 STEP, ZERO_MM, ZERO_DEG = 0.02, 0.1, 1.0  # by which a dimension is moved; the latter two where it is zero
 SAME = 1e-9  # relative change of a number that is rounding
-BACK = 1e-6  # the same after there and back: FreeCAD's sketch solver stops at such residuals where outlines have arcs
 _OPENED, _SHAPE = "/tmp/part.FCStd", "/tmp/part.brep"  # noqa: S108 - private to this process
 
 Json = dict[str, Any]
@@ -98,7 +97,7 @@ def _probe(document: Any, body: Any, systems: dict[str, str], dimensions: Json, 
         best = min(outcomes, key=lambda outcome: ("changed", "unused", "broken").index(outcome["outcome"]))
         if best["outcome"] == "broken" or name == list(dimensions)[-1]:
             document.recompute()
-            if not _is_back(_fingerprint(document, body, systems), before):
+            if not _same(_fingerprint(document, body, systems), before):
                 best = _broken("the part does not come back when the dimensions are set back")
         yield {"dimension": name} | best
 
@@ -130,10 +129,6 @@ def _fingerprint(document: Any, body: Any, systems: dict[str, str]) -> list[floa
     center = shape.CenterOfGravity if shape.Solids else App.Vector()
     frames = [number for frame in _frames(document, systems).values() for axis in ("o", "z", "x") for number in frame[axis]]
     return [shape.Volume, *center, box.XMin, box.YMin, box.ZMin, box.XMax, box.YMax, box.ZMax, *frames]
-
-
-def _is_back(after: list[float], before: list[float]) -> bool:
-    return len(after) == len(before) and all(abs(a - b) <= BACK * max(abs(b), 1.0) for a, b in zip(after, before, strict=True))
 
 
 def _same(after: list[float], before: list[float]) -> bool:
