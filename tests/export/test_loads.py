@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import time
 from dataclasses import replace
 
 import pytest
@@ -10,11 +11,13 @@ import pytest
 from articad.assembly import Assembly
 from articad.connectors.connector import Connector
 from articad.connectors.se3 import SE3
+from articad.export.carried import CarriedParts
 from articad.export.loads import GRAVITY_M_S2, Load, joint_loads
 from articad.geometry.part import Part
 from articad.geometry.shapes import box, cylinder
 from articad.kinematics import declare
-from articad.kinematics.joints import Joint
+from articad.kinematics.joints import Joint, JointType
+from tests.assemblies import random_configurations, random_tree
 
 WATER = 1000.0
 g = GRAVITY_M_S2
@@ -144,3 +147,41 @@ def test_every_joint_of_a_loop_carries_what_the_loop_carries() -> None:
 
     assert all(0.05 * three / 3 < load.effort for (load,) in loads.values())
     assert loads["j1"][0].effort > 2 * g * (0.05 + 0.15)
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_no_pose_has_longer_levers_than_a_joint_is_given(seed: int) -> None:
+    assembly = random_tree(seed, 9)
+    mechanism = assembly.mechanism
+    carried = CarriedParts(mechanism, assembly.parts)
+    for q in random_configurations(assembly, seed, 20):
+        poses = dict(zip(mechanism.parts, mechanism.poses(q), strict=True))
+        for edge in mechanism.tree.edges:
+            joint = edge.joint
+            near = poses[joint.child] @ joint.T_child_connector if not edge.reversed else poses[joint.parent] @ joint.T_parent_connector
+            about_axis = joint.type not in {JointType.BALL, JointType.UNIVERSAL}
+            levers = []
+            for name in mechanism.tree.subtree(edge.part):
+                mass = assembly.parts[name].mass
+                assert mass is not None
+                at = near.inverse().apply(poses[name].apply(mass.com)) / 1000
+                levers.append((mass.mass, math.hypot(*(at[:2] if about_axis else at))))
+            found = carried.of(joint)
+
+            assert found.mass == pytest.approx(sum(mass for mass, _ in levers), rel=1e-12)
+            assert sum(mass * lever for mass, lever in levers) <= found.moment * (1 + 1e-9)
+            assert sum(mass * lever**2 for mass, lever in levers) <= found.inertia * (1 + 1e-9)
+            assert max(lever for _, lever in levers) <= found.reach * (1 + 1e-9)
+
+
+def test_a_long_chain_is_summed_up_in_one_pass() -> None:
+    """1,500 links in a chain: looking at every link from every joint would take two minutes."""
+    links = [part(f"link_{i}", a=(-50, 0, 0), b=(50, 0, 0)) for i in range(1500)]
+    joints = [declare.revolute(f"j_{i}", links[i]["b"], links[i + 1]["a"], limits=(-1, 1)) for i in range(len(links) - 1)]
+    assembly = Assembly.from_parts("chain", parts=links, joints=joints, ground="link_0")
+    start = time.monotonic()
+    loads = joint_loads(assembly.mechanism, assembly.parts)
+
+    assert time.monotonic() - start < 10
+    n = len(joints)
+    assert loads["j_0"][0].effort == pytest.approx(2 * g * sum(0.05 + 0.1 * i for i in range(n)))
