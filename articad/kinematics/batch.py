@@ -24,7 +24,7 @@ IndexArray = npt.NDArray[np.intp]
 
 _FEW = 32  # configurations up to which matrices win over rows (measured: break-even 25 … 50)
 _CHUNK = 512  # configurations per pass: the rows of one joint then stay in the first-level cache
-_TURNING = frozenset({JointType.REVOLUTE, JointType.CYLINDRICAL, JointType.SCREW})
+TURNING = frozenset({JointType.REVOLUTE, JointType.CYLINDRICAL, JointType.SCREW})
 
 
 class Crossing(NamedTuple):
@@ -33,6 +33,7 @@ class Crossing(NamedTuple):
     joint: Joint
     near: int
     far: int
+    backwards: bool
     signs: FloatArray
     A: SE3
     B: SE3
@@ -61,7 +62,9 @@ class Crossings(Sequence[Crossing]):
             joint.type.reversal_signs(Mate.ALIGNED) if b else np.ones(len(joint.rest)) for joint, b in zip(joints, backwards, strict=True)
         ]
         self._rows = tuple(
-            Crossing(joint, near[k], far[k], signs[k], SE3.from_unit_array(self.A.data[k]), SE3.from_unit_array(self.B.data[k]))
+            Crossing(
+                joint, near[k], far[k], backwards[k], signs[k], SE3.from_unit_array(self.A.data[k]), SE3.from_unit_array(self.B.data[k])
+            )
             for k, joint in enumerate(joints)
         )
 
@@ -103,7 +106,7 @@ class Transforms:
             if c.joint.type in {JointType.BALL, JointType.PLANAR, JointType.UNIVERSAL}:
                 self._others.append((k, c.joint.type, columns, c.signs, A[k], B[k]))
                 continue
-            if c.joint.type in _TURNING:
+            if c.joint.type in TURNING:
                 self._angle[k], self._turns[k] = columns.stop - 1, c.signs[-1]
             if c.joint.type is JointType.SCREW:
                 self._travel[k], self._slides[k] = columns.start, c.signs[0] * c.joint.lead / (2 * math.pi)
@@ -168,6 +171,7 @@ class TreeArrays:
 
     def __init__(self, parts: Sequence[str], tree: KinematicTree, layout: Layout, T_ground: SE3, closing: Sequence[Joint] = ()) -> None:
         index = {part: i for i, part in enumerate(parts)}
+        self.parts = tuple(parts)
         self.layout = layout
         self.n_parts = len(parts)
         self.ground = index[tree.ground]
@@ -177,7 +181,7 @@ class TreeArrays:
         far = [*(index[edge.part] for edge in edges), *(self.n_parts + i for i in range(len(closing)))]
         backwards = [*(edge.reversed for edge in edges), *(False for _ in closing)]
         crossings = Crossings([*(edge.joint for edge in edges), *closing], near, far, backwards)
-        self.crossings = crossings[: len(edges)]
+        self.crossings, self.closing = crossings[: len(edges)], crossings[len(edges) :]
         self._transforms = Transforms(crossings, layout)
         self._steps = tuple(zip(near, far, strict=True))
         self._ground_matrix = T_ground.matrix

@@ -13,9 +13,10 @@ from articad.connectors import FloatArray
 from articad.errors import DeadPointError, KinematicsError, LoopError
 from articad.findings import Finding
 from articad.kinematics.continuation import Follower, Stop, Trace
+from articad.kinematics.equations import IndexArray
 from articad.kinematics.joints import Coordinate, Coupling, Joint, JointType
 from articad.kinematics.layout import Layout
-from articad.kinematics.loops import CLOSED, BoolArray, ClosureSystem, IndexArray
+from articad.kinematics.loops import CLOSED, BoolArray, ClosureSystem
 from articad.kinematics.mobility import choose_drivers, mobility_of
 from articad.kinematics.track import Track
 from articad.kinematics.tree import KinematicTree
@@ -189,7 +190,7 @@ class Branch:
         system = self.system
         G = np.zeros((self.layout.n_freedoms, len(self.driver_freedoms)))
         G[self.driver_freedoms, np.arange(len(self.driver_freedoms))] = 1.0
-        J = system.evaluate(system.to_system(Q_all)[None])[1][0]
+        J = system.evaluate_one(system.to_system(Q_all))[1]
         where = np.flatnonzero(self.dependent)
         if where.size:
             driven = J @ (G[system.freedoms] / system.scale[:, None])

@@ -100,7 +100,7 @@ class Follower:
 
     def linearized(self, Q: FloatArray) -> _Linear:
         """Return the constraints' Jacobian at Q and the singular values of its dependent columns."""
-        J = self.system.evaluate(Q[None])[1][0]
+        J = self.system.evaluate_one(Q)[1]
         return _Linear(J, *np.linalg.svd(J[:, self.where], full_matrices=False))
 
     def start(self, Q: FloatArray) -> None:
@@ -228,7 +228,7 @@ class Follower:
 
     def _tangent(self, Q: FloatArray, direction: FloatArray, orientation: FloatArray | None) -> FloatArray | None:
         """Return the unit null vector of the constraints in (dependents, s), oriented along `orientation` or towards growing s."""
-        J = self.system.evaluate(Q[None])[1][0]
+        J = self.system.evaluate_one(Q)[1]
         _, s, Vt = np.linalg.svd(np.column_stack([J[:, self.where], J @ direction]))
         if self.rank < len(self.where) or not s.size:
             return None
@@ -243,7 +243,7 @@ class Follower:
         full[self.where] = y
         Q = self.system.move(node.Q, full)
         for _ in range(12):
-            r, J = (part[0] for part in self.system.evaluate(Q[None]))
+            r, J = self.system.evaluate_one(Q)
             columns = np.column_stack([J[:, self.where], J @ direction])
             step = -np.linalg.lstsq(columns, r, rcond=RANK_TOLERANCE)[0]
             full = direction * step[-1]
@@ -251,7 +251,7 @@ class Follower:
             Q, s = self.system.move(Q, full), s + float(step[-1])
             if np.abs(step).max() < 1e-13:
                 break
-        if np.sqrt((self.system.residual(Q[None]) ** 2).sum()) > CLOSED:
+        if np.sqrt((self.system.residual_one(Q) ** 2).sum()) > CLOSED:
             return None
         here = self._tangent(Q, direction, tangent)
         return None if here is None else (s, Q, here)

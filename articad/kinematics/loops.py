@@ -8,21 +8,24 @@ q_b − k q_a − c. Lengths are divided by L throughout: results are the same i
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
-from articad.connectors import SE3, FloatArray, quaternion
+from articad.connectors import SE3, FloatArray
 from articad.kinematics.batch import TreeArrays
+from articad.kinematics.equations import BatchEquations, CouplingEquations, IndexArray, closures
 from articad.kinematics.joints import Coupling, Joint
 from articad.kinematics.layout import Layout
+from articad.kinematics.single import SingleEquations
 from articad.kinematics.tree import Edge, KinematicTree
 
 BoolArray = npt.NDArray[np.bool_]
-IndexArray = npt.NDArray[np.intp]
 
 CLOSED = 1e-10  # |t|/L and rad: a loop with a smaller residual is closed
 RESIDUAL_TARGET = 1e-12  # where the iteration stops, before one more polishing step
@@ -32,8 +35,7 @@ _DROPPED = 1e-10  # σ/σ₁ below which a direction is left out of a step
 _LARGEST_STEP = 0.5  # rad, or lengths L: the linear model is worth nothing beyond
 _DAMPING_FALL, _DAMPING_RISE = 0.2, 8.0  # of a step that helped, and of one that did not
 _DAMPING_START = 1e-3
-_STRAIGHT = 1e-5  # rad: a mismatch so small that the square term of the logarithm's Jacobian is below rounding
-_NEAR_PI = -0.9  # cos θ below which the logarithm is taken by quaternions instead of the sine
+_FEW_JOINTS = 16  # joints up to which plain numbers win over NumPy at one configuration (measured with scissors of 1 … 20 stages)
 _FALLBACK_LENGTH = 100.0  # mm, where no part has two connectors apart
 
 
@@ -109,91 +111,47 @@ class ClosureSystem:
         self.length = _characteristic_length(self.layout.joints)
         self.arrays = TreeArrays(subtree.parts, subtree, self.layout, SE3.identity(), loop_joints)
         self.scale: FloatArray = np.where(self.layout.is_length, self.length, 1.0)
-        self._compile_loops(subtree, loop_joints)
-        self._compile_couplings()
-        self.n_rows = 6 * len(self.loops) + len(self.couplings)
-        self.active: BoolArray = (self._sides != 0).any(axis=0) | (self._coupling_rows != 0).any(axis=0)
+        self._closures = closures(self.arrays, loop_joints, self.scale, self.length)
+        self._many, self._tied = BatchEquations(self._closures), CouplingEquations(self.couplings, self.layout, self.scale, self.length)
+        self._linear = np.concatenate([np.zeros((6 * len(self.loops), self.layout.n_freedoms)), self._tied.J])
+        self.n_rows = len(self._linear)
+        constraints = np.concatenate([self._closures.spin, self._closures.slide, self._tied.J])
+        self.active: BoolArray = (constraints != 0).any(axis=0)
 
-    def _compile_loops(self, tree: KinematicTree, loop_joints: Sequence[Joint]) -> None:
-        index = {part: i for i, part in enumerate(tree.parts)}
-        self._far = np.array([index[joint.child] for joint in loop_joints], dtype=np.intp)
-        near = np.array([index[joint.parent] for joint in loop_joints], dtype=np.intp)
-        self._C_c = np.array([joint.T_child_connector.matrix for joint in (*loop_joints, *loop_joints)]).reshape(-1, 1, 4, 4)
-        sides = self.arrays.carried[self._far] - self.arrays.carried[near]
-        for row, joint in zip(sides, loop_joints, strict=True):
-            row[self.layout.freedoms[joint.name]] = -1.0
-        self._sides: FloatArray = sides.reshape(len(loop_joints), self.layout.n_freedoms)
-        # what a freedom's axis, and its moment about B, count in the residual: (loops, 1, freedoms, 1)
-        weight = (self._sides * self.scale)[:, None, :, None]
-        angular, linear = (part[:, 0, 0][:, None] for part in (self.arrays.twists.angular, self.arrays.twists.linear))
-        self._spin_weight: FloatArray = weight * angular
-        self._turn_weight: FloatArray = self._spin_weight / self.length
-        self._slide_weight: FloatArray = weight * linear / self.length
-
-    def _compile_couplings(self) -> None:
-        n = len(self.couplings)
-        self._coupling_rows = np.zeros((n, self.layout.n_freedoms))  # per unscaled freedom
-        self._coupling_columns = np.zeros((n, self.layout.n_columns))
-        self._coupling_offset = np.array([c.offset for c in self.couplings])
-        self._coupling_unit = np.ones(n)
-        for i, c in enumerate(self.couplings):
-            a, b = self.layout.column_of[c.a], self.layout.column_of[c.b]
-            self._coupling_columns[i, b], self._coupling_columns[i, a] = 1.0, -c.ratio
-            self._coupling_rows[i, self.layout.freedom_of(b)], self._coupling_rows[i, self.layout.freedom_of(a)] = 1.0, -c.ratio
-            if self.layout.coordinates[b].unit == "mm":
-                self._coupling_unit[i] = self.length
-        self._coupling_jacobian = self._coupling_rows * self.scale / self._coupling_unit[:, None]
+    @cached_property
+    def _one(self) -> SingleEquations | None:
+        """The equations in plain numbers, of systems so small that they win over NumPy at one configuration."""
+        return SingleEquations(self._closures) if len(self.layout.joints) <= _FEW_JOINTS else None
 
     # --- equations
 
     def evaluate(self, Q: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return residuals `(batch, rows)` and their Jacobian `(batch, rows, freedoms)`, scaled, at `Q` `(batch, columns)`."""
-        batch, n, loops = len(Q), self.layout.n_freedoms, len(self.loops)
-        r, J = np.empty((batch, self.n_rows)), np.empty((batch, self.n_rows, n))
-        if loops:
-            T = self.arrays.matrices(Q)
-            R_A, p_B, t, phi = self._mismatch(T)
-            axes, origins = (part.swapaxes(0, 1) for part in self.arrays.twists.axes(T, Q))  # (batch, freedoms, 3)
-            moments = quaternion.cross(axes, p_B[:, :, None, :] - origins)
-            lin = (moments * self._turn_weight + axes * self._slide_weight) @ R_A
-            ang = (axes * self._spin_weight) @ (R_A @ _log_jacobian(phi))
-            blocks = J[:, : 6 * loops].reshape(batch, loops, 6, n)
-            blocks[:, :, :3], blocks[:, :, 3:] = lin.transpose(1, 0, 3, 2), ang.transpose(1, 0, 3, 2)
-            self._fill_mismatch(r, t, phi)
-        if self.couplings:
-            r[:, 6 * loops :] = self._coupling_residual(Q)
-            J[:, 6 * loops :] = self._coupling_jacobian
-        return r, J
+        J = np.tile(self._linear, (len(Q), 1, 1))
+        return np.concatenate([self._many.fill(Q, J), self._tied.residual(Q)], axis=1), J
 
     def residual(self, Q: FloatArray) -> FloatArray:
         """Return the residuals alone `(batch, rows)`."""
-        r = np.empty((len(Q), self.n_rows))
-        if self.loops:
-            _, _, t, phi = self._mismatch(self.arrays.matrices(Q))
-            self._fill_mismatch(r, t, phi)
-        if self.couplings:
-            r[:, 6 * len(self.loops) :] = self._coupling_residual(Q)
-        return r
+        return np.concatenate([self._many.residual(Q), self._tied.residual(Q)], axis=1)
 
-    def _mismatch(self, T: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-        """Return R_A, the point of B, and M = A⁻¹B as translation and rotation vector; all `(loops, batch, …)`."""
-        both = np.concatenate([T[self.arrays.n_parts :], T[self._far]]) @ self._C_c
-        A, B = both[: len(self.loops)], both[len(self.loops) :]
-        R_A, p_B = A[..., :3, :3], B[..., :3, 3]
-        t = ((p_B - A[..., :3, 3])[..., None, :] @ R_A)[..., 0, :]
-        return R_A, p_B, t, _rotation_log(R_A.swapaxes(-1, -2) @ B[..., :3, :3])
+    def evaluate_one(self, Q: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return residuals `(rows,)` and their Jacobian `(rows, freedoms)`, scaled, at one configuration `(columns,)`."""
+        if self._one is None:
+            r, J = self.evaluate(Q[None])
+            return r[0], J[0]
+        J = self._linear.copy()
+        return self._with_couplings(self._one.fill(Q, J), Q), J
 
-    def _fill_mismatch(self, r: FloatArray, t: FloatArray, phi: FloatArray) -> None:
-        blocks = r[:, : 6 * len(self.loops)].reshape(len(r), len(self.loops), 6)
-        blocks[..., :3], blocks[..., 3:] = (t / self.length).swapaxes(0, 1), phi.swapaxes(0, 1)
+    def residual_one(self, Q: FloatArray) -> FloatArray:
+        """Return the residuals alone `(rows,)`."""
+        return self.residual(Q[None])[0] if self._one is None else self._with_couplings(self._one.residual(Q), Q)
 
-    def _coupling_residual(self, Q: FloatArray) -> FloatArray:
-        residual: FloatArray = (Q @ self._coupling_columns.T - self._coupling_offset) / self._coupling_unit
-        return residual
+    def _with_couplings(self, loops: list[float], Q: FloatArray) -> FloatArray:
+        return np.array([*loops, *self._tied.residual(Q)] if self.couplings else loops)
 
     def gaps(self, Q: FloatArray) -> FloatArray:
         """Return the distance `(loops,)` [mm] between each ghost and its connector at `Q` `(columns,)`."""
-        r = self.residual(Q[None])[0, : 6 * len(self.loops)].reshape(-1, 6)
+        r = self.residual_one(Q)[: 6 * len(self.loops)].reshape(-1, 6)
         distance: FloatArray = np.linalg.norm(r[:, :3], axis=1) * self.length
         return distance
 
@@ -223,7 +181,7 @@ class ClosureSystem:
             The best coordinates found, and whether they close.
         """
         where = np.flatnonzero(free)
-        r, J = (part[0] for part in self.evaluate(Q[None]))
+        r, J = self.evaluate_one(Q)
         norm, mu, y = _norm(r), _DAMPING_START, np.zeros(self.layout.n_freedoms)
         done = 0
         while norm > RESIDUAL_TARGET and done < iterations and where.size:
@@ -233,7 +191,7 @@ class ClosureSystem:
                 done += 1
                 y[where] = _damped_step(s, b, Vt, mu * min(1.0, norm))
                 trial = self.move(Q, y)
-                r_trial, J_trial = (part[0] for part in self.evaluate(trial[None]))
+                r_trial, J_trial = self.evaluate_one(trial)
                 norm_trial = _norm(r_trial)
                 if norm_trial < norm:
                     Q, r, J, norm, mu = trial, r_trial, J_trial, norm_trial, mu * _DAMPING_FALL
@@ -250,7 +208,7 @@ class ClosureSystem:
         U, s, Vt = np.linalg.svd(J[:, where], full_matrices=False)
         y[where] = _damped_step(s, U.T @ r, Vt, 0.0, RANK_TOLERANCE)
         trial = self.move(Q, y)
-        norm, norm_trial = _norm(r), _norm(self.residual(trial[None])[0])
+        norm, norm_trial = _norm(r), _norm(self.residual_one(trial))
         return (trial, norm_trial) if norm_trial <= max(norm, RESIDUAL_TARGET) else (Q, norm)
 
     def close_many(self, Q: FloatArray, free: BoolArray, *, iterations: int = 40) -> tuple[FloatArray, FloatArray]:
@@ -305,15 +263,15 @@ class ClosureSystem:
 
 
 def _norm(r: FloatArray) -> float:
-    return float(np.sqrt(r @ r))
+    return math.sqrt(r @ r)
 
 
 def _damped_step(s: FloatArray, b: FloatArray, Vt: FloatArray, damping: float, dropped: float = _DROPPED) -> FloatArray:
     """Return −V diag(s/(s² + λ²)) b, without the directions that have no singular value, capped in length."""
-    inverse = s / (s * s + (damping * damping + 1e-300))
-    inverse[s <= dropped * s[0]] = 0.0
-    y: FloatArray = -((inverse * b) @ Vt)
-    largest = np.abs(y).max(initial=0.0)
+    values, square = s.tolist(), damping * damping + 1e-300
+    inverse = [-value / (value * value + square) if value > dropped * values[0] else 0.0 for value in values]
+    y: FloatArray = (inverse * b) @ Vt
+    largest = max(map(abs, y.tolist()), default=0.0)
     return y * (_LARGEST_STEP / largest) if largest > _LARGEST_STEP else y
 
 
@@ -358,36 +316,3 @@ def _characteristic_length(joints: Sequence[Joint]) -> float:
     lengths = [float(np.linalg.norm(p - points[0])) for points in origins.values() for p in points[1:]]
     lengths = [length for length in lengths if length > 1e-6]
     return float(np.median(lengths)) if lengths else _FALLBACK_LENGTH
-
-
-def _rotation_log(R: FloatArray) -> FloatArray:
-    """Return rotation vectors `(*batch, 3)` of matrices: by the sine where that is accurate, which is where loops are closed."""
-    parts = R.reshape(*R.shape[:-2], 9) @ _SINE_AND_TRACE
-    cosine = 0.5 * parts[..., 3] - 0.5
-    if cosine.size and cosine.min() < _NEAR_PI:
-        return quaternion.log(quaternion.from_matrix(R))
-    axis = parts[..., :3]
-    sine = np.sqrt((axis * axis).sum(axis=-1)) + 1e-300  # never zero, and never seen
-    phi: FloatArray = axis * (np.arctan2(sine, cosine) / sine)[..., None]
-    return phi
-
-
-def _log_jacobian(phi: FloatArray) -> FloatArray:
-    """Return what a row of spin is multiplied with to give the rate of the rotation vector: (I − ½[φ] + c [φ]²)ᵀ."""
-    S = _crossing(phi)
-    J: FloatArray = _EYE + 0.5 * S
-    if np.abs(phi).max(initial=0.0) > _STRAIGHT:
-        J += quaternion.inverse_coefficient(phi)[..., None] * (S @ S)
-    return J
-
-
-def _crossing(d: FloatArray) -> FloatArray:
-    """Return the matrices with a @ crossing(d) = a × d for rows a."""
-    return (d @ _EPSILON).reshape(*d.shape[:-1], 3, 3)
-
-
-_EYE = np.eye(3)
-_EPSILON = np.zeros((3, 9))  # (a × d)ⱼ = εⱼᵢₖ aᵢ dₖ
-for _k, _ij, _sign in ((0, 5, 1), (0, 7, -1), (1, 6, 1), (1, 2, -1), (2, 1, 1), (2, 3, -1)):
-    _EPSILON[_k, _ij] = -_sign
-_SINE_AND_TRACE = np.concatenate([0.5 * _EPSILON.T, np.eye(3).reshape(9, 1)], axis=1)

@@ -84,7 +84,7 @@ def mobility_of(system: ClosureSystem, Q: FloatArray) -> Mobility:
 def motions(system: ClosureSystem, Q: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return the null space `(freedoms, n)` of the constraints at Q among the active freedoms, and all σ/σ₁."""
     where = np.flatnonzero(system.active)
-    J = system.evaluate(Q[None])[1][0][:, where]
+    J = system.evaluate_one(Q)[1][:, where]
     if not J.size:
         return np.zeros((system.layout.n_freedoms, 0)), np.zeros(0)
     _, s, Vt = np.linalg.svd(J)
@@ -206,7 +206,7 @@ def redundancies(
 ) -> tuple[Redundancy, ...]:
     """Return the redundant constraints of each loop (null space of Jᵀ) and the joints to release for real-life tolerance."""
     where = np.flatnonzero(system.active)
-    J = system.evaluate(mobility.Q[None])[1][0][:, where]
+    J = system.evaluate_one(mobility.Q)[1][:, where]
     Z = _null_space_of_transpose(J, mobility.rank)
     if not Z.shape[1]:
         return ()

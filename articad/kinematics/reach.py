@@ -76,7 +76,7 @@ class _Task:
             rows.append((omega * carried * self.scale[:, None]).T)
         if self.branch is not None:
             system = self.branch.system
-            closure, J = (part[0] for part in system.evaluate(system.to_system(Q)[None]))
+            closure, J = system.evaluate_one(system.to_system(Q))
             wide = np.zeros((len(closure), mechanism.layout.n_freedoms))
             wide[:, system.freedoms] = J
             r.append(_CLOSURE_WEIGHT * closure)

@@ -1,0 +1,169 @@
+"""The equations of loops at many configurations at once, in NumPy; `single` has the same for one."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from articad.connectors import FloatArray, quaternion
+from articad.kinematics.batch import TreeArrays
+from articad.kinematics.joints import Coupling, Joint
+from articad.kinematics.layout import Layout
+
+IndexArray = npt.NDArray[np.intp]
+
+NEAR_PI = -0.9  # cos θ below which the logarithm is taken by quaternions instead of the sine
+_STRAIGHT = 1e-8  # rad: a mismatch so small that the square term of the logarithm's Jacobian is below rounding
+
+
+class Closures(NamedTuple):
+    """What closes the loops, each between a ghost of a part and the part itself.
+
+    Attributes:
+        arrays: The tree with the ghosts.
+        ends: Indices of the ghosts, and of the parts that they must meet `(2, loops)`.
+        connectors: C_c, the same in both `(loops, 4, 4)`.
+        spin: Turn [rad] of each loop about the axis of each freedom, per scaled unit `(loops, freedoms)`.
+        slide: Travel [L] along it `(loops, freedoms)`.
+        length: L [mm].
+    """
+
+    arrays: TreeArrays
+    ends: IndexArray
+    connectors: FloatArray
+    spin: FloatArray
+    slide: FloatArray
+    length: float
+
+
+def closures(arrays: TreeArrays, loop_joints: Sequence[Joint], scale: FloatArray, length: float) -> Closures:
+    """Return what closes the loops.
+
+    Args:
+        arrays: The tree with ghosts of the loop joints' children.
+        loop_joints: Joints that close loops.
+        scale: What one scaled unit of each freedom is [rad, mm].
+        length: L [mm].
+    """
+    index = {part: i for i, part in enumerate(arrays.parts)}
+    far = [index[joint.child] for joint in loop_joints]
+    sides = arrays.carried[far] - arrays.carried[[index[joint.parent] for joint in loop_joints]]
+    for row, joint in zip(sides, loop_joints, strict=True):
+        row[arrays.layout.freedoms[joint.name]] = -1.0
+    weight = sides.reshape(len(loop_joints), arrays.layout.n_freedoms) * scale
+    ghosts = range(arrays.n_parts, arrays.n_parts + len(loop_joints))
+    connectors = np.array([joint.T_child_connector.matrix for joint in loop_joints]).reshape(-1, 4, 4)
+    angular, linear = arrays.twists.angular[:, 0, 0], arrays.twists.linear[:, 0, 0]
+    return Closures(arrays, np.array([ghosts, far], dtype=np.intp), connectors, weight * angular, weight * linear / length, length)
+
+
+class BatchEquations:
+    """Residuals of loops and their Jacobian at many configurations.
+
+    Args:
+        closures: What closes.
+    """
+
+    def __init__(self, closures: Closures) -> None:
+        self._arrays, self._length = closures.arrays, closures.length
+        self._ends = closures.ends.ravel()
+        self._C_c = np.concatenate([closures.connectors, closures.connectors])[:, None]
+        # what a freedom's axis, and its moment about B, count in the residual: (loops, 1, freedoms, 1)
+        self._spin, self._slide = closures.spin[:, None, :, None], closures.slide[:, None, :, None]
+        self._turn = self._spin / self._length
+
+    def residual(self, Q: FloatArray) -> FloatArray:
+        """Return the residuals `(batch, 6 loops)` at `Q` `(batch, columns)`."""
+        _, _, t, phi = self._mismatch(self._arrays.matrices(Q))
+        return self._residual(t, phi)
+
+    def fill(self, Q: FloatArray, J: FloatArray) -> FloatArray:
+        """Return the residuals, and write their derivatives into `J` `(batch, rows, freedoms)`."""
+        T = self._arrays.matrices(Q)
+        R_A, p_B, t, phi = self._mismatch(T)
+        axes, origins = (part.swapaxes(0, 1) for part in self._arrays.twists.axes(T, Q))  # (batch, freedoms, 3)
+        moments = quaternion.cross(axes, p_B[:, :, None, :] - origins)
+        lin = (moments * self._turn + axes * self._slide) @ R_A
+        ang = (axes * self._spin) @ (R_A @ _log_jacobian(phi))
+        blocks = J[:, : 6 * len(t)].reshape(len(Q), len(t), 6, J.shape[2])
+        blocks[:, :, :3], blocks[:, :, 3:] = lin.transpose(1, 0, 3, 2), ang.transpose(1, 0, 3, 2)
+        return self._residual(t, phi)
+
+    def _mismatch(self, T: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+        """Return R_A, the point of B, and M = A⁻¹B as translation and rotation vector; all `(loops, batch, …)`."""
+        both = T[self._ends] @ self._C_c
+        A, B = both[: len(both) // 2], both[len(both) // 2 :]
+        R_A, p_B = A[..., :3, :3], B[..., :3, 3]
+        t = ((p_B - A[..., :3, 3])[..., None, :] @ R_A)[..., 0, :]
+        return R_A, p_B, t, _rotation_log(R_A.swapaxes(-1, -2) @ B[..., :3, :3])
+
+    def _residual(self, t: FloatArray, phi: FloatArray) -> FloatArray:
+        r: FloatArray = np.concatenate([t / self._length, phi], axis=-1).swapaxes(0, 1).reshape(t.shape[1], 6 * len(t))
+        return r
+
+
+class CouplingEquations:
+    """The rows q_b − k q_a − c, in rad and L: linear, so their Jacobian is constant.
+
+    Args:
+        couplings: Relations between coordinates.
+        layout: Of the coordinates.
+        scale: What one scaled unit of each freedom is [rad, mm].
+        length: L [mm].
+
+    Attributes:
+        J: `(couplings, freedoms)`, scaled.
+    """
+
+    def __init__(self, couplings: Sequence[Coupling], layout: Layout, scale: FloatArray, length: float) -> None:
+        n = len(couplings)
+        by_column, by_freedom, unit = np.zeros((n, layout.n_columns)), np.zeros((n, layout.n_freedoms)), np.ones(n)
+        for i, c in enumerate(couplings):
+            a, b = layout.column_of[c.a], layout.column_of[c.b]
+            by_column[i, b], by_column[i, a] = 1.0, -c.ratio
+            by_freedom[i, layout.freedom_of(b)], by_freedom[i, layout.freedom_of(a)] = 1.0, -c.ratio
+            if layout.coordinates[b].unit == "mm":
+                unit[i] = length
+        self._columns, self._offset, self._unit = by_column.T, np.array([c.offset for c in couplings]), unit
+        self.J: FloatArray = by_freedom * scale / unit[:, None]
+
+    def residual(self, Q: FloatArray) -> FloatArray:
+        """Return the residuals `(*batch, couplings)` at `Q` `(*batch, columns)`."""
+        residual: FloatArray = (Q @ self._columns - self._offset) / self._unit
+        return residual
+
+
+def _rotation_log(R: FloatArray) -> FloatArray:
+    """Return rotation vectors `(*batch, 3)` of matrices: by the sine where that is accurate, which is where loops are closed."""
+    parts = R.reshape(*R.shape[:-2], 9) @ _SINE_AND_TRACE
+    cosine = 0.5 * parts[..., 3] - 0.5
+    if cosine.size and cosine.min() < NEAR_PI:
+        return quaternion.log(quaternion.from_matrix(R))
+    axis = parts[..., :3]
+    sine = np.sqrt((axis * axis).sum(axis=-1)) + 1e-300  # never zero, and never seen
+    phi: FloatArray = axis * (np.arctan2(sine, cosine) / sine)[..., None]
+    return phi
+
+
+def _log_jacobian(phi: FloatArray) -> FloatArray:
+    """Return what a row of spin is multiplied with to give the rate of the rotation vector: (I − ½[φ] + c [φ]²)ᵀ."""
+    S = _crossing(phi)
+    J: FloatArray = _EYE + 0.5 * S
+    if np.abs(phi).max(initial=0.0) > _STRAIGHT:
+        J += quaternion.inverse_coefficient(phi)[..., None] * (S @ S)
+    return J
+
+
+def _crossing(d: FloatArray) -> FloatArray:
+    """Return the matrices with a @ crossing(d) = a × d for rows a."""
+    return (d @ _EPSILON).reshape(*d.shape[:-1], 3, 3)
+
+
+_EYE = np.eye(3)
+_EPSILON = np.zeros((3, 9))  # (a × d)ⱼ = εⱼᵢₖ aᵢ dₖ
+for _k, _ij, _sign in ((0, 5, 1), (0, 7, -1), (1, 6, 1), (1, 2, -1), (2, 1, 1), (2, 3, -1)):
+    _EPSILON[_k, _ij] = -_sign
+_SINE_AND_TRACE = np.concatenate([0.5 * _EPSILON.T, np.eye(3).reshape(9, 1)], axis=1)
