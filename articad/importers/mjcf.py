@@ -297,6 +297,9 @@ class _Reader:
         if bodies[0] == bodies[1]:
             self._drop(f"equality.{name}", f"Equality {name!r} ties a body to itself; it is left out.")
             return
+        if any(m.body_mocapid[body] >= 0 for body in bodies):
+            self._drop(f"equality.{name}", f"Equality {name!r} ties a mocap body, which a simulation's user moves by hand; it is left out.")
+            return
         first, second = (self.bodies[body] for body in bodies)
         if m.eq_type[row] == self.mujoco.mjtEq.mjEQ_WELD:
             self.raw.joints.append(RawJoint(name, JointType.FIXED, first, second, IDENTITY, T[1].inverse() @ T[0], closing=True))

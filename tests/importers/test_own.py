@@ -222,3 +222,13 @@ def test_an_edited_file_speaks_for_itself(form: str, tmp_path: Path) -> None:
     assert slide.limits.lower == (-50.0,)
     path.write_text(text.replace("\n", "\n  ").replace("meshes/", "./meshes/"))
     assert not read(path).findings  # layout and file names say nothing
+
+
+def test_what_is_tied_to_a_mocap_body_stays_free(tmp_path: Path) -> None:
+    (tmp_path / "a.xml").write_text("""<mujoco><worldbody><body name="hand" mocap="true" pos="1 0 0"/>
+      <body name="a"><geom size=".1"/><joint name="j" axis="0 0 1"/></body></worldbody>
+      <equality><weld body1="hand" body2="a" name="held"/></equality></mujoco>""")
+    again = read_mjcf(tmp_path / "a.xml")
+
+    assert [driver.name for driver in again.drivers] == ["j"]
+    assert [finding.where for finding in again.findings.of("W_IMPORT_DROPPED")] == ["equality.held"]
