@@ -1,0 +1,1 @@
+"""What earlier runs taught, and what the kernels' own documentation says: stored, found again, handed out as text."""

@@ -1,0 +1,101 @@
+"""A case: what one run was asked, how it was answered, what came of it."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field
+from functools import cached_property
+from typing import Any, Final, Literal
+
+from articad.errors import ReadError
+from articad.findings import Finding
+
+Json = dict[str, Any]
+Kind = Literal["good", "issue"]
+
+SCHEMA: Final = "articad.case/1"
+
+
+@dataclass(frozen=True)
+class PartExample:
+    """One part of a case: what its modeller was told, and the script that was built.
+
+    Attributes:
+        name: Name of the part.
+        specification: The part's entry, as the modeller reads it.
+        kernel: Whose dialect the script is.
+        script: The script.
+    """
+
+    name: str
+    specification: str
+    kernel: str
+    script: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class Case:
+    """A run, distilled.
+
+    Attributes:
+        kind: "good" ended with every deterministic check passed; "issue" with a measured defect.
+        prompt: What was asked for.
+        requirements: What was understood of it.
+        design: The connector plan in words: parts, joints, ranges.
+        parts: Scripts that were built.
+        repairs: What went wrong on the way and was mended.
+        defects: What the checks measured at the end; of an issue there is at least one.
+        scores: Numbers of the review, by name.
+        articad: Version that made the run.
+    """
+
+    kind: Kind
+    prompt: str
+    requirements: str = ""
+    design: str = ""
+    parts: tuple[PartExample, ...] = ()
+    repairs: tuple[str, ...] = ()
+    defects: tuple[str, ...] = ()
+    scores: Mapping[str, float] = field(default_factory=dict, hash=False)
+    articad: str = ""
+
+    @cached_property
+    def id(self) -> str:
+        """The first 16 hexadecimal digits of the sha256 of its content: the same case is stored once."""
+        text = json.dumps(self.to_json(), sort_keys=True, ensure_ascii=False, separators=(",", ":"))
+        return hashlib.sha256(text.encode()).hexdigest()[:16]
+
+    @property
+    def request(self) -> str:
+        """What a similar request is recognised by."""
+        return f"{self.prompt}\n{self.requirements}".strip()
+
+    def to_json(self) -> Json:
+        """Return the form `articad.case/1`."""
+        return {"schema": SCHEMA} | asdict(self)
+
+    @classmethod
+    def from_json(cls, stored: Mapping[str, Any]) -> Case:
+        """Return the case of a stored form.
+
+        Raises:
+            ReadError: If it is of another form.
+        """
+        try:
+            content = dict(stored)
+            _require(content.pop("schema") == SCHEMA, "another schema")
+            _require(content["kind"] in {"good", "issue"}, f"kind {content['kind']!r}")
+            content["parts"] = tuple(PartExample(**part) for part in content["parts"])
+            texts = ("repairs", "defects")
+            return cls(**content | {name: tuple(map(str, content[name])) for name in texts})
+        except (KeyError, TypeError, ValueError) as error:
+            message = f"This is not a case of the form {SCHEMA}: {type(error).__name__}: {error}."
+            finding = Finding(code="E_READ", where="case", message=message, hint="Export cases with `articad memory export`.")
+            raise ReadError(message, path="case", findings=[finding]) from error
+
+
+def _require(holds: bool, otherwise: str) -> None:
+    if not holds:
+        raise ValueError(otherwise)

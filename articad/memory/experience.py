@@ -1,0 +1,298 @@
+"""The experience store: cases of earlier runs, found by likeness. SQLite is the truth; whatever speeds it up can be rebuilt.
+
+Several processes may write at once, and a killed one loses nothing that was committed: each case is one transaction in
+a write-ahead log. The store lives outside runs, in one folder, and is shipped empty.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import sqlite3
+import time
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from articad.errors import ReadError, WriteError
+from articad.findings import Finding
+from articad.memory import faiss_index
+from articad.memory.case import Case, Kind
+from articad.memory.embedding import Embedder, FloatArray, WordLlamaEmbedder
+
+IntArray = NDArray[np.int64]
+
+VERSION: Final = 1
+FILE: Final = "experience.sqlite3"
+_PATIENCE_S: Final = 30.0  # for other writers; a transaction takes milliseconds
+_SCHEMA: Final = """
+create table cases (id text primary key, kind text not null, added real not null, content text not null);
+create table texts (
+  number integer primary key, case_id text not null references cases (id) on delete cascade,
+  kind text not null, topic text not null, item text not null, text text not null
+);
+create table vectors (
+  text integer not null references texts (number) on delete cascade, space text not null, vector blob not null,
+  primary key (text, space)
+);
+create index texts_of_topic on texts (topic, kind);
+"""
+_TEXTS_OF_A_CASE: Final = 50  # of one topic, for FAISS: it must look for more texts than cases are wanted
+# A topic is what a text is looked up as: a whole request, or the specification of a part for one kernel.
+_REQUEST: Final = "request"
+
+
+def default_folder() -> Path:
+    """Return `$ARTICAD_MEMORY`, or `articad/memory` in the user's data folder."""
+    if named := os.environ.get("ARTICAD_MEMORY"):
+        return Path(named)
+    return Path(os.environ.get("XDG_DATA_HOME") or Path.home() / ".local/share") / "articad" / "memory"
+
+
+@dataclass(frozen=True)
+class Hit:
+    """A case that was found.
+
+    Attributes:
+        case: The case.
+        likeness: Cosine of the angle between the texts' vectors, at most 1.
+        item: Name of the part whose specification is alike; empty if a request was looked for.
+    """
+
+    case: Case
+    likeness: float
+    item: str = ""
+
+
+class ExperienceStore:
+    """Cases in a folder; made when the first one is added.
+
+    Args:
+        folder: Where; `default_folder()` by default.
+        embedder: By what likeness is measured. Texts that it has not seen yet are embedded when something is looked for.
+        index: "exact" compares with every text, a millisecond for 2000; "faiss" keeps an index of the extra `faiss`.
+    """
+
+    def __init__(
+        self, folder: str | Path | None = None, embedder: Embedder | None = None, *, index: Literal["exact", "faiss"] = "exact"
+    ) -> None:
+        self.folder = default_folder() if folder is None else Path(folder)
+        self.embedder = embedder or WordLlamaEmbedder()
+        self.index = index
+
+    # ------------------------------------------------------------------ writing
+
+    def add(self, *cases: Case) -> int:
+        """Keep cases, all or none; return how many of them were new.
+
+        Raises:
+            WriteError: If the folder cannot be written, or is another version's.
+        """
+        with self._connection(writing=True) as database:
+            return sum(self._insert(database, case) for case in cases)
+
+    def remove(self, *ids: str) -> int:
+        """Forget cases; return how many there were."""
+        with self._connection(writing=True) as database:
+            return sum(database.execute("delete from cases where id = ?", (name,)).rowcount for name in ids)
+
+    def prune(self, keep: int) -> int:
+        """Forget all but the newest cases of each kind; return how many were forgotten."""
+        ranked = "select id, row_number() over (partition by kind order by added desc, id) as rank from cases"
+        with self._connection(writing=True) as database:
+            return database.execute(f"delete from cases where id in (select id from ({ranked}) where rank > ?)", (keep,)).rowcount  # noqa: S608
+
+    # ------------------------------------------------------------------ reading
+
+    def cases(self, kind: Kind | None = None) -> tuple[Case, ...]:
+        """Return all cases, or those of one kind, the oldest first."""
+        with self._connection() as database:
+            rows = database.execute("select content from cases where ? is null or kind = ? order by added, id", (kind, kind)).fetchall()
+        return tuple(Case.from_json(json.loads(content)) for (content,) in rows)
+
+    def case(self, name: str) -> Case:
+        """Return one case by its id, or by a beginning of it that no other has.
+
+        Raises:
+            ReadError: If there is none, or more than one.
+        """
+        with self._connection() as database:
+            rows = database.execute("select content from cases where substr(id, 1, ?) = ?", (len(name), name)).fetchall()
+        if len(rows) != 1 or not name:
+            message = f"{len(rows) if name else 'No'} cases of {self.folder} begin with {name!r}."
+            raise _unreadable(self.folder, message, "List them with `articad memory list`.")
+        return Case.from_json(json.loads(rows[0][0]))
+
+    def like_request(self, text: str, kind: Kind, limit: int = 3, least: float = -1.0) -> tuple[Hit, ...]:
+        """Return the cases of one kind whose request is most like a text, the nearest first.
+
+        Args:
+            text: A request.
+            kind: "good" or "issue".
+            limit: How many at most.
+            least: Likeness below which nothing is returned.
+        """
+        return self._search(text, _REQUEST, kind, limit, least)
+
+    def like_part(self, specification: str, kernel: str, limit: int = 2, least: float = -1.0) -> tuple[Hit, ...]:
+        """Return good cases with a part whose specification is most like this one, in the kernel's dialect."""
+        return self._search(specification, _topic_of_parts(kernel), "good", limit, least)
+
+    def __len__(self) -> int:
+        """Number of cases."""
+        with self._connection() as database:
+            return int(database.execute("select count(*) from cases").fetchone()[0])
+
+    # ------------------------------------------------------------------ in and out
+
+    def export(self) -> Iterator[str]:
+        """Yield each case as a line of JSON."""
+        for case in self.cases():
+            yield json.dumps(case.to_json(), ensure_ascii=False, sort_keys=True)
+
+    def import_lines(self, lines: Iterable[str]) -> int:
+        """Add cases from lines of JSON, all or none; return how many were new.
+
+        Raises:
+            ReadError: If a line is not a case.
+        """
+        cases = []
+        for number, line in enumerate(lines, 1):
+            try:
+                cases.append(Case.from_json(json.loads(line)))
+            except (ValueError, ReadError) as error:
+                raise _unreadable(Path(f"line {number}"), f"Line {number} is not a case: {error}", "Nothing was added.") from error
+        return self.add(*cases)
+
+    # ------------------------------------------------------------------ within
+
+    @staticmethod
+    def _insert(database: sqlite3.Connection, case: Case) -> int:
+        content = json.dumps(case.to_json(), ensure_ascii=False, sort_keys=True)
+        row = (case.id, case.kind, time.time(), content)
+        if not database.execute("insert or ignore into cases values (?, ?, ?, ?)", row).rowcount:
+            return 0
+        texts = [(_REQUEST, "", case.request)]
+        texts += [(_topic_of_parts(part.kernel), part.name, part.specification) for part in case.parts]
+        insert = "insert into texts (case_id, kind, topic, item, text) values (?, ?, ?, ?, ?)"
+        database.executemany(insert, [(case.id, case.kind, *text) for text in texts])
+        return 1
+
+    def _search(self, text: str, topic: str, kind: Kind, limit: int, least: float) -> tuple[Hit, ...]:
+        found: dict[str, tuple[float, str, str]] = {}
+        with self._connection() as database:
+            for number, likeness in self._nearest(database, text, topic, kind, limit):
+                if len(found) == limit or likeness < least:
+                    break
+                query = "select cases.id, item, content from texts join cases on cases.id = case_id where number = ?"
+                name, item, content = database.execute(query, (number,)).fetchone()
+                found.setdefault(name, (likeness, item, content))  # of each case the nearest text
+        return tuple(Hit(Case.from_json(json.loads(content)), value, item) for value, item, content in found.values())
+
+    def _nearest(self, database: sqlite3.Connection, text: str, topic: str, kind: Kind, limit: int) -> Iterator[tuple[int, float]]:
+        """Yield texts' numbers and their likeness to a text, the nearest first."""
+        query = self.embedder.embed([text])[0]
+        if self.index == "exact":
+            numbers, vectors = self._vectors(database, topic, kind)
+            likeness = vectors @ query if len(numbers) else np.zeros(0, np.float32)
+        else:
+            count, stamp = database.execute(
+                "select count(*), count(*) || ' ' || total(number) || ' ' || total(number * number) from texts where topic = ? and kind = ?",
+                (topic, kind),
+            ).fetchone()
+            if not count:
+                return
+            label = f"{self.embedder.name} {topic} {kind}"
+            index = faiss_index.load(self.folder, label, stamp)
+            if index is None:
+                index = faiss_index.build(self.folder, label, stamp, *self._vectors(database, topic, kind))
+            (likeness,), (numbers,) = index.search(query[None], min(count, limit * _TEXTS_OF_A_CASE))
+        for place in np.lexsort((numbers, -likeness)):
+            yield int(numbers[place]), float(likeness[place])
+
+    def _vectors(self, database: sqlite3.Connection, topic: str, kind: Kind) -> tuple[IntArray, FloatArray]:
+        """Return the numbers and vectors of all texts of a topic; those that this space lacks are embedded and kept."""
+        joined = "texts left join vectors on vectors.text = number and space = ? where topic = ? and kind = ?"
+        query = f"select number, texts.text, vector from {joined} order by number"  # noqa: S608 - our own words
+        rows = database.execute(query, (self.embedder.name, topic, kind)).fetchall()
+        if not rows:
+            return np.zeros(0, np.int64), np.zeros((0, 1), np.float32)
+        missing = [number for number, _, vector in rows if vector is None]
+        fresh = dict(zip(missing, self.embedder.embed([text for _, text, vector in rows if vector is None]), strict=True))
+        if fresh:
+            self._keep([(number, self.embedder.name, vector.tobytes()) for number, vector in fresh.items()])
+        vectors = [fresh[number] if vector is None else np.frombuffer(vector, np.float32) for number, _, vector in rows]
+        return np.array([number for number, _, _ in rows]), np.stack(vectors)
+
+    def _keep(self, rows: Sequence[tuple[int, str, bytes]]) -> None:
+        """Keep vectors, so that they need not be made again; a store that can only be read does without."""
+        with contextlib.suppress(WriteError), self._connection(writing=True) as database:
+            database.executemany("insert or ignore into vectors values (?, ?, ?)", rows)
+
+    @contextlib.contextmanager
+    def _connection(self, *, writing: bool = False) -> Iterator[sqlite3.Connection]:
+        """Open the database for one transaction. A store that does not exist reads as an empty one."""
+        path = self.folder / FILE
+        try:
+            if writing:
+                self.folder.mkdir(parents=True, exist_ok=True)
+            exists = path.is_file()
+            address = path if writing or exists else ":memory:"
+            database = sqlite3.connect(address, timeout=_PATIENCE_S, isolation_level=None)
+        except (OSError, sqlite3.Error) as error:
+            raise _refused(path, error, writing=writing) from error
+        try:
+            with contextlib.closing(database):
+                _prepare(database, path, writing=writing or not exists)
+                database.execute("begin immediate" if writing else "begin")
+                yield database
+                database.execute("commit")
+        except sqlite3.Error as error:
+            raise _refused(path, error, writing=writing) from error
+
+
+def _prepare(database: sqlite3.Connection, path: Path, *, writing: bool) -> None:
+    """Set a connection up; make the tables where there are none yet.
+
+    Raises:
+        ReadError: If the file is a later version's.
+    """
+    database.execute("pragma foreign_keys = on")
+    version = int(database.execute("pragma user_version").fetchone()[0])
+    if version > VERSION:
+        hint = "Use that version, or another folder with --memory."
+        raise _unreadable(
+            path, f"{path} was written by a later version of articad (store version {version}, this one knows {VERSION}).", hint
+        )
+    if not writing or version == VERSION:
+        return
+    if str(database.execute("pragma database_list").fetchone()[2]):
+        database.execute("pragma journal_mode = wal")
+    database.execute("begin immediate")
+    if int(database.execute("pragma user_version").fetchone()[0]) == 0:  # else another process was first
+        for statement in _SCHEMA.split(";"):
+            database.execute(statement)
+        database.execute(f"pragma user_version = {VERSION}")
+    database.execute("commit")
+
+
+def _topic_of_parts(kernel: str) -> str:
+    return f"part {kernel}"
+
+
+def _refused(path: Path, error: Exception, *, writing: bool) -> ReadError | WriteError:
+    doing = "write" if writing else "read"
+    message = f"Cannot {doing} the experience store {path}: {error}."
+    hint = "Name another folder with --memory; if the file is damaged, put it aside and import an export of it."
+    finding = Finding(code="E_WRITE" if writing else "E_READ", where=str(path), message=message, hint=hint)
+    kind = WriteError if writing else ReadError
+    return kind(f"{message} {hint}", path=str(path), findings=[finding])
+
+
+def _unreadable(path: Path, message: str, hint: str) -> ReadError:
+    return ReadError(f"{message} {hint}", path=str(path), findings=[Finding(code="E_READ", where=str(path), message=message, hint=hint)])
