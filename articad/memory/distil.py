@@ -1,0 +1,91 @@
+"""Distilling: from a plan, its scripts and what the checks measured to a case."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+
+from articad.connectors import SE3
+from articad.findings import Findings
+from articad.kinematics.joints import Joint
+from articad.memory.case import Case, PartExample
+from articad.plan.brief import brief
+from articad.plan.resolve import ResolvedPlan
+
+
+def case_of(
+    resolved: ResolvedPlan,
+    scripts: Mapping[str, bytes],
+    *,
+    kernel: str,
+    prompt: str,
+    requirements: str = "",
+    findings: Findings | None = None,
+    repairs: Sequence[str] = (),
+    scores: Mapping[str, float] | None = None,
+    version: str = "",
+) -> Case:
+    """Return the case of a finished assembly: an issue if an error was measured, else a good one.
+
+    Args:
+        resolved: The plan with its numbers.
+        scripts: Source of each part that has one.
+        kernel: Whose dialect they are.
+        prompt: What was asked for.
+        requirements: What was understood of it.
+        findings: What the checks found at the end.
+        repairs: What went wrong on the way and was mended.
+        scores: Numbers of the review.
+        version: Of articad.
+    """
+    defects = tuple(str(finding) for finding in (findings or Findings()).errors)
+    parts = [PartExample(name, specification(resolved, name), kernel, scripts[name].decode(errors="replace")) for name in sorted(scripts)]
+    return Case(
+        kind="issue" if defects else "good",
+        prompt=prompt,
+        requirements=requirements,
+        design=design_in_words(resolved),
+        parts=tuple(parts),
+        repairs=tuple(repairs),
+        defects=defects,
+        scores=dict(scores or {}),
+        articad=version,
+    )
+
+
+def specification(resolved: ResolvedPlan, part: str) -> str:
+    """Return the entry of a part as its modeller is given it, in few lines."""
+    return json.dumps(_rounded(brief(resolved, part)), ensure_ascii=False)
+
+
+def design_in_words(resolved: ResolvedPlan) -> str:
+    """Return a plan's parts, joints and couplings, a line each: what a designer may learn from."""
+    lines = [f"Ground: {resolved.ground}. Parameters: {', '.join(f'{name} = {value:.6g}' for name, value in resolved.parameters.items())}."]
+    for name, part in resolved.parts.items():
+        source = f", {part.derivation.op} of {part.derivation.source}" if part.derivation else ""
+        lines.append(f"Part {name} ({part.material.name}{source}): {part.description or part.role}")
+    lines += [_joint_in_words(joint) for joint in resolved.joints]
+    lines += [f"Coupling {coupling.name}: {coupling.b} = {coupling.ratio:.6g} {coupling.a}" for coupling in resolved.couplings]
+    return "\n".join(lines)
+
+
+def _joint_in_words(joint: Joint) -> str:
+    at = _point(joint.T_parent_connector)
+    ends = f"{joint.parent}.{joint.parent_connector} {at} to {joint.child}.{joint.child_connector} {_point(joint.T_child_connector)}"
+    ranges = [
+        f"{name} from {low:.4g} to {high:.4g} {unit}"
+        for name, low, high, unit in zip(joint.column_names, joint.limits.lower, joint.limits.upper, joint.type.units, strict=False)
+    ]
+    return f"Joint {joint.name} ({joint.type.value}): {ends}{'; ' if ranges else ''}{', '.join(ranges)}"
+
+
+def _point(frame: SE3) -> str:
+    return f"({', '.join(f'{value:.4g}' for value in frame.translation)})"
+
+
+def _rounded(value: object) -> object:
+    if isinstance(value, float):
+        return float(f"{value:.6g}")
+    if isinstance(value, dict):
+        return {key: _rounded(item) for key, item in value.items()}
+    return [_rounded(item) for item in value] if isinstance(value, list) else value
