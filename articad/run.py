@@ -47,6 +47,7 @@ _REQUEST, _REQUIREMENTS, _PLAN, _ASSEMBLY, _CHECKS, _TRACE = (
     "checks.json",
     "trace.jsonl",
 )
+_ALTERNATIVES, _VERDICT, _ROUNDS = "alternatives.json", "verdict.json", "rounds"
 _IMAGES, _PLANS, _PARTS, _REMOVED, _ATTEMPTS, _REPLIES, _SUPERSEDED, _EXPORT = (
     "images",
     "plans",
@@ -248,6 +249,14 @@ class Run:
         """Keep what was understood of the request."""
         self._write_json(_REQUIREMENTS, requirements)
 
+    def alternatives(self) -> Json | None:
+        """Return the report `articad.alternatives/1`, or None."""
+        return self._read_json(_ALTERNATIVES)
+
+    def save_alternatives(self, report: Json) -> None:
+        """Keep what an open request could have become, and what was chosen."""
+        self._write_json(_ALTERNATIVES, report)
+
     def reply(self, step: str) -> Json | None:
         """Return the recorded request and reply of a step, or None."""
         return self._read_json(_reply_file(step))
@@ -368,6 +377,22 @@ class Run:
     def save_checks(self, report: Json) -> None:
         """Keep the report `articad.checks/1`."""
         self._write_json(_CHECKS, report)
+
+    def verdict(self) -> Json | None:
+        """Return the report `articad.verdict/1` of the last round, or None."""
+        return self._read_json(_VERDICT)
+
+    def save_verdict(self, report: Json) -> None:
+        """Keep the report `articad.verdict/1`."""
+        self._write_json(_VERDICT, report)
+
+    def round(self, number: int) -> Json | None:
+        """Return what a round found and what became of each part, or None."""
+        return self._read_json(f"{_ROUNDS}/{number}.json")
+
+    def save_round(self, number: int, report: Json) -> None:
+        """Keep what a round found and what became of each part."""
+        self._write_json(f"{_ROUNDS}/{number}.json", report)
 
     def certificate(self) -> Json | None:
         """Return the report `articad.certificate/1`, or None."""

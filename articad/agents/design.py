@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any, Final
 
-from articad.agents.llm import LLM, Message, Request, assistant, system, user
+from articad.agents.llm import LLM, Image, Message, Request, assistant, system, user
+from articad.agents.memory import Memory, NoMemory, listed_cases
 from articad.agents.prompts import prompt, prompt_file
 from articad.agents.replies import object_text
 from articad.agents.requirements import Requirements, pictures_of
@@ -56,15 +57,26 @@ class Designer:
         llm: Who designs.
         tries: Answers until a plan must validate.
         tell: Told of each answer.
+        memory: Knows earlier runs.
     """
 
-    def __init__(self, request: RunRequest, requirements: Requirements, llm: LLM, *, tries: int = TRIES, tell: Tell | None = None) -> None:
+    def __init__(
+        self,
+        request: RunRequest,
+        requirements: Requirements,
+        llm: LLM,
+        *,
+        tries: int = TRIES,
+        tell: Tell | None = None,
+        memory: Memory | None = None,
+    ) -> None:
         self._llm = llm
         self._tries = tries
         self._tell = tell or (lambda _plan, _findings: None)
         self._answered = 0
         self._said = ""
-        self._opening = (system(_instructions()), user(_task(request, requirements), *pictures_of(request)))
+        task = _task(request, requirements) + _recalled(memory or NoMemory(), request, requirements)
+        self._opening = (system(_instructions()), user(task, *pictures_of(request)))
 
     def first(self) -> AssemblyPlan:
         """Return a plan that has no errors.
@@ -75,17 +87,34 @@ class Designer:
         """
         return self._until_valid(self._opening)
 
-    def again(self, plan: AssemblyPlan, findings: Iterable[Finding]) -> AssemblyPlan:
+    def again(
+        self, plan: AssemblyPlan, findings: Iterable[Finding], *, pictures: Sequence[Image] = (), stubborn: Iterable[Finding] = ()
+    ) -> AssemblyPlan:
         """Return another plan, after the parts of this one were built and findings came up.
+
+        Args:
+            plan: The one that was built.
+            findings: What came up.
+            pictures: Of the places of the findings.
+            stubborn: Those of them that came back although the plan was changed for them.
 
         Raises:
             PlanError, OutputError: As `first`.
         """
-        return self._until_valid(
-            (*self._opening, assistant(self._said or plan.dumps()), user(prompt("redesign", findings=listed(findings))))
+        came_back = listed(stubborn)
+        note = (
+            f" These came back although you changed the plan for them; solve them in another way this time:\n\n{came_back}\n\n"
+            if came_back
+            else ""
         )
+        words = prompt("redesign", findings=listed(findings), note=note)
+        if pictures:
+            words += "\n\nPictures of the places follow; what parts have in common is red."
+        return self._until_valid((*self._opening, assistant(self._said or plan.dumps()), user(words, *pictures)))
 
     def _until_valid(self, messages: tuple[Message, ...]) -> AssemblyPlan:
+        before: object = None
+        alike = 0
         for number in range(1, self._tries + 1):
             self._answered += 1
             step = f"design/{self._answered}"
@@ -95,9 +124,16 @@ class Designer:
             self._tell(plan, findings)
             if plan is not None and findings.ok:
                 return plan
-            if number == self._tries:
-                raise problem or PlanError(f"No valid plan in {self._tries} answers.\n{findings}", findings=findings)
-            complaint = prompt("form_repair", problem=problem.message) if problem else prompt("design_repair", findings=listed(findings))
+            now = None if problem else tuple((finding.code, finding.where, finding.message) for finding in findings.errors)
+            alike = alike + 1 if now is not None and now == before else 0
+            before = now
+            if number == self._tries or alike > 1:
+                stalled = "" if number == self._tries else " The same findings came back every time."
+                raise problem or PlanError(f"No valid plan in {number} answers.{stalled}\n{findings}", findings=findings)
+            if problem:
+                complaint = prompt("form_repair", problem=problem.message)
+            else:
+                complaint = prompt("design_anew" if alike else "design_repair", findings=listed(findings))
             messages = (*self._opening, assistant(reply.text), user(complaint))
         raise AssertionError("the last try either returns or raises")
 
@@ -130,3 +166,11 @@ def _task(request: RunRequest, requirements: Requirements) -> str:
     analysis = json.dumps({name: value for name, value in requirements.to_json().items() if name != "schema"}, indent=1, ensure_ascii=False)
     words = request.prompt.strip() or "(no words; see the pictures)"
     return f"The customer's request:\n\n{words}\n\nIts analysis:\n\n```json\n{analysis}\n```"
+
+
+def _recalled(memory: Memory, request: RunRequest, requirements: Requirements) -> str:
+    """Return what earlier runs teach; of none, nothing at all."""
+    recalled = memory.for_design(request.prompt, requirements)
+    return listed_cases("Of earlier products that turned out well:", recalled.heuristics) + listed_cases(
+        "Defects of earlier products, to be avoided:", recalled.constraints
+    )

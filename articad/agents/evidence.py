@@ -1,34 +1,98 @@
 """Evidence: what can be measured of an assembly before anybody is asked how it looks.
 
-The rest pose first; when it is right, every joint on its own through its range, the others at rest. Every verdict says how
-strong it is.
+The rest pose first; when it is right, the declared fits, and every joint on its own through its range, the others at rest.
+Every verdict says how strong it is, and every finding has its root cause where geometry tells it.
 """
 
 from __future__ import annotations
 
-from dataclasses import replace
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from typing import Final
 
-from articad.assembly import Assembly
+from articad.agents.numbers import listed_numbers, short
+from articad.assembly import Assembly, FloatArray
 from articad.findings import Finding, Findings
+from articad.interference.diagnosis import diagnose
+from articad.interference.fits import FitReport, check_fits
+from articad.interference.motion import freedoms
 from articad.interference.report import Checks, PairCheck, Strength
+from articad.interference.scene import Scene
+from articad.kinematics.joints import Joint, JointType
 from articad.render.pictures import motion_frames
 
 POSES: Final = 9  # of each joint's range: enough for a flap that digs in, quick enough for every round
 
 
-def examine(assembly: Assembly) -> Checks:
-    """Check an assembly at rest and, if that holds, at samples of each joint's range.
+@dataclass(frozen=True)
+class Evidence:
+    """What was measured.
+
+    Attributes:
+        checks: The rest pose and, if that holds, samples of each joint's range; the findings of fits are among theirs.
+        fits: Declared gaps against measured ones; None when the rest pose does not hold.
+    """
+
+    checks: Checks
+    fits: FitReport | None = None
+    sizes: Mapping[str, tuple[FloatArray, FloatArray]] = field(default_factory=dict)
+
+    @property
+    def ok(self) -> bool:
+        """True when nothing is wrong."""
+        return self.checks.ok
+
+    @property
+    def findings(self) -> Findings:
+        """All of them, with their causes."""
+        return self.checks.findings
+
+
+def examine(assembly: Assembly) -> Evidence:
+    """Check an assembly at rest and, if that holds, its fits and samples of each joint's range.
 
     Returns:
         The checks of the rest pose, and with them a sampled verdict for every pair that meets in motion.
     """
+    meshes = {name: mesh for name, part in assembly.parts.items() if (mesh := part.mesh) is not None}
+    deflection = {name: part.deflection for name, part in assembly.parts.items()}
+    scene = Scene.of(meshes, assembly.joints, waivers=assembly.waivers, deflection=deflection, fits=assembly.fits)
     checks = assembly.check()
-    if not checks.ok:
-        return checks  # what overlaps at rest overlaps in motion too: one thing at a time
-    for joint in dict.fromkeys(driver.joint for driver in assembly.drivers):
-        checks = _with_motion(checks, assembly, joint)
-    return checks
+    fits = None
+    if checks.ok:  # what overlaps at rest overlaps in motion too: one thing at a time
+        fits = check_fits(scene)
+        for joint in dict.fromkeys(driver.joint for driver in assembly.drivers):
+            checks = _with_motion(checks, assembly, joint)
+        checks = replace(checks, findings=checks.findings + fits.findings)
+    checks = replace(checks, findings=diagnose(scene, assembly.mechanism.tree, checks.findings))
+    return Evidence(checks, fits, _sizes(assembly))
+
+
+def told(assembly: Assembly, evidence: Evidence) -> str:
+    """Return what was measured as a judge reads it: numbers rounded, nothing of the machine."""
+    mechanism = assembly.mechanism
+    lines = [f"Exact checks: {'passed' if evidence.ok else 'NOT passed'}."]
+    lines += [f"- {finding}" for finding in evidence.findings] or ["- no findings"]
+    kinds = sorted({str(pair.strength).split("(")[0] for pair in evidence.checks.pairs})
+    lines += [f"- {len(evidence.checks.pairs)} pairs of parts near each other were compared ({', '.join(kinds) or 'none'})."]
+    lines += ["", f"Mobility: {mechanism.mobility} freedoms. What drives, and its range:"]
+    lines += [f"- {driver.name}: {_bound(driver.lower, driver.unit)} to {_bound(driver.upper, driver.unit)}" for driver in assembly.drivers]
+    lines += ["", "Bounding boxes at rest, in the assembly's frame (mm):"]
+    lines += [f"- {name}: from {listed_numbers(low)} to {listed_numbers(high)}" for name, (low, high) in evidence.sizes.items()]
+    if evidence.fits is not None and evidence.fits.rows:
+        lines += ["", "Declared fits:"]
+        for row in evidence.fits.rows:
+            gaps = (
+                "not measured"
+                if row.rest is None or row.least is None
+                else f"gap {short(row.rest)} mm at rest, {short(row.least)} at least"
+            )
+            declared = (
+                f"declared {short(row.declared.gap_min or 0)} to {short(row.declared.gap_max or 0)}, " if row.declared.gap_max else ""
+            )
+            lines.append(f"- {row.joint}: {declared}{gaps}: {row.verdict}")
+    return "\n".join(lines)
 
 
 def _with_motion(checks: Checks, assembly: Assembly, joint: str) -> Checks:
@@ -38,9 +102,7 @@ def _with_motion(checks: Checks, assembly: Assembly, joint: str) -> Checks:
         for pair in assembly.check(q).pairs:
             known = worst.get(pair.parts)
             if known is None or pair.depth > known[0].depth:
-                names = (driver.name for driver in assembly.drivers)
-                pose = {name: float(value) for name, value in zip(names, q, strict=True)}
-                worst[pair.parts] = replace(pair, over=(joint,), strength=_sampled(pair, len(captions)), pose=pose), caption
+                worst[pair.parts] = replace(pair, over=(joint,), strength=_sampled(pair, len(captions)), pose=pose_of(assembly, q)), caption
     collisions = [_collision(pair, joint, caption) for pair, caption in worst.values() if pair.verdict == "overlap" and not _waived(pair)]
     return replace(checks, findings=Findings([*checks.findings, *collisions]), pairs=(*checks.pairs, *(pair for pair, _ in worst.values())))
 
@@ -59,8 +121,8 @@ def _collision(pair: PairCheck, joint: str, caption: str) -> Finding:
         code="E_MOTION_COLLISION",
         where=f"joints.{joint}",
         parts=pair.parts,
-        message=f"{a} and {b} collide in motion: at {caption} they overlap by {_short(pair.volume)} mm³, {_short(pair.depth)} mm deep "
-        f"(allowed {_short(pair.allowed)} mm).",
+        message=f"{a} and {b} collide in motion: at {caption} they overlap by {short(pair.volume)} mm³, {short(pair.depth)} mm deep "
+        f"(allowed {short(pair.allowed)} mm).",
         hint="Make room for the motion (a recess, more clearance, an axis farther out), or narrow the limits.",
         value=pair.depth,
         limit=pair.allowed,
@@ -69,6 +131,38 @@ def _collision(pair: PairCheck, joint: str, caption: str) -> Finding:
     )
 
 
-def _short(number: float) -> str:
-    """Round to 3 significant digits: a measured number enters a prompt."""
-    return f"{float(f'{number:.3g}'):.10g}"
+def pose_of(assembly: Assembly, q: FloatArray) -> dict[str, float]:
+    """Return where every freedom of every joint is at a configuration `(nq,)`, those that follow included [rad, mm]."""
+    columns = assembly.mechanism.configuration(q).columns.tolist()
+    pose: dict[str, float] = {}
+    for joint in assembly.joints:
+        count = len(joint.column_names)
+        pose |= _freedom_values(joint, columns[:count])
+        columns = columns[count:]
+    return pose
+
+
+def _freedom_values(joint: Joint, values: list[float]) -> dict[str, float]:
+    """Return a joint's coordinates under the names of its freedoms; a ball's quaternion as a swing after a twist."""
+    names = [freedom.name for freedom in freedoms(joint)]
+    if joint.type is not JointType.BALL:
+        return dict(zip(names, map(float, values), strict=True))
+    x, y, z, w = values if values[3] >= 0 else [-value for value in values]
+    twist = 2 * math.atan2(z, w)
+    cz, sz = math.cos(twist / 2), math.sin(twist / 2)
+    x, y = x * cz - y * sz, y * cz + x * sz
+    half = math.hypot(x, y)
+    share = 2.0 if half < 1e-9 else 2 * math.asin(min(half, 1.0)) / half
+    return dict(zip(names, (x * share, y * share, twist), strict=True))
+
+
+def _sizes(assembly: Assembly) -> dict[str, tuple[FloatArray, FloatArray]]:
+    rest = assembly.at()
+    placed = {name: rest[name].apply(mesh.vertices) for name, part in assembly.parts.items() if (mesh := part.mesh) is not None}
+    return {name: (points.min(axis=0), points.max(axis=0)) for name, points in placed.items()}
+
+
+def _bound(value: float, unit: str) -> str:
+    if math.isinf(value):
+        return "endless"
+    return f"{short(math.degrees(value))} degrees" if unit == "rad" else f"{short(value)} {unit}"

@@ -1,16 +1,18 @@
-"""Generation: one part, from its entry in the plan to a solid that keeps its contract.
+"""Generation: one part, from its entry in the plan to a solid that keeps its contract and looks as it was specified.
 
-A request depends on the part's own entry, its own connectors and the kernel: never on another part.
+A request depends on the part's own entry, its own connectors, the kernel and what was retrieved: never on another part.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
-from typing import Any, Final
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, Final, Literal
 
+from articad.agents.inspection import look
 from articad.agents.llm import LLM, Image, Message, Request, assistant, system, user
-from articad.agents.pictures import partial_picture
+from articad.agents.memory import Documentation, Memory, NoDocumentation, NoMemory, listed_cases
+from articad.agents.pictures import part_picture, partial_picture
 from articad.agents.prompts import prompt, prompt_file
 from articad.agents.replies import parse_script
 from articad.assembly import DEFLECTION_MM
@@ -33,6 +35,9 @@ _EXAMPLES: Final = {"build123d": "lid_left.txt", "freecad": "door_left_freecad.t
 Build = Callable[[str, bytes], RealisedPart]
 """Builds the script of a part, or raises `KernelError`."""
 
+Complaint = Literal["part_repair", "part_again", "look_repair"]
+"""The prompt by which an answer is given back: its script failed, the assembly did, or an inspector complains."""
+
 
 @dataclass(frozen=True)
 class Attempt:
@@ -43,17 +48,41 @@ class Attempt:
         failure: What was wrong with it, as its author is told.
         picture: What its script had made.
         error: The same as an exception.
+        complaint: How it is given back.
     """
 
     said: str
     failure: str
     picture: Image | None = None
     error: ArticadError | None = None
+    complaint: Complaint = "part_repair"
 
     @classmethod
     def of(cls, said: str, error: KernelError | OutputError, picture: Image | None = None) -> Attempt:
         """Return the attempt that ended with an error."""
         return cls(said, failure_text(error), picture, error)
+
+    @property
+    def signature(self) -> object:
+        """What two failures of one cause have in common: where they are, and of a crash what it said."""
+        if self.error is None or isinstance(self.error, OutputError):
+            return self.complaint, None if self.error is None else "unreadable"
+        return tuple((f.code, f.where, f.message if f.code == "E_SCRIPT_ERROR" else "") for f in self.error.findings.errors)
+
+
+@dataclass(frozen=True)
+class Modelled:
+    """A part that keeps its contract.
+
+    Attributes:
+        realised: The part.
+        answers: How many were given in all: the address of the next one follows.
+        opinions: What an inspector still has against it; no exact check agrees or disagrees.
+    """
+
+    realised: RealisedPart
+    answers: int
+    opinions: Findings = field(default_factory=Findings)
 
 
 class Modeller:
@@ -62,23 +91,40 @@ class Modeller:
     Args:
         resolved: The plan with its numbers; only the part's own entry is read.
         name: The part.
-        llm: Who writes.
+        llm: Who writes, and looks.
         run: Keeps the attempts that failed, and knows those of a run that was interrupted.
         build: Builds a script and holds it to its contract.
         kernel: The kernel: its name is the dialect of the script.
         repairs: How often a failed script may be mended.
+        looks: Whether pictures of the built part are compared with the specification.
+        memory: Knows worked examples.
+        documentation: Knows the kernel's API.
     """
 
     def __init__(
-        self, resolved: ResolvedPlan, name: str, *, llm: LLM, run: Run, build: Build, kernel: PartKernel, repairs: int = REPAIRS
+        self,
+        resolved: ResolvedPlan,
+        name: str,
+        *,
+        llm: LLM,
+        run: Run,
+        build: Build,
+        kernel: PartKernel,
+        repairs: int = REPAIRS,
+        looks: bool = False,
+        memory: Memory | None = None,
+        documentation: Documentation | None = None,
     ) -> None:
         self._resolved, self._name, self._llm, self._run, self._build, self._kernel = resolved, name, llm, run, build, kernel
-        self._repairs = repairs
-        pictures = tuple(Image(image.content, image.media_type) for image in run.request.images if image.part == name)
-        self._opening = opening(resolved, name, kernel.name, pictures)
+        self._repairs, self._looks = repairs, looks
+        self._memory, self._documentation = memory or NoMemory(), documentation or NoDocumentation()
+        self._pictures = tuple(Image(image.content, image.media_type) for image in run.request.images if image.part == name)
+        self._specification = specification(resolved, name)
 
-    def make(self, *, answered: int = 0, previous: Attempt | None = None) -> tuple[RealisedPart, int]:
-        """Return the part as built, and the number of answers it took.
+    def make(self, *, answered: int = 0, previous: Attempt | None = None) -> Modelled:
+        """Return the part as built.
+
+        The same failure twice in a row asks for another approach; the third time ends it.
 
         Args:
             answered: Answers that were given before: the address of the next one follows.
@@ -87,16 +133,52 @@ class Modeller:
         Raises:
             BuildError, ContractError, OutputError: As the last answer failed, when all repairs are used up.
         """
+        first, alike, best = self._opening(), 0, None
         for number in range(answered + 1, answered + self._repairs + 2):
             step = f"part/{self._name}/{number}"
-            reply = self._llm.complete(Request(ROLE, step, messages_after(self._opening, previous)))
+            reply = self._llm.complete(Request(ROLE, step, messages_after(first, previous, anew=alike == 1)))
             outcome = self._tried(reply.text, step, number)
             if isinstance(outcome, RealisedPart):
-                return outcome, number
+                if best is not None and best.realised.script == outcome.script:  # its author stands by it
+                    return Modelled(outcome, number, best.opinions)
+                best = Modelled(outcome, number, self._opinions(outcome, number))
+                of_script = Findings(finding for finding in best.opinions if finding.route == "code")
+                if not of_script:
+                    return best
+                outcome = Attempt(reply.text, _told(of_script), self._picture(outcome), complaint="look_repair")
+            alike = alike + 1 if previous is not None and outcome.signature == previous.signature else 0
             previous = outcome
+            if alike > 1:
+                break
+        if best is not None:
+            return Modelled(best.realised, number, best.opinions)
         assert previous is not None
         assert previous.error is not None
         raise previous.error
+
+    def _opening(self) -> tuple[Message, ...]:
+        kernel = self._kernel.name
+        examples = self._memory.for_part(self._specification, kernel)
+        snippets = self._documentation.for_part(self._name, self._specification, kernel, self._llm)
+        return opening(self._resolved, self._name, kernel, self._pictures, examples=examples, snippets=snippets)
+
+    def _opinions(self, realised: RealisedPart, number: int) -> Findings:
+        """Return what an inspector has against a part; one whose answers have no form has nothing to say."""
+        if not self._looks:
+            return Findings()
+        step = f"look/{self._name}/{number}"
+        try:
+            opinions = look(self._specification, self._name, realised, self._llm, step=step, pictures=self._pictures)
+        except OutputError as error:
+            for finding in error.findings:
+                self._run.trace_finding(finding)
+            return Findings()
+        for finding in opinions:
+            self._run.trace_finding(finding)
+        return opinions
+
+    def _picture(self, realised: RealisedPart) -> Image:
+        return part_picture(realised.part, realised.digests["build"])
 
     def _tried(self, said: str, step: str, number: int) -> RealisedPart | Attempt:
         """Return the part that an answer made, or why it made none."""
@@ -123,18 +205,28 @@ class Modeller:
             return Attempt.of(said, error, picture)
 
 
-def opening(resolved: ResolvedPlan, name: str, kernel: str, pictures: tuple[Image, ...] = ()) -> tuple[Message, ...]:
-    """Return what a part's engineer is told first: the contract of a script, and the part's own entry."""
+def opening(
+    resolved: ResolvedPlan,
+    name: str,
+    kernel: str,
+    pictures: tuple[Image, ...] = (),
+    *,
+    examples: Sequence[str] = (),
+    snippets: Sequence[str] = (),
+) -> tuple[Message, ...]:
+    """Return what a part's engineer is told first: the contract of a script, what was retrieved, and the part's own entry."""
     instructions = prompt(f"part_{kernel}", example=prompt_file(_EXAMPLES[kernel]))
+    instructions += listed_cases("# Parts of other products that were built well", examples)
+    instructions += listed_cases("# From the documentation", snippets)
     shown = f"\n\n{len(pictures)} picture(s) of the part follow." if pictures else ""
     return (system(instructions), user(f"The specification:\n\n{specification(resolved, name)}{shown}", *pictures))
 
 
-def messages_after(first: tuple[Message, ...], previous: Attempt | None) -> tuple[Message, ...]:
-    """Return the conversation that asks for a script, or for a better one than the previous."""
+def messages_after(first: tuple[Message, ...], previous: Attempt | None, *, anew: bool = False) -> tuple[Message, ...]:
+    """Return the conversation that asks for a script, for a better one than the previous, or for one by another approach."""
     if previous is None:
         return first
-    complaint = prompt("part_repair", failure=previous.failure)
+    complaint = prompt("part_anew" if anew else previous.complaint, failure=previous.failure)
     if previous.picture is None:
         return (*first, assistant(previous.said), user(complaint))
     return (*first, assistant(previous.said), user(f"{complaint}\n\nA picture of what the script had made:", previous.picture))
@@ -162,6 +254,10 @@ def failure_text(error: KernelError | OutputError) -> str:
     if isinstance(error, BuildError) and error.traceback:
         lines += ["", error.traceback.strip()]
     return "\n".join(lines)[:_SHOWN_CHARACTERS]
+
+
+def _told(findings: Findings) -> str:
+    return "\n".join(f"- {finding.message} {finding.hint}".rstrip() for finding in findings)
 
 
 def _connector_line(connector: Connector, frame: Mapping[str, Any]) -> str:

@@ -49,15 +49,20 @@ class Image:
     """A picture in a message.
 
     Attributes:
-        content: The bytes of the file.
+        source: The bytes of the file, or what draws them when they are needed: a replay never looks at a picture.
         media_type: "image/png" and the like.
         recipe: How articad drew it (digests, views, options, version of the recipe), JSON; None if the user gave it.
             A drawn picture enters the key by its recipe: its pixels differ between machines.
     """
 
-    content: bytes = field(repr=False)
+    source: bytes | Callable[[], bytes] = field(repr=False)
     media_type: str = "image/png"
     recipe: Mapping[str, Any] | None = None
+
+    @cached_property
+    def content(self) -> bytes:
+        """The bytes of the file."""
+        return self.source() if callable(self.source) else self.source
 
     def to_json(self) -> Json:
         """Return the form that enters the key and the record."""
@@ -287,6 +292,8 @@ class Recorded:
             "call",
             step=request.step,
             model=reply.model,
+            fingerprint=reply.fingerprint,
+            answer=hashlib.sha256(reply.text.encode()).hexdigest(),
             seconds=round(time.monotonic() - began, 3),
             tokens=reply.usage.total,
             cost="unknown" if reply.cost is None else reply.cost,

@@ -1,19 +1,38 @@
-"""Pictures for models: what a failed script had made, drawn so that its author can see where it went wrong."""
+"""Pictures for models: a part, what a failed script had made, an assembly, its motion, and the place of a fault.
+
+Each is drawn when its bytes are needed, and enters a request's key by its recipe: a replay draws nothing.
+"""
 
 from __future__ import annotations
 
 import io
+import threading
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import Final
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
 
 from articad.agents.llm import Image
+from articad.assembly import Assembly, FloatArray
 from articad.connectors.se3 import SE3
+from articad.findings import Finding
+from articad.geometry.part import Part
+from articad.interference.motion import driver_values, freedoms
 from articad.kernels.results import PoisonedError, read_mesh
+from articad.run import digest
+
+if TYPE_CHECKING:
+    from PIL.Image import Image as Picture
 
 VIEWS: Final = ("iso", "front", "right", "top")
 SIZE: Final = 320  # pixels of each view: a feature of a hundredth of the part is still seen
+ASSEMBLY_SIZE: Final = 448  # pixels of each view of the whole: its parts' names must be legible
+KEYFRAMES: Final = 6  # of each coordinate of a joint
 _COLOR = "#c8a46e"
 _MESH = "part.npz"
+_RECIPE = "articad.picture/2"  # of `articad.render`, which is loaded only where something is drawn; a test compares the two
+_drawing = threading.Lock()  # pictures for several parts at once would only take each other's processor
 
 
 def partial_picture(folder: Path | None, name: str, build: str) -> Image | None:
@@ -27,18 +46,98 @@ def partial_picture(folder: Path | None, name: str, build: str) -> Image | None:
     Returns:
         One sheet, or None if there is nothing to be seen.
     """
-    from articad.render.camera import Camera  # noqa: PLC0415 - pictures are drawn when something failed, and not before
-    from articad.render.pictures import RECIPE, contact_sheet, picture  # noqa: PLC0415 - the same
-    from articad.render.scene import Item, Scene  # noqa: PLC0415 - the same
-
     if folder is None:
         return None
     try:
         mesh = read_mesh((folder / _MESH).read_bytes())
     except (OSError, PoisonedError):
         return None
-    scene = Scene((Item(name, mesh, SE3.identity(), _COLOR),))
-    views = [picture(scene, Camera.fit(view, scene.bounds, width=SIZE, height=SIZE), labels=False, title=view) for view in VIEWS]
-    stream = io.BytesIO()
-    contact_sheet(views, 2).save(stream, "PNG")
-    return Image(stream.getvalue(), recipe={"recipe": RECIPE, "of": "partial", "build": build, "views": list(VIEWS), "size": SIZE})
+
+    def draw() -> list[Picture]:
+        from articad.render import Camera, Item, Scene, picture  # noqa: PLC0415 - pictures are drawn when something failed, and not before
+
+        scene = Scene((Item(name, mesh, SE3.identity(), _COLOR),))
+        return [picture(scene, Camera.fit(view, scene.bounds, width=SIZE, height=SIZE), labels=False, title=view) for view in VIEWS]
+
+    return _sheet(draw, 2, {"of": "partial", "build": build, "views": list(VIEWS), "size": SIZE})
+
+
+def part_picture(part: Part, build: str) -> Image:
+    """Draw a part in its own frame, from four sides; `build` is the digest of its build."""
+
+    def draw() -> list[Picture]:
+        from articad.render import render_part  # noqa: PLC0415 - as above
+
+        return list(render_part(part, VIEWS, size=SIZE).values())
+
+    return _sheet(draw, 2, {"of": "part", "build": build, "views": list(VIEWS), "size": SIZE})
+
+
+def assembly_picture(assembly: Assembly) -> Image:
+    """Draw an assembly at rest from four sides, with the names of its parts and the axes of its joints."""
+
+    def draw() -> list[Picture]:
+        return list(assembly.render(VIEWS, size=ASSEMBLY_SIZE).values())
+
+    return _sheet(draw, 2, {"of": "assembly", "assembly": assembly_mark(assembly), "views": list(VIEWS), "size": ASSEMBLY_SIZE})
+
+
+def motion_picture(assembly: Assembly, joint: str) -> Image:
+    """Draw the keyframes of a joint's motion, each with the joint's value."""
+
+    def draw() -> list[Picture]:
+        from articad.render import render_motion  # noqa: PLC0415 - as above
+
+        return render_motion(assembly, joint, frames=KEYFRAMES, size=SIZE)
+
+    return _sheet(draw, 3, {"of": "motion", "assembly": assembly_mark(assembly), "joint": joint, "frames": KEYFRAMES, "size": SIZE})
+
+
+def offence_picture(assembly: Assembly, finding: Finding) -> Image | None:
+    """Draw the place of a finding: its parts in full, the others faded, what they have in common in red, in the pose in which it is so."""
+    parts = [name for name in finding.parts if name in assembly.parts]
+    if not parts:
+        return None
+    pose = {name: float(f"{value:.6g}") for name, value in (finding.pose or {}).items()}
+
+    def draw() -> list[Picture]:
+        q = configuration_at(assembly, pose)
+        return list(assembly.render(("iso", "front"), q=q, only=parts, show_overlaps=len(parts) > 1, size=ASSEMBLY_SIZE).values())
+
+    recipe = {"of": "offence", "assembly": assembly_mark(assembly), "parts": parts, "pose": pose, "size": ASSEMBLY_SIZE}
+    return _sheet(draw, 2, recipe)
+
+
+def assembly_mark(assembly: Assembly) -> str:
+    """Return the digest of a plan and all that was built of it."""
+    builds = {name: dict(realised.digests) or realised.derived_from for name, realised in assembly.realised.items()}
+    return digest({"plan": None if assembly.plan is None else assembly.plan.dumps(), "parts": builds})
+
+
+def configuration_at(assembly: Assembly, pose: Mapping[str, float]) -> FloatArray:
+    """Return `q`, `(nq,)`, with the drivers that a finding's pose names at these values, the others at rest."""
+    q = np.array(assembly.mechanism.rest, dtype=np.float64)
+    columns = {driver.name: index for index, driver in enumerate(assembly.drivers)}
+    for joint in assembly.joints:
+        own = freedoms(joint)
+        if not any(freedom.name in pose for freedom in own):
+            continue
+        values = driver_values(joint, [pose.get(freedom.name, freedom.rest) for freedom in own])
+        for name, value in zip(joint.column_names, values, strict=True):
+            if name in columns:
+                q[columns[name]] = value
+    return q
+
+
+def _sheet(draw: Callable[[], Sequence[Picture]], columns: int, recipe: Mapping[str, Any]) -> Image:
+    """Return several pictures as one."""
+
+    def content() -> bytes:
+        from articad.render import contact_sheet  # noqa: PLC0415 - as above
+
+        with _drawing:
+            stream = io.BytesIO()
+            contact_sheet(draw(), columns).save(stream, "PNG")
+        return stream.getvalue()
+
+    return Image(content, recipe={"recipe": _RECIPE} | dict(recipe))

@@ -7,36 +7,41 @@ every answer that was paid for is in the run.
 
 from __future__ import annotations
 
-import os
-import threading
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from concurrent.futures import Future, ThreadPoolExecutor
-from dataclasses import dataclass, field
+from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import Any, Final, Literal
 
-from articad.agents.design import TRIES, Designer
+from articad.agents import brainstorm
+from articad.agents.brainstorm import Alternative, Choose
+from articad.agents.design import TRIES, Designer, listed
 from articad.agents.evidence import examine
-from articad.agents.generation import REPAIRS, Attempt, Modeller, failure_text
-from articad.agents.llm import LLM, Recorded, Replay, closed_port
+from articad.agents.generation import REPAIRS
+from articad.agents.inspection import Verdict, inspect, verdict_of
+from articad.agents.llm import LLM, Image, Recorded, Replay, closed_port
+from articad.agents.memory import Documentation, Memory
+from articad.agents.pictures import offence_picture
 from articad.agents.requirements import Requirements, analyse
-from articad.assembly import DEFLECTION_MM, Assembly
-from articad.errors import AgentError, ArticadError, ContractError, KernelError
-from articad.findings import Findings
+from articad.agents.rollback import Repair, Router
+from articad.agents.workshop import PartsError, Progress, Workshop
+from articad.assembly import Assembly
+from articad.errors import AgentError
+from articad.findings import Finding, Findings
 from articad.kernels.kernel import BuildCache, PartKernel
-from articad.kernels.parts import RealisedPart, build_parts, build_source
-from articad.plan.brief import brief_digest
-from articad.plan.resolve import ResolvedPlan, resolve
+from articad.plan.resolve import resolve
 from articad.plan.schema import AssemblyPlan
 from articad.record import kernel_named, record_assembly, record_checks, record_export
 from articad.run import Run, RunRequest, UserImage, differences, open_or_create
 
 ROUNDS: Final = 3
 FORMATS: Final = ("urdf", "mjcf")
-_CALLS_AT_ONCE = 8  # parts that are asked for side by side; a model's answer takes minutes, and providers limit the rate
+Variant = Literal["full", "no-rollback"]
+Brainstorm = Literal["auto", "always", "never"]
+_SHOWN_PLACES = 3  # pictures of offending places that one agent gets at once
 
-Progress = Callable[[str, str], None]
-"""Called with a stage or a part and what became of it; from several threads."""
+Chooser = Callable[[Sequence[Alternative]], tuple[int, str]]
+"""Given alternatives, returns the number of the chosen one, from 1, and who chose: "user" or "articad"."""
 
 
 def generate(
@@ -53,6 +58,14 @@ def generate(
     designs: int = TRIES,
     repairs: int = REPAIRS,
     rounds: int = ROUNDS,
+    look: bool = True,
+    inspection: bool = True,
+    ideas: Brainstorm = "auto",
+    pick: int | None = None,
+    choose: Choose | None = None,
+    variant: Variant = "full",
+    memory: Memory | None = None,
+    documentation: Documentation | None = None,
     jobs: int | None = None,
     progress: Progress | None = None,
 ) -> Run:
@@ -73,6 +86,14 @@ def generate(
         designs: Answers until a plan must validate.
         repairs: How often a failed part script may be mended.
         rounds: How often parts are assembled and checked; what the last check finds stays in the report.
+        look: Whether a model compares each part's pictures with its specification. It must see.
+        inspection: Whether a model observes the assembly in pictures, and one judges it. It must see.
+        ideas: Whether alternatives are proposed first: "auto" where the request leaves open what is to be built.
+        pick: The alternative to make, from 1; asks for alternatives in any case.
+        choose: Called with the alternatives, returns the number of the one to make; without it and `pick` the first is made.
+        variant: "no-rollback" neither looks nor judges, and sends nothing back that was assembled: the paper's ablation.
+        memory: What earlier runs teach; nothing by default.
+        documentation: What the kernel's API says; nothing by default.
         jobs: How many parts are built at once; by default the number of processors.
         progress: Told of each stage and part.
 
@@ -86,12 +107,27 @@ def generate(
     """
     pictures = [UserImage.read(image) for image in images]
     pictures += [UserImage.read(image, part) for part, image in sorted((part_images or {}).items())]
-    options = {"task": "generate", "designs": designs, "repairs": repairs, "rounds": rounds, "formats": list(formats)}
+    kernel = kernel or kernel_named("build123d", sandbox=sandbox)
+    rolls_back = variant == "full"
+    options: dict[str, Any] = {"task": "generate", "designs": designs, "repairs": repairs, "rounds": rounds, "formats": list(formats)}
+    options |= {"kernel": kernel.name, "variant": variant, "look": look and rolls_back, "inspection": inspection and rolls_back}
+    options |= {"ideas": "always" if pick is not None else ideas, "pick": pick, "finetune": True}
     request = RunRequest(prompt=prompt, images=tuple(pictures), options=options)
     with open_or_create(request, out) as run:
-        workshop = _Workshop(run, llm, kernel or kernel_named("build123d", sandbox=sandbox), cache or BuildCache(), jobs, progress)
-        workshop.work()
+        shop = Workshop(run, Recorded(llm, run), kernel, cache or BuildCache(), jobs, progress, memory, documentation)
+        _Line(shop, partial(_chosen_by_user, pick, choose), memory).work()
     return run
+
+
+def _chosen_by_user(pick: int | None, choose: Choose | None, alternatives: Sequence[Alternative]) -> tuple[int, str]:
+    """Return the alternative that was asked for, or the first."""
+    if pick is None and choose is None:
+        return 1, "articad"
+    number = pick if pick is not None else choose(alternatives) if choose is not None else 1
+    if not 1 <= number <= len(alternatives):
+        names = ", ".join(f"{at} {one.name}" for at, one in enumerate(alternatives, 1))
+        raise AgentError(f"There is no alternative {number}; there are {names}.")
+    return number, "user"
 
 
 @dataclass(frozen=True)
@@ -122,6 +158,8 @@ def replay(
     kernel: PartKernel | None = None,
     sandbox: Literal["strict", "weak"] = "strict",
     cache: BuildCache | None = None,
+    memory: Memory | None = None,
+    documentation: Documentation | None = None,
     jobs: int | None = None,
     progress: Progress | None = None,
 ) -> Replayed:
@@ -134,6 +172,8 @@ def replay(
         kernel: As for `generate`.
         sandbox: As for `generate`.
         cache: As for `generate`; `BuildCache(None)` builds every part anew.
+        memory: As for `generate`, as it was when the run was recorded.
+        documentation: As for `generate`.
         jobs: As for `generate`.
         progress: As for `generate`.
 
@@ -144,146 +184,182 @@ def replay(
     source = Run.view(recording)
     answers = Replay(source, strict=strict)
     with Run.create(source.request, out=out, version=source.version) as run:
-        kernel = kernel or kernel_named("build123d", sandbox=sandbox)
-        _Workshop(run, answers, kernel, cache or BuildCache(), jobs, progress).work()
+        kernel = kernel or kernel_named(str(source.request.options.get("kernel", "build123d")), sandbox=sandbox)
+        shop = Workshop(run, Recorded(answers, run), kernel, cache or BuildCache(), jobs, progress, memory, documentation)
+        _Line(shop, partial(_chosen_before, source), memory).work()
         for finding in answers.findings:
             run.trace_finding(finding)
     return Replayed(run, tuple(differences(source, run)), answers.findings)
 
 
-@dataclass
-class _Made:
-    """A part that was made: with which entry of the plan, by which answer, and as what."""
-
-    brief: str
-    script: bytes
-    answers: int
+def _chosen_before(recording: Run, alternatives: Sequence[Alternative]) -> tuple[int, str]:
+    """Return the alternative that was chosen when a run was recorded."""
+    stored = recording.alternatives() or {"chosen": 1, "by": "articad"}
+    return min(int(stored["chosen"]), len(alternatives)), str(stored["by"])
 
 
-@dataclass
-class _Workshop:
-    """One run at work."""
+class _Line:
+    """One run at work: the straight line with its edge back."""
 
-    run: Run
-    llm: LLM
-    kernel: PartKernel
-    cache: BuildCache
-    jobs: int | None
-    progress: Progress | None
-    made: dict[str, _Made] = field(default_factory=dict)
-
-    def __post_init__(self) -> None:
-        self.port = Recorded(self.llm, self.run)
-        self.building = threading.Semaphore(self.jobs or os.cpu_count() or 1)
-        self.options: Mapping[str, Any] = self.run.request.options
+    def __init__(self, shop: Workshop, chooser: Chooser, memory: Memory | None) -> None:
+        self.shop, self.run, self.port, self.chooser, self.memory = shop, shop.run, shop.port, chooser, memory
+        self.options: Mapping[str, Any] = shop.run.request.options
+        self.rounds = 1 if self.options.get("variant") == "no-rollback" else int(self.options["rounds"])
+        self.router = Router(self.port)
+        self.versions = 0
+        self.repaired: tuple[int, Repair] | None = None
 
     def work(self) -> None:
         requirements = self._requirements()
-        designer = Designer(self.run.request, requirements, self.port, tries=self.options["designs"], tell=self._tell_of_plan)
-        self._tell("design", "started")
+        tries, tell = self.options["designs"], self._tell_of_plan
+        self.shop.tell("design", "started")
+        designer = Designer(self.run.request, requirements, self.port, tries=tries, tell=tell, memory=self.memory)
         plan = designer.first()
-        for number in range(self.options["rounds"]):
-            self.run.save_plan(plan.dumps(), number)
-            assembly = self._assembled(plan)
-            with closed_port("assembly and checks are deterministic"):
-                record_assembly(self.run, assembly)
-                checks = examine(assembly)
-                record_checks(self.run, checks)
-            self._tell("check", "ok" if checks.ok else f"{len(checks.findings.errors)} errors")
-            if checks.ok or number + 1 == self.options["rounds"]:
+        for number in range(1, self.rounds + 1):
+            last = number == self.rounds
+            self._save(plan)
+            try:
+                plan, assembly = self._assembled(plan)
+            except PartsError as failed:
+                repair = self._decided(number, failed.for_design, plan)
+                if last or repair.stalled:
+                    raise
+                plan = self._designed_again(designer, plan, repair, None)
+                continue
+            verdict = self._judged(assembly, requirements, number)
+            if last or not self.router.due(verdict.findings):
                 break
-            self._tell("design", f"again, round {number + 2}")
-            plan = designer.again(plan, checks.findings)
+            repair = self._decided(number, verdict.findings, plan)
+            if repair.stalled:
+                self._give_up(verdict, repair)
+                break
+            self._complain(assembly, repair)
+            if repair.design:
+                plan = self._designed_again(designer, plan, repair, assembly)
+            else:
+                self.shop.tell("parts", f"again, round {number + 1}")
         with closed_port("exports are deterministic"):
             for name in self.options["formats"]:
                 record_export(self.run, assembly, name)
-                self._tell(f"export {name}", "written")
+                self.shop.tell(f"export {name}", "written")
 
-    # ------------------------------------------------------------------ stages
+    # ------------------------------------------------------------------ what is wanted
 
     def _requirements(self) -> Requirements:
-        self._tell("requirements", "started")
-        requirements = analyse(self.run.request, self.port)
+        self.shop.tell("requirements", "started")
+        ideas = self.options.get("ideas", "never")
+        requirements = None if ideas == "always" else analyse(self.run.request, self.port)
+        if requirements is None or (ideas == "auto" and requirements.open_ended):
+            requirements = analyse(self.run.request, self.port, concept=self._concept())
         self.run.save_requirements(requirements.to_json())
         return requirements
 
-    def _assembled(self, plan: AssemblyPlan) -> Assembly:
-        """Return the assembly of a plan: parts kept whose entry did not change, the others written, side by side."""
-        resolved = resolve(plan)
-        self._tell("parts", "started")
-        sources = [name for name, part in resolved.parts.items() if part.derivation is None]
-        with ThreadPoolExecutor(max_workers=min(_CALLS_AT_ONCE, len(sources))) as pool:
-            futures = {name: pool.submit(self._make, resolved, name) for name in sources}
-        _raise_failures(futures, len(sources))
-        self._tell("assembly", "started")
-        scripts = {name: self.made[name].script for name in sources}
-        with closed_port("assembly is deterministic"):
-            realised = build_parts(resolved, scripts, kernel=self.kernel, cache=self.cache, deflection=DEFLECTION_MM, jobs=self.jobs)
-            return Assembly.from_realised(resolved, realised, kernel=self.kernel)
+    def _concept(self) -> Alternative:
+        """Return what an open request shall become."""
+        self.shop.tell("brainstorm", "started")
+        alternatives, findings = brainstorm.propose(self.run.request, self.port)
+        for finding in findings:
+            self.run.trace_finding(finding)
+        stored = self.run.alternatives()
+        if stored is not None and stored == brainstorm.to_json(alternatives, stored["chosen"], stored["by"]):
+            chosen, by = int(stored["chosen"]), str(stored["by"])  # a resumed run does not ask again
+        else:
+            chosen, by = self.chooser(alternatives)
+            self.run.save_alternatives(brainstorm.to_json(alternatives, chosen, by))
+        concept = alternatives[chosen - 1]
+        self.shop.tell("brainstorm", f"{concept.name}, chosen by {by} of {len(alternatives)}")
+        return concept
 
-    def _make(self, resolved: ResolvedPlan, name: str) -> None:
-        """Make one part, or keep it as it is."""
-        digest, old = brief_digest(resolved, name), self.made.get(name)
-        answers, previous = 0, None
-        if old is not None:
-            answers = old.answers
-            if old.brief == digest:
-                try:
-                    self._build(resolved, name, old.script)
-                except KernelError as error:
-                    previous = _attempt(old.script, error)
-                else:
-                    self._tell(name, "kept")
-                    return
-        self._tell(name, "started")
-        modeller = Modeller(
-            resolved,
-            name,
-            llm=self.port,
-            run=self.run,
-            build=lambda part, script: self._build(resolved, part, script),
-            kernel=self.kernel,
-            repairs=self.options["repairs"],
-        )
-        realised, answers = modeller.make(answered=answers, previous=previous)
-        assert realised.script is not None
-        self.made[name] = _Made(digest, realised.script, answers)
-        self._tell(name, "built")
+    # ------------------------------------------------------------------ one round
 
-    def _build(self, resolved: ResolvedPlan, name: str, script: bytes) -> RealisedPart:
-        """Build a script; where a person is warned of connectors that are off, a model is asked to build them in place."""
-        with self.building:
-            part = build_source(resolved, name, script, kernel=self.kernel, cache=self.cache, deflection=DEFLECTION_MM)
-        if drift := part.findings.of("W_CONNECTOR_DRIFT"):
-            raise ContractError("\n".join(map(str, drift)), findings=drift, parts=(name,))
-        return part
+    def _save(self, plan: AssemblyPlan) -> None:
+        """Keep a plan that differs from the last one as its next version."""
+        text = plan.dumps()
+        if self.versions == 0 or text != self.run.plan_text():
+            self.run.save_plan(text, self.versions)
+            self.versions += 1
+
+    def _assembled(self, plan: AssemblyPlan) -> tuple[AssemblyPlan, Assembly]:
+        self.shop.tell("parts", "started")
+        try:
+            plan, assembly = self.shop.assembled(plan)
+        finally:
+            if self.repaired is not None:
+                number, repair = self.repaired
+                self.run.save_round(number, repair.to_json(number, self.shop.fates))
+        self._save(plan)
+        with closed_port("assembly and checks are deterministic"):
+            record_assembly(self.run, assembly)
+        return plan, assembly
+
+    def _judged(self, assembly: Assembly, requirements: Requirements, number: int) -> Verdict:
+        """Return what is wrong with an assembly: what geometry finds, and where that finds nothing, what models see."""
+        with closed_port("assembly and checks are deterministic"):
+            evidence = examine(assembly)
+            record_checks(self.run, evidence.checks)
+        self.shop.tell("check", "ok" if evidence.ok else f"{len(evidence.findings.errors)} errors")
+        if not self.options.get("inspection", False):
+            return verdict_of(evidence, number)
+        verdict = verdict_of(evidence, number)
+        if evidence.ok:
+            self.shop.tell("inspection", "started")
+            verdict = inspect(assembly, evidence, self.run.request, requirements, self.port, number=number)
+            self.shop.tell("inspection", "ok" if verdict.ok else f"{len(verdict.findings.errors)} errors")
+        verdict = replace(verdict, findings=verdict.findings + self.shop.opinions)
+        self._save_verdict(verdict)
+        return verdict
+
+    def _save_verdict(self, verdict: Verdict) -> None:
+        self.run.save_verdict(verdict.to_json())
+        for finding in verdict.findings:
+            self.run.trace_finding(finding)
+
+    # ------------------------------------------------------------------ the edge back
+
+    def _decided(self, number: int, findings: Findings, plan: AssemblyPlan) -> Repair:
+        repair = self.router.decide(number, findings, resolve(plan), self.shop.scripts)
+        self.repaired = number, repair
+        return repair
+
+    def _complain(self, assembly: Assembly, repair: Repair) -> None:
+        """Leave for the authors of scripts what was found of their parts, and where."""
+        for name, findings in repair.code.items():
+            pictures = _places(assembly, findings, most=1)
+            self.shop.complaints[name] = listed(findings), pictures[0] if pictures else None
+
+    def _designed_again(self, designer: Designer, plan: AssemblyPlan, repair: Repair, assembly: Assembly | None) -> AssemblyPlan:
+        self.shop.tell("design", "again")
+        pictures = () if assembly is None else _places(assembly, repair.design, most=_SHOWN_PLACES)
+        return designer.again(plan, repair.design, pictures=pictures, stubborn=repair.stubborn)
+
+    def _give_up(self, verdict: Verdict, repair: Repair) -> None:
+        """Say that nothing more is tried."""
+        stalled = [
+            Finding(
+                code="W_STALLED",
+                where=finding.where,
+                parts=finding.parts,
+                message=f"{finding.code} came back after every strategy.",
+                hint="Mend the plan or the script by hand and use `articad build`.",
+            )
+            for finding in repair.stalled
+        ]
+        self.shop.tell("rollback", "stalled")
+        verdict = replace(verdict, findings=verdict.findings + stalled)
+        if self.options.get("inspection", False):
+            self._save_verdict(verdict)
 
     # ------------------------------------------------------------------ telling
-
-    def _tell(self, what: str, event: str) -> None:
-        self.run.trace("stage", name=what, state=event)
-        if self.progress is not None:
-            self.progress(what, event)
 
     def _tell_of_plan(self, plan: AssemblyPlan | None, findings: Findings) -> None:
         for finding in findings:
             self.run.trace_finding(finding)
         what = "unreadable" if plan is None else f"{len(plan.parts)} parts, {len(plan.joints)} joints"
-        self._tell("design", f"{what}, {len(findings.errors)} errors")
+        self.shop.tell("design", f"{what}, {len(findings.errors)} errors")
 
 
-def _attempt(script: bytes, error: KernelError) -> Attempt:
-    """Return a kept script that no longer builds as an answer that did not do."""
-    return Attempt(f"```python\n{script.decode()}```", f"The specification has changed since. {failure_text(error)}", error=error)
-
-
-def _raise_failures(futures: Mapping[str, Future[None]], total: int) -> None:
-    """Raise what went wrong with the parts, all of it at once; a model that cannot be asked goes first."""
-    errors = {name: error for name, future in futures.items() if (error := future.exception()) is not None}
-    for error in errors.values():
-        if not isinstance(error, ArticadError) or (isinstance(error, AgentError) and not error.findings.of("E_REPLY_SCHEMA")):
-            raise error
-    if errors:
-        findings = Findings(finding for error in errors.values() if isinstance(error, ArticadError) for finding in error.findings)
-        lines = [f"{len(errors)} of {total} parts could not be made.", *(f"{name}: {error}" for name, error in errors.items())]
-        raise ContractError("\n".join(lines), findings=findings, parts=tuple(errors))
+def _places(assembly: Assembly, findings: Iterable[Finding], *, most: int) -> tuple[Image, ...]:
+    """Return pictures of the first places of findings, one for each set of parts."""
+    first = {frozenset(finding.parts): finding for finding in reversed(list(findings))}
+    drawn = (offence_picture(assembly, finding) for finding in reversed(first.values()))
+    return tuple(picture for picture in drawn if picture is not None)[:most]

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import json
 import re
 from typing import Annotated, Any, Final, Literal
 
-from pydantic import BeforeValidator, Field
+from pydantic import BaseModel, BeforeValidator, Field
 
 from articad.agents.forms import Form, ask, reader, schema_of
 from articad.agents.llm import LLM, Image, system, user
@@ -15,7 +16,7 @@ from articad.run import RunRequest
 SCHEMA: Final = "articad.requirements/1"
 
 
-def _slug(value: Any) -> Any:
+def slug(value: Any) -> Any:
     """Turn a title into a name: a plan's name is for files, and no reason to ask again."""
     if not isinstance(value, str):
         return value
@@ -63,10 +64,11 @@ class Requirements(Form):
         constraints: What must hold.
         dimensions: Numbers that were given.
         assumptions: What was left open, and how it was decided.
+        open_ended: Whether the request leaves open even what is to be built.
     """
 
     form: Literal["articad.requirements/1"] = Field(SCHEMA, alias="schema")
-    name: Annotated[str, BeforeValidator(_slug)]
+    name: Annotated[str, BeforeValidator(slug)]
     summary: str
     components: tuple[Component, ...] = Field(min_length=1)
     relations: tuple[str, ...]
@@ -74,26 +76,38 @@ class Requirements(Form):
     constraints: tuple[str, ...]
     dimensions: tuple[Dimension, ...]
     assumptions: tuple[str, ...]
+    open_ended: bool = False
 
     def to_json(self) -> dict[str, Any]:
         """Return the JSON document."""
-        document: dict[str, Any] = self.model_dump(mode="json", by_alias=True)
+        document: dict[str, Any] = self.model_dump(mode="json", by_alias=True, exclude=set() if self.open_ended else {"open_ended"})
         return document
 
 
 def response_schema() -> dict[str, Any]:
     """Return the JSON schema of a reply: the form without its version, which a model need not state."""
-    return schema_of(Requirements, without=frozenset({"schema"}))
+    return schema_of(Requirements, without=frozenset({"schema", "open_ended"}))
 
 
-def analyse(request: RunRequest, llm: LLM) -> Requirements:
+def analyse(request: RunRequest, llm: LLM, *, concept: BaseModel | None = None) -> Requirements:
     """Ask what a request, in words, pictures or both, wants built.
 
+    Args:
+        request: The words and pictures.
+        llm: Who reads them.
+        concept: What the customer chose of several proposals, where the request left it open.
+
     Raises:
-        OutputError: If the model does not find the form in `TRIES` tries.
+        OutputError: If the model does not find the form.
     """
-    opening = (system(prompt("requirements")), user(_words(request), *pictures_of(request)))
-    return ask(llm, "requirements", "requirements", opening, reader(Requirements, ignore=frozenset({"schema"})), schema=response_schema())
+    chosen = (
+        ""
+        if concept is None
+        else f"\n\n{prompt('concept', concept=json.dumps(concept.model_dump(mode='json'), indent=1, ensure_ascii=False))}"
+    )
+    opening = (system(prompt("requirements")), user(_words(request) + chosen, *pictures_of(request)))
+    step = "requirements" if concept is None else "concept"
+    return ask(llm, "requirements", step, opening, reader(Requirements, ignore=frozenset({"schema"})), schema=response_schema())
 
 
 def pictures_of(request: RunRequest) -> tuple[Image, ...]:

@@ -25,6 +25,7 @@ PNG = b"\x89PNG\r\n\x1a\n" + bytes(16)
 
 
 def made(tmp_path: Path, llm: Any, name: str = "run", prompt: str = FLAP_PROMPT, **options: Any) -> Run:
+    options = {"look": False, "inspection": False} | options
     return generate(prompt, llm=llm, out=tmp_path / name, kernel=stories.kernel(), cache=stories.shared_cache(), **options)
 
 
@@ -192,9 +193,10 @@ def test_a_part_built_beside_its_connector_is_built_again(tmp_path: Path) -> Non
 
 
 def test_a_part_that_cannot_be_made_is_named_and_the_others_are_finished(tmp_path: Path) -> None:
-    llm = flap(**{f"part__flap__{n}": fenced("def build(part):\n    return None") for n in range(1, 5)})
+    wrong = ("return None", "return 1, 2", "raise ValueError(part.name)", "return part")
+    llm = flap(**{f"part__flap__{n}": fenced(f"def build(part):\n    {line}") for n, line in enumerate(wrong, 1)})
     with pytest.raises(ContractError, match="1 of 2 parts could not be made") as caught:
-        made(tmp_path, llm)
+        made(tmp_path, llm, rounds=1)
     assert caught.value.parts == ("flap",)
     assert "part/plate/1" in llm.steps
     assert llm.steps.count("part/flap/4") == 1
@@ -289,7 +291,7 @@ def dies(_):
 
 llm = flap(part__flap__1=fenced({crash!r}), part__flap__2=dies)
 folder = Path({str(tmp_path)!r})
-generate(FLAP_PROMPT, llm=llm, out=folder / "run", kernel=kernel(), cache=cache(folder), jobs=1)
+generate(FLAP_PROMPT, llm=llm, out=folder / "run", kernel=kernel(), cache=cache(folder), jobs=1, look=False, inspection=False)
 """
     killed = subprocess.run([sys.executable, "-c", script], check=False)
     assert killed.returncode == -signal.SIGKILL

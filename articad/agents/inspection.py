@@ -1,0 +1,295 @@
+"""Inspection: models look at what was built; what can be measured has been measured before, and overrules them.
+
+A part: one model compares its pictures with its specification. The assembly: one model observes pictures and keyframes,
+another judges its observations beside the measurements.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import Any, Final, Literal, Self
+
+from pydantic import model_validator
+
+from articad.agents.evidence import Evidence, told
+from articad.agents.forms import Form, ask, reader, schema_of
+from articad.agents.llm import LLM, Image, system, user
+from articad.agents.pictures import assembly_picture, motion_picture, part_picture
+from articad.agents.prompts import prompt
+from articad.agents.replies import unusable
+from articad.agents.requirements import Requirements
+from articad.assembly import Assembly
+from articad.findings import Finding, Findings
+from articad.kernels.parts import RealisedPart
+from articad.plan.resolve import ResolvedPlan
+from articad.run import RunRequest
+
+VERDICT_SCHEMA: Final = "articad.verdict/1"
+MOTIONS: Final = 6  # keyframe sheets for one observer: more pictures at once are not looked at closely
+Aspect = Literal["placement", "interference", "motion"]
+_ASPECTS: Final = ("placement", "interference", "motion")
+_CODES: Final = {aspect: f"E_VERDICT_{aspect.upper()}" for aspect in _ASPECTS}
+
+
+# ---------------------------------------------------------------------- one part
+
+
+class Compared(Form):
+    """What was seen of one aspect of a part, and what the specification says of it."""
+
+    aspect: Literal["shape", "proportion", "orientation"]
+    agrees: bool
+    seen: str
+    specified: str
+    fault: Literal["none", "script", "specification"]
+    remedy: str
+
+
+class Look(Form):
+    """A part's pictures held against its specification: one finding for each aspect."""
+
+    findings: tuple[Compared, ...]
+
+    @model_validator(mode="after")
+    def _each_once(self) -> Self:
+        if sorted(one.aspect for one in self.findings) != ["orientation", "proportion", "shape"]:
+            raise ValueError('"findings" has one entry each for "shape", "proportion" and "orientation".')
+        for one in self.findings:
+            if one.agrees != (one.fault == "none"):
+                raise ValueError(f'{one.aspect}: "fault" is "none" where it agrees, and only there.')
+        return self
+
+
+def look(specification: str, name: str, realised: RealisedPart, llm: LLM, *, step: str, pictures: Sequence[Image] = ()) -> Findings:
+    """Have a part's pictures compared with its specification.
+
+    Args:
+        specification: As its modeller was told.
+        name: The part.
+        realised: As built.
+        llm: Who looks; it must see.
+        step: Address of the request.
+        pictures: The user's own of this part.
+
+    Returns:
+        A warning for each aspect that does not agree, its route the model's opinion of whose fault it is.
+
+    Raises:
+        OutputError: If no reply has the form.
+    """
+    given = f"\n\nFirst {len(pictures)} picture(s) of what the customer wants, then" if pictures else ""
+    words = f"The specification:\n\n{specification}{given or chr(10) + chr(10) + 'Now'} the sheet of what was built:"
+    drawn = part_picture(realised.part, realised.digests["build"])
+    opening = (system(prompt("look")), user(words, *pictures, drawn))
+    seen = ask(llm, "look", step, opening, reader(Look), schema=schema_of(Look))
+    return Findings(
+        Finding(
+            code=f"W_LOOK_{one.aspect.upper()}",
+            where=f"parts.{name}",
+            parts=(name,),
+            message=f"Seen: {one.seen.strip().rstrip('.')}. Specified: {one.specified.strip().rstrip('.')}.",
+            hint=one.remedy,
+            route="code" if one.fault == "script" else "design",
+        )
+        for one in seen.findings
+        if not one.agrees
+    )
+
+
+# ---------------------------------------------------------------------- the assembly
+
+
+class PartSeen(Form):
+    """What was seen of a part."""
+
+    part: str
+    seen: str
+    expected: bool
+
+
+class MotionSeen(Form):
+    """What was seen of a joint's motion."""
+
+    joint: str
+    seen: str
+    expected: bool
+
+
+class Observations(Form):
+    """What the pictures of an assembly show."""
+
+    overall: str
+    parts: tuple[PartSeen, ...]
+    motions: tuple[MotionSeen, ...]
+
+
+class Ruling(Form):
+    """Whether one aspect is as was asked."""
+
+    ok: bool
+    reason: str
+
+
+class Problem(Form):
+    """What is wrong, and whose fault it is."""
+
+    aspect: Aspect
+    parts: tuple[str, ...]
+    what: str
+    expected: str
+    fault: Literal["design", "code"]
+    remedy: str
+
+
+class Judgement(Form):
+    """A judge's answer."""
+
+    placement: Ruling
+    interference: Ruling
+    motion: Ruling
+    problems: tuple[Problem, ...]
+
+    @model_validator(mode="after")
+    def _agree(self) -> Self:
+        for aspect in _ASPECTS:
+            has = any(problem.aspect == aspect for problem in self.problems)
+            if has == getattr(self, aspect).ok:
+                raise ValueError(f'"{aspect}" is {"ok, but has a problem" if has else "not ok, but no problem says why"}.')
+        return self
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What was decided about an assembly.
+
+    Attributes:
+        findings: Errors for what must be mended; notes for opinions that measurements overrule.
+        by: "geometry" when exact checks had the last word, else "judge".
+        round: Which one, from 1.
+        observations: What the observer saw; None if nobody looked.
+        rulings: The judge's, by aspect; empty if there was no judge.
+    """
+
+    findings: Findings
+    by: Literal["geometry", "judge"]
+    round: int
+    observations: Observations | None = None
+    rulings: tuple[tuple[str, Ruling], ...] = ()
+
+    @property
+    def ok(self) -> bool:
+        """True when nothing must be mended."""
+        return self.findings.ok
+
+    def to_json(self) -> dict[str, Any]:
+        """Return the report `articad.verdict/1`."""
+        return {
+            "schema": VERDICT_SCHEMA,
+            "ok": self.ok,
+            "findings": [finding.to_json() for finding in self.findings],
+            "by": self.by,
+            "round": self.round,
+            "rulings": {aspect: ruling.model_dump() for aspect, ruling in self.rulings},
+            "observations": None if self.observations is None else self.observations.model_dump(mode="json"),
+        }
+
+
+def inspect(assembly: Assembly, evidence: Evidence, request: RunRequest, requirements: Requirements, llm: LLM, *, number: int) -> Verdict:
+    """Have an assembly observed and judged.
+
+    Args:
+        assembly: As built.
+        evidence: What was measured.
+        request: What the user asked for.
+        requirements: How it was understood.
+        llm: Who observes and judges.
+        number: The round, from 1.
+
+    Raises:
+        OutputError: If no reply has the form.
+    """
+    product = f"{_asked(request, requirements)}\n\n{_structure(assembly)}"
+    observations = _observed(assembly, product, llm, number)
+    seen = json.dumps(observations.model_dump(mode="json"), indent=1, ensure_ascii=False)
+    words = f"{product}\n\nMeasured:\n\n{told(assembly, evidence)}\n\nThe observer saw:\n\n```json\n{seen}\n```"
+    judgement = ask(
+        llm, "judge", f"judge/{number}/1", (system(prompt("judge")), user(words)), _judgement_of(assembly), schema=schema_of(Judgement)
+    )
+    rulings = tuple((aspect, getattr(judgement, aspect)) for aspect in _ASPECTS)
+    return Verdict(Findings(_weighed(judgement.problems, evidence)), "judge", number, observations, rulings)
+
+
+def verdict_of(evidence: Evidence, number: int) -> Verdict:
+    """Return the verdict of geometry alone: its errors, and nobody was asked."""
+    return Verdict(Findings(evidence.findings.errors), "geometry", number)
+
+
+def _observed(assembly: Assembly, product: str, llm: LLM, number: int) -> Observations:
+    joints = list(dict.fromkeys(driver.joint for driver in assembly.drivers))[:MOTIONS]
+    parts: list[str | Image] = [product, "The assembly at rest, from four sides:", assembly_picture(assembly)]
+    for joint in joints:
+        parts += [f"Keyframes of joint {joint}:", motion_picture(assembly, joint)]
+
+    def read(text: str, step: str) -> Observations:
+        seen = reader(Observations)(text, step)
+        missing = [joint for joint in joints if joint not in {motion.joint for motion in seen.motions}]
+        strangers = sorted({one.part for one in seen.parts} - set(assembly.parts))
+        complaints = [f"motions: nothing is said of {', '.join(missing)}." if missing else ""]
+        complaints += [f"parts: there is no {', '.join(strangers)}; there are {', '.join(assembly.parts)}." if strangers else ""]
+        if any(complaints):
+            raise unusable(" ".join(filter(None, complaints)), text, step=step)
+        return seen
+
+    return ask(llm, "observe", f"observe/{number}", (system(prompt("observe")), user(*parts)), read, schema=schema_of(Observations))
+
+
+def _judgement_of(assembly: Assembly) -> Any:
+    """Return what reads a judge's answer: the parts that it names exist."""
+
+    def read(text: str, step: str) -> Judgement:
+        judgement = reader(Judgement)(text, step)
+        for problem in judgement.problems:
+            strangers = [name for name in problem.parts if name not in assembly.parts]
+            if strangers:
+                raise unusable(f"there is no part {', '.join(strangers)}; there are {', '.join(assembly.parts)}.", text, step=step)
+            if problem.fault == "code" and not problem.parts:
+                raise unusable('a problem whose fault is "code" names the part.', text, step=step)
+        return judgement
+
+    return read
+
+
+def _weighed(problems: Iterable[Problem], evidence: Evidence) -> Iterable[Finding]:
+    """Yield findings of problems; interference that exact checks have looked for and not found is a note."""
+    for problem in problems:
+        overruled = problem.aspect == "interference" and evidence.ok
+        yield Finding(
+            code="I_OVERRULED" if overruled else _CODES[problem.aspect],
+            where=f"parts.{problem.parts[0]}" if problem.parts else "assembly",
+            parts=problem.parts,
+            message=f"{problem.what.strip().rstrip('.')}. Expected: {problem.expected.strip().rstrip('.')}.",
+            hint="The exact checks found no interference." if overruled else problem.remedy,
+            route=problem.fault,
+        )
+
+
+def _asked(request: RunRequest, requirements: Requirements) -> str:
+    analysis = json.dumps({name: value for name, value in requirements.to_json().items() if name != "schema"}, indent=1, ensure_ascii=False)
+    words = request.prompt.strip() or "(no words; there were pictures)"
+    return f"The customer's request:\n\n{words}\n\nIts analysis:\n\n```json\n{analysis}\n```"
+
+
+def _structure(assembly: Assembly) -> str:
+    """Return the parts and joints of a plan in words."""
+    resolved: ResolvedPlan | None = assembly.resolved
+    lines = ["Parts:"]
+    for name in assembly.parts:
+        part = None if resolved is None else resolved.parts[name]
+        role = "" if part is None else part.role or part.description.split(". ")[0][:160]
+        copy = f", a copy of {part.derivation.source}" if part is not None and part.derivation is not None else ""
+        lines.append(f"- {name}{' (stands still)' if name == assembly.ground else ''}{copy}: {role}")
+    lines += ["", "Joints:"]
+    lines += [f"- {joint.name}: {joint.type}, {joint.child} against {joint.parent}" for joint in assembly.joints]
+    return "\n".join(lines)

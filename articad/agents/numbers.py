@@ -1,0 +1,15 @@
+"""Numbers in prompts: rounded, so that a request's key does not hang on the last bits of a machine."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+
+def short(number: float) -> str:
+    """Return a measured number with 3 significant digits, without an exponent where it is usual."""
+    return f"{float(f'{number:.3g}') + 0.0:.10g}"
+
+
+def listed_numbers(values: Iterable[float]) -> str:
+    """Return `(1, 2.5, 3)`; what is nothing but rounding is 0."""
+    return f"({', '.join(short(0.0 if abs(value) < 1e-6 else value) for value in values)})"

@@ -1,0 +1,218 @@
+"""The workshop: makes the parts of a plan side by side, and keeps those whose entry did not change."""
+
+from __future__ import annotations
+
+import os
+import threading
+from collections.abc import Callable, Mapping
+from concurrent.futures import Future, ThreadPoolExecutor
+from dataclasses import dataclass, field, replace
+from typing import Any, Final
+
+from articad.agents.finetuning import absorbed, notes
+from articad.agents.generation import Attempt, Modeller, failure_text
+from articad.agents.llm import LLM, Image, closed_port
+from articad.agents.memory import Documentation, Memory
+from articad.agents.rollback import Fate
+from articad.assembly import DEFLECTION_MM, Assembly
+from articad.codes import CODES
+from articad.errors import AgentError, ArticadError, ContractError, KernelError, OutputError
+from articad.findings import Finding, Findings
+from articad.kernels.kernel import BuildCache, PartKernel
+from articad.kernels.parts import RealisedPart, build_parts, build_source
+from articad.plan.brief import brief_digest
+from articad.plan.resolve import ResolvedPlan, resolve
+from articad.plan.schema import AssemblyPlan
+from articad.run import Run
+
+CALLS_AT_ONCE: Final = 8  # parts that are asked for side by side; a model's answer takes minutes, and providers limit the rate
+
+Progress = Callable[[str, str], None]
+"""Called with a stage or a part and what became of it; from several threads."""
+
+
+class PartsError(ContractError):
+    """Parts that could not be made; `failures` says why, by part."""
+
+    def __init__(self, failures: Mapping[str, ArticadError], total: int) -> None:
+        self.failures = dict(failures)
+        findings = Findings(finding for error in failures.values() for finding in error.findings)
+        lines = [f"{len(failures)} of {total} parts could not be made.", *(f"{name}: {error}" for name, error in failures.items())]
+        super().__init__("\n".join(lines), findings=findings, parts=tuple(failures))
+
+    @property
+    def for_design(self) -> Findings:
+        """What the designer is told: no script was found for these entries."""
+        return Findings(
+            replace(finding, code=_as_error(finding.code), route="design", parts=(name,), message=_unbuilt(name, finding))
+            for name, error in self.failures.items()
+            for finding in error.findings
+            if finding.severity != "info"
+        )
+
+
+@dataclass
+class _Made:
+    """A part that was made, or was tried: with which entry of the plan, by how many answers, and as what."""
+
+    brief: str
+    answers: int
+    script: bytes | None
+    opinions: Findings = field(default_factory=Findings)
+
+
+@dataclass
+class Workshop:
+    """Makes parts.
+
+    Attributes:
+        run: Keeps what is made.
+        port: Who is asked.
+        kernel: Builds scripts.
+        cache: Keeps built parts.
+        jobs: How many parts are built at once.
+        progress: Told of each part.
+        memory: Knows worked examples.
+        documentation: Knows the kernel's API.
+        complaints: What the authors of scripts are told in the next round, by part.
+        fates: What became of each part in this round.
+        planned: The parts of the last plan.
+        made: What was made or tried, by part.
+    """
+
+    run: Run
+    port: LLM
+    kernel: PartKernel
+    cache: BuildCache
+    jobs: int | None
+    progress: Progress | None
+    memory: Memory | None = None
+    documentation: Documentation | None = None
+    complaints: dict[str, tuple[str, Image | None]] = field(default_factory=dict)
+    fates: dict[str, Fate] = field(default_factory=dict)
+    planned: tuple[str, ...] = ()
+    made: dict[str, _Made] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        self._building = threading.Semaphore(self.jobs or os.cpu_count() or 1)
+        self._options: Mapping[str, Any] = self.run.request.options
+
+    @property
+    def scripts(self) -> dict[str, bytes]:
+        """The scripts of this round's parts."""
+        return {name: made.script for name, made in self.made.items() if made.script is not None}
+
+    @property
+    def opinions(self) -> Findings:
+        """What inspectors have against parts as they are."""
+        return Findings(finding for made in self.made.values() for finding in made.opinions)
+
+    def assembled(self, plan: AssemblyPlan) -> tuple[AssemblyPlan, Assembly]:
+        """Return the assembly of a plan, and the plan: a new version of it where connectors were fine-tuned.
+
+        Raises:
+            PartsError: If parts could not be made; the others are finished.
+            AgentError: If a model cannot be asked.
+        """
+        resolved = resolve(plan)
+        sources = [name for name, part in resolved.parts.items() if part.derivation is None]
+        gone = [name for name in self.planned if name not in resolved.parts]
+        self.planned = tuple(resolved.parts)
+        self.fates = dict.fromkeys(gone, "removed")
+        self.made = {name: made for name, made in self.made.items() if name in sources}
+        with ThreadPoolExecutor(max_workers=min(CALLS_AT_ONCE, len(sources))) as pool:
+            futures = {name: pool.submit(self._make, resolved, name) for name in sources}
+        self.complaints = {}
+        self.fates = {name: self.fates[name] for name in (*sources, *gone) if name in self.fates}
+        _raise_failures(futures, len(sources))
+        self.tell("assembly", "started")
+        with closed_port("assembly is deterministic"):
+            return self._joined(plan, resolved)
+
+    def tell(self, what: str, event: str) -> None:
+        """Note what happens in the trace, and tell who waits."""
+        self.run.trace("stage", name=what, state=event)
+        if self.progress is not None:
+            self.progress(what, event)
+
+    def _joined(self, plan: AssemblyPlan, resolved: ResolvedPlan) -> tuple[AssemblyPlan, Assembly]:
+        realised = self._built(resolved)
+        drifted = {name: part for name, part in realised.items() if part.findings.of("W_CONNECTOR_DRIFT")}
+        if drifted and (tuned := absorbed(resolved, drifted)) is not None:
+            for note in notes(drifted):
+                self.run.trace_finding(note)
+            plan, resolved = tuned, resolve(tuned)
+            realised = self._built(resolved)
+            self.tell("design", "connectors fine-tuned")
+        return plan, Assembly.from_realised(resolved, realised, kernel=self.kernel)
+
+    def _built(self, resolved: ResolvedPlan) -> dict[str, RealisedPart]:
+        return build_parts(resolved, self.scripts, kernel=self.kernel, cache=self.cache, deflection=DEFLECTION_MM, jobs=self.jobs)
+
+    def _make(self, resolved: ResolvedPlan, name: str) -> None:
+        """Make one part, or keep it as it is."""
+        digest, old, complaint = brief_digest(resolved, name), self.made.get(name), self.complaints.get(name)
+        answers, previous = 0 if old is None else old.answers, None
+        if old is not None and old.brief == digest and old.script is not None:
+            if complaint is not None:
+                previous = Attempt(_fenced(old.script), complaint[0], complaint[1], complaint="part_again")
+            else:
+                try:
+                    self._build(resolved, name, old.script)
+                except KernelError as error:
+                    previous = Attempt(_fenced(old.script), f"The specification has changed since. {failure_text(error)}", error=error)
+                else:
+                    self.fates[name] = "kept"
+                    self.tell(name, "kept")
+                    return
+        self.fates[name] = "new" if old is None else "regenerated"
+        self.tell(name, "started")
+        modeller = Modeller(
+            resolved,
+            name,
+            llm=self.port,
+            run=self.run,
+            build=lambda part, script: self._build(resolved, part, script),
+            kernel=self.kernel,
+            repairs=self._options["repairs"],
+            looks=self._options.get("look", False),
+            memory=self.memory,
+            documentation=self.documentation,
+        )
+        self.made[name] = _Made(digest, answers + self._options["repairs"] + 1, None)  # until it is made: the addresses that may be used
+        modelled = modeller.make(answered=answers, previous=previous)
+        assert modelled.realised.script is not None
+        self.made[name] = _Made(digest, modelled.answers, modelled.realised.script, modelled.opinions)
+        self.tell(name, "built")
+
+    def _build(self, resolved: ResolvedPlan, name: str, script: bytes) -> RealisedPart:
+        """Build a script; a connector that is off is taken into the plan if it holds there, else the script must build it in place."""
+        with self._building:
+            part = build_source(resolved, name, script, kernel=self.kernel, cache=self.cache, deflection=DEFLECTION_MM)
+        if drift := part.findings.of("W_CONNECTOR_DRIFT"):
+            if self._options.get("finetune") and absorbed(resolved, {name: part}) is not None:
+                return part
+            raise ContractError("\n".join(map(str, drift)), findings=drift, parts=(name,))
+        return part
+
+
+def _fenced(script: bytes) -> str:
+    return f"```python\n{script.decode()}```"
+
+
+def _unbuilt(name: str, finding: Finding) -> str:
+    return f"No script for {name} kept to its entry, whatever was tried; the last one ended with {finding.code}: {finding.message}"
+
+
+def _as_error(code: str) -> str:
+    return code if (worse := f"E_{code[2:]}") not in CODES else worse
+
+
+def _raise_failures(futures: Mapping[str, Future[None]], total: int) -> None:
+    """Raise what went wrong with the parts, all of it at once; a model that cannot be asked goes first."""
+    errors = {name: error for name, future in futures.items() if (error := future.exception()) is not None}
+    for error in errors.values():
+        if not isinstance(error, ArticadError) or (isinstance(error, AgentError) and not isinstance(error, OutputError)):
+            raise error
+    if errors:
+        raise PartsError({name: error for name, error in errors.items() if isinstance(error, ArticadError)}, total)
