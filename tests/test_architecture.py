@@ -145,9 +145,10 @@ def test_every_fixed_package_is_declared_and_imported(distribution: str, module:
 
 def test_every_import_is_declared() -> None:
     project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
-    declared = [*project["dependencies"], *project["optional-dependencies"]["render"]]
+    extras = (line for extra in ("render", "faiss") for line in project["optional-dependencies"][extra])
+    declared = [*project["dependencies"], *extras]
     names = {re.split(r"[^A-Za-z0-9_-]", line, maxsplit=1)[0] for line in declared}
-    module_of = FIXED | {"pillow": "PIL"}
+    module_of = FIXED | {"pillow": "PIL", "faiss-cpu": "faiss"}
     known = {module_of.get(name, name) for name in names} | {"OCP", "pydantic_core"}  # these come with build123d and pydantic, and only so
     inside = {"FreeCAD", "Part", "Sketcher", "Mesh", "JointObject"}  # of FreeCAD's own Python, where these programs run
     unknown = {
