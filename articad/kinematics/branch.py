@@ -13,9 +13,8 @@ from articad.connectors import FloatArray
 from articad.errors import DeadPointError, KinematicsError, LoopError
 from articad.findings import Finding
 from articad.kinematics.continuation import Follower, Stop, Trace
-from articad.kinematics.equations import IndexArray
 from articad.kinematics.joints import Coordinate, Coupling, Joint, JointType
-from articad.kinematics.layout import Layout
+from articad.kinematics.layout import IndexArray, Layout
 from articad.kinematics.loops import CLOSED, BoolArray, ClosureSystem
 from articad.kinematics.mobility import choose_drivers, mobility_of
 from articad.kinematics.track import Track
@@ -142,9 +141,8 @@ class Branch:
         layout = self.system.layout
         if len(moving) > 1:
             return None
-        if any(freedoms.start <= moving[0] < freedoms.stop for _, freedoms in layout.balls):
-            return None
-        return layout.column_of_freedom(int(moving[0]))
+        freedom = int(moving[0])
+        return None if freedom in layout.ball_freedoms else layout.column_of_freedom(freedom)
 
     def _along_lines(self, step: FloatArray, wanted: FloatArray) -> FloatArray:
         """Follow straight lines in the space of several drivers."""

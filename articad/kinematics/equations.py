@@ -6,14 +6,11 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
 from articad.connectors import FloatArray, quaternion
 from articad.kinematics.batch import TreeArrays
 from articad.kinematics.joints import Coupling, Joint
-from articad.kinematics.layout import Layout
-
-IndexArray = npt.NDArray[np.intp]
+from articad.kinematics.layout import IndexArray, Layout
 
 NEAR_PI = -0.9  # cos θ below which the logarithm is taken by quaternions instead of the sine
 _STRAIGHT = 1e-8  # rad: a mismatch so small that the square term of the logarithm's Jacobian is below rounding

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import heapq
+import operator
 from collections import Counter
 from collections.abc import Sequence
 from functools import cached_property
@@ -24,6 +25,7 @@ _WEIGHTS = {
     JointType.REVOLUTE: 4,
     JointType.BALL: 5,
 }
+_REVERSIBLE = frozenset(joint_type for joint_type in JointType if joint_type.reversible)
 
 
 class JointGraph:
@@ -67,32 +69,51 @@ class JointGraph:
         findings = self.findings()
         if not findings.ok:
             raise PlanError("\n".join(map(str, findings.errors)), findings=findings)
-        edges, _ = self._prim
-        carrying = {edge.joint.name for edge in edges}
-        return KinematicTree(self.ground, edges), tuple(joint for joint in self.joints if joint.name not in carrying)
+        crossed, _ = self._prim
+        carrying = {index for index, _, _ in crossed}
+        edges = [Edge(self.joints[index], self.parts[near], self.parts[far]) for index, near, far in sorted(crossed)]
+        return KinematicTree(self.ground, edges), tuple(joint for i, joint in enumerate(self.joints) if i not in carrying)
 
     @cached_property
-    def _prim(self) -> tuple[tuple[Edge, ...], set[str]]:
-        """The edges of the tree in order of declaration of their joints, and the parts that it reaches."""
-        at: dict[str, list[tuple[int, int, str]]] = {}
-        for index, joint in enumerate(self.joints):
-            weight = min(_WEIGHTS[joint.type], _DRIVEN_WEIGHT) if joint.driver else _WEIGHTS[joint.type]
-            at.setdefault(joint.parent, []).append((weight, index, joint.child))
-            if joint.type.reversible:
-                at.setdefault(joint.child, []).append((weight, index, joint.parent))
-        reached, known = {self.ground}, set(self.parts)
-        heap = [(weight, index, self.ground, far) for weight, index, far in at.get(self.ground, ())]
+    def _parents(self) -> list[str]:
+        return [joint.parent for joint in self.joints]
+
+    @cached_property
+    def _children(self) -> list[str]:
+        return [joint.child for joint in self.joints]
+
+    @cached_property
+    def _place(self) -> dict[str, int]:
+        return {part: i for i, part in enumerate(self.parts)}
+
+    @cached_property
+    def _prim(self) -> tuple[list[tuple[int, int, int]], list[bool]]:
+        """The joints that carry parts, as (joint, near part, far part) by index, and for each part whether they reach it."""
+        n, place = len(self.joints), self._place
+        parents, children = [place[name] for name in self._parents], [place[name] for name in self._children]
+        at: list[list[int]] = [[] for _ in self.parts]  # of each part: weight and index of its joints, in one number
+        for index, (joint, parent, child) in enumerate(zip(self.joints, parents, children, strict=True)):
+            key = _weight(joint) * n + index
+            at[parent].append(key)
+            if joint.type in _REVERSIBLE:
+                at[child].append(key)
+        reached = [False] * len(self.parts)
+        reached[place[self.ground]] = True
+        heap = at[place[self.ground]]
         heapq.heapify(heap)
-        edges: dict[int, Edge] = {}
+        crossed: list[tuple[int, int, int]] = []
         while heap:
-            _, index, near, far = heapq.heappop(heap)
-            if far in reached or far not in known:
+            index = heapq.heappop(heap) % n
+            near, far = parents[index], children[index]
+            if reached[far]:
+                near, far = far, near
+            if reached[far]:
                 continue
-            reached.add(far)
-            edges[index] = Edge(self.joints[index], near, far)
-            for weight, next_index, beyond in at.get(far, ()):
-                heapq.heappush(heap, (weight, next_index, far, beyond))
-        return tuple(edges[index] for index in sorted(edges)), reached
+            reached[far] = True
+            crossed.append((index, near, far))
+            for key in at[far]:
+                heapq.heappush(heap, key)
+        return crossed, reached
 
     def findings(self) -> Findings:
         """Return everything that is wrong with the graph."""
@@ -101,7 +122,7 @@ class JointGraph:
     @cached_property
     def _findings(self) -> Findings:
         found = [*self._name_findings(), *self._joint_findings()]
-        if self.ground not in self.parts:
+        if self.ground not in self._place:
             hint = f"Choose one of {_listed(self.parts)}.{did_you_mean(self.ground, self.parts)}"
             message = f"Ground {self.ground!r} is not a declared part."
             found.append(Finding(code="E_NO_GROUND", where="ground", message=message, hint=hint))
@@ -112,6 +133,8 @@ class JointGraph:
     def _name_findings(self) -> list[Finding]:
         found = []
         for kind, names in (("parts", self.parts), ("joints", tuple(joint.name for joint in self.joints))):
+            if len(set(names)) == len(names):
+                continue
             for name, count in Counter(names).items():
                 if count > 1:
                     message = f"{count} {kind} are called {name!r}."
@@ -120,7 +143,18 @@ class JointGraph:
                     )
         return found
 
+    def _clear(self) -> bool:
+        """Tell at a glance that every joint has two declared parts and its own pair of connectors."""
+        if not self._place.keys() >= {*self._parents, *self._children} or any(map(operator.eq, self._parents, self._children)):
+            return False
+        near = [joint.parent_connector for joint in self.joints]
+        far = [joint.child_connector for joint in self.joints]
+        pairs = set(zip(self._parents, near, self._children, far, strict=True))
+        return len(pairs) == len(self.joints) and pairs.isdisjoint(zip(self._children, far, self._parents, near, strict=True))
+
     def _joint_findings(self) -> list[Finding]:
+        if self._clear():
+            return []
         found = []
         first_of: dict[frozenset[tuple[str, str]], str] = {}
         known = set(self.parts)
@@ -143,6 +177,10 @@ class JointGraph:
         return found
 
     def _reach_findings(self) -> list[Finding]:
+        _, is_reached = self._prim
+        if all(is_reached):
+            return []
+        reached = {part for part, there in zip(self.parts, is_reached, strict=True) if there}
         connected, *loose = self.components()
         found = []
         if loose:
@@ -151,7 +189,6 @@ class JointGraph:
             hint = f"Add a joint between one part of each group and one of {_listed(connected)}."
             parts = tuple(part for group in loose for part in group)
             found.append(Finding(code="E_DISCONNECTED", where="joints", message=message, hint=hint, parts=parts, value=len(loose)))
-        _, reached = self._prim
         for joint in self.joints:
             if joint.child in reached and joint.parent in connected and joint.parent not in reached and not joint.type.reversible:
                 message = f"The tree would have to cross {joint.type} joint {joint.name!r} from {joint.child!r} to {joint.parent!r}."
@@ -166,6 +203,11 @@ class JointGraph:
                     )
                 )
         return found
+
+
+def _weight(joint: Joint) -> int:
+    weight = _WEIGHTS[joint.type]
+    return min(weight, _DRIVEN_WEIGHT) if joint.driver else weight
 
 
 def _listed(names: Sequence[str]) -> str:

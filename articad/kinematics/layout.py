@@ -3,14 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import cached_property
+from itertools import accumulate
 
 import numpy as np
+import numpy.typing as npt
 
 from articad.connectors import FloatArray, quaternion
 from articad.errors import KinematicsError, UnknownJointError
 from articad.kinematics.joints import Coordinate, Joint, JointType
 
+IndexArray = npt.NDArray[np.intp]
+
 _QUATERNION_TOLERANCE = 1e-3  # | ‖q‖ − 1 | of given coordinates: rounding passes, other quantities do not
+_N_COLUMNS = {joint_type: len(joint_type.coordinates) for joint_type in JointType}
+_N_FREEDOMS = {joint_type: joint_type.freedoms for joint_type in JointType}
 
 
 class Layout:
@@ -21,26 +28,51 @@ class Layout:
 
     Args:
         joints: In order of declaration.
+
+    Attributes:
+        columns: Of each joint, by name.
+        freedoms: Of each joint, by name.
+        rest: Coordinates at rest `(n_columns,)`.
     """
 
     def __init__(self, joints: Sequence[Joint]) -> None:
         self.joints = tuple(joints)
-        self.coordinates: tuple[Coordinate, ...] = tuple(c for joint in self.joints for c in joint.columns)
-        self.columns: dict[str, slice] = {}
-        self.freedoms: dict[str, slice] = {}
-        column = freedom = 0
-        for joint in joints:
-            self.columns[joint.name] = slice(column, column + len(joint.type.coordinates))
-            self.freedoms[joint.name] = slice(freedom, freedom + joint.type.freedoms)
-            column, freedom = self.columns[joint.name].stop, self.freedoms[joint.name].stop
-        self.n_columns, self.n_freedoms = column, freedom
-        self.column_of = {c.name: i for i, c in enumerate(self.coordinates)}
-        self.is_length = np.array([unit == "mm" for joint in joints for unit in joint.type.freedom_units], dtype=bool)
-        self.balls = tuple((self.columns[j.name], self.freedoms[j.name]) for j in joints if j.type is JointType.BALL)
-        plain = [j for j in joints if j.type is not JointType.BALL]
-        self._plain_columns = _indices([self.columns[j.name] for j in plain])
-        self._plain_freedoms = _indices([self.freedoms[j.name] for j in plain])
-        self.rest: FloatArray = self.normalized(np.array([c.rest for c in self.coordinates], dtype=np.float64))
+        names, types = [joint.name for joint in joints], [joint.type for joint in joints]
+        columns = list(accumulate(map(_N_COLUMNS.__getitem__, types), initial=0))
+        freedoms = list(accumulate(map(_N_FREEDOMS.__getitem__, types), initial=0))
+        self.n_columns, self.n_freedoms = columns[-1], freedoms[-1]
+        self.columns: dict[str, slice] = dict(zip(names, map(slice, columns, columns[1:]), strict=False))
+        self.freedoms: dict[str, slice] = dict(zip(names, map(slice, freedoms, freedoms[1:]), strict=False))
+        balls = [i for i, joint_type in enumerate(types) if joint_type is JointType.BALL]
+        self._ball_columns = _runs([columns[i] for i in balls], 4)
+        self._ball_freedoms = _runs([freedoms[i] for i in balls], 3)
+        self.rest: FloatArray = self.normalized(np.array([value for joint in joints for value in joint.rest], dtype=np.float64))
+
+    @cached_property
+    def coordinates(self) -> tuple[Coordinate, ...]:
+        """The columns."""
+        return tuple(c for joint in self.joints for c in joint.columns)
+
+    @cached_property
+    def column_of(self) -> dict[str, int]:
+        """Place of each column by name."""
+        return {c.name: i for i, c in enumerate(self.coordinates)}
+
+    @cached_property
+    def is_length(self) -> npt.NDArray[np.bool_]:
+        """True for freedoms in mm `(n_freedoms,)`."""
+        return np.array([unit == "mm" for joint in self.joints for unit in joint.type.freedom_units], dtype=bool)
+
+    @cached_property
+    def ball_freedoms(self) -> frozenset[int]:
+        """Freedoms that turn balls."""
+        return frozenset(self._ball_freedoms.ravel().tolist())
+
+    @cached_property
+    def _plain(self) -> tuple[IndexArray, IndexArray]:
+        """Columns and freedoms of all joints but balls."""
+        all_columns, all_freedoms = np.arange(self.n_columns), np.arange(self.n_freedoms)
+        return np.setdiff1d(all_columns, self._ball_columns), np.setdiff1d(all_freedoms, self._ball_freedoms)
 
     def joint(self, name: str) -> Joint:
         """Return a joint by name.
@@ -74,40 +106,42 @@ class Layout:
         """
         if not np.isfinite(Q).all():
             raise KinematicsError("E_NONFINITE: a coordinate is NaN or infinite.")
-        for columns, _ in self.balls:
-            q = Q[..., columns]
+        if self._ball_columns.size:
+            q = Q[..., self._ball_columns]
             norm = np.sqrt((q * q).sum(axis=-1, keepdims=True))
-            if q.size and np.abs(norm - 1).max() > _QUATERNION_TOLERANCE:
-                name = self.coordinates[columns.start].joint
-                worst = float(norm.flat[np.argmax(np.abs(norm - 1))])
-                raise KinematicsError(f"E_QUAT_NORM: ball {name!r} was given a quaternion of length {worst:.6g}; its length must be 1.")
+            off = np.abs(norm - 1)
+            if off.max(initial=0.0) > _QUATERNION_TOLERANCE:
+                worst = np.unravel_index(np.argmax(off), off.shape)
+                name, length = self.coordinates[self._ball_columns[worst[-2], 0]].joint, float(norm[worst])
+                raise KinematicsError(f"E_QUAT_NORM: ball {name!r} was given a quaternion of length {length:.6g}; its length must be 1.")
             Q = Q.copy()
-            Q[..., columns] = q / norm
+            Q[..., self._ball_columns] = q / norm
         return Q
 
     def integrate(self, Q: FloatArray, step: FloatArray) -> FloatArray:
         """Return the coordinates `(*batch, n_columns)` after moving by `step` `(*batch, n_freedoms)`; balls by exp(step)."""
-        if not self.balls:
+        if not self._ball_columns.size:
             return Q + step
-        moved = np.empty_like(np.broadcast_to(Q, (*np.broadcast_shapes(Q.shape[:-1], step.shape[:-1]), self.n_columns)))
-        moved[..., self._plain_columns] = Q[..., self._plain_columns] + step[..., self._plain_freedoms]
-        for columns, freedoms in self.balls:
-            turned = quaternion.multiply(quaternion.exp(step[..., freedoms]), Q[..., columns])
-            moved[..., columns] = quaternion.normalized(turned)
+        columns, freedoms = self._plain
+        moved = np.empty((*np.broadcast_shapes(Q.shape[:-1], step.shape[:-1]), self.n_columns))
+        moved[..., columns] = Q[..., columns] + step[..., freedoms]
+        turned = quaternion.multiply(quaternion.exp(step[..., self._ball_freedoms]), Q[..., self._ball_columns])
+        moved[..., self._ball_columns] = quaternion.normalized(turned)
         return moved
 
     def difference(self, start: FloatArray, end: FloatArray) -> FloatArray:
         """Return the step `(*batch, n_freedoms)` that leads from `start` to `end`; balls the short way."""
-        if not self.balls:
+        if not self._ball_columns.size:
             return end - start
-        batch = np.broadcast_shapes(start.shape[:-1], end.shape[:-1])
-        step = np.empty((*batch, self.n_freedoms))
-        step[..., self._plain_freedoms] = end[..., self._plain_columns] - start[..., self._plain_columns]
-        for columns, freedoms in self.balls:
-            turn = quaternion.multiply(end[..., columns], quaternion.conjugate(start[..., columns]))
-            step[..., freedoms] = quaternion.log(turn)
+        columns, freedoms = self._plain
+        step = np.empty((*np.broadcast_shapes(start.shape[:-1], end.shape[:-1]), self.n_freedoms))
+        step[..., freedoms] = end[..., columns] - start[..., columns]
+        turn = quaternion.multiply(end[..., self._ball_columns], quaternion.conjugate(start[..., self._ball_columns]))
+        step[..., self._ball_freedoms] = quaternion.log(turn)
         return step
 
 
-def _indices(slices: Sequence[slice]) -> np.ndarray[tuple[int], np.dtype[np.intp]]:
-    return np.array([i for part in slices for i in range(part.start, part.stop)], dtype=np.intp)
+def _runs(starts: Sequence[int], length: int) -> IndexArray:
+    """Return `length` indices from each start `(starts, length)`."""
+    runs: IndexArray = np.array(starts, dtype=np.intp)[:, None] + np.arange(length)
+    return runs

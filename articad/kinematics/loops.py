@@ -19,9 +19,9 @@ import numpy.typing as npt
 
 from articad.connectors import SE3, FloatArray
 from articad.kinematics.batch import TreeArrays
-from articad.kinematics.equations import BatchEquations, CouplingEquations, IndexArray, closures
+from articad.kinematics.equations import BatchEquations, CouplingEquations, closures
 from articad.kinematics.joints import Coupling, Joint
-from articad.kinematics.layout import Layout
+from articad.kinematics.layout import IndexArray, Layout
 from articad.kinematics.single import SingleEquations
 from articad.kinematics.tree import Edge, KinematicTree
 

@@ -16,6 +16,7 @@ from articad.kinematics.batch import TreeArrays
 from articad.kinematics.branch import Branch
 from articad.kinematics.configuration import Configuration
 from articad.kinematics.graph import JointGraph
+from articad.kinematics.joint_check import joint_findings
 from articad.kinematics.joints import Coordinate, Coupling, Joint
 from articad.kinematics.layout import Layout
 from articad.kinematics.linkage_findings import loop_findings
@@ -45,7 +46,7 @@ class Mechanism:
         self.joints, self.couplings = tuple(joints), tuple(couplings)
         self.T_ground = SE3.identity() if T_ground is None else T_ground
         graph = JointGraph(self.parts, ground, self.joints)
-        findings = Findings([*graph.findings(), *(f for joint in self.joints for f in joint.findings()), *_coupling_findings(self)])
+        findings = Findings([*graph.findings(), *joint_findings(self.joints), *_coupling_findings(self)])
         if not findings.ok:
             raise PlanError("\n".join(map(str, findings.errors)), findings=findings)
         self._structure = findings
@@ -93,7 +94,7 @@ class Mechanism:
     @property
     def nq(self) -> int:
         """Number of columns of q."""
-        return len(self.drivers)
+        return self.layout.n_columns if self.is_tree else len(self.drivers)
 
     @cached_property
     def rest(self) -> FloatArray:

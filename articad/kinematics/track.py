@@ -11,7 +11,7 @@ import numpy as np
 
 from articad.connectors import FloatArray
 from articad.kinematics.continuation import ROUNDING, Follower, Stop, Trace
-from articad.kinematics.equations import IndexArray
+from articad.kinematics.layout import IndexArray
 from articad.kinematics.loops import CLOSED, BoolArray
 
 _MOST_TURNS = 12  # of a driver, after which a motion that has not come back is not expected to

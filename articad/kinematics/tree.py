@@ -4,16 +4,15 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from types import MappingProxyType
+from typing import NamedTuple
 
 from articad.errors import KinematicsError
 from articad.kinematics.joints import Joint
 
 
-@dataclass(frozen=True)
-class Edge:
+class Edge(NamedTuple):
     """A joint as the tree crosses it.
 
     Attributes:

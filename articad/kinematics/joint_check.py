@@ -1,0 +1,56 @@
+"""A quick look at the numbers of many joints at once; what it does not clear is looked at joint by joint."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from articad.findings import Finding
+from articad.kinematics.joints import Joint, JointType
+
+
+def joint_findings(joints: Sequence[Joint]) -> list[Finding]:
+    """Return everything that is wrong with the joints' own numbers."""
+    return [finding for joint in _doubtful(joints) for finding in joint.findings()]
+
+
+def _doubtful(joints: Sequence[Joint]) -> Sequence[Joint]:
+    """Return the joints whose numbers are not clearly right, in order of declaration."""
+    balls = [joint for joint in joints if joint.type is JointType.BALL and not _clear_ball(joint)]
+    special = [joint for joint in joints if joint.lead or joint.driver or joint.type is JointType.SCREW]
+    others = [joint for joint in joints if joint.type is not JointType.BALL]
+    return _in_order(joints, [*balls, *special, *_unclear(others)])
+
+
+def _in_order(joints: Sequence[Joint], some: Sequence[Joint]) -> Sequence[Joint]:
+    wanted = set(map(id, some))
+    return [joint for joint in joints if id(joint) in wanted] if wanted else ()
+
+
+def _clear_ball(joint: Joint) -> bool:
+    limits = joint.limits
+    turns = limits.twist is None or limits.twist[0] <= 0.0 <= limits.twist[1]
+    leans = limits.cone is None or 0.0 < limits.cone <= math.pi
+    return joint.rest == _NEUTRAL and turns and leans and not limits.lower and not limits.upper
+
+
+def _unclear(joints: Sequence[Joint]) -> Sequence[Joint]:
+    """Return the joints that are no balls and do not rest within limits of the right number."""
+    sizes = [_SIZES[joint.type] for joint in joints]
+    rests, limits = [joint.rest for joint in joints], [joint.limits for joint in joints]
+    lowers, uppers = [one.lower for one in limits], [one.upper for one in limits]
+    if not sizes == list(map(len, rests)) == list(map(len, lowers)) == list(map(len, uppers)):
+        return joints
+    rest, lower, upper = (np.array([value for one in values for value in one]) for values in (rests, lowers, uppers))
+    good = (lower <= rest) & (rest <= upper) & np.isfinite(rest)
+    unclear = [joint for joint, one in zip(joints, limits, strict=True) if one.cone is not None or one.twist is not None]
+    if not good.all():
+        bad = set(np.repeat(np.arange(len(joints)), sizes)[~good].tolist())
+        unclear += [joint for i, joint in enumerate(joints) if i in bad]
+    return unclear
+
+
+_NEUTRAL = JointType.BALL.neutral
+_SIZES = {joint_type: len(joint_type.coordinates) for joint_type in JointType}
