@@ -458,4 +458,89 @@ CODES: dict[str, Code] = {
         "import", None, "A chain of joints over bare links is read as one joint.", "Read with fuse off to keep them apart."
     ),
     "E_UNSAFE_PATH": Code("import", None, "A file names a path outside its own folder.", "Keep meshes beside the file."),
+    # --- audit and simulation of files that anyone made
+    "E_AUDIT_NUMBER": Code("audit", None, "An attribute is not a number.", "Give plain decimal numbers; expand xacro first."),
+    "E_AUDIT_NAME_TWICE": Code("audit", None, "Two links or two joints have one name.", "Rename all but one."),
+    "E_AUDIT_NO_NAME": Code("audit", None, "A link or joint has no name.", "Give it one."),
+    "E_AUDIT_LINK_UNKNOWN": Code("audit", None, "A joint names a link that is not there.", "Name a link of the file, or declare it."),
+    "E_AUDIT_JOINT_TYPE": Code("audit", None, "A joint has a type that the format does not know.", "Use one of the format's types."),
+    "E_AUDIT_TWO_PARENTS": Code("audit", None, "A link is the child of several joints.", "Keep one; closed loops need MJCF."),
+    "E_AUDIT_ROOTS": Code("audit", None, "A file has no root link, or several.", "Connect every link to one root."),
+    "E_AUDIT_CIRCLE": Code("audit", None, "Links carry each other in a circle.", "Remove one of the joints between them."),
+    "E_AUDIT_MIMIC": Code("audit", None, "A joint mimics one that is not there or does not move.", "Name a joint that moves."),
+    "W_AUDIT_NAME": Code("audit", None, "Names have signs that ROS or USD do not take.", "Use letters, digits and underscores."),
+    "W_AUDIT_LONG_NAME": Code("audit", None, "The robot's name is a whole text.", "Give it a short name."),
+    "E_AUDIT_NO_INERTIA": Code(
+        "audit", None, "A body that moves has a shape but no mass.", "Give it mass and inertia; `--fix` computes them."
+    ),
+    "E_AUDIT_MASSLESS": Code(
+        "audit", None, "A link that carries a joint has neither mass nor shape.", "Give it a small mass, or make the chain one joint."
+    ),
+    "E_AUDIT_MASS": Code("audit", None, "A mass is not positive.", "Give a positive mass."),
+    "E_AUDIT_INERTIA": Code("audit", None, "An inertia has a principal moment that is not positive.", "Compute it from the shape."),
+    "E_AUDIT_INERTIA_TRIANGLE": Code(
+        "audit", None, "The largest moment of an inertia exceeds the sum of the others.", "Compute it from the shape."
+    ),
+    "W_AUDIT_INERTIA_SHAPE": Code(
+        "audit", None, "An inertia is larger than the body's shape allows.", "Compute it from the shape; check its unit and point."
+    ),
+    "W_AUDIT_COM": Code(
+        "audit", None, "A centre of mass lies outside the box of the body's shapes.", "Give it in the link's frame, in metres."
+    ),
+    "W_AUDIT_DENSITY": Code("audit", None, "A body is denser than osmium, or thinner than air.", "Check the units of mass and mesh."),
+    "E_AUDIT_LIMITS_ORDER": Code("audit", None, "A lower bound is above its upper bound.", "Exchange the two."),
+    "W_AUDIT_NO_LIMITS": Code(
+        "audit", None, "A hinge or slide has no bounds, which readers take for zero.", "Give lower and upper, or make it continuous."
+    ),
+    "W_AUDIT_LOCKED": Code("audit", None, "Both bounds of a joint are equal.", "Make it fixed, or open its range."),
+    "W_AUDIT_DEGREES": Code("audit", None, "Bounds in radians look like degrees.", "Write radians."),
+    "W_AUDIT_ENDLESS": Code(
+        "audit", None, "A bounded joint spans a full turn or more.", "Make it continuous, unless a cable or thread stops it."
+    ),
+    "W_AUDIT_ZERO_OUTSIDE": Code("audit", None, "A range does not hold zero, where readers place the joint.", "Move the joint's origin."),
+    "W_AUDIT_NO_EFFORT": Code("audit", None, "The effort or velocity of a joint that moves is zero or missing.", "Give that of its drive."),
+    "W_AUDIT_PLACEHOLDER": Code("audit", None, "All joints have the same round effort or velocity.", "Give each that of its drive."),
+    "E_AUDIT_MESH_ABSENT": Code("audit", None, "A mesh file is not there.", "Put it there, or correct its name."),
+    "W_AUDIT_MESH_OUTSIDE": Code(
+        "audit", None, "A mesh lies outside the folders that may be read.", "Name the folder that holds both with `--root`."
+    ),
+    "E_AUDIT_MESH_UNREADABLE": Code("audit", None, "A mesh file cannot be read.", "Export it again."),
+    "I_AUDIT_MESH_FORMAT": Code(
+        "audit", None, "A mesh has a format that is not read, so its shape is not audited.", "Convert it to STL, OBJ, GLB or PLY."
+    ),
+    "W_AUDIT_NO_COLLISION": Code(
+        "audit", None, "A link is drawn, but nothing can touch it.", "Collide with the same mesh or a simpler one."
+    ),
+    "W_AUDIT_MESH_OPEN": Code("audit", None, "A mesh has edges without a partner, or is no solid for another reason.", "Close it."),
+    "W_AUDIT_MESH_FLAT": Code("audit", None, "A mesh encloses nothing.", "Give it a thickness."),
+    "W_AUDIT_MESH_INSIDE_OUT": Code("audit", None, "The triangles of a mesh face inwards.", "Reverse them."),
+    "W_AUDIT_PIECES": Code("audit", None, "A link is several bodies that do not touch.", "Make each a link, or join them."),
+    "I_AUDIT_UNFUSED": Code("audit", None, "A mesh is several bodies that touch but are not fused.", "Fuse them."),
+    "W_AUDIT_SCALE": Code("audit", None, "A whole robot is larger than 100 m or smaller than 1 mm.", "Check the unit of its meshes."),
+    "W_AUDIT_UNITS": Code("audit", None, "A shape is drawn in another unit than what is beside it.", "Give it the right scale."),
+    "W_AUDIT_BASE": Code(
+        "audit", None, "A robot reaches below the origin of its base.", "Add a base link at the floor, or spawn it higher."
+    ),
+    "W_AUDIT_GLTF": Code("audit", None, "glTF in millimetres, though glTF is in metres.", "Write STL or OBJ, or glTF in metres."),
+    "I_AUDIT_CARRIERS": Code(
+        "audit", None, "Links without shape carry a joint of several freedoms.", "Use MJCF or CAD, where it is one joint."
+    ),
+    "I_AUDIT_SHARED": Code(
+        "audit", None, "Shapes that simulators never let collide share space.", "Nothing, if the shapes stand for bodies that fit."
+    ),
+    "W_AUDIT_PAIR_COLLISION": Code("audit", None, "Two parts collide when two joints move together.", "Narrow one range, or make room."),
+    "W_AUDIT_NOT_CHECKED": Code("audit", None, "There was no time for a check.", "Give it more with `--budget`."),
+    "W_AUDIT_ENGINE": Code("audit", None, "A simulator does not load the file.", "Correct what it names."),
+    "W_AUDIT_UNNAMED": Code(
+        "audit", None, "Parts of a STEP file have no names of their own.", "Name the products before they are exported."
+    ),
+    "E_AUDIT_NOT_SOLID": Code("audit", None, "A part of a STEP file is no valid closed solid.", "Repair it in CAD."),
+    "E_SIM_LOAD": Code("audit", None, "A simulator does not load the model.", "Audit the file: `articad audit`."),
+    "E_SIM_EXPLODES": Code("audit", None, "Numbers in a simulation grow without bound.", "Audit the file for overlap and inertias."),
+    "E_SIM_UNSETTLED": Code("audit", None, "A model that is held does not come to rest.", "Audit the file for overlap at rest."),
+    "E_SIM_RANGE": Code("audit", None, "A joint does not reach 95 % of its range.", "Make room, or narrow the range."),
+    "E_SIM_RESIDUAL": Code(
+        "audit", None, "The constraints of closed loops are not met.", "Let the loop close at rest; stiffen the constraint."
+    ),
+    "E_SIM_ENERGY": Code("audit", None, "Energy grows although nothing drives the model.", "Use a smaller time step; check inertias."),
 }
