@@ -36,7 +36,8 @@ def _page(folders: list[Path]) -> str:
         "# Gallery",
         "",
         "Every example of the repository, drawn by `scripts/gallery.py` from the plan and the part scripts, with no display or GPU:",
-        "two views, then the two ends of each driver's motion. Axes point along +z of the parent connector; arrows turn by the right hand.",
+        "two views, then for each driver the two ends of its motion, or the first quarter of more than half a turn. What stands still is faded.",
+        "Axes point along +z of the parent connector, arrows turn by the right hand; a dot is an axis towards you, a cross one away from you.",
         "",
     ]
     for folder in folders:

@@ -21,8 +21,8 @@ HALO: Color = (250, 250, 248)
 AXIS_COLORS: tuple[Color, Color, Color] = ((200, 40, 40), (30, 140, 60), (40, 80, 200))
 JOINT: Color = (0, 96, 160)
 _SMALLEST_LABELLED = 40  # pixels: a part of which less is seen gets no name
-_MOST_NAMES = 14  # names in one picture; more would hide it
-_MOST_AXES = 8
+_MOST_NAMES = 12  # names in one picture; more would hide it
+_MOST_AXES = 7
 _LOWERED = 4  # how often a name gives way to others before it is left out
 _TRIAD_PIXELS = 26
 _AXIS_SHARE = 0.13  # of the picture's width, to each side of the joint
@@ -106,12 +106,10 @@ def _joint_axis(draw: ImageDraw.ImageDraw, axis: Axis, camera: Camera, taken: li
     along = camera.project(camera.centre + direction * camera.mm_per_pixel) - camera.project(camera.centre[None])
     seen = float(np.linalg.norm(along))
     at = camera.project(np.array([axis.point]))[0]
-    if seen < 0.08:  # the axis points at the viewer
-        radius = 7
-        box = (at[0] - radius, at[1] - radius, at[0] + radius, at[1] + radius)
-        draw.ellipse(box, outline=JOINT, width=2)
-        draw.ellipse((at[0] - 1.5, at[1] - 1.5, at[0] + 1.5, at[1] + 1.5), fill=JOINT)
-        _place(draw, (at[0], at[1] - 15), axis.name, JOINT, camera, taken)
+    towards = float(direction @ camera.eye)
+    if seen < 0.08:
+        _end_on(draw, at, towards=towards > 0, turns=axis.turns)
+        _place(draw, (at[0], at[1] - 24), axis.name, JOINT, camera, taken)
         return
     unit = along.reshape(2) / seen
     length = _AXIS_SHARE * camera.width * max(seen, 0.35)
@@ -119,7 +117,7 @@ def _joint_axis(draw: ImageDraw.ImageDraw, axis: Axis, camera: Camera, taken: li
     _dashed(draw, tail, tip)
     _arrow_head(draw, tip, unit)
     if axis.turns:
-        _turn_arrow(draw, at + unit * length * 0.72, unit)
+        _turn_arrow(draw, at + unit * length * 0.72, unit, towards)
     _place(draw, (float(tip[0] + unit[0] * 14), float(tip[1] + unit[1] * 12)), axis.name, JOINT, camera, taken)
 
 
@@ -143,16 +141,42 @@ def _arrow_head(draw: ImageDraw.ImageDraw, tip: FloatArray, unit: FloatArray, *,
     draw.polygon([(tip[0], tip[1]), (left[0], left[1]), (right[0], right[1])], fill=color)
 
 
-def _turn_arrow(draw: ImageDraw.ImageDraw, at: FloatArray, unit: FloatArray) -> None:
-    """Draw a narrow arc round the axis whose arrow shows the positive turn: by the right hand, towards the viewer's left of +z."""
+def _end_on(draw: ImageDraw.ImageDraw, at: FloatArray, *, towards: bool, turns: bool) -> None:
+    """Draw an axis that points at the viewer (a dot) or away (a cross), and round it the positive turn."""
+    radius = 5.0
+    draw.ellipse((at[0] - radius, at[1] - radius, at[0] + radius, at[1] + radius), outline=JOINT, width=2)
+    if towards:
+        draw.ellipse((at[0] - 1.5, at[1] - 1.5, at[0] + 1.5, at[1] + 1.5), fill=JOINT)
+    else:
+        reach = radius / math.sqrt(2)
+        for side in (1, -1):
+            draw.line([(at[0] - reach, at[1] - side * reach), (at[0] + reach, at[1] + side * reach)], fill=JOINT, width=2)
+    if turns:
+        _arc_arrow(draw, at, np.array([13.0, 0.0]), np.array([0.0, -13.0 if towards else 13.0]))
+
+
+def _turn_arrow(draw: ImageDraw.ImageDraw, at: FloatArray, unit: FloatArray, towards: float) -> None:
+    """Draw an arc round a slanted axis whose arrow shows the positive turn, by the right hand.
+
+    Args:
+        draw: Where to.
+        at: Middle of the arc [pixels].
+        unit: Direction of the axis in the picture, rows downwards.
+        towards: Cosine of the angle between the axis and the direction to the viewer, who sees the circle's upper side when it is positive.
+    """
     across = np.array([-unit[1], unit[0]])
-    points = []
-    for step in range(15):
-        angle = math.radians(-70 + 290 * step / 14)
-        points.append(at + across * 9 * math.cos(angle) + unit * 3.5 * math.sin(angle))
+    open_by = math.copysign(max(3.5, 10.0 * abs(towards)), towards if abs(towards) > 1e-9 else 1.0)
+    _arc_arrow(draw, at, across * 10.0, unit * open_by)
+
+
+def _arc_arrow(draw: ImageDraw.ImageDraw, at: FloatArray, right: FloatArray, back: FloatArray) -> None:
+    """Draw most of an ellipse with an arrow head, from `right` by way of `back`; it is open in front."""
+    points = [at + right * math.cos(angle) + back * math.sin(angle) for angle in np.radians(np.linspace(-50, 230, 29))]
+    draw.line([(point[0], point[1]) for point in points], fill=HALO, width=5)
     draw.line([(point[0], point[1]) for point in points], fill=JOINT, width=2)
-    heading = points[-1] - points[-2]
-    _arrow_head(draw, points[-1] + heading, heading / max(float(np.linalg.norm(heading)), 1e-9), size=5.0)
+    heading = points[-1] - points[-3]
+    heading /= max(float(np.linalg.norm(heading)), 1e-9)
+    _arrow_head(draw, points[-1] + heading * 4, heading, size=8.0)
 
 
 def _triad(draw: ImageDraw.ImageDraw, camera: Camera) -> None:

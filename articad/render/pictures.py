@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -30,16 +31,19 @@ if TYPE_CHECKING:
 FloatArray = NDArray[np.float64]
 Renderer = Literal["embree", "pyvista"]
 
-RECIPE = "articad.picture/1"  # changes when the same scene would be drawn differently; part of a model request's key
+RECIPE = "articad.picture/2"  # changes when the same scene would be drawn differently; part of a model request's key
 DEFAULT_VIEWS = ("iso", "front", "right", "top")
 DEFAULT_SIZE = 512
 MOTION_VIEWS = ("iso", "iso_left", "front", "right", "top", "iso_back", "iso_below")
 FRAMES = 8
 _PROBE_SIZE = 96  # pixels of the pictures by which a view is chosen
 _FREE_TRAVEL = 0.1  # of the assembly's size: how far a travel without limits is shown
-_MOST_MOTIONS = 8  # of a sheet
-_SHEET_FRAMES = 5  # of which the first and the last but one are shown: an endless joint's last is its first again
-_BETWEEN = (205, 208, 212)
+_MOST_MOTIONS = 14  # of a sheet
+_SHEET_FRAMES = 5  # of which two are shown: first and last, or the first quarter of more than half a turn
+_SHEET_COLUMNS = 4
+_NEAR = 0.3  # of the assembly's size: what moves and is smaller than this is shown from nearby…
+_CONTEXT = 1.5  # …with this much of its own size round it
+_BETWEEN = (226, 228, 231)
 _GAP = 6  # pixels between the pictures of a sheet
 _GIF_MILLISECONDS = 60
 
@@ -205,9 +209,8 @@ def render_motion(
         axes: Draw the joint's axis.
     """
     captions, q = motion_frames(assembly, joint, frames)
-    scenes = [scene_of(assembly.parts, _poses(assembly, row), joints=_of(assembly.joints, joint)) for row in q]
-    bounds = _envelope(scenes)
-    camera = Camera.fit(view or best_view(scenes), bounds, width=size, height=size)
+    scenes = _motion_scenes(assembly, joint, q)
+    camera = Camera.fit(view or best_view(scenes), _shown(scenes), width=size, height=size)
     return [
         picture(scene, camera, supersample=supersample, labels=False, axes=axes, title=caption)
         for scene, caption in zip(scenes, captions, strict=True)
@@ -215,7 +218,9 @@ def render_motion(
 
 
 def best_view(scenes: Sequence[Scene], candidates: Sequence[str] = MOTION_VIEWS) -> str:
-    """Return the view that shows a motion best: much of the picture changes, and what moves goes far across it.
+    """Return the view that shows a motion best: what moves goes far across the picture, and much of it is seen to change.
+
+    Both are measured in millimetres: a view that is nearer because the product is slim from there shows no more.
 
     Args:
         scenes: The same items in different places.
@@ -233,7 +238,7 @@ def best_view(scenes: Sequence[Scene], candidates: Sequence[str] = MOTION_VIEWS)
             for index in moving
         )
         before, after = cast(scenes[0], camera).item, cast(farthest, camera).item
-        return travel * int((before != after).sum())
+        return travel * int((before != after).sum()) * camera.mm_per_pixel**3
 
     return max(candidates, key=shown)
 
@@ -256,13 +261,14 @@ def product_sheet(assembly: Assembly, *, size: int = 480) -> Image.Image:
     """
     views = list(render_views(assembly, ("iso", "front"), size=size).values())
     ends: list[Image.Image] = []
-    for joint in list(dict.fromkeys(driver.joint for driver in assembly.drivers))[:_MOST_MOTIONS]:
+    for joint in dict.fromkeys(driver.joint for driver in assembly.drivers):
         frames = render_motion(assembly, joint, frames=_SHEET_FRAMES, size=(size - _GAP) // 2)
-        ends += [frames[0], frames[_SHEET_FRAMES - 2]]
+        for start in range(0, len(frames), _SHEET_FRAMES):
+            ends += [frames[start], frames[start + (1 if _turns_far(assembly, joint, start // _SHEET_FRAMES) else _SHEET_FRAMES - 1)]]
     top = contact_sheet(views, 2)
     if not ends:
         return top
-    bottom = contact_sheet(ends, 4)
+    bottom = contact_sheet(ends[: 2 * _MOST_MOTIONS], _SHEET_COLUMNS)
     sheet = Image.new("RGB", (top.width, top.height + _GAP + bottom.height), _BETWEEN)
     sheet.paste(top, (0, 0))
     sheet.paste(bottom, (0, top.height + _GAP))
@@ -342,6 +348,36 @@ def _displacement(before: Scene, after: Scene) -> float:
 def _envelope(scenes: Sequence[Scene]) -> FloatArray:
     """Return the box that holds every scene [mm], `(2, 3)`."""
     return np.array([np.min([scene.bounds[0] for scene in scenes], axis=0), np.max([scene.bounds[1] for scene in scenes], axis=0)])
+
+
+def _motion_scenes(assembly: Assembly, joint: str, q: FloatArray) -> list[Scene]:
+    """Return the scene of each configuration, with what stands still in all of them faded."""
+    poses = [_poses(assembly, row) for row in q]
+    moving = [name for name in assembly.parts if not all(poses[0][name].allclose(pose[name]) for pose in poses)]
+    return [scene_of(assembly.parts, pose, joints=_of(assembly.joints, joint), only=moving or None) for pose in poses]
+
+
+def _shown(scenes: Sequence[Scene]) -> FloatArray:
+    """Return the box that pictures of a motion show: all of it, or only the surroundings of what moves where that is small."""
+    whole = _envelope(scenes)
+    moving = [replace(scene, items=tuple(item for item in scene.items if item.manner == "solid")) for scene in scenes]
+    part = _envelope(moving)
+    size = float(np.linalg.norm(part[1] - part[0]))
+    if not moving[0].items or size > _NEAR * float(np.linalg.norm(whole[1] - whole[0])):
+        return whole
+    near: FloatArray = part + _CONTEXT * size * np.array([[-0.5], [0.5]])
+    return near
+
+
+def _turns_far(assembly: Assembly, joint: str, index: int) -> bool:
+    """Whether a joint's coordinate turns by more than half a turn, so that first and last frame do not tell which way."""
+    declared = next(entry for entry in assembly.joints if entry.name == joint)
+    if declared.type is JointType.BALL:
+        twist = declared.limits.twist
+        return index == len("xyz") - 1 and (twist is None or twist[1] - twist[0] > math.pi)
+    driver = [entry for entry in assembly.drivers if entry.joint == joint][index]
+    lower, upper = _range(assembly, driver)
+    return driver.unit == "rad" and upper - lower > math.pi + 1e-6
 
 
 def _of(joints: Sequence[Joint], name: str) -> tuple[Joint, ...]:

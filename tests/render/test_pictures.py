@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import io
 import math
+import os
+import subprocess
+import sys
 from dataclasses import replace
 from pathlib import Path
 
@@ -27,6 +30,7 @@ from articad.render import (
     motion_frames,
     motion_gif,
     picture,
+    pictures,
     png,
     render_motion,
     render_part,
@@ -126,6 +130,59 @@ def test_an_animation_runs_forth_and_back(rail: Assembly) -> None:
     animation = Image.open(io.BytesIO(motion_gif(render_motion(rail, "drive", frames=4, size=48, supersample=1))))
 
     assert getattr(animation, "n_frames", 1) == 6
+
+
+def test_a_motion_is_seen_along_the_axis_though_it_is_larger_from_above() -> None:
+    post = Part.from_mesh("post", box(40, 40, 200), connectors={"pivot": Connector("pivot", frame((0, -22, -60), (0, -1, 0)))})
+    hand = Part.from_mesh("hand", box(4, 4, 150), connectors={"pivot": Connector("pivot", frame((0, 0, -60), (0, -1, 0)))})
+    assembly = Assembly.from_parts(
+        "clock", parts=[post, hand], joints=[declare.revolute("swing", post["pivot"], hand["pivot"], limits=(-0.4, 0.4))], ground="post"
+    )
+    _, q = motion_frames(assembly, "swing", 3)
+    scenes = [scene_of(assembly.parts, dict(zip(assembly.parts, assembly.poses(row), strict=True))) for row in q]
+
+    assert best_view(scenes, ("top", "right", "front")) == "front"
+
+
+def test_what_stands_still_is_faded_and_small_things_are_shown_from_nearby() -> None:
+    desk = Part.from_mesh("desk", box(400, 400, 20), connectors={"knob": Connector("knob", frame((100, 100, 10), (0, 0, 1)))})
+    knob = Part.from_mesh("knob", box(20, 10, 10), connectors={"desk": Connector("desk", frame((0, 0, -6), (0, 0, 1)))})
+    turn = declare.revolute("turn", desk["knob"], knob["desk"], limits=(0.0, 1.5))
+    assembly = Assembly.from_parts("desk", parts=[desk, knob], joints=[turn], ground="desk")
+    _, q = motion_frames(assembly, "turn", 2)
+
+    scenes = pictures._motion_scenes(assembly, "turn", q)
+
+    assert [item.manner for item in scenes[0].items] == ["faded", "solid"]
+    lower, upper = pictures._shown(scenes)
+    assert (upper - lower < 100).all()
+    assert (lower < [90, 95, 11]).all()
+    assert (upper > [110, 105, 21]).all()
+
+
+def test_nothing_of_opengl_or_a_display_is_loaded_by_drawing() -> None:
+    code = """
+import io
+from articad.geometry.part import Part
+from articad.geometry.shapes import box, sphere
+from articad.connectors.connector import Connector
+from articad.connectors.se3 import SE3
+from articad.kinematics import declare
+from articad.assembly import Assembly
+from articad.render import render_motion, motion_gif
+frame = {"c": Connector("c", SE3.identity())}
+base, ball = Part.from_mesh("base", box(9, 9, 9), connectors=frame), Part.from_mesh("ball", sphere(6), connectors=frame)
+made = Assembly.from_parts("made", parts=[base, ball], joints=[declare.slider("go", base["c"], ball["c"], limits=(0, 9))], ground="base")
+made.render(["iso"], show_overlaps=True, section="x", explode=0.5, size=64)
+motion_gif(render_motion(made, "go", frames=2, size=64))
+loaded = {line.split("/")[-1].strip() for line in open("/proc/self/maps") if "/" in line}
+print(sorted(name for name in loaded if name.startswith(("libGL", "libEGL", "libOSMesa", "libX11", "libvtk", "libwayland", "libvulkan"))))
+"""
+    if not Path("/proc/self/maps").exists():
+        pytest.skip("this system does not tell what a process has loaded")
+    environment = {key: value for key, value in os.environ.items() if key not in {"DISPLAY", "WAYLAND_DISPLAY"}}
+    told = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, env=environment)
+    assert told.stdout.strip() == "[]"
 
 
 def test_sheets_put_pictures_side_by_side(rail: Assembly) -> None:
