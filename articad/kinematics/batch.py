@@ -10,152 +10,18 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from functools import cached_property
-from typing import NamedTuple, overload
 
 import numpy as np
-import numpy.typing as npt
 
-from articad.connectors import SE3, FloatArray, Mate, flip, quaternion
+from articad.connectors import SE3, FloatArray, quaternion
+from articad.kinematics.crossings import Crossing, Crossings, Transforms
 from articad.kinematics.joints import Joint, JointType
 from articad.kinematics.layout import Layout
 from articad.kinematics.tree import KinematicTree
-
-IndexArray = npt.NDArray[np.intp]
+from articad.kinematics.twists import Twists
 
 _FEW = 32  # configurations up to which matrices win over rows (measured: break-even 25 … 50)
 _CHUNK = 512  # configurations per pass: the rows of one joint then stay in the first-level cache
-TURNING = frozenset({JointType.REVOLUTE, JointType.CYLINDRICAL, JointType.SCREW})
-
-
-class Crossing(NamedTuple):
-    """A joint as it is crossed from `near` to `far`: T_far = T_near · A · M(signs ∘ q) · B."""
-
-    joint: Joint
-    near: int
-    far: int
-    backwards: bool
-    signs: FloatArray
-    A: SE3
-    B: SE3
-
-
-class Crossings(Sequence[Crossing]):
-    """Joints as a tree crosses them, their constants computed together.
-
-    Args:
-        joints: As declared.
-        near: Index of the part from which each is crossed.
-        far: Index of the part to which it leads.
-        backwards: True where it is crossed from its declared child.
-    """
-
-    def __init__(self, joints: Sequence[Joint], near: Sequence[int], far: Sequence[int], backwards: Sequence[bool]) -> None:
-        C_p = _stack([joint.T_parent_connector for joint in joints])
-        flipped = _stack([joint.T_child_connector for joint in joints]) @ _stack(
-            [flip(joint.mate) for joint in joints]
-        )  # F is its own inverse
-        back = np.array(backwards, dtype=bool)[:, None]
-        # T_c = T_p · C_p · J · (C_c F)⁻¹, and T_p = T_c · C_c F · J⁻¹ · C_p⁻¹
-        self.A = SE3.from_unit_array(np.where(back, flipped.data, C_p.data))
-        self.B = SE3.from_unit_array(np.where(back, C_p.data, flipped.data)).inverse()
-        signs = [
-            joint.type.reversal_signs(Mate.ALIGNED) if b else np.ones(len(joint.rest)) for joint, b in zip(joints, backwards, strict=True)
-        ]
-        self._rows = tuple(
-            Crossing(
-                joint, near[k], far[k], backwards[k], signs[k], SE3.from_unit_array(self.A.data[k]), SE3.from_unit_array(self.B.data[k])
-            )
-            for k, joint in enumerate(joints)
-        )
-
-    @overload
-    def __getitem__(self, index: int) -> Crossing: ...
-    @overload
-    def __getitem__(self, index: slice) -> tuple[Crossing, ...]: ...
-    def __getitem__(self, index: int | slice) -> Crossing | tuple[Crossing, ...]:
-        return self._rows[index]
-
-    def __len__(self) -> int:
-        return len(self._rows)
-
-
-def _stack(poses: Sequence[SE3]) -> SE3:
-    return SE3.stack(poses) if poses else SE3.identity((0,))
-
-
-class Transforms:
-    """A · J(q) · B of many crossings as matrices.
-
-    A joint that turns and slides about its z axis is affine in (1, cos θ, sin θ, d), so all of these are one product with
-    constants; the others are filled one by one.
-
-    Args:
-        crossings: The joints.
-        layout: Of the coordinates that are given.
-    """
-
-    def __init__(self, crossings: Crossings, layout: Layout) -> None:
-        n = len(crossings)
-        A, B = crossings.A.matrix, crossings.B.matrix
-        self._angle, self._travel = np.zeros(n, dtype=np.intp), np.zeros(n, dtype=np.intp)  # columns; the factor is 0 where there is none
-        self._turns, self._slides = np.zeros((n, 1)), np.zeros((n, 1))
-        self._constants = (A[:, None] @ _AFFINE @ B[:, None]).reshape(n, 4, 16)
-        self._others: list[tuple[int, JointType, slice, FloatArray, FloatArray, FloatArray]] = []
-        for k, c in enumerate(crossings):
-            columns = layout.columns[c.joint.name]
-            if c.joint.type in {JointType.BALL, JointType.PLANAR, JointType.UNIVERSAL}:
-                self._others.append((k, c.joint.type, columns, c.signs, A[k], B[k]))
-                continue
-            if c.joint.type in TURNING:
-                self._angle[k], self._turns[k] = columns.stop - 1, c.signs[-1]
-            if c.joint.type is JointType.SCREW:
-                self._travel[k], self._slides[k] = columns.start, c.signs[0] * c.joint.lead / (2 * math.pi)
-            elif c.joint.type in {JointType.SLIDER, JointType.CYLINDRICAL}:
-                self._travel[k], self._slides[k] = columns.start, c.signs[0]
-
-    def __call__(self, rows: FloatArray) -> FloatArray:
-        """Return `(n_joints, batch, 4, 4)` for coordinates as rows `(n_columns, batch)`."""
-        n, batch = len(self._angle), rows.shape[1]
-        if not rows.shape[0]:
-            rows = np.zeros((1, batch))  # fixed joints alone: their factors are zero
-        factors = np.empty((n, batch, 4))
-        angle = rows[self._angle] * self._turns
-        factors[..., 0], factors[..., 1], factors[..., 2] = 1.0, np.cos(angle), np.sin(angle)
-        factors[..., 3] = rows[self._travel] * self._slides
-        X: FloatArray = (factors @ self._constants).reshape(n, batch, 4, 4)
-        for k, joint_type, columns, signs, A, B in self._others:
-            X[k] = A @ _motion(joint_type, rows[columns] * signs[:, None]) @ B
-        return X
-
-
-# the motion about and along z is [0] + cos θ [1] + sin θ [2] + d [3]
-_AFFINE = np.zeros((4, 4, 4))
-_AFFINE[0, (2, 3), (2, 3)] = 1.0
-_AFFINE[1, (0, 1), (0, 1)] = 1.0
-_AFFINE[2, (1, 0), (0, 1)] = 1.0, -1.0
-_AFFINE[3, 2, 3] = 1.0
-
-
-def _motion(joint_type: JointType, rows: FloatArray) -> FloatArray:
-    """Return J(q) `(batch, 4, 4)` of a ball, planar or universal joint for its coordinates as rows."""
-    M = np.zeros((rows.shape[1], 4, 4))
-    M[:, (0, 1, 2, 3), (0, 1, 2, 3)] = 1.0
-    if joint_type is JointType.BALL:
-        M[:, :3, :3] = quaternion.to_matrix(rows.T)
-    elif joint_type is JointType.UNIVERSAL:
-        M[:, :3, :3] = _universal(rows[0], rows[1])
-    else:
-        cosine, sine = np.cos(rows[2]), np.sin(rows[2])
-        M[:, 0, 0], M[:, 1, 1], M[:, 1, 0], M[:, 0, 1] = cosine, cosine, sine, -sine
-        M[:, 0, 3], M[:, 1, 3] = rows[0], rows[1]
-    return M
-
-
-def _universal(a: FloatArray, b: FloatArray) -> FloatArray:
-    """Return Rx(a) Ry(b) `(batch, 3, 3)`."""
-    ca, sa, cb, sb = np.cos(a), np.sin(a), np.cos(b), np.sin(b)
-    zero = np.zeros_like(a)
-    return np.stack([cb, zero, sb, sa * sb, ca, -sa * cb, -ca * sb, sa, ca * cb], axis=-1).reshape(-1, 3, 3)
 
 
 class TreeArrays:
@@ -177,24 +43,42 @@ class TreeArrays:
         self.ground = index[tree.ground]
         self.T_ground = T_ground
         edges = tree.edges
-        near = [*(index[edge.parent] for edge in edges), *(index[joint.parent] for joint in closing)]
-        far = [*(index[edge.part] for edge in edges), *(self.n_parts + i for i in range(len(closing)))]
-        backwards = [*(edge.reversed for edge in edges), *(False for _ in closing)]
-        crossings = Crossings([*(edge.joint for edge in edges), *closing], near, far, backwards)
-        self.crossings, self.closing = crossings[: len(edges)], crossings[len(edges) :]
-        self._transforms = Transforms(crossings, layout)
-        self._steps = tuple(zip(near, far, strict=True))
+        near = [index[edge.parent] for edge in edges]
+        far = [index[edge.part] for edge in edges]
+        self.compiled = Crossings(
+            [*(edge.joint for edge in edges), *closing],
+            near + [index[joint.parent] for joint in closing],
+            [*far, *range(self.n_parts, self.n_parts + len(closing))],
+            [edge.joint.parent != edge.parent for edge in edges] + [False] * len(closing),
+            layout,
+        )
+        self._n_edges = len(edges)
+        self._transforms = Transforms(self.compiled)
+        self._steps = tuple(zip(self.compiled.near, self.compiled.far, strict=True))
         self._ground_matrix = T_ground.matrix
-        self.twists = Twists(layout, index)
-        self._backwards = tuple(backwards[: len(edges)])
+
+    @property
+    def crossings(self) -> tuple[Crossing, ...]:
+        """The tree's joints one by one, depth first."""
+        return self.compiled.rows[: self._n_edges]
+
+    @property
+    def closing(self) -> tuple[Crossing, ...]:
+        """The joints that close loops."""
+        return self.compiled.rows[self._n_edges :]
+
+    @cached_property
+    def twists(self) -> Twists:
+        """Velocities of the freedoms."""
+        return Twists(self.layout, {part: i for i, part in enumerate(self.parts)})
 
     @cached_property
     def carried(self) -> FloatArray:
         """±1 where a freedom moves a part, −1 where it is crossed backwards: `(N, n_freedoms)`; 11 MB for 1000 parts, so made when asked."""
-        carried = np.zeros((self.n_parts, self.layout.n_freedoms))
-        for c, backwards in zip(self.crossings, self._backwards, strict=True):
-            carried[c.far] = carried[c.near]
-            carried[c.far, self.layout.freedoms[c.joint.name]] = -1.0 if backwards else 1.0
+        c, carried = self.compiled, np.zeros((self.n_parts, self.layout.n_freedoms))
+        for k in range(self._n_edges):
+            carried[c.far[k]] = carried[c.near[k]]
+            carried[c.far[k], self.layout.freedoms[c.joints[k].name]] = c.sign[k]
         return carried
 
     @cached_property
@@ -315,70 +199,3 @@ def _row_cross(a: FloatArray, b: FloatArray) -> FloatArray:
     out[1] = a[2] * b[0] - a[0] * b[2]
     out[2] = a[0] * b[1] - a[1] * b[0]
     return out
-
-
-class Twists:
-    """Velocities that each freedom gives its joint's child side against its parent side, in the ground frame.
-
-    Args:
-        layout: Of the joints.
-        part_index: Index of each part in the array of poses.
-    """
-
-    def __init__(self, layout: Layout, part_index: dict[str, int]) -> None:
-        frames: list[int] = []  # joint of each frame
-        self.planar: list[tuple[int, int]] = []  # frame to be shifted, first column
-        self.universal: list[tuple[int, int]] = []  # frame to be turned, first column
-        frame_of, axis_of, angular, pitch = [], [], [], []
-        for k, joint in enumerate(layout.joints):
-            frames.append(k)
-            frame, first = len(frames) - 1, layout.columns[joint.name].start
-            for axis, turns, advance, moved in _AXES[joint.type]:
-                if moved:
-                    frames.append(k)
-                    (self.planar if joint.type is JointType.PLANAR else self.universal).append((len(frames) - 1, first))
-                frame_of.append(len(frames) - 1 if moved else frame)
-                axis_of.append(axis)
-                angular.append(turns)
-                pitch.append(advance * joint.lead / (2 * math.pi))
-        joints = layout.joints
-        self._part = np.array([part_index[joints[k].parent] for k in frames], dtype=np.intp)
-        self._connector = _stack([joints[k].T_parent_connector for k in frames]).matrix[:, None]
-        self._frame = np.array(frame_of, dtype=np.intp)
-        self._axis = np.array(axis_of, dtype=np.intp)
-        self.angular = np.array(angular, dtype=np.float64)[:, None, None]
-        self.linear = 1.0 - self.angular + np.array(pitch, dtype=np.float64)[:, None, None]
-
-    def __call__(self, T: FloatArray, Q: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return v0 [mm/s], the velocity at the ground's origin, and ω [rad/s], both `(n_freedoms, batch, 3)`.
-
-        Args:
-            T: Poses of the parts `(N, batch, 4, 4)`.
-            Q: Coordinates `(batch, n_columns)`.
-        """
-        axes, origins = self.axes(T, Q)
-        omega = axes * self.angular
-        return quaternion.cross(origins, omega) + axes * self.linear, omega
-
-    def axes(self, T: FloatArray, Q: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return the direction of each freedom and a point of its axis [mm], both `(n_freedoms, batch, 3)`."""
-        P = T[self._part] @ self._connector
-        for frame, first in self.planar:
-            P[frame, :, :3, 3] += P[frame, :, :3, 0] * Q[:, first, None] + P[frame, :, :3, 1] * Q[:, first + 1, None]
-        for frame, first in self.universal:
-            a = Q[:, first, None]
-            P[frame, :, :3, 1] = P[frame, :, :3, 1] * np.cos(a) + P[frame, :, :3, 2] * np.sin(a)
-        return P[self._frame, :, :3, self._axis], P[self._frame, :, :3, 3]
-
-
-# axis of the parent connector, 1 = turns about it and 0 = slides along it, whether the lead advances it, whether other coordinates move it
-_AXES: dict[JointType, tuple[tuple[int, int, int, bool], ...]] = {
-    JointType.FIXED: (),
-    JointType.REVOLUTE: ((2, 1, 0, False),),
-    JointType.SLIDER: ((2, 0, 0, False),),
-    JointType.CYLINDRICAL: ((2, 0, 0, False), (2, 1, 0, False)),
-    JointType.BALL: ((0, 1, 0, False), (1, 1, 0, False), (2, 1, 0, False)),
-    JointType.SCREW: ((2, 1, 1, False),),
-    JointType.PLANAR: ((0, 0, 0, False), (1, 0, 0, False), (2, 1, 0, True)),
-    JointType.UNIVERSAL: ((0, 1, 0, False), (1, 1, 0, True)),
-}

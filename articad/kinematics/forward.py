@@ -10,7 +10,7 @@ import numpy as np
 
 from articad.connectors import SE3, FloatArray
 from articad.errors import KinematicsError
-from articad.kinematics.batch import Crossing
+from articad.kinematics.crossings import Crossing
 from articad.kinematics.joints import Joint, JointType
 
 if TYPE_CHECKING:

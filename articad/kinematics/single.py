@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from articad.connectors import FloatArray, quaternion
-from articad.kinematics.batch import TURNING, Crossing
+from articad.kinematics.crossings import TURNING, Crossing
 from articad.kinematics.equations import NEAR_PI, Closures
 from articad.kinematics.joints import JointType
 from articad.kinematics.layout import Layout
