@@ -7,10 +7,8 @@ labels, drivers, couplings, fits) comes from articad's records in it.
 
 from __future__ import annotations
 
-import io
 import math
 import re
-import zipfile
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -24,6 +22,7 @@ from articad.findings import Finding, Findings
 from articad.geometry.part import DEFAULT_COLOR, Part, Solid
 from articad.importers.reading import Folder, parse_xml, unreadable
 from articad.importers.records import assembly_of, read_records
+from articad.kernels.archive import Archive, BadArchiveError
 from articad.kernels.freecad import BrepReader
 from articad.kinematics.joints import Joint, JointLimits, JointType
 from articad.kinematics.mechanism import Mechanism
@@ -78,15 +77,13 @@ class _Document:
     def __init__(self, path: Path) -> None:
         self.path = path
         try:
-            content = path.read_bytes()
-            self.archive = zipfile.ZipFile(io.BytesIO(content))
-            entries = self.archive.infolist()
-            if len(entries) > MAX_ENTRIES or len(content) > MAX_BYTES or sum(entry.file_size for entry in entries) > MAX_UNPACKED:
+            if path.stat().st_size > MAX_BYTES:
                 raise unreadable(path, "", "It is too large.")
+            self.archive = Archive(path.read_bytes(), entries=MAX_ENTRIES, unpacked=MAX_UNPACKED)
             self.root = parse_xml(self.archive.read("Document.xml"), path)
         except OSError as error:
             raise unreadable(path, "", f"It cannot be read: {error.strerror}.") from None
-        except (zipfile.BadZipFile, KeyError, NotImplementedError, RuntimeError, EOFError) as error:
+        except BadArchiveError as error:
             raise unreadable(path, "", f"It is not a FreeCAD file: {error}.") from None
         self.types = {item.get("name", ""): item.get("type", "") for item in self.root.iterfind("Objects/Object")}
         self.items = {item.get("name", ""): item for item in self.root.iterfind("ObjectData/Object")}
@@ -117,7 +114,11 @@ class _Document:
 
     def choice(self, name: str, key: str) -> str:
         row = self._properties[name][key]
-        index = int(row.find(".//Integer").get("value"))
+        found = row.find(".//Integer")
+        try:
+            index = -1 if found is None else int(found.get("value") or 0)
+        except ValueError:
+            raise unreadable(self.path, f"{name}.{key}", "It is not a whole number.") from None
         options = [option.get("value") for option in row.iterfind(".//Enum")]
         return str(options[index]) if 0 <= index < len(options) else ""
 
@@ -203,14 +204,14 @@ class _Model:
         )
         for item in members:
             file = self.document.value(item, "Shape", "Part", "file")
-            if not file or file not in self.document.archive.namelist():
+            if not file or file not in self.document.archive.names:
                 continue
             # B-rep is written where its object stands; a body that is a part itself stands in the assembly
             T = self.document.placement(item).inverse() if own else IDENTITY
             try:
                 return self._reader.read_brep(self.document.archive.read(file), name=name, T=T, deflection=self.deflection)
-            except ArticadError as error:
-                message = f"The shape of {item} is not one valid solid: {error.message[:200]}"
+            except (ArticadError, BadArchiveError) as error:
+                message = f"The shape of {item} is not one valid solid: {str(error)[:200]}"
                 self.findings.append(
                     Finding(code="W_FREECAD_SHAPE", where=f"parts.{name}", parts=(name,), message=message, hint="Repair it in FreeCAD.")
                 )
@@ -357,7 +358,7 @@ def _joint_now(joint: Joint, found: Joint | None, parts: dict[str, Part]) -> Joi
         T_parent_connector=parts[joint.parent].connectors[joint.parent_connector].frame,
         T_child_connector=parts[joint.child].connectors[joint.child_connector].frame,
     )
-    if found is None or joint.type not in _LIMITS:
+    if found is None or found.type is not joint.type or joint.type not in _LIMITS:
         return now
     limits = tuple(
         tuple(old if math.isclose(new, old, rel_tol=1e-12, abs_tol=1e-12) else new for new, old in zip(new_row, old_row, strict=True))

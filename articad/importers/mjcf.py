@@ -75,17 +75,26 @@ def _require_safe(document: Any, folder: Folder, path: Path, seen: list[Path]) -
         _require_few_copies(element, path)
         names = [value for name, value in element.attrib.items() if name.startswith("file") and value]
         for name, base in product(names, dict.fromkeys(["", *folders])):
-            if not (folder.here / base / name).resolve().is_relative_to(folder.root):
+            if not _resolved(folder.here / base / name, path).is_relative_to(folder.root):
                 raise unreadable(path, f"line {element.sourceline}", f"{name!r} leads out of {folder.root}.", "E_UNSAFE_PATH")
     for element in document.iter("include"):
-        target = (path.resolve().parent / element.get("file", "")).resolve()
+        target = _resolved(path.resolve().parent / element.get("file", ""), path)
         if not target.is_file():
-            target = (folder.here / element.get("file", "")).resolve()
+            target = _resolved(folder.here / element.get("file", ""), path)
         if target in seen or len(seen) > MAX_INCLUDES:
             raise unreadable(path, f"line {element.sourceline}", f"{element.get('file')!r} is included again; includes must not go round.")
         if target.is_file():
             seen.append(target)
             _require_safe(read_xml(target), folder, target, seen)
+
+
+def _resolved(name: Path, path: Path) -> Path:
+    try:
+        target = name.resolve()
+        target.is_file()
+    except (OSError, RuntimeError, ValueError):  # too long, a link to itself, a zero byte
+        raise unreadable(path, "", f"{str(name)[:200]!r} is not a file name.") from None
+    return target
 
 
 def _require_few_copies(element: Any, path: Path) -> None:

@@ -87,10 +87,14 @@ class Folder:
             ReadError: E_UNSAFE_PATH if it leads out of the root; E_READ if there is no such file.
         """
         for candidate in self._candidates(name):
-            target = candidate.resolve()
+            try:
+                target = candidate.resolve()
+                found = target.is_file()
+            except (OSError, RuntimeError, ValueError):  # too long, a link to itself, a zero byte
+                raise unreadable(repr(name[:200]), "", "This is not a file name.") from None
             if not target.is_relative_to(self.root):
                 raise unreadable(name, "", f"This name leads out of {self.root}.", "E_UNSAFE_PATH")
-            if target.is_file():
+            if found:
                 return target
         raise unreadable(name, "", f"There is no such file below {self.root}.")
 

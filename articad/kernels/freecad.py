@@ -33,7 +33,7 @@ from articad.kernels import freecad_install
 from articad.kernels import sandbox as isolation
 from articad.kernels.build123d import Build123dKernel
 from articad.kernels.contract import probe_findings, read_connectors, solid_findings
-from articad.kernels.failures import poisoned, script_failure
+from articad.kernels.failures import poisoned, script_failure, scrubbed
 from articad.kernels.freecad_install import Ended, FreeCAD, Limits
 from articad.kernels.kernel import BuiltPart, Inspect
 from articad.kernels.results import PoisonedError, numbers, read_bytes, read_lines
@@ -204,26 +204,29 @@ class BrepReader(Build123dKernel):
 def tree_findings(part: str, tree: Mapping[str, Any]) -> Iterator[Finding]:
     """Yield what is wrong with the tree of features that the second process found."""
     if "bodies" in tree:
-        yield _not_editable(part, f"The document has {tree['bodies']} bodies, not one.")
+        yield _not_editable(part, f"The document has {scrubbed(tree['bodies'], 20)} bodies, not one.")
         return
     if tree.get("ok") is not True:
         return
-    for name in list(tree.get("off_tip") or ())[:20]:
+    for name in _names(tree.get("off_tip")):
         yield Finding(
             code="E_FEATURE_OFF_TIP",
             where=f"parts.{part}",
             parts=(part,),
-            message=f"Feature {str(name)[:60]!r} is in the body but not in its solid: it is no ancestor of the tip.",
+            message=f"Feature {name!r} is in the body but not in its solid: it is no ancestor of the tip.",
             hint="After each pattern, set body.Tip to it before the next feature is added, or use the functions of `part`, which do.",
         )
-    if tree.get("invalid"):
-        names = ", ".join(str(name)[:60] for name in tree["invalid"][:10])
-        yield _not_editable(part, f"{names} cannot be recomputed.")
+    if invalid := _names(tree.get("invalid")):
+        yield _not_editable(part, f"{', '.join(invalid)} cannot be recomputed.")
     if tree.get("sketched") is not True or tree.get("frozen"):
         yield _not_editable(part, "The body is a frozen shape: no sketch drives it.")
-    untied = [str(name) for name in tree.get("untied") or ()]
-    if untied:
-        yield _not_editable(part, f"Dimension {', '.join(map(repr, untied[:10]))} drives nothing: no expression names it.")
+    if untied := _names(tree.get("untied")):
+        yield _not_editable(part, f"Dimension {', '.join(map(repr, untied))} drives nothing: no expression names it.")
+
+
+def _names(value: object) -> list[str]:
+    """Return the names that a process reported, as far as they are a list; a script chose them."""
+    return [scrubbed(name, 60) for name in value[:20]] if isinstance(value, list) else []
 
 
 def _not_editable(part: str, message: str) -> Finding:

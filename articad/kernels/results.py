@@ -71,9 +71,12 @@ def number(value: Any) -> float:
     Raises:
         PoisonedError: If the value is anything else.
     """
-    if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
-        raise PoisonedError("a finite number is expected where there is none")
-    return float(value)
+    try:
+        if not isinstance(value, bool) and isinstance(value, (int, float)) and math.isfinite(value):
+            return float(value)
+    except OverflowError:  # JSON knows integers of any length
+        pass
+    raise PoisonedError("a finite number is expected where there is none")
 
 
 def read_mesh(content: bytes) -> TriMesh:
@@ -83,14 +86,10 @@ def read_mesh(content: bytes) -> TriMesh:
         PoisonedError: If it is not the mesh that the contract names.
     """
     try:
-        with zipfile.ZipFile(io.BytesIO(content)) as archive:
-            members = {member.filename: member for member in archive.infolist()}
-            if set(members) != {f"{name}.npy" for name in _ARRAYS} or len(archive.infolist()) != len(_ARRAYS):
-                raise PoisonedError("part.npz holds other arrays than vertices, triangles and face")
-            if any(member.compress_type != zipfile.ZIP_STORED or member.file_size > len(content) for member in members.values()):
-                raise PoisonedError("part.npz is compressed")
-            arrays = {name: _array(archive.read(f"{name}.npy"), *_ARRAYS[name]) for name in _ARRAYS}
-    except (zipfile.BadZipFile, OSError, ValueError, EOFError, NotImplementedError, RuntimeError) as error:
+        arrays = _arrays(content)
+    except PoisonedError:
+        raise
+    except Exception as error:  # zipfile and NumPy raise whatever they stumble over: tokenize.TokenError, struct.error, SyntaxError
         raise PoisonedError("part.npz cannot be read") from error
     vertices, face = arrays["vertices"], arrays["face"]
     if vertices.size and np.nanmax(np.abs(vertices)) > MAX_MM:
@@ -101,6 +100,16 @@ def read_mesh(content: bytes) -> TriMesh:
         return TriMesh(vertices, arrays["triangles"], face)
     except InvalidSolidError as error:
         raise PoisonedError(error.message) from error
+
+
+def _arrays(content: bytes) -> dict[str, NDArray[Any]]:
+    with zipfile.ZipFile(io.BytesIO(content)) as archive:
+        members = {member.filename: member for member in archive.infolist()}
+        if set(members) != {f"{name}.npy" for name in _ARRAYS} or len(archive.infolist()) != len(_ARRAYS):
+            raise PoisonedError("part.npz holds other arrays than vertices, triangles and face")
+        if any(member.compress_type != zipfile.ZIP_STORED or member.file_size > len(content) for member in members.values()):
+            raise PoisonedError("part.npz is compressed")
+        return {name: _array(archive.read(f"{name}.npy"), *_ARRAYS[name]) for name in _ARRAYS}
 
 
 def _array(content: bytes, dtype: np.dtype[Any], dimensions: int) -> NDArray[Any]:

@@ -1,0 +1,77 @@
+"""Zip files of unknown origin: unpacked within bounds, whatever their headers claim, and written again in one spelling."""
+
+from __future__ import annotations
+
+import io
+import zipfile
+from collections.abc import Mapping
+
+_CHUNK = 1 << 20  # bytes unpacked at once
+_TIME = (2000, 1, 1, 0, 0, 0)  # of every entry that is written: equal content gives equal bytes
+
+
+class BadArchiveError(Exception):
+    """A file that is no zip, or that would unpack to more than was allowed."""
+
+
+class Archive:
+    """The entries of a zip file, by name.
+
+    Attributes:
+        names: In the file's order.
+    """
+
+    def __init__(self, content: bytes, *, entries: int, unpacked: int) -> None:
+        """Read the table of contents.
+
+        Args:
+            content: The file.
+            entries: How many it may hold.
+            unpacked: How much may be read from it in all [bytes].
+
+        Raises:
+            BadArchiveError: If it is no zip, or states to be larger.
+        """
+        try:
+            self._zip = zipfile.ZipFile(io.BytesIO(content))
+        except Exception as error:  # noqa: BLE001 - zipfile raises whatever it stumbles over: struct.error, ValueError, IndexError
+            raise BadArchiveError(f"it is no zip file: {error}") from None
+        self.names = tuple(entry.filename for entry in self._zip.infolist())
+        if len(self.names) > entries or sum(entry.file_size for entry in self._zip.infolist()) > unpacked:
+            raise BadArchiveError("it is too large")
+        if len(set(self.names)) != len(self.names):
+            raise BadArchiveError("it holds two entries of one name")
+        self._left = unpacked
+
+    def read(self, name: str) -> bytes:
+        """Return the content of an entry, unpacked piece by piece: a bomb is noticed before it fills memory.
+
+        Raises:
+            BadArchiveError: If there is none of this name, it is spoiled, or the allowance is used up.
+        """
+        pieces = []
+        try:
+            with self._zip.open(name) as stream:
+                while self._left >= 0 and (piece := stream.read(_CHUNK)):
+                    self._left -= len(piece)
+                    pieces.append(piece)
+        except Exception as error:  # noqa: BLE001 - as above, and zlib.error, EOFError, NotImplementedError
+            raise BadArchiveError(f"{name} cannot be unpacked: {error}") from None
+        if self._left < 0:
+            raise BadArchiveError("it is too large")
+        return b"".join(pieces)
+
+
+def packed(entries: Mapping[str, bytes]) -> bytes:
+    """Return a zip file of these entries, in this order.
+
+    Programs that read a zip from its front and those that read its table at the end find the same in it, which need not
+    be so in a file of unknown origin.
+    """
+    stream = io.BytesIO()
+    with zipfile.ZipFile(stream, "w") as archive:
+        for name, content in entries.items():
+            entry = zipfile.ZipInfo(name, _TIME)
+            entry.compress_type = zipfile.ZIP_DEFLATED
+            archive.writestr(entry, content)
+    return stream.getvalue()

@@ -1,0 +1,231 @@
+"""Every reader of what others wrote, as a function of bytes that returns, or raises one of articad's own errors.
+
+Anything else that such a function raises is a fault: an exception without a name tells nobody what is wrong with the
+file. Used by the tests of this room, within bounds, and by `scripts/fuzz`, for as long as asked.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import json
+import math
+import os
+import struct
+import tempfile
+import zipfile
+from collections.abc import Callable, Iterator, Mapping
+from functools import cache
+from pathlib import Path
+from typing import Any
+from unittest import mock
+
+import numpy as np
+
+from articad.agents.design import _judged
+from articad.agents.forms import reader
+from articad.agents.replies import object_text, parse_script
+from articad.agents.requirements import Requirements
+from articad.errors import ArticadError, ReadError
+from articad.findings import Finding
+from articad.geometry.mesh_files import read_mesh
+from articad.importers.freecad import read_freecad
+from articad.importers.mjcf import read_mjcf
+from articad.importers.urdf import read_urdf
+from articad.kernels import results
+from articad.kernels.contract import probe_findings, read_connectors, solid_findings
+from articad.kernels.failures import script_failure
+from articad.kernels.freecad import tree_findings
+from articad.kernels.sandbox import Limits
+from articad.kernels.zygote import Outcome
+from articad.plan.check import check_plan
+from articad.plan.expressions import parse
+from articad.plan.resolve import resolve
+from articad.plan.schema import AssemblyPlan
+
+CORPUS = Path(__file__).parent / "corpus"
+NAMES = {"a": 1.5, "width": 40.0, "inset": -2.0, "zero": 0.0}
+BRIEF: dict[str, Any] = {
+    "name": "part",
+    "dimensions": {"width": 40.0, "hole_count": 4},
+    "envelope_mm": [40.0, 40.0, 5.0],
+    "connectors": {"hinge": {"o": [0.0, 0.0, 0.0], "z": [0.0, 0.0, 1.0], "x": [1.0, 0.0, 0.0], "label": "", "joints": []}},
+}
+
+
+def plan(content: bytes) -> None:
+    """A plan as JSON text: read, checked, resolved, written and read again."""
+    read = AssemblyPlan.loads(content)
+    findings = check_plan(read)
+    again = AssemblyPlan.loads(read.dumps())
+    assert again.dumps() == read.dumps(), "a plan changes when it is written and read"
+    if findings.ok:
+        resolve(read)  # what passes every check can be resolved
+
+
+def expression(content: bytes) -> None:
+    """An expression: a finite number, a named error, never anything of Python's."""
+    parsed = parse(content.decode("utf-8", errors="replace"))
+    with contextlib.suppress(ArticadError):
+        assert math.isfinite(parsed.evaluate(NAMES))
+    parsed.to_freecad({name: f"Parameters.p_{name}" for name in parsed.names})
+
+
+def urdf(content: bytes) -> None:
+    """A URDF file beside one mesh."""
+    with _file(".urdf", content) as path:
+        _used(read_urdf(path))
+
+
+def mjcf(content: bytes) -> None:
+    """An MJCF file beside one mesh."""
+    with _file(".xml", content) as path:
+        _used(read_mjcf(path))
+
+
+def fcstd(content: bytes) -> None:
+    """A FreeCAD file; bytes that are no zip are taken for its Document.xml. Its B-rep goes to the confined worker, which is left out."""
+    if not content.startswith(b"PK"):
+        packed = io.BytesIO()
+        with zipfile.ZipFile(packed, "w") as archive:
+            archive.writestr("Document.xml", content)
+            archive.writestr("Shape.brp", b"\nCASCADE Topology V1, (c) Matra-Datavision\n")
+        content = packed.getvalue()
+    with mock.patch("articad.importers.freecad.BrepReader", _NoBrep), _file(".FCStd", content) as path:
+        _used(read_freecad(path))
+
+
+def stl(content: bytes) -> None:
+    """An STL file."""
+    _mesh(".stl", content)
+
+
+def obj(content: bytes) -> None:
+    """An OBJ file."""
+    _mesh(".obj", content)
+
+
+def glb(content: bytes) -> None:
+    """A GLB file; bytes that begin with `{` are taken for its JSON, before 256 bytes of numbers."""
+    if content.startswith(b"{"):
+        text = content + b" " * (-len(content) % 4)
+        binary = np.arange(12, dtype="<f4").tobytes() + np.array([0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3], dtype="<u4").tobytes() + bytes(160)
+        header = struct.pack("<4sII", b"glTF", 2, 28 + len(text) + len(binary))
+        content = header + struct.pack("<I4s", len(text), b"JSON") + text + struct.pack("<I4s", len(binary), b"BIN\0") + binary
+    _mesh(".glb", content)
+
+
+def ply(content: bytes) -> None:
+    """A PLY file."""
+    _mesh(".ply", content)
+
+
+def reply(content: bytes) -> None:
+    """A model's reply, as every role reads it."""
+    text = content.decode("utf-8", errors="replace")
+    for read in (
+        lambda: object_text(text, step="fuzz"),
+        lambda: parse_script(text, step="fuzz"),
+        lambda: reader(Requirements, ignore=frozenset({"schema"}))(text, "fuzz"),
+        lambda: _judged(text, "fuzz"),
+    ):
+        with contextlib.suppress(ArticadError):
+            read()
+
+
+def worker(content: bytes) -> None:
+    """What a confined process leaves, the script's own process included: a report of lines, and a mesh."""
+    if content.startswith((b"PK", b"\x93NUMPY")):
+        if not content.startswith(b"PK"):
+            packed = io.BytesIO()
+            pieces = [b"\x93NUMPY" + piece for piece in content.split(b"\x93NUMPY")[1:]]
+            with zipfile.ZipFile(packed, "w") as archive:
+                for name, piece in zip(("vertices", "triangles", "face"), pieces, strict=False):
+                    archive.writestr(f"{name}.npy", piece)
+            content = packed.getvalue()
+        with contextlib.suppress(results.PoisonedError):
+            results.read_mesh(content)
+        return
+    with _file(".report", content) as path, contextlib.suppress(results.PoisonedError, ArticadError):
+        lines = results.read_lines(path)
+        said = lines[0] if lines else {}
+        script_failure("part", "x = 1\n", lines, Outcome(0, 0, late=False, peak=0), str(said.get("crash")), Limits())
+        findings: list[Finding] = []
+        with contextlib.suppress(results.PoisonedError, ArticadError):
+            read_connectors(BRIEF, said.get("connectors"), findings)
+        with contextlib.suppress(results.PoisonedError, ArticadError):
+            list(solid_findings(BRIEF, said))
+        list(tree_findings("part", said))
+        probes = [line["probe"] for line in lines if isinstance(line.get("probe"), dict)]
+        list(probe_findings(BRIEF, probes, ended=True, crashed=""))
+
+
+READERS: Mapping[str, Callable[[bytes], None]] = {
+    "plan": plan,
+    "expression": expression,
+    "urdf": urdf,
+    "mjcf": mjcf,
+    "fcstd": fcstd,
+    "stl": stl,
+    "obj": obj,
+    "glb": glb,
+    "ply": ply,
+    "reply": reply,
+    "worker": worker,
+}
+
+
+def attempt(name: str, content: bytes) -> None:
+    """Run a reader; whatever it raises that is not one of articad's own errors is a fault."""
+    with contextlib.suppress(ArticadError):
+        READERS[name](content)
+
+
+def seeds(name: str) -> list[bytes]:
+    """Return the corpus of a reader."""
+    return [path.read_bytes() for path in sorted((CORPUS / name).iterdir())]
+
+
+class _NoBrep:
+    """Stands for the confined worker, which would take most of the time."""
+
+    def read_brep(self, content: bytes, **_: object) -> None:
+        raise ReadError(f"{len(content)} bytes of B-rep are not looked at here.", path="")
+
+
+def _used(assembly: Any) -> None:
+    """Do with an assembly that was read what everything begins with."""
+    assembly.at()
+    for finding in assembly.findings:
+        finding.to_json()
+
+
+def _mesh(suffix: str, content: bytes) -> None:
+    with _file(suffix, content) as path:
+        mesh = read_mesh(path)
+    assert np.isfinite(mesh.vertices).all()
+    assert len(mesh.triangles) == 0 or (mesh.triangles.min() >= 0 and mesh.triangles.max() < len(mesh.vertices))
+
+
+@cache
+def _folder(pid: int) -> Path:
+    memory = Path("/dev/shm")
+    folder = Path(tempfile.mkdtemp(prefix=f"articad-fuzz-{pid}-", dir=memory if os.access(memory, os.W_OK) else None))
+    (folder / "cube.stl").write_bytes((CORPUS / "stl" / "triangle.stl").read_bytes())
+    return folder
+
+
+@contextlib.contextmanager
+def _file(suffix: str, content: bytes) -> Iterator[Path]:
+    path = _folder(os.getpid()) / f"input{suffix}"
+    path.write_bytes(content)
+    yield path
+
+
+def dictionary(name: str) -> list[str]:
+    """Return the words of a reader's form: those of its corpus."""
+    words: set[str] = set()
+    for content in seeds(name):
+        with contextlib.suppress(UnicodeDecodeError):
+            words |= {word for word in content.decode("ascii").replace('"', " ").replace("<", " ").split() if 2 < len(word) < 24}
+    return sorted(json.dumps(word) for word in words if word.isascii() and word.isprintable())
