@@ -20,7 +20,7 @@ from importlib import metadata
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
-from articad.errors import KernelUnavailableError
+from articad.errors import KernelUnavailableError, TransportError
 from articad.findings import Finding
 from articad.kernels.libraries import PACKAGES
 
@@ -144,24 +144,46 @@ def examine(load: Loader = _load_lazily) -> tuple[Item, ...]:
     )
 
 
-def ask_once(llm: LLM) -> Item:
-    """Ask a model one tiny question with a picture and a form for the answer: does its key work, can it see, does it keep to the form?
+def examine_model(name: str, *, api_base: str | None = None) -> tuple[Item, ...]:
+    """Say of a model whether its key is there and works, whether it keeps to forms and sees pictures, and what that costs."""
+    from articad.agents.live import LiteLLM  # noqa: PLC0415 - the agents are needed by this question only
+
+    try:
+        return ask_once(LiteLLM(name, api_base=api_base, tries=2))
+    except TransportError as error:
+        (finding,) = error.findings
+        return (Item(f"model {name}", "missing", finding.message, finding.hint),)
+
+
+def ask_once(llm: LLM) -> tuple[Item, ...]:
+    """Ask a model one tiny question, with a picture and a form for the answer.
 
     Raises:
         TransportError: If it cannot be asked.
     """
-    from articad.agents.llm import Image, Request, system, user  # noqa: PLC0415 - the agents are needed by this question only
+    from articad.agents.llm import Image, Request, system, user  # noqa: PLC0415 - as above
 
     schema = {"type": "object", "properties": {"color": {"type": "string"}}, "required": ["color"], "additionalProperties": False}
     messages = (system("Answer with one JSON object."), user("Which colour is this square? One English word.", Image(_red_square())))
     reply = llm.complete(Request(role="doctor", step="doctor", messages=messages, response_schema=schema))
+    answers = Item(
+        f"model {reply.model}", "ok", f"answers; {reply.usage.total} tokens{f', {reply.fingerprint}' if reply.fingerprint else ''}"
+    )
+    known = (
+        "price unknown: limit calls or tokens, --max-cost cannot be held" if reply.cost is None else f"${reply.cost:.6f} for this question"
+    )
+    price = Item("model's price", "optional" if reply.cost is None else "ok", known)
     try:
         color = str(json.loads(reply.text)["color"])
     except (ValueError, KeyError, TypeError):
-        return Item(f"model {reply.model}", "missing", f"answers, but not in the form asked for: {reply.text[:80]!r}", "Try another model.")
-    sight = "sees" if "red" in color.lower() else f"does not see well: it took a red square for {color!r}"
-    price = "price unknown" if reply.cost is None else f"${reply.cost:.6f}"
-    return Item(f"model {reply.model}", "ok", f"keeps to the form, {sight}; {reply.usage.total} tokens, {price}")
+        return (answers, Item("model's forms", "missing", f"not in the form asked for: {reply.text[:80]!r}", "Try another model."), price)
+    by_provider = getattr(llm, "takes_schemas", None)
+    held = "" if by_provider is None else ", held to the schema by its provider" if by_provider() else ", asked for in words"
+    forms = Item("model's forms", "ok", f"keeps to the form{held}")
+    if "red" in color.lower():
+        return (answers, forms, Item("model's sight", "ok", "sees"), price)
+    blind = f"does not see well: it took a red square for {color!r}"
+    return (answers, forms, Item("model's sight", "optional", blind, "Use --vision-model, or --no-look --no-inspection."), price)
 
 
 def report(items: Iterable[Item]) -> dict[str, Any]:

@@ -158,11 +158,14 @@ def run_report(run: Run) -> Report:
     if assembly is None or checks is None:
         raise ReadError(f"{run.path} is not finished: it has no {'assembly' if assembly is None else 'checks'} yet.", path=str(run.path))
     certificate = run.certificate()
-    proven = (
+    proven: dict[str, Report] = (
         {}
         if certificate is None
         else {"certificate": {key: certificate[key] for key in ("schema", "ok", "findings", "epsilon_mm", "pairs", "ranges")}}
     )
+    verdict = run.verdict()
+    if verdict is not None:
+        proven["verdict"] = {key: verdict[key] for key in ("schema", "ok", "findings", "by", "round", "rulings")}
     return {
         "schema": "articad.build/1",
         "ok": all(report["ok"] for report in (assembly, checks, *proven.values(), *exports.values())),

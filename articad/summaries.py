@@ -18,6 +18,8 @@ def print_run(report: Report, terminal: Terminal) -> None:
     print_findings([*report["assembly"]["findings"], *report["checks"]["findings"], *report["findings"]], terminal)
     if "certificate" in report:
         print_certificate(report["certificate"], terminal)
+    if "verdict" in report:
+        print_verdict(report["verdict"], report["checks"], terminal)
     print_exports(report["exports"], terminal)
     terminal.say(f"Run: {report['run']}")
 
@@ -70,6 +72,15 @@ def print_certificate(report: Report, terminal: Terminal) -> None:
                 f"  {free['joint']}: free in [{free['free'][0]:.6g}, {free['free'][1]:.6g}], declared {free['declared']} (rad, mm)"
             )
     print_findings(report["findings"], terminal)
+
+
+def print_verdict(report: Report, checks: Report, terminal: Terminal) -> None:
+    """Print what the judge ruled, and what of its findings the checks have not said already."""
+    known = {finding["message"] for finding in checks["findings"]}
+    terminal.say(f"Inspection, round {report['round']}: {'ok' if report['ok'] else 'NOT ok'}, decided by {report['by']}.")
+    for aspect, ruling in report["rulings"].items():
+        terminal.say(f"  {aspect}: {'ok' if ruling['ok'] else 'NOT ok'}. {ruling['reason']}")
+    print_findings([finding for finding in report["findings"] if finding["message"] not in known], terminal)
 
 
 def print_exports(exports: Mapping[str, Report], terminal: Terminal) -> None:

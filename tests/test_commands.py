@@ -275,11 +275,16 @@ def test_a_missing_key_is_named(tmp_path: Path, report: Any, monkeypatch: pytest
     assert not (tmp_path / "out").exists()
 
 
+BLIND = ("--no-look", "--no-inspection")
+
+
 @pytest.fixture
 def generated(tmp_path: Path, report: Any, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A run that a scripted model made."""
     monkeypatch.setattr("articad.agents.live.LiteLLM", lambda *_, **__: stories.flap())
-    code, made = report("generate", stories.FLAP_PROMPT, "--model", "scripted", "--max-calls", "10", "--out", tmp_path / "generated")
+    code, made = report(
+        "generate", stories.FLAP_PROMPT, "--model", "scripted", "--max-calls", "10", "--out", tmp_path / "generated", *BLIND
+    )
     assert (code, made["ok"]) == (0, True)
     assert made["model"]["calls"] == 4
     return tmp_path / "generated"
@@ -309,7 +314,7 @@ def test_a_replay_that_differs_says_where_and_ends_with_1(generated: Path, tmp_p
 
 def test_a_spent_budget_stops_the_run_and_the_same_command_goes_on(tmp_path: Path, report: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("articad.agents.live.LiteLLM", lambda *_, **__: stories.flap())
-    command = ["generate", stories.FLAP_PROMPT, "--model", "scripted", "--out", tmp_path / "out", "--max-calls"]
+    command = ["generate", stories.FLAP_PROMPT, "--model", "scripted", "--out", tmp_path / "out", *BLIND, "--max-calls"]
     code, stopped = report(*command, 2)
     assert code == 3
     assert stopped["findings"][0]["code"] == "E_BUDGET"

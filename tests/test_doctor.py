@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from articad import doctor
-from articad.agents.llm import Scripted
+from articad.agents.llm import Reply, Scripted
 from articad.errors import KernelUnavailableError
 
 COMMANDS = (["doctor"], ["build", "nowhere"], ["check", "nowhere"], ["export", "nowhere", "--to", "urdf"], ["replay", "nowhere"])
@@ -104,15 +104,33 @@ def test_keys_are_reported_by_name_only(monkeypatch: pytest.MonkeyPatch) -> None
 
 
 @pytest.mark.parametrize(
-    ("answer", "status", "words"),
+    ("answer", "what", "status", "words"),
     [
-        ('{"color": "red"}', "ok", "keeps to the form, sees"),
-        ('{"color": "blue"}', "ok", "does not see well"),
-        ("It is red.", "missing", "not in the form"),
-        ('["red"]', "missing", "not in the form"),
+        ('{"color": "red"}', "model's forms", "ok", "keeps to the form"),
+        ('{"color": "red"}', "model's sight", "ok", "sees"),
+        ('{"color": "red"}', "model's price", "optional", "unknown"),
+        ('{"color": "blue"}', "model's sight", "optional", "does not see well"),
+        ("It is red.", "model's forms", "missing", "not in the form"),
+        ('["red"]', "model's forms", "missing", "not in the form"),
     ],
 )
-def test_a_model_is_judged_by_one_question(answer: str, status: str, words: str) -> None:
-    item = doctor.ask_once(Scripted({"doctor": answer}))
+def test_a_model_is_judged_by_one_question(answer: str, what: str, status: str, words: str) -> None:
+    llm = Scripted({"doctor": answer})
+    item = next(item for item in doctor.ask_once(llm) if item.name == what)
     assert item.status == status
     assert words in item.detail
+    assert llm.steps == ["doctor"]
+
+
+def test_a_known_price_is_told() -> None:
+    items = doctor.ask_once(Scripted({"doctor": Reply('{"color": "red"}', "m", cost=0.0001)}))
+    assert {item.status for item in items} == {"ok"}
+    assert "$0.000100" in items[-1].detail
+
+
+def test_a_model_whose_key_is_missing_is_told_by_the_variable(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv("GEMINI_API_KEY", raising=False)
+    (item,) = doctor.examine_model("gemini/gemini-3-flash-preview")
+    assert item.status == "missing"
+    assert "GEMINI_API_KEY" in item.detail
+    assert "GEMINI_API_KEY" in item.remedy

@@ -7,10 +7,10 @@ from collections.abc import Callable, Iterable, Sequence
 from typing import Any, Final
 
 from articad.agents.llm import LLM, Image, Message, Request, assistant, system, user
-from articad.agents.memory import Memory, NoMemory, listed_cases
 from articad.agents.prompts import prompt, prompt_file
 from articad.agents.replies import object_text
 from articad.agents.requirements import Requirements, pictures_of
+from articad.agents.retrieval import Memory, NoMemory, listed_cases
 from articad.errors import OutputError, PlanError
 from articad.findings import Finding, Findings
 from articad.plan.check import check_plan

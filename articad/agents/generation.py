@@ -11,10 +11,10 @@ from typing import Any, Final, Literal
 
 from articad.agents.inspection import look
 from articad.agents.llm import LLM, Image, Message, Request, assistant, system, user
-from articad.agents.memory import Documentation, Memory, NoDocumentation, NoMemory, listed_cases
 from articad.agents.pictures import part_picture, partial_picture
 from articad.agents.prompts import prompt, prompt_file
 from articad.agents.replies import parse_script
+from articad.agents.retrieval import Documentation, Memory, NoDocumentation, NoMemory, listed_cases
 from articad.assembly import DEFLECTION_MM
 from articad.connectors.connector import Connector
 from articad.errors import ArticadError, BuildError, ContractError, KernelError, OutputError

@@ -21,11 +21,13 @@ from articad.errors import TransportError
 
 Json = dict[str, Any]
 
+DEFAULT_MODEL: Final = "gemini/gemini-3-flash-preview"  # the paper's backbone: it sees, keeps to schemas, and its price is known
 TIMEOUT_S: Final = 600.0  # one answer; a thinking model writes a large plan in minutes
 TRIES: Final = 6
 FIRST_WAIT_S: Final = 1.0  # doubled after each try: 31 s in all
 LONGEST_WAIT_S: Final = 60.0
 _RETRIED_STATUS: Final = frozenset({408, 409, 425, 429, 500, 502, 503, 504, 529})
+_LOOKING: Final = frozenset({"look", "observe"})  # roles that are nothing without sight
 _SHOWN_CHARACTERS: Final = 300  # of a provider's own message
 _LOCAL_HOSTS: Final = frozenset({"localhost", "127.0.0.1", "::1", "0.0.0.0", "host.docker.internal"})  # noqa: S104 - compared, never bound
 _SECRET_NAME = re.compile(r"KEY|TOKEN|SECRET|PASSWORD|CREDENTIAL", re.IGNORECASE)
@@ -35,6 +37,9 @@ _FORM = (
     "Answer with one JSON object and nothing else: no Markdown fence, no text before or after it. "
     "It must be valid against this JSON schema:\n"
 )
+
+
+_SIGHT = "Name one that does with --vision-model, or do without: --no-look --no-inspection."
 
 
 class _EmptyAnswerError(ValueError):
@@ -49,6 +54,7 @@ class LiteLLM:
         api_base: Address of an OpenAI-compatible endpoint, such as `http://127.0.0.1:8000/v1`.
         models: Other models for some roles, by role.
         vision_model: Model for requests with pictures; `model` by default.
+        judge_model: Model for the role "judge"; the same as `models={"judge": …}`.
         temperature: Left to the provider by default.
         timeout: Longest wait for one answer [s].
         tries: How often to ask when the provider is busy or out of reach.
@@ -65,6 +71,7 @@ class LiteLLM:
         api_base: str | None = None,
         models: Mapping[str, str] | None = None,
         vision_model: str | None = None,
+        judge_model: str | None = None,
         temperature: float | None = None,
         timeout: float = TIMEOUT_S,
         tries: int = TRIES,
@@ -80,7 +87,9 @@ class LiteLLM:
         self._api_base = api_base
         self._is_local = api_base is not None and urlsplit(api_base).hostname in _LOCAL_HOSTS
         self._model = self._qualified(model)
-        self._models = {role: self._qualified(name) for role, name in (models or {}).items()}
+        self._models = {
+            role: self._qualified(name) for role, name in (dict(models or {}) | ({"judge": judge_model} if judge_model else {})).items()
+        }
         self._vision_model = self._qualified(vision_model) if vision_model else None
         self._temperature, self._timeout, self._tries, self._sleep = temperature, timeout, tries, sleep
         self._takes_no_schema: set[str] = set()
@@ -115,10 +124,22 @@ class LiteLLM:
                 self._sleep(_pause(error, number))
         raise AssertionError("the last try either answers or raises")
 
+    @property
+    def sees(self) -> bool:
+        """Whether the model that gets pictures is known, or may be hoped, to see; an endpoint of one's own is asked."""
+        return self._api_base is not None or self._sees(self._vision_model or self._model)
+
+    def takes_schemas(self, model: str | None = None) -> bool:
+        """Whether a model is held to a schema by its provider, rather than asked for the form in words."""
+        name = self._qualified(model) if model else self._model
+        return name not in self._takes_no_schema and (self._api_base is not None or self._supports_schema(name))
+
     # ------------------------------------------------------------------ one call
 
     def _asked(self, model: str, request: Request) -> Reply:
         blind = model in self._blind or (self._api_base is None and request.has_images and not self._sees(model))
+        if blind and request.role in _LOOKING:
+            raise transport_error("E_TRANSPORT", f"{model} cannot see, and {request.step} is about pictures.", _SIGHT)
         arguments: Json = {
             "model": model,
             "messages": [_as_chat(_in_words(message) if blind else message) for message in request.messages],
@@ -134,7 +155,7 @@ class LiteLLM:
             arguments["api_key"] = "local"  # the client library insists on one; a local endpoint reads none
         if request.response_schema is not None:
             schema = dict(request.response_schema)
-            if model not in self._takes_no_schema and (self._api_base is not None or self._supports_schema(model)):
+            if self.takes_schemas(model):
                 form = {"name": request.role, "schema": schema}
                 arguments["response_format"] = {"type": "json_schema", "json_schema": form}
             else:
@@ -170,8 +191,9 @@ class LiteLLM:
             raise _EmptyAnswerError
         used = getattr(response, "usage", None)
         usage = Usage(int(getattr(used, "prompt_tokens", 0) or 0), int(getattr(used, "completion_tokens", 0) or 0))
-        fingerprint = getattr(response, "system_fingerprint", None)
-        return Reply(text, model, usage, self._cost(response, model), fingerprint if isinstance(fingerprint, str) else None)
+        marks = (getattr(response, "system_fingerprint", None), getattr(response, "model", None))  # the second says which version it was
+        fingerprint = next((mark for mark in marks if isinstance(mark, str) and mark), None)
+        return Reply(text, model, usage, self._cost(response, model), fingerprint)
 
     def _cost(self, response: Any, model: str) -> float | None:
         if self._api_base is not None:

@@ -20,9 +20,9 @@ from articad.agents.evidence import examine
 from articad.agents.generation import REPAIRS
 from articad.agents.inspection import Verdict, inspect, verdict_of
 from articad.agents.llm import LLM, Image, Recorded, Replay, closed_port
-from articad.agents.memory import Documentation, Memory
 from articad.agents.pictures import offence_picture
 from articad.agents.requirements import Requirements, analyse
+from articad.agents.retrieval import Documentation, Memory
 from articad.agents.rollback import Repair, Router
 from articad.agents.workshop import PartsError, Progress, Workshop
 from articad.assembly import Assembly

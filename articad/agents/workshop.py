@@ -12,7 +12,7 @@ from typing import Any, Final
 from articad.agents.finetuning import absorbed, notes
 from articad.agents.generation import Attempt, Modeller, failure_text
 from articad.agents.llm import LLM, Image, closed_port
-from articad.agents.memory import Documentation, Memory
+from articad.agents.retrieval import Documentation, Memory
 from articad.agents.rollback import Fate
 from articad.assembly import DEFLECTION_MM, Assembly
 from articad.codes import CODES

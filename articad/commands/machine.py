@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 @command(
     "doctor",
     "Say what this machine has and lacks.",
-    argument("--model", metavar="NAME", help="ask this model one tiny question"),
+    argument("--model", metavar="NAME", help="ask this model one tiny question: key, forms, sight, price"),
     argument("--api-base", metavar="URL", help="an OpenAI-compatible endpoint"),
     needs_libraries=False,
 )
@@ -25,9 +25,7 @@ def _doctor(options: argparse.Namespace, terminal: Terminal) -> Report:
     missing = doctor.missing_libraries()
     items = doctor.examine()
     if options.model and not missing:
-        from articad.agents.live import LiteLLM
-
-        items = (*items, doctor.ask_once(LiteLLM(options.model, api_base=options.api_base)))
+        items = (*items, *doctor.examine_model(options.model, api_base=options.api_base))
     terminal.say(f"articad {__version__}")
     terminal.table(["", "what", "found"], [(item.status, item.name, item.detail) for item in items])
     for item in items:

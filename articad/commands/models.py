@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import argparse
+import os
+import sys
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from articad.commands.command import argument, command
@@ -10,6 +13,7 @@ from articad.commands.options import EXPORT, FORCE, JOBS, MODEL_ARGUMENTS, OUT, 
 from articad.commands.steps import build_cache, draw, reported, sandbox_level
 
 if TYPE_CHECKING:
+    from articad.agents.brainstorm import Alternative, Choose
     from articad.terminal import Report, Terminal
 
 
@@ -26,12 +30,17 @@ if TYPE_CHECKING:
     PICTURES,
 )
 def _generate(options: argparse.Namespace, terminal: Terminal) -> Report:
-    from articad.agents.live import LiteLLM
+    from articad.agents.live import DEFAULT_MODEL, LiteLLM
     from articad.agents.llm import Budget
     from articad.agents.pipeline import generate
+    from articad.record import kernel_named
 
-    model = LiteLLM(options.model, api_base=options.api_base, vision_model=options.vision_model)
-    budget = Budget(model, calls=options.max_calls, cost=options.max_cost, minutes=options.max_minutes)
+    name = options.model or os.environ.get("ARTICAD_MODEL") or DEFAULT_MODEL
+    model = LiteLLM(name, api_base=options.api_base, vision_model=options.vision_model, judge_model=options.judge_model)
+    sees = bool(getattr(model, "sees", True))
+    if not sees and (options.look or options.inspection):
+        terminal.say(f"{options.vision_model or name} does not see: parts and assembly are held to exact checks alone.")
+    budget = Budget(model, calls=options.max_calls, tokens=options.max_tokens, cost=options.max_cost, minutes=options.max_minutes)
     with terminal.progress("Generating") as tell:
         run = generate(
             options.text,
@@ -39,11 +48,17 @@ def _generate(options: argparse.Namespace, terminal: Terminal) -> Report:
             images=options.images,
             part_images=dict(options.part_images),
             out=options.out,
-            sandbox=sandbox_level(options),
+            kernel=kernel_named(options.kernel, sandbox=sandbox_level(options)),
             cache=build_cache(options),
             formats=options.formats,
             repairs=options.repairs,
             rounds=options.rounds,
+            look=options.look and sees,
+            inspection=options.inspection and sees,
+            ideas=options.ideas,
+            pick=options.pick,
+            choose=_asking(terminal) if _is_asked(options) else None,
+            variant=options.variant,
             jobs=options.jobs,
             progress=tell,
         )
@@ -53,6 +68,28 @@ def _generate(options: argparse.Namespace, terminal: Terminal) -> Report:
     price = "of unknown price" if budget.cost_unknown_of else f"${budget.cost:.4f}"
     terminal.say(f"Model: {budget.calls} calls, {budget.tokens} tokens, {price}.")
     return report | {"model": {"calls": budget.calls, "tokens": budget.tokens, "cost_usd": None if budget.cost_unknown_of else budget.cost}}
+
+
+def _is_asked(options: argparse.Namespace) -> bool:
+    """Whether somebody is there to choose."""
+    return sys.stdin.isatty() and not options.json and not options.quiet
+
+
+def _asking(terminal: Terminal) -> Choose:
+    """Return what shows alternatives and asks which one to make; an empty answer is the first."""
+
+    def choose(alternatives: Sequence[Alternative]) -> int:
+        from articad.agents.brainstorm import structure
+
+        terminal.say()
+        for number, one in enumerate(alternatives, 1):
+            terminal.say(f"{number}. {one.name}: {one.summary} {one.why} ({structure(one)})")
+        while True:
+            answer = input(f"Which one? [1-{len(alternatives)}, 1] ").strip() or "1"
+            if answer.isdecimal() and 1 <= int(answer) <= len(alternatives):
+                return int(answer)
+
+    return choose
 
 
 @command(

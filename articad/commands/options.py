@@ -83,12 +83,22 @@ BUILD_ARGUMENTS = (
 MODEL_ARGUMENTS = (
     argument("--image", metavar="FILE", dest="images", action="append", default=[], help="a picture that belongs to the request"),
     argument("--part-image", metavar="NAME=FILE", dest="part_images", type=assignment, action="append", default=[], help="of one part"),
-    argument("--model", metavar="NAME", required=True, help="the model that writes plans and scripts, as LiteLLM names it"),
-    argument("--vision-model", metavar="NAME", help="the model that looks at pictures (the same)"),
+    argument(
+        "--model", metavar="NAME", default=None, help="the model, as LiteLLM names it ($ARTICAD_MODEL, else gemini/gemini-3-flash-preview)"
+    ),
+    argument("--vision-model", metavar="NAME", help="the model that gets pictures (the same)"),
+    argument("--judge-model", metavar="NAME", help="the model that judges the assembly (the same)"),
     argument("--api-base", metavar="URL", help="an OpenAI-compatible endpoint"),
+    argument("--kernel", choices=["build123d", "freecad"], default="build123d", help="what part scripts are written for (build123d)"),
+    argument("--ideas", choices=["auto", "always", "never"], default="auto", help="propose alternatives first (auto: for open requests)"),
+    argument("--pick", metavar="N", type=positive, default=None, help="propose alternatives and make the N-th, without asking"),
+    argument("--no-look", dest="look", action="store_false", help="compare no pictures of parts with their specification"),
+    argument("--no-inspection", dest="inspection", action="store_false", help="have the assembly neither observed nor judged by models"),
+    argument("--variant", choices=["full", "no-rollback"], default="full", help="no-rollback is the paper's ablation (full)"),
     argument("--rounds", metavar="N", type=positive, default=3, help="designs that are built and checked (3)"),
     argument("--repairs", metavar="N", type=positive, default=3, help="attempts to mend one part (3)"),
     argument("--max-calls", metavar="N", type=positive, default=60, help="model calls (60)"),
+    argument("--max-tokens", metavar="N", type=positive, default=None, help="tokens of all calls (unlimited)"),
     argument("--max-cost", metavar="USD", type=amount, default=None, help="cost of all calls (unlimited)"),
     argument("--max-minutes", metavar="N", type=amount, default=60.0, help="wall clock (60)"),
 )

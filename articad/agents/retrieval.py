@@ -1,4 +1,4 @@
-"""Memory: what earlier runs and the kernels' documentation have to say, as the agents ask for it.
+"""Retrieval: what earlier runs and the kernels' documentation have to say, as the agents ask for it.
 
 The agents know these protocols only. What they are given by default remembers nothing, and a request that retrieved
 nothing is the same, to its key, as one that was made without a store.
