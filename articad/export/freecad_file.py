@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import io
 import re
-import uuid
 import zipfile
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -16,11 +15,8 @@ from xml.sax.saxutils import quoteattr
 
 from lxml import etree
 
-EPOCH = "2000-01-01T00:00:00Z"
-_ZIP_TIME = (2000, 1, 1, 0, 0, 0)
-_NAMESPACE = uuid.UUID("6d1d9a3e-0c1b-5b6e-9b35-0a2f4f1c7c11")  # of the Uids that stand in for random ones
-_DATES = {"CreationDate", "LastModifiedDate"}
-_PEOPLE = {"CreatedBy", "LastModifiedBy", "Company"}
+from articad.kernels.freecad_file import packed, settle, xml_parser
+
 _NOTHING = "bnVsbA=="  # base64 of null: what FreeCAD itself writes for a view provider without state
 _SHOWN = (  # besides parts and assemblies, what carries a shape of its own
     "PartDesign::Body",
@@ -59,50 +55,14 @@ def normalised(content: bytes, look: Look | None = None) -> bytes:
     """
     with zipfile.ZipFile(io.BytesIO(content)) as archive:
         files = {name: archive.read(name) for name in archive.namelist() if name not in ("GuiDocument.xml", "thumbnails/Thumbnail.png")}
-    root = etree.fromstring(files["Document.xml"], _parser())
-    _settle(root)
+    root = etree.fromstring(files["Document.xml"], xml_parser())
+    settle(root)
     types = {item.get("name"): item.get("type") for item in root.iterfind("Objects/Object")}
     if look is not None:
         _show(root, types, look)
         files["GuiDocument.xml"] = _gui(types, look)
     files["Document.xml"] = etree.tostring(root, xml_declaration=True, encoding="utf-8", standalone=False)
     return packed(files)
-
-
-def packed(files: Mapping[str, bytes]) -> bytes:
-    """Return a zip of files, all of one date, in the order in which FreeCAD reads them.
-
-    Document.xml comes first and GuiDocument.xml after all shapes: FreeCAD reads forwards only, so that with GuiDocument.xml
-    before them every shape stays empty, though only where there is a display.
-    """
-    stream = io.BytesIO()
-    with zipfile.ZipFile(stream, "w", zipfile.ZIP_DEFLATED, compresslevel=6) as archive:
-        ends = ("Document.xml", "GuiDocument.xml")
-        order = ["Document.xml", *(name for name in files if name not in ends), *(name for name in ends[1:] if name in files)]
-        for name in order:
-            entry = zipfile.ZipInfo(name, _ZIP_TIME)
-            entry.compress_type, entry.external_attr = zipfile.ZIP_DEFLATED, 0o644 << 16
-            archive.writestr(entry, files[name])
-    return stream.getvalue()
-
-
-def _parser() -> etree.XMLParser:
-    return etree.XMLParser(resolve_entities=False, no_network=True, load_dtd=False, huge_tree=True)
-
-
-def _settle(root: etree._Element) -> None:
-    """Replace what differs from run to run: dates, people, Uids, paths."""
-    for name in _DATES | _PEOPLE | {"TransientDir", "FileName"}:
-        for text in root.iterfind(f"Properties/Property[@name='{name}']/String"):
-            text.set("value", EPOCH if name in _DATES else "")
-    for number, uid in enumerate(root.iter("Uuid")):
-        uid.set("value", str(uuid.uuid5(_NAMESPACE, str(number))))
-    for item in root.iterfind("Objects/Object[@Touched]"):
-        del item.attrib["Touched"]
-    for needs in root.iter("ObjectDeps"):  # FreeCAD orders them by address
-        needs[:] = sorted(needs, key=lambda need: need.get("Name"))
-        for need in needs:
-            need.tail = needs.text
 
 
 def _is_shown(name: str, kind: str, look: Look) -> bool:

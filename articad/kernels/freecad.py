@@ -34,6 +34,7 @@ from articad.kernels import sandbox as isolation
 from articad.kernels.build123d import Build123dKernel
 from articad.kernels.contract import probe_findings, read_connectors, solid_findings
 from articad.kernels.failures import poisoned, script_failure, scrubbed
+from articad.kernels.freecad_file import rounded, settled
 from articad.kernels.freecad_install import Ended, FreeCAD, Limits
 from articad.kernels.kernel import BuiltPart, Inspect
 from articad.kernels.results import PoisonedError, numbers, read_bytes, read_lines
@@ -159,6 +160,7 @@ class FreeCADKernel(Build123dKernel):
         framed = tree.get("connectors")
         frames = framed if isinstance(framed, dict) else {}
         connectors = read_connectors(brief, {name: frames.get(name, entry) for name, entry in entries.items()}, found)
+        (job / "shape.bin").write_bytes(rounded(read_bytes(job / "shape.bin", MAX_DOCUMENT_BYTES)))
         shape = self._measured(job, form="brep", name=part, deflection=deflection)
         found += solid_findings(brief, shape)
         if inspect is not None and "bbox_mm" in shape:
@@ -171,7 +173,7 @@ class FreeCADKernel(Build123dKernel):
         if not findings.ok:
             raise _breach(list(findings.errors), part)
         self._leave(job, folder, self._checked(job, shape, deflection), connectors, findings, brief, deflection, self.level)
-        (folder / DOCUMENT).write_bytes(read_bytes(job / DOCUMENT, MAX_DOCUMENT_BYTES))
+        (folder / DOCUMENT).write_bytes(settled(read_bytes(job / DOCUMENT, MAX_DOCUMENT_BYTES)))
         return BuiltPart.load(folder)
 
 

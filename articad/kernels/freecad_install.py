@@ -135,7 +135,7 @@ class FreeCAD:
         shown = "/program.py" if confined else str(program.resolve())
         boot = f"ARGUMENTS={list(map(str, arguments))!r};exec(compile(open({shown!r}).read(),{program.name!r},'exec'))"
         inner = [self.program, "-c", boot]
-        command = [*_limited(limits), *(self._confined(inner, program, folder, limits) if confined else inner)]
+        command = [*_steady(), *_limited(limits), *(self._confined(inner, program, folder, limits) if confined else inner)]
         environment = {} if confined else _ENVIRONMENT | {"PATH": os.environ.get("PATH", ""), "HOME": str(folder or "/nonexistent")}
         return _ran(command, environment, None if confined else folder, files, limits.seconds)
 
@@ -252,6 +252,18 @@ def _version_of(freecad: FreeCAD) -> tuple[int, int, int] | None:
         return None
     match = _VERSION.search(ended.said)
     return None if match is None else (int(match[1]), int(match[2]), int(match[3] or 0))
+
+
+@cache
+def _steady() -> list[str]:
+    """Return what starts a program at the same addresses each time: FreeCAD's sketch solver orders numbers by theirs.
+
+    What a sketch is solved to then differs in the last bits from one process to the next, and so do all files made of it.
+    """
+    setarch = shutil.which("setarch")
+    if setarch is None or _ran([setarch, "-R", "true"], {"PATH": "/usr/bin:/bin"}, None, (), _SECONDS).code != 0:
+        return []
+    return [setarch, "-R"]
 
 
 def _limited(limits: Limits) -> list[str]:

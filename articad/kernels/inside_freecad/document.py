@@ -199,6 +199,8 @@ class _Writer:
                 container.addObject(item)
         self.hidden += [item.Name for item in copied if item.TypeId == "PartDesign::CoordinateSystem"]
         self._dimensions(part, container, values[0] if values else None)
+        for item in copied:  # nothing of them has changed: a sketch that is solved again may differ in its last bits
+            item.purgeTouched()
         return body
 
     def _connector(self, part: Json, container: Any, connector: Json) -> None:

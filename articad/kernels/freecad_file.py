@@ -1,0 +1,75 @@
+"""What differs from one FreeCAD file to the next though nothing else does: dates, people, Uids, order, and the last bits.
+
+FreeCAD's sketch solver leaves corners that coincide apart by 1e-15 mm, in one process otherwise than in the next. Shapes are
+kept to 12 decimals of a millimetre, which is beyond what they are exact to and makes the same file of the same part.
+"""
+
+from __future__ import annotations
+
+import io
+import re
+import uuid
+import zipfile
+from collections.abc import Mapping
+
+from lxml import etree
+
+EPOCH = "2000-01-01T00:00:00Z"
+DIGITS = 12  # decimals of mm kept of a shape
+_NUMBER = re.compile(rb"-?\d+(?:\.\d+)?e[+-]?\d+|-?\d+\.\d{%d,}" % (DIGITS + 1))
+_ZIP_TIME = (2000, 1, 1, 0, 0, 0)
+_NAMESPACE = uuid.UUID("6d1d9a3e-0c1b-5b6e-9b35-0a2f4f1c7c11")  # of the Uids that stand in for random ones
+_DATES = {"CreationDate", "LastModifiedDate"}
+_PEOPLE = {"CreatedBy", "LastModifiedBy", "Company"}
+
+
+def rounded(brep: bytes) -> bytes:
+    """Return a B-rep as text with its numbers to 12 decimals."""
+    return _NUMBER.sub(lambda number: b"%r" % (round(float(number[0]), DIGITS) + 0.0), brep)
+
+
+def settled(content: bytes) -> bytes:
+    """Return a part's document as it comes out each time: no date, no random Uid, shapes to 12 decimals."""
+    with zipfile.ZipFile(io.BytesIO(content)) as archive:
+        files = {name: archive.read(name) for name in archive.namelist()}
+    root = etree.fromstring(files["Document.xml"], xml_parser())
+    settle(root)
+    files["Document.xml"] = etree.tostring(root, xml_declaration=True, encoding="utf-8", standalone=False)
+    return packed({name: rounded(data) if name.endswith(".brp") else data for name, data in files.items()})
+
+
+def packed(files: Mapping[str, bytes]) -> bytes:
+    """Return a zip of files, all of one date, in the order in which FreeCAD reads them.
+
+    Document.xml comes first and GuiDocument.xml after all shapes: FreeCAD reads forwards only, so that with GuiDocument.xml
+    before them every shape stays empty, though only where there is a display.
+    """
+    stream = io.BytesIO()
+    with zipfile.ZipFile(stream, "w", zipfile.ZIP_DEFLATED, compresslevel=6) as archive:
+        ends = ("Document.xml", "GuiDocument.xml")
+        order = ["Document.xml", *(name for name in files if name not in ends), *(name for name in ends[1:] if name in files)]
+        for name in order:
+            entry = zipfile.ZipInfo(name, _ZIP_TIME)
+            entry.compress_type, entry.external_attr = zipfile.ZIP_DEFLATED, 0o644 << 16
+            archive.writestr(entry, files[name])
+    return stream.getvalue()
+
+
+def xml_parser() -> etree.XMLParser:
+    """Return a parser that resolves and fetches nothing."""
+    return etree.XMLParser(resolve_entities=False, no_network=True, load_dtd=False, huge_tree=True)
+
+
+def settle(root: etree._Element) -> None:
+    """Replace what differs from run to run: dates, people, Uids, paths."""
+    for name in _DATES | _PEOPLE | {"TransientDir", "FileName"}:
+        for text in root.iterfind(f"Properties/Property[@name='{name}']/String"):
+            text.set("value", EPOCH if name in _DATES else "")
+    for number, uid in enumerate(root.iter("Uuid")):
+        uid.set("value", str(uuid.uuid5(_NAMESPACE, str(number))))
+    for item in root.iterfind("Objects/Object[@Touched]"):
+        del item.attrib["Touched"]
+    for needs in root.iter("ObjectDeps"):  # FreeCAD orders them by address
+        needs[:] = sorted(needs, key=lambda need: need.get("Name"))
+        for need in needs:
+            need.tail = needs.text
