@@ -53,9 +53,15 @@ class TreeArrays:
             layout,
         )
         self._n_edges = len(edges)
-        self._transforms = Transforms(self.compiled)
         self._steps = tuple(zip(self.compiled.near, self.compiled.far, strict=True))
-        self._ground_matrix = T_ground.matrix
+
+    @cached_property
+    def _transforms(self) -> Transforms:
+        return Transforms(self.compiled)
+
+    @cached_property
+    def _ground_matrix(self) -> FloatArray:
+        return self.T_ground.matrix
 
     @property
     def crossings(self) -> tuple[Crossing, ...]:

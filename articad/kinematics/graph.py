@@ -14,7 +14,6 @@ from articad.kinematics.joints import Joint, JointType
 from articad.kinematics.tree import Edge, KinematicTree
 
 # Light joints carry parts first, so that the joints that are left to close loops are passive hinges and balls.
-_DRIVEN_WEIGHT = 1
 _WEIGHTS = {
     JointType.FIXED: 0,
     JointType.SLIDER: 2,
@@ -25,6 +24,7 @@ _WEIGHTS = {
     JointType.REVOLUTE: 4,
     JointType.BALL: 5,
 }
+_DRIVEN = {joint_type: min(weight, 1) for joint_type, weight in _WEIGHTS.items()}
 _REVERSIBLE = frozenset(joint_type for joint_type in JointType if joint_type.reversible)
 
 
@@ -91,9 +91,10 @@ class JointGraph:
         """The joints that carry parts, as (joint, near part, far part) by index, and for each part whether they reach it."""
         n, place = len(self.joints), self._place
         parents, children = [place[name] for name in self._parents], [place[name] for name in self._children]
-        at: list[list[int]] = [[] for _ in self.parts]  # of each part: weight and index of its joints, in one number
-        for index, (joint, parent, child) in enumerate(zip(self.joints, parents, children, strict=True)):
-            key = _weight(joint) * n + index
+        weights = [_DRIVEN[joint.type] if joint.driver else _WEIGHTS[joint.type] for joint in self.joints]
+        keys = [weight * n + index for index, weight in enumerate(weights)]  # joints are taken in the order of these numbers
+        at: list[list[int]] = [[] for _ in self.parts]
+        for joint, key, parent, child in zip(self.joints, keys, parents, children, strict=True):
             at[parent].append(key)
             if joint.type in _REVERSIBLE:
                 at[child].append(key)
@@ -103,16 +104,18 @@ class JointGraph:
         heapq.heapify(heap)
         crossed: list[tuple[int, int, int]] = []
         while heap:
-            index = heapq.heappop(heap) % n
+            taken = heapq.heappop(heap)
+            index = taken % n
             near, far = parents[index], children[index]
             if reached[far]:
                 near, far = far, near
-            if reached[far]:
-                continue
+                if reached[far]:
+                    continue
             reached[far] = True
             crossed.append((index, near, far))
             for key in at[far]:
-                heapq.heappush(heap, key)
+                if key != taken:
+                    heapq.heappush(heap, key)
         return crossed, reached
 
     def findings(self) -> Findings:
@@ -144,13 +147,11 @@ class JointGraph:
         return found
 
     def _clear(self) -> bool:
-        """Tell at a glance that every joint has two declared parts and its own pair of connectors."""
+        """Tell at a glance that every joint has two declared parts which no other joint connects."""
         if not self._place.keys() >= {*self._parents, *self._children} or any(map(operator.eq, self._parents, self._children)):
             return False
-        near = [joint.parent_connector for joint in self.joints]
-        far = [joint.child_connector for joint in self.joints]
-        pairs = set(zip(self._parents, near, self._children, far, strict=True))
-        return len(pairs) == len(self.joints) and pairs.isdisjoint(zip(self._children, far, self._parents, near, strict=True))
+        pairs = set(zip(self._parents, self._children, strict=True))
+        return len(pairs) == len(self.joints) and pairs.isdisjoint(zip(self._children, self._parents, strict=True))
 
     def _joint_findings(self) -> list[Finding]:
         if self._clear():
@@ -203,11 +204,6 @@ class JointGraph:
                     )
                 )
         return found
-
-
-def _weight(joint: Joint) -> int:
-    weight = _WEIGHTS[joint.type]
-    return min(weight, _DRIVEN_WEIGHT) if joint.driver else weight
 
 
 def _listed(names: Sequence[str]) -> str:

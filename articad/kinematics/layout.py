@@ -32,7 +32,6 @@ class Layout:
     Attributes:
         columns: Of each joint, by name.
         freedoms: Of each joint, by name.
-        rest: Coordinates at rest `(n_columns,)`.
     """
 
     def __init__(self, joints: Sequence[Joint]) -> None:
@@ -46,7 +45,11 @@ class Layout:
         balls = [i for i, joint_type in enumerate(types) if joint_type is JointType.BALL]
         self._ball_columns = _runs([columns[i] for i in balls], 4)
         self._ball_freedoms = _runs([freedoms[i] for i in balls], 3)
-        self.rest: FloatArray = self.normalized(np.array([value for joint in joints for value in joint.rest], dtype=np.float64))
+
+    @cached_property
+    def rest(self) -> FloatArray:
+        """Coordinates at rest `(n_columns,)`."""
+        return self.normalized(np.array([value for joint in self.joints for value in joint.rest], dtype=np.float64))
 
     @cached_property
     def coordinates(self) -> tuple[Coordinate, ...]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+from collections import defaultdict
 from collections.abc import Sequence
 from functools import cached_property
 from types import MappingProxyType
@@ -44,25 +45,25 @@ class KinematicTree:
 
     def __init__(self, ground: str, edges: Sequence[Edge]) -> None:
         self.ground = ground
-        children: dict[str, list[Edge]] = {}
+        children: defaultdict[str, list[Edge]] = defaultdict(list)
         for edge in edges:
-            children.setdefault(edge.parent, []).append(edge)
-        ordered: list[Edge] = []
-        seen = {ground}
-        stack = list(reversed(children.get(ground, ())))
+            children[edge.parent].append(edge)
+        edge_of: dict[str, Edge] = {}
+        stack = children[ground][::-1]
         while stack:  # depth first: Pinocchio's mass matrix is silently wrong in any other order
             edge = stack.pop()
-            if edge.part in seen:
-                raise KinematicsError(f"The joints are not a tree: {edge.part!r} is reached twice.")
-            seen.add(edge.part)
-            ordered.append(edge)
-            stack.extend(reversed(children.get(edge.part, ())))
-        if len(ordered) != len(edges):
-            lost = sorted({edge.part for edge in edges} - seen)
+            part = edge.part
+            if part in edge_of or part == ground:
+                raise KinematicsError(f"The joints are not a tree: {part!r} is reached twice.")
+            edge_of[part] = edge
+            if part in children:
+                stack += children[part][::-1]
+        if len(edge_of) != len(edges):
+            lost = sorted({edge.part for edge in edges} - edge_of.keys())
             raise KinematicsError(f"The joints are not a tree: {', '.join(lost)} do not hang from the ground {ground!r}.")
-        self.edges = tuple(ordered)
-        self.parts = (ground, *(edge.part for edge in ordered))
-        self._edge_of = MappingProxyType({edge.part: edge for edge in ordered})
+        self.edges = tuple(edge_of.values())
+        self.parts = (ground, *edge_of)
+        self._edge_of = MappingProxyType(edge_of)
 
     @cached_property
     def _depths(self) -> dict[str, int]:
