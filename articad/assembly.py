@@ -401,6 +401,16 @@ class Assembly:
 
         return render_views(self, views, **options)
 
+    def _repr_html_(self) -> str:
+        """Return the element by which a notebook shows the assembly: the page of a report, with a slider for each driver."""
+        from articad.report import notebook_page  # noqa: PLC0415 - only where one looks
+
+        return notebook_page(self)
+
+    def _repr_mimebundle_(self, **_wanted: object) -> dict[str, str]:
+        """Return what a notebook may choose from: the page, and plain text where nothing can be drawn."""
+        return {"text/plain": repr(self), "text/html": self._repr_html_()}
+
     def __repr__(self) -> str:
         joints = ", ".join(f"{joint.name}: {joint.type}" for joint in self.joints if joint.type is not JointType.FIXED)
         return f"<Assembly {self.name}: {len(self.parts)} parts, {self.mechanism.mobility} freedoms ({joints})>"

@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 from typing import Any, Literal, overload
 
 from articad.codes import CODES
+from articad.html_tables import html_table
 
 Severity = Literal["error", "warning", "info"]
 Route = Literal["design", "code"]
@@ -145,6 +146,11 @@ class Findings(Sequence[Finding]):
 
     def __repr__(self) -> str:
         return f"Findings({list(self.codes)})"
+
+    def _repr_html_(self) -> str:
+        """Return the table by which a notebook shows findings."""
+        rows = [(finding.code, finding.where, finding.message, finding.hint) for finding in self]
+        return html_table(["code", "where", "what", "hint"], rows) or "<p>no findings</p>"
 
 
 def relocated(finding: Finding, where: str) -> Finding:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from typing import Any, Literal, Self
 
 from articad.findings import Findings
+from articad.html_tables import html_table
 from articad.interference.relations import Relation
 
 Verdict = Literal["clear", "contact", "overlap", "unknown"]
@@ -159,6 +160,12 @@ class Checks:
             "deflection_mm": rounded(self.deflection),
             "pairs": [pair.to_json() for pair in self.pairs],
         }
+
+    def _repr_html_(self) -> str:
+        """Return the tables by which a notebook shows the report."""
+        rows = [(" – ".join(p.parts), ", ".join(_names(p.over)), p.verdict, str(p.strength), p.depth, p.gap) for p in self.pairs]
+        pairs = html_table(["parts", "over", "verdict", "how that is known", "depth mm", "gap mm"], rows, numbers=(4, 5))
+        return f"<p>{'ok' if self.ok else 'NOT ok'}</p>{self.findings._repr_html_() if len(self.findings) else ''}{pairs}"
 
     def __add__(self, other: Checks) -> Checks:
         """Return both reports as one."""

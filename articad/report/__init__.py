@@ -1,0 +1,7 @@
+"""One self-contained page for each run or build: a model that moves, and everything that is known about it."""
+
+from articad.report.model import viewer_model
+from articad.report.notebook import notebook_page
+from articad.report.page import Documents, report_page
+
+__all__ = ["Documents", "notebook_page", "report_page", "viewer_model"]

@@ -1,0 +1,135 @@
+"""The page itself: one file that needs nothing else and may do nothing else.
+
+Its policy allows exactly the one script and the one style sheet that it holds, by their digests; there is no address in
+it that a browser would fetch. Texts from plans, files and models are escaped; the model's JSON cannot end its element.
+"""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+import json
+from functools import cache
+from html import escape
+from importlib.resources import files
+
+from articad.assembly import Assembly
+from articad.report.model import viewer_model
+from articad.report.sections import Documents, all_sections, badges
+
+__all__ = ["Documents", "report_page"]
+
+_VIEWS = ("iso", "front", "right", "top")
+
+
+def report_page(assembly: Assembly, documents: Documents | None = None, *, watch: str | None = None) -> str:
+    """Return the page of an assembly; the same input gives the same text.
+
+    Args:
+        assembly: What is shown and moved.
+        documents: Reports to stand beside it.
+        watch: Version of the page as `articad watch` serves it: the page then asks its server for newer ones.
+    """
+    documents = documents or Documents()
+    model = viewer_model(assembly)
+    if watch is not None:
+        model["watch"] = watch
+    script, style = _asset("viewer.js"), _asset("viewer.css")
+    plan = f'<script type="application/json" id="plan">{_json_text(documents.plan)}</script>\n' if documents.plan is not None else ""
+    return "".join(
+        [
+            '<!doctype html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n',
+            f'<meta http-equiv="Content-Security-Policy" content="{_policy(script, style, watched=watch is not None)}">\n',
+            '<meta name="viewport" content="width=device-width, initial-scale=1">\n<meta name="referrer" content="no-referrer">\n',
+            '<meta name="generator" content="articad">\n',
+            f"<title>{escape(assembly.name)} – articad</title>\n<style>{style}</style>\n</head>\n<body>\n",
+            _header(assembly, documents),
+            "<main>\n",
+            _stage(assembly),
+            '<div id="panel">\n<p id="status" role="status" aria-live="polite"></p>\n',
+            _motion(),
+            all_sections(assembly, documents),
+            _keys(),
+            "</div>\n</main>\n",
+            f'<script type="application/json" id="model">{_json_text(json.dumps(model, ensure_ascii=True, allow_nan=False, separators=(",", ":")))}</script>\n',
+            plan,
+            f"<script>{script}</script>\n</body>\n</html>\n",
+        ]
+    )
+
+
+def _policy(script: str, style: str, *, watched: bool) -> str:
+    allowed = {
+        "default-src": "'none'",
+        "script-src": f"'sha256-{_digest(script)}'",
+        "style-src": f"'sha256-{_digest(style)}'",
+        "img-src": "data: blob:",
+        "base-uri": "'none'",
+        "form-action": "'none'",
+    }
+    if watched:
+        allowed["connect-src"] = "'self'"
+    return "; ".join(f"{key} {value}" for key, value in allowed.items())
+
+
+def _digest(text: str) -> str:
+    return base64.b64encode(hashlib.sha256(text.encode()).digest()).decode("ascii")
+
+
+@cache
+def _asset(name: str) -> str:
+    return files("articad.report").joinpath(name).read_text(encoding="utf-8").replace("\r\n", "\n")
+
+
+def _json_text(text: str) -> str:
+    """Return JSON that cannot end the element it stands in, nor open a comment: `<` and `>` occur in strings only."""
+    return text.replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026")
+
+
+def _header(assembly: Assembly, documents: Documents) -> str:
+    mass = sum(part.mass.mass for part in assembly.parts.values() if part.mass is not None)
+    freedoms = assembly.mechanism.mobility
+    told = f"{len(assembly.parts)} parts, {len(assembly.joints)} joints, {freedoms} freedom{'' if freedoms == 1 else 's'}, {mass:.4g} kg"
+    return (
+        f'<header><h1>{escape(assembly.name)}</h1><span class="quiet">{escape(told)}</span>{badges(documents)}'
+        '<button type="button" id="theme" aria-label="light or dark">◐</button></header>\n'
+    )
+
+
+def _stage(assembly: Assembly) -> str:
+    views = "".join(f'<button type="button" data-view="{view}">{view}</button>' for view in _VIEWS)
+    tools = "".join(f'<button type="button" id="tool-{key}" aria-pressed="false">{key}</button>' for key in ("axes", "names", "measure"))
+    axes = "".join(f'<line id="triad-{a}" class="{a}" x1="30" y1="30" x2="30" y2="30"/>' for a in "xyz")
+    names = "".join(f'<text id="triad-{a}-name" class="{a}" x="30" y="30">{a}</text>' for a in "xyz")
+    return (
+        f'<div id="stage"><canvas id="canvas" tabindex="0" role="application" aria-label="Model of {escape(assembly.name)}: '
+        'arrow keys turn it, plus and minus zoom"></canvas><div id="labels" aria-hidden="true"></div>\n'
+        f'<div id="tools">{views}{tools}<button type="button" id="reset">rest</button>'
+        '<button type="button" id="unfocus" hidden>show all</button></div>\n<p id="measured" hidden></p>\n'
+        f'<svg id="triad" viewBox="0 0 60 60" aria-hidden="true">{axes}{names}</svg>\n'
+        '<div id="cuts"><label>explode <input type="range" id="explode" min="0" max="1.5" step="any" value="0"></label>'
+        '<label>section <select id="section-axis"><option value="">none</option><option>x</option><option>y</option><option>z</option></select>'
+        '<input type="range" id="section-at" aria-label="where the section is" min="0" max="1" step="any" value="0.5"></label>'
+        '<label><input type="checkbox" id="section-flip"> other side</label></div></div>\n'
+    )
+
+
+def _motion() -> str:
+    return (
+        '<details class="section" open><summary>Motion</summary><div id="drivers"></div>\n'
+        '<details id="followers" hidden><summary class="quiet">Joints that follow</summary>'
+        '<table><tbody id="followers-rows"></tbody></table></details></details>\n'
+    )
+
+
+def _keys() -> str:
+    rows: list[tuple[str, str]] = [
+        ("1 … 7", "views: iso, front, right, top, back, left, bottom"),
+        ("arrows, + −", "turn and zoom, when the model has the focus"),
+        ("a n m", "joint axes and frames, names of parts, measure"),
+        ("r", "back to rest"),
+        ("f", "show the whole"),
+        ("Esc", "show all parts, or end measuring"),
+    ]
+    listed = "".join(f"<tr><td><kbd>{escape(key)}</kbd></td><td>{escape(what)}</td></tr>" for key, what in rows)
+    return f'<details class="section"><summary>Keys</summary><table><tbody>{listed}</tbody></table></details>\n'

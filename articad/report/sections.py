@@ -1,0 +1,298 @@
+"""What stands beside the model: tables of parts, checks, proofs, fits, exports, and what was said to whom."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from html import escape
+from typing import Any
+from urllib.parse import quote
+
+from articad.assembly import Assembly
+from articad.html_tables import Cell, Html, html_table
+
+Json = dict[str, Any]
+
+_LONGEST_TEXT = 20_000  # characters of one message: a page is read, and the run keeps the rest
+_SEVERITY = {"error": "bad", "warning": "warn", "info": "quiet"}
+_VERDICT = {"clear": "good", "contact": "good", "overlap": "bad", "unknown": "warn"}
+
+
+@dataclass(frozen=True)
+class Documents:
+    """What is known of an assembly beyond itself, as the reports of a run; all may be left out.
+
+    Attributes:
+        prompt: What was asked for.
+        checks: Report `articad.checks/1`.
+        certificate: Report `articad.certificate/1`.
+        verdict: Report `articad.verdict/1`.
+        audit: Report `articad.audit/1`.
+        exports: Reports `articad.losses/1` by format.
+        replies: Records `articad.llm/1`, in the order in which they are to be read.
+        plan: The plan's text.
+        files: Paths beside the page, to be linked.
+    """
+
+    prompt: str = ""
+    checks: Json | None = None
+    certificate: Json | None = None
+    verdict: Json | None = None
+    audit: Json | None = None
+    exports: Mapping[str, Json] = field(default_factory=dict)
+    replies: Sequence[Json] = ()
+    plan: str | None = None
+    files: Sequence[str] = ()
+
+    @property
+    def findings(self) -> list[Json]:
+        """Findings of all reports, errors first, each once."""
+        reports = [self.checks, self.certificate, self.verdict, self.audit, *self.exports.values()]
+        found = {json.dumps(finding, sort_keys=True): finding for report in reports if report for finding in report.get("findings", ())}
+        return sorted(found.values(), key=lambda finding: "EWI".find(finding["code"][0]))
+
+
+def all_sections(assembly: Assembly, documents: Documents) -> str:
+    """Return all sections that have something to say."""
+    known = set(assembly.parts)
+    findings = [*documents.findings, *(finding.to_json() for finding in assembly.findings)]
+    return "".join(
+        [
+            _section("What was asked for", f"<p>{escape(documents.prompt)}</p>" if documents.prompt else ""),
+            _section(f"Findings ({len(findings)})", _findings(findings, known), opened=bool(findings)),
+            _section("Parts", _parts(assembly), opened=True),
+            _section("Joints", _joints(assembly)),
+            _section("Interference", _pairs(documents.checks, known)),
+            _section("Proven motion", _certificate(documents.certificate, known)),
+            _section("Fits", _fits(assembly, documents.checks, known)),
+            _section("Exports and what they cannot hold", _exports(documents.exports)),
+            _section("Conversation with the model", _conversation(documents.replies)),
+            _section("Files", _files(documents)),
+        ]
+    )
+
+
+def badges(documents: Documents) -> str:
+    """Return the verdicts in a few words."""
+    found = []
+    for report, good, bad in (
+        (documents.checks, "no interference", "interference"),
+        (documents.certificate, "motion proven", "motion not proven"),
+        (documents.verdict, "accepted", "not accepted"),
+        (documents.audit, "audit passed", "audit failed"),
+    ):
+        if report is not None:
+            found.append(f'<span class="badge {"good" if report["ok"] else "bad"}">{good if report["ok"] else bad}</span>')
+    return "".join(found)
+
+
+def _section(title: str, content: str, *, opened: bool = False) -> str:
+    if not content:
+        return ""
+    return f'<details class="section"{" open" if opened else ""}><summary>{escape(title)}</summary>\n{content}</details>\n'
+
+
+def _show(text: str, parts: Sequence[str], pose: Mapping[str, float] | None, known: set[str], label: str = "Show") -> Html:
+    """Return a button that moves the model to a pose and fades all other parts."""
+    target = {"pose": dict(pose) if pose else None, "parts": [part for part in parts if part in known], "text": text}
+    return Html(f'<button type="button" data-show="{escape(json.dumps(target, ensure_ascii=False))}">{label}</button>')
+
+
+def _findings(findings: Sequence[Json], known: set[str]) -> str:
+    if not findings:
+        return '<p class="quiet">Nothing was found.</p>'
+    rows: list[list[Cell]] = []
+    for finding in findings:
+        numbers = ""
+        if finding.get("value") is not None and finding.get("limit") is not None:
+            numbers = f" ({finding['value']:.6g} against {finding['limit']:.6g} {finding.get('unit') or ''})".replace(" )", ")")
+        hint = f'<br><span class="hint">{escape(finding["hint"])}</span>' if finding.get("hint") else ""
+        parts, pose = finding.get("parts") or [], finding.get("pose")
+        rows.append(
+            [
+                Html(f'<span class="{_SEVERITY[finding["severity"]]}">{escape(finding["code"])}</span>'),
+                Html(f"{escape(finding['message'] + numbers)}{hint}"),
+                _show(finding["code"], parts, pose, known) if pose or known.intersection(parts) else None,
+            ]
+        )
+    return _scroll(html_table(["code", "what", ""], rows))
+
+
+def _parts(assembly: Assembly) -> str:
+    depth = {assembly.ground: 0}
+    for edge in assembly.mechanism.tree.edges:
+        depth[edge.part] = depth[edge.parent] + 1
+    order = [assembly.ground, *(edge.part for edge in assembly.mechanism.tree.edges)]
+    index = {name: number for number, name in enumerate(assembly.mechanism.parts)}
+    rows: list[list[Cell]] = []
+    for name in order:
+        part, number = assembly.parts[name], index[name]
+        indent = "\N{NO-BREAK SPACE}" * (3 * depth[name])
+        rows.append(
+            [
+                Html(f'<input type="checkbox" checked data-visible="{number}" aria-label="show {escape(name)}">'),
+                Html(
+                    f'{indent}<svg class="swatch" viewBox="0 0 1 1" aria-hidden="true"><rect width="1" height="1" '
+                    f'fill="{escape(part.color)}"/></svg><button type="button" data-part="{number}">{escape(name)}</button>'
+                ),
+                part.material,
+                None if part.mass is None else f"{part.mass.mass:.4g}",
+                None if part.solid is None else f"{part.solid.volume:,.0f}".replace(",", "\N{NARROW NO-BREAK SPACE}"),
+                Html(f'<button type="button" data-stl="{number}" aria-label="save {escape(name)} as STL">STL</button>'),
+            ]
+        )
+    total = sum(part.mass.mass for part in assembly.parts.values() if part.mass is not None)
+    note = f'<p class="quiet">Together {total:.4g} kg. A name shows the part alone; indented parts hang from those above.</p>'
+    return _scroll(html_table(["", "part", "material", "mass kg", "volume mm³", ""], rows, numbers=(3, 4))) + note
+
+
+def _joints(assembly: Assembly) -> str:
+    rows = []
+    for joint in assembly.joints:
+        limits = "; ".join(_bounds(column.lower, column.upper, column.unit) for column in joint.columns if column.unit != "1")
+        if joint.limits.cone is not None:
+            limits = f"cone {math.degrees(joint.limits.cone):.6g}°"
+        rows.append([joint.name, str(joint.type), joint.parent, joint.child, limits])
+    return _scroll(html_table(["joint", "type", "parent", "child", "range"], rows))
+
+
+def _bounds(lower: float, upper: float, unit: str) -> str:
+    if math.isinf(lower) and math.isinf(upper):
+        return "endless"
+    factor, sign = (180 / math.pi, "°") if unit == "rad" else (1.0, " mm")
+    return f"{lower * factor:.6g} … {upper * factor:.6g}{sign}"
+
+
+def _pairs(checks: Json | None, known: set[str]) -> str:
+    if checks is None:
+        return ""
+    rows = [_pair(pair, known) for pair in checks["pairs"]]
+    return _scroll(html_table(_PAIR_COLUMNS, rows, numbers=(3, 4))) or '<p class="quiet">No two parts come near each other.</p>'
+
+
+_PAIR_COLUMNS = ("parts", "over", "verdict", "depth mm", "gap mm", "")
+
+
+def _pair(pair: Json, known: set[str]) -> list[Cell]:
+    over = pair["over"] if isinstance(pair["over"], str) else ", ".join(pair["over"])
+    strength = pair["strength"]
+    known_by = {
+        "certified": "proven",
+        "sampled": f"{strength.get('poses')} poses seen",
+        "waived": f"allowed: {strength.get('reason')}",
+        "not_checked": f"not checked: {strength.get('reason')}",
+    }[strength["kind"]]
+    return [
+        " – ".join(pair["parts"]),
+        over,
+        Html(f'<span class="{_VERDICT[pair["verdict"]]}">{escape(pair["verdict"])}</span>, {escape(known_by)}'),
+        pair["depth_mm"],
+        pair["gap_mm"],
+        _show(" – ".join(pair["parts"]) + ".", pair["parts"], pair.get("pose"), known),
+    ]
+
+
+def _certificate(certificate: Json | None, known: set[str]) -> str:
+    if certificate is None:
+        return ""
+    ranges = [
+        [r["joint"], f"{r['free'][0]} … {r['free'][1]}", f"{r['declared'][0]} … {r['declared'][1]}"] for r in certificate.get("ranges", ())
+    ]
+    told = f'<p class="quiet">Distances up to {certificate["epsilon_mm"]:g} mm count as contact. Ranges in rad and mm.</p>'
+    return (
+        told
+        + _scroll(html_table(["joint", "proven free", "declared"], ranges))
+        + _scroll(html_table(_PAIR_COLUMNS, [_pair(pair, known) for pair in certificate["pairs"]], numbers=(3, 4)))
+    )
+
+
+def _fits(assembly: Assembly, checks: Json | None, known: set[str]) -> str:
+    gaps = {frozenset(pair["parts"]): pair["gap_mm"] for pair in (checks or {}).get("pairs", ()) if pair["over"] == "rest"}
+    rows: list[list[Cell]] = []
+    for joint in assembly.joints:
+        fit = assembly.fits.get(joint.name)
+        if fit is None:
+            continue
+        wanted = f"{'' if fit.gap_min is None else f'{fit.gap_min:.6g}'} … {'' if fit.gap_max is None else f'{fit.gap_max:.6g}'}"
+        rows.append(
+            [
+                joint.name,
+                f"{joint.parent} – {joint.child}",
+                wanted if wanted != " … " else "not declared",
+                gaps.get(frozenset({joint.parent, joint.child})),
+                fit.contact,
+                _show(joint.name + ".", [joint.parent, joint.child], None, known),
+            ]
+        )
+    return _scroll(html_table(["joint", "between", "gap declared mm", "measured mm", "contact", ""], rows, numbers=(3,)))
+
+
+def _exports(exports: Mapping[str, Json]) -> str:
+    rows: list[list[Cell]] = []
+    for name, report in sorted(exports.items()):
+        main = _link(report["main"]) if "main" in report else Html("")
+        if not report["rows"]:
+            rows.append([name, main, Html('<span class="good">nothing is lost</span>'), None])
+        rows += [[name, main, f"{row['where']}: written as {row['kept']}", f"lost: {row['lost']}"] for row in report["rows"]]
+    return _scroll(html_table(["format", "file", "what", ""], rows))
+
+
+def _conversation(replies: Sequence[Json]) -> str:
+    if not replies:
+        return ""
+    tokens = [0, 0]
+    costs: list[float | None] = []
+    talks = []
+    for record in replies:
+        reply = record["reply"]
+        usage = reply.get("usage") or {}
+        tokens[0] += usage.get("input_tokens") or 0
+        tokens[1] += usage.get("output_tokens") or 0
+        costs.append(reply.get("cost"))
+        head = f"{escape(record['step'])} <span class='quiet'>{escape(str(reply.get('model', '')))}, {_price(reply.get('cost'))}</span>"
+        said = "".join(
+            f'<details class="talk"><summary>{escape(message["role"])}</summary><pre>{escape(_cut(_text_of(message)))}</pre></details>'
+            for message in record["messages"]
+        )
+        answer = f"<pre>{escape(_cut(str(reply.get('text', ''))))}</pre>"
+        talks.append(f'<details class="talk"><summary>{head}</summary>{said}{answer}</details>')
+    cost = "cost not known" if any(one is None for one in costs) else f"${sum(one or 0.0 for one in costs):.4f}"
+    return f'<p class="quiet">{len(replies)} answers, {tokens[0]} tokens in, {tokens[1]} out, {cost}.</p>' + "".join(talks)
+
+
+def _price(cost: float | None) -> str:
+    return "cost not known" if cost is None else f"${cost:.4f}"
+
+
+def _text_of(message: Json) -> str:
+    content = message["content"]
+    if isinstance(content, str):
+        return content
+    return "\n\n".join(str(part.get("text") or f"[{part.get('type', 'picture')}]") for part in content)
+
+
+def _cut(text: str) -> str:
+    if len(text) <= _LONGEST_TEXT:
+        return text
+    return text[:_LONGEST_TEXT] + f"\n… {len(text) - _LONGEST_TEXT} more characters are in the run's folder llm/."
+
+
+def _files(documents: Documents) -> str:
+    buttons = [("save-pose", "this pose"), ("save-png", "picture"), ("save-stl", "STL of this pose")]
+    if documents.plan is not None:
+        buttons.append(("save-plan", "plan.json"))
+    made = "".join(f'<button type="button" id="{key}">{escape(label)}</button>' for key, label in buttons)
+    beside = "".join(f"<li>{_link(path).text}</li>" for path in documents.files)
+    listed = f'<p class="quiet">In the folder of this page:</p><ul class="files">{beside}</ul>' if beside else ""
+    return f'<div class="tools-row">Save {made}</div>{listed}'
+
+
+def _link(path: str) -> Html:
+    """Return a link to a file in the page's folder; a path cannot become another kind of address."""
+    return Html(f'<a href="{escape("./" + quote(path))}">{escape(path)}</a>')
+
+
+def _scroll(table: str) -> str:
+    return f'<div class="scroll">{table}</div>' if table else ""
