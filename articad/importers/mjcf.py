@@ -20,7 +20,7 @@ from articad.geometry.part import DEFAULT_COLOR, Shape
 from articad.geometry.shapes import box, cylinder, sphere
 from articad.importers.fusing import fused
 from articad.importers.raw import ENDLESS, IDENTITY, RawJoint, RawLink, RawModel, RawTie, aligned, assemble, floating
-from articad.importers.reading import MAX_LINKS, MM_PER_M, Folder, read_xml, unreadable
+from articad.importers.reading import MAX_LINKS, MM_PER_M, Folder, color_text, read_xml, unreadable
 from articad.importers.records import assembly_of, read_records, stale
 from articad.kinematics.joints import JointType
 
@@ -181,7 +181,7 @@ class _Reader:
             return None
         material = self.m.geom_matid[geom]
         rgba = self.m.mat_rgba[material] if material >= 0 else self.m.geom_rgba[geom]
-        color = "#" + "".join(f"{round(255 * min(max(float(channel), 0.0), 1.0)):02x}" for channel in rgba[:3])
+        color = color_text(rgba)
         name = self.mujoco.mj_id2name(self.m, self.mujoco.mjtObj.mjOBJ_GEOM, geom) or ""
         return Shape(mesh, _pose(self.m.geom_pos[geom], self.m.geom_quat[geom]), color, name)
 

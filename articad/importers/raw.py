@@ -28,6 +28,7 @@ from articad.kinematics.mechanism import Mechanism
 FloatArray = NDArray[np.float64]
 
 IDENTITY = SE3.identity()
+LARGEST_MM = 1e12  # of a frame's place: with more, doubles no longer tell a millimetre
 ENDLESS = (-math.inf, math.inf)
 
 
@@ -152,6 +153,8 @@ def assemble(model: RawModel, path: Path) -> Assembly:
         for link, frame in ((joint.parent, joint.frame_p), (joint.child, joint.frame_c)):
             if link not in connectors:
                 raise unreadable(path, f"joint {joint.name!r}", f"Its link {link!r} is not in the file.")
+            if not np.abs(frame.translation).max() <= LARGEST_MM:  # NaN is not either
+                raise unreadable(path, f"joint {joint.name!r}", "It stands beyond reason.")
             connectors[link][joint.name] = Connector(joint.name, frame)
     ties = _consistent_ties(model)
     rests = _rest_values(model.joints, ties)
@@ -165,8 +168,8 @@ def assemble(model: RawModel, path: Path) -> Assembly:
     try:
         mechanism = Mechanism(tuple(parts), model.ground, joints, couplings)
         mechanism.rest  # noqa: B018 - loops must close before anything is promised
-    except ArticadError as error:
-        raise unreadable(path, "", f"It makes no mechanism: {error.message}") from error
+    except (ArticadError, np.linalg.LinAlgError) as error:
+        raise unreadable(path, "", f"It makes no mechanism: {error}") from error
     return Assembly(model.name, mechanism, parts, findings=Findings(model.findings))
 
 

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
 from dataclasses import dataclass, field
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
@@ -25,6 +27,12 @@ def unreadable(path: Path | str, where: str, reason: str, code: str = "E_READ") 
         code=code, where=f"{path}: {where}" if where else str(path), message=reason, hint="Correct the file at the named place."
     )
     return ReadError(f"{path}: {where}: {reason}" if where else f"{path}: {reason}", path=str(path), where=where, findings=[finding])
+
+
+def color_text(rgba: Iterable[float]) -> str:
+    """Return "#rrggbb" of a colour's channels from 0 to 1; what is no such number counts as the nearer end."""
+    channels = [float(channel) for channel in islice(rgba, 3)]
+    return "#" + "".join(f"{round(255 * min(channel, 1.0)) if channel > 0 else 0:02x}" for channel in channels)  # NaN is not above 0
 
 
 def read_xml(path: Path) -> Any:

@@ -22,7 +22,7 @@ from articad.geometry.part import DEFAULT_COLOR, Shape
 from articad.geometry.shapes import box, cylinder, sphere
 from articad.importers.fusing import fused
 from articad.importers.raw import ENDLESS, IDENTITY, RawJoint, RawLink, RawModel, RawTie, aligned, assemble, floating
-from articad.importers.reading import MAX_LINKS, MM_PER_M, Folder, read_xml, unreadable
+from articad.importers.reading import MAX_LINKS, MM_PER_M, Folder, color_text, read_xml, unreadable
 from articad.importers.records import assembly_of, read_records, stale
 from articad.kinematics.joints import JointType
 
@@ -204,7 +204,7 @@ def _color(material: Any) -> str:
     color = getattr(material, "color", None)
     if color is None or color.rgba is None:
         return ""
-    return "#" + "".join(f"{round(255 * min(max(float(channel), 0.0), 1.0)):02x}" for channel in color.rgba[:3])
+    return color_text(color.rgba)
 
 
 def _pose(matrix: FloatArray | None) -> SE3:

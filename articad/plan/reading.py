@@ -69,7 +69,7 @@ def loads(form: type[F], text: str | bytes) -> F:
         ) from None
     except json.JSONDecodeError as error:
         where = f"line {error.lineno} column {error.colno}"
-        line = error.doc.splitlines()[error.lineno - 1].strip()[:_SHOWN] if error.doc.strip() else ""
+        line = "".join(error.doc.split("\n")[error.lineno - 1 :][:1]).strip()[:_SHOWN]
         hint = "Give one JSON object: keys and texts in double quotes, no comments, no comma before } or ]."
         raise _refused([_finding("E_SCHEMA", where, f"This is not JSON: {error.msg} at {line!r}.", hint)]) from None
     except (UnicodeDecodeError, RecursionError, ValueError) as error:

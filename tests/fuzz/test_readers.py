@@ -13,9 +13,10 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from articad.errors import ReadError
+from articad.errors import PlanError, ReadError
 from articad.importers.freecad import read_freecad
 from articad.importers.mjcf import read_mjcf
+from articad.importers.reading import color_text
 from articad.importers.urdf import read_urdf
 from articad.kernels.archive import Archive, BadArchiveError, packed
 from articad.kernels.freecad import tree_findings
@@ -163,6 +164,30 @@ def test_a_report_of_another_form_is_a_finding(value: Any) -> None:
     tree = {"ok": True, "off_tip": value, "invalid": value, "untied": value, "sketched": True}
     for finding in tree_findings("part", tree):
         assert finding.code in {"E_NOT_EDITABLE", "E_FEATURE_OFF_TIP"}
+
+
+@pytest.mark.parametrize("text", ["[\n", "\n", "{\x1e", "[\x0b\n\n"])
+def test_json_that_ends_on_an_empty_line_is_an_error_of_ours(text: str) -> None:
+    with pytest.raises(PlanError, match="This is not JSON"):
+        AssemblyPlan.loads(text)
+
+
+def test_a_colour_that_is_no_number_counts_as_dark(tmp_path: Path) -> None:
+    assert color_text([float("nan"), 2.0, -1.0, 1.0]) == "#00ff00"
+    assert color_text([0.5, float("inf"), 0.2]) == "#80ff33"
+    path = tmp_path / "a.urdf"
+    path.write_text('<robot name="r"><material name="m"><color rgba="nan 0 0 1"/></material><link name="a"/></robot>')
+    assert list(read_urdf(path).parts) == ["a"]
+
+
+def test_bodies_beyond_reason_are_refused(tmp_path: Path) -> None:
+    path = tmp_path / "a.xml"
+    bodies = (
+        '<body name="a" pos="1e300 0 0"><joint name="j"/><geom size="1"/></body><body name="b"><joint name="k"/><geom size="1"/></body>'
+    )
+    path.write_text(f'<mujoco><worldbody>{bodies}</worldbody><equality><connect body1="a" body2="b" anchor="0 0 0"/></equality></mujoco>')
+    with pytest.raises(ReadError, match="beyond reason"):
+        read_mjcf(path)
 
 
 def test_an_integer_beyond_every_float_is_poison() -> None:
