@@ -74,15 +74,23 @@ class _Region:
     Attributes:
         vertices: Of the largest piece, `(V, 3)` [mm].
         volume: Of it [mm³].
+        piece: The piece itself, a manifold.
     """
 
     vertices: FloatArray
     volume: float
+    piece: Any
 
     @property
     def centre(self) -> FloatArray:
         """Middle of its box."""
         return np.asarray((self.vertices.min(axis=0) + self.vertices.max(axis=0)) / 2)
+
+    def radius(self, axis: Core, height: float) -> float:
+        """Return how far it reaches from an axis at a height: faces that merely touch add flat rims elsewhere."""
+        upright = np.linalg.inv(axis.frame)[:3, :]
+        outline = self.piece.transform(upright).slice(height).to_polygons()
+        return max((float(np.linalg.norm(points, axis=1).max()) for points in outline), default=0.0)
 
 
 class Case:
@@ -108,8 +116,8 @@ class Case:
         axis = self._axis()
         if axis is None or self.region is None:
             return None
-        radius = float(axis.radii(self.region.vertices).max())
         low, high = axis.heights(self.region.vertices)
+        radius = self.region.radius(axis, (low + high) / 2)
         if self.region.volume < ROUND_SHARE * np.pi * radius**2 * (high - low):
             return None
         middle = axis.frame[:3, 3] + axis.frame[:3, 2] * (low + high) / 2
@@ -138,6 +146,8 @@ class Case:
         thickness = high - low
         step = max(PROBE_SHARE * thickness, 1e-3)
         both = np.array([centre + direction * (place - centre @ direction) for place in (low - step, high + step)])
+        if min(self._material(name, centre[None])[0] for name in (self.a, self.b)) < 0.5:
+            return None  # a ring round its own middle: a bore that is too small, no tongue
         for name in (self.a, self.b):
             if (self._material(name, both) > 0.5).all() and (self._material(self._other(name), both) < 0.5).all():
                 width = thickness + 2 * CLEARANCE_MM
@@ -260,7 +270,7 @@ class Case:
         largest: Any = max(pieces, key=lambda piece: float(piece.volume()))
         if float(largest.volume()) <= VOLUME_NOISE_MM3:
             return None
-        return _Region(np.asarray(largest.to_mesh64().vert_properties)[:, :3], float(largest.volume()))
+        return _Region(np.asarray(largest.to_mesh64().vert_properties)[:, :3], float(largest.volume()), largest)
 
     def _axis(self) -> Core | None:
         """Return the axis of the joint between the two, in the first part's frame."""
