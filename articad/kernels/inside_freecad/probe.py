@@ -7,6 +7,7 @@ document is a stranger's: this process is confined as well. One JSON object a li
 from __future__ import annotations
 
 import json
+import math
 import os
 import time
 from pathlib import Path
@@ -128,7 +129,10 @@ def _fingerprint(document: Any, body: Any, systems: dict[str, str]) -> list[floa
     box = shape.BoundBox
     center = shape.CenterOfGravity if shape.Solids else App.Vector()
     frames = [number for frame in _frames(document, systems).values() for axis in ("o", "z", "x") for number in frame[axis]]
-    return [shape.Volume, *center, box.XMin, box.YMin, box.ZMin, box.XMax, box.YMax, box.ZMax, *frames]
+    # Radii of gyration: holes that move together, as on a bolt circle, leave the volume and its centre where they are.
+    inertia = shape.Solids[0].MatrixOfInertia if shape.Solids else App.Matrix()
+    spread = [math.sqrt(abs(entry) / max(shape.Volume, 1e-9)) for entry in (inertia.A11, inertia.A22, inertia.A33)]
+    return [shape.Volume, *center, *spread, box.XMin, box.YMin, box.ZMin, box.XMax, box.YMax, box.ZMax, *frames]
 
 
 def _same(after: list[float], before: list[float]) -> bool:
