@@ -26,6 +26,7 @@ from articad.plan.resolve import ResolvedPart, ResolvedPlan
 __all__ = ["BuildCache", "BuiltPart", "Inspect", "PartKernel", "build_part", "mirror_part", "realise"]
 
 FloatArray = NDArray[np.float64]
+_OF_NUMBERS = {"W_CONNECTOR_DRIFT"}  # found of this plan's numbers, not of the script: never carried over to other numbers
 SEATED_MM, SEATED_RAD = 1e-7, 1e-10  # a seat this close is rounding of what a script wrote down; the files stay as they are
 
 Inspect = Callable[[Mapping[str, Connector], FloatArray], Findings]
@@ -167,7 +168,8 @@ def build_part(
             raise
         if probed is None:
             with cache.writing(f"{script_digest}.probe") as empty:
-                (empty / "findings.json").write_text(json.dumps([finding.to_json() for finding in built.findings]))
+                of_script = [finding.to_json() for finding in built.findings if finding.code not in _OF_NUMBERS]
+                (empty / "findings.json").write_text(json.dumps(of_script))
         folder = cache.root / digest
     return _seated(target, BuiltPart.load(folder, cached=cached), kernel)
 
