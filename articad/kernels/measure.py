@@ -87,8 +87,8 @@ def measure(shape: TopoDS_Shape, *, deflection: float, angle: float, name: str, 
         name: Product name in the STEP file.
         matrix: Rigid motion or reflection `(4, 4)` to apply first.
     """
-    solids = list(_found(shape, TopAbs_SOLID))
-    loose = sum(1 for _ in _found(shape, TopAbs_FACE, avoid=TopAbs_SOLID)) + sum(1 for _ in _found(shape, TopAbs_EDGE, avoid=TopAbs_FACE))
+    solids = list(found(shape, TopAbs_SOLID))
+    loose = sum(1 for _ in found(shape, TopAbs_FACE, avoid=TopAbs_SOLID)) + sum(1 for _ in found(shape, TopAbs_EDGE, avoid=TopAbs_FACE))
     report: Json = {"ok": True, "solids": len(solids), "loose": loose}
     if len(solids) != 1:
         return Measured(report, {})
@@ -101,12 +101,12 @@ def measure(shape: TopoDS_Shape, *, deflection: float, angle: float, name: str, 
     mesh = tessellate(solid, deflection, angle)
     report["closed"] = is_closed(mesh.triangles)
     BRepTools.Clean_s(solid)
-    return Measured(report, {"npz": _npz(mesh), "brep": _brep(solid), "step": step_file(solid, name)})
+    return Measured(report, {"npz": npz(mesh), "brep": _brep(solid), "step": step_file(solid, name)})
 
 
 def pieces(shape: TopoDS_Shape, *, deflection: float, angle: float) -> Measured:
     """Mesh all solids of what a failed script held, as one mesh, for a picture of how far it came."""
-    solids = [solid for solid in _found(shape, TopAbs_SOLID) if _volume(solid).Mass() > EMPTY_MM3]
+    solids = [solid for solid in found(shape, TopAbs_SOLID) if _volume(solid).Mass() > EMPTY_MM3]
     meshes = [mesh for mesh in (tessellate(solid, deflection, angle) for solid in solids) if is_closed(mesh.triangles)]
     report = {"ok": True, "solids": len(meshes)}
     if not meshes:
@@ -117,7 +117,7 @@ def pieces(shape: TopoDS_Shape, *, deflection: float, angle: float) -> Measured:
         np.concatenate([mesh.triangles + start for mesh, start in zip(meshes, starts[:-1], strict=True)]).astype(np.int32),
         np.concatenate([np.full(len(mesh.face), place, np.int32) for place, mesh in enumerate(meshes)]),
     )
-    return Measured(report, {"npz": _npz(together)})
+    return Measured(report, {"npz": npz(together)})
 
 
 def properties(solid: TopoDS_Shape) -> Json:
@@ -182,7 +182,7 @@ def binary(shape: TopoDS_Shape) -> bytes:
 
 def solids_of(shape: TopoDS_Shape) -> list[TopoDS_Shape]:
     """Return the solids of a shape, each once."""
-    return list(_found(shape, TopAbs_SOLID))
+    return list(found(shape, TopAbs_SOLID))
 
 
 def to_json(report: Json) -> bytes:
@@ -198,7 +198,7 @@ def _finite(value: Any) -> Any:
     return [_finite(item) for item in value] if isinstance(value, (list, tuple)) else value
 
 
-def _found(shape: TopoDS_Shape, kind: Any, avoid: Any = None) -> Iterator[TopoDS_Shape]:
+def found(shape: TopoDS_Shape, kind: Any, avoid: Any = None) -> Iterator[TopoDS_Shape]:
     """Yield the sub-shapes of a kind, each once, in the kernel's order."""
     seen: set[Same] = set()
     explorer = TopExp_Explorer(shape, kind) if avoid is None else TopExp_Explorer(shape, kind, avoid)
@@ -234,7 +234,7 @@ def _moved(solid: TopoDS_Shape, matrix: list[list[float]]) -> TopoDS_Shape:
     return TopoDS.Solid(BRepBuilderAPI_Transform(solid, motion, theCopyGeom=True).Shape())
 
 
-def _npz(mesh: Mesh) -> bytes:
+def npz(mesh: Mesh) -> bytes:
     """Return what `numpy.load` reads, the same bytes under every version of Python and NumPy, whose `savez` differ."""
     stream = io.BytesIO()
     with zipfile.ZipFile(stream, "w") as archive:

@@ -8,7 +8,7 @@ import os
 import signal
 from typing import Any
 
-from articad.kernels import measure, part_script
+from articad.kernels import measure, part_script, step_tree
 
 SELF_INTERSECTION_SECONDS = 5.0  # the check is quadratic in faces; a swept thread would need 12 s
 
@@ -50,7 +50,20 @@ def measure_shape(request: Json, files: dict[str, int]) -> None:
         _write(files["report"], measure.to_json(measure.self_intersection(measure.solids_of(shape)[0])))
 
 
-TASKS = {"script": run_script, "measure": measure_shape, "pieces": measure_shape}
+def read_assembly(request: Json, files: dict[str, int]) -> None:
+    """Task `assembly`: the products of a STEP file; the first line of the report says whether it could be read, each other one is a part."""
+    job = json.loads(_content(files["job"]))
+    signal.setitimer(signal.ITIMER_REAL, request["limits"]["seconds"])
+    try:
+        rows, mesh = step_tree.read(_content(files["shape"]), deflection=job["deflection_mm"], angle=math.radians(job["angle_deg"]))
+    except (ValueError, RuntimeError) as error:
+        _write(files["report"], measure.to_json({"ok": False, "message": str(error)}))
+        return
+    _write(files["npz"], mesh)
+    _write(files["report"], b"".join(measure.to_json(row) for row in ({"ok": True, "parts": len(rows)}, *rows)))
+
+
+TASKS = {"script": run_script, "measure": measure_shape, "pieces": measure_shape, "assembly": read_assembly}
 
 
 def _content(file: int) -> bytes:

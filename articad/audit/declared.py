@@ -1,0 +1,210 @@
+"""What a file declares, before any reader smooths it over: links with inertias and shapes as they stand, joints with their numbers.
+
+Lengths are mm, angles rad, masses kg, as everywhere; what a file leaves out is None.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from articad.assembly import Assembly
+from articad.connectors.se3 import SE3
+from articad.geometry.mesh import TriMesh
+from articad.geometry.part import Part
+from articad.interference.relations import Groups
+from articad.kinematics.joints import JointType
+
+FloatArray = NDArray[np.float64]
+Role = Literal["visual", "collision"]
+
+MOVING = ("revolute", "continuous", "prismatic", "planar", "floating", "spherical")
+
+
+@dataclass(frozen=True, eq=False)
+class Inertial:
+    """Mass properties as declared, however impossible.
+
+    Attributes:
+        mass: [kg]; None where the file gives none.
+        com: Centre of mass in the link's frame, `(3,)` [mm].
+        inertia: About the centre, along the link's axes, `(3, 3)` [kg·mm²]; None where the file gives none.
+    """
+
+    mass: float | None
+    com: FloatArray
+    inertia: FloatArray | None
+
+
+@dataclass(frozen=True, eq=False)
+class DeclaredShape:
+    """A shape of a link.
+
+    Attributes:
+        role: What it is for.
+        kind: "box", "cylinder", "sphere", "mesh", "geom" (one of MuJoCo's) or what else the file names.
+        where: Place in the file.
+        mesh: In the link's frame [mm]; None where it could not be read.
+        file: Name of the mesh file as the file has it.
+        scale: Of the mesh file, metres per unit.
+        problem: Why there is no mesh: "absent", "unreadable", "format", "unsafe" or "".
+        reason: The same in words.
+    """
+
+    role: Role
+    kind: str
+    where: str
+    mesh: TriMesh | None = None
+    file: str | None = None
+    scale: tuple[float, float, float] = (1.0, 1.0, 1.0)
+    problem: str = ""
+    reason: str = ""
+
+
+@dataclass(frozen=True, eq=False)
+class DeclaredLink:
+    """A link, body or part."""
+
+    name: str
+    where: str
+    inertial: Inertial | None = None
+    shapes: tuple[DeclaredShape, ...] = ()
+
+    def of(self, role: Role) -> tuple[DeclaredShape, ...]:
+        """Return its shapes of one role."""
+        return tuple(shape for shape in self.shapes if shape.role == role)
+
+    @cached_property
+    def points(self) -> FloatArray:
+        """Vertices of all its shapes in its frame, `(n, 3)` [mm]."""
+        found = [shape.mesh.vertices for shape in self.shapes if shape.mesh is not None]
+        return np.concatenate(found) if found else np.empty((0, 3))
+
+
+@dataclass(frozen=True, eq=False)
+class DeclaredJoint:
+    """A joint; `lower` to `velocity` in rad, mm, N·m and N, None where the file gives none."""
+
+    name: str
+    where: str
+    type: str
+    parent: str
+    child: str
+    frame: SE3 | None = None
+    lower: float | None = None
+    upper: float | None = None
+    effort: float | None = None
+    velocity: float | None = None
+    mimics: str | None = None
+
+    @property
+    def moves(self) -> bool:
+        """True unless it is fixed."""
+        return self.type in MOVING
+
+    @property
+    def turns(self) -> bool:
+        """True when its coordinate is an angle."""
+        return self.type in {"revolute", "continuous"}
+
+
+@dataclass(frozen=True, eq=False)
+class Declared:
+    """A whole file.
+
+    Attributes:
+        format: "urdf", "mjcf", "freecad", "step" or "plan".
+        name: Of the robot.
+        links: In the file's order.
+        joints: In the file's order.
+        states_inertia: False where the format leaves masses to others, as CAD does.
+        states_collision: False where a part's solid is what collides.
+    """
+
+    format: str
+    name: str
+    links: tuple[DeclaredLink, ...]
+    joints: tuple[DeclaredJoint, ...]
+    states_inertia: bool = True
+    states_collision: bool = True
+
+    @cached_property
+    def by_name(self) -> dict[str, DeclaredLink]:
+        """Links by name, the first of each."""
+        found: dict[str, DeclaredLink] = {}
+        for link in self.links:
+            found.setdefault(link.name, link)
+        return found
+
+    @cached_property
+    def roots(self) -> tuple[str, ...]:
+        """Links that no joint carries."""
+        carried = {joint.child for joint in self.joints}
+        return tuple(name for name in self.by_name if name not in carried)
+
+    @cached_property
+    def rigid(self) -> Groups:
+        """Links that fixed joints make one body."""
+        groups = Groups(self.by_name)
+        for joint in self.joints:
+            if joint.type == "fixed":
+                groups.join(joint.parent, joint.child)
+        return groups
+
+    @cached_property
+    def moving_groups(self) -> tuple[tuple[str, ...], ...]:
+        """Rigid groups that a joint moves: all but those of the roots."""
+        standing = {self.rigid.leader(name) for name in self.roots}
+        return tuple(names for names in self.rigid.sets() if self.rigid.leader(names[0]) not in standing)
+
+    def poses(self) -> dict[str, SE3]:
+        """Return where each link stands when every joint is at zero, as seen from the first root; links that cannot be reached are left out."""
+        found = {self.roots[0]: SE3.identity()} if self.roots else {}
+        for _ in self.joints:
+            before = len(found)
+            for joint in self.joints:
+                if joint.parent in found and joint.child not in found and joint.frame is not None:
+                    found[joint.child] = found[joint.parent] @ joint.frame
+            if len(found) == before:
+                break
+        return found
+
+
+def from_assembly(
+    assembly: Assembly, format_name: str, *, states_inertia: bool, states_collision: bool, simple: frozenset[str] = frozenset()
+) -> Declared:
+    """Return what an assembly declares, for formats whose readers keep everything; `simple` parts have shapes that are no meshes."""
+    links = tuple(_link(part, "geom" if part.name in simple else "mesh") for part in assembly.parts.values())
+    return Declared(format_name, assembly.name, links, tuple(_joints(assembly)), states_inertia, states_collision)
+
+
+def _link(part: Part, kind: str) -> DeclaredLink:
+    where = f"parts.{part.name}"
+    inertial = None if part.mass is None else Inertial(part.mass.mass, part.mass.com, part.mass.inertia)
+    visuals = [DeclaredShape("visual", kind, where, shape.placed) for shape in part.visuals]
+    collisions = [DeclaredShape("collision", kind, where, shape.placed) for shape in part.collisions]
+    return DeclaredLink(part.name, where, inertial, (*visuals, *collisions))
+
+
+def _joints(assembly: Assembly) -> Iterator[DeclaredJoint]:
+    for joint in assembly.joints:
+        names = joint.column_names if joint.type is not JointType.BALL else ()
+        ends = (joint.parent, joint.child)
+        if not names:
+            yield DeclaredJoint(joint.name, f"joints.{joint.name}", "spherical" if joint.type is JointType.BALL else "fixed", *ends)
+        for index, (name, unit) in enumerate(zip(names, joint.type.units, strict=False)):
+            kind = "revolute" if unit == "rad" else "prismatic"
+            lower, upper = joint.limits.lower[index], joint.limits.upper[index]
+            if kind == "revolute" and math.isinf(lower) and math.isinf(upper):
+                kind = "continuous"
+            yield DeclaredJoint(name, f"joints.{name}", kind, *ends, lower=_finite(lower), upper=_finite(upper))
+
+
+def _finite(value: float) -> float | None:
+    return value if math.isfinite(value) else None

@@ -1,0 +1,248 @@
+"""The audit of one file: read it as it stands, read it as a mechanism, look at both, and ask the engines."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, Final
+
+from articad.assembly import Assembly
+from articad.audit import limits, masses, names, shapes, structure
+from articad.audit.contact import Contacts, contacts
+from articad.audit.declared import Declared, from_assembly
+from articad.audit.engines import refusals
+from articad.audit.mesh_references import MeshReferences
+from articad.audit.report import Audit
+from articad.audit.step_parts import audit_step
+from articad.audit.urdf_text import UrdfText
+from articad.errors import ArticadError, ReadError
+from articad.findings import Finding, Findings
+from articad.importers.freecad import read_freecad
+from articad.importers.mjcf import read_mjcf
+from articad.importers.reading import Folder, read_xml
+from articad.importers.urdf import read_urdf
+from articad.simulate.loading import ENGINES, Loading, load_in_all
+
+BUDGET_S: Final = 8.0  # of sampling the motion
+FORMATS: Final = {".urdf": "urdf", ".xml": "mjcf", ".mjcf": "mjcf", ".fcstd": "freecad", ".step": "step", ".stp": "step"}
+"""Format that a file name's ending stands for."""
+
+CHECKS: Final[tuple[Callable[[Declared], Iterator[Finding]], ...]] = (
+    *structure.CHECKS,
+    *names.CHECKS,
+    *masses.CHECKS,
+    *limits.CHECKS,
+    *shapes.CHECKS,
+)
+_READER_NOTES: Final = {"W_IMPORT_MESH", "W_IMPORT_LIMITS", "W_IMPORT_DROPPED", "W_IMPORT_STALE"}
+"""What our own readers leave out; where it is a defect of the file, a check says so with its own words."""
+
+_CAD_NAMES: Final = {"freecad", "plan", "run"}  # names of labels are free there
+
+
+@dataclass
+class Choices:
+    """What an audit is asked to do.
+
+    Attributes:
+        root: Folder that meshes may be read from; by default the package that the file lies in.
+        budget: Seconds for sampling the motion.
+        certified: Seconds for proving the motion instead of sampling it.
+        engines: Whether to ask simulators to load the file.
+        motion: Whether to look at motion at all.
+    """
+
+    root: Path | None = None
+    budget: float = BUDGET_S
+    certified: float | None = None
+    engines: bool = True
+    motion: bool = True
+
+
+@dataclass
+class _Found:
+    """What comes together while a file is looked at."""
+
+    findings: list[Finding] = field(default_factory=list)
+    undone: list[str] = field(default_factory=list)
+    declared: Declared | None = None
+    motion: str = "none"
+    engines: tuple[Loading, ...] = ()
+
+
+def audit(path: str | Path, choices: Choices | None = None) -> Audit:
+    """Audit a URDF, MJCF, FreeCAD or STEP file; whatever is wrong with it becomes a finding.
+
+    Args:
+        path: The file.
+        choices: What to do; everything but proofs by default.
+
+    Raises:
+        ReadError: If its ending is none of those.
+    """
+    path, choices = Path(path), choices or Choices()
+    kind = FORMATS.get(path.suffix.lower())
+    if kind is None:
+        raise ReadError(f"{path}: {path.suffix or 'no'} extension is not one of {', '.join(FORMATS)}.", path=str(path))
+    start, found = time.monotonic(), _Found()
+    try:
+        _AUDITORS[kind](path, choices, found)
+    except ArticadError as error:
+        found.findings += error.findings or [_unreadable(path, error)]
+    return _report(str(path), kind, found, start)
+
+
+def audit_assembly(assembly: Assembly, file: str, kind: str, choices: Choices | None = None) -> Audit:
+    """Audit an assembly that is there already: of a plan or a run."""
+    choices, start, found = choices or Choices(), time.monotonic(), _Found()
+    found.declared = from_assembly(assembly, kind, states_inertia=False, states_collision=False)
+    found.findings += assembly.findings
+    _look(found, assembly, choices)
+    return _report(file, kind, found, start)
+
+
+def _report(file: str, kind: str, found: _Found, start: float) -> Audit:
+    declared = found.declared
+    moving = sum(joint.moves for joint in declared.joints) if declared else 0
+    return Audit(
+        file,
+        kind,
+        declared.name if declared else "",
+        len(declared.links) if declared else 0,
+        moving,
+        Findings(found.findings),
+        found.engines,
+        tuple(dict.fromkeys(found.undone)),
+        found.motion,
+        time.monotonic() - start,
+    )
+
+
+# ---------------------------------------------------------------------- one a format
+
+
+def _urdf(path: Path, choices: Choices, found: _Found) -> None:
+    document = read_xml(path)
+    if document.tag != "robot":
+        raise ReadError(f"{path}: The root element is <{document.tag}>, not <robot>.", path=str(path), findings=[_no_robot(path, document)])
+    root = choices.root or package_of(path)
+    text = UrdfText(MeshReferences(Folder.of(path, root)))
+    found.declared = text.declared(document, path)
+    found.findings += text.findings
+    found.engines = load_in_all(path, ENGINES["urdf"]) if choices.engines else ()
+    found.findings += refusals(found.engines)
+    _read_and_look(found, lambda: read_urdf(path, root=root), choices, path)
+
+
+def _mjcf(path: Path, choices: Choices, found: _Found) -> None:
+    root = choices.root or package_of(path)
+    found.engines = load_in_all(path, ENGINES["mjcf"]) if choices.engines else ()
+    assembly = read_mjcf(path, root=root)
+    found.findings += refusals(found.engines)
+    simple, _ = _mask(found.engines)
+    found.declared = from_assembly(assembly, "mjcf", states_inertia=False, states_collision=True, simple=simple)
+    _look(found, assembly, choices)
+
+
+def _freecad(path: Path, choices: Choices, found: _Found) -> None:
+    assembly = read_freecad(path)
+    found.declared = from_assembly(assembly, "freecad", states_inertia=False, states_collision=False)
+    found.findings += assembly.findings
+    _look(found, assembly, choices)
+
+
+def _step(path: Path, choices: Choices, found: _Found) -> None:
+    del choices
+    found.declared, findings, undone = audit_step(path)
+    found.findings += findings
+    found.undone += undone
+
+
+_AUDITORS: Final[dict[str, Callable[[Path, Choices, _Found], None]]] = {"urdf": _urdf, "mjcf": _mjcf, "freecad": _freecad, "step": _step}
+
+
+# ---------------------------------------------------------------------- looking
+
+
+def _read_and_look(found: _Found, read: Callable[[], Assembly], choices: Choices, path: Path) -> None:
+    """Look at the text; look at the mechanism, if it is one."""
+    try:
+        assembly = read()
+    except ArticadError as error:
+        _check_text(found)
+        if not any(finding.severity == "error" for finding in found.findings):  # else the text has said why
+            found.findings += error.findings or [_unreadable(path, error)]
+        return
+    _look(found, assembly, choices)
+
+
+def _look(found: _Found, assembly: Assembly, choices: Choices) -> None:
+    assert found.declared is not None
+    _check_text(found)
+    found.findings += _carriers(found.declared, assembly)
+    found.undone += [finding.message for finding in assembly.findings if finding.code == "W_IMPORT_DROPPED"]
+    simple, excluded = _mask(found.engines)
+    if not choices.motion:
+        return
+    outcome: Contacts = contacts(
+        assembly, found.declared, budget=choices.budget, certified=choices.certified, simple=simple, filtered=excluded
+    )
+    found.findings += outcome.findings
+    found.undone += outcome.undone
+    found.motion = outcome.strength if assembly.drivers else "none"
+
+
+def _check_text(found: _Found) -> None:
+    assert found.declared is not None
+    for check in CHECKS:
+        if found.declared.format != "urdf" and check in structure.CHECKS:
+            continue  # other formats' readers refuse what is no mechanism
+        if found.declared.format in _CAD_NAMES and check is names.awkward_names:
+            continue
+        found.findings += check(found.declared)
+
+
+def _carriers(declared: Declared, assembly: Assembly) -> Iterator[Finding]:
+    """Chains over bare links in URDF that stand for a joint that URDF has no word for."""
+    if declared.format != "urdf":
+        return
+    for finding in assembly.findings.of("I_IMPORT_FUSED"):
+        yield Finding(
+            code="I_AUDIT_CARRIERS",
+            where=finding.where,
+            message=f"{finding.message} Links without shape carry it.",
+            hint="Nothing for URDF, which has no such joint; MJCF and CAD hold it as one: use `articad convert`.",
+            cause="carrier",
+        )
+
+
+def _mask(loadings: tuple[Loading, ...]) -> tuple[frozenset[str], frozenset[frozenset[str]]]:
+    """Return what MuJoCo says of an MJCF's bodies: which collide with simple shapes, which pairs never do."""
+    for loading in loadings:
+        if loading.engine == "mujoco" and loading.loads:
+            return frozenset(loading.simple), frozenset(map(frozenset, loading.excluded))
+    return frozenset(), frozenset()
+
+
+def package_of(path: Path) -> Path:
+    """Return the folder that a file may take meshes from: the nearest ROS package above it, else its own."""
+    here = path.resolve().parent
+    for folder in (here, *here.parents):
+        if (folder / "package.xml").is_file():
+            return folder
+    return here
+
+
+def _no_robot(path: Path, document: Any) -> Finding:
+    return Finding(
+        code="E_READ",
+        where=f"{path} (line {document.sourceline})",
+        message=f"The root element is <{document.tag}>, not <robot>.",
+        hint="Is this URDF? Expand xacro first.",
+    )
+
+
+def _unreadable(path: Path, error: ArticadError) -> Finding:
+    return Finding(code="E_READ", where=str(path), message=error.message, hint="Correct the file at the named place.")

@@ -1,0 +1,82 @@
+"""Mesh files that a file names: found or not, readable or not, each read once."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from articad.errors import ArticadError
+from articad.geometry.mesh import TriMesh
+from articad.geometry.mesh_files import read_mesh
+from articad.importers.reading import Folder
+
+READABLE = (".stl", ".obj", ".glb", ".gltf", ".ply")
+Scale = tuple[float, float, float]
+
+
+@dataclass
+class MeshReferences:
+    """The meshes that one file names.
+
+    Attributes:
+        folder: Where they may be.
+        paths: Files that were found, by the name that the file uses.
+    """
+
+    folder: Folder
+    paths: dict[str, Path] = field(default_factory=dict)
+    _raw: dict[Path, TriMesh | tuple[str, str]] = field(default_factory=dict)
+    _scaled: dict[tuple[Path, Scale], TriMesh] = field(default_factory=dict)
+
+    def mesh(self, name: str, scale: Scale) -> tuple[TriMesh | None, str, str]:
+        """Return a mesh in mm, or what is wrong with it.
+
+        Args:
+            name: As the file has it.
+            scale: Millimetres per unit of the mesh file, along its axes.
+
+        Returns:
+            The mesh or None, the problem in one word ("" if there is none), and in words.
+        """
+        try:
+            path = self.folder.find(name)
+        except ArticadError as error:
+            unsafe = any(finding.code == "E_UNSAFE_PATH" for finding in error.findings)
+            return None, "unsafe" if unsafe else "absent", self._missing(name, unsafe=unsafe)
+        self.paths[name] = path
+        raw = self._read(path)
+        if isinstance(raw, tuple):
+            return None, *raw
+        if (path, scale) not in self._scaled:
+            mesh = TriMesh(raw.vertices * scale, raw.triangles)
+            self._scaled[path, scale] = mesh.flipped() if np.prod(scale) < 0 else mesh
+        return self._scaled[path, scale], "", ""
+
+    def raw(self, name: str) -> TriMesh | None:
+        """Return the mesh of a file in the file's own unit."""
+        found = self._raw.get(self.paths[name]) if name in self.paths else None
+        return found if isinstance(found, TriMesh) else None
+
+    def _read(self, path: Path) -> TriMesh | tuple[str, str]:
+        if path not in self._raw:
+            if path.suffix.lower() not in READABLE:
+                self._raw[path] = "format", f"{path.suffix or 'no suffix'} is not one of {', '.join(READABLE)}"
+            else:
+                try:
+                    self._raw[path] = read_mesh(path)
+                except ArticadError as error:
+                    self._raw[path] = "unreadable", error.message.removeprefix(f"{path}: ")
+        return self._raw[path]
+
+    def _missing(self, name: str, *, unsafe: bool) -> str:
+        if unsafe:
+            return f"it leads out of {self.folder.root.name or self.folder.root}"
+        wanted = Path(name.removeprefix("package://")).name.lower()
+        places = [self.folder.here, *(here for here in self.folder.here.iterdir() if here.is_dir())]
+        for place in places:
+            for file in sorted(place.iterdir()):
+                if file.name.lower() == wanted and wanted:
+                    return f"there is no such file, but there is {file.relative_to(self.folder.here)}"
+        return "there is no such file"

@@ -1,0 +1,229 @@
+"""Does an engine load a file as it stands? Asked in a process of its own, for some engines end theirs on a bad file.
+
+`python -m articad.simulate.loading ENGINE FILE` prints one JSON object.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import importlib
+import io
+import json
+import os
+import re
+import resource
+import subprocess
+import sys
+import tempfile
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import combinations
+from pathlib import Path
+from typing import Any, Literal
+
+Engine = Literal["mujoco", "pinocchio", "pybullet"]
+
+ENGINES: dict[str, tuple[Engine, ...]] = {"urdf": ("mujoco", "pinocchio", "pybullet"), "mjcf": ("mujoco", "pybullet")}
+"""Engines by format of the file."""
+
+SECONDS = 60.0
+MEMORY = 6 << 30  # bytes of address space; MuJoCo reserves more than it uses
+MOST_BODIES = 300  # whose pairs are looked at one by one
+_MESSAGE = 300  # characters kept of what an engine says
+
+
+@dataclass(frozen=True)
+class Loading:
+    """What an engine made of a file.
+
+    Attributes:
+        engine: Its name.
+        version: Its version; "" where it is not installed.
+        loads: Whether it took the file; None where it is not installed.
+        message: In its own words, if it did not.
+        simple: MuJoCo: bodies with a colliding box, sphere, capsule, cylinder or ellipsoid.
+        excluded: MuJoCo: pairs of bodies that masks or exclusions keep from colliding.
+        mass: MuJoCo: of all that moves [kg].
+    """
+
+    engine: Engine
+    version: str = ""
+    loads: bool | None = None
+    message: str = ""
+    simple: tuple[str, ...] = ()
+    excluded: tuple[tuple[str, str], ...] = ()
+    mass: float | None = None
+
+    def to_json(self) -> dict[str, Any]:
+        """Return the row of a report."""
+        return {"engine": self.engine, "version": self.version, "loads": self.loads, "message": self.message, "mass_kg": self.mass}
+
+
+def load(engine: Engine, path: Path, *, seconds: float = SECONDS) -> Loading:
+    """Have an engine load a file in a process of its own, with bounded time and memory."""
+    return _answer(engine, start(engine, path, seconds=seconds), seconds)
+
+
+def load_in_all(path: Path, engines: tuple[Engine, ...], *, seconds: float = SECONDS) -> tuple[Loading, ...]:
+    """Have several engines load a file, one beside the other."""
+    started = [(engine, start(engine, path, seconds=seconds)) for engine in engines]
+    return tuple(_answer(engine, process, seconds) for engine, process in started)
+
+
+def start(engine: Engine, path: Path, *, seconds: float = SECONDS) -> subprocess.Popen[bytes]:
+    """Start the process that loads a file."""
+    package = Path(__file__).resolve().parents[2]
+    environment = os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, [str(package), os.environ.get("PYTHONPATH")]))}
+    command = [sys.executable, "-m", "articad.simulate.loading", engine, str(path.resolve()), str(seconds)]
+    return subprocess.Popen(  # noqa: S603 - ourselves
+        command, cwd=tempfile.gettempdir(), env=environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL
+    )
+
+
+def _answer(engine: Engine, process: subprocess.Popen[bytes], seconds: float) -> Loading:
+    try:
+        out, _ = process.communicate(timeout=seconds)
+    except subprocess.TimeoutExpired:
+        process.kill()
+        process.communicate()
+        return Loading(engine, "?", loads=False, message=f"it was not done after {seconds:g} s")
+    try:
+        answer = json.loads(out.decode(errors="replace").strip().splitlines()[-1])
+    except (ValueError, IndexError):
+        return Loading(engine, "?", loads=False, message=f"its process ended with {_ending(process.returncode)}")
+    pairs = tuple((str(a), str(b)) for a, b in answer.pop("excluded", ()))
+    return Loading(**answer | {"engine": engine, "simple": tuple(answer.get("simple", ())), "excluded": pairs})
+
+
+def _ending(code: int) -> str:
+    return f"signal {-code}" if code < 0 else f"exit code {code}"
+
+
+# ---------------------------------------------------------------------- in the process of its own
+
+
+def main(arguments: list[str]) -> int:
+    """Load a file and print what came of it."""
+    engine, path, seconds = arguments
+    resource.setrlimit(resource.RLIMIT_CPU, (int(float(seconds)) + 1, int(float(seconds)) + 2))
+    resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
+    with tempfile.TemporaryDirectory(prefix="articad-engine-") as scratch:
+        os.chdir(scratch)  # MuJoCo leaves its log where it stands
+        with _captured() as said:
+            try:
+                answer = _LOADERS[engine](Path(path), said)
+            except ImportError:
+                answer = {"version": "", "loads": None, "message": "it is not installed"}
+        os.chdir("/")
+    print(json.dumps(answer))  # noqa: T201 - this is the answer
+    return 0
+
+
+def _mujoco(path: Path, said: io.StringIO) -> dict[str, Any]:
+    import mujoco  # noqa: PLC0415
+
+    del said
+    version = str(mujoco.__version__)
+    try:
+        model = mujoco.MjModel.from_xml_path(str(path))
+    except (ValueError, mujoco.FatalError) as error:
+        return {"version": version, "loads": False, "message": _plain(str(error))}
+    return {"version": version, "loads": True, "mass": float(model.body_mass[1:].sum()), **_filters(mujoco, model)}
+
+
+def _filters(mujoco: Any, model: Any) -> dict[str, Any]:
+    """Return which bodies are simple, and which pairs never collide, whatever their pose."""
+    names = [model.body(index).name or f"body_{index}" for index in range(model.nbody)]
+    kinds = mujoco.mjtGeom
+    simple_kinds = set(
+        map(int, (kinds.mjGEOM_BOX, kinds.mjGEOM_SPHERE, kinds.mjGEOM_CYLINDER, kinds.mjGEOM_CAPSULE, kinds.mjGEOM_ELLIPSOID))
+    )
+    geoms: list[list[int]] = [[] for _ in names]
+    for geom in range(model.ngeom):
+        if model.geom_contype[geom] or model.geom_conaffinity[geom]:
+            geoms[model.geom_bodyid[geom]].append(geom)
+    simple = [name for name, own in zip(names, geoms, strict=True) if any(int(model.geom_type[geom]) in simple_kinds for geom in own)]
+    if model.nbody > MOST_BODIES:
+        return {"simple": simple}
+    excluded = {frozenset((int(code) >> 16, int(code) & 0xFFFF)) for code in model.exclude_signature}
+    pairs = []
+    for a, b in combinations(range(model.nbody), 2):
+        meet = any(
+            (model.geom_contype[g] & model.geom_conaffinity[h]) or (model.geom_contype[h] & model.geom_conaffinity[g])
+            for g in geoms[a]
+            for h in geoms[b]
+        )
+        if frozenset((a, b)) in excluded or not meet:
+            pairs.append((names[a], names[b]))
+    return {"simple": simple, "excluded": pairs}
+
+
+def _pinocchio(path: Path, said: io.StringIO) -> dict[str, Any]:
+    import pinocchio  # noqa: PLC0415
+
+    version = str(pinocchio.__version__)
+    try:
+        model = pinocchio.buildModelFromUrdf(str(path))
+    except (ValueError, RuntimeError) as error:
+        return {"version": version, "loads": False, "message": _plain(f"{error} {said.getvalue()}")}
+    return {"version": version, "loads": True, "mass": float(sum(inertia.mass for inertia in model.inertias))}
+
+
+def _pybullet(path: Path, said: io.StringIO) -> dict[str, Any]:
+    pybullet: Any = importlib.import_module("pybullet")  # an extra: it has no wheels for later Pythons
+    client = pybullet.connect(pybullet.DIRECT)
+    version = str(pybullet.getAPIVersion(client))
+    try:
+        if path.suffix.lower() == ".urdf":
+            pybullet.loadURDF(str(path), physicsClientId=client)
+        else:
+            pybullet.loadMJCF(str(path), physicsClientId=client)
+    except pybullet.error as error:
+        lines = [line for line in said.getvalue().splitlines() if "rror" in line or "annot" in line or "Could not" in line]
+        return {"version": version, "loads": False, "message": _plain(" ".join([str(error), *lines[:3]]))}
+    finally:
+        pybullet.disconnect(client)
+    return {"version": version, "loads": True}
+
+
+_LOADERS = {"mujoco": _mujoco, "pinocchio": _pinocchio, "pybullet": _pybullet}
+
+
+class _Said(io.StringIO):
+    """What a library printed, from below Python."""
+
+    def __init__(self, file: Any) -> None:
+        super().__init__()
+        self._file = file
+
+    def getvalue(self) -> str:
+        """Return everything up to now."""
+        self._file.flush()
+        self._file.seek(0)
+        return str(self._file.read().decode(errors="replace"))
+
+
+@contextlib.contextmanager
+def _captured() -> Iterator[_Said]:
+    """Lead stdout and stderr of this process into a file, C libraries' too."""
+    with tempfile.TemporaryFile() as file:
+        kept = os.dup(1)
+        sys.stdout.flush()
+        os.dup2(file.fileno(), 1)
+        os.dup2(file.fileno(), 2)
+        try:
+            yield _Said(file)
+        finally:
+            sys.stdout.flush()
+            os.dup2(kept, 1)
+
+
+def _plain(text: str) -> str:
+    """Return what an engine says as one line, without the machine's folders."""
+    line = re.sub(r"\x1b\[[0-9;]*m", "", " ".join(text.split()))
+    line = re.sub(r"(?<![\w.])/(?:[\w.@+-]+/)+", "", line)
+    return line[:_MESSAGE]
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
