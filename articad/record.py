@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from pathlib import Path
 from typing import Any, Final, Literal
 
 from articad import convert
@@ -23,6 +24,7 @@ from articad.kernels.kernel import BuildCache, PartKernel
 from articad.kernels.parts import Progress, RealisedPart
 from articad.plan.brief import brief
 from articad.plan.schema import AssemblyPlan
+from articad.report import Documents, report_page
 from articad.run import Run
 
 Report = dict[str, Any]
@@ -112,6 +114,26 @@ def record_pictures(run: Run, assembly: Assembly) -> None:
     for joint in dict.fromkeys(driver.joint for driver in assembly.drivers):
         frames = render_motion(assembly, joint, size=_PICTURE_PIXELS, supersample=1)
         run.save_motion(joint, png(filmstrip(frames)), motion_gif(frames))
+
+
+def documents_of(run: Run) -> Documents:
+    """Return what a run knows beside its assembly, for its page; paths are those in the run."""
+    exports = {name: report | {"main": Path(report["main"]).relative_to(run.path).as_posix()} for name, report in run.exports().items()}
+    return Documents(
+        prompt=run.prompt if run.request.options.get("task") != "build" else "",
+        checks=run.checks(),
+        certificate=run.certificate(),
+        verdict=run.verdict(),
+        exports=exports,
+        replies=tuple(record for step in run.replies() if (record := run.reply(step)) is not None),
+        plan=run.plan_text(),
+        files=run.results(),
+    )
+
+
+def record_page(run: Run, assembly: Assembly) -> Path:
+    """Keep the page that shows a run; return its file."""
+    return run.save_page(report_page(assembly, documents_of(run)))
 
 
 def record_certificate(run: Run, certificate: Certificate) -> Report:

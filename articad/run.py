@@ -60,7 +60,7 @@ _IMAGES, _PLANS, _PARTS, _REMOVED, _ATTEMPTS, _REPLIES, _SUPERSEDED, _EXPORT = (
 )
 _SCRIPT, _BRIEF, _CONNECTORS, _PART, _STL = "script.py", "brief.json", "connectors.json", "part.json", "part.stl"
 _OUTCOME, _PICTURE = "outcome.json", "partial.png"
-_VIEWS, _MOTION = "views", "motion"
+_VIEWS, _MOTION, _PAGE = "views", "motion", "report.html"
 _CERTIFICATE, _CERTIFIED = "certificate.json", "certificate"
 _TEMPORARY = re.compile(r"\..+\.tmp-[0-9a-f]{8}$")
 
@@ -434,6 +434,17 @@ class Run:
         self._write(f"{_MOTION}/{joint}.png", strip)
         self._write(f"{_MOTION}/{joint}.gif", animation)
 
+    def save_page(self, text: str) -> Path:
+        """Keep the page that shows the run; return its file."""
+        self._write(_PAGE, text.encode())
+        return self.path / _PAGE
+
+    def results(self) -> tuple[str, ...]:
+        """Return the paths, in the run, of what is of use outside it: plan, exports, and each part's CAD files and script."""
+        wanted = [_PLAN, f"{_EXPORT}/*/*", *(f"{_PARTS}/*/{name}" for name in ("part.step", "part.FCStd", _STL, _SCRIPT))]
+        found = (file for pattern in wanted for file in sorted(self.path.glob(pattern)) if file.is_file() and file.name != "losses.json")
+        return tuple(file.relative_to(self.path).as_posix() for file in found)
+
     # ------------------------------------------------------------------ the trace
 
     def trace(self, event: Event, **fields: object) -> None:
@@ -452,9 +463,9 @@ class Run:
                 yield json.loads(line)
 
     def hashes(self) -> dict[str, str]:
-        """Return the sha256 of every file by its path in the run, but for the trace and the pictures, which are drawn from the rest."""
+        """Return the sha256 of every file by its path in the run, but for the trace, and pictures and page, which are drawn from the rest."""
         files = (file for file in sorted(self.path.rglob("*")) if file.is_file() and file.name != _TRACE)
-        files = (file for file in files if file.parent.name != _VIEWS and file.parent != self.path / _MOTION)
+        files = (file for file in files if file.parent.name != _VIEWS and file.parent != self.path / _MOTION and file.name != _PAGE)
         return {file.relative_to(self.path).as_posix(): hashlib.sha256(file.read_bytes()).hexdigest() for file in files}
 
     # ------------------------------------------------------------------ reading and writing

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 @command("build", "Build a plan's parts, assemble, check and export them.", argument("plan", metavar="PLAN_DIR"), *BUILD_ARGUMENTS)
 def _build(options: argparse.Namespace, terminal: Terminal) -> Report:
     from articad.plan.schema import AssemblyPlan
-    from articad.record import record_assembly, record_certificate, record_checks, record_export, record_pictures
+    from articad.record import record_assembly, record_certificate, record_checks, record_export, record_page, record_pictures
     from articad.run import RunRequest, open_or_create
 
     plan = AssemblyPlan.load(options.plan)
@@ -35,6 +35,7 @@ def _build(options: argparse.Namespace, terminal: Terminal) -> Report:
             record_export(run, assembly, name)
         if options.pictures:
             record_pictures(run, assembly)
+            record_page(run, assembly)
     return reported(run, terminal)
 
 

@@ -68,7 +68,7 @@ SANDBOX = argument(
 JOBS = argument("--jobs", metavar="N", type=positive, default=None, help="parts built at once (all processors)")
 FORCE = argument("--force", action="store_true", help="build every part anew, whatever the cache holds")
 EXPORT = argument("--export", metavar="FORMATS", dest="formats", type=formats, default=USUAL, help="formats to write (urdf,mjcf)")
-PICTURES = argument("--no-pictures", dest="pictures", action="store_false", help="draw neither parts nor motion")
+PICTURES = argument("--no-pictures", dest="pictures", action="store_false", help="draw neither parts nor motion, write no page")
 BUILD_ARGUMENTS = (
     OUT,
     argument("--kernel", choices=["build123d", "freecad"], default=None, help="what builds part scripts (the plan's own choice)"),

@@ -73,11 +73,13 @@ def loaded(target: str, options: argparse.Namespace, terminal: Terminal) -> Asse
 
 def draw(run: Run) -> None:
     """Draw what a finished run has made; its parts come from the cache."""
-    from articad.record import assembly_of, record_pictures
+    from articad.record import assembly_of, record_page, record_pictures
     from articad.run import Run
 
     with Run.open(run.path) as opened:
-        record_pictures(opened, assembly_of(opened))
+        assembly = assembly_of(opened)
+        record_pictures(opened, assembly)
+        record_page(opened, assembly)
 
 
 def sandbox_level(options: argparse.Namespace) -> Literal["strict", "weak"]:
