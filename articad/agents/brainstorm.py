@@ -173,7 +173,7 @@ def _colors(parts: Sequence[str], edges: _Edges) -> dict[str, str]:
             part: sorted((types, colors[next(iter(pair - {part}), part)]) for pair, types in edges.items() if part in pair)
             for part in parts
         }
-        marks = {repr(seen): str(n) for n, seen in enumerate(sorted(set(map(repr, around.values()))))}
+        marks = {seen: str(n) for n, seen in enumerate(sorted(set(map(repr, around.values()))))}
         colors = {
             part: f"{marks[repr(around[part])]}:{len(around[part])}:{','.join('+'.join(t) for t, _ in around[part])}" for part in parts
         }

@@ -76,10 +76,48 @@ def fenced(script: str) -> str:
     return f"Here it is:\n\n```python\n{script.strip()}\n```\n"
 
 
+LOOKS_RIGHT = json.dumps(
+    {
+        "findings": [
+            {"aspect": aspect, "agrees": True, "seen": "a box", "specified": "a box", "fault": "none", "remedy": ""}
+            for aspect in ("shape", "proportion", "orientation")
+        ]
+    }
+)
+FINE = {"ok": True, "reason": "as asked"}
+ACCEPTED: dict[str, Any] = {"placement": FINE, "interference": FINE, "motion": FINE, "problems": []}
+
+
+def looks(aspect: str, fault: str = "script", remedy: str = "make it thinner") -> str:
+    """A look that finds one aspect not as specified."""
+    findings = json.loads(LOOKS_RIGHT)["findings"]
+    for entry in findings:
+        if entry["aspect"] == aspect:
+            entry |= {"agrees": False, "seen": "a cube", "specified": "a plate", "fault": fault, "remedy": remedy}
+    return json.dumps({"findings": findings})
+
+
+def observed(*joints: str) -> str:
+    """What an observer says who finds nothing odd."""
+    motions = [{"joint": joint, "seen": "turns upwards", "expected": True} for joint in joints]
+    return json.dumps({"overall": "a plate with a flap", "parts": [], "motions": motions})
+
+
+def judged(aspect: str, fault: str, *parts: str, what: str = "it is upside down", expected: str = "the other way round") -> str:
+    """What a judge says who finds one problem."""
+    problem = {"aspect": aspect, "parts": parts, "what": what, "expected": expected, "fault": fault, "remedy": "turn it"}
+    return json.dumps(ACCEPTED | {aspect: {"ok": False, "reason": what}, "problems": [problem]})
+
+
+def watched(*joints: str) -> dict[str, Any]:
+    """Replies of all who look, satisfied."""
+    return {"look/*": LOOKS_RIGHT, "observe/*": observed(*joints), "judge/*": json.dumps(ACCEPTED)}
+
+
 def flap(**answers: Any) -> Scripted:
     """A model that designs the flap right at once; answers to single steps (`design__1`) may be replaced."""
     script: dict[str, Any] = {"requirements": requirements(), "design/1": json.dumps(FLAP_PLAN)}
-    script |= {f"part/{name}/1": fenced(text) for name, text in FLAP_SCRIPTS.items()}
+    script |= {f"part/{name}/1": fenced(text) for name, text in FLAP_SCRIPTS.items()} | watched("hinge")
     return Scripted(script | {step.replace("__", "/"): answer for step, answer in answers.items()})
 
 
