@@ -33,6 +33,7 @@ _LOCAL_HOSTS: Final = frozenset({"localhost", "127.0.0.1", "::1", "0.0.0.0", "ho
 _SECRET_NAME = re.compile(r"KEY|TOKEN|SECRET|PASSWORD|CREDENTIAL", re.IGNORECASE)
 _SECRET_SHAPE = re.compile(r"(?i)\b(?:sk|pk|rk|key|api|gsk|xai|AIza)[-_][\w*.-]{6,}|\bbearer\s+[^\s,;]+|//[^/@\s]+:[^/@\s]+@")
 _SHORTEST_SECRET = 6  # characters; shorter values of such variables are words like "none"
+_TOLD: Final = "one JSON object and nothing else"  # stands in every prompt that tells the form of its answer
 _FORM = (
     "Answer with one JSON object and nothing else: no Markdown fence, no text before or after it. "
     "It must be valid against this JSON schema:\n"
@@ -313,7 +314,9 @@ def _as_content(part: Text | Image) -> Json:
 
 
 def _with_form(messages: list[Json], schema: Json) -> list[Json]:
-    """Say the form of the answer in words, for a model that cannot be held to a schema."""
+    """Add the form of the answer for a model that cannot be held to a schema; a prompt that tells it in prose is left alone."""
+    if _TOLD in str(messages[0]["content"]):
+        return messages
     told = _FORM + json.dumps(schema, ensure_ascii=False)
     first, *rest = messages
     if first["role"] == "system" and isinstance(first["content"], str):

@@ -86,7 +86,7 @@ class Requirements(Form):
 
 def response_schema() -> dict[str, Any]:
     """Return the JSON schema of a reply: the form without its version, which a model need not state."""
-    return schema_of(Requirements, without=frozenset({"schema", "open_ended"}))
+    return schema_of(Requirements, without=frozenset({"schema"}))
 
 
 def analyse(request: RunRequest, llm: LLM, *, concept: BaseModel | None = None) -> Requirements:
