@@ -22,6 +22,7 @@ from articad.connectors.mate import FLIP, Mate
 from articad.connectors.se3 import SE3
 from articad.errors import ExportError
 from articad.export.bundle import Bundle, Loss
+from articad.export.freecad_expressions import Followed
 from articad.export.freecad_file import Look, normalised
 from articad.export.losses import refuse
 from articad.export.lowering import lower
@@ -33,7 +34,6 @@ from articad.geometry.part import Part
 from articad.kernels import freecad_install
 from articad.kernels.freecad_install import FreeCAD, Limits
 from articad.kinematics.joints import Coupling, Joint, JointType
-from articad.plan.expressions import ExpressionError, parse
 from articad.plan.resolve import ResolvedPart
 
 if TYPE_CHECKING:
@@ -98,8 +98,7 @@ class _Job:
             names.claim(taken)
         self.names = names
         self.objects = {name: names.claim(name) for name in assembly.parts}
-        resolved = assembly.resolved
-        self.parameters = {} if resolved is None else {name: f"Parameters.p_{name}" for name in resolved.parameters}
+        self.followed = Followed(assembly.resolved)
 
     def job(self) -> Json:
         poses = self.assembly.at()
@@ -128,21 +127,8 @@ class _Job:
                 "value": float(resolved.parameters[parameter.name]),
                 "unit": parameter.unit,
                 "description": parameter.description,
-                "expression": self._expression(given),
+                "expression": self.followed.number(given),
             }
-
-    def _expression(self, number: float | str, unit: str = "") -> str | None:
-        """Return FreeCAD's expression for a number of the plan, or None where it is only a number."""
-        if not isinstance(number, str):
-            return None
-        try:
-            expression = parse(number)
-            if not expression.names:
-                return None
-            text = expression.to_freecad(self.parameters)
-        except ExpressionError:  # a plan that was resolved has none such
-            return None
-        return f"({text}) * 1 {unit}" if unit else text
 
     # ------------------------------------------------------------------ parts
 
@@ -171,7 +157,12 @@ class _Job:
             return {"kind": "link", "source": derivation.source}
         if derivation is not None:
             point, normal = _plane(np.asarray(derivation.S, dtype=np.float64))
-            return {"kind": "mirror", "source": derivation.source, "plane": {"point": point, "normal": normal}}
+            return {
+                "kind": "mirror",
+                "source": derivation.source,
+                "plane": {"point": point, "normal": normal},
+                "expressions": self.followed.mirror(name),
+            }
         document = realised.built.folder / "part.FCStd"
         if document.is_file():
             seated = realised.built.folder / "seat.json"
@@ -199,13 +190,13 @@ class _Job:
 
     def _dimensions(self, target: ResolvedPart) -> Iterator[Json]:
         for name, value in target.dimensions.items():
-            yield {"name": name, "value": float(value), "expression": self._expression(target.spec.dimensions[name])}
+            yield {"name": name, "value": float(value), "expression": self.followed.number(target.spec.dimensions[name])}
 
     def _connector(self, part: str, connector: str, target: ResolvedPart | None) -> Json:
         held = self.assembly.parts[part].connectors[connector]
         expressions: dict[str, str] = {}
         if target is not None and target.derivation is None:
-            expressions = self._origin(target, connector)
+            expressions = self._follows(target, connector)
         return {
             "name": connector,
             "object": f"{self.objects[part]}__{connector}",
@@ -214,19 +205,24 @@ class _Job:
             "expressions": expressions,
         }
 
-    def _origin(self, target: ResolvedPart, connector: str) -> dict[str, str]:
-        """Return the expressions of a connector's origin, where it is given in its part's frame."""
+    def _follows(self, target: ResolvedPart, connector: str) -> dict[str, str]:
+        """Return the expressions of a connector: of its origin, or of all of its frame."""
         where = f"parts.{target.name}.connectors.{connector}"
         (form,) = [spec for spec in target.spec.connectors if spec.name == connector]
-        axes = [*form.z, *(form.x or ())]
-        if any(isinstance(number, str) for number in axes):
-            self._lose(where, "a fixed direction", "that its direction follows parameters", refused=False)
+        turns = self.followed.follows(*form.z, *(form.x or ()))
         if form.frame != "part":
-            if any(isinstance(number, str) for number in form.o):
-                self._lose(where, "a fixed origin", "that its origin follows parameters", refused=False)
+            text = None if form.x is None else self.followed.local(target.name, self.followed.frame(form.o, form.z, form.x))
+            if text is not None and "Parameters." in text:
+                return {"Placement": text}
+            if turns or self.followed.follows(*form.o):
+                self._lose(where, "a fixed frame", "that it follows parameters", refused=False)
             return {}
-        found = {axis: self._expression(number, "mm") for axis, number in zip("xyz", form.o, strict=True)}
-        return {axis: text for axis, text in found.items() if text is not None}
+        if turns and form.x is not None:
+            return {"Placement": self.followed.frame(form.o, form.z, form.x)}
+        if turns:
+            self._lose(where, "a fixed direction", "that its direction follows parameters: its x is chosen by rule", refused=False)
+        found = {f"Placement.Base.{axis}": self.followed.number(number, "mm") for axis, number in zip("xyz", form.o, strict=True)}
+        return {name: text for name, text in found.items() if text is not None}
 
     # ------------------------------------------------------------------ joints and couplings
 
@@ -293,7 +289,7 @@ class _Job:
                 if not isinstance(bounds, (tuple, list)):
                     continue
                 for end, bound in zip(("Min", "Max"), bounds, strict=True):
-                    text = self._expression(bound)
+                    text = self.followed.number(bound)
                     if text is not None and f"{name}{end}" in held:
                         found[f"{name}{end}"] = text
         return found

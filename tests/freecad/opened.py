@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import tempfile
 from dataclasses import replace
 from pathlib import Path
@@ -35,7 +36,8 @@ def why_not() -> str:
 
 
 WHY_NOT = why_not()
-needs_freecad = pytest.mark.skipif(bool(WHY_NOT), reason=f"no FreeCAD 1.0 or later here: {WHY_NOT}")
+# where CI=true these tests run without FreeCAD too, and fail: it is to be there
+needs_freecad = pytest.mark.skipif(bool(WHY_NOT) and os.environ.get("CI") != "true", reason=f"no FreeCAD 1.0 or later here: {WHY_NOT}")
 
 
 def steps(content: bytes, *wanted: Json) -> list[Json]:

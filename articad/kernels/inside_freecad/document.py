@@ -166,6 +166,8 @@ class _Writer:
             image = container.newObject("Part::Mirroring", f"{part['object']}_body")
             image.Source = source
             image.Base, image.Normal = App.Vector(*part["plane"]["point"]), App.Vector(*part["plane"]["normal"])
+            for name, expression in part["expressions"].items():
+                image.setExpression(name, expression)
             return image
         if kind == "mesh":
             import Mesh  # noqa: PLC0415 - only where a part is no more than triangles
@@ -213,19 +215,20 @@ class _Writer:
         if part["kind"] == "mirror":
             for axis, expression in zip("xyz", self._reflected(part, connector["name"]), strict=True):
                 system.setExpression(f"Placement.Base.{axis}", expression)
-        for axis, expression in connector["expressions"].items():
-            system.setExpression(f"Placement.Base.{axis}", expression)
+        for name, expression in connector["expressions"].items():
+            system.setExpression(name, expression)
 
     def _reflected(self, part: Json, connector: str) -> list[str]:
         """Return the origin of the source's connector, reflected, as expressions: it follows an edit of the source."""
         source, image = self.connectors[part["source"], connector].Name, self.shapes[part["name"]].Name
-        normal = part["plane"]["normal"]
-        along = " + ".join(
-            f"({n!r}) * ({source}.Placement.Base.{axis} - {image}.Base.{axis})" for axis, n in zip("xyz", normal, strict=True) if n
-        )
-        return [
-            f"{source}.Placement.Base.{axis}" + (f" - 2 * ({n!r}) * ({along})" if n else "") for axis, n in zip("xyz", normal, strict=True)
-        ]
+        turns = "Normal" in part["expressions"]
+        normal = {
+            axis: f"{image}.Normal.{axis}" if turns else f"({n!r})"
+            for axis, n in zip("xyz", part["plane"]["normal"], strict=True)
+            if n or turns
+        }
+        along = " + ".join(f"{n} * ({source}.Placement.Base.{axis} - {image}.Base.{axis})" for axis, n in normal.items())
+        return [f"{source}.Placement.Base.{axis}" + (f" - 2 * {normal[axis]} * ({along})" if axis in normal else "") for axis in "xyz"]
 
     def _place(self) -> None:
         for part in self.job["parts"]:

@@ -7,6 +7,7 @@ articad: what is reported is judged outside.
 
 from __future__ import annotations
 
+import importlib.util
 import json
 from pathlib import Path
 from typing import Any
@@ -39,6 +40,7 @@ def _look(document: Any, _: Json) -> Json:
     """Report placements, connectors, boxes and invalid objects."""
     parts = _parts(document)
     return {
+        "articad": importlib.util.find_spec("articad") is not None,
         "parts": {name: _seven(item.Placement) for name, item in parts.items()},
         "connectors": {name: _connectors(item) for name, item in parts.items()},
         "boxes": {name: _box(item) for name, item in parts.items()},

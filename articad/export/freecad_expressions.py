@@ -1,0 +1,97 @@
+"""A plan's numbers, frames and poses as expressions of FreeCAD, so that a document follows its parameters."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from articad.plan.expressions import ExpressionError, parse
+from articad.plan.resolve import ResolvedPlan
+from articad.plan.schema import DerivedPart, MirrorDerivation, Pose, RigidDerivation
+
+Number = float | str
+
+
+class Followed:
+    """What follows the parameters of a plan, which stand in a document's VarSet `Parameters`.
+
+    Args:
+        resolved: The plan; without one nothing follows.
+    """
+
+    def __init__(self, resolved: ResolvedPlan | None) -> None:
+        self._resolved = resolved
+        self._names = {} if resolved is None else {name: f"Parameters.p_{name}" for name in resolved.parameters}
+        self._forms = {} if resolved is None else {form.name: form for form in resolved.plan.parts}
+
+    def number(self, number: Number, unit: str = "") -> str | None:
+        """Return the expression of a number of the plan, or None where it is only a number."""
+        if not isinstance(number, str):
+            return None
+        try:
+            expression = parse(number)
+            if not expression.names:
+                return None
+            text = expression.to_freecad(self._names)
+        except ExpressionError:  # a plan that was resolved has none such
+            return None
+        return f"({text}) * 1 {unit}" if unit else text
+
+    def follows(self, *numbers: Number) -> bool:
+        """Return whether one of these follows a parameter."""
+        return any(self.number(number) is not None for number in numbers)
+
+    def vector(self, numbers: Sequence[Number]) -> str:
+        """Return the expression of a point or direction."""
+        return f"vector({'; '.join(map(self._always, numbers))})"
+
+    def frame(self, o: Sequence[Number], z: Sequence[Number], x: Sequence[Number]) -> str:
+        """Return the expression of a connector's frame."""
+        turn = f"create(<<rotation>>; {self.vector(x)}; vector(0; 0; 0); {self.vector(z)}; <<ZXY>>)"
+        return f"placement({self.vector(o)}; {turn})"
+
+    def local(self, part: str, text: str) -> str | None:
+        """Return the expression in a part's frame of what `text` is in the assembly's; None where a joint places the part."""
+        poses = self._poses(part)
+        return None if poses is None else f"minvert({' * '.join(map(self._pose, poses))}) * {text}"
+
+    def mirror(self, part: str) -> dict[str, str]:
+        """Return the expressions of a mirror image's plane in its own frame, `Base` and `Normal`, as far as it moves."""
+        form, poses = self._forms.get(part), self._poses(part)
+        if poses is None or not isinstance(form, DerivedPart) or not isinstance(form.derive, MirrorDerivation):
+            return {}
+        plane, found = form.derive.plane, {}
+        turns = self.follows(*plane.normal, *(number for pose in poses for number in (*pose.axis, pose.angle_deg)))
+        if turns or self.follows(*plane.point, *(number for pose in poses for number in (*pose.at, *pose.about))):
+            found["Base"] = self.local(part, self.vector(plane.point)) or ""
+        if turns:
+            found["Normal"] = f"{self.local(part, self.vector(plane.normal))} - {self.local(part, 'vector(0; 0; 0)')}"
+        return found
+
+    def _poses(self, part: str) -> list[Pose] | None:
+        """Return the motions that place a part at rest, the last one first."""
+        form, step = self._forms.get(part), 0
+        if form is None:  # patterns are expanded: NAME_3 is the third of NAME
+            source, _, number = part.rpartition("_")
+            form = self._forms.get(source)
+            if not number.isdigit() or form is None:
+                return None
+            step = int(number)
+        if not isinstance(form, DerivedPart):
+            return [form.rest_pose] if isinstance(form.rest_pose, Pose) else None
+        before = self._poses(form.derive.source)
+        if before is None or isinstance(form.derive, MirrorDerivation):
+            return before  # a mirror image stands in its source's frame
+        if isinstance(form.derive, RigidDerivation):
+            return [form.derive.move, *before]
+        return [*[form.derive.step] * step, *before]
+
+    def _pose(self, pose: Pose) -> str:
+        turn = f"create(<<rotation>>; {self.vector(pose.axis)}; {self._always(pose.angle_deg)})"
+        return f"create(<<placement>>; {self.vector(pose.at)}; {turn}; {self.vector(pose.about)})"
+
+    def _always(self, number: Number) -> str:
+        text = self.number(number)
+        if text is not None:
+            return text
+        known = {} if self._resolved is None else self._resolved.parameters
+        return repr(float(parse(number).evaluate(known) if isinstance(number, str) else number))
