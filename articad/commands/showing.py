@@ -1,0 +1,139 @@
+"""See what there is: open a page with the model, begin a product of one's own, watch a folder while it is worked on."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import re
+import shutil
+import tempfile
+import webbrowser
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+
+from articad.commands.command import argument, command
+from articad.commands.options import FORCE, JOBS, SANDBOX, parameter
+from articad.commands.steps import loaded
+
+if TYPE_CHECKING:
+    from articad.terminal import Report, Terminal
+
+_STARTER: Final = Path(__file__).parents[1] / "starter"
+_NAME: Final = re.compile(r"[a-z][a-z0-9]*(_[a-z0-9]+)*")
+_SCRIPTS: Final = {"build123d": ".py", "freecad": ".freecad.py"}
+_BROWSER = argument("--no-browser", dest="browser", action="store_false", help="write or serve the page, and open nothing")
+
+
+@command(
+    "show",
+    "Open a run, a plan or a URDF, MJCF or FreeCAD file as a page with a slider for each driver.",
+    argument("target", metavar="RUN|PLAN_DIR|FILE"),
+    argument("--out", metavar="FILE", help="where to write the page (report.html in a run; a temporary folder for anything else)"),
+    _BROWSER,
+    SANDBOX,
+)
+def _show(options: argparse.Namespace, terminal: Terminal) -> Report:
+    from articad.record import assembly_of, documents_of, record_page
+    from articad.report import Documents, report_page
+    from articad.run import Run
+
+    if (Path(options.target) / "request.json").is_file():
+        with Run.view(options.target) as run, terminal.progress("Reading") as tell:
+            assembly, documents = assembly_of(run, progress=tell), documents_of(run)
+        if options.out is None:
+            with Run.open(options.target) as run:
+                page = record_page(run, assembly)
+        else:
+            page = _written(Path(options.out), report_page(assembly, documents))
+    else:
+        assembly = loaded(options.target, options, terminal)
+        text = report_page(assembly, Documents(checks=assembly.check().to_json()))
+        page = _written(Path(options.out or Path(tempfile.mkdtemp(prefix="articad-")) / f"{_file_name(assembly.name)}.html"), text)
+    terminal.say(str(page))
+    if options.browser and not webbrowser.open(page.resolve().as_uri()):
+        terminal.say("No browser could be opened; open the file yourself.")
+    return {"schema": "articad.page/1", "ok": True, "file": str(page), "findings": []}
+
+
+@command(
+    "new",
+    "Begin a product: a folder with a commented plan and part scripts that builds at once.",
+    argument("name", metavar="NAME", help="its folder, and the name of the product: small letters, digits and single underscores"),
+    argument("--example", metavar="NAME", help="begin with a copy of one of the project's examples, such as lamp"),
+    argument("--kernel", choices=sorted(_SCRIPTS), default="build123d", help="what builds the part scripts (build123d)"),
+)
+def _new(options: argparse.Namespace, terminal: Terminal) -> Report:
+    from articad.errors import WriteError
+
+    folder = Path(options.name)
+    if not _NAME.fullmatch(folder.name):
+        raise WriteError(
+            f"{folder.name!r} cannot name a product: small letters, digits and single underscores, such as table_lamp.", path=str(folder)
+        )
+    if folder.exists() and any(folder.iterdir()):
+        raise WriteError(f"{folder} is not empty.", path=str(folder))
+    source = _STARTER if options.example is None else _example(options.example)
+    scripts = [file for file in sorted((source / "parts").iterdir()) if _kernel_of(file) == options.kernel]
+    if not scripts:
+        raise WriteError(f"The example {source.name} has no scripts for {options.kernel}.", path=str(source))
+    (folder / "parts").mkdir(parents=True, exist_ok=True)
+    plan = (source / "plan.json").read_text(encoding="utf-8")
+    old = json.loads(plan)["name"]
+    plan = re.sub(rf'("name":\s*)"{re.escape(old)}"', rf'\1"{folder.name}"', plan, count=1)
+    if options.kernel != "build123d" and '"kernel"' not in plan:
+        plan = plan.replace("{", f'{{\n "kernel": "{options.kernel}",', 1)
+    (folder / "plan.json").write_text(plan, encoding="utf-8")
+    for script in scripts:
+        shutil.copyfile(script, folder / "parts" / script.name)
+    if (source / "README.md").is_file():
+        text = (source / "README.md").read_text(encoding="utf-8").replace("{name}", folder.name).replace("{folder}", str(folder))
+        (folder / "README.md").write_text(text.replace(f"examples/{source.name}", str(folder)), encoding="utf-8")
+    files = sorted(str(file) for file in folder.rglob("*") if file.is_file())
+    for file in files:
+        terminal.say(file)
+    terminal.say(f"Next: articad watch {folder}")
+    return {"schema": "articad.new/1", "ok": True, "folder": str(folder), "files": files, "findings": []}
+
+
+@command(
+    "watch",
+    "Serve the page of a plan to your browser, and build what has changed whenever a file is saved.",
+    argument("plan", metavar="PLAN_DIR"),
+    argument("--kernel", choices=sorted(_SCRIPTS), default=None, help="what builds part scripts (the plan's own choice)"),
+    argument("--set", metavar="NAME=VALUE", dest="parameters", type=parameter, action="append", default=[], help="replace a parameter"),
+    argument("--port", metavar="N", type=int, default=0, help="of the page's address (any that is free)"),
+    _BROWSER,
+    SANDBOX,
+    JOBS,
+    FORCE,
+)
+def _watch(options: argparse.Namespace, terminal: Terminal) -> Report:
+    from articad.commands.watching import PageServer, watch
+
+    with PageServer(options.port) as server:
+        terminal.say(f"{server.address}  (Ctrl-C ends)")
+        terminal.out.flush()
+        built = watch(options, terminal, server, opened=webbrowser.open if options.browser else None)
+    return {"schema": "articad.watch/1", "ok": True, "built": built, "findings": []}
+
+
+def _written(file: Path, text: str) -> Path:
+    file.parent.mkdir(parents=True, exist_ok=True)
+    file.write_text(text, encoding="utf-8")
+    return file
+
+
+def _file_name(name: str) -> str:
+    return re.sub(r"[^A-Za-z0-9_.-]+", "_", name).strip("._")[:60] or "model"
+
+
+def _kernel_of(script: Path) -> str | None:
+    return next((kernel for kernel in ("freecad", "build123d") if script.name.endswith(_SCRIPTS[kernel])), None)
+
+
+def _example(name: str) -> Path:
+    """Return an example's folder, by its name or a word of it that no other has."""
+    from articad import examples
+
+    close = [known for known in examples.names() if name in known.split("_")]
+    return examples.folder(close[0] if len(close) == 1 else name)

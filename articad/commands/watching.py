@@ -1,0 +1,154 @@
+"""Serve one page to this machine's browser, and make it anew when files change."""
+
+from __future__ import annotations
+
+import argparse
+import hashlib
+import json
+import threading
+import time
+from collections.abc import Callable
+from http import HTTPStatus
+from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from pathlib import Path
+from types import TracebackType
+from typing import TYPE_CHECKING, Final, Self
+
+if TYPE_CHECKING:
+    from articad.terminal import Terminal
+
+_LOOK_S: Final = 0.3  # between two looks at the files
+_WAITING: Final = "<!doctype html><meta charset=utf-8><meta http-equiv=refresh content=1><title>articad</title><p>Building …"
+
+
+class PageServer:
+    """Serves a page and its version, on this machine only.
+
+    Requests that name another host are refused: a foreign site whose name was made to point here cannot read the page.
+
+    Args:
+        port: 0 for any that is free.
+    """
+
+    def __init__(self, port: int = 0) -> None:
+        self.page = ""
+        self.version = ""
+        self.message = ""
+        self._server = ThreadingHTTPServer(("127.0.0.1", port), _handler(self))
+        self._server.daemon_threads = True
+        self._thread = threading.Thread(target=self._server.serve_forever, daemon=True)
+
+    @property
+    def port(self) -> int:
+        """Where it listens."""
+        return int(self._server.server_address[1])
+
+    @property
+    def address(self) -> str:
+        """Of the page."""
+        return f"http://127.0.0.1:{self.port}/"
+
+    def __enter__(self) -> Self:
+        self._thread.start()
+        return self
+
+    def __exit__(self, _kind: type[BaseException] | None, _error: BaseException | None, _traceback: TracebackType | None) -> None:
+        self._server.shutdown()
+        self._server.server_close()
+
+
+def _handler(served: PageServer) -> type[BaseHTTPRequestHandler]:
+    class Handler(BaseHTTPRequestHandler):
+        def do_GET(self) -> None:
+            if self.headers.get("Host") not in {f"127.0.0.1:{served.port}", f"localhost:{served.port}"}:
+                self.send_error(HTTPStatus.FORBIDDEN)
+            elif self.path == "/version":
+                self._answer("application/json", json.dumps({"version": served.version, "message": served.message}))
+            elif self.path == "/":
+                self._answer("text/html; charset=utf-8", served.page or _WAITING)
+            else:
+                self.send_error(HTTPStatus.NOT_FOUND)
+
+        def _answer(self, kind: str, text: str) -> None:
+            content = text.encode()
+            self.send_response(HTTPStatus.OK)
+            self.send_header("Content-Type", kind)
+            self.send_header("Content-Length", str(len(content)))
+            self.send_header("Cache-Control", "no-store")
+            self.send_header("X-Content-Type-Options", "nosniff")
+            self.end_headers()
+            self.wfile.write(content)
+
+        def log_message(self, *_: object) -> None:
+            """Say nothing: requests are not news."""
+
+    return Handler
+
+
+def watch(
+    options: argparse.Namespace,
+    terminal: Terminal,
+    server: PageServer,
+    *,
+    opened: Callable[[str], object] | None = None,
+    wait: Callable[[float], object] = time.sleep,
+) -> int:
+    """Build and serve until interrupted; return how often it was built.
+
+    Args:
+        options: Of the command.
+        terminal: Told of each build and of what is wrong.
+        server: Serves the page.
+        opened: Opens an address in a browser.
+        wait: Waits between two looks; a KeyboardInterrupt out of it ends the watch.
+    """
+    folder = Path(options.plan) if Path(options.plan).is_dir() else Path(options.plan).parent
+    before, built = "", 0
+    try:
+        while True:
+            now = fingerprint(folder)
+            if now != before:
+                before = now
+                _rebuild(folder, options, terminal, server, version=now)
+                built += 1
+                if built == 1 and opened is not None:
+                    opened(server.address)
+            wait(_LOOK_S)
+    except KeyboardInterrupt:
+        return built
+
+
+def fingerprint(folder: Path) -> str:
+    """Return what changes whenever the plan or a part script does."""
+    total = hashlib.sha256()
+    for file in [folder / "plan.json", *sorted((folder / "parts").glob("*.py"))]:
+        try:
+            content = file.read_bytes()
+        except OSError:  # deleted, or just being replaced: the next look tells
+            continue
+        total.update(f"{file.name}\0{len(content)}\0".encode() + content)
+    return total.hexdigest()[:16]
+
+
+def _rebuild(folder: Path, options: argparse.Namespace, terminal: Terminal, server: PageServer, *, version: str) -> None:
+    """Build what has changed; what is wrong is said here and on the page, which stays as it was."""
+    from articad.commands.steps import assembled
+    from articad.errors import ArticadError
+    from articad.plan.schema import AssemblyPlan
+    from articad.report import Documents, report_page
+
+    started = time.monotonic()
+    server.message = "Building …"
+    try:
+        plan = AssemblyPlan.load(folder)
+        assembly = assembled(plan, folder / "parts", options, terminal)
+        checks = assembly.check()
+        server.page = report_page(assembly, Documents(checks=checks.to_json(), plan=plan.dumps()), watch=version)
+    except ArticadError as error:
+        terminal.error(error)
+        server.message = error.message.splitlines()[0] if error.message else "The plan has errors; see the terminal."
+        return
+    server.version, server.message = version, ""
+    terminal.findings(checks.findings)
+    terminal.say(f"{plan.name}: built in {time.monotonic() - started:.1f} s, interference {'ok' if checks.ok else 'NOT ok'}.")
+    terminal.out.flush()
