@@ -146,10 +146,11 @@ def colliding(part: Part) -> TriMesh | None:
     if part.solid is not None:
         return part.solid.mesh
     shapes = part.collisions or part.visuals
-    return _united([shape.placed for shape in shapes]) if shapes else None
+    return united([shape.placed for shape in shapes]) if shapes else None
 
 
-def _united(meshes: list[TriMesh]) -> TriMesh:
+def united(meshes: list[TriMesh]) -> TriMesh:
+    """Return one mesh of what several fill together; side by side where they are no solids."""
     bodies = [body_of(mesh) for mesh in meshes]
     if len(meshes) == 1 or len(meshes) > MOST_UNION or any(body.fault is not None for body in bodies):
         return merged(meshes)

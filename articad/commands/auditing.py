@@ -1,0 +1,195 @@
+"""Audit files that anyone made; have simulators move them."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from articad.commands.command import argument, command
+from articad.commands.options import SANDBOX, amount
+from articad.commands.steps import loaded
+
+if TYPE_CHECKING:
+    from articad.assembly import Assembly
+    from articad.audit.examine import Choices
+    from articad.audit.mend import Mended
+    from articad.audit.report import Audit, Scoreboard
+    from articad.simulate.verdict import Outcome
+    from articad.terminal import Report, Terminal
+
+
+@command(
+    "audit",
+    "Find what is wrong with a URDF, MJCF, FreeCAD or STEP file, a plan, a run, or a folder of models.",
+    argument("target", metavar="FILE|DIR"),
+    argument("--table", action="store_true", help="one line a file, for a folder of many"),
+    argument("--root", metavar="DIR", help="folder that meshes may be read from (the file's ROS package, or its own folder)"),
+    argument("--budget", metavar="SECONDS", type=amount, default=8.0, help="time for looking at the motion of a file (8)"),
+    argument("--certify", metavar="SECONDS", type=amount, default=None, help="prove the motion free instead of sampling it, in this time"),
+    argument("--no-engines", dest="engines", action="store_false", help="do not ask simulators to load the file"),
+    argument("--fix", metavar="OUT", help="write a copy with everything mended that can be without guessing (URDF)"),
+    argument("--density", metavar="KG_M3", type=amount, default=None, help="with --fix: of whatever has no mass"),
+    argument("--report", metavar="PAGE.html", help="write the report as a page"),
+    SANDBOX,
+)
+def _audit(options: argparse.Namespace, terminal: Terminal) -> Report:
+    from articad.audit.examine import Choices
+
+    root = None if options.root is None else Path(options.root)
+    choices = Choices(root=root, budget=options.budget, certified=options.certify, engines=options.engines)
+    target = Path(options.target)
+    if target.is_dir() and not any((target / name).is_file() for name in ("request.json", "plan.json")):
+        return _audit_folder(options, terminal, choices)
+    audit = _audit_one(options, terminal, choices)
+    if options.report:
+        from articad.audit.page import audit_page
+
+        _write_page(Path(options.report), audit_page(audit))
+    _print_audit(audit, terminal, findings=not options.table)
+    report = audit.to_json()
+    if options.fix:
+        mended = _mend(options, terminal, choices)
+        _print_mended(mended, terminal)
+        report |= {"fix": mended.to_json()}
+    return report
+
+
+@command(
+    "sim",
+    "Hold, drive and let go a model in MuJoCo and PyBullet.",
+    argument("target", metavar="FILE|RUN|PLAN_DIR"),
+    argument("--film", metavar="FILE.png", help="write a filmstrip of what the joints did"),
+    argument("--engine", choices=["mujoco", "pybullet"], action="append", default=None, help="only this one (both, where installed)"),
+    argument("--seconds", metavar="SECONDS", type=amount, default=300.0, help="at most, for each engine (300)"),
+    SANDBOX,
+)
+def _sim(options: argparse.Namespace, terminal: Terminal) -> Report:
+    from articad.simulate.examine import ENGINES, SUFFIXES, readable, simulate_assembly, simulate_file
+
+    engines = tuple(options.engine or ENGINES)
+    target = Path(options.target)
+    if target.suffix.lower() in SUFFIXES:
+        verdict, assembly = simulate_file(target, engines=engines, seconds=options.seconds), readable(target) if options.film else None
+    else:
+        assembly = loaded(options.target, options, terminal)
+        verdict = simulate_assembly(assembly, options.target, engines=engines, seconds=options.seconds)
+    report = verdict.to_json()
+    rows = [
+        (
+            outcome.engine,
+            {True: "yes", False: "no", None: "not installed"}[outcome.loads],
+            f"{outcome.speed_at_rest:.3g}",
+            f"{100 * min((reach.share for reach in outcome.reaches), default=1.0):.3g} % of {len(outcome.reaches)}",
+            f"{1000 * outcome.residual:.3g}",
+            "" if outcome.energy_growth is None else f"{100 * outcome.energy_growth:.3g} %",
+        )
+        for outcome in verdict.outcomes
+    ]
+    terminal.table(["engine", "loads", "speed at rest", "joints reach", "residual mm", "energy gain"], rows)
+    terminal.findings(verdict.findings)
+    if options.film and assembly is not None and (strip := _film(assembly, verdict.outcomes)):
+        Path(options.film).parent.mkdir(parents=True, exist_ok=True)
+        Path(options.film).write_bytes(strip)
+        report |= {"film": options.film}
+        terminal.say(f"Film: {options.film}")
+    terminal.say(f"{options.target}: {'stands and moves' if verdict.ok else 'NOT ok'}.")
+    return report
+
+
+def _film(assembly: Assembly, outcomes: Sequence[Outcome]) -> bytes | None:
+    """Return the filmstrip of the engine that kept frames."""
+    from articad.simulate.film import film
+
+    shown = next((outcome for outcome in outcomes if outcome.frames), None)
+    return None if shown is None else film(assembly, shown)
+
+
+def _audit_one(options: argparse.Namespace, terminal: Terminal, choices: Choices) -> Audit:
+    """Audit a file, or what a plan or a run makes, with its exports."""
+    from dataclasses import replace
+
+    from articad.audit.examine import FORMATS, audit, audit_assembly
+
+    target = Path(options.target)
+    if target.suffix.lower() in FORMATS:
+        return audit(target, choices)
+    kind = "run" if (target / "request.json").is_file() else "plan"
+    found = audit_assembly(loaded(options.target, options, terminal), options.target, kind, choices)
+    for file in sorted(path for path in (target / "export").glob("*/*") if path.suffix.lower() in FORMATS) if kind == "run" else ():
+        # what moves and how was looked at above, on the parts that the exports are made of
+        export = audit(file, replace(choices, motion=False))
+        name = file.relative_to(target).as_posix()
+        moved = [replace(finding, where=f"{name}: {finding.where}") for finding in export.findings]
+        found = replace(
+            found, findings=found.findings + moved, engines=(*found.engines, *export.engines), seconds=found.seconds + export.seconds
+        )
+    return found
+
+
+def _audit_folder(options: argparse.Namespace, terminal: Terminal, choices: Choices) -> Report:
+    from articad.audit.many import audit_folder, models_below
+
+    folder = Path(options.target)
+    with terminal.progress("Auditing", total=sum(1 for _ in models_below(folder))) as tell:
+        board = audit_folder(folder, choices, progress=tell)
+    if options.report:
+        from articad.audit.page import scoreboard_page
+
+        _write_page(Path(options.report), scoreboard_page(board))
+    if not options.table:
+        for audit in board.audits:
+            _print_audit(audit, terminal, findings=True)
+    _print_board(board, terminal)
+    return board.to_json()
+
+
+def _mend(options: argparse.Namespace, terminal: Terminal, choices: Choices) -> Mended:
+    from articad.audit.mend import mend, mend_assembly
+
+    if Path(options.target).suffix.lower() == ".urdf":
+        return mend(options.target, options.fix, density=options.density, choices=choices)
+    return mend_assembly(loaded(options.target, options, terminal), options.fix, density=options.density, choices=choices)
+
+
+def _print_audit(audit: Audit, terminal: Terminal, *, findings: bool) -> None:
+    from articad import summaries
+    from articad.audit.page import loaded as loaded_in
+
+    if findings:
+        terminal.findings(audit.findings)
+        for line in audit.undone:
+            terminal.detail(f"  not looked at: {line}")
+    engines = loaded_in(audit)
+    terminal.say(
+        f"{audit.file}: {audit.links} links, {audit.joints} joints that move; {summaries.counted(audit.findings)}; motion {audit.motion}"
+        f"{f'; loads in {engines}' if engines else ''}; {audit.seconds:.1f} s."
+    )
+
+
+def _print_board(board: Scoreboard, terminal: Terminal) -> None:
+    from articad.audit.page import loaded as loaded_in
+
+    rows = [
+        (a.file, a.format, a.links, a.joints, a.count("error"), a.count("warning"), a.count("info"), loaded_in(a), f"{a.seconds:.1f}")
+        for a in board.audits
+    ]
+    terminal.table(["file", "format", "links", "joints", "errors", "warnings", "notes", "loads in", "s"], rows, right=(2, 3, 4, 5, 6, 8))
+    terminal.say()
+    terminal.table(["code", "files", "findings"], [(code, files, count) for code, count, files in board.codes], right=(1, 2))
+    clean = sum(audit.ok for audit in board.audits)
+    terminal.say(f"{board.folder}: {len(board.audits)} files, {clean} without a finding.")
+
+
+def _print_mended(mended: Mended, terminal: Terminal) -> None:
+    for line in mended.done:
+        terminal.say(f"  mended: {line}")
+    if mended.rest is not None:
+        terminal.say(f"Left in {mended.file}:")
+        _print_audit(mended.rest, terminal, findings=True)
+
+
+def _write_page(path: Path, page: str) -> None:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(page, encoding="utf-8")

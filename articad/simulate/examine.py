@@ -1,0 +1,60 @@
+"""The verdict of simulators on a file or an assembly."""
+
+from __future__ import annotations
+
+import tempfile
+from pathlib import Path
+
+from articad.assembly import Assembly
+from articad.errors import ArticadError, ReadError
+from articad.export.mjcf import write_mjcf
+from articad.export.urdf import write_urdf
+from articad.simulate.loading import Engine
+from articad.simulate.trial import SECONDS, try_out
+from articad.simulate.verdict import Verdict
+
+ENGINES: tuple[Engine, ...] = ("mujoco", "pybullet")
+SUFFIXES = (".urdf", ".xml", ".mjcf")
+_ENDINGS = ("", "__t", "__r", "__x", "__y", "__rx", "__ry", "__rz")
+
+
+def simulate_file(path: str | Path, *, engines: tuple[Engine, ...] = ENGINES, seconds: float = SECONDS) -> Verdict:
+    """Hold, drive and let go the model of a URDF or MJCF file, as it stands.
+
+    Args:
+        path: The file.
+        engines: Which to ask; those that are not installed are passed over.
+        seconds: For each of them.
+
+    Raises:
+        ReadError: If its ending is neither.
+    """
+    path = Path(path)
+    if path.suffix.lower() not in SUFFIXES:
+        raise ReadError(f"{path}: simulators load {', '.join(SUFFIXES)}; convert it first.", path=str(path))
+    if not path.is_file():
+        raise ReadError(f"{path}: there is no such file.", path=str(path))
+    return Verdict(str(path), tuple(try_out(engine, path, seconds=seconds) for engine in engines))
+
+
+def simulate_assembly(assembly: Assembly, file: str, *, engines: tuple[Engine, ...] = ENGINES, seconds: float = SECONDS) -> Verdict:
+    """Export an assembly and hold, drive and let go what was exported: MJCF in MuJoCo, URDF in PyBullet."""
+    drivers = tuple(dict.fromkeys(driver.joint + ending for driver in assembly.drivers for ending in _ENDINGS))
+    outcomes = []
+    with tempfile.TemporaryDirectory(prefix="articad-simulate-") as folder:
+        for engine in engines:
+            bundle = (write_mjcf if engine == "mujoco" else write_urdf)(assembly)
+            target = Path(folder) / engine
+            bundle.write(target)
+            outcomes.append(try_out(engine, target / bundle.main, drivers=drivers, seconds=seconds))
+    return Verdict(file, tuple(outcomes))
+
+
+def readable(path: str | Path) -> Assembly | None:
+    """Return the assembly of a file, for pictures of it; None where it cannot be read."""
+    from articad.convert import read  # noqa: PLC0415 - only where there is something to draw
+
+    try:
+        return read(path, root=Path(path).resolve().parent)
+    except ArticadError:
+        return None
