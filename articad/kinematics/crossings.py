@@ -103,6 +103,18 @@ class Crossings:
         return near, far
 
     @cached_property
+    def quaternions(self) -> tuple[FloatArray, FloatArray]:
+        """The rotations of A and of B as quaternions `(n, 4)`."""
+        if not self.joints:
+            return np.zeros((0, 4)), np.zeros((0, 4))
+        near = np.array([joint.T_parent_connector.quaternion for joint in self.joints])
+        far = np.array([joint.T_child_connector.quaternion for joint in self.joints])
+        opposed = [joint.mate is Mate.OPPOSED for joint in self.joints]
+        far[opposed] = quaternion.multiply(far[opposed], flip(Mate.OPPOSED).quaternion)
+        back = self.backwards[:, None]
+        return np.where(back, far, near), quaternion.conjugate(np.where(back, near, far))
+
+    @cached_property
     def rows(self) -> tuple[Crossing, ...]:
         """The joints one by one."""
         return tuple(self._row(k) for k in range(len(self.joints)))
