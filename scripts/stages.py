@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -56,12 +57,34 @@ def _tests() -> Outcome:
     return Outcome(max(0, total - errors - failures - skipped), failed, skipped)
 
 
+def _viewer() -> Outcome:
+    """Build the page's script from its sources, in a folder of its own, and compare it with the one that is committed."""
+    npm = shutil.which("npm")
+    if npm is None:
+        print("skipped: npm is missing; as root, apt-get install nodejs npm")
+        return Outcome(0, 0, 1)
+    report = ROOT / "articad" / "report"
+    with tempfile.TemporaryDirectory() as folder:
+        copy = Path(folder, "viewer")
+        shutil.copytree(report / "viewer", copy, ignore=shutil.ignore_patterns("node_modules"))
+        for command in (["npm", "ci", "--no-audit", "--no-fund"], ["node", "build.mjs", folder]):
+            done = subprocess.run(command, cwd=copy, check=False, capture_output=True, text=True)
+            if done.returncode != 0:
+                print(done.stdout, done.stderr)
+                return Outcome(0, 1)
+        different = [name for name in ("viewer.js", "viewer.css") if Path(folder, name).read_bytes() != (report / name).read_bytes()]
+    if different:
+        print(f"{', '.join(different)}: not what the sources give; cd articad/report/viewer && npm ci && npm run build")
+    return Outcome(2 - len(different), len(different))
+
+
 STAGES: dict[str, Callable[[], Outcome]] = {
     "ruff": _command("-m", "ruff", "check", "."),
     "format": _command("-m", "ruff", "format", "--check", "."),
     "mypy": _command("-m", "mypy"),
     "imports": _command("-c", "import sys; from importlinter.cli import lint_imports_command; sys.exit(lint_imports_command())"),
     "packages": _command("-m", "pip", "--disable-pip-version-check", "check"),
+    "viewer": _viewer,
     "tests": _tests,
     "tables": _command("scripts/tables.py", "--check"),
     "docs": _command("-m", "mkdocs", "build", "--strict", "--quiet"),

@@ -134,8 +134,8 @@ def _parts(assembly: Assembly) -> str:
             [
                 Html(f'<input type="checkbox" checked data-visible="{number}" aria-label="show {escape(name)}">'),
                 Html(
-                    f'{indent}<svg class="swatch" viewBox="0 0 1 1" aria-hidden="true"><rect width="1" height="1" '
-                    f'fill="{escape(part.color)}"/></svg><button type="button" data-part="{number}">{escape(name)}</button>'
+                    f'<span class="part">{indent}<svg class="swatch" viewBox="0 0 1 1" aria-hidden="true"><rect width="1" height="1" '
+                    f'fill="{escape(part.color)}"/></svg><button type="button" data-part="{number}">{escape(name)}</button></span>'
                 ),
                 part.material,
                 None if part.mass is None else f"{part.mass.mass:.4g}",

@@ -54,7 +54,7 @@ def open_page(chromium: Any, tmp_path: Path) -> Iterator[Callable[..., Opened]]:
         opened.page.on("pageerror", lambda error: opened.console.append(f"error: {error}"))
         opened.page.on("request", lambda request: opened.requests.append(request.url))
         opened.page.goto(file.as_uri())
-        opened.page.wait_for_function("window.articad && window.articad.ready", timeout=60_000)
+        opened.page.wait_for_selector("html[data-ready]", state="attached", timeout=60_000)
         return opened
 
     yield open_text

@@ -403,10 +403,11 @@ function begin() {
   buildTables();
   update();
   if (model.watch) watch();
-  window.articad = { model, set, q: named_q, poses, drawn, view, reset, ready: false, directions: Object.keys(DIRECTIONS) };
+  window.articad = { model, set, q: named_q, poses, drawn, view, reset, directions: Object.keys(DIRECTIONS) };
   requestAnimationFrame(() => {
     view?.draw();
-    Object.assign(window.articad, { ready: true, firstFrame: performance.now() });
+    window.articad.firstFrame = performance.now();
+    document.documentElement.dataset.ready = "";
   });
 }
 
