@@ -16,6 +16,7 @@ from articad.kinematics.layout import IndexArray, Layout
 TURNING = frozenset({JointType.REVOLUTE, JointType.CYLINDRICAL, JointType.SCREW})
 SLIDING = frozenset({JointType.SLIDER, JointType.CYLINDRICAL, JointType.SCREW})
 GENERAL = (JointType.BALL, JointType.PLANAR, JointType.UNIVERSAL)  # do more than turn about and slide along their z axis
+_FEW = 500  # quaternions whose squares stay in the cache (measured: break-even 500 … 1000)
 _CODE = {joint_type: i for i, joint_type in enumerate(JointType)}
 _TURNS = np.array([joint_type in TURNING for joint_type in JointType])
 _SLIDES = np.array([joint_type in SLIDING for joint_type in JointType])
@@ -173,7 +174,7 @@ def motion(joint_type: JointType, q: FloatArray, sign: FloatArray) -> FloatArray
     M = np.zeros((*q.shape[:-1], 4, 4))
     M[..., (0, 1, 2, 3), (0, 1, 2, 3)] = 1.0
     if joint_type is JointType.BALL:
-        M[..., :3, :3] = quaternion.to_matrix(np.concatenate([q[..., :3] * sign, q[..., 3:]], axis=-1))
+        M[..., :3, :3] = _rotations(np.concatenate([q[..., :3] * sign, q[..., 3:]], axis=-1))
     elif joint_type is JointType.UNIVERSAL:
         M[..., :3, :3] = _universal(q[..., 0], q[..., 1])
     else:
@@ -209,7 +210,9 @@ def _affine(A: FloatArray, B: FloatArray) -> FloatArray:
 
 
 def _rotations(q: FloatArray) -> FloatArray:
-    """Return `quaternion.to_matrix(q)` as one product: a few hundred quaternions cost less than its forty calls."""
+    """Return `quaternion.to_matrix(q)` to the last bit; of a few as one product, which costs less than its forty calls."""
+    if q.size > 4 * _FEW:
+        return quaternion.to_matrix(q)
     squares = (q[..., :, None] * q[..., None, :]).reshape(*q.shape[:-1], 16)
     R: FloatArray = (squares @ _QUADRATIC + _EYE).reshape(*q.shape[:-1], 3, 3)
     return R

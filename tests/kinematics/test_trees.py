@@ -12,7 +12,7 @@ from hypothesis import given, settings
 
 from articad.connectors import SE3, Mate
 from articad.errors import KinematicsError, PlanError
-from articad.kinematics import Configuration, Coupling, Joint, JointLimits, JointType, Mechanism, forward
+from articad.kinematics import Configuration, Coupling, Joint, JointLimits, JointType, Mechanism, batch, bulk, forward
 from tests.kinematics.test_joints import product_of_exponentials
 from tests.strategies import posed_trees, random_joint, random_pose, trees
 
@@ -56,25 +56,40 @@ def test_poses_agree_with_pinocchio_to_rounding(tree: tuple[Mechanism, np.ndarra
 
 @given(trees())
 def test_many_configurations_have_the_poses_of_each(mechanism: Mechanism) -> None:
-    Q = Configuration.random(mechanism.joints, np.random.default_rng(3), (5, 8)).columns
+    Q = Configuration.random(mechanism.joints, np.random.default_rng(3), (10, 8)).columns
+    assert batch._FEW < 10 * 8  # so that rows are used, not matrices
     together = mechanism.poses(Q)
-    assert together.batch_shape == (5, 8, len(mechanism.parts))
+    assert together.batch_shape == (10, 8, len(mechanism.parts))
     reach = max(1.0, float(np.abs(together.translation).max()))
-    for index in ((0, 0), (2, 5), (4, 7)):
+    for index in ((0, 0), (2, 5), (9, 7)):
         one = mechanism.poses(Q[index])
         assert one.distance_to(together[index]).max() < ROUNDING_MM * len(mechanism.parts) * reach
         assert one.angle_to(together[index]).max() < ROUNDING_RAD
     assert (together.quaternion[..., 3] >= 0).all()
+    assert np.abs(np.linalg.norm(together.quaternion, axis=-1) - 1).max() < ROUNDING_RAD
     assert not together.data.flags.writeable
 
 
 def test_more_configurations_than_one_chunk_are_all_placed() -> None:
     joint = random_joint(np.random.default_rng(0), "j", JointType.SCREW, "a", "b", Mate.OPPOSED)
     mechanism = Mechanism(("a", "b"), "a", [joint])
-    q = np.linspace(-2, 3, 2500)[:, None]
+    q = np.linspace(-2, 3, 9000)[:, None]
     many = mechanism.poses(q)
-    for i in (0, 1023, 1024, 2047, 2048, 2499):
+    for i in (0, 4095, 4096, 8191, 8192, 8999):
         assert many[i].allclose(mechanism.poses(q[i]), mm=1e-11, rad=1e-14)
+
+
+@pytest.mark.parametrize("shape", ["chain", "star", "comb"])
+def test_a_pass_over_rows_keeps_few_frames_at_once(shape: str) -> None:
+    comb = [(i - 1 if i % 2 else max(0, i - 2), i) for i in range(1, 100)]
+    steps = {"chain": [(i - 1, i) for i in range(1, 100)], "star": [(0, i) for i in range(1, 100)], "comb": comb}[shape]
+    slots = bulk._slots(steps, 0)
+    assert len(set(slots)) <= 3
+    kept = {slots[0]: 0}
+    for parent, child in steps:
+        assert kept[slots[parent]] == parent  # a frame that is still needed is not overwritten
+        assert slots[child] != slots[parent]
+        kept[slots[child]] = child
 
 
 @given(trees())
