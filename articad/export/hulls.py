@@ -1,21 +1,12 @@
-"""Convex hulls of collision shapes: simulators that collide with hulls see contacts that the solids do not have."""
+"""Pairs of parts: those that a joint connects, those that never move against each other, those whose hulls overlap."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import combinations
 
-import manifold3d
-import numpy as np
-from numpy.typing import NDArray
-
-from articad.connectors.se3 import SE3
-from articad.geometry.mesh import TriMesh
-from articad.geometry.part import Shape
 from articad.kinematics.joints import Joint, JointType
 
-FloatArray = NDArray[np.float64]
 Pair = tuple[str, str]
 
 HULL_DEPTH_MM = 0.02  # mean depth of overlap that counts: below it hulls merely touch, as stacked parts do
@@ -30,11 +21,13 @@ class HullOverlap:
         parts: The two, in order of declaration.
         volume: Of the overlap [mm³].
         depth: Its mean thickness, twice the volume over the surface [mm].
+        solids: True when the solids overlap as well, so that finer pieces do not help.
     """
 
     parts: Pair
     volume: float
     depth: float
+    solids: bool = False
 
 
 def mating_pairs(joints: tuple[Joint, ...], order: tuple[str, ...]) -> list[Pair]:
@@ -58,45 +51,3 @@ def same_group_pairs(joints: tuple[Joint, ...], order: tuple[str, ...]) -> set[P
     """Return the pairs of parts that never move against each other."""
     group = rigid_groups(joints, order)
     return {(a, b) for a, b in combinations(order, 2) if group[a] == group[b]}
-
-
-def hull_of(shape: Shape) -> tuple[Shape, float]:
-    """Return a shape's convex hull, and by what share of its own volume the hull is larger; 0 where the mesh is open."""
-    solid = manifold3d.Manifold.hull_points(shape.mesh.vertices)
-    found = solid.to_mesh64()
-    mesh = TriMesh(np.array(found.vert_properties[:, :3], dtype=np.float64), np.array(found.tri_verts, dtype=np.int32))
-    own = shape.mesh.volume if shape.mesh.is_closed else 0.0
-    return Shape(mesh, shape.frame, shape.color, shape.name), max(0.0, mesh.volume / own - 1) if own > 0 else 0.0
-
-
-def hull_overlaps(shapes: Mapping[str, tuple[Shape, ...]], poses: Mapping[str, SE3], *, skip: set[Pair]) -> list[HullOverlap]:
-    """Return the pairs of parts whose collision hulls overlap in a pose.
-
-    Args:
-        shapes: Collision shapes by part name; each has a hull of its own.
-        poses: `T_ground_part` [mm].
-        skip: Pairs not to look at.
-    """
-    hulls = {part: [_hull(shape, poses[part]) for shape in several] for part, several in shapes.items() if several}
-    found = []
-    for a, b in combinations(hulls, 2):
-        if (a, b) in skip or (b, a) in skip:
-            continue
-        shared = [
-            first ^ second for first, low_a, high_a in hulls[a] for second, low_b, high_b in hulls[b] if _near(low_a, high_a, low_b, high_b)
-        ]
-        volume = sum(solid.volume() for solid in shared)
-        area = sum(solid.surface_area() for solid in shared)
-        if volume > HULL_VOLUME_MM3 and 2 * volume / area > HULL_DEPTH_MM:
-            found.append(HullOverlap((a, b), float(volume), float(2 * volume / area)))
-    return found
-
-
-def _hull(shape: Shape, T: SE3) -> tuple[manifold3d.Manifold, FloatArray, FloatArray]:
-    points = (T @ shape.frame).apply(shape.mesh.vertices)
-    hull = manifold3d.Manifold.hull_points(points).simplify(HULL_DEPTH_MM / 10)
-    return hull, points.min(axis=0), points.max(axis=0)
-
-
-def _near(low_a: FloatArray, high_a: FloatArray, low_b: FloatArray, high_b: FloatArray) -> bool:
-    return bool((low_a < high_b).all() and (low_b < high_a).all())

@@ -38,11 +38,13 @@ class Load:
         effort: [N·m] or [N].
         velocity: [rad/s] or [m/s].
         damping: [N·m·s/rad] or [N·s/m].
+        carried: Inertia about the axis, or mass, that it moves in the worst pose [kg·m²] or [kg].
     """
 
     effort: float
     velocity: float
     damping: float
+    carried: float
 
 
 def joint_loads(mechanism: Mechanism, parts: Mapping[str, Part]) -> dict[str, tuple[Load, ...]]:
@@ -65,9 +67,9 @@ def _loads(joint: Joint, carried: Carried) -> tuple[Load, ...]:
     force = MARGIN * g * carried.mass
     torque = MARGIN * max(g * carried.moment, g / carried.reach * carried.inertia) + force * lead
     omega = math.sqrt(2 * g / carried.reach)
-    turn = _load(torque, omega)
+    turn = _load(torque, omega, carried.inertia)
     if joint.type is JointType.SCREW:
-        return _load(force, omega * lead), _stated(joint, 0, turn, MM_PER_M, 1.0)
+        return _load(force, omega * lead, carried.mass), _stated(joint, 0, turn, MM_PER_M, 1.0)
     if joint.type is JointType.BALL:
         return tuple(_stated(joint, 0, turn, MM_PER_M, 1.0) for _ in range(3))
     loads = []
@@ -76,12 +78,13 @@ def _loads(joint: Joint, carried: Carried) -> tuple[Load, ...]:
             loads.append(_stated(joint, index, turn, MM_PER_M, 1.0))
         else:
             length = (upper - lower) / MM_PER_M if math.isfinite(upper - lower) else 2 * carried.reach
-            loads.append(_stated(joint, index, _load(force, math.sqrt(2 * g * max(length, LEAST_REACH_M))), 1.0, MM_PER_M))
+            slide = _load(force, math.sqrt(2 * g * max(length, LEAST_REACH_M)), carried.mass)
+            loads.append(_stated(joint, index, slide, 1.0, MM_PER_M))
     return tuple(loads)
 
 
-def _load(effort: float, velocity: float) -> Load:
-    return Load(effort, velocity, DAMPING_SHARE * effort / velocity)
+def _load(effort: float, velocity: float, carried: float) -> Load:
+    return Load(effort, velocity, DAMPING_SHARE * effort / velocity, carried)
 
 
 def _stated(joint: Joint, index: int, computed: Load, effort_unit: float, velocity_unit: float) -> Load:
@@ -91,5 +94,7 @@ def _stated(joint: Joint, index: int, computed: Load, effort_unit: float, veloci
     if effort is None and velocity is None:
         return computed
     return _load(
-        computed.effort if effort is None else effort / effort_unit, computed.velocity if velocity is None else velocity / velocity_unit
+        computed.effort if effort is None else effort / effort_unit,
+        computed.velocity if velocity is None else velocity / velocity_unit,
+        computed.carried,
     )

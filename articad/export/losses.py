@@ -219,10 +219,11 @@ TABLE: dict[str, dict[Format, Row]] = {
     "hull": {
         "urdf": Row(
             "collision meshes",
-            "readers that collide with convex hulls (MuJoCo, PyBullet) see these two parts overlap at rest, and URDF cannot exclude the pair",
+            "readers that collide with convex hulls (MuJoCo, PyBullet) see these two parts overlap at rest or in motion, and URDF cannot exclude the pair",
         ),
         "mjcf": Row(
-            "an excluded pair", "MuJoCo collides with convex hulls; those of these two parts overlap at rest, so they do not collide at all"
+            "an excluded pair",
+            "MuJoCo collides with convex hulls; those of these two parts overlap at rest or in motion, so they do not collide at all",
         ),
         "sdf": Row("collision meshes"),
         "usd": Row("convex hulls to collide with"),
@@ -230,6 +231,9 @@ TABLE: dict[str, dict[Format, Row]] = {
     "collision.hull": {
         name: Row("a convex hull to collide with", "dents, holes and slots of the part, which bodies cannot enter", refused=True)
         for name in MECHANISM_FORMATS
+    },
+    "collision.pieces": {
+        name: Row("convex pieces to collide with", "what the pieces add to the solid and leave out of it") for name in MECHANISM_FORMATS
     },
     "color": {"urdf": Row("<material>"), "mjcf": Row("a material"), "sdf": Row("a material"), "usd": Row("displayColor")},
     "friction": {

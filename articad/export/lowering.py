@@ -20,7 +20,6 @@ from numpy.typing import NDArray
 from articad.connectors.mate import flip
 from articad.connectors.se3 import SE3
 from articad.export.features import features_of, rigid_with_ground
-from articad.export.hulls import hull_of
 from articad.export.inertia import MM_PER_M, Inertial
 from articad.export.loads import Load, joint_loads
 from articad.export.losses import Feature
@@ -33,7 +32,6 @@ if TYPE_CHECKING:
 
 FloatArray = NDArray[np.float64]
 Kind = Literal["turn", "slide"]
-Collision = Literal["solid", "hull"]
 
 
 class Motion(NamedTuple):
@@ -51,8 +49,6 @@ class Motion(NamedTuple):
     axis: tuple[float, float, float]
     coordinate: int | None
 
-
-HULL_SHARE = 1e-6  # of a part's volume: what a hull may add by rounding
 
 _X, _Y, _Z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
 
@@ -292,18 +288,6 @@ def _lowered(
         tuple(freedoms),
         names.carriers(joint),
     )
-
-
-def with_hulls(model: LoweredModel) -> LoweredModel:
-    """Return the model with the convex hull of every collision shape, and what that adds to each part."""
-    links, features = [], list(model.features)
-    for link in model.links:
-        hulls = [(placed, *hull_of(placed.shape)) for placed in link.collisions]
-        links.append(replace(link, collisions=tuple(replace(placed, shape=hull) for placed, hull, _ in hulls)))
-        more = max((share for _, _, share in hulls), default=0.0)
-        if more > HULL_SHARE:
-            features.append(Feature("collision.hull", f"parts.{link.part.name}", f"{100 * more:.3g} % more volume"))
-    return replace(model, links=tuple(links), features=tuple(features))
 
 
 def _frames(joint: Joint, *, backwards: bool) -> tuple[SE3, SE3]:

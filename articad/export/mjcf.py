@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from lxml import etree
@@ -10,12 +11,12 @@ from lxml import etree
 from articad.connectors.se3 import SE3
 from articad.export.bundle import Bundle
 from articad.export.closing import has_limits, tied_points
-from articad.export.hulls import HullOverlap, hull_overlaps, mating_pairs, same_group_pairs
+from articad.export.collisions import Collision, collide, contact_feature
+from articad.export.hulls import HullOverlap, Pair, mating_pairs, same_group_pairs
 from articad.export.inertia import Inertial
 from articad.export.loads import GRAVITY_M_S2
-from articad.export.losses import Feature, losses_of, refuse
+from articad.export.losses import losses_of, refuse
 from articad.export.lowering import (
-    Collision,
     Follows,
     Freedom,
     Link,
@@ -25,13 +26,13 @@ from articad.export.lowering import (
     ball_total_angle,
     lower,
     metres,
-    with_hulls,
 )
 from articad.export.markup import child, document, number, numbers, rgba, wxyz
 from articad.export.meshes import MM_TO_M, MeshFiles, MeshKind
 from articad.export.metadata import dumps, records
 from articad.export.names import Names
 from articad.geometry.mesh import TriMesh
+from articad.kernels.cache import BuildCache
 from articad.kinematics.joints import JointType
 
 if TYPE_CHECKING:
@@ -45,24 +46,34 @@ TIMESTEP_S = 0.002
 EQUALITY = {"solref": "0.004 1", "solimp": "0.9999 0.9999 0.001"}  # as stiff as the time step allows: MuJoCo's default sags visibly
 SERVO_ERROR_TURN = 0.05  # rad by which a servo is off at full effort
 SERVO_ERROR_SLIDE = 0.005  # m, likewise
+ROTOR_SHARE = 0.01  # of what a driven joint moves: the inertia of a motor's rotor as seen through its gears
 FRICTION_SPIN, FRICTION_ROLL = 0.005, 0.0001  # MuJoCo's defaults beside the sliding friction [m]
 
 
 def write_mjcf(
-    assembly: Assembly, *, strict: bool = False, meshes: MeshKind = "stl", actuators: bool = False, collision: Collision = "solid"
+    assembly: Assembly,
+    *,
+    strict: bool = False,
+    meshes: MeshKind = "stl",
+    actuators: bool = False,
+    collision: Collision = "solid",
+    cache: BuildCache | None = None,
 ) -> Bundle:
     """Write an assembly as MJCF.
 
     Body frames are joint frames, the one base body is the ground part, and every joint's value is ours in rad or m, so all zero is q = 0;
     the key `home` is the rest pose. Loops are closed by equality constraints between sites.
-    Parts that share a joint do not collide with each other, nor do parts whose convex hulls overlap at rest.
+    Parts that share a joint do not collide with each other, nor do parts that hulls bring into contact, at rest or in motion, where the
+    solids are apart.
 
     Args:
         assembly: What to write.
         strict: Refuse what MJCF holds only with a loss of motion, mass or shape.
         meshes: Format of the mesh files: STL holds single precision, OBJ nine digits.
-        collision: Collide with the parts' own meshes, of which MuJoCo takes the hulls, or write the hulls and tell their error.
-        actuators: Give every driver a position servo of the joint's effort.
+        actuators: Give every driver a position servo of the joint's effort, and its joint the inertia of a rotor.
+        collision: Collide with the parts' own meshes, of which MuJoCo takes the hulls ("solid"), with their hulls, or with convex pieces
+            that are cut until they add no contact; the error of both is told.
+        cache: Keeps convex pieces by shape; that of built parts by default.
 
     Returns:
         `<name>.xml`, `meshes/…`, and the losses.
@@ -70,13 +81,12 @@ def write_mjcf(
     Raises:
         UnrepresentableError: If `strict` and there is such a loss.
     """
-    model = with_hulls(lower(assembly)) if collision == "hull" else lower(assembly)
-    overlaps = _hull_overlaps(assembly, model)
-    losses = losses_of("mjcf", (*model.features, *(_hull_feature(overlap) for overlap in overlaps)))
+    model, contacts = collide(assembly, lower(assembly), collision, _skipped(assembly), cache)
+    losses = losses_of("mjcf", (*model.features, *map(contact_feature, contacts)))
     if strict:
         refuse(losses)
     writer = _Writer(assembly, model, MeshFiles(meshes))
-    root = writer.document(overlaps, actuators=actuators)
+    root = writer.document(contacts, actuators=actuators)
     return Bundle({f"{model.name}.xml": document(root), **writer.files.files}, losses)
 
 
@@ -92,7 +102,7 @@ class _Writer:
         self.ghosts: dict[str, Inertial] = {}
         self.qpos: dict[str, list[float]] = {}
 
-    def document(self, overlaps: list[HullOverlap], *, actuators: bool) -> Any:
+    def document(self, contacts: Sequence[HullOverlap], *, actuators: bool) -> Any:
         root = etree.Element("mujoco", model=self.model.name)
         child(root, "compiler", {"angle": "radian", "autolimits": "true", "inertiafromgeom": "false", "balanceinertia": "false"})
         child(root, "option", {"timestep": number(TIMESTEP_S), "gravity": numbers([0, 0, -GRAVITY_M_S2]), "integrator": "implicitfast"})
@@ -101,9 +111,9 @@ class _Writer:
         self._materials()
         world = child(root, "worldbody")
         self._bodies(world)
-        self._exclusions(root, overlaps)
+        self._exclusions(root, contacts)
         self._equalities(root)
-        servos = self._actuators(root) if actuators else []
+        servos = self._actuators(root, world) if actuators else []
         self._home(root, world, servos)
         custom = child(root, "custom")
         for number_, record in enumerate(records(self.assembly, self.model, self.files.by_digest, [world, *root.iterfind("equality")])):
@@ -190,10 +200,10 @@ class _Writer:
 
     # ------------------------------------------------------------------ relations
 
-    def _exclusions(self, root: Any, overlaps: list[HullOverlap]) -> None:
+    def _exclusions(self, root: Any, contacts: Sequence[HullOverlap]) -> None:
         links = {link.part.name: link for link in self.model.links}
         mating = mating_pairs(self.assembly.mechanism.joints, self.assembly.mechanism.parts)
-        pairs = dict.fromkeys([*mating, *(overlap.parts for overlap in overlaps)])
+        pairs = dict.fromkeys([*mating, *(contact.parts for contact in contacts)])
         if pairs:
             contact = child(root, "contact")
             for a, b in pairs:
@@ -236,14 +246,16 @@ class _Writer:
         site1, site2 = (self._site(body, f"{name}__{side}", T) for side, (body, T) in (("near", near), ("far", far)))
         child(equality, kind, {"name": name, "site1": site1, "site2": site2} | EQUALITY)
 
-    def _actuators(self, root: Any) -> list[Freedom]:
-        """Add a position servo for every driver but balls; return the driven freedoms."""
+    def _actuators(self, root: Any, world: Any) -> list[Freedom]:
+        """Add a position servo and a rotor for every driver but balls; return the driven freedoms."""
         driven = {driver.name for driver in self.assembly.mechanism.drivers}
         freedoms = [freedom for joint in (*self.model.joints, *self.model.loops) for freedom in joint.freedoms]
         freedoms = [freedom for freedom in freedoms if freedom.column in driven and freedom.name in self.qpos]
         if freedoms:
             actuator = child(root, "actuator")
+            joints = {joint.get("name"): joint for joint in world.iter("joint")}
             for freedom in freedoms:
+                joints[freedom.name].set("armature", number(ROTOR_SHARE * freedom.load.carried))
                 child(actuator, "position", _servo(freedom))
         return freedoms
 
@@ -324,13 +336,7 @@ def _mesh_inertia(mesh: TriMesh) -> dict[str, str]:
     return {} if mesh.is_closed and mesh.volume > LEAST_VOLUME_MM3 else {"inertia": "shell"}
 
 
-def _hull_overlaps(assembly: Assembly, model: LoweredModel) -> list[HullOverlap]:
-    """Return the pairs that MuJoCo would see in contact at rest although no joint connects them."""
-    mechanism = assembly.mechanism
-    skip = set(mating_pairs(mechanism.joints, mechanism.parts)) | same_group_pairs(mechanism.joints, mechanism.parts)
-    shapes = {link.part.name: tuple(placed.shape for placed in link.collisions) for link in model.links}
-    return hull_overlaps(shapes, mechanism.rest_poses(), skip=skip)
-
-
-def _hull_feature(overlap: HullOverlap) -> Feature:
-    return Feature("hull", "parts." + "+".join(overlap.parts), f"hulls share {overlap.volume:.3g} mm³")
+def _skipped(assembly: Assembly) -> set[Pair]:
+    """Return the pairs that do not collide in MuJoCo: those that share a joint, which are excluded, and what never moves apart."""
+    joints, order = assembly.mechanism.joints, assembly.mechanism.parts
+    return set(mating_pairs(joints, order)) | same_group_pairs(joints, order)

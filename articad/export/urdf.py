@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any, Literal
 
 from lxml import etree
@@ -11,17 +11,19 @@ from lxml import etree
 from articad.connectors.se3 import SE3
 from articad.export.bundle import Bundle
 from articad.export.closing import TiedPoint, tied_points
+from articad.export.collisions import Collision, collide, contact_feature
 from articad.export.follow import followers
-from articad.export.hulls import HullOverlap, hull_overlaps, mating_pairs, same_group_pairs
+from articad.export.hulls import HullOverlap, Pair, mating_pairs, same_group_pairs
 from articad.export.inertia import Inertial
 from articad.export.losses import Feature, losses_of, refuse
-from articad.export.lowering import Collision, Follows, Freedom, Link, LoweredJoint, LoweredModel, Placed, lower, with_hulls
+from articad.export.lowering import Follows, Freedom, Link, LoweredJoint, LoweredModel, Placed, lower
 from articad.export.markup import child, document, number, numbers, rgba, rpy
 from articad.export.meshes import MM_TO_M, MeshFiles, MeshKind
 from articad.export.metadata import dumps, records
 from articad.export.mimic import linear_followers
 from articad.export.ros import add_control, package_files, require_package_name
 from articad.export.ros import srdf as disabled_pairs
+from articad.kernels.cache import BuildCache
 
 if TYPE_CHECKING:
     from articad.assembly import Assembly
@@ -43,6 +45,7 @@ def write_urdf(
     srdf: bool = False,
     ros2_control: bool = False,
     collision: Collision = "solid",
+    cache: BuildCache | None = None,
 ) -> Bundle:
     """Write an assembly as URDF.
 
@@ -58,8 +61,10 @@ def write_urdf(
             for Drake, or as `<mimic>` of the driver, where a linear relation is as good as 0.1 mm.
         package: Name of a ROS 2 package to lay out: `urdf/`, `meshes/`, a manifest, and meshes named `package://…`.
         srdf: Add `<name>.srdf` with the pairs of links that need no collision check.
-        collision: Collide with the parts' own meshes, or with their convex hulls, whose error is told.
         ros2_control: Add a `<ros2_control>` system that commands the drivers' positions, on mock hardware.
+        collision: Collide with the parts' own meshes ("solid"), with their hulls, or with convex pieces that are cut until they add no
+            contact; the error of both is told.
+        cache: Keeps convex pieces by shape; that of built parts by default.
 
     Returns:
         `<name>.urdf`, `meshes/…`, and the losses.
@@ -70,10 +75,10 @@ def write_urdf(
     """
     if package is not None:
         require_package_name(package)
-    model = with_hulls(lower(assembly)) if collision == "hull" else lower(assembly)
+    model = lower(assembly)
+    model, contacts = collide(assembly, model, collision, _skipped(assembly, model), cache)
     tied = {loop.name: tied_points(model, loop) for loop in model.loops} if loops in {"isaac", "drake"} else {}
-    overlaps = _hull_overlaps(assembly, model)
-    losses = losses_of("urdf", (*_loop_features(model, loops, tied), *(_hull_feature(overlap) for overlap in overlaps)))
+    losses = losses_of("urdf", (*_loop_features(model, loops, tied), *map(contact_feature, contacts)))
     if strict:
         refuse(losses)
     files = MeshFiles(meshes, prefix="" if package is None else f"package://{package}/")
@@ -91,7 +96,7 @@ def write_urdf(
         child(root, "articad", {"kind": str(record["kind"])}, dumps(record))
     if ros2_control:
         add_control(root, assembly, model)
-    documents = {"urdf": document(root)} | ({"srdf": _disabled_pairs(assembly, model, overlaps)} if srdf else {})
+    documents = {"urdf": document(root)} | ({"srdf": _disabled_pairs(assembly, model, contacts)} if srdf else {})
     if package is None:
         main = {f"{model.name}.{kind}": content for kind, content in documents.items()}
     else:
@@ -115,9 +120,9 @@ def _tree(root: Any, model: LoweredModel, follows: dict[str, Follows], files: Me
             _joints(root, joint, follows)
 
 
-def _disabled_pairs(assembly: Assembly, model: LoweredModel, overlaps: list[HullOverlap]) -> bytes:
+def _disabled_pairs(assembly: Assembly, model: LoweredModel, contacts: Iterable[HullOverlap]) -> bytes:
     order, joints = assembly.mechanism.parts, assembly.mechanism.joints
-    return disabled_pairs(model, mating_pairs(joints, order), sorted(same_group_pairs(joints, order)), overlaps)
+    return disabled_pairs(model, mating_pairs(joints, order), sorted(same_group_pairs(joints, order)), contacts)
 
 
 def _compiler(root: Any) -> None:
@@ -244,15 +249,8 @@ def _loop_features(model: LoweredModel, loops: Loops, tied: Mapping[str, tuple[T
     ]
 
 
-def _hull_overlaps(assembly: Assembly, model: LoweredModel) -> list[HullOverlap]:
-    """Return the pairs whose hulls overlap at rest and that readers do not skip by themselves, as they skip a parent and its child."""
-    order = assembly.mechanism.parts
+def _skipped(assembly: Assembly, model: LoweredModel) -> set[Pair]:
+    """Return the pairs that readers skip by themselves: a parent and its child, where no carrier stands between, and what never moves."""
+    joints, order = assembly.mechanism.joints, assembly.mechanism.parts
     chained = {frozenset((joint.joint.parent, joint.joint.child)) for joint in model.joints if len(joint.freedoms) > 1}
-    mating = {pair for pair in mating_pairs(assembly.mechanism.joints, order) if frozenset(pair) not in chained}
-    skip = mating | same_group_pairs(assembly.mechanism.joints, order)
-    shapes = {link.part.name: tuple(placed.shape for placed in link.collisions) for link in model.links}
-    return hull_overlaps(shapes, assembly.mechanism.rest_poses(), skip=skip)
-
-
-def _hull_feature(overlap: HullOverlap) -> Feature:
-    return Feature("hull", "parts." + "+".join(overlap.parts), f"hulls share {overlap.volume:.3g} mm³")
+    return {pair for pair in mating_pairs(joints, order) if frozenset(pair) not in chained} | same_group_pairs(joints, order)

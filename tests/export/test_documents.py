@@ -109,6 +109,17 @@ def test_every_driver_but_a_ball_gets_a_servo_of_its_effort() -> None:
     assert servos["hinge"].get("forcerange") == root.find(".//joint[@name='hinge']").get("actuatorfrcrange")
 
 
+def test_a_driven_joint_gets_a_rotor_of_a_hundredth_of_what_it_moves() -> None:
+    root = root_of(write_mjcf(geared_pair(), actuators=True))
+    wheel = geared_pair().parts["wheel_a"].mass
+    assert wheel is not None
+    joint, follower = (root.find(f".//joint[@name='{name}']") for name in "ab")
+
+    assert float(joint.get("armature")) == pytest.approx(0.01 * wheel.inertia[2, 2] / 1e6, rel=0.2)
+    assert follower.get("armature") is None
+    assert root_of(write_mjcf(geared_pair())).find(".//joint[@armature]") is None
+
+
 def test_sites_stand_where_connectors_are() -> None:
     assembly = all_joint_kinds()
     root = root_of(write_mjcf(assembly))

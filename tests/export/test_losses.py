@@ -9,7 +9,7 @@ import pytest
 
 from articad.assembly import Assembly
 from articad.errors import UnrepresentableError
-from articad.export.hulls import hull_of
+from articad.export.convex import whole_hull
 from articad.export.losses import MECHANISM_FORMATS, TABLE, losses_of
 from articad.export.mjcf import write_mjcf
 from articad.export.sdf import write_sdf
@@ -197,5 +197,5 @@ def test_hulls_to_collide_with_are_written_and_their_error_told(writer: str) -> 
 def test_the_hull_of_an_open_mesh_has_no_known_error() -> None:
     solid = box(10, 10, 10)
 
-    assert hull_of(Shape(TriMesh(solid.vertices, solid.triangles[:-1])))[1] == 0
-    assert hull_of(Shape(solid))[0].mesh.volume == pytest.approx(1000)
+    assert whole_hull(TriMesh(solid.vertices, solid.triangles[:-1])).more == 0
+    assert whole_hull(solid).meshes[0].volume == pytest.approx(1000)

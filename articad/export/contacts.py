@@ -1,0 +1,165 @@
+"""Contacts that convex pieces have and the solids do not: at rest, and while each driver moves over its range."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from itertools import combinations
+from typing import TYPE_CHECKING, Any
+
+import manifold3d
+import numpy as np
+from numpy.typing import NDArray
+
+from articad.errors import KinematicsError
+from articad.export.convex import manifold
+from articad.export.hulls import HULL_DEPTH_MM, HULL_VOLUME_MM3, HullOverlap, Pair
+from articad.geometry.part import Shape
+from articad.interference.motion import freedoms
+from articad.interference.scene import Scene
+from articad.interference.sweep import Sweep
+
+if TYPE_CHECKING:
+    from articad.kinematics.mechanism import Mechanism
+
+FloatArray = NDArray[np.float64]
+
+POSES_PER_FREEDOM = 13  # over its range, the others at rest
+LIMIT_SLACK = 1e-6  # mm or rad by which a joint may be outside its limits
+_KEY_DIGITS = 6  # of mm and rotation entries: relative poses that agree so far are asked once
+
+
+def poses_in_motion(mechanism: Mechanism) -> FloatArray:
+    """Return the poses of all parts at rest and along the range of every driver, matrices `(n, N, 4, 4)` [mm].
+
+    Endless joints go one turn. Where a loop stops a driver, or takes another joint out of its limits, its poses end there.
+    """
+    sweep = Sweep(Scene.of({}, mechanism.joints), mechanism)
+    found = [mechanism.poses(mechanism.rest)[None].matrix]
+    for joint in sweep.driving:
+        for freedom in freedoms(joint):
+            values = np.linspace(freedom.lower, freedom.upper, POSES_PER_FREEDOM)
+            if mechanism.loop_joints or mechanism.couplings:
+                found += _walked(mechanism, sweep, freedom.name, values[values < freedom.rest][::-1])
+                found += _walked(mechanism, sweep, freedom.name, values[values >= freedom.rest])
+            else:
+                found.append(mechanism.poses(np.array([sweep.columns({freedom.name: value}) for value in values.tolist()])).matrix)
+    return np.concatenate(found)
+
+
+def _walked(mechanism: Mechanism, sweep: Sweep, name: str, values: FloatArray) -> list[FloatArray]:
+    """Return the poses at these values, each `(1, N, 4, 4)`, up to the first that the mechanism does not reach."""
+    lower, upper = (np.array([getattr(coordinate, end) for coordinate in mechanism.coordinates]) for end in ("lower", "upper"))
+    reached = []
+    for value in values.tolist():
+        q = np.array(sweep.columns({name: value}))
+        try:
+            columns = mechanism.configuration(q).columns
+            if not ((lower - LIMIT_SLACK <= columns) & (columns <= upper + LIMIT_SLACK)).all():
+                break
+            reached.append(mechanism.poses(q)[None].matrix)
+        except KinematicsError:
+            break
+    return reached
+
+
+@dataclass
+class ContactSearch:
+    """Looks for new contacts between parts, and looks again only at parts whose pieces have changed.
+
+    Attributes:
+        order: Names of the parts, as the poses have them.
+        poses: `(n, N, 4, 4)` [mm]; the first is the rest pose.
+        solids: Collision shapes of each part.
+        skip: Pairs that engines do not check.
+    """
+
+    order: tuple[str, ...]
+    poses: FloatArray
+    solids: Mapping[str, tuple[Shape, ...]]
+    skip: set[Pair]
+    _bodies: dict[tuple[str, bool], manifold3d.Manifold] = field(default_factory=dict)
+    _pieces: dict[str, list[Any]] = field(default_factory=dict)
+    _found: dict[Pair, HullOverlap | None] = field(default_factory=dict)
+    _solids: dict[str, list[Any]] = field(default_factory=dict)
+
+    def update(self, part: str, pieces: Iterable[Shape]) -> None:
+        """Give a part other pieces."""
+        self._pieces[part] = [self._placed(shape, convex=True) for shape in pieces]
+        self._found = {pair: found for pair, found in self._found.items() if part not in pair}
+
+    def contacts(self) -> list[HullOverlap]:
+        """Return the pairs whose pieces meet at rest, or in some pose where the solids do not, in order of declaration."""
+        boxes = {part: self._boxes(part) for part, pieces in self._pieces.items() if pieces}
+        for a, b in combinations([part for part in self.order if part in boxes], 2):
+            if (a, b) in self.skip or (b, a) in self.skip or (a, b) in self._found:
+                continue
+            low, high = (np.maximum(boxes[a][0], boxes[b][0]), np.minimum(boxes[a][1], boxes[b][1]))
+            self._found[a, b] = self._first_contact(a, b, np.flatnonzero((low < high).all(axis=1)))
+        found = (self._found.get(pair) for pair in combinations(self.order, 2))
+        return [contact for contact in found if contact is not None]
+
+    def _boxes(self, part: str) -> tuple[FloatArray, FloatArray]:
+        """Return the corners of the part's bounding box in every pose, `(n, 3)` each."""
+        lows, highs = zip(*((low, high) for _, low, high in self._pieces[part]), strict=True)
+        low, high = np.min(lows, axis=0), np.max(highs, axis=0)
+        T = self.poses[:, self.order.index(part)]
+        centre = T[:, :3, :3] @ ((low + high) / 2) + T[:, :3, 3]
+        half = np.abs(T[:, :3, :3]) @ ((high - low) / 2)
+        return centre - half, centre + half
+
+    def _first_contact(self, a: str, b: str, near: NDArray[np.intp]) -> HullOverlap | None:
+        first, second = (self.poses[near, self.order.index(part)] for part in (a, b))
+        relative = _inverse(first) @ second
+        seen: set[bytes] = set()
+        for index, T in zip(near.tolist(), relative, strict=True):
+            key = (np.round(T[:3], _KEY_DIGITS) + 0.0).tobytes()
+            if key not in seen:
+                seen.add(key)
+                volume, depth = _overlap(self._pieces[a], self._pieces[b], T)
+                if depth > HULL_DEPTH_MM:
+                    solids = self._solids_meet(a, b, T)
+                    if index == 0 or not solids:
+                        return HullOverlap((a, b), volume, depth, solids)
+        return None
+
+    def _solids_meet(self, a: str, b: str, T: FloatArray) -> bool:
+        for part in (a, b):
+            if part not in self._solids:
+                self._solids[part] = [self._placed(shape, convex=False) for shape in self.solids[part]]
+        return _overlap(self._solids[a], self._solids[b], T)[1] > HULL_DEPTH_MM
+
+    def _placed(self, shape: Shape, *, convex: bool) -> tuple[manifold3d.Manifold, FloatArray, FloatArray]:
+        """Return a shape's body in the part's frame, and the corners of its bounding box; equal meshes share a body."""
+        key = shape.mesh.digest, convex
+        if key not in self._bodies:
+            hull = manifold3d.Manifold.hull_points(shape.mesh.vertices).simplify(HULL_DEPTH_MM / 10) if convex else None
+            self._bodies[key] = manifold(shape.mesh) if hull is None else hull
+        body = self._bodies[key].transform(shape.frame.matrix[:3])
+        corners = body.bounding_box()
+        return body, np.array(corners[:3]), np.array(corners[3:])
+
+
+def _overlap(first: list[Any], second: list[Any], T: FloatArray) -> tuple[float, float]:
+    """Return the volume that two lists of bodies share [mm³], the second ones moved by T, and its mean depth [mm]."""
+    volume = area = 0.0
+    for other, low, high in second:
+        centre = T[:3, :3] @ ((low + high) / 2) + T[:3, 3]
+        half = np.abs(T[:3, :3]) @ ((high - low) / 2)
+        near = [body for body, a_low, a_high in first if (a_low < centre + half).all() and (centre - half < a_high).all()]
+        if near:
+            moved = other.transform(T[:3])
+            for body in near:
+                shared = body ^ moved
+                volume += float(shared.volume())
+                area += float(shared.surface_area())
+    return (volume, 2 * volume / area) if volume > HULL_VOLUME_MM3 else (0.0, 0.0)
+
+
+def _inverse(T: FloatArray) -> FloatArray:
+    found = np.zeros_like(T)
+    R = np.swapaxes(T[:, :3, :3], 1, 2)
+    found[:, :3, :3] = R
+    found[:, :3, 3] = -np.einsum("nij,nj->ni", R, T[:, :3, 3])
+    found[:, 3, 3] = 1.0
+    return found
