@@ -38,6 +38,7 @@ from articad.kinematics.joints import JointType
 
 FOREIGN = ("urdf", "mjcf")  # formats whose shapes stand for bodies without being them
 STEPS = 25  # poses of a joint: every 15° of a full turn
+FEWEST_STEPS = 9  # … and so many where a pose takes long
 SIDE = 7  # poses of each of two joints
 SCAN = 24  # poses between rest and a collision, among which the first contact is looked for
 BISECTIONS = 30
@@ -246,12 +247,16 @@ def _sampled(case: _Case, found: Contacts, budget: float) -> None:
     ranges = [freedom for joint in sweep.driving for freedom in freedoms(joint)]
     guilty = {frozenset(finding.parts) for finding in found.findings}
     late: list[str] = []
-    for freedom in ranges:
+    steps = FEWEST_STEPS if case.assembly.mechanism.loop_joints else STEPS  # to close loops takes long: the first joint tells how long
+    for at, freedom in enumerate(ranges):
         if time.monotonic() > end:
             late.append(freedom.name)
             continue
-        values = np.linspace(freedom.lower, freedom.upper, STEPS).tolist()
+        start = time.monotonic()
+        values = np.linspace(freedom.lower, freedom.upper, steps).tolist()
         checks = sweep.sampled([{freedom.name: value} for value in values], (freedom.name,), values[1] - values[0])
+        left, cost = len(ranges) - at - 1, (time.monotonic() - start) / steps
+        steps = max(FEWEST_STEPS, min(STEPS, int((end - time.monotonic()) / max(cost * left, 1e-9)))) if left else steps
         fresh = [finding for finding in checks.findings if finding.code == MOTION or frozenset(finding.parts) not in guilty]
         found.findings += _collisions(case, sweep, freedom, fresh, end)
         guilty |= {frozenset(finding.parts) for finding in fresh}
@@ -284,7 +289,9 @@ def _pairs(case: _Case, found: Contacts, sweep: Sweep, ranges: list[Freedom], gu
             undone += 1
             continue
         names = (first.name, second.name)
-        grid = product(*(np.linspace(freedom.lower, freedom.upper, SIDE).tolist() for freedom in (first, second)))
+        grid = [*product(*(np.linspace(freedom.lower, freedom.upper, SIDE).tolist() for freedom in (first, second)))]
+        if {name.partition(".")[2] for name in names} == {"sx", "sy"} and names[0].partition(".")[0] == names[1].partition(".")[0]:
+            grid = [point for point in grid if math.hypot(*point) <= first.upper]  # a ball swings within a cone, not within a square
         checks = sweep.sampled([dict(zip(names, point, strict=True)) for point in grid], names, None)
         for finding in checks.findings:
             parts = frozenset(finding.parts)

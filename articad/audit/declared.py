@@ -24,7 +24,7 @@ from articad.kinematics.joints import JointType
 FloatArray = NDArray[np.float64]
 Role = Literal["visual", "collision"]
 
-MOVING = ("revolute", "continuous", "prismatic", "planar", "floating", "spherical")
+MOVING = ("revolute", "continuous", "prismatic", "planar", "floating", "spherical", "screw")
 
 
 @dataclass(frozen=True, eq=False)
@@ -163,6 +163,11 @@ class Declared:
         standing = {self.rigid.leader(name) for name in self.roots}
         return tuple(names for names in self.rigid.sets() if self.rigid.leader(names[0]) not in standing)
 
+    @cached_property
+    def tied(self) -> frozenset[str]:
+        """Names of joints that follow another, or that another follows: a stop of one is a stop of both."""
+        return frozenset(name for joint in self.joints if joint.mimics is not None for name in (joint.name, joint.mimics))
+
     def poses(self) -> dict[str, SE3]:
         """Return where each link stands when every joint is at zero, as seen from the first root; links that cannot be reached are left out."""
         found = {self.roots[0]: SE3.identity()} if self.roots else {}
@@ -193,17 +198,18 @@ def _link(part: Part, kind: str) -> DeclaredLink:
 
 
 def _joints(assembly: Assembly) -> Iterator[DeclaredJoint]:
+    tied = {a: b for coupling in assembly.mechanism.couplings for a, b in ((coupling.a, coupling.b), (coupling.b, coupling.a))}
     for joint in assembly.joints:
         names = joint.column_names if joint.type is not JointType.BALL else ()
         ends = (joint.parent, joint.child)
         if not names:
             yield DeclaredJoint(joint.name, f"joints.{joint.name}", "spherical" if joint.type is JointType.BALL else "fixed", *ends)
         for index, (name, unit) in enumerate(zip(names, joint.type.units, strict=False)):
-            kind = "revolute" if unit == "rad" else "prismatic"
+            kind = "screw" if joint.type is JointType.SCREW else "revolute" if unit == "rad" else "prismatic"
             lower, upper = joint.limits.lower[index], joint.limits.upper[index]
             if kind == "revolute" and math.isinf(lower) and math.isinf(upper):
                 kind = "continuous"
-            yield DeclaredJoint(name, f"joints.{name}", kind, *ends, lower=_finite(lower), upper=_finite(upper))
+            yield DeclaredJoint(name, f"joints.{name}", kind, *ends, lower=_finite(lower), upper=_finite(upper), mimics=tied.get(name))
 
 
 def _finite(value: float) -> float | None:

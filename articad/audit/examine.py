@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Final
 
@@ -25,7 +25,7 @@ from articad.importers.reading import Folder, read_xml
 from articad.importers.urdf import read_urdf
 from articad.simulate.loading import ENGINES, Loading, load_in_all
 
-BUDGET_S: Final = 8.0  # of sampling the motion
+BUDGET_S: Final = 12.0  # of sampling the motion
 FORMATS: Final = {".urdf": "urdf", ".xml": "mjcf", ".mjcf": "mjcf", ".fcstd": "freecad", ".step": "step", ".stp": "step"}
 """Format that a file name's ending stands for."""
 
@@ -101,6 +101,16 @@ def audit_assembly(assembly: Assembly, file: str, kind: str, choices: Choices | 
     found.findings += assembly.findings
     _look(found, assembly, choices)
     return _report(file, kind, found, start)
+
+
+def asked(found: Audit, exports: Sequence[Path]) -> Audit:
+    """Return an audit with what engines say of its exports; what else a reader meets in them, an audit of the file tells."""
+    start, engines, findings = time.monotonic(), [*found.engines], [*found.findings]
+    for path in exports:
+        loadings = load_in_all(path, ENGINES.get(FORMATS.get(path.suffix.lower(), ""), ()))
+        engines += loadings
+        findings += [replace(finding, where=f"{path.name}: {finding.where}") for finding in refusals(loadings)]
+    return replace(found, engines=tuple(engines), findings=Findings(findings), seconds=found.seconds + time.monotonic() - start)
 
 
 def _report(file: str, kind: str, found: _Found, start: float) -> Audit:

@@ -93,7 +93,7 @@ def in_degrees(declared: Declared) -> Iterator[Finding]:
 def endless(declared: Declared) -> Iterator[Finding]:
     """A bounded turn of 2π or more: every direction is reached, so the bound stands for no stop that geometry could make."""
     for joint in _bounded(declared):
-        if not joint.turns or joint.mimics is not None or _is_degrees(joint):
+        if not joint.turns or joint.name in declared.tied or _is_degrees(joint):
             continue
         assert joint.lower is not None
         assert joint.upper is not None

@@ -45,7 +45,7 @@ def unknown_links(declared: Declared) -> Iterator[Finding]:
 def unknown_kinds(declared: Declared) -> Iterator[Finding]:
     """A joint of a type that the format does not have."""
     for joint in declared.joints:
-        if joint.type not in {"fixed", *MOVING}:
+        if joint.type not in {"fixed", *MOVING} - {"screw"}:
             yield Finding(
                 code="E_AUDIT_JOINT_TYPE",
                 where=joint.where,

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     argument("target", metavar="FILE|DIR"),
     argument("--table", action="store_true", help="one line a file, for a folder of many"),
     argument("--root", metavar="DIR", help="folder that meshes may be read from (the file's ROS package, or its own folder)"),
-    argument("--budget", metavar="SECONDS", type=amount, default=8.0, help="time for looking at the motion of a file (8)"),
+    argument("--budget", metavar="SECONDS", type=amount, default=12.0, help="time for looking at the motion of a file (12)"),
     argument("--certify", metavar="SECONDS", type=amount, default=None, help="prove the motion free instead of sampling it, in this time"),
     argument("--no-engines", dest="engines", action="store_false", help="do not ask simulators to load the file"),
     argument("--fix", metavar="OUT", help="write a copy with everything mended that can be without guessing (URDF)"),
@@ -108,24 +108,15 @@ def _film(assembly: Assembly, outcomes: Sequence[Outcome]) -> bytes | None:
 
 def _audit_one(options: argparse.Namespace, terminal: Terminal, choices: Choices) -> Audit:
     """Audit a file, or what a plan or a run makes, with its exports."""
-    from dataclasses import replace
-
-    from articad.audit.examine import FORMATS, audit, audit_assembly
+    from articad.audit.examine import FORMATS, asked, audit, audit_assembly
 
     target = Path(options.target)
     if target.suffix.lower() in FORMATS:
         return audit(target, choices)
     kind = "run" if (target / "request.json").is_file() else "plan"
     found = audit_assembly(loaded(options.target, options, terminal), options.target, kind, choices)
-    for file in sorted(path for path in (target / "export").glob("*/*") if path.suffix.lower() in FORMATS) if kind == "run" else ():
-        # what moves and how was looked at above, on the parts that the exports are made of
-        export = audit(file, replace(choices, motion=False))
-        name = file.relative_to(target).as_posix()
-        moved = [replace(finding, where=f"{name}: {finding.where}") for finding in export.findings]
-        found = replace(
-            found, findings=found.findings + moved, engines=(*found.engines, *export.engines), seconds=found.seconds + export.seconds
-        )
-    return found
+    exports = sorted(path for path in (target / "export").glob("*/*") if path.suffix.lower() in FORMATS) if kind == "run" else []
+    return asked(found, exports) if options.engines else found
 
 
 def _audit_folder(options: argparse.Namespace, terminal: Terminal, choices: Choices) -> Report:

@@ -1,4 +1,4 @@
-"""A model in PyBullet: loaded with a fixed base, held by its default motors, watched for a second."""
+"""A model in PyBullet: loaded with a fixed base, held by position motors, watched for a second."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from articad.simulate.verdict import Outcome
 
 STEPS_PER_S = 240
 HOLD_S = 1.0
+HOLD_FORCE = 1e5  # N or N·m: whatever it takes
 MOST_SPEED = 100.0  # rad/s or m/s
 
 
@@ -26,6 +27,13 @@ def run(path: Path) -> Outcome:
         else:
             bodies = list(pybullet.loadMJCF(str(path), physicsClientId=client))
         joints = [(body, joint) for body in bodies for joint in range(pybullet.getNumJoints(body, physicsClientId=client))]
+        for body, joint in joints:
+            kind = pybullet.getJointInfo(body, joint, physicsClientId=client)[2]
+            if kind in {pybullet.JOINT_REVOLUTE, pybullet.JOINT_PRISMATIC}:
+                place = pybullet.getJointState(body, joint, physicsClientId=client)[0]
+                pybullet.setJointMotorControl2(
+                    body, joint, pybullet.POSITION_CONTROL, targetPosition=place, force=HOLD_FORCE, physicsClientId=client
+                )
         steps = int(HOLD_S * STEPS_PER_S)
         for step in range(steps):
             pybullet.stepSimulation(physicsClientId=client)
