@@ -19,7 +19,7 @@ from articad.geometry.mesh import TriMesh
 from articad.geometry.part import DEFAULT_COLOR, Shape
 from articad.geometry.shapes import box, cylinder, sphere
 from articad.importers.fusing import fused
-from articad.importers.raw import ENDLESS, IDENTITY, RawJoint, RawLink, RawModel, RawTie, aligned, assemble, floating
+from articad.importers.raw import ENDLESS, IDENTITY, RawJoint, RawLink, RawModel, RawTie, aligned, assemble, floating, require_links
 from articad.importers.reading import MAX_LINKS, MM_PER_M, Folder, color_text, read_xml, unreadable
 from articad.importers.records import assembly_of, read_records, stale
 from articad.kinematics.joints import JointType
@@ -62,6 +62,7 @@ def read_mjcf(path: str | Path, *, root: str | Path | None = None, metadata: boo
     _require_safe(document, folder, path, [path.resolve()])
     model = _Reader(_compiled(path), document.get("model") or path.stem).model()
     model.findings += edited
+    require_links(model, path)
     return assemble(fused(model) if fuse else model, path)
 
 
@@ -108,7 +109,7 @@ def _compiled(path: Path) -> Any:
 
     try:
         return mujoco.MjModel.from_xml_path(str(path))
-    except (ValueError, mujoco.FatalError) as error:
+    except (ValueError, RuntimeError, mujoco.FatalError) as error:  # RuntimeError: its own parser failed
         raise unreadable(path, "", f"MuJoCo does not take it: {error}") from None
 
 

@@ -140,6 +140,18 @@ def floating(name: str, parent: str, child: str, frame_p: SE3, frame_c: SE3) -> 
     return links, joints
 
 
+def require_links(model: RawModel, path: Path) -> None:
+    """Refuse joints of links that are not there.
+
+    Raises:
+        ReadError: If there is one.
+    """
+    for joint in model.joints:
+        for link in (joint.parent, joint.child):
+            if link not in model.links:
+                raise unreadable(path, f"joint {joint.name!r}", f"Its link {link!r} is not in the file.")
+
+
 def assemble(model: RawModel, path: Path) -> Assembly:
     """Return the assembly of what was read.
 
@@ -148,11 +160,10 @@ def assemble(model: RawModel, path: Path) -> Assembly:
     """
     if len(model.links) > MAX_LINKS:
         raise unreadable(path, "", f"It has {len(model.links)} links; {MAX_LINKS} are the most.")
+    require_links(model, path)
     connectors: dict[str, dict[str, Connector]] = {name: {} for name in model.links}
     for joint in model.joints:
         for link, frame in ((joint.parent, joint.frame_p), (joint.child, joint.frame_c)):
-            if link not in connectors:
-                raise unreadable(path, f"joint {joint.name!r}", f"Its link {link!r} is not in the file.")
             if not np.abs(frame.translation).max() <= LARGEST_MM:  # NaN is not either
                 raise unreadable(path, f"joint {joint.name!r}", "It stands beyond reason.")
             connectors[link][joint.name] = Connector(joint.name, frame)

@@ -21,7 +21,7 @@ from articad.geometry.mesh import TriMesh
 from articad.geometry.part import DEFAULT_COLOR, Shape
 from articad.geometry.shapes import box, cylinder, sphere
 from articad.importers.fusing import fused
-from articad.importers.raw import ENDLESS, IDENTITY, RawJoint, RawLink, RawModel, RawTie, aligned, assemble, floating
+from articad.importers.raw import ENDLESS, IDENTITY, RawJoint, RawLink, RawModel, RawTie, aligned, assemble, floating, require_links
 from articad.importers.reading import MAX_LINKS, MM_PER_M, Folder, color_text, read_xml, unreadable
 from articad.importers.records import assembly_of, read_records, stale
 from articad.kinematics.joints import JointType
@@ -61,6 +61,7 @@ def read_urdf(path: str | Path, *, root: str | Path | None = None, metadata: boo
             return assembly_of(records, folder, path)
     model = _model(document, folder, path)
     model.findings += edited
+    require_links(model, path)
     return assemble(fused(model) if fuse else model, path)
 
 

@@ -23,6 +23,7 @@ from articad.connectors.connector import Connector
 from articad.connectors.se3 import SE3
 from articad.errors import BuildError, ContractError, KernelError, ReadError, SandboxError
 from articad.findings import Finding, Findings
+from articad.geometry.mesh import TriMesh
 from articad.geometry.part import Solid
 from articad.kernels import sandbox as isolation
 from articad.kernels.contract import probe_findings, read_connectors, solid_findings
@@ -356,9 +357,7 @@ class Build123dKernel:
         }
         if not mesh.is_closed:
             raise PoisonedError("the mesh is not closed")
-        difference, allowed = abs(mesh.volume - checked["volume_mm3"]), MESH_VOLUME_SHARE * checked["area_mm2"] * deflection
-        if difference > allowed:
-            raise PoisonedError(f"the mesh's volume is {difference:.3g} mm³ off the solid's")
+        _require_agreement(mesh, checked, deflection)
         for kind, magic in _MAGIC.items():
             with (job / RESULT_FILES[kind]).open("rb") as file:
                 if not file.read(len(magic)) == magic:
@@ -396,6 +395,28 @@ class Build123dKernel:
             "sandbox": level,
         }
         (folder / "result.json").write_text(json.dumps(result, sort_keys=True, allow_nan=False))
+
+
+def _require_agreement(mesh: TriMesh, shape: Json, deflection: float) -> None:
+    """Hold the numbers of a solid against its mesh: a process that measures wrongly, or was made to, is noticed here.
+
+    The mesh is within the deflection of the surface, so that the shell between both holds at most area · deflection.
+
+    Raises:
+        PoisonedError: If they differ by more than the mesh can.
+    """
+    volume, com, inertia = mesh.solid_integrals()
+    shell = MESH_VOLUME_SHARE * shape["area_mm2"] * deflection
+    reach = float(np.linalg.norm(mesh.bounds[1] - mesh.bounds[0])) + deflection
+    held = max(min(volume, shape["volume_mm3"]), 1e-9)
+    for what, difference, allowed, unit in (
+        ("volume", abs(volume - shape["volume_mm3"]), shell, "mm³"),
+        ("centre", np.abs(com - shape["com_mm"]).max(), 2 * shell * reach / held + 1e-6, "mm"),
+        ("inertia", np.abs(inertia - shape["inertia_mm5"]).max(), 4 * shell * reach**2 + 1e-6 * held * reach**2, "mm⁵"),
+        ("box", np.abs(mesh.bounds - shape["bbox_mm"]).max(), 2 * deflection + 1e-6 * reach, "mm"),
+    ):
+        if not difference <= allowed:
+            raise PoisonedError(f"the mesh's {what} is {difference:.3g} {unit} off the solid's")
 
 
 def _version(distribution: str) -> str:

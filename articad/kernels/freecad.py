@@ -9,12 +9,11 @@ alone: a script succeeded when its document holds one valid body with nothing in
 from __future__ import annotations
 
 import contextlib
-import io
 import json
 import os
+import re
 import shutil
 import signal
-import zipfile
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from functools import cached_property
@@ -31,6 +30,7 @@ from articad.findings import Finding, Findings
 from articad.geometry.part import Solid
 from articad.kernels import freecad_install
 from articad.kernels import sandbox as isolation
+from articad.kernels.archive import Archive, BadArchiveError, packed
 from articad.kernels.build123d import Build123dKernel
 from articad.kernels.contract import probe_findings, read_connectors, solid_findings
 from articad.kernels.failures import poisoned, script_failure, scrubbed
@@ -46,7 +46,12 @@ RECIPE = 2  # raised when documents come out otherwise, so that what was built b
 MAX_DOCUMENT_BYTES, MAX_UNPACKED_BYTES, MAX_ENTRIES = 64 * 2**20, 512 * 2**20, 10_000
 _PROGRAMS = Path(__file__).parent / "inside_freecad"
 _FAMILIES = ("PartDesign::", "Sketcher::", "Part::", "Spreadsheet::")  # of objects that a part may be made of
+_READING = re.compile(r"Python|Part::(Import|CurveNet)")  # objects that run Python, or read files by their names
+_SHAPE_FILE = re.compile(r"[\w][\w.+-]{0,199}\.(brp|bin|txt)")  # entries beside Document.xml: shapes and their names
+_PSEUDO = re.compile(r"(?<![A-Za-z0-9])_+(app|builtins|coll|cq|math|part|py|re|self)\b|#|href")  # of expressions: modules, other documents
+_DOCUMENT_XML = "Document.xml"
 _KINDS = {"App::VarSet", "App::Origin", "App::Line", "App::Plane", "App::Point", "App::LocalCoordinateSystem"}
+_UNCONFINED = 70  # exit code of a process that could not be confined
 _START_SECONDS = 20.0  # for FreeCAD to start, on a cold and busy disk
 
 Json = dict[str, Any]
@@ -80,8 +85,8 @@ class FreeCADKernel(Build123dKernel):
 
     @property
     def level(self) -> str:
-        """The isolation that scripts run under."""
-        return "bwrap" if isolation.bubblewrap_problem() is None else isolation.WEAK
+        """The isolation that scripts run under; without bubblewrap there is none."""
+        return isolation.level_of(self._layers) if "bwrap" in isolation.available() else isolation.WEAK
 
     def warm_up(self) -> None:
         """Find FreeCAD, so that its absence is told before anything is built.
@@ -110,7 +115,8 @@ class FreeCADKernel(Build123dKernel):
                 said = ran.report[0] if ran.report else {}
                 if said.get("ok") is not True:
                     raise script_failure(part, source, ran.report, _outcome(ran.ended), _crash(ran.ended), self.limits)
-                _require_harmless(read_bytes(job / DOCUMENT, MAX_DOCUMENT_BYTES))
+                # written anew: the next process reads it from its front, we from its end, and both are to see the same
+                (job / DOCUMENT).write_bytes(harmless(read_bytes(job / DOCUMENT, MAX_DOCUMENT_BYTES)))
                 return self._judged_document(job, brief, said, folder or self._new_folder(), deflection, inspect, probe=probe)
             except PoisonedError as poison:
                 raise poisoned(part, source, str(poison)) from poison
@@ -136,7 +142,9 @@ class FreeCADKernel(Build123dKernel):
         names = (f"{program}.json", *reads, f"{program}.report", *writes)
         with _opened(job, names, len(reads) + 1) as files:
             limits = Limits(seconds=seconds + _START_SECONDS, memory=self.limits.memory + 2**30, file_size=self.limits.file_size)
-            ended = self.freecad.run(_PROGRAMS / f"{program}.py", files=files, arguments=[str(file) for file in files], limits=limits)
+            ended = self.freecad.run(
+                _PROGRAMS / f"{program}.py", files=files, arguments=[str(file) for file in files], limits=limits, layers=self._layers
+            )
         return _Left(ended, read_lines(job / f"{program}.report"))
 
     def _judged_document(
@@ -240,29 +248,51 @@ def _breach(found: list[Finding], part: str) -> ContractError:
     return ContractError("\n".join(map(str, found)), findings=found, parts=(part,))
 
 
-def _require_harmless(content: bytes) -> None:
-    """Refuse a document that is more than features: opening it would import modules by the names in it.
+def harmless(content: bytes) -> bytes:
+    """Return a document with nothing in it but features, written anew; people will open it with no sandbox round them.
+
+    Opening a document imports modules by the names in it, and may read files that it names.
 
     Raises:
-        PoisonedError: If it is.
+        PoisonedError: If it is more than features.
     """
     try:
-        with zipfile.ZipFile(io.BytesIO(content)) as archive:
-            entries = archive.infolist()
-            if len(entries) > MAX_ENTRIES or sum(entry.file_size for entry in entries) > MAX_UNPACKED_BYTES:
-                raise PoisonedError("the document is too large")
-            parser = etree.XMLParser(resolve_entities=False, no_network=True, load_dtd=False)
-            root = etree.fromstring(archive.read("Document.xml"), parser)
-    except (zipfile.BadZipFile, KeyError, OSError, ValueError, etree.XMLSyntaxError, NotImplementedError, RuntimeError) as error:
+        archive = Archive(content, entries=MAX_ENTRIES, unpacked=MAX_UNPACKED_BYTES)
+        document = archive.read(_DOCUMENT_XML)
+        parser = etree.XMLParser(resolve_entities=False, no_network=True, load_dtd=False)
+        root = etree.fromstring(document, parser)
+    except (BadArchiveError, ValueError, etree.XMLSyntaxError) as error:
         raise PoisonedError("the document is not FreeCAD's") from error
-    for item in root.iterfind("Objects/Object"):
-        kind = item.get("type") or ""
-        if kind not in _KINDS and (not kind.startswith(_FAMILIES) or "Python" in kind):
-            raise PoisonedError(f"the document holds an object of type {kind[:60]}")
-    if next(root.iter("Python"), None) is not None:
-        raise PoisonedError("the document holds Python objects")
-    if any(link.get("file") for link in root.iter("XLink")):
-        raise PoisonedError("the document links to other files")
+    for problem in _harms(root):
+        raise PoisonedError(f"the document holds {problem}")
+    named = {element.get("file") for element in root.iter() if element.get("file")}
+    try:
+        shapes = {name: archive.read(name) for name in archive.names if name in named and _SHAPE_FILE.fullmatch(name)}
+    except BadArchiveError as error:
+        raise PoisonedError("the document is spoiled") from error
+    return packed({_DOCUMENT_XML: document} | shapes)
+
+
+def _harms(root: Any) -> Iterator[str]:
+    """Yield what in a document is more than features."""
+    if root.getroottree().docinfo.doctype:
+        yield "definitions of its own"
+    for item in root.iter("Object"):
+        kind = item.get("type")
+        if kind is not None and not (kind in _KINDS or (kind.startswith(_FAMILIES) and not _READING.search(kind))):
+            yield f"an object of type {scrubbed(kind, 60)}"
+    for element in root.iter():
+        if "Python" in str(element.tag) or element.get("module") or "Python" in (element.get("type") or ""):
+            yield "Python objects"
+        if element.tag in ("XLink", "XLinkSub", "XLinkList", "XLinkSubList", "FileIncluded") and (
+            element.get("file") or element.get("data")
+        ):
+            yield "links to other files"
+        file = element.get("file")
+        if file and not _SHAPE_FILE.fullmatch(file):
+            yield f"a file named {scrubbed(file, 60)}"
+        if _PSEUDO.search(element.get("expression") or ""):
+            yield "an expression that reaches out of it"
 
 
 @contextlib.contextmanager
@@ -286,4 +316,6 @@ def _outcome(ended: Ended) -> Outcome:
 
 
 def _crash(ended: Ended) -> str:
+    if ended.code == _UNCONFINED and "worker: " in ended.said:
+        return ended.said[ended.said.rindex("worker: ") :][:500]
     return "worker: MemoryError" if "MemoryError" in ended.said or "bad_alloc" in ended.said else ""

@@ -7,24 +7,28 @@ results come back through files, for FreeCAD writes what it likes to its standar
 
 from __future__ import annotations
 
+import itertools
 import os
 import re
 import shutil
 import signal
 import subprocess
+import threading
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
+from typing import IO
 
 from articad.errors import KernelUnavailableError
 from articad.findings import Finding
-from articad.kernels import sandbox
+from articad.kernels import landlock, sandbox, seccomp
 
 OLDEST = (1, 0)  # the first FreeCAD with assemblies of its own
 HOW_TO_GET = "Run scripts/install-freecad as root (2.3 GB, about 3 minutes), or set ARTICAD_FREECAD to FreeCAD 1.0 or later"
 _NAMES = ("freecadcmd", "FreeCADCmd", "freecad.cmd")
 _INSIDE = ("usr/bin", "bin", ".")  # where a tree, an AppImage and a conda environment have the program
+_END_SECONDS = 5.0  # for the last output to arrive
 _SECONDS = 60.0  # for its version; a cold disk needs 5 s
 _VERSION = re.compile(r"FreeCAD,?\s+(?:Version:?\s+)?(\d+)\.(\d+)(?:\.(\d+))?")
 _ENVIRONMENT = {
@@ -37,7 +41,18 @@ _ENVIRONMENT = {
     "OPENBLAS_NUM_THREADS": "1",
     "QT_QPA_PLATFORM": "offscreen",
 }
-_SYSTEM = ("/usr", "/bin", "/lib", "/lib32", "/lib64", "/libx32", "/sbin", "/etc")
+_SYSTEM = ("/usr", "/bin", "/lib", "/lib32", "/lib64", "/libx32", "/sbin")
+_SETTINGS = (
+    "/etc/ld.so.cache",
+    "/etc/ld.so.conf",
+    "/etc/ld.so.conf.d",
+    "/etc/alternatives",
+    "/etc/fonts",
+)  # the rest of /etc is nobody's business
+_INSIDE_PROGRAMS = Path(__file__).parent / "inside_freecad"
+_OPEN_FILES = 256
+_turns = itertools.count(os.getpid())  # of processes inside FreeCAD
+_TAIL = 8000  # bytes of what it wrote that are kept
 
 
 @dataclass(frozen=True)
@@ -114,6 +129,7 @@ class FreeCAD:
         files: Collection[int] = (),
         arguments: Sequence[str] = (),
         limits: Limits | None = None,
+        layers: Collection[str] = sandbox.LAYERS,
     ) -> Ended:
         """Run a Python file inside FreeCAD; it sees its arguments as `ARGUMENTS`, and no network.
 
@@ -124,6 +140,7 @@ class FreeCAD:
             files: Open files that it inherits under the same numbers.
             arguments: Words for it.
             limits: What it may use.
+            layers: Those to put on besides bubblewrap's, of what is available.
 
         Raises:
             KernelUnavailableError: If it must run in a tree of its own and bubblewrap does not work.
@@ -133,11 +150,23 @@ class FreeCAD:
         if self.root is not None and not confined:
             raise unavailable(f"FreeCAD in {self.root} needs bubblewrap, which does not work here ({sandbox.bubblewrap_problem()})")
         shown = "/program.py" if confined else str(program.resolve())
-        boot = f"ARGUMENTS={list(map(str, arguments))!r};exec(compile(open({shown!r}).read(),{program.name!r},'exec'))"
+        run = f"ARGUMENTS={list(map(str, arguments))!r};exec(compile(open({shown!r}).read(),{program.name!r},'exec'))"
+        boot = f"{self._confinement(folder, limits, layers)};{run}" if confined else run
         inner = [self.program, "-c", boot]
         command = [*_steady(), *_limited(limits), *(self._confined(inner, program, folder, limits) if confined else inner)]
         environment = {} if confined else _ENVIRONMENT | {"PATH": os.environ.get("PATH", ""), "HOME": str(folder or "/nonexistent")}
         return _ran(command, environment, None if confined else folder, files, limits.seconds)
+
+    def _confinement(self, folder: Path | None, limits: Limits, layers: Collection[str]) -> str:
+        """Return the words of Python that confine the process from inside, once nothing is left to be executed."""
+        told = {
+            "layers": sorted({"landlock", "seccomp"} & set(layers) & sandbox.available()),
+            "limits": {"AS": limits.memory, "FSIZE": limits.file_size, "CPU": _cpu(limits), "NOFILE": _OPEN_FILES, "CORE": 0, "MEMLOCK": 0},
+            "readable": ["/program.py"] + ([] if self.prefix is None else [str(self.prefix)]),
+            "turn": next(_turns),
+            "writable": ["/tmp"] + ([] if folder is None else ["/work"]),  # noqa: S108 - a private one
+        }
+        return f"exec(compile(open('/confinement/confinement.py').read(),'confinement.py','exec'),{{'CONFINEMENT':{told!r}}})"
 
     def _confined(self, inner: Sequence[str], program: Path, folder: Path | None, limits: Limits) -> list[str]:
         work = ["--bind", str(folder), "/work", "--chdir", "/work"] if folder is not None else ["--chdir", "/tmp"]  # noqa: S108 - a private one
@@ -145,20 +174,23 @@ class FreeCAD:
         return [
             shutil.which("bwrap") or "bwrap",
             *self._mounts(),
-            *("--size", str(limits.scratch), "--tmpfs", "/tmp", "--proc", "/proc", "--dev", "/dev"),  # noqa: S108 - a private one
+            *("--size", str(limits.scratch), "--tmpfs", "/tmp", "--proc", "/proc", "--dev", "/dev", "--remount-ro", "/dev"),  # noqa: S108 - a private one
             *("--ro-bind", str(program.resolve()), "/program.py"),
+            *("--ro-bind", str(_INSIDE_PROGRAMS / "passwd"), "/etc/passwd"),  # one line, ours: without a home in it FreeCAD crashes
+            *(word for name, file in _confinement_files().items() for word in ("--ro-bind", str(file), f"/confinement/{name}")),
             *("--unshare-all", "--unshare-user", "--uid", "65534", "--gid", "65534", "--cap-drop", "ALL"),
             *sandbox.disable_user_namespaces(),
             *("--new-session", "--die-with-parent", "--hostname", "sandbox", "--clearenv"),
             *("--setenv", "PATH", "/usr/bin:/bin", *variables),
             *work,
+            *("--remount-ro", "/"),  # bubblewrap's own root is memory, of no bounded size
             *inner,
         ]
 
     def _mounts(self) -> Iterator[str]:
         """Yield what is shown: the libraries and settings of a system, never its homes or data."""
         root = self.root or Path("/")
-        for path in _SYSTEM:
+        for path in (*_SYSTEM, *_SETTINGS):
             source = root / path[1:]
             if source.is_symlink():
                 yield from ("--symlink", str(source.readlink()), path)
@@ -270,9 +302,25 @@ def _limited(limits: Limits) -> list[str]:
     prlimit = shutil.which("prlimit")
     if prlimit is None:
         return []
-    cpu = int(limits.seconds * 2) + 1
-    bounds = {"as": limits.memory, "fsize": limits.file_size, "cpu": cpu, "nofile": 256, "core": 0}
+    bounds = {"as": limits.memory, "fsize": limits.file_size, "cpu": _cpu(limits), "nofile": _OPEN_FILES, "core": 0}
     return [prlimit, *(f"--{name}={value}" for name, value in bounds.items())]
+
+
+def _cpu(limits: Limits) -> int:
+    return int(max(limits.seconds, 0.0) * 2) + 1
+
+
+def _confinement_files() -> dict[str, Path]:
+    """Return what is shown in /confinement."""
+    modules = {f"{module.__name__.rpartition('.')[2]}.py": Path(str(module.__file__)) for module in (landlock, seccomp)}
+    return {"confinement.py": _INSIDE_PROGRAMS / "confinement.py"} | modules
+
+
+def _drained(stream: IO[bytes], tail: bytearray) -> None:
+    """Read a stream to its end and keep its tail: a program may write for as long as it runs."""
+    while piece := os.read(stream.fileno(), 65536):
+        tail += piece
+        del tail[:-_TAIL]
 
 
 def _ran(command: Sequence[str], environment: dict[str, str], folder: Path | None, files: Collection[int], seconds: float) -> Ended:
@@ -286,11 +334,17 @@ def _ran(command: Sequence[str], environment: dict[str, str], folder: Path | Non
         pass_fds=tuple(files),
         start_new_session=True,
     )
-    late = False
+    late, tail = False, bytearray()
+    assert process.stdout is not None
+    reading = threading.Thread(target=_drained, args=(process.stdout, tail), daemon=True)
+    reading.start()
     try:
-        output = process.communicate(timeout=seconds)[0]
+        process.wait(timeout=seconds)
     except subprocess.TimeoutExpired:
         late = True
         os.killpg(process.pid, signal.SIGKILL)
-        output = process.communicate()[0]
-    return Ended(process.returncode, late, output[-8000:].decode(errors="replace"))
+        process.wait()
+    reading.join(timeout=_END_SECONDS)  # a process that was left behind may hold the pipe, where nothing keeps it from that
+    if not reading.is_alive():
+        process.stdout.close()
+    return Ended(process.returncode, late, bytes(tail).decode(errors="replace"))

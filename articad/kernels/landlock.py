@@ -16,6 +16,8 @@ _VERSION_QUERY = 1
 _PATH_BENEATH = 1
 
 _READ_FILE, _READ_DIR, _WRITE_FILE = 1 << 2, 1 << 3, 1 << 1
+_REMOVE_DIR, _REMOVE_FILE, _MAKE_DIR, _MAKE_FILE, _TRUNCATE = 1 << 4, 1 << 5, 1 << 7, 1 << 8, 1 << 14
+_CHANGE = _WRITE_FILE | _REMOVE_DIR | _REMOVE_FILE | _MAKE_DIR | _MAKE_FILE | _TRUNCATE  # no links, sockets, devices, pipes
 _FILE_RIGHTS_OF_ABI = {1: (1 << 13) - 1, 2: (1 << 14) - 1, 3: (1 << 15) - 1, 5: (1 << 16) - 1}
 _NETWORK_SINCE, _NETWORK_RIGHTS = 4, 0b11  # bind and connect TCP
 _SCOPES_SINCE, _SCOPES = 6, 0b11  # abstract unix sockets, signals to processes outside
@@ -36,8 +38,8 @@ def abi() -> int:
     return max(0, int(ctypes.CDLL(None, use_errno=True).syscall(_CREATE_RULESET, None, ctypes.c_size_t(0), _VERSION_QUERY)))
 
 
-def restrict(readable: Iterable[str]) -> None:
-    """Give up every file but those beneath `readable`, which may be read only; files that are open stay open.
+def restrict(readable: Iterable[str], writable: Iterable[str] = ()) -> None:
+    """Give up every file but those beneath `readable`, which may be read only, and `writable`; files that are open stay open.
 
     Everything else that this kernel's Landlock knows is given up with no exception: writing, making, removing, executing, TCP,
     abstract unix sockets, signals. `no_new_privs` must be set.
@@ -61,12 +63,12 @@ def restrict(readable: Iterable[str]) -> None:
     size = 24 if scopes else 16 if network else 8  # older kernels refuse fields that they do not know
     ruleset = call(_CREATE_RULESET, ctypes.byref(handled), ctypes.c_size_t(size), 0)
     try:
-        for path in readable:
+        for path, more in (*((path, 0) for path in readable), *((path, _CHANGE) for path in writable)):
             try:
                 parent = os.open(path, os.O_PATH | os.O_CLOEXEC)
             except FileNotFoundError:
                 continue
-            allowed = _READ_FILE | _READ_DIR if stat.S_ISDIR(os.fstat(parent).st_mode) else _READ_FILE
+            allowed = (_READ_FILE | _READ_DIR | more if stat.S_ISDIR(os.fstat(parent).st_mode) else _READ_FILE) & rights
             try:
                 call(_ADD_RULE, ruleset, _PATH_BENEATH, ctypes.byref(_PathBeneath(allowed, parent)), 0)
             finally:

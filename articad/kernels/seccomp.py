@@ -1,7 +1,9 @@
 """Seccomp: the system calls that computing a shape needs, and no others.
 
 An allow-list: what is not named fails with EPERM. Reading files stays (Landlock or bwrap decide which), opening for
-writing does not, nor do processes, sockets, signals to others, and everything that changes the file system.
+writing does not, nor do processes, threads, sockets, signals to others, and everything that changes the file system.
+Threads are refused because nothing else bounds their number: root is exempt from RLIMIT_NPROC, and a machine has as few
+as 32768 numbers for them. Whoever uses this tells its libraries to do without, before.
 Standard library only: this runs inside the sandbox.
 """
 
@@ -21,7 +23,6 @@ _ALLOW, _KILL = 0x7FFF0000, 0x80000000
 _NUMBER_AT, _ARCHITECTURE_AT, _ARGUMENTS_AT = 0, 4, 16  # offsets in struct seccomp_data
 _X32_BIT = 0x40000000  # the second ABI of x86_64, with numbers of its own
 
-_CLONE_THREAD = 0x10000
 _WRITING = os.O_WRONLY | os.O_RDWR | os.O_CREAT | os.O_TRUNC | os.O_APPEND
 _FCNTL = (0, 1, 2, 3, 4, 5, 6, 7, 1030)  # duplicate, flags, locks; not F_SETOWN, which makes the kernel send signals
 _IOCTL = (0x5401, 0x5413, 0x541B, 0x5450, 0x5451)  # is it a terminal, its size, bytes waiting, close-on-exec
@@ -32,6 +33,13 @@ class _Architecture(NamedTuple):
     token: int
     calls: dict[str, int]
 
+
+# what FreeCAD needs besides, whose documents are files: bubblewrap leaves one small folder that can be written
+_FILES: dict[str, tuple[int, int | None]] = {
+    "rename": (82, None), "renameat": (264, 38), "renameat2": (316, 276), "unlink": (87, None), "unlinkat": (263, 35),
+    "mkdir": (83, None), "mkdirat": (258, 34), "rmdir": (84, None), "ftruncate": (77, 46), "fchmod": (91, 52), "chmod": (90, None),
+    "fchmodat": (268, 53), "flock": (73, 32), "utimensat": (280, 88), "chdir": (80, 49),
+}  # fmt: skip
 
 # name: number on x86_64, number on aarch64 (None: it has none)
 _TABLE: dict[str, tuple[int, int | None]] = {
@@ -46,7 +54,7 @@ _TABLE: dict[str, tuple[int, int | None]] = {
     # memory
     "mmap": (9, 222), "munmap": (11, 215), "mprotect": (10, 226), "mremap": (25, 216), "madvise": (28, 233), "brk": (12, 214),
     "mincore": (27, 232), "msync": (26, 227), "membarrier": (324, 283),
-    # threads and time
+    # locks and time
     "futex": (202, 98), "futex_waitv": (449, 449), "set_robust_list": (273, 99), "get_robust_list": (274, 100),
     "set_tid_address": (218, 96), "rseq": (334, 293), "sched_yield": (24, 124), "sched_getaffinity": (204, 123),
     "sched_getscheduler": (145, 120), "sched_getparam": (143, 121), "sched_get_priority_max": (146, 125),
@@ -81,13 +89,16 @@ def available() -> bool:
     return seccomp > 0 and ctypes.CDLL(None).syscall(seccomp, get_action_available, 0, ctypes.byref(action)) == 0
 
 
-def restrict() -> None:
+def restrict(*, writing: bool = False) -> None:
     """Refuse this process and its threads every system call that is not on the list. `no_new_privs` must be set.
+
+    Args:
+        writing: Files may be opened for writing, made, renamed and removed; where, other layers decide.
 
     Raises:
         OSError: If the kernel refuses; nothing is restricted then.
     """
-    code = program(platform.machine(), os.getpid())
+    code = program(platform.machine(), os.getpid(), writing=writing)
     instructions = ctypes.create_string_buffer(code, len(code))
     header = ctypes.create_string_buffer(struct.pack("HxxxxxxP", len(code) // 8, ctypes.addressof(instructions)))
     libc = ctypes.CDLL(None, use_errno=True)
@@ -95,19 +106,23 @@ def restrict() -> None:
         raise OSError(ctypes.get_errno(), f"seccomp: {os.strerror(ctypes.get_errno())}")
 
 
-def program(machine: str, pid: int) -> bytes:
+def program(machine: str, pid: int, *, writing: bool = False) -> bytes:
     """Return the filter as BPF, 8 bytes an instruction.
 
     Args:
         machine: `x86_64` or `aarch64`.
         pid: The one process that threads may send signals to: their own.
+        writing: As in `restrict`.
     """
     architecture = _ARCHITECTURES[machine]
+    files = {name: numbers[machine != "x86_64"] for name, numbers in _FILES.items() if writing}
+    calls = architecture.calls | {name: number for name, number in files.items() if number is not None}
     lines = [_op(_LOAD, _ARCHITECTURE_AT), _op(_EQUAL, architecture.token, 1, 0), _op(_RETURN, _KILL), _op(_LOAD, _NUMBER_AT)]
     if machine == "x86_64":
         lines += [_op(_GREATER_OR_EQUAL, _X32_BIT, 0, 1), _op(_RETURN, _KILL)]
-    for name, number in architecture.calls.items():
-        block = list(_conditional(name, pid)) if name in _CONDITIONAL else [_op(_RETURN, _ALLOW)]
+    for name, number in calls.items():
+        free = name not in _CONDITIONAL or (writing and name in ("open", "openat"))
+        block = [_op(_RETURN, _ALLOW)] if free else list(_conditional(name, pid))
         lines += [_op(_EQUAL, number, 0, len(block)), *block]
     return b"".join([*lines, _refuse(errno.EPERM)])
 
@@ -116,8 +131,8 @@ def _conditional(name: str, pid: int) -> Iterator[bytes]:
     """Yield the block of a call that is allowed under a condition; every block ends in a return."""
     if name in ("clone3", "openat2"):  # their arguments are behind a pointer; libc falls back to the older call
         yield _refuse(errno.ENOSYS)
-    elif name == "clone":
-        yield from (_argument(0), _op(_SET, _CLONE_THREAD, 0, 1), _op(_RETURN, _ALLOW), _refuse(errno.EPERM))
+    elif name == "clone":  # as a machine does that has no more to give: C++'s std::async does the work itself then
+        yield _refuse(errno.EAGAIN)
     elif name in ("open", "openat"):
         flags = 1 if name == "open" else 2
         yield from (_argument(flags), _op(_SET, _WRITING, 0, 1), _refuse(errno.EACCES), _op(_RETURN, _ALLOW))

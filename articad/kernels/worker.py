@@ -134,6 +134,8 @@ def main() -> None:
     _prepare_process()
     try:
         from articad.kernels.tasks import TASKS  # noqa: PLC0415 - the import that each fork is spared; it may fail
+
+        _keep_to_one_thread()
     except ImportError as error:
         control.send(json.dumps({"ready": False, "problem": str(error)[:500]}).encode())
         return
@@ -146,6 +148,13 @@ def main() -> None:
         zygote.serve()
     finally:
         zygote.kill_all()
+
+
+def _keep_to_one_thread() -> None:
+    """Have OCCT work in the thread that asks: the sandbox allows no others, and OCCT waits for ever for one that cannot start."""
+    from OCP.OSD import OSD_ThreadPool  # noqa: PLC0415 - as above
+
+    OSD_ThreadPool.DefaultPool_s(1)
 
 
 def _hide_articad() -> None:

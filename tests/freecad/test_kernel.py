@@ -10,6 +10,7 @@ import pytest
 
 import articad as ac
 from articad.errors import BuildError, ContractError
+from articad.kernels import sandbox
 from articad.kernels.build123d import Build123dKernel
 from articad.kernels.freecad import FreeCADKernel, tree_findings
 from articad.kernels.kernel import BuiltPart
@@ -75,7 +76,7 @@ def test_a_plate_has_its_volume_and_every_dimension_drives_it() -> None:
     assert not built.findings, built.findings
     assert built.solid.volume == pytest.approx(40 * 40 * 5 - 4 * 3.141592653589793 * 4 * 5, rel=1e-9)
     assert (built.folder / "part.FCStd").is_file()
-    assert built.sandbox == "bwrap"
+    assert built.sandbox == sandbox.level()
 
 
 @pytest.mark.parametrize("name", ["leg", "drawer_lower"])

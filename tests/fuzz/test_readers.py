@@ -190,6 +190,30 @@ def test_bodies_beyond_reason_are_refused(tmp_path: Path) -> None:
         read_mjcf(path)
 
 
+def test_a_joint_to_a_link_that_is_not_there_is_named(tmp_path: Path) -> None:
+    path = tmp_path / "a.urdf"
+    turn = (
+        '<joint name="{}" type="revolute"><parent link="{}"/><child link="{}"/><axis xyz="0 0 1"/><limit lower="0" upper="1" {}/></joint>'
+    )
+    effort = 'effort="1" velocity="1"'
+    joints = turn.format("j", "a", "b", effort) + turn.format("k", "b", "nowhere", effort)
+    path.write_text(f'<robot name="r"><link name="a"/><link name="b"/>{joints}</robot>')
+    with pytest.raises(ReadError, match="nowhere"):
+        read_urdf(path)
+
+
+def test_what_makes_mujoco_stumble_is_an_error_of_ours(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = tmp_path / "a.xml"
+    path.write_text('<mujoco><worldbody><body name="a"><geom size="1"/></body></worldbody></mujoco>')
+
+    def stumbles(_: str) -> None:
+        raise RuntimeError("Caught an unknown exception!")
+
+    monkeypatch.setattr("mujoco.MjModel.from_xml_path", stumbles)
+    with pytest.raises(ReadError, match="MuJoCo does not take it"):
+        read_mjcf(path)
+
+
 def test_an_integer_beyond_every_float_is_poison() -> None:
     with pytest.raises(PoisonedError, match="finite number"):
         number(10**400)

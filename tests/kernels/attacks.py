@@ -1,4 +1,4 @@
-"""Attacks on the sandbox, each harmless where it succeeds; used by the tests and by `scripts/attack-table`.
+"""Attacks on the sandbox of both kernels, each harmless where it succeeds; used by the tests and by `scripts/attack-table`.
 
 An attack is the body of a function that returns something true when it got through. Whatever it raises means that it
 was stopped. `TARGET` holds what it aims at: files, ports and processes that `Range` sets up for it.
@@ -13,12 +13,13 @@ import os
 import socket
 import subprocess
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any, Self
 
-from articad.errors import BuildError, KernelError
+from articad.errors import BuildError, ContractError, KernelError
 from articad.kernels.build123d import Build123dKernel
+from articad.kernels.freecad import FreeCADKernel
 from articad.kernels.sandbox import Limits
 from tests.kernels.conftest import kernel_of_its_own
 
@@ -33,10 +34,40 @@ LEVELS: tuple[tuple[str, ...], ...] = (
     ("landlock", "seccomp"),
     ("bwrap", "landlock", "seccomp"),
 )
+PATIENCE = {"build123d": LIMITS.seconds + 4.0, "freecad": LIMITS.seconds + 40.0}  # FreeCAD may take 20 s to start, and is started twice
 _BRIEF: dict[str, Any] = {"name": "part", "description": "", "material": "steel", "envelope_mm": None, "dimensions": {}, "connectors": {}}
 
+# A script that writes its own results and ends before anything else is written.
+POISON = (
+    "import io, struct, zipfile, zlib\n"
+    "def packed(*entries):\n"
+    "    out = io.BytesIO()\n"
+    "    with zipfile.ZipFile(out, 'w', zipfile.ZIP_DEFLATED) as archive:\n"
+    "        for name, content in entries:\n"
+    "            archive.writestr(name, content)\n"
+    "    return out.getvalue()\n"
+    'code = b\'<Document><Objects><Object type="App::FeaturePython" name="T"/></Objects><ObjectData/></Document>\'\n'
+    "plain = b'<Document><Objects/><ObjectData/></Document>'\n"
+    "def bomb():\n"
+    "    return packed(('Document.xml', bytes(2**27))).replace(struct.pack('<I', 2**27), struct.pack('<I', 10))\n"
+    "def trojan():\n"
+    "    return packed(('Document.xml', code))\n"
+    "def two_faced():\n"
+    "    return packed(('Document.xml', code)) + packed(('Document.xml', plain))\n"
+    "report, document = {report}, {document}\n"
+    "for number in range(3, 64):\n"
+    "    for content in (report, document):\n"
+    "        try:\n"
+    "            os.pwrite(number, content, 0)\n"
+    "        except OSError:\n"
+    "            pass\n"
+    "        if number % 2 == 0 and TARGET['kernel'] != 'freecad':\n"
+    "            break\n"
+    "os._exit(0)"
+)
+
 ATTACKS = {
-    "read /etc/passwd": "return open('/etc/passwd').read()",
+    "read /etc/passwd": "return 'root:' in open('/etc/passwd').read()",
     "read a secret file": "return open(TARGET['secret']).read()",
     "list the home folder": "return os.listdir(TARGET['home'])",
     "read through a result file's folder": "return [name for name in os.listdir('/proc/self/cwd')] and open('/proc/self/cwd/job.json').read()",
@@ -84,6 +115,39 @@ ATTACKS = {
         "        pass\n"
         "return total > 40 * 2**20"
     ),
+    "write a result of a terabyte": (
+        "for number in range(3, 64):\n"
+        "    try:\n"
+        "        os.lseek(number, 2**40, 0)\n"
+        "        if os.write(number, b'x'):\n"
+        "            return True\n"
+        "    except OSError:\n"
+        "        pass\n"
+        "return False"
+    ),
+    "reopen result files by their numbers": (
+        "for number in range(3, 64):\n"
+        "    try:\n"
+        "        return open(f'/proc/self/fd/{number}', 'r+b') and True\n"
+        "    except OSError:\n"
+        "        pass\n"
+        "return False"
+    ),
+    "find sockets and folders among its open files": (
+        "import stat\n"
+        "for number in range(64):\n"
+        "    try:\n"
+        "        mode = os.fstat(number).st_mode\n"
+        "    except OSError:\n"
+        "        continue\n"
+        "    if stat.S_ISSOCK(mode) or stat.S_ISDIR(mode) or stat.S_ISFIFO(mode) and TARGET['kernel'] != 'freecad':\n"
+        "        return number + 1\n"
+        "return False"
+    ),
+    "find this computer's name and users": "return open('/etc/hostname').read() or open('/etc/shadow').read()",
+    "read kernel settings": "return open('/proc/sys/kernel/core_pattern').read() and open('/proc/kallsyms').read(1)",
+    "change kernel settings": "return os.open('/proc/sys/kernel/core_pattern', os.O_WRONLY) and True",
+    "write devices": "return os.open('/dev/kmsg', os.O_WRONLY) or os.open('/dev/mem', os.O_RDWR)",
     "fill memory files": "f = os.memfd_create('x')\nreturn os.write(f, bytes(2**20)) > 0",
     "TCP connection": "socket.create_connection(('127.0.0.1', TARGET['tcp']), 1)\nreturn True",
     "TCP server": "s = socket.socket()\ns.bind(('127.0.0.1', 0))\ns.listen()\nreturn True",
@@ -112,6 +176,31 @@ ATTACKS = {
     ),
     "mount": "return ctypes.CDLL(None, use_errno=True).mount(b'none', TARGET['empty'].encode(), b'tmpfs', 0, None) == 0",
     "remount the root for writing": "return ctypes.CDLL(None).mount(b'none', b'/', None, 32 | 4096, None) == 0 and os.access('/', os.W_OK)",
+    "io_uring": "return syscall(425, 8, bytes(120)) >= 0",
+    "keyring": "return syscall(248, b'user\\0', b'articad\\0', b'x', 1, -3) >= 0",
+    "bpf": "return syscall(321, 0, bytes(120), 120) >= 0",
+    "performance counters": "return syscall(298, bytes(120), 0, -1, -1, 0) >= 0",
+    "userfaultfd": "return syscall(323, 0x800) >= 0",
+    "read another process's memory": (
+        "out = ctypes.create_string_buffer(64)\n"
+        "class Piece(ctypes.Structure):\n"
+        "    _fields_ = (('base', ctypes.c_void_p), ('size', ctypes.c_size_t))\n"
+        "mine, theirs = Piece(ctypes.addressof(out), 64), Piece(0x400000, 64)\n"
+        "number = syscall(310, os.getppid(), ctypes.byref(mine), 1, ctypes.byref(theirs), 1, 0)\n"
+        "return number > 0 or (number < 0 and ctypes.get_errno() == 14)"
+    ),
+    "take another process's files": "return syscall(438, syscall(434, os.getppid(), 0), 0, 0) >= 0",
+    "open files by handle": "return syscall(304, -100, bytes(128), 0) >= 0 or ctypes.get_errno() not in (1, 38)",
+    "shared memory that stays": (
+        "number = syscall(29, 0, 4096, 0o1600)\nif number >= 0:\n    syscall(31, number, 0, 0)\nreturn number >= 0"
+    ),
+    "message queue that stays": (
+        "number = syscall(240, b'articad\\0', 0x40 | 2, 0o600, 0)\nif number >= 0:\n    syscall(241, b'articad\\0')\nreturn number >= 0"
+    ),
+    "become another user": "os.setuid(12345)\nreturn os.getuid() == 12345",
+    "leave core dumps": "import resource\nresource.setrlimit(resource.RLIMIT_CORE, (2**20, 2**20))\nreturn True",
+    "go before others": "os.nice(-5)\nreturn True",
+    "real-time priority": "os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(1))\nreturn True",
     "user namespace": "return ctypes.CDLL(None, use_errno=True).unshare(0x10000000) == 0",
     "leave by chroot": "os.chroot('/')\nreturn True",
     "start threads without end": (
@@ -125,6 +214,20 @@ ATTACKS = {
         "finally:\n"
         "    stop.set()\n"
         "return started"
+    ),
+    "start threads of small stacks": (
+        "import threading\n"
+        "threading.stack_size(32768)\n"
+        "stop, started = threading.Event(), 0\n"
+        "try:\n"
+        "    while started < 1500:\n"
+        "        threading.Thread(target=stop.wait, daemon=True).start()\n"
+        "        started += 1\n"
+        "except RuntimeError:\n"
+        "    pass\n"
+        "finally:\n"
+        "    stop.set()\n"
+        "return started >= 1500"
     ),
     "fill memory": "return len(bytearray(6 * 2**30))",
     "loop for ever": "while True:\n    pass",
@@ -155,6 +258,55 @@ ATTACKS = {
         "        pass\n"
         "return False"
     ),
+    "leave a report of 8 MB": POISON.format(report="b'[' + b'0,' * 2**22", document="b''"),
+    "leave a report nested too deeply": POISON.format(report="b'[' * 10**6 + b'\\n'", document="b''"),
+    "leave numbers that are none": POISON.format(
+        report='b\'{"ok": true, "connectors": {"a": {"o": [NaN, 1e999, 0]}}}\\n\'', document="b'x'"
+    ),
+    "leave pickles for a shape": POISON.format(
+        report='b\'{"ok": true, "connectors": {}}\\n\'', document="__import__('pickle').dumps(print)"
+    ),
+    "leave a zip bomb for a shape": POISON.format(report='b\'{"ok": true, "connectors": {}}\\n\'', document="bomb()"),
+    "leave code in a document": POISON.format(report='b\'{"ok": true, "connectors": {}}\\n\'', document="trojan()"),
+    "hide code from whoever reads a document's end": POISON.format(report='b\'{"ok": true, "connectors": {}}\\n\'', document="two_faced()"),
+}
+# Those that end the process, take long or spoil what comes after them; the others can be tried one after the other in one process.
+LOUD = frozenset(ATTACKS) & {
+    "fill the disk", "fill memory", "loop for ever", "sleep for ever", "flood stdout", "forge the report", "leave a process behind",
+    "replace itself by a shell", "start threads without end", "start threads of small stacks", "patch the kernel's measurements",
+    "write a result of a terabyte", "make many files",
+} | {name for name in ATTACKS if "os._exit(0)" in ATTACKS[name]}  # fmt: skip
+FREECAD_LEVELS = tuple(layers for layers in LEVELS if "bwrap" in layers)
+# In FreeCAD's process /tmp may be written: 512 MiB of memory that nobody else sees and that go with the process.
+FREECAD_ATTACKS = {
+    "write with the kernel's own writers": "import Part\nPart.makeBox(1, 1, 1).exportBrep(TARGET['folder'] + '/kernel.brep')\nreturn False",
+    "read through a symbolic link": "os.symlink(TARGET['secret'], '/tmp/articad-link')\nreturn open('/tmp/articad-link').read()",
+    "make many files": (
+        "made = 0\n"
+        "for folder in ('/', '/dev', '/dev/shm', '/var/tmp', '/run', '/etc', TARGET['folder']):\n"
+        "    for n in range(50):\n"
+        "        try:\n"
+        "            open(f'{folder}/articad-{n}', 'w').close()\n"
+        "            made += 1\n"
+        "        except OSError:\n"
+        "            break\n"
+        "return made"
+    ),
+    "fill the disk": (
+        "total, piece = 0, bytes(2**23)\n"
+        "for folder in ('/tmp', '/', '/dev', '/dev/shm'):\n"
+        "    for n in range(100):\n"
+        "        try:\n"
+        "            total += os.write(os.open(f'{folder}/articad-{n}', os.O_WRONLY | os.O_CREAT), piece)\n"
+        "        except OSError:\n"
+        "            break\n"
+        "return total > 600 * 2**20"
+    ),
+    "reopen result files by their numbers": ATTACKS["reopen result files by their numbers"].replace("r+b", "rb"),
+    "patch the kernel's measurements": (
+        'import json, Part\njson.dumps = lambda *a, **k: \'{"ok": true, "connectors": {}, "volume_mm3": 12345}\'\nreturn False'
+    ),
+    "flood stdout": "for _ in range(100):\n    os.write(1, bytes(2**20))\n    os.write(2, bytes(2**20))\nreturn False",
 }
 
 
@@ -209,16 +361,17 @@ class Range:
         self.victim.kill()
         self.victim.wait()
 
-    def open_to(self, name: str, kernel: Build123dKernel) -> str:
-        """Run an attack; return how it got through, or nothing if it was stopped."""
+    def open_to(self, name: str, kernel: Build123dKernel, together: Sequence[str] = ()) -> str:
+        """Run an attack, or several in one process; return how it got through, or nothing if it was stopped."""
         if self.victim.poll() is not None:
             self.victim = self._new_victim()
         (self.folder / "spare").write_text("spare")
         (self.folder / "spare").chmod(0o600)
-        target = self.target | {"victim": self.victim.pid}
+        target = self.target | {"victim": self.victim.pid, "kernel": kernel.name}
         before = descendants(kernel)
         started = time.monotonic()
-        told = self._told(name, kernel, target)
+        content = script([attack_on(kernel.name, each) for each in together or (name,)], target)
+        told = self._told(content, kernel)
         took = time.monotonic() - started
         signs = {
             told: "BREACH" in told,
@@ -227,16 +380,27 @@ class Range:
             "a file was removed": not (self.folder / "spare").exists(),
             "a process was killed": self.victim.poll() is not None,
             "a process was left behind": not settles(lambda: descendants(kernel) <= before),
-            f"it ran for {took:.1f} s": took > LIMITS.seconds + 4.0,
+            f"it ran for {took:.1f} s": took > PATIENCE[kernel.name],
+            "a poisoned shape was accepted": name.startswith(("leave a zip", "leave code", "hide code", "leave pickles"))
+            and "volume" in told,
             "results were forged": "12345" in told,
         }
         self._restore()
         return "; ".join(sign for sign, seen in signs.items() if seen)
 
-    def _told(self, name: str, kernel: Build123dKernel, target: dict[str, Any]) -> str:
+    def all_open_to(self, kernel: Build123dKernel) -> dict[str, str]:
+        """Run every attack; return how each got through, or nothing. FreeCAD takes seconds to start, so quiet ones share a process."""
+        together = [name for name in ATTACKS if name not in LOUD] if kernel.name == "freecad" else []
+        how = self.open_to("", kernel, together) if together else ""
+        suspects = {name for number, name in enumerate(together) if f"<{number}>" in how}
+        if "a " in how.partition("<")[0]:
+            suspects = set(together)  # something happened outside, and nothing says by which
+        return {name: "" if name in set(together) - suspects else self.open_to(name, kernel) for name in ATTACKS}
+
+    def _told(self, content: bytes, kernel: Build123dKernel) -> str:
         try:
-            return f"volume {kernel.build(script(ATTACKS[name], target), _BRIEF, probe=False).solid.volume:.6g}"
-        except BuildError as error:
+            return f"volume {kernel.build(content, _BRIEF, probe=False).solid.volume:.6g}"
+        except (BuildError, ContractError) as error:
             return str(error)
         except KernelError as error:
             return f"BREACH: the worker ended: {error}"
@@ -248,29 +412,44 @@ class Range:
         subprocess.run(["/bin/umount", str(self.folder / "empty")], capture_output=True, check=False)
 
 
-def script(attack: str, target: dict[str, Any]) -> bytes:
-    """Return a part script that attacks first and builds a cube of 1 mm³ then."""
-    body = "".join(f"    {line}\n" for line in attack.splitlines())
+def attack_on(kernel: str, name: str) -> str:
+    """Return the body of an attack."""
+    return FREECAD_ATTACKS.get(name, ATTACKS[name]) if kernel == "freecad" else ATTACKS[name]
+
+
+def script(attacks: Sequence[str], target: dict[str, Any]) -> bytes:
+    """Return a part script that attacks first and builds a cube of 1 mm³ then; a breach is told by its number."""
+    bodies = [f"def attack_{n}():\n" + "".join(f"    {line}\n" for line in attack.splitlines()) for n, attack in enumerate(attacks)]
+    made = (
+        "    part.box((0, 0, 0), (1, 1, 1))\n    return part.body, {}\n"
+        if target["kernel"] == "freecad"
+        else "    from build123d import Box\n    return Box(1, 1, 1), {}\n"
+    )
     return (
         "import ctypes, os, signal, socket, subprocess, time\n"
-        "from build123d import Box\n"
         f"TARGET = {json.loads(json.dumps(target))!r}\n\n"
-        f"def attack():\n{body}\n"
-        "def build(part):\n"
-        "    try:\n"
-        "        got = attack()\n"
-        "    except Exception:\n"
-        "        got = None\n"
-        "    if got:\n"
-        "        raise RuntimeError('BREACH: ' + repr(got)[:80])\n"
-        "    return Box(1, 1, 1), {}\n"
+        "def syscall(*arguments):\n"
+        "    libc = ctypes.CDLL(None, use_errno=True)\n"
+        "    return libc.syscall(*(ctypes.c_long(a) if isinstance(a, int) else a for a in arguments))\n\n"
+        + "\n".join(bodies)
+        + "\ndef build(part):\n"
+        "    through = ''\n"
+        f"    for number, attack in enumerate([{', '.join(f'attack_{n}' for n in range(len(bodies)))}]):\n"
+        "        try:\n"
+        "            got = attack()\n"
+        "        except Exception:\n"
+        "            got = None\n"
+        "        if got:\n"
+        "            through += f'<{number}> {got!r}'[:60]\n"
+        "    if through:\n"
+        "        raise RuntimeError('BREACH: ' + through)\n" + made
     ).encode()
 
 
 @contextlib.contextmanager
-def kernel_at(layers: tuple[str, ...]) -> Iterator[Build123dKernel]:
+def kernel_at(layers: tuple[str, ...], kind: str = "build123d") -> Iterator[Build123dKernel]:
     """Start a kernel that puts on these layers and no others."""
-    kernel = kernel_of_its_own(sandbox="weak", layers=layers)
+    kernel = FreeCADKernel(sandbox="weak", layers=layers) if kind == "freecad" else kernel_of_its_own(sandbox="weak", layers=layers)
     kernel.limits = dataclasses.replace(LIMITS)
     os.environ["ARTICAD_TEST_API_KEY"] = MARK
     try:

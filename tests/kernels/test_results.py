@@ -143,8 +143,8 @@ MEASURED = {
     "volume_mm3": 1.0,
     "area_mm2": 6.0,
     "com_mm": [0, 0, 0],
-    "inertia_mm5": [[1, 0, 0], [0, 1, 0], [0, 0, 1]],
-    "bbox_mm": [[0, 0, 0], [1, 1, 1]],
+    "inertia_mm5": [[1 / 6, 0, 0], [0, 1 / 6, 0], [0, 0, 1 / 6]],
+    "bbox_mm": [[-0.5, -0.5, -0.5], [0.5, 0.5, 0.5]],
 }
 
 
@@ -190,6 +190,9 @@ def test_the_forging_kernel_passes_when_it_is_honest(brief: dict[str, Any]) -> N
         (None, {"com_mm": [0, 0]}, {}),
         (None, {"bbox_mm": "x"}, {}),
         (None, {"inertia_mm5": [[1]]}, {}),
+        (None, {"inertia_mm5": [[9, 0, 0], [0, 9, 0], [0, 0, 9]]}, {}),
+        (None, {"com_mm": [3, 0, 0]}, {}),
+        (None, {"bbox_mm": [[0, 0, 0], [1, 1, 2]]}, {}),
         (None, {}, {"part.npz": npz(triangles=T[:-1], face=F[:-1])}),
         (None, {}, {"part.npz": npz(triangles=T[:, ::-1])}),
         (None, {}, {"part.step": b"MZ\x90"}),

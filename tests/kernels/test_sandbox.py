@@ -16,6 +16,7 @@ import pytest
 from articad.errors import SandboxError
 from articad.kernels import sandbox, seccomp
 from articad.kernels.build123d import Build123dKernel
+from tests.freecad import opened
 from tests.kernels.attacks import ATTACKS, Range, kernel_at
 
 ENOUGH = [layers for layers in (("bwrap", "landlock", "seccomp"), ("landlock", "seccomp")) if set(layers) <= sandbox.available()]
@@ -142,7 +143,7 @@ def test_every_jump_of_the_filter_lands_inside_it(machine: str) -> None:
     assert int.from_bytes(lines[-1][:2], "little") == 0x06  # it ends in a return
 
 
-EPERM, EACCES, ENOSYS, ALLOW, KILL = 1, 13, 38, "allow", "kill"
+EPERM, EAGAIN, EACCES, ENOSYS, ALLOW, KILL = 1, 11, 13, 38, "allow", "kill"
 PID = 4242
 ARGUMENTS: list[tuple[str, tuple[int, ...], object]] = [
     ("read", (0,), ALLOW),
@@ -153,9 +154,9 @@ ARGUMENTS: list[tuple[str, tuple[int, ...], object]] = [
     ("openat", (0, 0, os.O_RDONLY | os.O_TRUNC), EACCES),
     ("openat2", (), ENOSYS),
     ("clone3", (), ENOSYS),
-    ("clone", (0x3D0F00,), ALLOW),  # what pthread_create asks for
-    ("clone", (0x1200011,), EPERM),  # what fork asks for
-    ("clone", (0x10000000,), EPERM),  # a user namespace
+    ("clone", (0x3D0F00,), EAGAIN),  # what pthread_create asks for
+    ("clone", (0x1200011,), EAGAIN),  # what fork asks for
+    ("clone", (0x10000000,), EAGAIN),  # a user namespace
     ("tgkill", (PID, 1, 6), ALLOW),
     ("tgkill", (PID + 1, 1, 9), EPERM),
     ("fcntl", (3, 1), ALLOW),
@@ -169,8 +170,25 @@ ARGUMENTS: list[tuple[str, tuple[int, ...], object]] = [
     ("prlimit64", (0, 7, 1 << 40, 0), EPERM),
 ]
 UNLISTED = {
-    "x86_64": {"socket": 41, "execve": 59, "kill": 62, "ptrace": 101, "mount": 165, "fork": 57, "io_uring_setup": 425, "memfd_create": 319},
-    "aarch64": {"socket": 198, "execve": 221, "kill": 129, "ptrace": 117, "mount": 40, "io_uring_setup": 425, "memfd_create": 279},
+    "x86_64": {
+        "socket": 41,
+        "execve": 59,
+        "kill": 62,
+        "ptrace": 101,
+        "mount": 165,
+        "fork": 57,
+        "io_uring_setup": 425,
+        "memfd_create": 319,
+    },
+    "aarch64": {
+        "socket": 198,
+        "execve": 221,
+        "kill": 129,
+        "ptrace": 117,
+        "mount": 40,
+        "io_uring_setup": 425,
+        "memfd_create": 279,
+    },
 }
 
 
@@ -207,3 +225,16 @@ def test_the_second_abi_of_x86_64_is_closed() -> None:
     assert judged("x86_64", 0x40000000, ()) == KILL
     assert judged("x86_64", 2, (0, os.O_WRONLY)) == EACCES  # the old open
     assert judged("x86_64", 2, (0, os.O_RDONLY)) == ALLOW
+
+
+@pytest.mark.freecad
+@opened.needs_freecad
+def test_no_attack_gets_out_of_freecad(tmp_path: Path) -> None:
+    layers = ("bwrap", "landlock", "seccomp")
+    if not set(layers) <= sandbox.available():
+        pytest.skip(f"this machine reaches {sandbox.level()}")
+    with Range(tmp_path) as targets, kernel_at(layers, "freecad") as kernel:
+        through = {attack: how for attack, how in targets.all_open_to(kernel).items() if how}
+
+    assert kernel.level == "bwrap+landlock+seccomp"
+    assert through == {}
