@@ -1,0 +1,187 @@
+"""show, new, watch and completion do what they say."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import shutil
+import subprocess
+import urllib.error
+import urllib.request
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from articad import cli, examples
+from articad.assembly import Assembly
+from articad.commands.command import COMMANDS
+from articad.commands.watching import PageServer, fingerprint, watch
+from articad.plan.check import check_plan
+from articad.plan.schema import AssemblyPlan
+from articad.record import record_assembly, record_checks, record_page
+from articad.run import Run, RunRequest
+from articad.terminal import Terminal
+
+URDF = """<robot name="arm"><link name="base"><visual><geometry><box size="0.1 0.1 0.1"/></geometry></visual></link>
+<link name="hand"><visual><geometry><box size="0.2 0.03 0.03"/></geometry></visual></link>
+<joint name="turn" type="revolute"><parent link="base"/><child link="hand"/><origin xyz="0 0 0.08"/><axis xyz="0 0 1"/>
+<limit lower="-1" upper="1" effort="1" velocity="1"/></joint></robot>"""
+MJCF = """<mujoco model="arm"><worldbody><body name="base"><geom type="box" size="0.05 0.05 0.05"/><body name="hand" pos="0 0 0.08">
+<joint name="turn" type="hinge" axis="0 0 1" range="-60 60" limited="true"/><geom type="box" size="0.1 0.01 0.01"/></body></body></worldbody></mujoco>"""
+
+
+@pytest.fixture(scope="module", autouse=True)
+def cache(tmp_path_factory: pytest.TempPathFactory) -> Any:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("ARTICAD_CACHE", str(tmp_path_factory.mktemp("cache")))
+        yield
+
+
+@pytest.fixture(scope="module")
+def starter(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("work") / "my_box"
+    assert cli.main(["new", str(folder), "-q"]) == 0
+    return folder
+
+
+def test_a_new_product_is_a_valid_plan_that_builds_without_findings(starter: Path) -> None:
+    plan = AssemblyPlan.load(starter)
+    assembly = Assembly.from_plan(plan, starter / "parts")
+
+    assert plan.name == "my_box"
+    assert len(check_plan(plan)) == 0
+    assert assembly.check().ok
+    assert assembly.sweep(steps=13).ok
+    assert "{name}" not in (starter / "README.md").read_text()
+    assert all("#" in script.read_text() or '"""' in script.read_text() for script in (starter / "parts").iterdir())
+
+
+@pytest.mark.parametrize(("given", "found"), [("lamp", "desk_lamp"), ("metronome", "metronome")])
+def test_a_new_product_may_begin_as_an_example(tmp_path: Path, given: str, found: str) -> None:
+    assert cli.main(["new", str(tmp_path / "mine"), "--example", given, "-q"]) == 0
+
+    made, source = AssemblyPlan.load(tmp_path / "mine"), AssemblyPlan.load(examples.folder(found))
+    assert made.name == "mine"
+    assert made.parts == source.parts
+    assert not list((tmp_path / "mine" / "parts").glob("*.freecad.py"))
+
+
+def test_a_new_product_for_freecad_has_its_scripts(tmp_path: Path) -> None:
+    assert cli.main(["new", str(tmp_path / "mine"), "--kernel", "freecad", "-q"]) == 0
+
+    assert AssemblyPlan.load(tmp_path / "mine").kernel == "freecad"
+    assert sorted(file.name for file in (tmp_path / "mine" / "parts").iterdir()) == ["lid.freecad.py", "tray.freecad.py"]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [(["My Box"], "table_lamp"), (["taken"], "not empty"), (["mine", "--example", "lmap"], "There is no example 'lmap'")],
+)
+def test_what_cannot_be_begun_is_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], arguments: list[str], words: str
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "taken").mkdir()
+    (tmp_path / "taken" / "file").touch()
+    assert cli.main(["new", *arguments]) == 3
+    assert words in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(("name", "text"), [("arm.urdf", URDF), ("arm.xml", MJCF)])
+def test_foreign_files_are_shown_and_drawn(tmp_path: Path, name: str, text: str) -> None:
+    (tmp_path / name).write_text(text)
+
+    assert cli.main(["show", str(tmp_path / name), "--out", str(tmp_path / "page.html"), "--no-browser", "-q"]) == 0
+    assert '"name":"turn"' in (tmp_path / "page.html").read_text()
+    assert cli.main(["render", str(tmp_path / name), "--views", "iso", "--size", "64", "--out", str(tmp_path / "views"), "-q"]) == 0
+    assert cli.main(["render", str(tmp_path / name), "--motion", "turn", "--size", "48", "--out", str(tmp_path / "views"), "-q"]) == 0
+    assert {file.name for file in (tmp_path / "views").iterdir()} == {"iso.png", "turn.png", "turn.gif"}
+
+
+def test_a_run_keeps_its_page_which_show_makes_again(starter: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    plan = AssemblyPlan.load(starter)
+    with Run.create(RunRequest(prompt="my_box", options={"task": "build"}), out=tmp_path / "run") as run:
+        run.save_plan(plan.dumps(), 0)
+        assembly = Assembly.from_plan(plan, starter / "parts")
+        record_assembly(run, assembly)
+        record_checks(run, assembly.check())
+        hashes = run.hashes()
+        page = record_page(run, assembly).read_bytes()
+    opened: list[str] = []
+    monkeypatch.setattr("webbrowser.open", opened.append)
+
+    assert cli.main(["show", str(tmp_path / "run"), "-q"]) == 0
+    assert opened == [(tmp_path / "run" / "report.html").as_uri()]
+    assert (tmp_path / "run" / "report.html").read_bytes() == page
+    assert Run.view(tmp_path / "run").hashes() == hashes, "a page is drawn from the rest, and no result"
+    assert b'href="./parts/lid/part.step"' in page
+
+
+def test_a_saved_file_is_built_and_served_and_an_error_keeps_the_old_page(starter: Path, tmp_path: Path) -> None:
+    folder = tmp_path / "watched"
+    shutil.copytree(starter, folder)
+    plan, script = folder / "plan.json", folder / "parts" / "lid.py"
+    good = plan.read_text()
+    seen: list[tuple[str, str, str]] = []
+
+    def ask(server: PageServer, path: str, host: str | None = None) -> str:
+        request = urllib.request.Request(server.address + path, headers={"Host": host} if host else {})
+        with urllib.request.urlopen(request, timeout=20) as answer:
+            return str(answer.read().decode())
+
+    with PageServer() as server:
+        steps: Iterator[Callable[[], object]] = iter(
+            [
+                lambda: plan.write_text(good.replace('"value": 80', '"value": 90')),
+                lambda: script.write_text("def build(part):\n    raise ValueError('not today')\n"),
+                lambda: None,
+            ]
+        )
+
+        def wait(_seconds: float) -> None:
+            seen.append((json.loads(ask(server, "version"))["version"], ask(server, ""), json.loads(ask(server, "version"))["message"]))
+            try:
+                next(steps)()
+            except StopIteration:
+                raise KeyboardInterrupt from None
+
+        options = argparse.Namespace(plan=str(folder), kernel=None, sandbox=None, jobs=1, force=False, parameters=[])
+        built = watch(options, Terminal(quiet=True), server, wait=wait)
+        with pytest.raises(urllib.error.HTTPError, match="403"):
+            ask(server, "", host="elsewhere.example")
+
+    assert built == 3
+    versions, pages, messages = zip(*seen, strict=True)
+    assert versions[0] != versions[1] == versions[2]
+    assert f'"watch":"{versions[1]}"' in pages[1]
+    assert pages[2] == pages[1]
+    assert messages[:2] == ("", "")
+    assert messages[2]
+    assert fingerprint(folder) != versions[1]
+
+
+@pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
+def test_completion_knows_every_command_and_its_flags(shell: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert cli.main(["completion", shell]) == 0
+    script = capsys.readouterr().out
+
+    for name in COMMANDS:
+        assert name in script
+    assert ("-l verify" if shell == "fish" else "--verify") in script
+    if shutil.which(shell):
+        subprocess.run([shell, "-n"], input=script, text=True, check=True)
+
+
+@pytest.mark.skipif(shutil.which("bash") is None, reason="no bash")
+@pytest.mark.parametrize(
+    ("words", "expected"), [("articad ren", "render"), ("articad build --verify ce", "certified"), ("articad show --no-b", "--no-browser")]
+)
+def test_bash_completes(words: str, expected: str, capsys: pytest.CaptureFixture[str]) -> None:
+    cli.main(["completion", "bash"])
+    script = capsys.readouterr().out
+    asked = f"COMP_WORDS=({words}); COMP_CWORD=$((${{#COMP_WORDS[@]}} - 1)); _articad; echo ${{COMPREPLY[@]}}"
+
+    told = subprocess.run(["bash", "-c", f"{script}\n{asked}"], capture_output=True, text=True, check=True)
+    assert told.stdout.split() == [expected]
