@@ -33,7 +33,7 @@ from articad.interference.relations import Groups, Relations
 from articad.interference.report import Checks, PairCheck
 from articad.interference.scene import Scene
 from articad.interference.sweep import Sweep
-from articad.interference.verdict import STATIC_SHARE, UNRELATED_VOLUME_MM3, judge
+from articad.interference.verdict import STATIC_SHARE, judge
 from articad.kinematics.joints import JointType
 
 FOREIGN = ("urdf", "mjcf")  # formats whose shapes stand for bodies without being them
@@ -42,6 +42,7 @@ FEWEST_STEPS = 9  # … and so many where a pose takes long
 SIDE = 7  # poses of each of two joints
 SCAN = 24  # poses between rest and a collision, among which the first contact is looked for
 BISECTIONS = 30
+CONTACT_MM3 = 1e-6  # shared volume at which contact begins: an edge 10 mm long is then 0.3 µm deep
 MOST_DIAGNOSED = 20
 FOREIGN_GAP_MM = 1.0  # by which shapes of foreign files may miss each other where they are fixed: they are drawn, not made
 MOST_UNION = 24  # shapes of one link that are united; more are taken as they are
@@ -344,7 +345,7 @@ def _first_contact(case: _Case, sweep: Sweep, freedom: Freedom, finding: Finding
         return volume(case.scene.bodies[a], case.scene.bodies[b], T.matrix[:3])
 
     try:
-        least = shared(freedom.rest) + UNRELATED_VOLUME_MM3
+        least = shared(freedom.rest) + CONTACT_MM3
         values = np.linspace(freedom.rest, finding.pose[freedom.name], SCAN).tolist()
         hit = next((at for at, value in enumerate(values) if shared(value) > least), None)
         if not hit:

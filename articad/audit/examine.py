@@ -141,6 +141,10 @@ def _urdf(path: Path, choices: Choices, found: _Found) -> None:
     text = UrdfText(MeshReferences(Folder.of(path, root)))
     found.declared = text.declared(document, path)
     found.findings += text.findings
+    if any(shape.problem == "unsafe" for link in found.declared.links for shape in link.shapes):
+        found.undone.append("engines, contact and motion: the file names meshes outside the folders that may be read")
+        _check_text(found)
+        return
     found.engines = load_in_all(path, ENGINES["urdf"]) if choices.engines else ()
     found.findings += refusals(found.engines)
     _read_and_look(found, lambda: read_urdf(path, root=root), choices, path)

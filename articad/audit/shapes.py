@@ -23,7 +23,7 @@ MOST_PIECES = 60  # of a link, beyond which a mesh is a drawing and not a body: 
 MOST_PIECE_TRIANGLES = 60_000
 FLAT_MM3 = 1e-3
 SCALE_RATIO = 50.0  # what is drawn and what collides differ so much only by another unit
-UNIT_RATIO = 200.0  # a mesh so many times larger than the rest of its robot was drawn in another unit
+UNIT_RATIO = 100.0  # a mesh so many times larger than the rest of its robot was drawn in another unit
 LARGEST_MM = 1e5  # 100 m
 SMALLEST_MM = 1.0
 BELOW_MM = 1.0
@@ -84,12 +84,12 @@ def broken_meshes(declared: Declared) -> Iterator[Finding]:
         key = (shape.file or shape.where, link.name)
         if shape.kind != "mesh" or key in seen:
             continue
+        if shape.role == "visual" and link.of("collision") and not _closed(shape.mesh).is_closed:
+            continue  # what collides is judged, and may be another shape
         seen.add(key)
         mesh = _closed(shape.mesh)
         what = shape.file or f"the {shape.role} mesh of {link.name}"
         if not mesh.is_closed:
-            if shape.role == "visual" and link.of("collision"):
-                continue  # what collides is another shape
             yield Finding(
                 code="W_AUDIT_MESH_OPEN",
                 where=shape.where,
@@ -186,7 +186,7 @@ def _apart(link: DeclaredLink, bodies: list[Body], *, whole: bool) -> Finding | 
 
 def scale(declared: Declared) -> Iterator[Finding]:
     """A robot beyond any size, or a mesh that does not fit the rest of its robot: another unit."""
-    sizes = {link.name: _diagonal(link.points) for link in declared.links if len(link.points)}
+    sizes = {link.name: min(_sizes(link)) for link in declared.links if len(link.points)}
     if not sizes:
         return
     largest, smallest = max(sizes.values()), min(sizes.values())
@@ -294,6 +294,12 @@ def gltf_units(declared: Declared) -> Iterator[Finding]:
             limit=0,
             cause="units",
         )
+
+
+def _sizes(link: DeclaredLink) -> list[float]:
+    """Return the sizes of what is drawn and of what collides [mm]; where they differ, `visual_against_collision` says so."""
+    found = [[shape.mesh.vertices for shape in link.of(role) if shape.mesh is not None] for role in _ROLES]
+    return [_diagonal(np.concatenate(points)) for points in found if points]
 
 
 def _by_file(declared: Declared) -> dict[tuple[str, str], list[tuple[DeclaredLink, DeclaredShape]]]:
