@@ -1,0 +1,154 @@
+"""What can be mended without guessing is mended, and nothing else: masses from meshes, shapes to collide with, names, axes, the base."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any
+
+import pytest
+from lxml import etree
+
+from articad.audit.examine import Choices, audit
+from articad.audit.mend import Mended, mend
+from articad.geometry.mesh_files import read_mesh, write_glb
+from articad.simulate.loading import load
+from articad.simulate.trial import try_out
+from articad.simulate.verdict import Verdict
+from tests.audit import defects
+
+QUICK = Choices(engines=False)
+DENSITY = 640.0
+
+
+def mesh_only(folder: Path) -> Any:
+    """The stand with nothing but drawings, as it is often published: GLB in mm, names with spaces, a wheel of four turns, legs below zero."""
+    root = defects.three_turns(folder)
+    for element in [*root.iterfind("link/inertial"), *root.iterfind("link/collision")]:
+        element.getparent().remove(element)
+    for name in ("plate", "arm"):
+        (folder / f"{name}.glb").write_bytes(write_glb(read_mesh(folder / f"{name}.stl")))
+        (folder / f"{name}.stl").unlink()
+        defects.find(root, f"link[@name='{name}']/visual/geometry/mesh").set("filename", f"{name}.glb")
+    root.set("name", "A stand with an arm, a block and two flags, " * 9)
+    defects.renaming("wave_0", "Wave 0 Rotate")(root, folder)
+    defects.renaming("flag_0", "flag (left)")(root, folder)
+    defects.limits("Wave 0 Rotate", lower=-4 * math.pi, upper=4 * math.pi)(root, folder)
+    lifted = "-0.05 0 0.0055"  # the plate's top is now where its middle was
+    for element in root.iterfind("link[@name='plate']/visual"):
+        element.insert(0, etree.fromstring('<origin xyz="0 0 -0.015"/>'))
+    defects.setting("joint[@name='turn']/origin", xyz=lifted)(root, folder)
+    for joint in root.iterfind("joint"):
+        if joint.get("name") != "turn":
+            x, y, _ = joint.find("origin").get("xyz").split()
+            joint.find("origin").set("xyz", f"{x} {y} 0.0055")
+    return root
+
+
+@pytest.fixture(scope="module")
+def mended(tmp_path_factory: pytest.TempPathFactory) -> Mended:
+    folder = tmp_path_factory.mktemp("mesh_only")
+    path = defects.write(mesh_only(folder), folder)
+    before = path.read_bytes()
+    result = mend(path, folder / "out", density=DENSITY, choices=QUICK)
+    assert path.read_bytes() == before
+    return result
+
+
+def test_masses_are_density_times_volume(mended: Mended) -> None:
+    root = etree.parse(str(mended.file)).getroot()
+    weighed = 0
+    for link in root.iterfind("link"):
+        mesh = link.find("visual/geometry/mesh")
+        if mesh is None:
+            continue
+        volume = read_mesh(mended.file.parent / mesh.get("filename")).volume * 1e-9
+        mass = float(link.find("inertial/mass").get("value"))
+        assert mass == pytest.approx(DENSITY * volume, rel=1e-9)
+        weighed += 1
+    assert weighed == 5
+    boxes = {"plate": 0.2 * 0.2 * 0.02, "arm": 0.08 * 0.02 * 0.01, "block": 0.03 * 0.03 * 0.01}
+    for name, volume in boxes.items():
+        assert mended.masses[name] == pytest.approx(DENSITY * volume, rel=1e-6)  # the mesh files hold single precision
+
+
+def test_inertias_are_those_of_the_boxes(mended: Mended) -> None:
+    root = etree.parse(str(mended.file)).getroot()
+    inertia = root.find("link[@name='arm']/inertial/inertia")
+    mass = mended.masses["arm"]
+    expected = {"ixx": (0.02**2 + 0.01**2), "iyy": (0.08**2 + 0.01**2), "izz": (0.08**2 + 0.02**2)}
+    for axis, squares in expected.items():
+        assert float(inertia.get(axis)) == pytest.approx(mass * squares / 12, rel=1e-5)
+
+
+def test_everything_else_that_needs_no_guess_is_mended(mended: Mended) -> None:
+    root = etree.parse(str(mended.file)).getroot()
+    names = {element.get("name") for element in [*root.iterfind("link"), *root.iterfind("joint")]}
+    assert {"Wave_0_Rotate", "flag_left", "base_floor"} <= names
+    assert len(root.get("name")) <= 64
+    wave = root.find("joint[@name='Wave_0_Rotate']")
+    assert wave.get("type") == "continuous"
+    assert wave.find("child").get("link") == "flag_left"
+    assert wave.find("limit").get("lower") is None
+    assert wave.find("limit").get("effort") == "2.5"
+    assert float(root.find("joint[@name='base_floor_joint']/origin").get("xyz").split()[2]) == pytest.approx(0.015, rel=1e-6)
+    assert all(link.find("collision") is not None for link in root.iterfind("link") if link.find("visual") is not None)
+    assert mended.rest is not None
+    assert mended.rest.ok, str(mended.rest.findings)
+    assert len(mended.done) >= 5
+
+
+def test_the_mended_model_loads_and_moves_in_mujoco(mended: Mended) -> None:
+    verdict = Verdict("mended", (try_out("mujoco", mended.file),))
+
+    assert verdict.ok, str(verdict.findings)
+    (outcome,) = verdict.outcomes
+    assert len(outcome.reaches) == 4
+    assert min(reach.share for reach in outcome.reaches) >= 0.95
+
+
+@pytest.mark.parametrize("engine", ["pinocchio", "pybullet"])
+def test_the_mended_model_loads_elsewhere(engine: Any, mended: Mended) -> None:
+    loading = load(engine, mended.file)
+    if loading.loads is None:
+        pytest.skip("not installed")
+    assert loading.loads, loading.message
+
+
+def test_nothing_is_invented(tmp_path: Path) -> None:
+    """Without a density no mass; an open mesh, reversed limits and a massless carrier are left and listed."""
+    root = defects.stand(tmp_path)
+    defects.removing("link[@name='arm']/inertial")(root, tmp_path)
+    defects.limits("slide", lower=0.02, upper=-0.02)(root, tmp_path)
+    path = defects.write(root, tmp_path)
+
+    result = mend(path, tmp_path / "out", choices=QUICK)
+
+    assert result.masses == {}
+    assert result.rest is not None
+    assert {"E_AUDIT_NO_INERTIA", "E_AUDIT_LIMITS_ORDER"} <= set(result.rest.findings.codes)
+    again = etree.parse(str(result.file)).getroot()
+    assert again.find("joint[@name='slide']/limit").get("lower") == "0.02"
+    assert again.find("link[@name='arm']/inertial") is None
+
+
+def test_a_sound_file_is_left_as_it_is(tmp_path: Path) -> None:
+    path = defects.write(defects.stand(tmp_path), tmp_path)
+
+    result = mend(path, tmp_path / "out", density=DENSITY, choices=QUICK)
+
+    assert result.masses == {}
+    assert result.done == ["told MuJoCo to keep folders in mesh names"]
+    assert audit(result.file, QUICK).ok
+
+
+def test_an_impossible_inertia_keeps_its_stated_mass(tmp_path: Path) -> None:
+    root = defects.stand(tmp_path)
+    defects.setting("link[@name='arm']/inertial/inertia", **defects.INERTIA_OF_ONE)(root, tmp_path)
+    defects.setting("link[@name='arm']/inertial/mass", value="0.25")(root, tmp_path)
+
+    result = mend(defects.write(root, tmp_path), tmp_path / "out", density=DENSITY, choices=QUICK)
+
+    again = etree.parse(str(result.file)).getroot()
+    assert float(again.find("link[@name='arm']/inertial/mass").get("value")) == pytest.approx(0.25, rel=1e-12)
+    assert float(again.find("link[@name='arm']/inertial/inertia").get("izz")) == pytest.approx(0.25 * (0.08**2 + 0.02**2) / 12, rel=1e-5)
