@@ -5,4 +5,4 @@ Importing this package registers them all.
 
 from __future__ import annotations
 
-from articad.commands import auditing, building, completing, files, machine, models, parts, pictures, proving, remembering, showing  # noqa: F401 - registers them
+from articad.commands import auditing, building, completing, files, machine, models, parts, pictures, proving, remembering, serving, showing  # noqa: F401 - registers them

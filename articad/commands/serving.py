@@ -1,0 +1,49 @@
+"""Serve coding agents: the tools over standard input and output, and the skill that says how to use them."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from articad.commands.command import argument, command
+
+if TYPE_CHECKING:
+    from articad.terminal import Report, Terminal
+
+_SKILLS = Path(".claude") / "skills" / "articad"
+
+
+@command(
+    "mcp",
+    "Offer articad's tools to a coding agent over standard input and output.",
+    argument("--root", metavar="DIR", default=".", help="the folder of designs; nothing outside it is read or written (.)"),
+)
+def _mcp(options: argparse.Namespace, _terminal: Terminal) -> Report:
+    from articad.errors import ReadError
+
+    try:
+        from articad.mcp.server import make_server
+    except ImportError as error:
+        raise ReadError(f"The server needs the package mcp ({error.name} is missing): pip install 'articad[mcp]'.", path="mcp") from error
+    make_server(options.root).run("stdio")
+    return {"schema": "articad.served/1", "ok": True, "findings": []}
+
+
+@command(
+    "skill",
+    "Install or print the instructions that teach a coding agent to use articad.",
+    argument("action", choices=["install", "print"], help="where to: a file, or the terminal"),
+    argument("--dir", metavar="DIR", default=str(_SKILLS), help=f"folder of the skill ({_SKILLS})"),
+)
+def _skill(options: argparse.Namespace, terminal: Terminal) -> Report:
+    from articad.mcp.skill import skill
+    from articad.run import write_atomically
+
+    if options.action == "print":
+        terminal.say(skill())
+        return {"schema": "articad.skill/1", "ok": True, "text": skill(), "findings": []}
+    file = Path(options.dir) / "SKILL.md"
+    write_atomically(file, skill().encode())
+    terminal.say(f"Written: {file}")
+    return {"schema": "articad.skill/1", "ok": True, "file": str(file), "findings": []}

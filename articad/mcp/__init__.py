@@ -1,0 +1,1 @@
+"""articad's deterministic tools for coding agents, by the Model Context Protocol."""

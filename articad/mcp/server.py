@@ -1,0 +1,288 @@
+"""The server: fourteen tools over one folder of designs. The words of each tool are what an agent reads of it: they are kept few."""
+
+from __future__ import annotations
+
+import inspect
+import json
+import shutil
+import tempfile
+from collections.abc import Awaitable, Callable, Mapping, Sequence
+from functools import wraps
+from pathlib import Path
+from typing import Annotated, Any, Final, Literal
+
+from mcp.server.mcpserver import Context, Image, MCPServer
+from mcp.server.mcpserver.exceptions import ToolError
+from pydantic import Field
+
+from articad import __version__
+from articad.codes import CODES
+from articad.errors import ArticadError, did_you_mean
+from articad.mcp.skill import section
+from articad.mcp.workbench import BRIEF_BYTES, FULL_BYTES, Json, Tell, Workbench, condensed
+
+Tool = Callable[..., Awaitable[Any]]
+Dialect = Literal["build123d", "freecad"]
+Format = Literal["urdf", "mjcf", "freecad", "step", "glb", "3mf", "sdf", "usd"]
+
+_PROMPTS: Final = Path(__file__).parents[1] / "agents" / "prompts"
+_BUILD_S: Final = 600.0
+_PART_S: Final = 180.0
+_LOOK_S: Final = 300.0
+_GRACE_S: Final = 60.0  # beyond a certificate's own budget: reading, and the claim that is under way
+_PICTURES: Final = 4  # of one answer
+_PIXELS: Final = 512
+
+Design = Annotated[str, Field(description="name of a design: a folder under the root")]
+Detail = Annotated[bool, Field(description="the whole report, up to 60 kB")]
+
+
+class Tools:
+    """What an agent can do; each public method is a tool, and its docstring what the agent reads of it.
+
+    Args:
+        root: The folder of designs; made if it is not there.
+    """
+
+    def __init__(self, root: str | Path) -> None:
+        self.bench = Workbench(root)
+
+    async def schema(
+        self,
+        topic: Annotated[
+            str, Field(description='"plan", "part_script", "part_script_freecad", "room", "findings", or a type such as "joint"')
+        ],
+    ) -> str:
+        """How to write a plan or a part script, or the JSON schema of one of the plan's types."""
+        pages = {
+            "plan": lambda: section("The plan in one page"),
+            "part_script": lambda: section("Part scripts") + (_PROMPTS / "part_build123d.md").read_text(encoding="utf-8").split("{{")[0],
+            "part_script_freecad": lambda: (_PROMPTS / "part_freecad.md").read_text(encoding="utf-8").split("# Example")[0],
+            "room": lambda: section("Room"),
+            "findings": lambda: section("Findings"),
+        }
+        return pages[topic]() if topic in pages else _json_schema(topic)
+
+    async def check_plan(
+        self,
+        design: Design,
+        plan: Annotated[dict[str, Any] | None, Field(description="the whole plan; without it the kept one is checked")] = None,
+    ) -> Json:
+        """Keep a plan and say everything that is wrong with it, before any geometry exists."""
+        if plan is not None:
+            self.bench.write_plan(design, plan)
+        folder = self.bench.design(design)
+        return condensed(await self.bench.run("check", str(folder / "plan.json"), seconds=_PART_S), detail=True)
+
+    async def build_part(
+        self, context: Context, design: Design, part: str, script: str | None = None, kernel: Dialect = "build123d", detail: Detail = False
+    ) -> Json:
+        """Keep a part's script, build it and hold it to its contract."""
+        folder = self.bench.design(design)
+        if script is not None:
+            self.bench.write_script(design, part, script, kernel)
+        report = await self.bench.run("part", str(folder), part, "--kernel", kernel, seconds=_PART_S, tell=_teller(context))
+        return condensed(report, detail=detail, keep=("volume_mm3", "mass_kg", "bbox_mm"))
+
+    async def build(self, context: Context, design: Design, kernel: Dialect = "build123d", detail: Detail = False) -> Json:
+        """Build all parts, assemble them, check interference at rest, write URDF and MJCF."""
+        folder = self.bench.design(design)
+        return condensed(
+            await self._built(context, folder, kernel),
+            detail=detail,
+            keep=("freedoms", "mass_kg", "drivers", "deepest_overlap_mm", "files"),
+        )
+
+    async def check(self, design: Design, detail: Detail = False) -> Json:
+        """Check interference at rest again, pair by pair."""
+        return condensed(await self.bench.run("check", str(self.bench.target(design)), seconds=_BUILD_S), detail=detail)
+
+    async def certify(
+        self,
+        context: Context,
+        design: Design,
+        joints: Sequence[str] = (),
+        pairs: bool = True,
+        budget_s: float = 120.0,
+        detail: Detail = False,
+    ) -> Json:
+        """Prove that no parts meet over the whole range of each joint, and of pairs of joints. What is not proven in time is not ok."""
+        words = ["--joints", ",".join(joints)] if joints else []
+        words += ["--pairs" if pairs else "--no-pairs", "--budget", repr(budget_s)]
+        run = str(self.bench.target(design))
+        report = await self.bench.run("certify", run, *words, seconds=budget_s + _GRACE_S, tell=_teller(context))
+        return condensed(report | {"claims": len(report.get("claims", ()))}, detail=detail, keep=("ranges", "epsilon_mm", "claims"))
+
+    async def audit(
+        self, target: Annotated[str, Field(description="a design, or a URDF, MJCF or FCStd file under the root")], detail: Detail = False
+    ) -> Json:
+        """Say what is wrong with a file, whoever made it: structure, units, inertias, collision, overlap, motion, engines."""
+        return condensed(
+            await self.bench.run("audit", str(self.bench.target(target)), seconds=_BUILD_S), detail=detail, keep=("engines", "counts")
+        )
+
+    async def sim(self, target: Annotated[str, Field(description="a design or a file under the root")], detail: Detail = False) -> Json:
+        """Run it in a simulator: does it load, settle, reach the ends of its joints, and keep its energy?"""
+        return condensed(
+            await self.bench.run("sim", str(self.bench.target(target)), seconds=_BUILD_S), detail=detail, keep=("trials", "joints")
+        )
+
+    async def render(
+        self,
+        target: Annotated[str, Field(description="a design or a file under the root")],
+        views: Sequence[str] = ("iso",),
+        motion: Annotated[str | None, Field(description="a joint: its motion as a filmstrip instead of views")] = None,
+        parts: Annotated[Sequence[str], Field(description="shown in full; the others are faded")] = (),
+        explode: float = 0.0,
+        overlaps: bool = False,
+    ) -> list[Any]:
+        """Pictures: views (iso, iso_left, iso_back, iso_below, front, back, left, right, top, below), or a joint's motion."""
+        folder = tempfile.mkdtemp(prefix=".pictures-", dir=self.bench.root)
+        try:
+            words = ["--motion", motion] if motion else ["--views", ",".join(views[:_PICTURES]), "--explode", repr(explode)]
+            words += [*(["--parts", ",".join(parts)] if parts and not motion else []), *(["--overlaps"] if overlaps and not motion else [])]
+            place = self.bench.target(target)
+            report = await self.bench.run("render", str(place), *words, "--size", str(_PIXELS), "--out", folder, seconds=_LOOK_S)
+            files = [Path(file) for file in report.get("files", ()) if file.endswith(".png")][:_PICTURES]
+            pictures = [Image(data=file.read_bytes(), format="png") for file in files]
+        finally:
+            shutil.rmtree(folder, ignore_errors=True)
+        return pictures or [json.dumps(condensed(report, detail=False))]
+
+    async def export(
+        self, design: Design, formats: Sequence[Format] = ("urdf", "mjcf", "step"), strict: bool = False, detail: Detail = False
+    ) -> Json:
+        """Write a built design in other formats; says what each cannot hold."""
+        words = ["--to", ",".join(formats), *(["--strict"] if strict else [])]
+        report = await self.bench.run("export", str(self.bench.target(design)), *words, seconds=_BUILD_S)
+        exports = {
+            name: {"file": self._shown(entry.get("main", "")), "losses": len(entry.get("rows", entry.get("losses", ())))}
+            for name, entry in report.get("exports", {}).items()
+        }
+        return condensed(report if detail else report | {"exports": exports}, detail=detail, keep=("exports",))
+
+    async def convert(self, source: str, target: str, strict: bool = False, detail: Detail = False) -> Json:
+        """Convert a URDF, MJCF or FCStd file under the root into another format; the ending says which."""
+        words = [str(self.bench.target(source)), str(self.bench.path(target)), *(["--strict"] if strict else [])]
+        return condensed(await self.bench.run("convert", *words, seconds=_BUILD_S), detail=detail, keep=("main", "rows"))
+
+    async def edit_parameters(self, context: Context, design: Design, values: dict[str, float], kernel: Dialect = "build123d") -> Json:
+        """Change parameters of the plan, build again, and say which parts changed and which are provably the same."""
+        folder = self.bench.design(design)
+        plan = json.loads((folder / "plan.json").read_bytes())
+        known = {entry["name"]: entry for entry in plan.get("parameters", ())}
+        for name, value in values.items():
+            if name not in known:
+                raise ToolError(f"There is no parameter {name!r}.{did_you_mean(name, known)} There are {', '.join(known) or 'none'}.")
+            known[name]["value"] = value
+        before, kept = _shapes(folder), (folder / "plan.json").read_bytes()
+        self.bench.write_plan(design, plan)
+        report = await self._built(context, folder, kernel)
+        if "error" in report:  # nothing was built: the design stays what it was
+            (folder / "plan.json").write_bytes(kept)
+            return condensed(report, detail=False)
+        after = _shapes(folder)
+        changed = sorted(name for name in after if after[name] != before.get(name))
+        report |= {"changed": changed, "same": sorted(set(after) - set(changed)), "removed": sorted(set(before) - set(after))}
+        return condensed(report, detail=False, keep=("changed", "same", "removed", "freedoms"))
+
+    async def explain(self, code: str) -> str:
+        """What a finding's code means and what to do about it."""
+        entry = CODES.get(code)
+        if entry is None:
+            raise ToolError(f"There is no code {code!r}.{did_you_mean(code, CODES)}")
+        return f"{code} (stage {entry.stage}, to be mended in the {entry.route or 'request'}): {entry.meaning} {entry.remedy}"
+
+    async def docs(
+        self,
+        dialect: Dialect,
+        intent: Annotated[str, Field(description='what to do, or names: "fillet, Helix"')],
+        limit: int = 5,
+        example: bool = False,
+    ) -> str:
+        """Look up a kernel's functions: exact signatures, and a worked script if asked."""
+        from articad.memory.documentation import DocumentationStore  # noqa: PLC0415 - takes a second to load
+
+        store = DocumentationStore(dialect)
+        names = [name.strip() for name in intent.split(",")]
+        entries = store.named(names, limit) if len(names) > 1 or " " not in intent.strip() else store.find(intent, min(limit, 20))
+        found = [str(entry) for entry in entries]
+        found += [f"{snippet.title}\n{snippet.script}" for snippet in store.examples(intent) if example]
+        return "\n".join(found)[:BRIEF_BYTES]
+
+    async def _built(self, context: Context, folder: Path, kernel: str) -> Json:
+        out = folder / "run"
+        if out.exists():
+            shutil.rmtree(out)  # the design is the truth; its run is made of it
+        words = ["--out", str(out), "--kernel", kernel, "--no-pictures"]
+        report = await self.bench.run("build", str(folder), *words, seconds=_BUILD_S, tell=_teller(context))
+        assembly, checks = report.get("assembly", {}), report.get("checks", {})
+        depths = [pair.get("depth_mm") or 0.0 for pair in checks.get("pairs", ())]
+        return report | {
+            "freedoms": assembly.get("freedoms"),
+            "mass_kg": assembly.get("mass_kg"),
+            "drivers": assembly.get("drivers", []),
+            "deepest_overlap_mm": max(depths, default=0.0),
+            "files": {name: self._shown(entry["main"]) for name, entry in report.get("exports", {}).items()},
+        }
+
+    def _shown(self, file: str) -> str:
+        """Return a file's name as the tools take it: relative to the root."""
+        path = Path(file)
+        return str(path.relative_to(self.bench.root)) if path.is_absolute() and path.is_relative_to(self.bench.root) else file
+
+
+def make_server(root: str | Path) -> MCPServer:
+    """Return a server whose tools see one folder and nothing else.
+
+    Args:
+        root: The folder of designs; made if it is not there.
+    """
+    server = MCPServer("articad", version=__version__, instructions=section("The loop"), log_level="WARNING")
+    tools = Tools(root)
+    for name, method in inspect.getmembers(tools, inspect.iscoroutinefunction):
+        if not name.startswith("_"):
+            server.tool(structured_output=False)(_told(method))
+    return server
+
+
+def _told(method: Tool) -> Tool:
+    """Tell the agent in one piece what a call was refused for."""
+
+    @wraps(method)
+    async def told(*arguments: Any, **named: Any) -> Any:
+        try:
+            return await method(*arguments, **named)
+        except ArticadError as error:
+            raise ToolError("\n".join(map(str, error.findings)) or str(error)) from error
+
+    return told
+
+
+def _teller(context: Context) -> Tell:
+    """Report progress to the client, where it asked for it."""
+
+    async def tell(seconds: float, message: str) -> None:
+        await context.report_progress(seconds, None, message)
+
+    return tell
+
+
+def _shapes(folder: Path) -> dict[str, str]:
+    """Return the digest of each built part's mesh and where it came from."""
+    found = {}
+    for file in sorted((folder / "run" / "parts").glob("*/part.json")):
+        record = json.loads(file.read_bytes())
+        found[file.parent.name] = str(record["shape"]["mesh_sha256"])
+    return found
+
+
+def _json_schema(topic: str) -> str:
+    from articad.plan.json_schema import json_schema  # noqa: PLC0415 - pydantic's models, for this alone
+
+    whole = json_schema()
+    definitions: Mapping[str, Any] = whole.get("$defs", {})
+    matching = {name: form for name, form in definitions.items() if topic.lower().replace("_", "") in name.lower()}
+    if not matching:
+        raise ToolError(f"There is no type like {topic!r}; there are {', '.join(sorted(definitions))}, and the page 'plan'.")
+    return json.dumps(matching, separators=(",", ":"))[:FULL_BYTES]

@@ -1,0 +1,222 @@
+"""The workbench: one folder that a coding agent's designs live in, and the commands that work on them.
+
+A design is a folder with `plan.json` and `parts/`; building it leaves a run directory `run/` in it, so that everything can
+be built, checked and shown again without this server. Each piece of work is a process of its own, which can be cancelled, cannot
+take the server down with it, and obeys the same sandbox and exit codes as the command line.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import json
+import os
+import re
+import signal
+import sys
+from collections.abc import Awaitable, Callable, Mapping, Sequence
+from pathlib import Path
+from typing import Any, Final
+
+from articad.errors import ReadError
+from articad.findings import Finding
+from articad.run import write_atomically
+
+Json = dict[str, Any]
+Tell = Callable[[float, str], Awaitable[None]]
+"""Told of seconds that went by, and what is going on."""
+
+PLAN_BYTES: Final = 2_000_000  # ten times the largest example
+SCRIPT_BYTES: Final = 200_000
+BRIEF_BYTES: Final = 6_000  # of an answer, unless details are asked for: a page of text
+FULL_BYTES: Final = 60_000
+SHOWN_FINDINGS: Final = 12
+_REPORT_BYTES: Final = 64_000_000  # of a command's report: that of 10⁵ findings
+_TOLD_EVERY_S: Final = 2.0
+_NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,59}\Z")
+_FINDING_KEYS: Final = ("code", "where", "message", "hint", "route", "cause")
+
+
+class Workbench:
+    """Designs under one root, and nothing outside it.
+
+    Args:
+        root: The folder; made if it is not there.
+    """
+
+    def __init__(self, root: str | Path) -> None:
+        self.root = Path(root).resolve()
+        self.root.mkdir(parents=True, exist_ok=True)
+
+    # ------------------------------------------------------------------ files
+
+    def path(self, name: str) -> Path:
+        """Return a file or folder under the root.
+
+        Raises:
+            ReadError: If the name leads out of it, links followed.
+        """
+        path = (self.root / name).resolve()
+        if not path.is_relative_to(self.root) or "\0" in name:
+            raise _refused(name, f"{name} is outside the root.", "Name a file under it, relative to it.")
+        return path
+
+    def design(self, name: str, *, new: bool = False) -> Path:
+        """Return the folder of a design.
+
+        Raises:
+            ReadError: If it is no name, or there is no such design and it is not to be `new`.
+        """
+        if not _NAME.match(name):
+            raise _refused(name, f"{name!r} is no name of a design.", "Use letters, digits, - and _, at most 60.")
+        folder = self.path(name)
+        if not new and not (folder / "plan.json").is_file():
+            known = sorted(file.parent.name for file in self.root.glob("*/plan.json"))
+            raise _refused(name, f"There is no design {name!r}; there are {', '.join(known) or 'none'}.", "Start one with check_plan.")
+        return folder
+
+    def write_plan(self, name: str, plan: Mapping[str, Any]) -> Path:
+        """Keep a plan as the current one of a design.
+
+        Raises:
+            ReadError: If it is larger than any plan.
+        """
+        content = (json.dumps(plan, indent=1, ensure_ascii=False) + "\n").encode()
+        if len(content) > PLAN_BYTES:
+            raise _refused(name, f"The plan has {len(content)} bytes; at most {PLAN_BYTES} are accepted.", "Use derived parts.")
+        file = self.design(name, new=True) / "plan.json"
+        write_atomically(file, content)
+        return file
+
+    def write_script(self, design: str, part: str, script: str, kernel: str) -> Path:
+        """Keep a part's script.
+
+        Raises:
+            ReadError: If it is too large, or the part's name is none.
+        """
+        content = script.encode()
+        if len(content) > SCRIPT_BYTES:
+            raise _refused(part, f"The script has {len(content)} bytes; at most {SCRIPT_BYTES} are accepted.", "Write it shorter.")
+        if not _NAME.match(part):
+            raise _refused(part, f"{part!r} is no name of a part.", "Use the name that the plan gives it.")
+        file = self.design(design) / "parts" / f"{part}{'.freecad.py' if kernel == 'freecad' else '.py'}"
+        if not file.resolve().is_relative_to(self.root):
+            raise _refused(part, f"{file} leads out of the root.", "Remove the link.")
+        write_atomically(file, content)
+        return file
+
+    def target(self, name: str) -> Path:
+        """Return what a name stands for: the run of a design if it was built, else the design, else a file under the root."""
+        path = self.path(name)
+        if (path / "run" / "request.json").is_file():
+            return path / "run"
+        if not path.exists():
+            raise _refused(name, f"There is no {name} under the root.", "Name a design, or a file relative to the root.")
+        return path
+
+    # ------------------------------------------------------------------ work
+
+    async def run(self, *arguments: str, seconds: float, tell: Tell | None = None) -> Json:
+        """Run a command of `articad` and return its report.
+
+        Args:
+            arguments: Its words.
+            seconds: It is ended after.
+            tell: Told from time to time that it goes on.
+
+        Raises:
+            ReadError: If it takes too long or leaves no report.
+        """
+        process = await asyncio.create_subprocess_exec(
+            *(sys.executable, "-m", "articad.cli", *arguments, "--json"),
+            cwd=self.root,
+            stdin=asyncio.subprocess.DEVNULL,
+            stdout=asyncio.subprocess.PIPE,
+            stderr=asyncio.subprocess.PIPE,
+            start_new_session=True,
+        )
+        try:
+            out, said = await self._finished(process, arguments[0], seconds, tell)
+        finally:  # cancelled, or late: the command and all that it started
+            if process.returncode is None:
+                with contextlib.suppress(ProcessLookupError):
+                    os.killpg(process.pid, signal.SIGKILL)
+                await process.wait()
+        try:
+            return dict(json.loads(out[:_REPORT_BYTES]))
+        except ValueError as error:
+            last = said.decode(errors="replace").strip()[-400:]
+            raise _refused(arguments[0], f"`articad {arguments[0]}` left no report: {last}", "Try it with fewer parts.") from error
+
+    async def _finished(self, process: asyncio.subprocess.Process, command: str, seconds: float, tell: Tell | None) -> tuple[bytes, bytes]:
+        work = asyncio.ensure_future(process.communicate())
+        waited = 0.0
+        while True:
+            done, _ = await asyncio.wait([work], timeout=_TOLD_EVERY_S)
+            if done:
+                return work.result()
+            waited += _TOLD_EVERY_S
+            if tell is not None:
+                await tell(waited, f"{command}: {waited:.0f} s")
+            if waited >= seconds:
+                work.cancel()
+                raise _refused(
+                    command, f"`articad {command}` was ended after {seconds:.0f} s.", "Ask for less at once, or for more seconds."
+                )
+
+
+def condensed(report: Json, *, detail: bool, keep: Sequence[str] = ()) -> Json:
+    """Return a report as an agent reads it: the verdict, findings first and few, then what was asked for.
+
+    Args:
+        report: Of a command.
+        detail: Everything, up to 60 kB.
+        keep: Keys of the report to return also when no detail is asked for.
+    """
+    findings = gathered(report)
+    shown = [{key: finding[key] for key in _FINDING_KEYS if finding.get(key) is not None} for finding in findings]
+    answer: Json = {"ok": bool(report.get("ok"))}
+    if error := report.get("error"):
+        answer["error"] = error.get("message", error) if isinstance(error, dict) else error
+    limit = len(shown) if detail else SHOWN_FINDINGS
+    answer["findings"] = shown[:limit]
+    if len(shown) > limit:
+        answer["more_findings"] = f"{len(shown) - limit} more; ask with detail"
+    rest = {key: value for key, value in report.items() if key not in {"ok", "findings", "error", "schema"}}
+    answer |= rest if detail else {key: rest[key] for key in keep if key in rest}
+    return _fitted(answer, FULL_BYTES if detail else BRIEF_BYTES)
+
+
+def gathered(report: Json) -> list[Json]:
+    """Return all findings of a report and of the reports within it, errors first, each once."""
+    found: dict[str, Json] = {}
+    for holder in (report, *(value for value in report.values() if isinstance(value, dict))):
+        for finding in holder.get("findings") or ():
+            if isinstance(finding, dict):
+                found.setdefault(json.dumps(finding, sort_keys=True), finding)
+    rank = {"error": 0, "warning": 1}
+    return sorted(found.values(), key=lambda finding: rank.get(str(finding.get("severity")), 2))
+
+
+def _fitted(answer: Json, limit: int) -> Json:
+    """Cut an answer down to a number of bytes, and say so: whole findings and whole entries go, the last first."""
+    while len(json.dumps(answer, ensure_ascii=False).encode()) > limit:
+        lists = [key for key, value in answer.items() if isinstance(value, list) and len(value) > 1]
+        if lists:
+            longest = max(lists, key=lambda key: len(json.dumps(answer[key])))
+            answer[longest] = answer[longest][: len(answer[longest]) // 2]
+        else:
+            largest = max((key for key in answer if key not in {"ok", "truncated"}), key=lambda key: len(json.dumps(answer[key])))
+            text = json.dumps(answer[largest], ensure_ascii=False)
+            if len(text) <= _LEAST:
+                break
+            answer[largest] = text[: max(len(text) // 2, _LEAST)]
+        answer["truncated"] = f"cut to {limit} bytes; the whole report is in the design's run"
+    return answer
+
+
+_LEAST: Final = 200  # characters of an entry that is cut
+
+
+def _refused(where: str, message: str, hint: str) -> ReadError:
+    return ReadError(f"{message} {hint}", path=where, findings=[Finding(code="E_READ", where=where, message=message, hint=hint)])

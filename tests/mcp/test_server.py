@@ -1,0 +1,235 @@
+"""The tools over stdio, by a client of the official SDK: whole designs, cancelled work, hostile arguments."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import os
+import sys
+from collections.abc import Awaitable, Callable
+from pathlib import Path
+from typing import Any
+
+import anyio
+import mujoco
+import pytest
+from mcp import Client, StdioServerParameters
+from mcp.client.stdio import stdio_client
+
+from articad import examples
+from articad.mcp.server import make_server
+from articad.mcp.workbench import BRIEF_BYTES, FULL_BYTES, SHOWN_FINDINGS, condensed
+
+Json = dict[str, Any]
+Work = Callable[["Agent"], Awaitable[None]]
+
+
+class Agent:
+    """A client that knows the tools alone, and counts what goes in and out."""
+
+    def __init__(self, client: Client) -> None:
+        self.client = client
+        self.bytes: dict[str, list[int]] = {}
+
+    async def call(self, tool: str, **arguments: Any) -> Any:
+        answer = await self.client.call_tool(tool, arguments)
+        texts = [content.text for content in answer.content if content.type == "text"]
+        self.bytes.setdefault(tool, []).append(len(json.dumps(arguments)) + sum(map(len, texts)))
+        assert not answer.is_error, texts
+        if not texts:
+            return answer.content
+        try:
+            return json.loads(texts[0])
+        except ValueError:
+            return "\n".join(texts)
+
+    async def refused(self, tool: str, **arguments: Any) -> str:
+        answer = await self.client.call_tool(tool, arguments)
+        assert answer.is_error
+        return "\n".join(content.text for content in answer.content if content.type == "text")
+
+
+def over_stdio(root: Path, work: Work) -> None:
+    async def session() -> None:
+        environment = {name: os.environ[name] for name in ("PATH", "HOME", "ARTICAD_CACHE", "ARTICAD_SANDBOX") if name in os.environ}
+        server = StdioServerParameters(command=sys.executable, args=["-m", "articad.cli", "mcp", "--root", str(root)], env=environment)
+        async with Client(stdio_client(server)) as client:
+            await work(Agent(client))
+
+    asyncio.run(session())
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["geared_four_bar", "wardrobe"])
+def test_an_agent_designs_builds_certifies_and_exports_through_tools_alone(name: str, tmp_path: Path) -> None:
+    folder = examples.folder(name)
+    plan = json.loads((folder / "plan.json").read_text())
+
+    async def work(agent: Agent) -> None:
+        wrong = json.loads(json.dumps(plan))
+        wrong["freedoms"] += 1
+        answer = await agent.call("check_plan", design="mine", plan=wrong)
+        assert answer["findings"][0]["code"] == "E_DOF_MISMATCH"
+        assert "declared" in await agent.call("explain", code="E_DOF_MISMATCH")
+        assert (await agent.call("check_plan", design="mine", plan=plan))["ok"]
+        for part in plan["parts"]:
+            if "derive" not in part:
+                script = (folder / "parts" / f"{part['name']}.py").read_text()
+                built = await agent.call("build_part", design="mine", part=part["name"], script=script)
+                assert built["ok"], built
+        assembled = await agent.call("build", design="mine")
+        assert assembled["ok"], assembled
+        assert assembled["freedoms"] == plan["freedoms"]
+        (picture,) = await agent.call("render", target="mine")
+        assert picture.mime_type == "image/png"
+        moving = assembled["drivers"][0]["name"]
+        proof = await agent.call("certify", design="mine", joints=[moving], pairs=False, budget_s=240)
+        assert proof["ok"], proof
+        written = await agent.call("export", design="mine", formats=["mjcf", "step", "glb"])
+        mujoco.MjModel.from_xml_path(str(tmp_path / written["exports"]["mjcf"]["file"]))
+        assert sum(map(sum, agent.bytes.values())) < 120_000  # plan and scripts included: what a model reads and writes
+
+    over_stdio(tmp_path, work)
+
+
+def test_an_edit_says_what_changed_and_what_is_provably_the_same(tmp_path: Path) -> None:
+    async def work(agent: Agent) -> None:
+        await design_of(agent, "chest", CHEST)
+        answer = await agent.call("edit_parameters", design="chest", values={"lid_board": 15})
+        assert (answer["changed"], answer["same"]) == (["lid"], ["box"])
+        assert "lid_bord" in await agent.refused("edit_parameters", design="chest", values={"lid_bord": 15})
+        failed = await agent.call("edit_parameters", design="chest", values={"width": -5})
+        assert not failed["ok"]
+        assert json.loads((tmp_path / "chest" / "plan.json").read_text())["parameters"][0]["value"] == 300
+
+    over_stdio(tmp_path, work)
+
+
+def test_a_long_certificate_can_be_cancelled_and_leaves_no_process(tmp_path: Path) -> None:
+    async def work(agent: Agent) -> None:
+        await design_of(agent, "chest", CHEST)
+        with anyio.move_on_after(1.2) as scope:  # less than it takes to start
+            await agent.call("certify", design="chest", budget_s=500)
+        assert scope.cancelled_caught
+        with anyio.fail_after(60):
+            while processes_in(tmp_path):  # noqa: ASYNC110 - the end of a process is no event of this loop
+                await anyio.sleep(0.1)
+        assert (await agent.call("check_plan", design="chest"))["ok"]  # the server is well
+
+    over_stdio(tmp_path, work)
+
+
+@pytest.mark.parametrize(
+    ("tool", "arguments", "words"),
+    [
+        ("check_plan", {"design": "../else", "plan": {}}, "no name of a design"),
+        ("build_part", {"design": "chest", "part": "../../x", "script": ""}, "no name of a part"),
+        ("build_part", {"design": "chest", "part": "lid", "script": "#" * 300_000}, "at most 200000"),
+        ("audit", {"target": "/etc/passwd"}, "outside the root"),
+        ("render", {"target": "link"}, "outside the root"),
+        ("convert", {"source": "chest/plan.json", "target": "../x.urdf"}, "outside the root"),
+        ("export", {"design": "no_such"}, "There is no no_such"),
+        ("explain", {"code": "E_OVERLAPS"}, "Did you mean 'E_OVERLAP'"),
+        ("schema", {"topic": "no such thing"}, "There is no type"),
+        ("build_part", {"design": "chest", "part": "lid", "kernel": "blender"}, "kernel"),
+    ],
+)
+def test_hostile_arguments_are_refused_in_words(tmp_path: Path, tool: str, arguments: Json, words: str) -> None:
+    tools = make_server(tmp_path)
+    (tmp_path / "chest").mkdir()
+    (tmp_path / "chest" / "plan.json").write_text("{}")
+    (tmp_path / "link").symlink_to("/etc")
+
+    async def call() -> str:
+        async with Client(tools) as client:
+            return await Agent(client).refused(tool, **arguments)
+
+    assert words in asyncio.run(call())
+
+
+def test_a_million_findings_are_cut_with_a_note() -> None:
+    finding = {"code": "E_OVERLAP", "severity": "error", "where": "a, b", "message": "x" * 200, "hint": "y" * 200}
+    report = {"ok": False, "findings": [finding | {"where": str(number)} for number in range(10**6)]}
+    brief = condensed(report, detail=False)
+    assert len(json.dumps(brief)) <= BRIEF_BYTES + 200
+    assert len(brief["findings"]) == SHOWN_FINDINGS
+    assert "more" in brief["more_findings"]
+    full = condensed(report, detail=True)
+    assert len(json.dumps(full)) <= FULL_BYTES + 200
+    assert "cut" in full["truncated"]
+
+
+def test_the_pages_of_the_schema_are_short() -> None:
+    async def pages() -> dict[str, int]:
+        async with Client(make_server("/tmp/articad-schema")) as client:
+            agent = Agent(client)
+            return {topic: len(await agent.call("schema", topic=topic)) for topic in ("plan", "part_script", "room", "findings", "Joint")}
+
+    assert max(asyncio.run(pages()).values()) < 9000
+
+
+LID = """from build123d import Align, Box
+def build(part):
+    d = part.dimensions
+    shape = Box(d["width"], d["depth"], d["board"], align=(Align.CENTER, Align.MAX, Align.MIN))
+    return shape, {"hinge": {"o": (0, 0, 0), "z": (1, 0, 0), "x": (0, -1, 0)}}
+"""
+BOX = """from build123d import Align, Box, Pos
+def build(part):
+    d = part.dimensions
+    low = (Align.MIN, Align.MIN, Align.MIN)
+    inner = Box(d["width"] - 2 * d["board"], d["depth"] - 2 * d["board"], d["height"], align=low)
+    shape = Box(d["width"], d["depth"], d["height"], align=low) - Pos(d["board"], d["board"], d["board"]) * inner
+    return shape, {"hinge": {"o": (d["width"] / 2, d["depth"], d["height"]), "z": (1, 0, 0), "x": (0, -1, 0)}}
+"""
+CHEST: Json = {
+    "schema": "articad.plan/1",
+    "name": "chest",
+    "ground": "box",
+    "freedoms": 1,
+    "parameters": [
+        {"name": "width", "value": 300},
+        {"name": "depth", "value": 200},
+        {"name": "height", "value": 80},
+        {"name": "lid_board", "value": 12},
+    ],
+    "materials": [{"name": "oak", "density_kg_m3": 700, "color": "#b08d57"}],
+    "parts": [
+        {
+            "name": "box",
+            "material": "oak",
+            "description": "Open box.",
+            "dimensions": {"width": "width", "depth": "depth", "height": "height", "board": 12},
+            "connectors": [{"name": "hinge", "label": "back edge", "o": ["width / 2", "depth", "height"], "z": [1, 0, 0], "x": [0, -1, 0]}],
+        },
+        {
+            "name": "lid",
+            "material": "oak",
+            "description": "Panel.",
+            "dimensions": {"width": "width", "depth": "depth", "board": "lid_board"},
+            "rest_pose": {"at": ["width / 2", "depth", "height"]},
+            "connectors": [{"name": "hinge", "label": "back edge", "o": [0, 0, 0], "z": [1, 0, 0], "x": [0, -1, 0]}],
+        },
+    ],
+    "joints": [{"name": "opening", "type": "revolute", "parent": "box.hinge", "child": "lid.hinge", "angle_deg": [-110, 0]}],
+}
+
+
+async def design_of(agent: Agent, name: str, plan: Json) -> None:
+    assert (await agent.call("check_plan", design=name, plan=plan))["ok"]
+    await agent.call("build_part", design=name, part="lid", script=LID)
+    await agent.call("build_part", design=name, part="box", script=BOX)
+    assert (await agent.call("build", design=name))["files"]
+
+
+def processes_in(root: Path) -> list[int]:
+    """Commands that work under a root; the server itself is not one."""
+    found = []
+    for folder in Path("/proc").glob("[0-9]*"):
+        try:
+            words = (folder / "cmdline").read_bytes().split(b"\0")
+        except OSError:
+            continue
+        if b"certify" in words and any(word.startswith(str(root).encode()) for word in words):
+            found.append(int(folder.name))
+    return found
