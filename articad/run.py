@@ -181,6 +181,7 @@ class Run:
         if strangers:
             raise _refused(path, f"{path} is not empty: it holds {strangers[0]}.", "Name a new directory, or resume the run that is there.")
         run = cls(path, request, _locked(path))
+        run._sweep()
         described = request.to_json(_version() if version is None else version)
         for image, entry in zip(request.images, described["images"], strict=True):
             run._write(entry["file"], image.content)
@@ -197,9 +198,8 @@ class Run:
         path = Path(path)
         request = _read_request(path)
         run = cls(path, request, _locked(path))
+        run._sweep()
         with _writing(path):
-            for leftover in [entry for entry in path.rglob(".*") if _TEMPORARY.fullmatch(entry.name)]:
-                shutil.rmtree(leftover) if leftover.is_dir() else leftover.unlink()
             trace = path / _TRACE
             if trace.exists() and (lines := trace.read_bytes()) and not lines.endswith(b"\n"):
                 run._append(b"\n")
@@ -506,6 +506,12 @@ class Run:
                 os.write(handle, line)
             finally:
                 os.close(handle)
+
+    def _sweep(self) -> None:
+        """Remove what a killed process left half-written; called with the lock held."""
+        with _writing(self.path):
+            for leftover in [entry for entry in self.path.rglob(".*") if _TEMPORARY.fullmatch(entry.name)]:
+                shutil.rmtree(leftover) if leftover.is_dir() else leftover.unlink()
 
     def _require_lock(self) -> None:
         if self._lock is None:

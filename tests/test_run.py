@@ -170,8 +170,10 @@ def test_the_same_request_opens_its_run_again_and_another_does_not(tmp_path: Pat
 def test_a_creation_that_was_killed_can_be_repeated(tmp_path: Path) -> None:
     (tmp_path / "r/images").mkdir(parents=True)
     (tmp_path / "r/images/1.png").write_bytes(b"half")
+    (tmp_path / "r/.request.json.tmp-0123abcd").write_text("{")
     with Run.create(RunRequest(prompt="x", images=(UserImage.read(PNG),)), out=tmp_path / "r"):
         assert (tmp_path / "r/images/1.png").read_bytes() == PNG
+    assert not list((tmp_path / "r").glob(".*"))
 
 
 def test_leftovers_of_a_killed_process_are_swept_when_it_is_opened(tmp_path: Path) -> None:
