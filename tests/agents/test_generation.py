@@ -5,14 +5,19 @@ from __future__ import annotations
 import copy
 import json
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import pytest
 
 from articad.agents.generation import ROLE, Attempt, messages_after, opening, specification
-from articad.agents.llm import Image, Request
+from articad.agents.llm import LLM, Image, Request
+from articad.agents.pipeline import generate
+from articad.agents.requirements import Requirements
+from articad.agents.retrieval import NoDocumentation, NoMemory, Recalled
 from articad.plan.resolve import resolve
 from articad.plan.schema import AssemblyPlan
+from tests.agents import stories
 from tests.agents.stories import PROMPTS
 
 SEWING_BOX: dict[str, Any] = json.loads((PROMPTS / "sewing_box.json").read_text())
@@ -129,3 +134,56 @@ def test_a_repair_shows_the_last_answer_what_was_wrong_and_the_picture() -> None
     assert "my script" in text
     assert "line 3 is wrong" in text
     assert picture in messages[-1].parts
+
+
+class Remembers:
+    """A memory of one good and one bad run."""
+
+    def for_design(self, prompt: str, requirements: Requirements) -> Recalled:  # noqa: ARG002 - the protocol's
+        return Recalled(heuristics=[f"Of {prompt}: hinge it outside."], constraints=["Never bury a hinge."])
+
+    def for_part(self, specification: str, kernel: str) -> list[str]:
+        return [f"A lid for {kernel}, like: {specification.splitlines()[0]}"]
+
+
+class Knows:
+    """A documentation with one page."""
+
+    def for_part(self, name: str, specification: str, kernel: str, llm: LLM) -> list[str]:  # noqa: ARG002 - the protocol's
+        return ["Box(length, width, height)"]
+
+
+def test_what_was_retrieved_enters_the_request_and_nothing_retrieved_leaves_it_as_it_was() -> None:
+    resolved = resolve(AssemblyPlan.from_json(SEWING_BOX))
+    plain, empty = (opening(resolved, "knob", "build123d"), opening(resolved, "knob", "build123d", examples=(), snippets=()))
+    full = opening(resolved, "knob", "build123d", examples=["an example"], snippets=["a snippet"])
+
+    assert Request(ROLE, "part/knob/1", plain).key == Request(ROLE, "part/knob/1", empty).key
+    assert "an example" in str(full[0].parts[0])
+    assert "a snippet" in str(full[0].parts[0])
+    assert full[1] == plain[1]
+
+
+def test_designers_are_told_of_good_and_bad_runs_and_modellers_of_good_ones(tmp_path: Path) -> None:
+    llm = stories.flap()
+    folder = tmp_path / "run"
+    cache, kernel = stories.shared_cache(), stories.kernel()
+    generate("a flap", llm=llm, out=folder, kernel=kernel, cache=cache, memory=Remembers(), documentation=Knows(), look=False)
+    told = {request.step: json.dumps(request.to_json(), ensure_ascii=False) for request in llm.requests}
+
+    assert "Of a flap: hinge it outside." in told["design/1"]
+    assert "Never bury a hinge." in told["design/1"]
+    assert "A lid for build123d, like: name: plate" in told["part/plate/1"]
+    assert "Box(length, width, height)" in told["part/plate/1"]
+    assert not [step for step, text in told.items() if "Never bury" in text and step != "design/1"]
+
+
+def test_an_empty_memory_is_as_none(tmp_path: Path) -> None:
+    keys = []
+    for memory in (None, NoMemory()):
+        llm = stories.flap()
+        folder, cache = tmp_path / str(memory is None), stories.shared_cache()
+        generate("a flap", llm=llm, out=folder, kernel=stories.kernel(), cache=cache, memory=memory, documentation=NoDocumentation())
+        keys.append({request.step: request.key for request in llm.requests})
+
+    assert keys[0] == keys[1]

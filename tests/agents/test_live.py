@@ -20,6 +20,7 @@ from articad.run import Run, RunRequest
 from tests.agents.openai_stub import Canned, openai_stub
 
 SECRET = "sk-test-0123456789abcdefSECRET"
+MESSAGE = {"index": 0, "finish_reason": "stop", "message": {"role": "assistant", "content": "Guilty."}}
 SCHEMA = {"type": "object", "required": ["a"], "properties": {"a": {"type": "integer"}}}
 
 
@@ -73,6 +74,41 @@ def test_a_schema_goes_along_and_where_it_is_refused_into_the_prompt() -> None:
         for request in (retried, later):
             assert "response_format" not in request
             assert request["messages"][0]["content"].endswith(json.dumps(SCHEMA))
+
+
+def test_a_prompt_that_tells_its_form_in_prose_is_not_given_a_schema_on_top() -> None:
+    refusal = Canned(status=400, body=b'{"error": {"message": "response_format is not supported here", "type": "invalid_request_error"}}')
+    with openai_stub([refusal, Canned("{}")]) as stub:
+        llm, _ = live(stub.address)
+        llm.complete(Request("judge", "judge/1/1", (system("Answer with one JSON object and nothing else."), user("Well?")), SCHEMA))
+
+        assert "response_format" not in stub.received[1]
+        assert stub.received[1]["messages"][0]["content"] == "Answer with one JSON object and nothing else."
+        assert not llm.takes_schemas()
+
+
+def test_the_judge_may_be_another_model_and_the_version_that_answered_is_kept() -> None:
+    body = {"id": "1", "object": "chat.completion", "created": 0, "model": "court-2026-01", "choices": [MESSAGE]}
+    with openai_stub([Canned(body=json.dumps(body).encode())]) as stub:
+        llm, _ = live(stub.address, judge_model="court")
+        reply = llm.complete(Request("judge", "judge/1/1", (user("Well?"),)))
+
+        assert stub.received[0]["model"] == "court"
+        assert reply.model == "openai/court"
+        assert reply.fingerprint is not None
+        assert "court-2026-01" in reply.fingerprint
+
+
+def test_a_model_that_cannot_see_is_not_asked_what_it_sees() -> None:
+    refusal = Canned(status=400, body=b'{"error": {"message": "this model does not support image input"}}')
+    with openai_stub([refusal, Canned("I see a lid")]) as stub:
+        llm, _ = live(stub.address)
+        drawn = Request("look", "look/lid/1", (user("Look:", Image(b"png", recipe={"view": "iso"})),))
+        assert llm.sees
+        with pytest.raises(TransportError, match="cannot see, and look/lid/1 is about pictures") as caught:
+            llm.complete(drawn)
+        assert "--vision-model" in caught.value.findings[0].hint
+        assert len(stub.received) == 1
 
 
 def test_a_model_that_cannot_see_is_asked_without_our_pictures_but_never_without_the_users() -> None:

@@ -4,19 +4,26 @@ from __future__ import annotations
 
 import json
 import re
+from pathlib import Path
 from typing import get_args
 
 import pytest
+from pydantic import BaseModel
 
+from articad.agents.brainstorm import Alternatives
 from articad.agents.design import response_schema
+from articad.agents.inspection import Judgement, Look, Observations
+from articad.agents.live import _TOLD
 from articad.agents.prompts import prompt, prompt_file
 from articad.agents.replies import parse_object, parse_script
 from articad.agents.requirements import Requirements
+from articad.agents.rollback import Decisions
 from articad.plan.check import check_plan
 from articad.plan.expressions import FUNCTIONS
 from articad.plan.fields import Form
 from articad.plan.joint_forms import COUPLING_TYPES, JOINT_TYPES
 from articad.plan.schema import AssemblyPlan, ConnectorKind, ConnectorSpec, PartSpec
+from tests.agents.stories import PROMPTS
 
 DESIGN = prompt("design", example=prompt_file("sewing_box.json"))
 PART = prompt("part_build123d", example=prompt_file("lid_left.txt"))
@@ -93,6 +100,36 @@ def test_the_example_of_the_requirements_prompt_has_the_form() -> None:
     text = re.sub(r"\s+//.*", "", "{" + example + "\n}")
 
     assert Requirements.model_validate(parse_object(text, step="x")).name == "desk_lamp"
+
+
+@pytest.mark.parametrize(
+    ("name", "form"),
+    [("look", Look), ("observe", Observations), ("judge", Judgement), ("rollback", Decisions), ("brainstorm", Alternatives)],
+)
+def test_the_answer_that_a_prompt_shows_has_the_form_that_is_read(name: str, form: type[BaseModel]) -> None:
+    told = prompt_file(f"{name}.md")
+    start = told.index("\n{") + 1
+    shown, _ = json.JSONDecoder().raw_decode(told[start:])
+
+    form.model_validate(shown)
+    fields = {field for model in (form, *_inner(form)) for field in model.model_fields}
+    assert {field for field in fields if f'"{field}"' not in told} == set()
+
+
+def _inner(form: type[BaseModel]) -> set[type[BaseModel]]:
+    """The forms that a form's fields hold."""
+    arguments = {argument for field in form.model_fields.values() for argument in (field.annotation, *get_args(field.annotation))}
+    return {argument for argument in arguments if isinstance(argument, type) and issubclass(argument, BaseModel)}
+
+
+def test_every_prompt_that_wants_an_object_tells_its_form_and_is_left_alone_by_the_adapter() -> None:
+    for name in ("requirements", "design", "look", "observe", "judge", "rollback", "brainstorm"):
+        assert _TOLD in prompt_file(f"{name}.md"), name
+
+
+def test_every_blank_of_a_prompt_is_filled_by_somebody() -> None:
+    blanks = {blank for file in Path(str(PROMPTS)).glob("*.md") for blank in re.findall(r"\{\{(\w+)\}\}", file.read_text())}
+    assert blanks == {"example", "findings", "failure", "problem", "note", "concept", "count"}
 
 
 def test_the_prompts_have_no_blank_left_and_no_path_or_address() -> None:
