@@ -118,8 +118,11 @@ def _truth(value: Any) -> bool:
     return value
 
 
+_LARGEST_COUNT = 2**31  # JSON knows integers of any length, which no float and no index holds
+
+
 def _whole(value: Any) -> int:
-    if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value) or value != int(value) or value < 0:
+    if isinstance(value, bool) or not isinstance(value, (int, float)) or not 0 <= value <= _LARGEST_COUNT or value != int(value):
         raise _wrong("a whole number of at least 0")
     return int(value)
 

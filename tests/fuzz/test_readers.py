@@ -172,6 +172,12 @@ def test_json_that_ends_on_an_empty_line_is_an_error_of_ours(text: str) -> None:
         AssemblyPlan.loads(text)
 
 
+@pytest.mark.parametrize("count", [10**400, -(10**400), 1e300, 2**40, -1, 0.5])
+def test_a_count_beyond_reason_is_a_finding(count: float) -> None:
+    with pytest.raises(PlanError, match="whole number"):
+        AssemblyPlan.from_json({**PLAN, "freedoms": count})
+
+
 def test_a_colour_that_is_no_number_counts_as_dark(tmp_path: Path) -> None:
     assert color_text([float("nan"), 2.0, -1.0, 1.0]) == "#00ff00"
     assert color_text([0.5, float("inf"), 0.2]) == "#80ff33"
