@@ -126,21 +126,23 @@ class _Step:
             turn = q[self._first : self._first + 4] * np.array([self._sign, self._sign, self._sign, 1.0])[:, None]
             _turn_freely(frame, turned, turn, scratch)
         for move in self._moves:
-            value = q[self._first + move.coordinate] * self._sign
+            value = q[self._first + move.coordinate]
             if move.turns:
-                _turn(frame, turned, move.axis, value, scratch)
+                _turn(frame, turned, move.axis, value * (0.25 * self._sign), scratch)
             else:
-                frame[:, 3] += np.multiply(frame[:, move.axis], value * self._pitch, out=scratch.a)
+                frame[:, 3] += np.multiply(frame[:, move.axis], value * (self._sign * self._pitch), out=scratch.a)
         np.matmul(self._B, frame, out=far)
         np.matmul(self._b, turned, out=far_quaternion)
         far_quaternion *= np.copysign(1.0, far_quaternion[3])
 
 
-def _turn(frame: FloatArray, q: FloatArray, axis: int, angle: FloatArray, scratch: _Scratch) -> None:
-    """Turn frames `(3, 4, w)` and their quaternions `(4, w)` about one of their axes, in place."""
-    half = 0.5 * angle
-    c, s = np.cos(half), np.sin(half)
-    cosine, sine = c * c - s * s, 2.0 * (c * s)
+def _turn(frame: FloatArray, q: FloatArray, axis: int, quarter: FloatArray, scratch: _Scratch) -> None:
+    """Turn frames `(3, 4, w)` and their quaternions `(4, w)` about one of their axes by four times the angle `quarter`, in place."""
+    t = np.tan(quarter)  # NumPy has it in vector instructions where sine and cosine are several times slower
+    k = 2.0 / (t * t + 1.0)
+    c, s = k - 1.0, k * t  # of the half angle
+    twice = s + s
+    cosine, sine = 1.0 - twice * s, twice * c
     i, j = (axis + 1) % 3, (axis + 2) % 3
     _mix(frame[:, i], frame[:, j], cosine, sine, scratch.a, scratch.b)
     _mix(q[i], q[j], c, s, scratch.a[0], scratch.b[0])

@@ -18,10 +18,11 @@ def joint_findings(joints: Sequence[Joint]) -> list[Finding]:
 
 def _doubtful(joints: Sequence[Joint]) -> Sequence[Joint]:
     """Return the joints whose numbers are not clearly right, in order of declaration."""
-    balls = [joint for joint in joints if joint.type is JointType.BALL and not _clear_ball(joint)]
-    special = [joint for joint in joints if joint.lead or joint.driver or joint.type is JointType.SCREW]
-    others = [joint for joint in joints if joint.type is not JointType.BALL]
-    return _in_order(joints, [*balls, *special, *_unclear(others)])
+    types = [joint.type for joint in joints]
+    doubtful = [joint for joint in joints if joint.lead or joint.driver]
+    doubtful += [joint for joint, kind in zip(joints, types, strict=True) if kind in _SPECIAL and not _clear_special(joint)]
+    doubtful += _unclear([joint for joint, kind in zip(joints, types, strict=True) if kind is not JointType.BALL])
+    return _in_order(joints, doubtful)
 
 
 def _in_order(joints: Sequence[Joint], some: Sequence[Joint]) -> Sequence[Joint]:
@@ -29,11 +30,12 @@ def _in_order(joints: Sequence[Joint], some: Sequence[Joint]) -> Sequence[Joint]
     return [joint for joint in joints if id(joint) in wanted] if wanted else ()
 
 
-def _clear_ball(joint: Joint) -> bool:
+def _clear_special(joint: Joint) -> bool:
+    """Tell whether a ball rests upright within its cone and twist; a screw must have a lead, and is looked at for that."""
     limits = joint.limits
     turns = limits.twist is None or limits.twist[0] <= 0.0 <= limits.twist[1]
     leans = limits.cone is None or 0.0 < limits.cone <= math.pi
-    return joint.rest == _NEUTRAL and turns and leans and not limits.lower and not limits.upper
+    return joint.type is JointType.BALL and joint.rest == _NEUTRAL and turns and leans and not limits.lower and not limits.upper
 
 
 def _unclear(joints: Sequence[Joint]) -> Sequence[Joint]:
@@ -52,5 +54,6 @@ def _unclear(joints: Sequence[Joint]) -> Sequence[Joint]:
     return unclear
 
 
+_SPECIAL = frozenset({JointType.BALL, JointType.SCREW})
 _NEUTRAL = JointType.BALL.neutral
 _SIZES = {joint_type: len(joint_type.coordinates) for joint_type in JointType}
