@@ -88,11 +88,22 @@ def _answer(engine: Engine, process: subprocess.Popen[bytes], seconds: float) ->
         process.communicate()
         return Loading(engine, "?", loads=False, message=f"it was not done after {seconds:g} s")
     try:
-        answer = json.loads(out.decode(errors="replace").strip().splitlines()[-1])
+        answer = answer_in(out)
     except (ValueError, IndexError):
         return Loading(engine, "?", loads=False, message=f"its process ended with {_ending(process.returncode)}")
     pairs = tuple((str(a), str(b)) for a, b in answer.pop("excluded", ()))
     return Loading(**answer | {"engine": engine, "simple": tuple(answer.get("simple", ())), "excluded": pairs})
+
+
+def answer_in(out: bytes) -> dict[str, Any]:
+    """Return the JSON object that a process printed, among whatever else its libraries did.
+
+    Raises:
+        ValueError: If there is none.
+        IndexError: The same.
+    """
+    answer: dict[str, Any] = json.loads([line for line in out.decode(errors="replace").splitlines() if line.startswith("{")][-1])
+    return answer
 
 
 def _ending(code: int) -> str:

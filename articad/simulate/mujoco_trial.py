@@ -185,9 +185,10 @@ class Trial:
             wanted[held] = STIFFNESS**2 * error[held] + 2 * STIFFNESS * late[held]
             torque = np.zeros(model.nv)
             mujoco.mj_mulM(model, data, torque, wanted)
-            torque += data.qfrc_bias - data.qfrc_passive
-            acting = [*held, *(free or ())]
-            data.qfrc_applied[acting] = torque[acting]
+            weight = data.qfrc_bias - data.qfrc_passive
+            data.qfrc_applied[held] = torque[held] + weight[held]
+            following = sorted(free or ())  # joints of the same loop are carried, not led
+            data.qfrc_applied[following] = weight[following]
         mujoco.mj_step2(model, data)
         bad = data.warning[int(mujoco.mjtWarning.mjWARN_BADQACC)].number or data.warning[int(mujoco.mjtWarning.mjWARN_BADQPOS)].number
         hinged = self._hinged_dofs() if target is not None else np.zeros(0, dtype=int)

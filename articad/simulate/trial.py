@@ -11,7 +11,7 @@ import tempfile
 from dataclasses import asdict
 from pathlib import Path
 
-from articad.simulate.loading import MEMORY, Engine, load
+from articad.simulate.loading import MEMORY, Engine, answer_in, load
 from articad.simulate.verdict import Outcome
 
 SECONDS = 300.0
@@ -40,7 +40,7 @@ def try_out(engine: Engine, path: Path, *, drivers: tuple[str, ...] = (), second
         except subprocess.TimeoutExpired:
             return Outcome(engine, loading.version, loads=False, message=f"it was not done after {seconds:g} s")
     try:
-        return Outcome.from_json(json.loads(done.stdout.decode(errors="replace").strip().splitlines()[-1]))
+        return Outcome.from_json(answer_in(done.stdout))
     except (ValueError, IndexError, TypeError):
         return Outcome(engine, loading.version, loads=False, message=f"its process ended with exit code {done.returncode}")
 
@@ -58,7 +58,7 @@ def main(arguments: list[str]) -> int:
         from articad.simulate.bullet_trial import run  # noqa: PLC0415
 
         outcome = run(Path(path))
-    print(json.dumps(asdict(outcome)))  # noqa: T201 - this is the answer
+    print("\n" + json.dumps(asdict(outcome)))  # noqa: T201 - this is the answer; PyBullet may have left a line open
     return 0
 
 

@@ -1,0 +1,167 @@
+"""Simulators say whether a model loads, stands, reaches its ranges, keeps its loops and its energy; each failure has a model of its own."""
+
+from __future__ import annotations
+
+import io
+import math
+from pathlib import Path
+
+import pytest
+from PIL import Image
+
+from articad.importers.mjcf import read_mjcf
+from articad.simulate.examine import simulate_assembly, simulate_file
+from articad.simulate.film import film
+from articad.simulate.trial import try_out
+from articad.simulate.verdict import SHARE, Verdict
+from tests.assemblies import all_joint_kinds, four_bar
+
+pytestmark = pytest.mark.engines
+
+ARM = '<geom type="box" size="0.05 0.005 0.005" pos="0.06 0 0"/>'
+MODEL = """<mujoco><compiler angle="radian" autolimits="true"/><option timestep="0.002"/>
+<worldbody>{world}<body name="arm" pos="0 0 0.5"><joint name="turn" axis="0 0 1" range="-1 1" {joint}/>{arm}{more}</body>{bodies}</worldbody>{rest}</mujoco>"""
+
+
+def verdict_on(
+    folder: Path, *, world: str = "", joint: str = "", arm: str = ARM, more: str = "", bodies: str = "", rest: str = ""
+) -> Verdict:
+    path = folder / "model.xml"
+    path.write_text(MODEL.format(world=world, joint=joint, arm=arm, more=more, bodies=bodies, rest=rest))
+    return Verdict(str(path), (try_out("mujoco", path),))
+
+
+def test_a_sound_model_stands_and_moves(tmp_path: Path) -> None:
+    verdict = verdict_on(tmp_path)
+
+    assert verdict.ok, str(verdict.findings)
+    (outcome,) = verdict.outcomes
+    (reach,) = outcome.reaches
+    assert reach.share == pytest.approx(1.0, abs=1e-3)
+    assert outcome.speed_at_rest < 1e-9
+    assert outcome.energy_growth is not None
+    assert outcome.energy_growth <= 1e-3
+
+
+def test_a_post_stops_a_joint_where_geometry_says(tmp_path: Path) -> None:
+    """A ball of radius 5 mm at 60° on a circle of 60 mm: the arm, 5 mm to either side, meets it 10 mm before."""
+    angle = 0.8
+    x, y = 0.06 * math.cos(angle), 0.06 * math.sin(angle)
+    verdict = verdict_on(tmp_path, bodies=f'<body name="post" pos="{x} {y} 0.5"><geom type="sphere" size="0.005"/></body>')
+
+    (finding,) = verdict.findings
+    (reach,) = verdict.outcomes[0].reaches
+    assert finding.code == "E_SIM_RANGE"
+    assert finding.cause == "collision"
+    assert set(finding.parts) == {"arm", "post"}
+    assert reach.high == pytest.approx(angle - math.asin(10 / 60), abs=0.03)
+    assert finding.value == pytest.approx(100 * (reach.high + 1) / 2, abs=0.1)
+    assert not verdict.ok
+
+
+def test_a_post_out_of_the_way_does_not(tmp_path: Path) -> None:
+    assert verdict_on(tmp_path, bodies='<body name="post" pos="0 0.06 0.5"><geom type="sphere" size="0.005"/></body>').ok
+
+
+def test_overlap_at_rest_pushes(tmp_path: Path) -> None:
+    block = '<body name="block" pos="0.1 0.003 0.5"><geom type="box" size="0.02 0.006 0.02"/></body>'
+    verdict = verdict_on(tmp_path, bodies=block)
+
+    assert {"E_SIM_UNSETTLED", "E_SIM_RANGE", "E_SIM_EXPLODES"} & set(verdict.findings.codes)
+    assert not verdict.ok
+
+
+def test_a_loop_that_does_not_close_has_a_residual(tmp_path: Path) -> None:
+    rod = '<body name="rod" pos="0.11 0 0"><joint name="elbow" axis="0 0 1" range="-1 1"/><geom type="box" size="0.03 0.004 0.004" pos="0.03 0 0"/></body>'
+    closed = '<equality><connect body1="rod" body2="world" anchor="0.06 0 {off}"/></equality>'
+    apart = '<equality><connect name="c" site1="tip" site2="pin"/></equality>'
+    tip = rod.replace("</body>", '<site name="tip" pos="0.06 0 0"/></body>')
+
+    good = verdict_on(tmp_path, more=rod, rest=closed.format(off=0))
+    bad = verdict_on(tmp_path, more=tip, world='<site name="pin" pos="0.17 0 0.503"/>', rest=apart)
+
+    assert "E_SIM_RESIDUAL" not in good.findings.codes
+    (finding,) = bad.findings.of("E_SIM_RESIDUAL")
+    assert finding.value == pytest.approx(3.0, rel=0.05)
+
+
+def test_a_spring_that_pushes_away_gains_energy(tmp_path: Path) -> None:
+    """Damping below zero does what no hinge does: it feeds the motion."""
+    verdict = verdict_on(tmp_path, joint='damping="-0.0002"')
+
+    assert "E_SIM_ENERGY" in verdict.findings.codes
+    assert not verdict.ok
+
+
+def test_a_model_without_mass_does_not_load(tmp_path: Path) -> None:
+    verdict = verdict_on(tmp_path, arm='<site name="only"/>')
+
+    (finding,) = verdict.findings
+    assert finding.code == "E_SIM_LOAD"
+    assert "mass and inertia" in finding.message
+    assert verdict.outcomes[0].loads is False
+
+
+def test_numbers_that_go_wild_are_an_explosion(tmp_path: Path) -> None:
+    """A heavy pendulum on a feather, at a time step that no integrator survives."""
+    chain = '<body pos="0.1 0 0"><joint axis="0 1 0" stiffness="1e7"/><geom type="sphere" size="0.001" density="1"/></body>'
+    path = tmp_path / "model.xml"
+    path.write_text(
+        '<mujoco><option timestep="0.05" integrator="RK4"/><worldbody><body><joint axis="0 1 0" springref="90" stiffness="1e6"/>'
+        f'<geom type="sphere" size="0.01"/>{chain}</body></worldbody></mujoco>'
+    )
+
+    verdict = Verdict(str(path), (try_out("mujoco", path),))
+
+    assert not verdict.ok
+    assert {"E_SIM_EXPLODES", "E_SIM_UNSETTLED"} & set(verdict.findings.codes)
+
+
+def test_our_own_exports_are_driven_and_filmed_and_a_crank_that_cannot_turn_round_is_told() -> None:
+    """The crank of this linkage is endless in its declaration only: its dead points are at -67° and 67°, says kinematics."""
+    assembly = four_bar()
+    free = assembly.feasible_range("a")
+
+    verdict = simulate_assembly(assembly, "four_bar", engines=("mujoco",))
+
+    (outcome,) = verdict.outcomes
+    (reach,) = outcome.reaches
+    assert outcome.residual < 1e-6
+    assert verdict.findings.codes == ("E_SIM_RANGE",)
+    assert (reach.joint, reach.tied) == ("a", True)
+    assert reach.high == pytest.approx(free.upper, abs=0.02)
+    strip = film(assembly, outcome)
+    assert strip is not None
+    assert Image.open(io.BytesIO(strip)).width > 240
+
+
+def test_every_kind_of_joint_is_held_and_driven() -> None:
+    verdict = simulate_assembly(all_joint_kinds(), "kinds", engines=("mujoco",))
+
+    (outcome,) = verdict.outcomes
+    assert outcome.loads
+    assert not outcome.exploded
+    assert outcome.residual < 1e-4
+    assert len(outcome.reaches) >= 10
+
+
+def test_bullet_holds_a_model(tmp_path: Path) -> None:
+    pytest.importorskip("pybullet", reason="PyBullet has no wheel for this Python")
+    path = tmp_path / "model.xml"
+    path.write_text(MODEL.format(world="", joint="", arm=ARM, more="", bodies="", rest=""))
+
+    verdict = simulate_file(path, engines=("pybullet",))
+
+    assert verdict.outcomes[0].loads
+    assert verdict.ok, str(verdict.findings)
+
+
+def test_the_film_follows_what_the_engine_says(tmp_path: Path) -> None:
+    verdict_on(tmp_path)
+    outcome = try_out("mujoco", tmp_path / "model.xml")
+
+    values = [frame.values["turn"] for frame in outcome.frames]
+    assert min(values) == pytest.approx(-1, abs=0.02)
+    assert max(values) == pytest.approx(1, abs=0.02)
+    assert film(read_mjcf(tmp_path / "model.xml"), outcome) is not None
+    assert SHARE == 0.95
