@@ -103,6 +103,10 @@ def moved(before: dict[str, SE3], after: dict[str, SE3]) -> tuple[float, float]:
     )
 
 
+def small(found: tuple[float, float], mm: float, rad: float) -> bool:
+    return found[0] <= mm and found[1] <= rad
+
+
 def shaken(rng: np.random.Generator) -> list[float]:
     """Return a motion of up to 20 mm and 30 degrees."""
     axis, direction = (vector / np.linalg.norm(vector) for vector in rng.normal(size=(2, 3)))

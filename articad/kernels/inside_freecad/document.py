@@ -223,7 +223,7 @@ class _Writer:
         source, image = self.connectors[part["source"], connector].Name, self.shapes[part["name"]].Name
         turns = "Normal" in part["expressions"]
         normal = {
-            axis: f"{image}.Normal.{axis}" if turns else f"({n!r})"
+            axis: f"({image}.Normal.{axis} / 1 mm)" if turns else f"({n!r})"
             for axis, n in zip("xyz", part["plane"]["normal"], strict=True)
             if n or turns
         }

@@ -86,13 +86,14 @@ def _solve(document: Any, _: Json) -> Json:
 
 
 def _perturb(document: Any, step: Json) -> Json:
-    """Move one part by `by`, solve, report, and put everything back."""
+    """Move one part by `by`, solve as often as `times` says, report the last and those before, and put everything back."""
     parts = _parts(document)
     before = {name: item.Placement for name, item in parts.items()}
     moved = parts[step["part"]]
     by = App.Placement(App.Vector(*step["by"][:3]), App.Rotation(*step["by"][3:]))
     moved.Placement = moved.Placement * by
-    report = _solve(document, step)
+    solved = [_solve(document, step) for _ in range(step.get("times", 1))]
+    report = solved[-1] | {"before": solved[:-1]}
     for name, item in parts.items():
         item.Placement = before[name]
     return report
