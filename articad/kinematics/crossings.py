@@ -99,8 +99,7 @@ class Crossings:
         if self.backwards.any():
             R[:, self.backwards], p[:, self.backwards] = R[::-1, self.backwards], p[::-1, self.backwards]
         near[..., :3], near[..., 3] = R[0], p[0]
-        back = R[1].swapaxes(-1, -2)
-        far[..., :3], far[..., 3] = back, -(back @ p[1][..., None])[..., 0]
+        far[..., :3], far[..., 3] = R[1].swapaxes(-1, -2), -(R[1] * p[1][..., None]).sum(axis=1)
         return near, far
 
     @cached_property
