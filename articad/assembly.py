@@ -395,6 +395,18 @@ class Assembly:
         poses = Poses(self.mechanism.parts, self.poses(self.mechanism.rest if q is None else q))
         return MassProperties.combined([part.mass.moved(poses[name]) for name, part in self.parts.items() if part.mass is not None])
 
+    def to_plan(self) -> AssemblyPlan:
+        """Return the plan it was made from, with its parameters as they are, or a plan that tells it anew.
+
+        What such a plan cannot hold, shapes above all, `articad.export.plan.write_plan` lists.
+
+        Raises:
+            UnrepresentableError: If it rests where a plan cannot let it rest.
+        """
+        from articad.export.plan import plan_of  # noqa: PLC0415 - above this module
+
+        return plan_of(self)[0]
+
     def render(self, views: Sequence[str] = ("iso",), **options: Any) -> dict[str, Image.Image]:
         """Draw the assembly from several sides; see `articad.render.render_views` for the options."""
         from articad.render import render_views  # noqa: PLC0415 - pictures are not needed to assemble

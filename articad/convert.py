@@ -12,6 +12,7 @@ from articad.export.bundle import Bundle
 from articad.export.freecad import write_freecad
 from articad.export.gltf import write_glb
 from articad.export.mjcf import write_mjcf
+from articad.export.plan import write_plan
 from articad.export.sdf import write_sdf
 from articad.export.step import write_step
 from articad.export.threemf import write_3mf
@@ -21,6 +22,7 @@ from articad.findings import Finding
 from articad.importers.freecad import read_freecad
 from articad.importers.mjcf import read_mjcf
 from articad.importers.urdf import read_urdf
+from articad.plan.schema import AssemblyPlan
 
 WRITERS: Final[Mapping[str, Callable[..., Bundle]]] = {
     "urdf": write_urdf,
@@ -31,10 +33,30 @@ WRITERS: Final[Mapping[str, Callable[..., Bundle]]] = {
     "step": write_step,
     "glb": write_glb,
     "3mf": write_3mf,
+    "plan": write_plan,
 }
 """Writer of each format: `write(assembly, *, strict=False) -> Bundle`."""
 
-READERS: Final[Mapping[str, Callable[..., Assembly]]] = {".urdf": read_urdf, ".xml": read_mjcf, ".mjcf": read_mjcf, ".fcstd": read_freecad}
+
+def read_plan(path: str | Path, *, root: str | Path | None = None) -> Assembly:
+    """Build the plan of a file, with the part scripts in the folder `parts` beside it.
+
+    Args:
+        path: The file, `.json`.
+        root: Unused: a plan names no files.
+    """
+    del root
+    path = Path(path)
+    return Assembly.from_plan(AssemblyPlan.load(path), path.parent / "parts")
+
+
+READERS: Final[Mapping[str, Callable[..., Assembly]]] = {
+    ".urdf": read_urdf,
+    ".xml": read_mjcf,
+    ".mjcf": read_mjcf,
+    ".fcstd": read_freecad,
+    ".json": read_plan,
+}
 """Reader of each file name's ending."""
 
 FORMAT_OF: Final[Mapping[str, str]] = {
@@ -48,6 +70,7 @@ FORMAT_OF: Final[Mapping[str, str]] = {
     ".stp": "step",
     ".glb": "glb",
     ".3mf": "3mf",
+    ".json": "plan",
 }
 """Format that a file name's ending asks for."""
 
@@ -56,7 +79,7 @@ def read(path: str | Path, *, root: str | Path | None = None) -> Assembly:
     """Read an assembly from a file in any format that articad reads.
 
     Args:
-        path: A URDF, MJCF or FreeCAD file.
+        path: A URDF, MJCF or FreeCAD file, or a plan with its part scripts.
         root: Folder that meshes may be read from; the file's own by default.
 
     Raises:

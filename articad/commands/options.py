@@ -8,7 +8,7 @@ from typing import Final
 from articad.commands.command import argument, closest
 
 # The keys of `articad.record.WRITERS`, which --help must not load.
-FORMATS: Final = ("urdf", "mjcf", "freecad", "step", "glb", "3mf", "sdf", "usd")
+FORMATS: Final = ("urdf", "mjcf", "freecad", "step", "glb", "3mf", "sdf", "usd", "plan")
 USUAL: Final = ("urdf", "mjcf")
 
 
@@ -94,7 +94,9 @@ MODEL_ARGUMENTS = (
     argument("--pick", metavar="N", type=positive, default=None, help="propose alternatives and make the N-th, without asking"),
     argument("--no-look", dest="look", action="store_false", help="compare no pictures of parts with their specification"),
     argument("--no-inspection", dest="inspection", action="store_false", help="have the assembly neither observed nor judged by models"),
-    argument("--variant", choices=["full", "no-rollback"], default="full", help="no-rollback is the paper's ablation (full)"),
+    argument("--variant", choices=["full", "no-rollback", "no-memory"], default="full", help="the others are the paper's ablations (full)"),
+    argument("--memory", metavar="DIR", help="the store of earlier runs ($ARTICAD_MEMORY, or the user's own)"),
+    argument("--docs", action="store_true", help="have the model name what it would look up in the kernel's documentation, and tell it"),
     argument("--rounds", metavar="N", type=positive, default=3, help="designs that are built and checked (3)"),
     argument("--repairs", metavar="N", type=positive, default=3, help="attempts to mend one part (3)"),
     argument("--max-calls", metavar="N", type=positive, default=60, help="model calls (60)"),

@@ -13,7 +13,7 @@ from articad.errors import UnrepresentableError
 from articad.export.bundle import Loss
 from articad.findings import Finding
 
-Format = Literal["urdf", "mjcf", "sdf", "usd", "glb", "3mf", "step"]
+Format = Literal["urdf", "mjcf", "sdf", "usd", "glb", "3mf", "step", "plan"]
 
 MECHANISM_FORMATS: tuple[Format, ...] = ("urdf", "mjcf", "sdf", "usd")  # hold joints; the others hold shapes
 
@@ -261,6 +261,28 @@ TABLE: dict[str, dict[Format, Row]] = {
         "usd": Row("a name of letters, digits and underscores", "the name as given"),
     },
 }
+
+
+_PLAN: dict[str, Row] = {
+    "mass.missing": Row("a density of 1000 kg/m³", "the mass of a moving part is not known", refused=True),
+    "name": Row("a name of lower-case words", "the name as given"),
+    "plan.shape": Row("the sides of each part's bounding box", "the shapes: a plan says what to build, and scripts build it", refused=True),
+    "plan.mass": Row("a material of the density that gives its mass", "centre of mass and inertia where they are not those of a solid"),
+    "plan.density": Row("a density of 1000 kg/m³", "its mass: its shape encloses no volume that it could be spread over", refused=True),
+    "plan.rest": Row("a rest at zero", "where the joint rests: balls, planar and universal joints of a plan rest at zero"),
+    "plan.endless": Row(
+        "a far limit, 1e6 mm or 100 turns away", "the coordinate is endless; a plan says so of revolute and cylindrical joints only"
+    ),
+    "plan.capacity": Row("the first effort or velocity", "the others: a plan states one for turning and one for sliding"),
+}
+"""What a plan does not hold as it is; everything else that a mechanism has, it was made for."""
+
+TABLE |= {key: {} for key in _PLAN if key not in TABLE}
+for _key, _rows in TABLE.items():
+    if _key in _PLAN or (
+        "urdf" in _rows and not _key.startswith(("hull", "collision", "limits", "slide.", "loop.points", "loop.mimic", "loop.rest"))
+    ):
+        _rows["plan"] = _PLAN.get(_key, Row("the same"))
 
 
 def losses_of(format_name: Format, features: Iterable[Feature]) -> tuple[Loss, ...]:

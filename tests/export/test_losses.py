@@ -10,8 +10,10 @@ import pytest
 from articad.assembly import Assembly
 from articad.errors import UnrepresentableError
 from articad.export.convex import whole_hull
+from articad.export.features import features_of
 from articad.export.losses import MECHANISM_FORMATS, TABLE, losses_of
 from articad.export.mjcf import write_mjcf
+from articad.export.plan import write_plan
 from articad.export.sdf import write_sdf
 from articad.export.urdf import write_urdf
 from articad.export.usd import write_usd
@@ -21,7 +23,7 @@ from articad.geometry.shapes import box, tube
 from articad.kinematics import declare
 from articad.kinematics.joints import Coupling, JointType
 from articad.plan.resolve import Material
-from tests.assemblies import block, frame, geared_pair
+from tests.assemblies import all_joint_kinds, block, frame, geared_pair
 
 WRITERS: dict[str, Any] = {"urdf": write_urdf, "mjcf": write_mjcf, "sdf": write_sdf, "usd": write_usd}
 
@@ -199,3 +201,32 @@ def test_the_hull_of_an_open_mesh_has_no_known_error() -> None:
 
     assert whole_hull(TriMesh(solid.vertices, solid.triangles[:-1])).more == 0
     assert whole_hull(solid).meshes[0].volume == pytest.approx(1000)
+
+
+@pytest.mark.parametrize("kind", JOINTS)
+def test_a_plan_holds_every_joint_kind(kind: str) -> None:
+    assert TABLE[kind]["plan"].lost == ""
+    assert [loss.where for loss in write_plan(pair(JOINTS[kind])).losses] == ["parts", "parts.base", "parts.part"]
+
+
+def test_a_plan_tells_what_it_has_no_words_for() -> None:
+    endless = replace(JOINTS["slider"](*_ends()), limits=declare.revolute("j", *_ends(), limits="endless").limits)
+    capable = replace(JOINTS["universal"](*_ends()), effort=(1.0, 2.0))
+
+    assert ("joints.j", TABLE["plan.endless"]["plan"].lost) in [
+        (loss.where, loss.lost) for loss in write_plan(pair(lambda *_: endless)).losses
+    ]
+    assert ("joints.j", TABLE["plan.capacity"]["plan"].lost) in [
+        (loss.where, loss.lost) for loss in write_plan(pair(lambda *_: capable)).losses
+    ]
+    with pytest.raises(UnrepresentableError, match="shapes"):
+        write_plan(pair(JOINTS["fixed"]), strict=True)
+
+
+def test_every_feature_of_an_assembly_has_a_row_for_a_plan() -> None:
+    plan_only = {key for key in TABLE if key.startswith("plan.")}
+
+    assert all(
+        "plan" in TABLE[feature.key] for feature in features_of(all_joint_kinds()) if not feature.key.startswith(("limits", "slide"))
+    )
+    assert all(set(TABLE[key]) == {"plan"} for key in plan_only)

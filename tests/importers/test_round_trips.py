@@ -1,0 +1,212 @@
+"""Plan to URDF to MJCF to plan and back: every example, and 200 random mechanisms of all joint kinds, with and without loops."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from articad.assembly import Assembly
+from articad.connectors.mate import flip
+from articad.connectors.se3 import SE3
+from articad.errors import KinematicsError, UnrepresentableError
+from articad.export.mjcf import write_mjcf
+from articad.export.plan import plan_name, plan_of, write_plan
+from articad.export.urdf import write_urdf
+from articad.geometry.part import Part
+from articad.importers.mjcf import read_mjcf
+from articad.importers.urdf import read_urdf
+from articad.kinematics import declare
+from articad.kinematics.joints import Joint, JointType
+from articad.kinematics.mechanism import Mechanism
+from articad.plan.check import check_plan
+from articad.plan.resolve import resolve
+from articad.plan.schema import AssemblyPlan
+from tests.assemblies import all_joint_kinds, block, frame, geared_pair, random_configurations, random_tree
+
+FloatArray = NDArray[np.float64]
+
+ROOT = Path(__file__).resolve().parents[2]
+EXAMPLES = [*sorted(path.parent for path in ROOT.glob("examples/*/plan.json")), ROOT / "tests/fixtures/five_joints"]
+TOLERANCE = 1e-9  # m, and entries of rotation matrices
+CONFIGURATIONS = 1000
+
+
+def random_loop(seed: int) -> Assembly:
+    """A random chain of joints that move, closed by a joint of a random kind where its ends are at rest."""
+    rng = np.random.default_rng(seed)
+    kinds = [JointType.REVOLUTE, JointType.SLIDER, JointType.CYLINDRICAL, JointType.UNIVERSAL, JointType.REVOLUTE]
+    parts: list[Part] = [block("base", root=frame(), tip=_random_frame(rng))]
+    joints = []
+    for index in range(int(rng.integers(4, 7))):
+        part = block(f"part_{index}", root=_random_frame(rng), tip=_random_frame(rng))
+        joints.append(_joint(kinds[rng.integers(len(kinds))], f"joint_{index}", parts[-1]["tip"], part["root"]))
+        parts.append(part)
+    tip = SE3.identity()
+    for joint in joints:
+        tip = tip @ joint.T_parent_connector @ joint.motion(joint.rest) @ flip(joint.mate) @ joint.T_child_connector.inverse()
+    kind = [JointType.REVOLUTE, JointType.BALL, JointType.CYLINDRICAL, JointType.UNIVERSAL, JointType.PLANAR, JointType.SLIDER][seed % 6]
+    draft = _joint(kind, "closing", parts[0]["root"], parts[-1]["tip"])
+    seat = tip @ parts[-1]["tip"].connector.frame @ flip(draft.mate).inverse() @ draft.motion(draft.rest).inverse()
+    base = block("base", root=seat, tip=parts[0]["tip"].connector.frame)
+    closing = _joint(kind, "closing", base["root"], parts[-1]["tip"])
+    return Assembly.from_parts("loop", parts=[base, *parts[1:]], joints=[*joints, closing], ground="base")
+
+
+def _random_frame(rng: np.random.Generator) -> SE3:
+    return SE3.exp(np.concatenate([rng.uniform(-80, 80, 3), rng.uniform(-1, 1, 3)]))
+
+
+def _joint(kind: JointType, name: str, near: Any, far: Any) -> Joint:
+    made: dict[JointType, Callable[[], Joint]] = {
+        JointType.REVOLUTE: lambda: declare.revolute(name, near, far, limits=(-2.0, 2.0)),
+        JointType.SLIDER: lambda: declare.slider(name, near, far, limits=(-90.0, 90.0)),
+        JointType.CYLINDRICAL: lambda: declare.cylindrical(name, near, far, travel=(-90.0, 90.0), angle=(-2.0, 2.0)),
+        JointType.BALL: lambda: declare.ball(name, near, far, cone=1.4),
+        JointType.UNIVERSAL: lambda: declare.universal(name, near, far, a=(-1.2, 1.2), b=(-1.2, 1.2)),
+        JointType.PLANAR: lambda: declare.planar(name, near, far, x=(-90.0, 90.0), y=(-90.0, 90.0), angle=(-2.0, 2.0)),
+    }
+    return made[kind]()
+
+
+def there_and_back(assembly: Assembly, folder: Path) -> Assembly:
+    """Return the assembly after a way through URDF and MJCF."""
+    urdf = write_urdf(assembly, meshes="obj")
+    urdf.write(folder / "urdf")
+    mjcf = write_mjcf(read_urdf(folder / "urdf" / urdf.main), meshes="obj")
+    mjcf.write(folder / "mjcf")
+    return read_mjcf(folder / "mjcf" / mjcf.main)
+
+
+def configurations(mechanism: Mechanism, seed: int) -> FloatArray:
+    """A thousand configurations near rest, where loops close."""
+    rng = np.random.default_rng(seed)
+    scale = np.array([1.0 if driver.unit == "mm" else 0.01 for driver in mechanism.drivers])
+    return mechanism.rest + scale * rng.uniform(-1, 1, (CONFIGURATIONS, len(scale)))
+
+
+def closed(mechanism: Mechanism, q: FloatArray) -> FloatArray:
+    """Return the configurations that close, at least the rest."""
+    columns = {name: index for index, name in enumerate(driver.name for driver in mechanism.drivers)}
+    for joint in mechanism.joints:  # quaternions of drivers are of unit length
+        if joint.type is JointType.BALL and f"{joint.name}.qw" in columns:
+            at = [columns[f"{joint.name}.{axis}"] for axis in ("qx", "qy", "qz", "qw")]
+            q[:, at] /= np.linalg.norm(q[:, at], axis=1, keepdims=True)
+    while len(q):
+        try:
+            mechanism.poses(q)
+        except KinematicsError:
+            q = mechanism.rest + (q[: len(q) // 2] - mechanism.rest) / 4
+        else:
+            return q
+    return mechanism.rest[None]
+
+
+def bounds(joint: Joint) -> list[float]:
+    limits = joint.limits
+    return [*limits.lower, *limits.upper, math.pi if limits.cone is None else limits.cone, *(limits.twist or ())]
+
+
+def metres(poses: SE3) -> FloatArray:
+    matrices = poses.matrix.copy()
+    matrices[..., :3, 3] /= 1000
+    return matrices
+
+
+def assert_equal(first: Assembly, again: Assembly, q: FloatArray) -> None:
+    """Names, limits, masses and poses of an assembly, and of the plan that tells it, are the same."""
+    assert list(again.parts) == list(first.parts)
+    assert again.joints == first.joints
+    assert again.mechanism.couplings == first.mechanism.couplings
+    for name, part in first.parts.items():
+        assert (again.parts[name].mass is None) == (part.mass is None)
+        if part.mass is not None:
+            assert again.parts[name].mass.mass == part.mass.mass  # type: ignore[union-attr]
+            assert (again.parts[name].mass.inertia == part.mass.inertia).all()  # type: ignore[union-attr]
+    here = metres(first.poses(q))
+    assert np.abs(metres(again.poses(q)) - here).max() < TOLERANCE
+    assert_told(first, again.to_plan(), q, here)
+
+
+def assert_told(first: Assembly, plan: AssemblyPlan, q: FloatArray, here: FloatArray) -> None:
+    told = resolve(AssemblyPlan.loads(plan.dumps()))
+    assert list(told.parts) == [plan_name(name) for name in first.parts]
+    for joint, given in zip(told.joints, first.joints, strict=True):
+        assert (joint.type, joint.mate) == (given.type, given.mate)
+        assert bounds(joint) == pytest.approx(bounds(given), rel=1e-15)
+    assert [driver.name for driver in told.mechanism.drivers] == [driver.name for driver in first.drivers]
+    assert np.abs(metres(told.mechanism.poses(q)) - here).max() < TOLERANCE
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("example", EXAMPLES, ids=lambda path: path.name)
+def test_an_example_comes_back(example: Path, tmp_path: Path) -> None:
+    plan = AssemblyPlan.load(example)
+    first = Assembly.from_plan(plan, example / "parts")
+    again = there_and_back(first, tmp_path)
+    mechanism = first.mechanism
+    if mechanism.loop_joints or mechanism.couplings:
+        q = closed(mechanism, configurations(mechanism, 0))
+    else:
+        q = random_configurations(first, 0, CONFIGURATIONS)
+
+    assert_equal(first, again, q)
+    assert first.to_plan() == plan
+
+
+@pytest.mark.parametrize("seed", range(100))
+def test_a_random_tree_comes_back(seed: int, tmp_path: Path) -> None:
+    first = random_tree(seed, 3 + seed % 7)
+
+    assert_equal(first, there_and_back(first, tmp_path), random_configurations(first, seed, CONFIGURATIONS))
+
+
+@pytest.mark.parametrize("seed", range(100))
+def test_a_random_loop_comes_back(seed: int, tmp_path: Path) -> None:
+    first = random_loop(seed)
+    q = closed(first.mechanism, configurations(first.mechanism, seed)[:20])
+
+    assert_equal(first, there_and_back(first, tmp_path), q)
+
+
+def test_gears_come_back(tmp_path: Path) -> None:
+    first = geared_pair()
+
+    assert_equal(first, there_and_back(first, tmp_path), np.linspace(-3, 3, CONFIGURATIONS)[:, None])
+
+
+def test_a_plan_that_is_told_is_free_of_errors_and_tells_its_losses() -> None:
+    plan, _ = plan_of(all_joint_kinds())
+    losses = write_plan(all_joint_kinds()).losses
+
+    assert check_plan(plan).ok
+    assert {loss.where for loss in losses if loss.lost.startswith("where the joint rests")} == {"joints.knob"}
+    assert {loss.where for loss in losses if loss.refused} == {"parts"}
+
+
+def test_names_become_plan_names_each_once() -> None:
+    base = block("Base-Link", a=frame(), b=frame())
+    parts = [base, *(block(name, root=frame()) for name in ("l_1", "L 1", "for", "3rd", "x" * 60, "x" * 61))]
+    joints = [declare.revolute(f"J{i}", base["a"], part["root"], limits=(0, 1)) for i, part in enumerate(parts[1:])]
+    plan = Assembly.from_parts("My Robot", parts=parts, joints=joints, ground="Base-Link").to_plan()
+
+    assert [part.name for part in plan.parts] == ["base_link", "l_1", "l_1_2", "for_1", "n3rd", "x" * 40, "x" * 38 + "_2"]
+    assert plan.ground == "base_link"
+
+
+def test_a_loop_that_rests_where_a_plan_cannot_is_refused() -> None:
+    base, part = block("base", a=frame(), b=frame(at=(30, 0, 0))), block("part", a=frame(), b=frame())
+    joints = [
+        replace(_joint(JointType.PLANAR, "p", base["a"], part["a"]), rest=(30.0, 0.0, 0.0)),
+        declare.revolute("r", base["b"], part["b"], limits=(-1, 1)),
+    ]
+    assembly = Assembly.from_parts("p", parts=[base, part], joints=joints, ground="base")
+
+    with pytest.raises(UnrepresentableError, match="rests at zero"):
+        assembly.to_plan()
