@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import argparse
 import io
+import json
 import math
 import statistics
 import subprocess
@@ -29,6 +30,8 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 from articad.connectors import SE3
 from articad.kinematics import Configuration, Joint, JointLimits, JointType, Mechanism, forward
+from articad.plan.resolve import resolve
+from articad.plan.schema import AssemblyPlan
 from benchmarks.timing import Goal, Table, Times, measure, report
 
 cpu_time = partial(measure, clock=time.process_time)  # every method here uses one thread
@@ -257,6 +260,38 @@ def single_table(n: int) -> Table:
     return Table(f"poses of one configuration, chain of {n}", cpu_time(methods), (goal,))
 
 
+def plan_table(n: int) -> Table:
+    """Return what comes before: reading a plan's text, and working out its expressions and frames."""
+    connectors = [
+        {"name": name, "label": name, "o": o, "z": [0, 1, 0], "x": [1, 0, 0]}
+        for name, o in (("root", [0, 0, 0]), ("tip", [0, 0, "length"]))
+    ]
+    link = {"description": "link", "material": "steel", "connectors": connectors}
+    poses = [{"rest_pose": {"at": [0, 0, f"{i} * length"]}} for i in range(n)]
+    joints = [{"type": "revolute", "parent": f"p{i - 1}.tip", "child": f"p{i}.root", "angle_deg": [-90, 90]} for i in range(1, n)]
+    text = json.dumps(
+        {
+            "schema": "articad.plan/1",
+            "name": "chain",
+            "ground": "p0",
+            "freedoms": n - 1,
+            "description": "chain",
+            "parameters": [{"name": "length", "value": 10}],
+            "materials": [{"name": "steel", "density_kg_m3": 7800, "color": "#888888"}],
+            "parts": [{"name": f"p{i}"} | link | pose for i, pose in enumerate(poses)],
+            "joints": [{"name": f"j{i}"} | joint for i, joint in enumerate(joints)],
+        }
+    )
+    plan = AssemblyPlan.loads(text)
+    resolved = resolve(plan)
+    methods = {
+        "read and validate the text": lambda: AssemblyPlan.loads(text),
+        "expressions, frames and joints": lambda: resolve(plan),
+        "joints to arrays": lambda: Mechanism(tuple(resolved.parts), resolved.ground, resolved.joints),
+    }
+    return Table(f"what comes before arrays: a plan of {n} parts", cpu_time(methods, rounds=7))
+
+
 def import_table() -> Table:
     rounds: dict[str, list[float]] = {code: [] for code in IMPORTS}
     for _ in range(9):
@@ -301,7 +336,7 @@ def main() -> int:
     chains = {n: build_table(n, "chain") for n in BUILD_GOALS}
     tables = [*chains.values(), *(build_table(n, "star") for n in BUILD_GOALS)]
     tables += [batch_table(n, batch) for n, batch in ((10, 10_000), (50, 10_000), (1000, 4096))]
-    tables += [*(single_table(n) for n in (10, 50, 100)), thousand_table(), import_table()]
+    tables += [*(single_table(n) for n in (10, 50, 100)), plan_table(200), thousand_table(), import_table()]
     missed = report(tables, options.out)
     print(growth(chains))
     if numba is None:
