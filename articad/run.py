@@ -60,6 +60,7 @@ _IMAGES, _PLANS, _PARTS, _REMOVED, _ATTEMPTS, _REPLIES, _SUPERSEDED, _EXPORT = (
 )
 _SCRIPT, _BRIEF, _CONNECTORS, _PART, _STL = "script.py", "brief.json", "connectors.json", "part.json", "part.stl"
 _OUTCOME, _PICTURE = "outcome.json", "partial.png"
+_RECALLED = "recalled"
 _VIEWS, _MOTION, _PAGE = "views", "motion", "report.html"
 _CERTIFICATE, _CERTIFIED = "certificate.json", "certificate"
 _TEMPORARY = re.compile(r"\..+\.tmp-[0-9a-f]{8}$")
@@ -256,6 +257,14 @@ class Run:
     def save_alternatives(self, report: Json) -> None:
         """Keep what an open request could have become, and what was chosen."""
         self._write_json(_ALTERNATIVES, report)
+
+    def recalled(self, label: str) -> Json | None:
+        """Return what was retrieved for a request from memory or documentation, or None."""
+        return self._read_json(f"{_RECALLED}/{label}.json")
+
+    def save_recalled(self, label: str, retrieved: Json) -> None:
+        """Keep what was retrieved for a request: it is part of what was asked."""
+        self._write_json(f"{_RECALLED}/{label}.json", retrieved)
 
     def reply(self, step: str) -> Json | None:
         """Return the recorded request and reply of a step, or None."""

@@ -21,6 +21,7 @@ from articad.agents.generation import REPAIRS
 from articad.agents.inspection import Verdict, inspect, verdict_of
 from articad.agents.llm import LLM, Image, Recorded, Replay, closed_port
 from articad.agents.pictures import offence_picture
+from articad.agents.recollection import KeptDocumentation, KeptMemory
 from articad.agents.requirements import Requirements, analyse
 from articad.agents.retrieval import Documentation, Memory
 from articad.agents.rollback import Repair, Router
@@ -36,7 +37,7 @@ from articad.run import Run, RunRequest, UserImage, differences, open_or_create
 
 ROUNDS: Final = 3
 FORMATS: Final = ("urdf", "mjcf")
-Variant = Literal["full", "no-rollback"]
+Variant = Literal["full", "no-rollback", "no-memory"]
 Brainstorm = Literal["auto", "always", "never"]
 _SHOWN_PLACES = 3  # pictures of offending places that one agent gets at once
 
@@ -108,14 +109,16 @@ def generate(
     pictures = [UserImage.read(image) for image in images]
     pictures += [UserImage.read(image, part) for part, image in sorted((part_images or {}).items())]
     kernel = kernel or kernel_named("build123d", sandbox=sandbox)
-    rolls_back = variant == "full"
+    rolls_back = variant != "no-rollback"
+    memory = None if variant == "no-memory" else memory
     options: dict[str, Any] = {"task": "generate", "designs": designs, "repairs": repairs, "rounds": rounds, "formats": list(formats)}
     options |= {"kernel": kernel.name, "variant": variant, "look": look and rolls_back, "inspection": inspection and rolls_back}
     options |= {"ideas": "always" if pick is not None else ideas, "pick": pick, "finetune": True}
     request = RunRequest(prompt=prompt, images=tuple(pictures), options=options)
     with open_or_create(request, out) as run:
-        shop = Workshop(run, Recorded(llm, run), kernel, cache or BuildCache(), jobs, progress, memory, documentation)
-        _Line(shop, partial(_chosen_by_user, pick, choose), memory).work()
+        known, told = KeptMemory(run, memory), KeptDocumentation(run, documentation)
+        shop = Workshop(run, Recorded(llm, run), kernel, cache or BuildCache(), jobs, progress, known, told)
+        _Line(shop, partial(_chosen_by_user, pick, choose), known).work()
     return run
 
 
@@ -158,12 +161,10 @@ def replay(
     kernel: PartKernel | None = None,
     sandbox: Literal["strict", "weak"] = "strict",
     cache: BuildCache | None = None,
-    memory: Memory | None = None,
-    documentation: Documentation | None = None,
     jobs: int | None = None,
     progress: Progress | None = None,
 ) -> Replayed:
-    """Make a recorded run again, from its replies alone: no key, no network.
+    """Make a recorded run again, from its replies and what was retrieved for it: no key, no network, no store.
 
     Args:
         recording: The run to repeat.
@@ -172,8 +173,6 @@ def replay(
         kernel: As for `generate`.
         sandbox: As for `generate`.
         cache: As for `generate`; `BuildCache(None)` builds every part anew.
-        memory: As for `generate`, as it was when the run was recorded.
-        documentation: As for `generate`.
         jobs: As for `generate`.
         progress: As for `generate`.
 
@@ -185,8 +184,9 @@ def replay(
     answers = Replay(source, strict=strict)
     with Run.create(source.request, out=out, version=source.version) as run:
         kernel = kernel or kernel_named(str(source.request.options.get("kernel", "build123d")), sandbox=sandbox)
-        shop = Workshop(run, Recorded(answers, run), kernel, cache or BuildCache(), jobs, progress, memory, documentation)
-        _Line(shop, partial(_chosen_before, source), memory).work()
+        known, told = KeptMemory(run, recorded=source), KeptDocumentation(run, recorded=source)
+        shop = Workshop(run, Recorded(answers, run), kernel, cache or BuildCache(), jobs, progress, known, told)
+        _Line(shop, partial(_chosen_before, source), known).work()
         for finding in answers.findings:
             run.trace_finding(finding)
     return Replayed(run, tuple(differences(source, run)), answers.findings)

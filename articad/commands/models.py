@@ -33,6 +33,8 @@ def _generate(options: argparse.Namespace, terminal: Terminal) -> Report:
     from articad.agents.live import DEFAULT_MODEL, LiteLLM
     from articad.agents.llm import Budget
     from articad.agents.pipeline import generate
+    from articad.agents.recollection import StoredDocumentation, StoredMemory, remember
+    from articad.memory.experience import ExperienceStore
     from articad.record import kernel_named
 
     name = options.model or os.environ.get("ARTICAD_MODEL") or DEFAULT_MODEL
@@ -40,6 +42,7 @@ def _generate(options: argparse.Namespace, terminal: Terminal) -> Report:
     sees = bool(getattr(model, "sees", True))
     if not sees and (options.look or options.inspection):
         terminal.say(f"{options.vision_model or name} does not see: parts and assembly are held to exact checks alone.")
+    store = ExperienceStore(options.memory)
     budget = Budget(model, calls=options.max_calls, tokens=options.max_tokens, cost=options.max_cost, minutes=options.max_minutes)
     with terminal.progress("Generating") as tell:
         run = generate(
@@ -59,9 +62,13 @@ def _generate(options: argparse.Namespace, terminal: Terminal) -> Report:
             pick=options.pick,
             choose=_asking(terminal) if _is_asked(options) else None,
             variant=options.variant,
+            memory=StoredMemory(store),
+            documentation=StoredDocumentation() if options.docs else None,
             jobs=options.jobs,
             progress=tell,
         )
+    if options.variant != "no-memory" and (case := remember(run, store)) is not None:
+        terminal.detail(f"Remembered as {case.id[:8]}, {case.kind}, in {store.folder}.")
     if options.pictures:
         draw(run)
     report = reported(run, terminal)

@@ -6,7 +6,6 @@ import json
 from collections.abc import Mapping, Sequence
 
 from articad.connectors import SE3
-from articad.findings import Findings
 from articad.kinematics.joints import Joint
 from articad.memory.case import Case, PartExample
 from articad.plan.brief import brief
@@ -20,12 +19,12 @@ def case_of(
     kernel: str,
     prompt: str,
     requirements: str = "",
-    findings: Findings | None = None,
+    defects: Sequence[str] = (),
     repairs: Sequence[str] = (),
     scores: Mapping[str, float] | None = None,
     version: str = "",
 ) -> Case:
-    """Return the case of a finished assembly: an issue if an error was measured, else a good one.
+    """Return the case of a finished assembly: an issue if it has a defect, else a good one.
 
     Args:
         resolved: The plan with its numbers.
@@ -33,12 +32,11 @@ def case_of(
         kernel: Whose dialect they are.
         prompt: What was asked for.
         requirements: What was understood of it.
-        findings: What the checks found at the end.
+        defects: Errors that were found at the end.
         repairs: What went wrong on the way and was mended.
         scores: Numbers of the review.
         version: Of articad.
     """
-    defects = tuple(str(finding) for finding in (findings or Findings()).errors)
     parts = [PartExample(name, specification(resolved, name), kernel, scripts[name].decode(errors="replace")) for name in sorted(scripts)]
     return Case(
         kind="issue" if defects else "good",
@@ -47,7 +45,7 @@ def case_of(
         design=design_in_words(resolved),
         parts=tuple(parts),
         repairs=tuple(repairs),
-        defects=defects,
+        defects=tuple(defects),
         scores=dict(scores or {}),
         articad=version,
     )

@@ -1,0 +1,220 @@
+"""Recollection: the stores of experience and documentation as the agents ask for them, and what a run keeps of the answers.
+
+What was retrieved is part of what was asked, so it is kept in the run: a replay needs no store, and a store that has
+grown since changes nothing. Cases and snippets are data to whoever reads them: they are shown as records, on lines that
+cannot end the section they stand in.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, Final
+
+from articad.agents.forms import Form, ask, reader, schema_of
+from articad.agents.llm import LLM, system, user
+from articad.agents.prompts import prompt
+from articad.agents.requirements import Requirements
+from articad.agents.retrieval import Documentation, Memory, NoDocumentation, NoMemory, Recalled
+from articad.memory.case import Case
+from articad.memory.distil import case_of
+from articad.memory.documentation import DocumentationStore
+from articad.memory.experience import ExperienceStore
+from articad.plan.resolve import resolve
+from articad.plan.schema import AssemblyPlan
+from articad.run import Run
+
+Json = dict[str, Any]
+
+_LEAST: Final = 0.2  # likeness below which a case says nothing about a request; unrelated products are under 0.15
+_CASES: Final = 2  # of each kind that a designer is told
+_EXAMPLES: Final = 1  # parts that a modeller is shown
+_DESIGN_CHARACTERS: Final = 4000  # of a case's design
+_SCRIPT_CHARACTERS: Final = 6000
+_REPAIRS: Final = 8  # findings of a case that were mended on the way
+_NAMES: Final = 12  # of an API that are looked up at once
+
+
+class StoredMemory:
+    """Experience from a store: designers are told of good and bad runs, modellers of good ones only.
+
+    Args:
+        store: The store.
+    """
+
+    def __init__(self, store: ExperienceStore) -> None:
+        self._store = store
+
+    def for_design(self, prompt: str, requirements: Requirements) -> Recalled:
+        """Return the cases most like a request: good ones as heuristics, issues as constraints."""
+        text = f"{prompt}\n{requirements.summary}".strip()
+        good, issue = (self._store.like_request(text, kind, limit=_CASES, least=_LEAST) for kind in ("good", "issue"))
+        return Recalled([_heuristic(hit.case) for hit in good], [_constraint(hit.case) for hit in issue])
+
+    def for_part(self, specification: str, kernel: str) -> Sequence[str]:
+        """Return worked parts whose specification is alike, in the kernel's dialect, of good cases only."""
+        hits = self._store.like_part(specification, kernel, limit=_EXAMPLES, least=_LEAST)
+        parts = [next(part for part in hit.case.parts if part.name == hit.item and part.kernel == kernel) for hit in hits]
+        return [f"Specification: {_quoted(part.specification)}\n\n{_fenced(part.script)}" for part in parts]
+
+
+class _Names(Form):
+    """What somebody who knows the API would look up."""
+
+    names: list[str]
+
+
+class StoredDocumentation:
+    """A kernel's documentation: a model says which names it would use, the store answers with exact signatures."""
+
+    def for_part(self, name: str, specification: str, kernel: str, llm: LLM) -> Sequence[str]:
+        """Ask which names a part would need, and return what the kernel's own documentation says of them."""
+        store = DocumentationStore("freecad" if kernel == "freecad" else "build123d")
+        messages = (system(prompt("docs", kernel=kernel)), user(f"The specification:\n\n{specification}"))
+        wanted = ask(llm, "docs", f"docs/{name}", messages, reader(_Names), schema=schema_of(_Names))
+        return [str(entry) for entry in store.named(wanted.names, _NAMES)]
+
+
+class KeptMemory:
+    """Experience as a run keeps it: asked once, and the same again when the run is resumed or replayed.
+
+    Args:
+        run: Where it is kept.
+        memory: Who knows cases.
+        recorded: A run whose retrievals are taken instead, for a replay.
+    """
+
+    def __init__(self, run: Run, memory: Memory | None = None, *, recorded: Run | None = None) -> None:
+        self._run, self._recorded, self._memory = run, recorded, memory or NoMemory()
+
+    def for_design(self, prompt: str, requirements: Requirements) -> Recalled:
+        """Return what helps to design a product."""
+
+        def asked() -> Json:
+            recalled = self._memory.for_design(prompt, requirements)
+            return {"heuristics": list(recalled.heuristics), "constraints": list(recalled.constraints)}
+
+        kept = _kept(self._run, self._recorded, "design", asked)
+        return Recalled(kept.get("heuristics", ()), kept.get("constraints", ()))
+
+    def for_part(self, specification: str, kernel: str) -> Sequence[str]:
+        """Return worked examples of parts alike."""
+        label = f"part.{_mark(kernel, specification)}"
+        kept = _kept(self._run, self._recorded, label, lambda: {"examples": list(self._memory.for_part(specification, kernel))})
+        return list(kept.get("examples", ()))
+
+
+class KeptDocumentation:
+    """Documentation as a run keeps it, like `KeptMemory`."""
+
+    def __init__(self, run: Run, documentation: Documentation | None = None, *, recorded: Run | None = None) -> None:
+        self._run, self._recorded, self._documentation = run, recorded, documentation or NoDocumentation()
+
+    def for_part(self, name: str, specification: str, kernel: str, llm: LLM) -> Sequence[str]:
+        """Return what helps to write a part's script."""
+
+        def asked() -> Json:
+            return {"entries": list(self._documentation.for_part(name, specification, kernel, llm))}
+
+        return list(_kept(self._run, self._recorded, f"docs.{_mark(kernel, specification)}", asked).get("entries", ()))
+
+
+def remember(run: Run, store: ExperienceStore) -> Case | None:
+    """Distil a finished run into a case and add it to a store; return it, or None of a run without an assembly."""
+    text, checks = run.plan_text(), run.checks()
+    if text is None or checks is None:
+        return None
+    resolved = resolve(AssemblyPlan.loads(text))
+    scripts = {name: script for name in run.part_names() if (script := run.script(name)) is not None}
+    verdict = run.verdict() or {}
+    measured = [finding for finding in checks["findings"] if finding["severity"] == "error"]
+    judged = [finding for finding in verdict.get("findings", ()) if finding["severity"] == "error" and finding not in measured]
+    case = case_of(
+        resolved,
+        scripts,
+        kernel=str(run.request.options.get("kernel", "build123d")),
+        prompt=run.prompt,
+        requirements=str((run.requirements() or {}).get("summary", "")),
+        defects=[_defect(finding) for finding in (*measured, *judged)],
+        repairs=_repairs(run),
+        scores=scores(run),
+        version=run.version,
+    )
+    store.add(case)
+    return case
+
+
+def scores(run: Run) -> dict[str, float]:
+    """Return what the rules say of a finished run, each between 0 and 1.
+
+    `geometric_fidelity` is the share of parts that neither a check nor an inspector has anything against; `kinematic_health`
+    the share of pairs of parts that were found clear, at rest and in motion, of those looked at; `first_shot` the share of
+    scripts that kept their contract at once.
+    """
+    names = run.part_names()
+    checks, verdict = run.checks() or {}, run.verdict() or {}
+    findings = (*checks.get("findings", ()), *verdict.get("findings", ()))
+    blamed = {part for finding in findings if finding["severity"] != "info" for part in finding.get("parts", ())}
+    pairs = [pair["verdict"] for pair in checks.get("pairs", ())]
+    scripts = [name for name in names if run.script(name) is not None]
+    again = [name for name in scripts if run.attempt(name, 1) is not None]
+    return {
+        "geometric_fidelity": _share(len(set(names) - blamed), len(names)),
+        "kinematic_health": _share(sum(verdict in {"clear", "contact"} for verdict in pairs), len(pairs)),
+        "first_shot": _share(len(scripts) - len(again), len(scripts)),
+    }
+
+
+def _kept(run: Run, recorded: Run | None, label: str, asked: Callable[[], Json]) -> Json:
+    """Return what was retrieved under a label; whoever is asked is asked once."""
+    stored = run.recalled(label)
+    if stored is not None:
+        return stored
+    retrieved = asked() if recorded is None else recorded.recalled(label) or {}
+    if any(retrieved.values()):  # nothing retrieved leaves nothing: an empty store is as none
+        run.save_recalled(label, retrieved)
+    return retrieved
+
+
+def _mark(*texts: str) -> str:
+    return hashlib.sha256("\0".join(texts).encode()).hexdigest()[:16]
+
+
+def _heuristic(case: Case) -> str:
+    mended = f"\nMended on the way: {_quoted('; '.join(case.repairs))}" if case.repairs else ""
+    return f"Asked for: {_quoted(case.prompt)}\nDesigned: {_quoted(case.design[:_DESIGN_CHARACTERS])}{mended}"
+
+
+def _constraint(case: Case) -> str:
+    return f"Asked for: {_quoted(case.prompt)}\nFound at the end: {_quoted('; '.join(case.defects))}"
+
+
+def _quoted(text: str) -> str:
+    """Return text as one JSON string: whatever it says, it stays within its quotation marks and on its line."""
+    return json.dumps(text, ensure_ascii=False)
+
+
+def _fenced(script: str) -> str:
+    """Return a script as a block that nothing in it can close."""
+    return f"```python\n{script[:_SCRIPT_CHARACTERS].replace('```', '')}\n```"
+
+
+def _defect(finding: Mapping[str, Any]) -> str:
+    return f"{finding['code']} {finding['where']}: {finding['message']} {finding['hint']}"
+
+
+def _repairs(run: Run) -> list[str]:
+    """Return what went wrong on the way: the findings of attempts that were mended, each once."""
+    told: dict[str, None] = {}
+    for name in run.part_names():
+        number = 1
+        while (attempt := run.attempt(name, number)) is not None:
+            for finding in attempt.get("findings", ()):
+                told[_defect(finding)] = None
+            number += 1
+    return list(told)[:_REPAIRS]
+
+
+def _share(count: int, total: int) -> float:
+    return round(count / total, 4) if total else 1.0
