@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import pytest
@@ -20,10 +21,17 @@ def test_there_are_recordings() -> None:
 
 @pytest.mark.parametrize("recording", RECORDINGS, ids=lambda path: path.parent.name)
 def test_a_recorded_run_is_made_again_byte_for_byte(recording: Path, tmp_path: Path) -> None:
-    again = replay(recording, out=tmp_path / "run", strict=True)
+    again = replay(recording, out=tmp_path / "run")
 
-    assert again.differences == ()
-    assert str(again.findings) == "no findings"
+    # Prompts may have been mended since the run was recorded: each such step is told, and its reply alone is used.
+    told = {finding.where for finding in again.findings}
+    assert {finding.code for finding in again.findings} <= {"I_PROMPT_DRIFT"}
+    assert {name for name in again.differences if not name.startswith("llm/")} == set()
+    assert {"llm." + reply["step"] for reply in _replies(recording, again.differences)} == told
+
+
+def _replies(recording: Path, names: tuple[str, ...]) -> list[dict[str, str]]:
+    return [json.loads((recording / name).read_text()) for name in names]
 
 
 @pytest.mark.parametrize("recording", RECORDINGS, ids=lambda path: path.parent.name)
