@@ -174,7 +174,8 @@ def _neighbours(assembly: Assembly, meshes: Mapping[str, TriMesh]) -> frozenset[
     """Return the pairs of parts that one joint lies between, rigid groups taken as one body and bare carriers left out."""
     solid = Groups(assembly.parts)
     for joint in assembly.joints:
-        if joint.type is JointType.FIXED or joint.parent not in meshes or joint.child not in meshes:
+        carried = joint.child not in meshes or (joint.parent not in meshes and joint.parent != assembly.ground)
+        if joint.type is JointType.FIXED or carried:
             solid.join(joint.parent, joint.child)
     members = {name: [other for other in meshes if solid.together(name, other)] for name in meshes}
     found = {frozenset(pair) for names in members.values() for pair in combinations(names, 2)}
@@ -391,8 +392,20 @@ def _explained(case: _Case, findings: Sequence[Finding]) -> list[Finding]:
     measured_ones = [finding for finding in findings if finding.code != "E_MESH_OPEN"]  # `shapes` tells of open meshes
     case.shared.extend(finding for finding in measured_ones if case.by_design(finding.parts))
     kept = [_by_share(case, finding) for finding in measured_ones if not case.by_design(finding.parts)]
-    named = [*diagnose(case.scene, case.assembly.mechanism.tree, kept[:MOST_DIAGNOSED]), *kept[MOST_DIAGNOSED:]]
+    depths = {(finding.code, finding.parts, str(finding.pose)): finding for finding in kept}
+    named = []
+    for finding in (*diagnose(case.scene, case.assembly.mechanism.tree, kept[:MOST_DIAGNOSED]), *kept[MOST_DIAGNOSED:]):
+        depth = depths.get((finding.code, finding.parts, str(finding.pose)))
+        if depth is not None and finding.cause == "pitch" and _one_carries_the_other(case, finding.parts):
+            finding = depth  # noqa: PLW2901 - the pitch of two axes says nothing of parts that one chain carries
+        # the cause names its own numbers in the message; the finding's number stays the depth that was measured
+        named.append(finding if depth is None else replace(finding, value=depth.value, limit=depth.limit, unit=depth.unit))
     return [finding for finding in named if finding.code != "E_NOT_ONE_SOLID"]  # `shapes` tells of pieces, once for each file
+
+
+def _one_carries_the_other(case: _Case, parts: Sequence[str]) -> bool:
+    a, b = (case.assembly.mechanism.tree.path(case.assembly.ground, name) for name in parts)
+    return a[-1] in b or b[-1] in a
 
 
 def _by_share(case: _Case, finding: Finding) -> Finding:

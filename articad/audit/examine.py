@@ -23,6 +23,7 @@ from articad.importers.freecad import read_freecad
 from articad.importers.mjcf import read_mjcf
 from articad.importers.reading import Folder, read_xml
 from articad.importers.urdf import read_urdf
+from articad.interference.certificate import Certificate
 from articad.simulate.loading import ENGINES, Loading, load_in_all
 
 BUDGET_S: Final = 12.0  # of sampling the motion
@@ -70,6 +71,7 @@ class _Found:
     declared: Declared | None = None
     motion: str = "none"
     engines: tuple[Loading, ...] = ()
+    certificate: Certificate | None = None
 
 
 def audit(path: str | Path, choices: Choices | None = None) -> Audit:
@@ -127,6 +129,7 @@ def _report(file: str, kind: str, found: _Found, start: float) -> Audit:
         tuple(dict.fromkeys(found.undone)),
         found.motion,
         time.monotonic() - start,
+        found.certificate,
     )
 
 
@@ -205,6 +208,7 @@ def _look(found: _Found, assembly: Assembly, choices: Choices) -> None:
     )
     found.findings += outcome.findings
     found.undone += outcome.undone
+    found.certificate = outcome.certificate
     found.motion = outcome.strength if assembly.drivers else "none"
 
 

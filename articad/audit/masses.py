@@ -16,6 +16,7 @@ from articad.audit.wording import counted, listed
 from articad.findings import Finding
 
 SYMMETRY = 1e-6  # relative rounding of moments written with six digits
+ROUNDING = 1e-12  # relative; a smaller moment is zero
 TRIANGLE = 1e-3  # relative; files round their moments
 SLACK = 1.05  # of bounds from shapes, which are drawn a little smaller than what they stand for
 SLACK_MM = 1.0
@@ -106,6 +107,7 @@ def not_positive(declared: Declared) -> Iterator[Finding]:
     for link, inertial, mass in _weighed(declared):
         assert inertial.inertia is not None
         small, _, large = np.linalg.eigvalsh(inertial.inertia)
+        small = 0.0 if abs(small) < ROUNDING * abs(large) else float(small)
         if small > SYMMETRY * abs(large) or (small >= 0 and _is_thin(link)) or not inertial.inertia.any():
             continue
         yield Finding(
@@ -197,7 +199,7 @@ def centre_outside(declared: Declared) -> Iterator[Finding]:
 
 
 def density(declared: Declared) -> Iterator[Finding]:
-    """A body denser than any matter, or thinner than air."""
+    """A body denser than any matter, even if it filled the hull of its shapes; or thinner than air."""
     for link in declared.links:
         inertial = link.inertial
         if inertial is None or not (inertial.mass or 0.0) > 0 or not _all_read(link) or _shared(declared, link.name):
@@ -205,23 +207,34 @@ def density(declared: Declared) -> Iterator[Finding]:
         mass, volume = inertial.mass or 0.0, _largest_volume(link)
         if volume is None:
             continue
-        found = mass / (volume * 1e-9)
-        if THINNEST_KG_M3 <= found <= DENSEST_KG_M3:
+        least, most = mass / (max(volume, _hull_volume(link)) * 1e-9), mass / (volume * 1e-9)
+        if least > DENSEST_KG_M3:
+            filled, found, limit, what = max(volume, _hull_volume(link)), least, DENSEST_KG_M3, "more than osmium"
+        elif most < THINNEST_KG_M3:
+            filled, found, limit, what = volume, most, THINNEST_KG_M3, "less than air"
+        else:
             continue
-        heavy = found > DENSEST_KG_M3
-        limit = DENSEST_KG_M3 if heavy else THINNEST_KG_M3
         yield Finding(
             code="W_AUDIT_DENSITY",
             where=link.where,
             parts=(link.name,),
-            message=f"{link.name} weighs {mass:.4g} kg and its shapes fill {volume:.4g} mm³: {found:.4g} kg/m³, "
-            f"{'more than osmium' if heavy else 'less than air'}.",
+            message=f"{link.name} weighs {mass:.4g} kg and its shapes, hollows filled, take {filled:.4g} mm³: {found:.4g} kg/m³, {what}.",
             hint="Check the units of mass and mesh; steel is 7850 kg/m³, wood 700. --fix --density computes masses.",
             value=found,
             limit=limit,
             unit="kg/m³",
             cause="units" if max(found / limit, limit / found) > 1e3 else None,
         )
+
+
+def _hull_volume(link: DeclaredLink) -> float:
+    """Return the volume of the convex hull of all shapes [mm³]; 0 where they are flat."""
+    from scipy.spatial import ConvexHull, QhullError  # noqa: PLC0415 - 0.2 s that only suspicious links need
+
+    try:
+        return float(ConvexHull(link.points).volume)
+    except (QhullError, ValueError):
+        return 0.0
 
 
 def _is_power_of_ten(value: float) -> bool:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from articad.findings import Findings
+from articad.interference.certificate import Certificate
 from articad.simulate.loading import Loading
 
 
@@ -25,6 +26,7 @@ class Audit:
         undone: What was not looked at, in words; none of it was asked for.
         motion: How the motion was checked: "sampled", "certified" or "none".
         seconds: Time spent.
+        certificate: Of the motion, if it was to be proven.
     """
 
     file: str
@@ -37,6 +39,7 @@ class Audit:
     undone: tuple[str, ...] = ()
     motion: str = "none"
     seconds: float = 0.0
+    certificate: Certificate | None = None
 
     @property
     def ok(self) -> bool:
@@ -60,6 +63,9 @@ class Audit:
             "findings": [finding.to_json() for finding in self.findings],
             "engines": [loading.to_json() for loading in self.engines],
             "motion": self.motion,
+            "free": []
+            if self.certificate is None
+            else [{"joint": r.joint, "free": [r.lower, r.upper], "declared": list(r.declared)} for r in self.certificate.ranges],
             "not_checked": list(self.undone),
             "seconds": round(self.seconds, 3),
         }

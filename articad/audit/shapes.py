@@ -24,7 +24,8 @@ MOST_PIECE_TRIANGLES = 60_000
 FLAT_MM3 = 1e-3
 SCALE_RATIO = 50.0  # what is drawn and what collides differ so much only by another unit
 UNIT_RATIO = 100.0  # a mesh so many times larger than the rest of its robot was drawn in another unit
-LARGEST_MM = 1e5  # 100 m
+LARGEST_MM = 1e5  # 100 m, of what has joints
+GROUND_MM = 1e6  # 1 km, of a floor or a landscape
 SMALLEST_MM = 1.0
 BELOW_MM = 1.0
 
@@ -33,10 +34,10 @@ _IDENTITY = SE3.identity()
 
 def unread_meshes(declared: Declared) -> Iterator[Finding]:
     """Mesh files that are not there, lead out of the folder, or hold no mesh."""
-    for (problem, file), users in _by_file(declared).items():
+    for (problem, _), users in _by_file(declared).items():
         shape = users[0][1]
         names = tuple(dict.fromkeys(user.name for user, _ in users))
-        used = f"{file!r}, which {listed(names)} {'uses' if len(names) == 1 else 'use'},"
+        used = f"The {shape.kind}{f' {shape.file!r}' if shape.file else ''}, which {listed(names)} {'uses' if len(names) == 1 else 'use'},"
         if problem == "absent":
             code, hint = "E_AUDIT_MESH_ABSENT", "Put the file there, correct the name, or say with --root where packages are."
         elif problem == "unsafe":
@@ -49,7 +50,7 @@ def unread_meshes(declared: Declared) -> Iterator[Finding]:
             code=code,
             where=shape.where,
             parts=names,
-            message=f"The mesh {used} {'is not read' if problem == 'format' else 'cannot be read'}: {shape.reason}.",
+            message=f"{used} {'is not read' if problem == 'format' else 'cannot be read'}: {shape.reason.rstrip('.')}.",
             hint=hint,
             value=len(users),
             limit=0,
@@ -190,9 +191,10 @@ def scale(declared: Declared) -> Iterator[Finding]:
     if not sizes:
         return
     largest, smallest = max(sizes.values()), min(sizes.values())
-    if largest > LARGEST_MM or largest < SMALLEST_MM:
-        big = largest > LARGEST_MM
-        limit = LARGEST_MM if big else SMALLEST_MM
+    most = LARGEST_MM if any(joint.moves for joint in declared.joints) else GROUND_MM
+    if largest > most or largest < SMALLEST_MM:
+        big = largest > most
+        limit = most if big else SMALLEST_MM
         name = max(sizes, key=lambda key: sizes[key])
         yield Finding(
             code="W_AUDIT_SCALE",

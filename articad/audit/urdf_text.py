@@ -135,7 +135,7 @@ class UrdfText:
         if text is None:
             return default
         try:
-            numbers = tuple(float(word) for word in text.replace(",", " ").split())
+            numbers = tuple(float(word) for word in (text.replace(",", " ") if key in {"size", "scale"} else text).split())
         except ValueError:
             self._unreadable(element, key, text, "is not a number; was xacro not expanded?" if "$" in text else "is not a number")
             return default

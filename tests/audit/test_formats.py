@@ -1,0 +1,220 @@
+"""The other formats: MJCF with its filters, STEP with its products, and our own assemblies and exports."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from articad.audit.examine import Choices, audit, audit_assembly
+from articad.audit.many import audit_folder, models_below
+from articad.export.freecad import write_freecad
+from articad.export.mjcf import write_mjcf
+from articad.export.urdf import write_urdf
+from tests.assemblies import all_joint_kinds
+from tests.audit import defects
+
+QUICK = Choices(engines=False, budget=5.0)
+FULL = Choices(budget=5.0)
+
+MJCF = """<mujoco><compiler angle="radian" autolimits="true"/><worldbody>
+<body name="a" pos="0 0 0.1"><joint name="slide" type="slide" axis="1 0 0" range="-0.01 0.01"/><geom name="box" type="box" size="0.05 0.05 0.05"/></body>
+<body name="b" pos="{x} 0 0.1"><joint name="turn" type="hinge" axis="1 0 0" range="-1 1"/>{b}</body>
+</worldbody>{rest}</mujoco>"""
+BALL = '<geom type="sphere" size="0.05" {mask}/>'
+
+
+def mjcf(folder: Path, *, x: float, mask: str = "", rest: str = "") -> Path:
+    path = folder / "model.xml"
+    path.write_text(MJCF.format(x=x, b=BALL.format(mask=mask), rest=rest))
+    return path
+
+
+def test_mjcf_overlap_is_found_and_its_sound_twin_is_clean(tmp_path: Path) -> None:
+    assert not audit(mjcf(tmp_path, x=0.115), FULL).findings
+
+    (finding, *rest) = audit(mjcf(tmp_path, x=0.09), FULL).findings
+
+    assert finding.code == "E_OVERLAP"
+    assert finding.parts == ("a", "b")
+    assert finding.value == pytest.approx(10.0, rel=0.05)
+    assert {found.code for found in rest} <= {"E_MOTION_COLLISION"}
+
+
+def test_mjcf_first_contact_along_a_slide(tmp_path: Path) -> None:
+    found = audit(mjcf(tmp_path, x=0.105), FULL).findings
+
+    assert found.codes == ("E_MOTION_COLLISION",)
+    assert found[0].value == pytest.approx(5.0, abs=0.2)  # the ball stands 5 mm off; it is drawn with facets
+    assert found[0].unit == "mm"
+
+
+@pytest.mark.parametrize(
+    "how", [{"mask": 'contype="2" conaffinity="4"'}, {"rest": '<contact><exclude body1="a" body2="b"/></contact>'}], ids=["mask", "exclude"]
+)
+def test_what_mjcf_never_lets_collide_is_a_note(how: dict[str, str], tmp_path: Path) -> None:
+    found = audit(mjcf(tmp_path, x=0.09, **how), FULL)
+
+    assert found.ok
+    assert set(found.findings.codes) <= {"I_AUDIT_SHARED"}
+
+
+def test_mjcf_that_mujoco_refuses_says_so_in_its_words(tmp_path: Path) -> None:
+    path = tmp_path / "model.xml"
+    path.write_text('<mujoco><worldbody><body name="bare"><joint/></body></worldbody></mujoco>')
+
+    (finding,) = audit(path, FULL).findings
+
+    assert finding.code == "E_READ"
+    assert "mass and inertia" in finding.message
+
+
+def test_an_engine_that_refuses_a_urdf_is_quoted_with_the_cause(tmp_path: Path) -> None:
+    root = defects.stand(tmp_path)
+    defects.removing("link[@name='arm']/inertial", "link[@name='arm']/collision", "link[@name='arm']/visual")(root, tmp_path)
+
+    found = audit(defects.write(root, tmp_path), FULL).findings
+
+    (refusal,) = [finding for finding in found.of("W_AUDIT_ENGINE") if finding.where == "mujoco"]
+    assert refusal.cause == "no_inertia"
+    assert "mass and inertia of moving bodies" in refusal.message
+
+
+def test_time_that_runs_out_is_told(tmp_path: Path) -> None:
+    found = audit(defects.write(defects.stand(tmp_path), tmp_path), Choices(engines=False, budget=1e-9))
+
+    (finding,) = found.findings
+    assert finding.code == "W_AUDIT_NOT_CHECKED"
+    assert finding.value == 2
+    assert not found.ok
+
+
+def test_a_proof_replaces_the_samples(tmp_path: Path) -> None:
+    sound = audit(defects.write(defects.stand(tmp_path), tmp_path), Choices(engines=False, certified=30.0))
+
+    assert sound.motion == "certified"
+    assert not sound.findings
+
+    root = defects.with_post(tmp_path)
+    defects.post_in_the_way(root, tmp_path)
+    spoiled = audit(defects.write(root, tmp_path), Choices(engines=False, certified=30.0))
+
+    assert "E_MOTION_COLLISION" in spoiled.findings.codes
+    free = {r.joint: r for r in spoiled_ranges(spoiled)}
+    assert math.degrees(free["turn"].upper) == pytest.approx(defects.FIRST_CONTACT_DEG, abs=0.05)
+
+
+def spoiled_ranges(found: Any) -> Any:
+    assert found.certificate is not None
+    return found.certificate.ranges
+
+
+@pytest.mark.parametrize("text", ["<robot", "<other/>", ""], ids=["truncated", "another root", "empty"])
+def test_what_is_no_urdf_is_told(text: str, tmp_path: Path) -> None:
+    path = tmp_path / "model.urdf"
+    path.write_text(text)
+
+    (finding,) = audit(path, FULL).findings
+
+    assert finding.code == "E_READ"
+
+
+# ---------------------------------------------------------------------- STEP
+
+
+def step_file(
+    folder: Path, parts: dict[str, tuple[tuple[float, float, float], tuple[float, float, float]]], *, surface: bool = False
+) -> Path:
+    """Write boxes `{name: (size, place)}` as an assembly of products."""
+    from build123d import Box, Compound, Face, Pos, export_step
+
+    children: list[Any] = []
+    for name, (size, place) in parts.items():
+        solid = Pos(*place) * Box(*size)
+        solid.label = name
+        children.append(solid)
+    if surface:
+        sheet = Pos(0, 0, 200) * Face.make_rect(10, 10)
+        sheet.label = "sheet"
+        children.append(sheet)
+    export_step(Compound(children=children, label="thing"), str(folder / "thing.step"))
+    return folder / "thing.step"
+
+
+TABLE = {"top": ((100.0, 60.0, 10.0), (0.0, 0.0, 45.0)), "leg": ((10.0, 10.0, 40.0), (0.0, 0.0, 20.0))}
+
+
+def test_a_sound_step_assembly_gives_nothing_and_keeps_its_names(tmp_path: Path) -> None:
+    found = audit(step_file(tmp_path, TABLE), QUICK)
+
+    assert not found.findings
+    assert found.links == 2
+
+
+def test_step_overlap_floating_names_and_surfaces(tmp_path: Path) -> None:
+    overlapping = TABLE | {"leg": ((10.0, 10.0, 40.0), (0.0, 0.0, 23.0))}
+    floating = TABLE | {"leg": ((10.0, 10.0, 40.0), (0.0, 0.0, -20.0))}
+    unnamed = {"SOLID": TABLE["top"], "leg": TABLE["leg"]}
+
+    (overlap,) = audit(step_file(tmp_path, overlapping), QUICK).findings
+    (loose,) = audit(step_file(tmp_path, floating), QUICK).findings
+    (name,) = audit(step_file(tmp_path, unnamed), QUICK).findings
+    sheet = audit(step_file(tmp_path, TABLE, surface=True), QUICK).findings
+
+    assert overlap.code == "E_OVERLAP"
+    assert overlap.value == pytest.approx(3.0)
+    assert set(overlap.parts) == {"top", "leg"}
+    assert (loose.code, loose.cause) == ("E_FLOATING", "floating")
+    assert loose.value == pytest.approx(40.0)
+    assert (name.code, name.value) == ("W_AUDIT_UNNAMED", 1)
+    assert sheet.codes == ("E_AUDIT_NOT_SOLID",)
+
+
+def test_a_step_file_that_is_none_is_told(tmp_path: Path) -> None:
+    (tmp_path / "thing.step").write_text("ISO-10303-21;\nnonsense")
+
+    (finding,) = audit(tmp_path / "thing.step", QUICK).findings
+
+    assert finding.code == "E_READ"
+
+
+# ---------------------------------------------------------------------- our own
+
+
+@pytest.mark.parametrize("write", [write_urdf, write_mjcf, write_freecad], ids=["urdf", "mjcf", "freecad"])
+def test_our_own_files_are_judged_like_what_they_were_made_of(write: Any, tmp_path: Path) -> None:
+    assembly = all_joint_kinds()
+    bundle = write(assembly)
+    bundle.write(tmp_path)
+
+    direct = audit_assembly(assembly, "kinds", "plan", QUICK).findings
+    read = audit(tmp_path / bundle.main, QUICK).findings
+
+    contact = {"E_OVERLAP", "E_STATIC_OVERLAP", "E_FLOATING"}
+    pairs = {(finding.code, finding.parts) for finding in direct if finding.code in contact}
+    assert pairs
+    if write is not write_freecad:  # parts without B-rep have no shape in a FreeCAD file
+        assert {(finding.code, finding.parts) for finding in read if finding.code in contact} == pairs
+
+
+def test_a_folder_gives_a_scoreboard(tmp_path: Path) -> None:
+    for name in ("sound", "spoiled"):
+        (tmp_path / name).mkdir()
+        root = defects.stand(tmp_path / name)
+        if name == "spoiled":
+            defects.removing("link[@name='arm']/inertial")(root, tmp_path)
+        defects.write(root, tmp_path / name)
+    mjcf(tmp_path, x=0.115)
+    (tmp_path / "package.xml").write_text("<package/>")
+    (tmp_path / "part.xml").write_text('<mujoco><worldbody><geom type="box" size="1 1 1"/></worldbody></mujoco>')
+    (tmp_path / "whole.xml").write_text('<mujoco><include file="part.xml"/></mujoco>')
+
+    assert [path.name for path in models_below(tmp_path)] == ["model.xml", "model.urdf", "model.urdf", "whole.xml"]
+    board = audit_folder(tmp_path, QUICK)
+
+    assert not board.ok
+    assert [audit.ok for audit in board.audits] == [True, True, False, True]
+    assert board.codes == [("E_AUDIT_NO_INERTIA", 1, 1)]
+    assert board.to_json()["schema"] == "articad.scoreboard/1"
