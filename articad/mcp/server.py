@@ -67,10 +67,16 @@ class Tools:
         self,
         design: Design,
         plan: Annotated[dict[str, Any] | None, Field(description="the whole plan; without it the kept one is checked")] = None,
+        changes: Annotated[
+            dict[str, Any] | None,
+            Field(description='instead of a plan: new values by address, {"joints.lid.angle_deg": [0, 90]}; null removes, a new name adds'),
+        ] = None,
     ) -> Json:
         """Keep a plan and say everything that is wrong with it, before any geometry exists."""
         if plan is not None:
             self.bench.write_plan(design, plan)
+        if changes:
+            self.bench.amend_plan(design, changes)
         folder = self.bench.design(design)
         return condensed(await self.bench.run("check", str(folder / "plan.json"), seconds=_PART_S), detail=True)
 

@@ -20,6 +20,7 @@ from typing import Any, Final
 
 from articad.errors import ReadError
 from articad.findings import Finding
+from articad.mcp.amending import amended
 from articad.run import write_atomically
 
 Json = dict[str, Any]
@@ -87,6 +88,18 @@ class Workbench:
         file = self.design(name, new=True) / "plan.json"
         write_atomically(file, content)
         return file
+
+    def amend_plan(self, name: str, changes: Mapping[str, Any]) -> Path:
+        """Replace values of a design's plan, by address.
+
+        Raises:
+            ReadError: If an address leads nowhere, or the plan is no JSON; it is left as it was.
+        """
+        try:
+            plan = dict(json.loads((self.design(name) / "plan.json").read_text(encoding="utf-8")))
+        except ValueError as error:
+            raise _refused(name, f"The plan of {name!r} cannot be read: {error}.", "Give the whole plan.") from error
+        return self.write_plan(name, amended(plan, changes))
 
     def write_script(self, design: str, part: str, script: str, kernel: str) -> Path:
         """Keep a part's script.

@@ -1,0 +1,75 @@
+"""Amendments: a plan corrected in place, at the addresses that findings name, so that an agent need not write it all again."""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Mapping
+from typing import Any
+
+from articad.errors import ReadError, did_you_mean
+from articad.findings import Finding
+
+Json = dict[str, Any]
+
+
+def amended(plan: Json, changes: Mapping[str, Any]) -> Json:
+    """Return a plan with some of its values replaced.
+
+    Args:
+        plan: As in `plan.json`; it is left alone.
+        changes: New values by address: `{"joints.lid.angle_deg": [0, 90]}`. Entries of lists are addressed by their names, or
+            by number where they have none. A value of None removes; a name that a list does not have adds an entry.
+
+    Raises:
+        ReadError: If an address leads nowhere.
+    """
+    plan = copy.deepcopy(plan)
+    for address, value in changes.items():
+        steps = address.split(".")
+        holder: Any = plan
+        for depth, step in enumerate(steps[:-1]):
+            holder = _entered(holder, step, ".".join(steps[: depth + 1]))
+        _put(holder, steps[-1], value, address)
+    return plan
+
+
+def _entered(holder: Any, step: str, address: str) -> Any:
+    if isinstance(holder, list):
+        return holder[_index(holder, step, address)]
+    if isinstance(holder, dict) and step in holder:
+        return holder[step]
+    raise _lost(address, step, list(holder) if isinstance(holder, dict) else [])
+
+
+def _put(holder: Any, step: str, value: Any, address: str) -> None:
+    if isinstance(holder, dict):
+        if value is None:
+            holder.pop(step, None)
+        else:
+            holder[step] = value
+    elif isinstance(holder, list) and isinstance(value, dict) and step not in _names(holder) and not step.isdigit():
+        holder.append({"name": step} | value)
+    elif isinstance(holder, list):
+        index = _index(holder, step, address)
+        holder[index : index + 1] = [] if value is None else [value]
+    else:
+        raise _lost(address, step, [])
+
+
+def _index(holder: list[Any], step: str, address: str) -> int:
+    names = _names(holder)
+    if step in names:
+        return names.index(step)
+    if step.isdigit() and int(step) < len(holder):
+        return int(step)
+    raise _lost(address, step, [name for name in names if name])
+
+
+def _names(holder: list[Any]) -> list[str]:
+    return [str(entry.get("name", "")) if isinstance(entry, dict) else "" for entry in holder]
+
+
+def _lost(address: str, step: str, known: list[str]) -> ReadError:
+    message = f"The plan has nothing at {address}."
+    hint = did_you_mean(step, known).strip() or (f"There are {', '.join(known[:20])}." if known else "A number or a text has nothing in it.")
+    return ReadError(f"{message} {hint}", path=address, findings=[Finding(code="E_READ", where=address, message=message, hint=hint)])
