@@ -36,8 +36,7 @@ _TYPES = {
     "Cylindrical": JointType.CYLINDRICAL,
     "Ball": JointType.BALL,
 }
-_CONTAINERS = ("App::Part", "App::Link", "PartDesign::Body", "Part::Feature", "Mesh::Feature")
-_SHAPES = ("PartDesign::Body", "Part::Feature", "Part::Mirroring", "Part::Box", "Part::Cylinder", "Part::Cut", "Part::MultiFuse")
+_CONTAINERS = ("App::Part", "App::Link", "Mesh::Feature")
 _LIMITS = {
     JointType.REVOLUTE: ("Angle",),
     JointType.SLIDER: ("Length",),
@@ -128,6 +127,17 @@ class _Document:
             return []
         return [found.get("value") or found.get("name") or "" for found in row.iter() if found.tag in ("Link", "XLink")]
 
+    def is_shape(self, name: str) -> bool:
+        """Return whether an object is a body or a solid of the Part workbench, such as a box or a cut."""
+        kind = self.types.get(name, "")
+        return kind == "PartDesign::Body" or (kind.startswith("Part::") and not kind.startswith(("Part::Part2D", "Part::Datum")))
+
+    def results(self, members: list[str]) -> list[str]:
+        """Return the shapes among the members of a group that no other of them is made of."""
+        shapes = [name for name in members if self.is_shape(name)]
+        used = {link for name in shapes for key in self._properties[name] if key != "Group" for link in self.links(name, str(key))}
+        return [name for name in shapes if name not in used]
+
     def placement(self, name: str, key: str = "Placement") -> SE3:
         row = self._properties.get(name, {}).get(key)
         found = None if row is None else row.find("PropertyPlacement")
@@ -162,7 +172,9 @@ class _Model:
         self.assembly = assemblies[0]
         members = document.links(self.assembly, "Group")
         self.parts = {
-            self._name(item): item for item in members if document.types.get(item) in _CONTAINERS and not document.has(item, "JointType")
+            self._name(item): item
+            for item in members
+            if (document.types.get(item) in _CONTAINERS or document.is_shape(item)) and not document.has(item, "JointType")
         }
         self.names = {item: name for name, item in self.parts.items()}
         grounded = [document.links(item, "ObjectToGround") for item in document.items if document.has(item, "ObjectToGround")]
@@ -198,10 +210,8 @@ class _Model:
         return self._solids[container]
 
     def _measured(self, container: str, name: str) -> Solid | None:
-        own = self.document.types.get(container) in _SHAPES
-        members = (
-            [container] if own else [item for item in self.document.links(container, "Group") if self.document.types.get(item) in _SHAPES]
-        )
+        own = self.document.is_shape(container)
+        members = [container] if own else self.document.results(self.document.links(container, "Group"))
         for item in members:
             file = self.document.value(item, "Shape", "Part", "file")
             if not file or file not in self.document.archive.names:
@@ -269,7 +279,12 @@ class _Model:
             JointType.CYLINDRICAL: (along, turn),
             JointType.BALL: tuple(float(number) for number in motion.quaternion),
         }.get(kind, ())
-        lower, upper = self._limits(item, kind, rest)
+        ends = self._ends(item, kind)
+        rest = (
+            tuple(_wound(value, *end) if axis == "Angle" else value for value, (axis, end) in zip(rest, ends, strict=True))
+            if ends
+            else rest
+        )
         return Joint(
             name=name,
             type=kind,
@@ -279,22 +294,22 @@ class _Model:
             child_connector=child[1],
             T_parent_connector=parent[2],
             T_child_connector=child[2],
-            limits=JointLimits(lower, upper),
+            limits=_limits(ends, rest),
             rest=rest,
             mate=mate,
         )
 
-    def _limits(self, item: str, kind: JointType, rest: tuple[float, ...]) -> tuple[tuple[float, ...], tuple[float, ...]]:
-        lower, upper = [], []
-        for axis, value in zip(_LIMITS.get(kind, ()), rest, strict=False):
+    def _ends(self, item: str, kind: JointType) -> list[tuple[str, tuple[float, float]]]:
+        """Return what FreeCAD's limits of a joint are called, and where they lie [mm, rad]."""
+        ends = []
+        for axis in _LIMITS.get(kind, ()):
             scale = math.radians(1.0) if axis == "Angle" else 1.0
-            ends = []
-            for end, endless in (("Min", -math.inf), ("Max", math.inf)):
-                held = self.document.truth(item, f"Enable{axis}{end}")
-                ends.append(self.document.number(item, f"{axis}{end}") * scale if held else endless)
-            lower.append(min(ends[0], value))  # FreeCAD lets a part rest outside its limits
-            upper.append(max(ends[1], value))
-        return tuple(lower), tuple(upper)
+            low, high = (
+                self.document.number(item, f"{axis}{end}") * scale if self.document.truth(item, f"Enable{axis}{end}") else endless
+                for end, endless in (("Min", -math.inf), ("Max", math.inf))
+            )
+            ends.append((axis, (low, high)))
+        return ends
 
     def assemble(self) -> Assembly:
         """Return the assembly of a document that articad did not write."""
@@ -360,12 +375,33 @@ def _joint_now(joint: Joint, found: Joint | None, parts: dict[str, Part]) -> Joi
     )
     if found is None or found.type is not joint.type or joint.type not in _LIMITS:
         return now
+    periods = [math.tau if axis == "Angle" else math.inf for axis in _LIMITS[joint.type]]
+    turned = [
+        new + round((old - new) / period) * period if period < math.inf else new
+        for new, old, period in zip(found.rest, joint.rest, periods, strict=True)
+    ]
     limits = tuple(
         tuple(old if math.isclose(new, old, rel_tol=1e-12, abs_tol=1e-12) else new for new, old in zip(new_row, old_row, strict=True))
         for new_row, old_row in ((found.limits.lower, joint.limits.lower), (found.limits.upper, joint.limits.upper))
     )
-    rest = tuple(old if abs(new - old) < SAME_MM else new for new, old in zip(found.rest, joint.rest, strict=True))
+    rest = tuple(old if abs(new - old) < SAME_MM else seen for seen, new, old in zip(found.rest, turned, joint.rest, strict=True))
     return replace(now, limits=JointLimits(limits[0], limits[1]), rest=rest)
+
+
+def _wound(angle: float, low: float, high: float) -> float:
+    """Return the angle of the same pose that is within limits, or else as near to them as can be [rad]."""
+    bounds = [bound for bound in (low, high) if math.isfinite(bound)]
+    if not bounds or low <= angle <= high:
+        return angle
+    middle = sum(bounds) / len(bounds)
+    near = angle + math.tau * round((middle - angle) / math.tau)
+    return next((turned for turned in (near, near - math.tau, near + math.tau) if low <= turned <= high), near)
+
+
+def _limits(ends: list[tuple[str, tuple[float, float]]], rest: tuple[float, ...]) -> JointLimits:
+    """Return limits that the joint rests within: FreeCAD lets a part rest outside them."""
+    pairs = [(min(low, value), max(high, value)) for value, (_, (low, high)) in zip(rest, ends, strict=False)]
+    return JointLimits(tuple(low for low, _ in pairs), tuple(high for _, high in pairs))
 
 
 def _near(now: SE3, recorded: SE3) -> SE3:

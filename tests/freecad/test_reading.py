@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from functools import cache
 from pathlib import Path
 
@@ -11,7 +12,10 @@ import pytest
 import articad as ac
 from articad.errors import ReadError
 from articad.export.freecad import write_freecad
+from articad.export.urdf import write_urdf
 from articad.importers.freecad import read_freecad
+from articad.importers.urdf import read_urdf
+from articad.kernels import freecad_install
 from tests.freecad import opened
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
@@ -45,7 +49,7 @@ def same_mechanism(one: ac.Assembly, other: ac.Assembly, *, mm: float, rad: floa
 
 @pytest.mark.freecad
 @opened.needs_freecad
-@pytest.mark.parametrize("name", ["wardrobe", "four_bar"])
+@pytest.mark.parametrize("name", sorted(path.parent.name for path in EXAMPLES.glob("*/plan.json")))
 def test_writing_reading_and_writing_again_keeps_the_mechanism(name: str, tmp_path: Path) -> None:
     made = assembly(name)
     bundle = write_freecad(made)
@@ -74,6 +78,37 @@ def test_a_document_without_our_records_has_the_same_poses(tmp_path: Path) -> No
     mm, rad = opened.moved(dict(made.at()), dict(foreign.at()))
     assert mm < 1e-9
     assert rad < 1e-9
+
+
+@pytest.mark.freecad
+@opened.needs_freecad
+def test_a_document_made_by_hand_is_read_as_freecad_means_it_and_goes_on_to_urdf(tmp_path: Path) -> None:
+    ended = freecad_install.find().run(Path(__file__).with_name("by_hand.py"), folder=tmp_path)
+    assert (tmp_path / "hand.json").is_file(), ended.said
+    told = json.loads((tmp_path / "hand.json").read_text())
+    read = read_freecad(tmp_path / "hand.FCStd")
+    assert told["code"] == 0
+    assert not read.findings
+    assert (list(read.parts), read.ground) == (["bracket", "lever", "weight"], "bracket")
+    hinge, slide = read.joints
+    assert (hinge.name, hinge.type, hinge.parent, hinge.child) == ("lever_hinge", "revolute", "bracket", "lever")
+    assert (slide.name, slide.type, slide.parent, slide.child) == ("weight_slide", "slider", "lever", "weight")
+    assert np.degrees([*hinge.limits.lower, *hinge.limits.upper]) == pytest.approx([-30.0, 75.0])
+    assert (slide.limits.lower, slide.limits.upper) == ((-np.inf,), (25.0,))
+    poses = read.at()
+    for part, frame in opened.frames(told["parts"]).items():
+        assert poses[part].allclose(frame, mm=1e-9, rad=1e-9)
+    for joint, (one, two) in zip(read.joints, told["joints"].values(), strict=True):
+        sides = opened.frames({"one": one, "two": two})
+        assert (poses[joint.parent] @ joint.T_parent_connector).allclose(sides["one"], mm=1e-9, rad=1e-9)
+        assert (poses[joint.child] @ joint.T_child_connector).allclose(sides["two"], mm=1e-9, rad=1e-9)
+    volumes = {name: part.solid.volume for name, part in read.parts.items() if part.solid is not None}
+    bar, pin = 78 * 16 * 6, np.pi * 4.8**2 * 20
+    assert volumes == pytest.approx({"bracket": 60 * 40 * 20 - np.pi * 25 * 20, "lever": bar + pin, "weight": np.pi * 49 * 12})
+    urdf = write_urdf(read)
+    (path,) = [path for path in urdf.write(tmp_path / "urdf") if path.suffix == ".urdf"]
+    again = read_urdf(path)
+    assert {(joint.name, str(joint.type)) for joint in again.joints} == {("lever_hinge", "revolute"), ("weight_slide", "slider")}
 
 
 @pytest.mark.parametrize("content", [b"", b"PK\x03\x04 no zip", b"<xml/>"])
