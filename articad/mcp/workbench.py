@@ -20,7 +20,7 @@ from typing import Any, Final
 
 from articad.errors import ReadError
 from articad.findings import Finding
-from articad.mcp.amending import amended
+from articad.plan.amending import amended
 from articad.run import write_atomically
 
 Json = dict[str, Any]

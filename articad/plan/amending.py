@@ -71,5 +71,7 @@ def _names(holder: list[Any]) -> list[str]:
 
 def _lost(address: str, step: str, known: list[str]) -> ReadError:
     message = f"The plan has nothing at {address}."
-    hint = did_you_mean(step, known).strip() or (f"There are {', '.join(known[:20])}." if known else "A number or a text has nothing in it.")
+    hint = did_you_mean(step, known).strip() or (
+        f"There are {', '.join(known[:20])}." if known else "A number or a text has nothing in it."
+    )
     return ReadError(f"{message} {hint}", path=address, findings=[Finding(code="E_READ", where=address, message=message, hint=hint)])

@@ -10,8 +10,8 @@ import pytest
 
 from articad import examples
 from articad.errors import ReadError
-from articad.mcp.amending import amended
 from articad.mcp.workbench import Workbench
+from articad.plan.amending import amended
 from articad.plan.check import check_plan
 from articad.plan.schema import AssemblyPlan
 
