@@ -7,6 +7,7 @@ without libgomp Pinocchio, end in an ImportError that tells a user nothing, and 
 from __future__ import annotations
 
 import ctypes
+import importlib.util
 import io
 import json
 import os
@@ -132,6 +133,7 @@ def examine(load: Loader = _load_lazily) -> tuple[Item, ...]:
     """Look at everything articad needs or can use on this machine. Takes some seconds: it starts the B-rep kernel."""
     libraries = missing_libraries(load)
     return (
+        Item("articad", "ok", metadata.version("articad")),
         Item("python", "ok", f"{platform.python_version()} at {sys.executable}"),
         Item("machine", "ok", f"{platform.system()} {platform.machine()}, {os.cpu_count()} processors, {_disk_free()} free here"),
         *_libraries(libraries),
@@ -139,6 +141,7 @@ def examine(load: Loader = _load_lazily) -> tuple[Item, ...]:
         _kernel() if not libraries else Item("build123d starts", "missing", "not tried: shared libraries are missing"),
         _freecad(),
         _sandbox(),
+        _renderer(),
         _cache(),
         _keys(),
     )
@@ -253,6 +256,17 @@ def _sandbox() -> Item:
         remedy = "apt-get install --no-install-recommends bubblewrap, or a kernel with Landlock; else --sandbox weak"
         return Item("sandbox", "missing", f"part scripts are refused here: {problems}", remedy)
     return Item("sandbox", "ok", f"{level} ({problems})" if problems else level)
+
+
+def _renderer() -> Item:
+    if not _installed("embreex"):
+        return Item("renderer", "missing", "embreex, which casts the rays, is not installed", "pip install embreex")
+    nicer = "VTK is installed too" if _installed("pyvista") else "pip install 'articad[render]' for VTK's"
+    return Item("renderer", "ok", f"articad's own, on embreex {metadata.version('embreex')}; {nicer}")
+
+
+def _installed(name: str) -> bool:
+    return importlib.util.find_spec(name) is not None
 
 
 def _cache() -> Item:

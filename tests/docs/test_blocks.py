@@ -1,4 +1,7 @@
-"""What the documentation shows, runs: every Python block of a page, in order, in one namespace; every link leads somewhere."""
+"""What the documentation shows, runs: every Python block of a page, in order, in one namespace; every link leads somewhere.
+
+Pages with command lines are run as a whole by `test_console`.
+"""
 
 from __future__ import annotations
 
@@ -6,6 +9,8 @@ import re
 from pathlib import Path
 
 import pytest
+
+from tests.docs import test_console
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 PAGES = sorted([ROOT / "README.md", *(ROOT / "docs").rglob("*.md")])
@@ -19,7 +24,9 @@ def python_blocks(page: Path) -> list[tuple[int, str]]:
     return [(text[: found.start()].count("\n") + 1, found["text"]) for found in _BLOCK.finditer(text) if found["language"] == "python"]
 
 
-@pytest.mark.parametrize("page", [page for page in PAGES if python_blocks(page)], ids=lambda page: str(page.relative_to(ROOT)))
+@pytest.mark.parametrize(
+    "page", [page for page in PAGES if python_blocks(page) and page not in test_console.RUN], ids=lambda page: str(page.relative_to(ROOT))
+)
 def test_the_python_blocks_of_a_page_run(page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     namespace: dict[str, object] = {"__name__": "__main__"}
