@@ -334,6 +334,12 @@ CODES: dict[str, Code] = {
         "FreeCAD's own solver does not agree with the exact placements that were written.",
         "Nothing in the file is wrong for that; do not let FreeCAD move the parts.",
     ),
+    "I_FREECAD_UNSEEN": Code(
+        "export",
+        None,
+        "A FreeCAD document was written without FreeCAD, so that its solver was not asked.",
+        "Open it in FreeCAD 1.0 or later; to have trees of features written too, install it.",
+    ),
     "W_FREECAD_JOINT": Code(
         "import", None, "A joint of a FreeCAD document was left out.", "Use Fixed, Revolute, Slider, Cylindrical or Ball between two parts."
     ),
@@ -420,6 +426,20 @@ CODES: dict[str, Code] = {
     "I_ABSORBED": Code(
         "model", None, "A connector that a script placed slightly beside the plan's was taken into a new version of the plan.", "Nothing."
     ),
+    "E_EDIT_REACH": Code(
+        "model",
+        "design",
+        "An edit changes a part that it was not to touch.",
+        "Name the part, or change something narrower, such as the part's own number instead of a shared parameter.",
+    ),
+    "E_EDIT_UNEQUAL": Code(
+        "model",
+        None,
+        "A part that an edit does not touch has other files than before.",
+        "Replay the run that was edited: it was made on another machine, or its files were changed by hand.",
+    ),
+    "I_EDITED": Code("model", None, "An edit has changed a value of the plan.", "Nothing."),
+    "I_PART_EDITED": Code("model", None, "An edit has changed a part, or added or removed it.", "Nothing."),
     "E_REPLAY_MISS": Code(
         "model", None, "The recording has no reply for this request.", "Replay with the version that recorded it, or record again."
     ),
@@ -497,7 +517,7 @@ CODES: dict[str, Code] = {
     "W_AUDIT_ENDLESS": Code(
         "audit", None, "A bounded joint spans a full turn or more.", "Make it continuous, unless a cable or thread stops it."
     ),
-    "W_AUDIT_ZERO_OUTSIDE": Code("audit", None, "A range does not hold zero, where readers place the joint.", "Move the joint's origin."),
+    "I_AUDIT_ZERO_OUTSIDE": Code("audit", None, "A range does not hold zero, where readers place the joint.", "Move the joint's origin."),
     "W_AUDIT_NO_EFFORT": Code("audit", None, "The effort or velocity of a joint that moves is zero or missing.", "Give that of its drive."),
     "W_AUDIT_PLACEHOLDER": Code("audit", None, "All joints have the same round effort or velocity.", "Give each that of its drive."),
     "E_AUDIT_MESH_ABSENT": Code("audit", None, "A mesh file is not there.", "Put it there, or correct its name."),
@@ -518,8 +538,8 @@ CODES: dict[str, Code] = {
     "I_AUDIT_UNFUSED": Code("audit", None, "A mesh is several bodies that touch but are not fused.", "Fuse them."),
     "W_AUDIT_SCALE": Code("audit", None, "A whole robot is larger than 100 m or smaller than 1 mm.", "Check the unit of its meshes."),
     "W_AUDIT_UNITS": Code("audit", None, "A shape is drawn in another unit than what is beside it.", "Give it the right scale."),
-    "W_AUDIT_BASE": Code(
-        "audit", None, "A robot reaches below the origin of its base.", "Add a base link at the floor, or spawn it higher."
+    "I_AUDIT_BASE": Code(
+        "audit", None, "A robot reaches below the origin of its base.", "Spawn it higher, or add a base link at the floor."
     ),
     "W_AUDIT_GLTF": Code("audit", None, "glTF in millimetres, though glTF is in metres.", "Write STL or OBJ, or glTF in metres."),
     "I_AUDIT_CARRIERS": Code(

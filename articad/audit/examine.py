@@ -10,7 +10,8 @@ from typing import Any, Final
 
 from articad.assembly import Assembly
 from articad.audit import limits, masses, names, shapes, structure
-from articad.audit.contact import Contacts, contacts
+from articad.audit.contact import contacts
+from articad.audit.contact_case import Contacts
 from articad.audit.declared import Declared, from_assembly
 from articad.audit.engines import refusals
 from articad.audit.mesh_references import MeshReferences

@@ -121,7 +121,7 @@ def zero_outside(declared: Declared) -> Iterator[Finding]:
             lower, upper, unit = _shown(joint)
             out = lower if lower > 0 else -upper
             yield Finding(
-                code="W_AUDIT_ZERO_OUTSIDE",
+                code="I_AUDIT_ZERO_OUTSIDE",
                 where=joint.where,
                 message=f"Joint {joint.name!r} moves from {lower:.6g} to {upper:.6g} {unit}, but readers place it at 0, {out:.4g} {unit} outside.",
                 hint="Turn or shift its origin, so that zero is within its range.",

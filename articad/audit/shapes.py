@@ -267,7 +267,7 @@ def base_below(declared: Declared) -> Iterator[Finding]:
     below = -lowest[0]
     if below > BELOW_MM:
         yield Finding(
-            code="W_AUDIT_BASE",
+            code="I_AUDIT_BASE",
             where=declared.by_name[declared.roots[0]].where,
             parts=(lowest[1],),
             message=f"{lowest[1]} reaches {below:.4g} mm below the origin of the base {declared.roots[0]}: placed at z = 0 it stands in the floor.",

@@ -257,7 +257,7 @@ INERTIA_OF_ONE = {axis: ("1" if axis in {"ixx", "iyy", "izz"} else "0") for axis
 ARM_KG = DENSITY * 0.08 * 0.02 * 0.01
 
 DEFECTS = [
-    Defect("number", setting("joint[@name='turn']/origin", xyz="-0.05 zero 0.0205"), "E_AUDIT_NUMBER", also=frozenset({"W_AUDIT_BASE"})),
+    Defect("number", setting("joint[@name='turn']/origin", xyz="-0.05 zero 0.0205"), "E_AUDIT_NUMBER", also=frozenset({"I_AUDIT_BASE"})),
     Defect("name_twice", twice, "E_AUDIT_NAME_TWICE", 2),
     Defect("no_name", adding(etree.fromstring('<joint type="fixed"><parent link="plate"/><child link="tag"/></joint>'), etree.fromstring('<link name="tag"/>')), "E_AUDIT_NO_NAME", 1),
     Defect("link_unknown", setting("joint[@name='turn']/parent", link="plat"), "E_AUDIT_LINK_UNKNOWN"),
@@ -284,7 +284,7 @@ DEFECTS = [
     Defect("locked", limits("turn", lower=0.0, upper=0.0), "W_AUDIT_LOCKED", 0.0),
     Defect("degrees", limits("turn", lower=-60.0, upper=60.0), "W_AUDIT_DEGREES", 120.0, "units"),
     Defect("endless", limits("turn", lower=-2 * math.pi, upper=2 * math.pi), "W_AUDIT_ENDLESS", 720.0),
-    Defect("zero_outside", limits("turn", lower=0.5, upper=1.0), "W_AUDIT_ZERO_OUTSIDE", math.degrees(0.5)),
+    Defect("zero_outside", limits("turn", lower=0.5, upper=1.0), "I_AUDIT_ZERO_OUTSIDE", math.degrees(0.5)),
     Defect("no_effort", limits("turn", effort=0.0), "W_AUDIT_NO_EFFORT", 1),
     Defect("placeholder_effort", same_efforts, "W_AUDIT_PLACEHOLDER", 1.0, "placeholder", base=three_turns),
     Defect("mesh_absent", lambda _, folder: (folder / "arm.stl").unlink(), "E_AUDIT_MESH_ABSENT", 2),
@@ -299,7 +299,7 @@ DEFECTS = [
     Defect("units", lambda root, _: [element.attrib.pop("scale") for element in root.iter("mesh") if element.get("filename") == "block.stl"], "W_AUDIT_UNITS", None, "units", frozenset({"W_AUDIT_DENSITY", "E_OVERLAP", "E_STATIC_OVERLAP", "W_STATIC_OVERLAP", "E_MOTION_COLLISION", "W_AUDIT_COM", "W_AUDIT_PAIR_COLLISION"})),
     Defect("visual_units", setting("link[@name='arm']/visual/geometry/mesh", scale="1 1 1"), "W_AUDIT_UNITS", 1000.0, "units", frozenset({"W_AUDIT_DENSITY"}), relative=1e-3),
     Defect("scale", lambda root, _: [element.set("scale", "1 1 1") for element in root.iter("mesh")], "W_AUDIT_SCALE", None, "units", frozenset({"W_AUDIT_DENSITY", "E_OVERLAP", "E_STATIC_OVERLAP", "W_STATIC_OVERLAP", "E_MOTION_COLLISION", "W_AUDIT_PAIR_COLLISION"})),
-    Defect("base_below", lambda root, _: [find(root, f"link[@name='plate']/{role}").insert(0, etree.fromstring('<origin xyz="0 0 -0.0325"/>')) for role in ("visual", "collision")], "W_AUDIT_BASE", 32.5, also=frozenset({"E_FLOATING", "W_AUDIT_COM"})),
+    Defect("base_below", lambda root, _: [find(root, f"link[@name='plate']/{role}").insert(0, etree.fromstring('<origin xyz="0 0 -0.0325"/>')) for role in ("visual", "collision")], "I_AUDIT_BASE", 32.5, also=frozenset({"E_FLOATING", "W_AUDIT_COM"})),
     Defect("gltf", lambda root, folder: as_glb(root, folder, scale=0.001, mesh_scale=1.0), "W_AUDIT_GLTF", 1, "units", base=glb_in_metres),
     Defect("overlap", post_in_the_block, "E_OVERLAP", None, None, frozenset({"E_MOTION_COLLISION"}), base=with_post),
     Defect("neighbours_overlap", setting("joint[@name='slide']/origin", xyz="0.06 -0.06 0.017"), "E_STATIC_OVERLAP", None, None, frozenset({"W_STATIC_OVERLAP"})),

@@ -35,12 +35,17 @@ def mjcf(folder: Path, *, x: float, mask: str = "", rest: str = "") -> Path:
 def test_mjcf_overlap_is_found_and_its_sound_twin_is_clean(tmp_path: Path) -> None:
     assert not audit(mjcf(tmp_path, x=0.115), FULL).findings
 
-    (finding, *rest) = audit(mjcf(tmp_path, x=0.09), FULL).findings
+    (finding,) = audit(mjcf(tmp_path, x=0.08), FULL).findings
 
     assert finding.code == "E_OVERLAP"
     assert finding.parts == ("a", "b")
-    assert finding.value == pytest.approx(10.0, rel=0.05)
-    assert {found.code for found in rest} <= {"E_MOTION_COLLISION"}
+    assert finding.value == pytest.approx(20.0, rel=0.05)
+
+
+def test_what_overlaps_at_rest_is_told_of_motion_only_where_that_makes_it_much_deeper(tmp_path: Path) -> None:
+    """The slide drives the ball 10 mm further in: from 20 mm to 30 mm in one model, from 4 mm to 14 mm in the other."""
+    assert audit(mjcf(tmp_path, x=0.08), FULL).findings.codes == ("E_OVERLAP",)
+    assert set(audit(mjcf(tmp_path, x=0.096), FULL).findings.codes) == {"E_OVERLAP", "E_MOTION_COLLISION"}
 
 
 def test_mjcf_first_contact_along_a_slide(tmp_path: Path) -> None:
@@ -80,6 +85,22 @@ def test_an_engine_that_refuses_a_urdf_is_quoted_with_the_cause(tmp_path: Path) 
     (refusal,) = [finding for finding in found.of("W_AUDIT_ENGINE") if finding.where == "mujoco"]
     assert refusal.cause == "no_inertia"
     assert "mass and inertia of moving bodies" in refusal.message
+
+
+BALLS = """<robot name="figure"><link name="chest">{0}</link><link name="head">{0}</link>
+<joint name="neck" type="fixed"><origin xyz="0 0 0.3"/><parent link="chest"/><child link="head"/></joint></robot>"""
+
+
+@pytest.mark.parametrize(
+    ("shape", "floats"), [('<sphere radius="0.1"/>', False), ('<box size="0.2 0.2 0.2"/>', True)], ids=["balls", "boxes"]
+)
+def test_balls_stand_for_limbs_and_need_not_touch(shape: str, floats: bool, tmp_path: Path) -> None:
+    path = tmp_path / "figure.urdf"
+    path.write_text(BALLS.format(f"<visual><geometry>{shape}</geometry></visual><collision><geometry>{shape}</geometry></collision>"))
+
+    found = audit(path, QUICK).findings
+
+    assert ("E_NOT_TOUCHING" in found.codes) == floats
 
 
 def test_time_that_runs_out_is_told(tmp_path: Path) -> None:
