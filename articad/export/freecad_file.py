@@ -8,13 +8,16 @@ from __future__ import annotations
 
 import io
 import re
+import struct
 import zipfile
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from xml.sax.saxutils import quoteattr
 
+import numpy as np
 from lxml import etree
 
+from articad.geometry.mesh import TriMesh
 from articad.kernels.freecad_file import packed, settle, xml_parser
 
 _NOTHING = "bnVsbA=="  # base64 of null: what FreeCAD itself writes for a view provider without state
@@ -24,6 +27,8 @@ _SHOWN = (  # besides parts and assemblies, what carries a shape of its own
     "Part::Mirroring",
     "Mesh::Feature",
 )
+_MESH_HEADER = struct.pack("<II", 0xA0B0C0D0, 0x010000) + b"MESH-" * 51 + b"\n"  # FreeCAD's own, before the counts
+_NO_FACET = 0xFFFFFFFF  # beyond an edge that only one facet has
 _GROUPS = ("App::Part", "App::Link", "Assembly::AssemblyObject", "Assembly::JointGroup")
 
 
@@ -119,3 +124,21 @@ def python_classes(content: bytes) -> set[str]:
     with zipfile.ZipFile(io.BytesIO(content)) as archive:
         document = archive.read("Document.xml").decode(errors="replace")
     return {f"{module}.{name}" for module, name in re.findall(r'<Python [^>]*module="([^"]*)"[^>]*class="([^"]*)"', document)}
+
+
+def mesh_kernel(mesh: TriMesh) -> bytes:
+    """Return a mesh in the form that FreeCAD keeps meshes in: points, and for each facet its points and its neighbours."""
+    points, index = np.unique(mesh.vertices.astype("<f4") + np.float32(0.0), axis=0, return_inverse=True)
+    facets = index.reshape(-1)[mesh.triangles].astype("<u4")
+    beside = np.full(facets.shape, _NO_FACET, dtype="<u4")
+    waiting: dict[tuple[int, int], tuple[int, int]] = {}
+    for place, (a, b) in enumerate(np.stack([facets, np.roll(facets, -1, axis=1)], axis=2).reshape(-1, 2).tolist()):
+        here = divmod(place, 3)
+        there = waiting.pop((min(a, b), max(a, b)), None)
+        if there is None:
+            waiting[min(a, b), max(a, b)] = here
+        else:
+            beside[here], beside[there] = there[0], here[0]
+    bounds = np.stack([points.min(axis=0), points.max(axis=0)], axis=1) if len(points) else np.zeros((3, 2), dtype="<f4")
+    counts = struct.pack("<II", len(points), len(facets))
+    return _MESH_HEADER + counts + points.tobytes() + np.hstack([facets, beside]).tobytes() + bounds.astype("<f4").tobytes()

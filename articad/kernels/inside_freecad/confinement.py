@@ -14,7 +14,20 @@ import sys
 from typing import Any
 
 _NO_NEW_PRIVILEGES = 38
-_READABLE = ("/usr", "/bin", "/sbin", "/lib", "/lib32", "/lib64", "/libx32", "/etc", "/proc/self", "/confinement", "/dev/null", "/dev/urandom")
+_READABLE = (
+    "/usr",
+    "/bin",
+    "/sbin",
+    "/lib",
+    "/lib32",
+    "/lib64",
+    "/libx32",
+    "/etc",
+    "/proc/self",
+    "/confinement",
+    "/dev/null",
+    "/dev/urandom",
+)
 FAILED = 70
 
 

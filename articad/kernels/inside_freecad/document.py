@@ -19,21 +19,6 @@ import Part
 
 Json = dict[str, Any]
 
-_JOINT_TYPES = {
-    "fixed": "Fixed",
-    "revolute": "Revolute",
-    "slider": "Slider",
-    "cylindrical": "Cylindrical",
-    "ball": "Ball",
-    "screw": "Cylindrical",  # with a coupling of type Screw beside it
-    "planar": "Distance",  # of two coordinate systems: keeps their planes together
-    "universal": "Ball",  # with a Perpendicular beside it
-    "perpendicular": "Perpendicular",
-    "gear": "Gears",
-    "belt": "Belt",
-    "rack": "RackPinion",
-    "thread": "Screw",
-}
 FIRST_ID = 100_000  # beyond 5000, where FreeCAD's own random start ends
 
 
@@ -213,22 +198,11 @@ class _Writer:
         _text(system, "ArticadLabel", connector["label"], "What it is on the part")
         self.connectors[part["name"], connector["name"]] = system
         if part["kind"] == "mirror":
-            for axis, expression in zip("xyz", self._reflected(part, connector["name"]), strict=True):
-                system.setExpression(f"Placement.Base.{axis}", expression)
+            names = {"source": self.connectors[part["source"], connector["name"]].Name, "image": self.shapes[part["name"]].Name}
+            for axis, expression in zip("xyz", part["reflected"], strict=True):
+                system.setExpression(f"Placement.Base.{axis}", expression.format(**names))
         for name, expression in connector["expressions"].items():
             system.setExpression(name, expression)
-
-    def _reflected(self, part: Json, connector: str) -> list[str]:
-        """Return the origin of the source's connector, reflected, as expressions: it follows an edit of the source."""
-        source, image = self.connectors[part["source"], connector].Name, self.shapes[part["name"]].Name
-        turns = "Normal" in part["expressions"]
-        normal = {
-            axis: f"({image}.Normal.{axis} / 1 mm)" if turns else f"({n!r})"
-            for axis, n in zip("xyz", part["plane"]["normal"], strict=True)
-            if n or turns
-        }
-        along = " + ".join(f"{n} * ({source}.Placement.Base.{axis} - {image}.Base.{axis})" for axis, n in normal.items())
-        return [f"{source}.Placement.Base.{axis}" + (f" - 2 * {normal[axis]} * ({along})" if axis in normal else "") for axis in "xyz"]
 
     def _place(self) -> None:
         for part in self.job["parts"]:
@@ -238,7 +212,7 @@ class _Writer:
 
     def _joint(self, group: Any, joint: Json) -> Any:
         item = group.newObject("App::FeaturePython", joint["object"])
-        JointObject.Joint(item, JointObject.JointTypes.index(_JOINT_TYPES[joint["type"]]))
+        JointObject.Joint(item, JointObject.JointTypes.index(joint["type"]))
         item.Label = joint["label"]
         item.Activated = joint["active"]
         _text(item, "ArticadJoint", joint["name"], "Name of the joint or coupling")
