@@ -232,7 +232,7 @@ def _captured() -> Iterator[_Said]:
 def _plain(text: str) -> str:
     """Return what an engine says as one line, without the machine's folders."""
     line = re.sub(r"\x1b\[[0-9;]*m", "", " ".join(text.split()))
-    line = re.sub(r"(?<![\w.])/(?:[\w.@+-]+/)+", "", line)
+    line = re.sub(r"(?<![\w.:/])/(?:[\w.@+-]+/)+", "", line.replace("file:///", "/"))
     return line[:_MESSAGE]
 
 

@@ -8,7 +8,7 @@ pushed but not pushed through. A model's own actuators are switched off. Everyth
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -17,6 +17,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from articad.simulate.strokes import FREE_SLIDE_M, MOST_JOINTS, MOST_SPEED, PACE_M_S, PACE_RAD_S, STROKE_S, strokes
 from articad.simulate.verdict import Frame, Outcome, Reach
 
 FloatArray = NDArray[np.float64]
@@ -24,15 +25,9 @@ FloatArray = NDArray[np.float64]
 STIFFNESS = 20.0  # ω of the hand [1/s]: a tenth of a second to arrive
 MOST_ERROR = 0.2  # rad or m that the hand acts on
 HOLD_S = 1.0
-STROKE_S = 1.0  # at least, for each way: rest to lower, lower to upper, upper to rest
-PACE_RAD_S = 3.0  # mean speed of a stroke
-PACE_M_S = 1.0
 FREE_S = 1.0
-MOST_SPEED = 100.0  # rad/s or m/s: nothing that is held goes so fast
 PUSH = 0.2  # rad/s or m/s at which a model is let go
-MOST_JOINTS = 80
 FRAMES_OF_JOINT = 3
-UNLIMITED_SLIDE_M = 0.1
 
 
 @dataclass
@@ -131,7 +126,7 @@ class Trial:
         steps = self._steps(max(STROKE_S, (upper - lower) / (PACE_RAD_S if unit == "rad" else PACE_M_S)))
         shown = {steps, 2 * steps, 3 * steps - 1}
         before = rest
-        for step, value in enumerate(_strokes(rest, lower, upper, steps)):
+        for step, value in enumerate(strokes(rest, lower, upper, steps)):
             target[at] = value
             pace = np.zeros(self.model.nv)
             pace[self.model.jnt_dofadr[joint]] = (value - before) / self.model.opt.timestep
@@ -226,7 +221,7 @@ class Trial:
         unit, rest = "rad" if turns else "m", float(self.start[self.model.jnt_qposadr[joint]])
         lower, upper = (float(bound) for bound in self.model.jnt_range[joint])
         if not self.model.jnt_limited[joint]:
-            lower, upper = (rest, rest + math.tau) if turns else (rest - UNLIMITED_SLIDE_M, rest + UNLIMITED_SLIDE_M)
+            lower, upper = (rest, rest + math.tau) if turns else (rest - FREE_SLIDE_M, rest + FREE_SLIDE_M)
         elif turns and upper - lower > 2 * math.tau:
             lower, upper = max(lower, rest - math.tau), min(upper, rest + math.tau)
         return lower, upper, unit
@@ -278,14 +273,3 @@ class Trial:
             self.model.joint(joint).name or f"joint_{joint}": float(self.data.qpos[self.model.jnt_qposadr[joint]])
             for joint in self._single_joints()
         }
-
-
-def _strokes(rest: float, lower: float, upper: float, steps: int) -> Iterator[float]:
-    """Yield a smooth way from rest to the lower bound, to the upper one, and back; a moment's pause at both."""
-    pause = max(1, steps // 5)
-    smooth: Callable[[float], float] = lambda share: (1 - math.cos(math.pi * share)) / 2  # noqa: E731
-    for start, end in ((rest, lower), (lower, upper), (upper, rest)):
-        for step in range(steps - pause):
-            yield start + (end - start) * smooth(step / max(1, steps - pause - 1))
-        for _ in range(pause):
-            yield end

@@ -145,15 +145,29 @@ def test_every_kind_of_joint_is_held_and_driven() -> None:
     assert len(outcome.reaches) >= 10
 
 
-def test_bullet_holds_a_model(tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("limits", "span"), [('lower="0.3" upper="1.2"', (0.3, 1.2)), (None, (0.0, 2 * math.pi))], ids=["hinge", "endless"]
+)
+def test_bullet_holds_a_model_and_drives_its_joints(limits: str | None, span: tuple[float, float], tmp_path: Path) -> None:
+    """Also one whose range does not hold zero, where PyBullet would place it."""
     pytest.importorskip("pybullet", reason="PyBullet has no wheel for this Python")
-    path = tmp_path / "model.xml"
-    path.write_text(MODEL.format(world="", joint="", arm=ARM, more="", bodies="", rest=""))
+    inertial = '<inertial><mass value="0.2"/><inertia ixx="1e-4" iyy="1e-3" izz="1e-3" ixy="0" ixz="0" iyz="0"/></inertial>'
+    shape = '<geometry><box size="0.1 0.01 0.01"/></geometry>'
+    kind, limit = ("revolute", f'<limit {limits} effort="5" velocity="3"/>') if limits else ("continuous", "")
+    path = tmp_path / "model.urdf"
+    path.write_text(
+        f'<robot name="arm"><link name="base">{inertial}</link><link name="arm">{inertial}<collision>{shape}</collision></link>'
+        f'<joint name="turn" type="{kind}"><parent link="base"/><child link="arm"/><axis xyz="0 1 0"/>{limit}</joint></robot>'
+    )
 
     verdict = simulate_file(path, engines=("pybullet",))
 
-    assert verdict.outcomes[0].loads
+    (outcome,) = verdict.outcomes
     assert verdict.ok, str(verdict.findings)
+    (reach,) = outcome.reaches
+    assert (reach.lower, reach.upper) == pytest.approx(span)
+    assert (reach.low, reach.high) == pytest.approx(span, abs=0.02)
+    assert outcome.speed_at_rest < 1e-6
 
 
 def test_the_film_follows_what_the_engine_says(tmp_path: Path) -> None:
