@@ -9,6 +9,7 @@ placement is ours: FreeCAD's solver is asked only whether it agrees (it does not
 from __future__ import annotations
 
 import json
+import re
 import tempfile
 from collections.abc import Mapping
 from pathlib import Path
@@ -30,6 +31,7 @@ if TYPE_CHECKING:
 PROGRAM = Path(freecad_install.__file__).parent / "inside_freecad" / "document.py"
 SOLVED_MM, SOLVED_RAD = 1e-6, 1e-8  # by which FreeCAD's solver may move a part: contracts of the FreeCAD round trip
 _SECONDS, _SECONDS_A_PART = 120.0, 5.0
+_PROGRESS = re.compile(r"\(\d+ %\)|^MbD:|^Time = |^Recompute\.")  # lines that FreeCAD writes whatever happens
 
 Json = dict[str, Any]
 
@@ -128,7 +130,8 @@ def _opinion(report: Mapping[str, Any]) -> Findings:
 
 
 def _failed(said: str, *, late: bool) -> ExportError:
-    words = "it ran out of time" if late else (said.strip().splitlines() or ["it left no word"])[-1][:300]
+    lines = [line.strip() for line in said.splitlines() if not _PROGRESS.search(line) and line.strip()]
+    words = "it ran out of time" if late else (lines or ["it left no word"])[-1][:300]
     finding = Finding(
         code="E_FREECAD", where="assembly", message=f"FreeCAD could not write the document: {words}.", hint="Run articad doctor."
     )

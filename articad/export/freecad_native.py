@@ -105,6 +105,7 @@ class _Writer:
         self.containers: dict[str, str] = {}  # part -> its App::Part, or that of its source
         self.shapes: dict[str, str] = {}
         self.systems: dict[tuple[str, str], str] = {}
+        self.labels: set[str] = {job["name"]}
 
     def write(self) -> None:
         if self.job["parameters"]:
@@ -126,6 +127,7 @@ class _Writer:
         for joint in self.job["joints"]:
             self._joint(joint)
         members = [part["object"] for part in self.job["parts"]]
+        self.labels.discard(self.job["name"])
         assembly = [
             _text("ArticadRecords", "\n".join(self.job["records"]), "articad", "articad's records, for the way back", attr=4),
             _links("Group", [*members, "Joints", *joints]),
@@ -163,9 +165,21 @@ class _Writer:
         expressions: Mapping[str, str] | None = None,
         at: int | None = None,
     ) -> str:
-        own = [_expressions(expressions or {}), _text("Label", label or name), _property("Visibility", "Bool", _row("Bool", value="false"))]
+        own = [
+            _expressions(expressions or {}),
+            _text("Label", self._label(label or name)),
+            _property("Visibility", "Bool", _row("Bool", value="false")),
+        ]
         self.objects.insert(len(self.objects) if at is None else at, _Object(name, kind, [*own, *properties], extension))
         return name
+
+    def _label(self, wanted: str) -> str:
+        """Return a label that no other object has, as FreeCAD makes it."""
+        free, number = wanted, 1
+        while free in self.labels:
+            free, number = f"{wanted}{number:03d}", number + 1
+        self.labels.add(free)
+        return free
 
     def _origin(self) -> str:
         """Add an origin with its lines and planes, and return its name."""

@@ -20,7 +20,7 @@ from articad.connectors.se3 import SE3
 from articad.errors import ArticadError
 from articad.findings import Finding, Findings
 from articad.geometry.part import DEFAULT_COLOR, Part, Solid
-from articad.importers.reading import Folder, parse_xml, unreadable
+from articad.importers.reading import LARGEST_MM, Folder, parse_xml, unreadable
 from articad.importers.records import assembly_of, read_records
 from articad.kernels.archive import Archive, BadArchiveError
 from articad.kernels.freecad import BrepReader
@@ -107,9 +107,12 @@ class _Document:
 
     def number(self, name: str, key: str) -> float:
         try:
-            return float(self.value(name, key, "Float") or 0.0)
+            number = float(self.value(name, key, "Float") or 0.0)
         except ValueError:
             raise unreadable(self.path, f"{name}.{key}", "It is not a number.") from None
+        if not abs(number) <= LARGEST_MM:  # NaN is not either
+            raise unreadable(self.path, f"{name}.{key}", "It is beyond reason.")
+        return number
 
     def choice(self, name: str, key: str) -> str:
         row = self._properties[name][key]
@@ -145,9 +148,12 @@ class _Document:
             return IDENTITY
         try:
             numbers = [float(found.get(axis)) for axis in ("Px", "Py", "Pz", "Q0", "Q1", "Q2", "Q3")]
-            return SE3.from_quaternion(numbers[3:], numbers[:3])
+            placed = SE3.from_quaternion(numbers[3:], numbers[:3])
         except (TypeError, ValueError, ArticadError):
             raise unreadable(self.path, f"{name}.{key}", "It is not a placement.") from None
+        if max(map(abs, numbers[:3])) > LARGEST_MM:
+            raise unreadable(self.path, f"{name}.{key}", "It stands beyond reason.")
+        return placed
 
     def reference(self, name: str, key: str) -> list[str]:
         """Return the objects that a reference leads through, from the one it is stated at."""
@@ -233,7 +239,8 @@ class _Model:
         """Yield each active joint that has a type of ours, with its object."""
         document = self.document
         for item in document.items:
-            if not document.has(item, "JointType") or not document.truth(item, "Activated", default=True):
+            off = not document.truth(item, "Activated", default=True) or document.truth(item, "Suppressed")  # in FreeCAD 1.0, in 1.1
+            if off or not document.has(item, "JointType"):
                 continue
             kind = document.choice(item, "JointType")
             sides = [self._side(item, number) for number in (1, 2)]

@@ -18,6 +18,7 @@ from articad.connectors.mate import FLIP, Mate
 from articad.connectors.se3 import SE3
 from articad.errors import KernelUnavailableError
 from articad.kernels import freecad_install
+from articad.kernels.freecad_install import FreeCAD
 from articad.kinematics.joints import Joint
 
 Json = dict[str, Any]
@@ -40,13 +41,19 @@ WHY_NOT = why_not()
 needs_freecad = pytest.mark.skipif(bool(WHY_NOT) and os.environ.get("CI") != "true", reason=f"no FreeCAD 1.0 or later here: {WHY_NOT}")
 
 
-def steps(content: bytes, *wanted: Json) -> list[Json]:
+def newer() -> list[FreeCAD]:
+    """Return the FreeCAD of the next series that `scripts/install-freecad --next` leaves beside the other, if it is there."""
+    place = freecad_install.tree().with_name("freecad-next")
+    return [FreeCAD("/usr/bin/freecadcmd", root=place)] if (place / "usr" / "bin" / "freecadcmd").is_symlink() else []
+
+
+def steps(content: bytes, *wanted: Json, freecad: FreeCAD | None = None) -> list[Json]:
     """Do steps on a document in a new FreeCAD process."""
     with tempfile.TemporaryDirectory() as scratch:
         folder = Path(scratch)
         (folder / "it.FCStd").write_bytes(content)
         (folder / "job.json").write_text(json.dumps({"file": "it.FCStd", "steps": wanted}))
-        ended = freecad_install.find().run(EXAMINE, folder=folder, limits=freecad_install.Limits(seconds=600.0))
+        ended = (freecad or freecad_install.find()).run(EXAMINE, folder=folder, limits=freecad_install.Limits(seconds=600.0))
         assert (folder / "report.json").is_file(), ended.said
         report: Json = json.loads((folder / "report.json").read_text())
     return list(report["steps"])

@@ -214,7 +214,8 @@ class _Writer:
         item = group.newObject("App::FeaturePython", joint["object"])
         JointObject.Joint(item, JointObject.JointTypes.index(joint["type"]))
         item.Label = joint["label"]
-        item.Activated = joint["active"]
+        if not joint["active"]:
+            _switch_off(item)
         _text(item, "ArticadJoint", joint["name"], "Name of the joint or coupling")
         item.Offset1, item.Offset2 = placement(joint["offset_1"]), placement(joint["offset_2"])  # before the references: see solve
         for name, value in joint["limits"].items():
@@ -272,6 +273,13 @@ def _numbered_from(first: int) -> Any:
         for name, content in files.items():
             archive.writestr(name, content)
     return App.openDocument(str(seed))
+
+
+def _switch_off(joint: Any) -> None:
+    if hasattr(joint, "Suppressed"):  # FreeCAD 1.1's word for it
+        joint.Suppressed = True
+    else:
+        joint.Activated = False
 
 
 def _float(item: Any, name: str, value: float, group: str, note: str) -> None:

@@ -37,7 +37,7 @@ def _parts(document: Any) -> dict[str, Any]:
 
 
 def _look(document: Any, _: Json) -> Json:
-    """Report placements, connectors, boxes and invalid objects."""
+    """Report what is in the document, and what FreeCAD makes of it."""
     parts = _parts(document)
     return {
         "articad": importlib.util.find_spec("articad") is not None,
@@ -47,7 +47,13 @@ def _look(document: Any, _: Json) -> Json:
         "volumes": {name: _volume(item) for name, item in parts.items()},
         "invalid": [item.Name for item in document.Objects if "Invalid" in item.State],
         "touched": [item.Name for item in document.Objects if "Touched" in item.State],
-        "joints": {item.Label: item.JointType for item in document.Objects if hasattr(item, "JointType")},
+        "joints": {item.Name: str(item.JointType) for item in document.Objects if hasattr(item, "JointType")},
+        "limits": {item.Name: _limits(item) for item in document.Objects if hasattr(item, "JointType")},
+        "expressions": sorted(
+            f"{item.Name}.{path.lstrip('.')} = {text}" for item in document.Objects for path, text in item.ExpressionEngine
+        ),
+        "visible": sorted(name for name, item in parts.items() if item.Visibility),
+        "meshes": {name: found for name, item in parts.items() if (found := _mesh(item)) is not None},
         "objects": sorted(f"{item.TypeId} {item.Name}" for item in document.Objects),
     }
 
@@ -77,6 +83,20 @@ def _box(part: Any) -> list[list[float]] | None:
 def _volume(part: Any) -> float | None:
     shape = _shape(part)
     return None if shape is None or shape.isNull() else shape.Volume
+
+
+def _mesh(part: Any) -> Json | None:
+    container = part.LinkedObject if part.TypeId == "App::Link" else part
+    for item in container.Group:
+        if item.TypeId == "Mesh::Feature":
+            return {"volume": item.Mesh.Volume, "closed": item.Mesh.isSolid()}
+    return None
+
+
+def _limits(joint: Any) -> Json:
+    """Return the limits of a joint that are switched on, in degrees and mm."""
+    names = ("AngleMin", "AngleMax", "LengthMin", "LengthMax")
+    return {name: float(getattr(joint, name)) for name in names if getattr(joint, f"Enable{name}", False)}
 
 
 def _solve(document: Any, _: Json) -> Json:
