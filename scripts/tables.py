@@ -1,14 +1,17 @@
-"""Writes the pages of docs/reference that are tables of the code: findings and losses. `--check` only compares."""
+"""Writes the pages of docs/reference that are tables of the code: findings, losses and the command line. `--check` only compares."""
 
 from __future__ import annotations
 
+import argparse
 import re
 import sys
 from itertools import groupby
 from pathlib import Path
 from typing import get_args
 
+import articad.commands
 from articad.codes import CODES
+from articad.commands.command import COMMANDS
 from articad.export.losses import TABLE, Format
 
 REFERENCE = Path(__file__).resolve().parent.parent / "docs" / "reference"
@@ -65,7 +68,79 @@ def losses() -> str:
     return "\n".join(lines) + "\n"
 
 
-PAGES = {"findings.md": findings, "losses.md": losses}
+ABOUT_COMMANDS = """\
+```console
+articad [--json] [-q] [-v] [--no-color] COMMAND …
+```
+
+| flag of every command | |
+|---|---|
+| `--json` | one report on stdout, nothing else |
+| `-q`, `--quiet` | findings and errors only |
+| `-v`, `--verbose` | details, and tracebacks of defects |
+| `--no-color` | no colour, no moving bars; `NO_COLOR` does the same |
+
+| exit code | meaning |
+|---|---|
+| 0 | ok |
+| 1 | done, with findings: the report is not `ok` |
+| 2 | the command line is wrong |
+| 3 | cannot go on: the error says why and what would have been valid |
+| 130 | interrupted; what was finished is kept |
+
+| environment variable | meaning |
+|---|---|
+| `ARTICAD_CACHE` | where built parts are kept (`~/.cache/articad`) |
+| `ARTICAD_MODEL` | the model of `generate`, where `--model` is not given |
+| `ARTICAD_MEMORY` | where the experience of earlier runs is kept |
+| `ARTICAD_SANDBOX` | `weak` runs part scripts with less isolation than landlock or bubblewrap give |
+| `ARTICAD_FREECAD` | FreeCAD's program, for the FreeCAD kernel |
+| the provider's own, such as `GEMINI_API_KEY` | the key; it is read from nowhere else and written nowhere |"""
+
+
+def commands() -> str:
+    """Return the page of all commands with their arguments."""
+    assert articad.commands  # importing it registers them
+    index = [f"| [`{name}`](#articad-{name}) | {_cell(COMMANDS[name].summary)} |" for name in sorted(COMMANDS)]
+    lines = ["# Command line", "", NOTE, "| command | what it does |", "|---|---|", *index, "", ABOUT_COMMANDS]
+    for name in sorted(COMMANDS):
+        parser = argparse.ArgumentParser(add_help=False)
+        COMMANDS[name].arguments(parser)
+        lines += _command(name, COMMANDS[name].summary, parser)
+    return "\n".join(lines) + "\n"
+
+
+def _command(name: str, summary: str, parser: argparse.ArgumentParser) -> list[str]:
+    """Return the section of a command, and those of the commands under it."""
+    arguments, below = [], []
+    for action in parser._actions:  # noqa: SLF001 - argparse keeps its list of arguments nowhere else
+        if isinstance(action, argparse._SubParsersAction):  # noqa: SLF001
+            told = {choice.dest: choice.help or "" for choice in action._choices_actions}  # noqa: SLF001
+            below += [(f"{name} {word}", told.get(word, ""), sub) for word, sub in action.choices.items()]
+        elif "--help" not in action.option_strings:
+            arguments.append(action)
+    lines = ["", f"{'#' * (2 + name.count(' '))} articad {name}", "", summary]
+    if arguments:
+        lines += ["", "| argument | |", "|---|---|", *(f"| {_form(action)} | {_cell(action.help or '')} |" for action in arguments)]
+    for entry in below:
+        lines += _command(*entry)
+    return lines
+
+
+def _form(action: argparse.Action) -> str:
+    """Return an argument as it is written: `--jobs N`, `PLAN_DIR`."""
+    words = action.metavar if isinstance(action.metavar, str) else "\\|".join(map(str, action.choices or ())) or action.dest.upper()
+    words = words.replace("|", "\\|").replace("\\\\|", "\\|")
+    if not action.option_strings:
+        return f"`{words}`"
+    return ", ".join(f"`{flag}`" for flag in action.option_strings) if action.nargs == 0 else f"`{action.option_strings[-1]} {words}`"
+
+
+def _cell(text: str) -> str:
+    return re.sub(r"<\w+>", r"`\g<0>`", text % {} if "%%" in text else text).replace("|", "\\|")
+
+
+PAGES = {"findings.md": findings, "losses.md": losses, "cli.md": commands}
 
 
 def main(arguments: list[str]) -> int:
