@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from articad.errors import KinematicsError
 from articad.export.convex import manifold
 from articad.export.hulls import HULL_DEPTH_MM, HULL_VOLUME_MM3, HullOverlap, Pair
+from articad.geometry.mesh import TriMesh
 from articad.geometry.part import Shape
 from articad.interference.motion import freedoms
 from articad.interference.scene import Scene
@@ -85,7 +86,7 @@ class ContactSearch:
 
     def update(self, part: str, pieces: Iterable[Shape]) -> None:
         """Give a part other pieces."""
-        self._pieces[part] = [self._placed(shape, convex=True) for shape in pieces]
+        self._pieces[part] = self._placed(pieces, convex=True)
         self._found = {pair: found for pair, found in self._found.items() if part not in pair}
 
     def contacts(self) -> list[HullOverlap]:
@@ -126,18 +127,26 @@ class ContactSearch:
     def _solids_meet(self, a: str, b: str, T: FloatArray) -> bool:
         for part in (a, b):
             if part not in self._solids:
-                self._solids[part] = [self._placed(shape, convex=False) for shape in self.solids[part]]
+                self._solids[part] = self._placed(self.solids[part], convex=False)
         return _overlap(self._solids[a], self._solids[b], T)[1] > HULL_DEPTH_MM
 
-    def _placed(self, shape: Shape, *, convex: bool) -> tuple[manifold3d.Manifold, FloatArray, FloatArray]:
-        """Return a shape's body in the part's frame, and the corners of its bounding box; equal meshes share a body."""
-        key = shape.mesh.digest, convex
+    def _placed(self, shapes: Iterable[Shape], *, convex: bool) -> list[tuple[manifold3d.Manifold, FloatArray, FloatArray]]:
+        """Return the shapes' bodies in the part's frame, and the corners of their bounding boxes; what is open or flat has no body."""
+        found = []
+        for shape in shapes:
+            body = self._body(shape.mesh, convex=convex).transform(shape.frame.matrix[:3])
+            if not body.is_empty():
+                corners = body.bounding_box()
+                found.append((body, np.array(corners[:3]), np.array(corners[3:])))
+        return found
+
+    def _body(self, mesh: TriMesh, *, convex: bool) -> manifold3d.Manifold:
+        """Return the body of a mesh, or its hull; equal meshes share it."""
+        key = mesh.digest, convex
         if key not in self._bodies:
-            hull = manifold3d.Manifold.hull_points(shape.mesh.vertices).simplify(HULL_DEPTH_MM / 10) if convex else None
-            self._bodies[key] = manifold(shape.mesh) if hull is None else hull
-        body = self._bodies[key].transform(shape.frame.matrix[:3])
-        corners = body.bounding_box()
-        return body, np.array(corners[:3]), np.array(corners[3:])
+            hull = manifold3d.Manifold.hull_points(mesh.vertices).simplify(HULL_DEPTH_MM / 10) if convex else None
+            self._bodies[key] = manifold(mesh) if hull is None else hull
+        return self._bodies[key]
 
 
 def _overlap(first: list[Any], second: list[Any], T: FloatArray) -> tuple[float, float]:

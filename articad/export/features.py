@@ -3,14 +3,24 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
+from itertools import product
 from typing import TYPE_CHECKING
 
+import numpy as np
+
+from articad.export.convex import hull_mesh
+from articad.export.inertia import MM_PER_M, is_possible
 from articad.export.losses import Feature
+from articad.geometry.mesh import TriMesh
+from articad.geometry.part import Part, Shape
 from articad.kinematics.joints import Joint, JointType
 
 if TYPE_CHECKING:
     from articad.assembly import Assembly
 
+FLAT_SHARE = 1e-6  # of its size: a mesh thinner than this has no hull that engines can compute
+THIN_MM = 1.0  # how thick a flat mesh becomes to collide with
 WIDE_CONE = math.radians(85.0)  # from here on the three angles of a ball come too near to gimbal lock
 
 
@@ -82,6 +92,10 @@ def _part_features(assembly: Assembly) -> list[Feature]:
         where = f"parts.{name}"
         if name not in still and (part.mass is None or part.mass.mass <= 0):
             features.append(Feature("mass.missing", where))
+        elif part.mass is not None and part.mass.mass > 0 and not is_possible(part.mass.mass, part.mass.inertia / MM_PER_M**2):
+            features.append(Feature("mass.impossible", where))
+        if any(is_flat(shape.mesh) for shape in part.collisions or part.visuals):
+            features.append(Feature("shape.flat", where))
         if not part.visuals and not part.collisions:
             features.append(Feature("shape.missing", where))
         if any((name, connector) not in used for connector in part.connectors):
@@ -89,6 +103,25 @@ def _part_features(assembly: Assembly) -> list[Feature]:
         if part.material in assembly.materials:
             features.append(Feature("friction", where))
     return features
+
+
+def is_flat(mesh: TriMesh) -> bool:
+    """True for a mesh within a plane, a line or a point: it has no hull to collide with."""
+    if mesh.is_closed and mesh.volume > 0:
+        return False
+    centred = mesh.vertices - mesh.vertices.mean(axis=0)
+    extents = np.ptp(centred @ np.linalg.svd(centred, full_matrices=False)[2].T, axis=0)
+    return len(extents) < 3 or bool(extents.min() <= FLAT_SHARE * extents.max())
+
+
+def solid_enough(part: Part) -> tuple[Shape, ...]:
+    """Return what a part collides with; what is flat is thickened to `THIN_MM`."""
+    return tuple(replace(shape, mesh=_thick(shape.mesh)) if is_flat(shape.mesh) else shape for shape in part.collisions or part.visuals)
+
+
+def _thick(mesh: TriMesh) -> TriMesh:
+    corners = np.array(list(product((-THIN_MM / 2, THIN_MM / 2), repeat=3)))
+    return hull_mesh((mesh.vertices[:, None] + corners).reshape(-1, 3))
 
 
 def rigid_with_ground(assembly: Assembly) -> set[str]:

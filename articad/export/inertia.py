@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from articad.connectors.se3 import SE3
-from articad.geometry.mass import MassProperties
+from articad.geometry.mass import TRIANGLE_TOLERANCE, MassProperties
 
 FloatArray = NDArray[np.float64]
 
@@ -22,6 +22,8 @@ CARRIER_MASS_KG = 1e-4  # small beside any part, but far above the least that si
 CARRIER_INERTIA_KG_M2 = 1e-7  # that of a ball of 50 mm radius and the carrier's mass: what keeps mass matrices well conditioned
 CARRIER_SHARE = 0.05  # carriers take at most this share of the body's pseudo-inertia in any direction, so that it stays physical
 MM_PER_M = 1000.0
+LEAST_MOMENT_KG_M2 = 1e-14  # a principal moment of less is none to simulators: MuJoCo refuses 1e-15
+LEAST_RADIUS_M = 1e-3  # of gyration, that a body gets along a direction in which its inertia gives it less than nothing
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,6 +50,16 @@ class Inertial:
     def carrier(cls, scale: float = 1.0) -> Inertial:
         """Return a carrier's mass properties: a ball at the frame's origin."""
         return cls(CARRIER_MASS_KG * scale, np.zeros(3), CARRIER_INERTIA_KG_M2 * scale * np.eye(3))
+
+    def possible(self) -> Inertial:
+        """Return the nearest body that there can be: none of its second moments is below that of a ball of 1 mm."""
+        if is_possible(self.mass, self.inertia):
+            return self
+        moments, axes = np.linalg.eigh(np.trace(self.inertia) / 2 * np.eye(3) - self.inertia)
+        least = max(self.mass * LEAST_RADIUS_M**2, LEAST_MOMENT_KG_M2)
+        about_com = (axes * np.maximum(moments, least)) @ axes.T
+        inertia = np.trace(about_com) * np.eye(3) - about_com
+        return Inertial(self.mass, self.com, (inertia + inertia.T) / 2)
 
     @property
     def pseudo(self) -> FloatArray:
@@ -91,6 +103,12 @@ class Inertial:
         R = T_link_frame.rotation
         half = Inertial(self.mass / 2, self.com, self.inertia / 2)
         return half, Inertial(self.mass / 2, T_link_frame.inverse().apply(self.com), R.T @ half.inertia @ R)
+
+
+def is_possible(mass: float, inertia: FloatArray) -> bool:
+    """True when some body that simulators take has this inertia, about its centre of mass [kg, kg·m²]."""
+    small, middle, large = np.linalg.eigvalsh(inertia)
+    return bool(mass > 0 and small >= LEAST_MOMENT_KG_M2 and large <= (small + middle) * (1 + TRIANGLE_TOLERANCE))
 
 
 def _positive(P: FloatArray) -> FloatArray:

@@ -1,6 +1,6 @@
 """The table of losses: for each feature of an assembly and each format, what it becomes and what is lost.
 
-The table is data: exporters report its rows, `docs/reference/formats.md` is generated from it, and a test walks over
+The table is data: exporters report its rows, `docs/reference/losses.md` is generated from it, and a test walks over
 all of it. A feature whose `lost` is empty is held by the format without loss.
 """
 
@@ -209,6 +209,14 @@ TABLE: dict[str, dict[Format, Row]] = {
         "mjcf": Row("1e-4 kg", "the mass of a moving part is not known", refused=True),
         "sdf": Row("1e-4 kg", "the mass of a moving part is not known", refused=True),
         "usd": Row("1e-4 kg", "the mass of a moving part is not known", refused=True),
+    },
+    "mass.impossible": {
+        name: Row("the nearest inertia that a body can have", "the inertia as given, which no body has and engines refuse", refused=True)
+        for name in MECHANISM_FORMATS
+    },
+    "shape.flat": {
+        name: Row("a hull 1 mm thick to collide with", "a surface without thickness, which engines cannot collide with")
+        for name in MECHANISM_FORMATS
     },
     "shape.missing": {
         "urdf": Row("a link without shapes"),

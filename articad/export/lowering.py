@@ -10,7 +10,7 @@ that is crossed backwards has the inverse quaternion.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from articad.connectors.mate import flip
 from articad.connectors.se3 import SE3
-from articad.export.features import features_of, rigid_with_ground
+from articad.export.features import features_of, rigid_with_ground, solid_enough
 from articad.export.inertia import MM_PER_M, Inertial
 from articad.export.loads import Load, joint_loads
 from articad.export.losses import Feature
@@ -198,13 +198,17 @@ def metres(T: SE3) -> SE3:
     return SE3.from_unit_array(T.data / np.array([MM_PER_M, MM_PER_M, MM_PER_M, 1.0, 1.0, 1.0, 1.0]))
 
 
-def lower(assembly: Assembly) -> LoweredModel:
+def lower(assembly: Assembly, reserved: Iterable[str] = ()) -> LoweredModel:
     """Turn an assembly into links, frames and one-freedom motions in SI units.
 
     Names become valid, limits and rest values are converted, loads are computed, and each feature that a format may not hold is noted.
+
+    Args:
+        assembly: What is written.
+        reserved: Names that no link may have.
     """
     mechanism = assembly.mechanism
-    names = _ValidNames(assembly)
+    names = _ValidNames(assembly, reserved)
     loads = joint_loads(mechanism, assembly.parts)
     T_link_part = {mechanism.ground: mechanism.T_ground}
     joints = []
@@ -235,8 +239,8 @@ def lower(assembly: Assembly) -> LoweredModel:
 class _ValidNames:
     """Valid names of links and joints; declared ones are claimed before carriers', in the order of declaration."""
 
-    def __init__(self, assembly: Assembly) -> None:
-        self._link_names, self._joint_names = Names(), Names()
+    def __init__(self, assembly: Assembly, reserved: Iterable[str]) -> None:
+        self._link_names, self._joint_names = Names(reserved), Names()
         self.links = {part: self._link_names.claim(part) for part in assembly.mechanism.parts}
         self.joints = {joint.name: self._joint_names.claim(joint.name) for joint in assembly.mechanism.joints}
         self._changed = [("parts", *item) for item in self._link_names.changed.items()]
@@ -371,10 +375,10 @@ def _link(name: str, assembly: Assembly, part_name: str, T_link_part: SE3, *, mo
         name,
         part,
         metres(T_link_part),
-        Inertial.from_part(part.mass, T_link_part) if known and part.mass is not None else None,
+        Inertial.from_part(part.mass, T_link_part).possible() if known and part.mass is not None else None,
         moves,
         tuple(_placed(shape, part, T_link_part) for shape in part.visuals or part.collisions),
-        tuple(_placed(shape, part, T_link_part) for shape in part.collisions or part.visuals),
+        tuple(_placed(shape, part, T_link_part) for shape in solid_enough(part)),
         None if material is None else material.friction,
     )
 

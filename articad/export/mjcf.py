@@ -38,6 +38,7 @@ from articad.kinematics.joints import JointType
 if TYPE_CHECKING:
     from articad.assembly import Assembly
 
+RESERVED = ("world",)  # the name of MuJoCo's own root body
 FAR_RAD = 1e6  # stands for an open end of a range that has another end
 FAR_M = 1e3
 LEAST_VOLUME_MM3 = 1e-3  # below it MuJoCo calls a mesh too small to measure
@@ -81,7 +82,7 @@ def write_mjcf(
     Raises:
         UnrepresentableError: If `strict` and there is such a loss.
     """
-    model, contacts = collide(assembly, lower(assembly), collision, _skipped(assembly), cache)
+    model, contacts = collide(assembly, lower(assembly, RESERVED), collision, _skipped(assembly), cache)
     losses = losses_of("mjcf", (*model.features, *map(contact_feature, contacts)))
     if strict:
         refuse(losses)

@@ -4,15 +4,16 @@ from __future__ import annotations
 
 import re
 import unicodedata
+from collections.abc import Iterable
 
 MAX_LENGTH = 120  # characters; files are named after parts, and file systems stop at 255 bytes
 
 
 class Names:
-    """Hands out valid names, each once."""
+    """Hands out valid names, each once, and none that is reserved."""
 
-    def __init__(self) -> None:
-        self._taken: set[str] = set()
+    def __init__(self, reserved: Iterable[str] = ()) -> None:
+        self._taken: set[str] = set(reserved)
         self.changed: dict[str, str] = {}
 
     def claim(self, wanted: str) -> str:

@@ -22,6 +22,7 @@ from articad.kinematics.joints import JointType
 if TYPE_CHECKING:
     from articad.assembly import Assembly
 
+RESERVED = ("world",)  # what SDFormat calls the frame of the world
 VERSION = "1.10"
 MIMIC_VERSION = "1.11"  # the first with <mimic>
 ARTICAD = "https://articad.invalid/sdf"  # SDFormat wants foreign elements in a namespace
@@ -52,7 +53,7 @@ def write_sdf(assembly: Assembly, *, strict: bool = False) -> Bundle:
     Raises:
         UnrepresentableError: If `strict` and there is such a loss.
     """
-    model = lower(assembly)
+    model = lower(assembly, RESERVED)
     losses = losses_of("sdf", [*model.features, *([Feature("loop.rest", "joints")] if model.loops else [])])
     if strict:
         refuse(losses)

@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 from articad.connectors.mate import flip
 from articad.connectors.se3 import SE3
 from articad.export.bundle import Bundle
-from articad.export.features import features_of
+from articad.export.features import features_of, solid_enough
+from articad.export.inertia import Inertial, is_possible
 from articad.export.losses import Feature, losses_of, refuse
 from articad.export.markup import number
 from articad.export.names import Names, valid_name
@@ -106,7 +107,7 @@ def _body(part: Part, name: str, T: SE3) -> list[str]:
         f"    quatd xformOp:orient = {_quaternion(T)}",
         '    uniform token[] xformOpOrder = ["xformOp:translate", "xformOp:orient"]',
     ]
-    visuals, collisions = part.visuals or part.collisions, part.collisions or part.visuals
+    visuals, collisions = part.visuals or part.collisions, solid_enough(part)
     for index, shape in enumerate(visuals):
         lines += _indented(_mesh(f"visual_{index}", shape.placed, shape.color or part.color))
     for index, shape in enumerate(collisions):
@@ -117,7 +118,10 @@ def _body(part: Part, name: str, T: SE3) -> list[str]:
 def _mass(mass: MassProperties | None) -> list[str]:
     if mass is None:
         return [f"float physics:mass = {number(CARRIER_MASS_KG)}"]
-    moments, axes = np.linalg.eigh(mass.inertia)
+    inertia = mass.inertia
+    if not is_possible(mass.mass, inertia / MM_PER_M**2):
+        inertia = Inertial(mass.mass, mass.com / MM_PER_M, inertia / MM_PER_M**2).possible().inertia * MM_PER_M**2
+    moments, axes = np.linalg.eigh(inertia)
     if np.linalg.det(axes) < 0:
         axes = axes * [1.0, 1.0, -1.0]
     return [

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from articad.connectors.se3 import SE3
-from articad.export.inertia import CARRIER_INERTIA_KG_M2, CARRIER_MASS_KG, Inertial
+from articad.export.inertia import CARRIER_INERTIA_KG_M2, CARRIER_MASS_KG, Inertial, is_possible
 from articad.geometry.mass import MassProperties
 from articad.geometry.shapes import box
 
@@ -68,3 +68,15 @@ def test_no_carriers_take_nothing() -> None:
     whole = cuboid(1, 2, 3, [0, 0, 0])
 
     assert whole.without_carriers(0)[0] is whole
+
+
+@pytest.mark.parametrize("moments", [(1.0, 1.0, 9.0), (0.0, 0.0, 0.0), (-1.0, 2.0, 2.0), (1e-20, 1.0, 1.0)])
+def test_the_nearest_possible_body_is_possible_and_no_other_body_changes(moments: tuple[float, float, float]) -> None:
+    R = SE3.exp([0, 0, 0, 0.3, -0.5, 0.9]).rotation
+    odd = Inertial(2.0, np.array([0.1, 0.2, 0.3]), R @ np.diag(moments) @ R.T)
+    found = odd.possible()
+
+    assert not is_possible(odd.mass, odd.inertia)
+    assert is_possible(found.mass, found.inertia)
+    assert (found.mass, found.com.tolist()) == (odd.mass, odd.com.tolist())
+    assert found.possible() is found

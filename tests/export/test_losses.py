@@ -5,18 +5,20 @@ from dataclasses import replace
 from itertools import product
 from typing import Any
 
+import numpy as np
 import pytest
 
 from articad.assembly import Assembly
 from articad.errors import UnrepresentableError
 from articad.export.convex import whole_hull
-from articad.export.features import features_of
+from articad.export.features import features_of, solid_enough
 from articad.export.losses import MECHANISM_FORMATS, TABLE, losses_of
 from articad.export.mjcf import write_mjcf
 from articad.export.plan import write_plan
 from articad.export.sdf import write_sdf
 from articad.export.urdf import write_urdf
 from articad.export.usd import write_usd
+from articad.geometry.mass import MassProperties
 from articad.geometry.mesh import TriMesh
 from articad.geometry.part import Part, Shape
 from articad.geometry.shapes import box, tube
@@ -177,6 +179,38 @@ def test_couplings_that_tie_twice_are_lost_in_urdf() -> None:
         ("couplings.pinion", False),
         ("couplings.again", True),
     ]
+
+
+@pytest.mark.parametrize("writer", ["mjcf", "sdf"])
+def test_a_part_named_like_the_root_of_a_format_gets_another_name(writer: str) -> None:
+    base, part = block("world", a=frame()), block("part", a=frame(at=(0, 0, 100)))
+    assembly = Assembly.from_parts("p", parts=[base, part], joints=[JOINTS["revolute"](base["a"], part["a"])], ground="world")
+    bundle = WRITERS[writer](assembly)
+
+    assert [loss.where for loss in bundle.losses] == ["parts.world"]
+    assert b'name="world_2"' in bundle.files[bundle.main]
+    assert not write_urdf(assembly).losses
+
+
+@pytest.mark.parametrize("writer", WRITERS)
+def test_an_inertia_that_no_body_has_is_reported_and_the_nearest_is_written(writer: str) -> None:
+    needle = MassProperties(2.0, np.zeros(3), np.diag([1.0, 1.0, 9.0]))
+    assembly = pair(JOINTS["revolute"], mass=needle)
+
+    assert losses(assembly, writer) == ["parts.part: the inertia as given, which no body has and engines refuse"]
+    with pytest.raises(UnrepresentableError):
+        WRITERS[writer](assembly, strict=True)
+
+
+@pytest.mark.parametrize("writer", WRITERS)
+def test_what_is_flat_is_thickened_to_collide_with(writer: str) -> None:
+    square = TriMesh(np.array([[0, 0, 0], [9, 0, 0], [9, 9, 0], [0, 9, 0]], dtype=float), np.array([[0, 1, 2], [0, 2, 3]]))
+    assembly = pair(JOINTS["revolute"], visuals=(), collisions=(Shape(square),))
+
+    assert losses(assembly, writer) == ["parts.part: a surface without thickness, which engines cannot collide with"]
+    (thick,) = solid_enough(assembly.parts["part"])
+    assert thick.mesh.volume == pytest.approx(10 * 10 * 1)
+    assert solid_enough(assembly.parts["base"]) == assembly.parts["base"].visuals
 
 
 def test_features_without_loss_report_nothing() -> None:
