@@ -21,14 +21,13 @@ from articad.errors import ArticadError
 from articad.findings import Finding, Findings
 from articad.geometry.mass import MassProperties
 from articad.geometry.part import DEFAULT_COLOR, Part, Shape
-from articad.importers.reading import MAX_LINKS, unreadable
+from articad.importers.reading import LARGEST_MM, MAX_LINKS, unreadable
 from articad.kinematics.joints import Coupling, Joint, JointLimits, JointType
 from articad.kinematics.mechanism import Mechanism
 
 FloatArray = NDArray[np.float64]
 
 IDENTITY = SE3.identity()
-LARGEST_MM = 1e12  # of a frame's place: with more, doubles no longer tell a millimetre
 ENDLESS = (-math.inf, math.inf)
 
 

@@ -19,6 +19,7 @@ from articad.geometry.mesh_files import read_mesh
 MAX_XML_BYTES = 64 << 20  # a robot of 10,000 links is 20 MB; more is a mistake or an attack
 MAX_LINKS = 20_000
 MM_PER_M = 1000.0
+LARGEST_MM = 1e12  # of a frame's place: with more, doubles no longer tell a millimetre
 
 
 def unreadable(path: Path | str, where: str, reason: str, code: str = "E_READ") -> ReadError:

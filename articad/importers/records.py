@@ -20,7 +20,7 @@ from articad.fingerprint import fingerprint
 from articad.geometry.mass import MassProperties
 from articad.geometry.mesh import TriMesh
 from articad.geometry.part import Part, Shape, Solid
-from articad.importers.reading import Folder, unreadable
+from articad.importers.reading import LARGEST_MM, Folder, unreadable
 from articad.kinematics.joints import Coupling, Joint, JointLimits, JointType
 from articad.kinematics.mechanism import Mechanism
 from articad.plan.resolve import Fit, Material, Waiver
@@ -174,6 +174,8 @@ def _coupling(record: Record) -> Coupling:
 
 def _frame(numbers: list[float]) -> SE3:
     x, y, z, *xyzw = (float(number) for number in numbers)
+    if max(abs(x), abs(y), abs(z)) > LARGEST_MM:
+        raise ValueError("a frame stands beyond reason")
     if len(numbers) != 7 or not all(map(math.isfinite, numbers)) or not abs(math.hypot(*xyzw) - 1) < 1e-12:
         return SE3.from_quaternion(xyzw, [x, y, z])  # refuses what is no rotation
     return SE3.from_unit_array(np.array([x, y, z, *xyzw]))

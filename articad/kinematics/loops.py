@@ -18,6 +18,7 @@ import numpy as np
 import numpy.typing as npt
 
 from articad.connectors import SE3, FloatArray
+from articad.errors import KinematicsError
 from articad.kinematics.batch import TreeArrays
 from articad.kinematics.equations import BatchEquations, CouplingEquations, closures
 from articad.kinematics.joints import Coupling, Joint
@@ -94,6 +95,9 @@ class ClosureSystem:
         layout: Of all joints of the mechanism.
         loop_joints: Joints that close loops.
         couplings: Relations between coordinates.
+
+    Raises:
+        KinematicsError: E_NONFINITE if joints are farther apart than numbers reach.
     """
 
     def __init__(self, tree: KinematicTree, layout: Layout, loop_joints: Sequence[Joint], couplings: Sequence[Coupling]) -> None:
@@ -109,6 +113,8 @@ class ClosureSystem:
         self.parts = subtree.parts
         self.loops = tuple(_loop(subtree, joint) for joint in loop_joints)
         self.length = _characteristic_length(self.layout.joints)
+        if not math.isfinite(self.length):
+            raise KinematicsError("E_NONFINITE: the distances between joints are beyond what numbers can hold.")
         self.arrays = TreeArrays(subtree.parts, subtree, self.layout, SE3.identity(), loop_joints)
         self.scale: FloatArray = np.where(self.layout.is_length, self.length, 1.0)
         self._closures = closures(self.arrays, loop_joints, self.scale, self.length)

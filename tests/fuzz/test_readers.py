@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import io
 import json
+import math
+import re
 import zipfile
 from collections.abc import Callable
 from pathlib import Path
@@ -13,7 +15,9 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from articad.errors import PlanError, ReadError
+from articad.connectors.mate import Mate
+from articad.connectors.se3 import SE3
+from articad.errors import KinematicsError, PlanError, ReadError
 from articad.importers.freecad import read_freecad
 from articad.importers.mjcf import read_mjcf
 from articad.importers.reading import color_text
@@ -21,6 +25,8 @@ from articad.importers.urdf import read_urdf
 from articad.kernels.archive import Archive, BadArchiveError, packed
 from articad.kernels.freecad import tree_findings
 from articad.kernels.results import PoisonedError, number, read_mesh
+from articad.kinematics.joints import Coupling, Joint, JointLimits, JointType
+from articad.kinematics.mechanism import Mechanism
 from articad.plan.check import check_plan
 from articad.plan.schema import AssemblyPlan
 from tests.fuzz.mutations import HOSTILE, mutated
@@ -266,3 +272,50 @@ def test_a_spoiled_entry_is_named() -> None:
     at = content.index(b"a", 26) + 1
     with pytest.raises(BadArchiveError, match="a cannot be unpacked"):
         Archive(content[:at] + b"\xff\xff" + content[at + 2 :], entries=5, unpacked=1000).read("a")
+
+
+@pytest.mark.parametrize("value", ["1e300", "-1e13"])
+def test_a_place_beyond_reason_is_refused(tmp_path: Path, value: str) -> None:
+    """A loop over it had no singular values: its equations overflowed."""
+    text = (CORPUS / "fcstd" / "foreign.xml").read_text()
+    far = re.sub(r'Px="60\.0+"', f'Px="{value}"', text)
+    assert far != text
+    path = tmp_path / "a.FCStd"
+    path.write_bytes(packed({"Document.xml": far.encode()}))
+    with pytest.raises(ReadError, match=r"Placement: It stands beyond reason"):
+        read_freecad(path)
+
+
+def test_records_of_frames_beyond_reason_are_refused(tmp_path: Path) -> None:
+    text = (CORPUS / "urdf" / "own.urdf").read_text()
+    far, changed = re.subn(r'("parent_frame": ?\[)[^,]*', r"\g<1>1e300", text.replace("&quot;", '"'), count=1)
+    assert changed == 1
+    path = tmp_path / "a.urdf"
+    path.write_text(far)
+    with pytest.raises(ReadError, match="beyond reason"):
+        read_urdf(path)
+
+
+def test_lengths_whose_squares_overflow_are_an_error_of_ours() -> None:
+    """A rack that is farther away than numbers reach from its pinion."""
+    far = SE3.from_translation((1e308, 1e308, 0.0))
+    endless = JointLimits((-math.inf,), (math.inf,))
+    joints = [
+        Joint(
+            name=child,
+            type=kind,
+            parent="ground",
+            child=child,
+            parent_connector=child,
+            child_connector="c",
+            T_parent_connector=frame,
+            T_child_connector=SE3.identity(),
+            mate=Mate.ALIGNED,
+            limits=endless,
+            rest=(0.0,),
+        )
+        for child, kind, frame in (("rack", JointType.SLIDER, SE3.identity()), ("pinion", JointType.REVOLUTE, far))
+    ]
+    rack = Coupling("teeth", "rack", "pinion", "rack", 10.0, 0.0)
+    with pytest.raises(KinematicsError, match="E_NONFINITE"):
+        _ = Mechanism(("ground", "rack", "pinion"), "ground", joints, [rack]).mobility
