@@ -479,7 +479,9 @@ CODES: dict[str, Code] = {
     ),
     "E_UNSAFE_PATH": Code("import", None, "A file names a path outside its own folder.", "Keep meshes beside the file."),
     # --- audit and simulation of files that anyone made
-    "E_AUDIT_NUMBER": Code("audit", None, "An attribute is not a number.", "Give plain decimal numbers; expand xacro first."),
+    "E_AUDIT_NUMBER": Code(
+        "audit", None, "An attribute is not a number, or not one that can be.", "Give plain decimal numbers; expand xacro first."
+    ),
     "E_AUDIT_NAME_TWICE": Code("audit", None, "Two links or two joints have one name.", "Rename all but one."),
     "E_AUDIT_NO_NAME": Code("audit", None, "A link or joint has no name.", "Give it one."),
     "E_AUDIT_LINK_UNKNOWN": Code("audit", None, "A joint names a link that is not there.", "Name a link of the file, or declare it."),

@@ -46,7 +46,8 @@ def no_limits(declared: Declared) -> Iterator[Finding]:
             yield Finding(
                 code="W_AUDIT_NO_LIMITS",
                 where=joint.where,
-                message=f"Joint {joint.name!r} is {joint.type} and has no lower or upper bound: readers take 0 for both, so that it cannot move.",
+                message=f"Joint {joint.name!r} is {joint.type} and has no lower or upper bound: the standard takes 0 for both, so that it cannot move; "
+                "PyBullet takes it for endless.",
                 hint="Give lower and upper" + (", or make it continuous." if joint.turns else "."),
             )
 

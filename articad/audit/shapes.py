@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
@@ -38,7 +39,9 @@ def unread_meshes(declared: Declared) -> Iterator[Finding]:
         shape = users[0][1]
         names = tuple(dict.fromkeys(user.name for user, _ in users))
         used = f"The {shape.kind}{f' {shape.file!r}' if shape.file else ''}, which {listed(names)} {'uses' if len(names) == 1 else 'use'},"
-        if problem == "absent":
+        if shape.kind != "mesh":
+            code, hint = "E_AUDIT_NUMBER", "Give it a positive size, or leave the shape out."
+        elif problem == "absent":
             code, hint = "E_AUDIT_MESH_ABSENT", "Put the file there, correct the name, or say with --root where packages are."
         elif problem == "unsafe":
             code, hint = "W_AUDIT_MESH_OUTSIDE", "Keep meshes below the file's own folder, or name the folder that holds both with --root."
@@ -50,7 +53,7 @@ def unread_meshes(declared: Declared) -> Iterator[Finding]:
             code=code,
             where=shape.where,
             parts=names,
-            message=f"{used} {'is not read' if problem == 'format' else 'cannot be read'}: {shape.reason.rstrip('.')}.",
+            message=f"{used} {'is not read' if problem == 'format' else 'cannot be read' if shape.kind == 'mesh' else 'is none'}: {shape.reason.rstrip('.')}.",
             hint=hint,
             value=len(users),
             limit=0,
@@ -78,52 +81,57 @@ def no_collision(declared: Declared) -> Iterator[Finding]:
 
 
 def broken_meshes(declared: Declared) -> Iterator[Finding]:
-    """Meshes that are open, inside out or flat, once each."""
-    seen: set[tuple[str, str]] = set()
+    """Meshes that are open, inside out or flat: each file once, with all links that use it."""
+    users: dict[tuple[str, tuple[float, ...]], list[tuple[DeclaredLink, DeclaredShape]]] = {}
     for link, shape in _meshes(declared):
         assert shape.mesh is not None
-        key = (shape.file or shape.where, link.name)
-        if shape.kind != "mesh" or key in seen:
-            continue
-        if shape.role == "visual" and link.of("collision") and not _closed(shape.mesh).is_closed:
-            continue  # what collides is judged, and may be another shape
-        seen.add(key)
-        mesh = _closed(shape.mesh)
-        what = shape.file or f"the {shape.role} mesh of {link.name}"
-        if not mesh.is_closed:
-            yield Finding(
-                code="W_AUDIT_MESH_OPEN",
-                where=shape.where,
-                parts=(link.name,),
-                message=f"{what} is open: {mesh.open_edges} edges of {len(mesh.triangles)} triangles have no partner, so that it has no volume.",
-                hint="Close the mesh: every edge must belong to two triangles.",
-                value=mesh.open_edges,
-                limit=0,
-                unit="edges",
-            )
-        elif abs(mesh.volume) < FLAT_MM3:
-            yield Finding(
-                code="W_AUDIT_MESH_FLAT",
-                where=shape.where,
-                parts=(link.name,),
-                message=f"{what} encloses {abs(mesh.volume):.3g} mm³: it is a surface, not a body.",
-                hint="Give it a thickness.",
-                value=abs(mesh.volume),
-                limit=FLAT_MM3,
-                unit="mm³",
-            )
-        elif mesh.volume < 0:
-            yield Finding(
-                code="W_AUDIT_MESH_INSIDE_OUT",
-                where=shape.where,
-                parts=(link.name,),
-                message=f"{what} is inside out: its volume is {mesh.volume:.6g} mm³.",
-                hint="Reverse the order of the corners of all its triangles"
-                + ("; is one factor of its scale negative?" if min(shape.scale) < 0 else "."),
-                value=mesh.volume,
-                limit=0.0,
-                unit="mm³",
-            )
+        if shape.kind != "mesh" or (shape.role == "visual" and link.of("collision") and not _closed(shape.mesh).is_closed):
+            continue  # of what is drawn and of what collides, the latter is judged, and may be another shape
+        users.setdefault((shape.file or shape.where, shape.scale), []).append((link, shape))
+    for (name, _), rows in users.items():
+        link, shape = rows[0]
+        links = tuple(dict.fromkeys(user.name for user, _ in rows))
+        what = (shape.file and name) or f"The {shape.role} mesh of {link.name}"
+        found = _broken(shape, what if len(links) == 1 else f"{what}, which {listed(links)} use,")
+        if found is not None:
+            yield replace(found, parts=links)
+
+
+def _broken(shape: DeclaredShape, what: str) -> Finding | None:
+    assert shape.mesh is not None
+    mesh = _closed(shape.mesh)
+    if not mesh.is_closed:
+        return Finding(
+            code="W_AUDIT_MESH_OPEN",
+            where=shape.where,
+            message=f"{what} is open: {mesh.open_edges} edges of {len(mesh.triangles)} triangles have no partner, so that it has no volume.",
+            hint="Close the mesh: every edge must belong to two triangles.",
+            value=mesh.open_edges,
+            limit=0,
+            unit="edges",
+        )
+    if abs(mesh.volume) < FLAT_MM3:
+        return Finding(
+            code="W_AUDIT_MESH_FLAT",
+            where=shape.where,
+            message=f"{what} encloses {abs(mesh.volume):.3g} mm³: it is a surface, not a body.",
+            hint="Give it a thickness.",
+            value=abs(mesh.volume),
+            limit=FLAT_MM3,
+            unit="mm³",
+        )
+    if mesh.volume < 0:
+        return Finding(
+            code="W_AUDIT_MESH_INSIDE_OUT",
+            where=shape.where,
+            message=f"{what} is inside out: its volume is {mesh.volume:.6g} mm³.",
+            hint="Reverse the order of the corners of all its triangles"
+            + ("; is one factor of its scale negative?" if min(shape.scale) < 0 else "."),
+            value=mesh.volume,
+            limit=0.0,
+            unit="mm³",
+        )
+    return None
 
 
 def pieces(declared: Declared) -> Iterator[Finding]:

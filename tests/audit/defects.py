@@ -258,6 +258,7 @@ ARM_KG = DENSITY * 0.08 * 0.02 * 0.01
 
 DEFECTS = [
     Defect("number", setting("joint[@name='turn']/origin", xyz="-0.05 zero 0.0205"), "E_AUDIT_NUMBER", also=frozenset({"I_AUDIT_BASE"})),
+    Defect("no_size", lambda root, _: find(root, "link[@name='arm']").append(etree.fromstring('<collision><geometry><sphere radius="0"/></geometry></collision>')), "E_AUDIT_NUMBER", 1),
     Defect("name_twice", twice, "E_AUDIT_NAME_TWICE", 2),
     Defect("no_name", adding(etree.fromstring('<joint type="fixed"><parent link="plate"/><child link="tag"/></joint>'), etree.fromstring('<link name="tag"/>')), "E_AUDIT_NO_NAME", 1),
     Defect("link_unknown", setting("joint[@name='turn']/parent", link="plat"), "E_AUDIT_LINK_UNKNOWN"),
