@@ -40,6 +40,7 @@ def _look(document: Any, _: Json) -> Json:
     """Report what is in the document, and what FreeCAD makes of it."""
     parts = _parts(document)
     return {
+        "version": list(App.Version()[:3]),
         "articad": importlib.util.find_spec("articad") is not None,
         "parts": {name: _seven(item.Placement) for name, item in parts.items()},
         "connectors": {name: _connectors(item) for name, item in parts.items()},
