@@ -82,8 +82,8 @@ def main() -> int:
         f"{'met   ' if first <= FRAME_SECONDS else 'MISSED'} first frame {first:.2f} s, slowest {max(frames):.2f} s (goal <= {FRAME_SECONDS:g} s)",
         f"{'met   ' if size <= PAGE_BYTES else 'MISSED'} page without meshes {size} bytes (goal <= {PAGE_BYTES}); meshes {meshes} bytes",
     )
-    times |= {"first frame": first, "moving a driver, until the drawing is asked for": min(drags)}
-    report([Table(f"page of {PARTS} parts, {triangles} triangles", times, notes=notes)], options.out)
+    shown = dict(times) | {"first frame": first, "moving a driver, until the drawing is asked for": min(drags)}
+    report([Table(f"page of {PARTS} parts, {triangles} triangles", shown, notes=notes)], options.out)
     return 0 if first <= FRAME_SECONDS and size <= PAGE_BYTES else 1
 
 

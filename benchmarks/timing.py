@@ -145,7 +145,8 @@ def report(tables: list[Table], out: str | None = None) -> int:
         table.print()
     missed = sum(not table.met(goal) for table in tables for goal in table.goals)
     asked = sum(len(table.goals) for table in tables)
-    print(f"\n{asked - missed} of {asked} goals met")
+    if asked:
+        print(f"\n{asked - missed} of {asked} goals met")
     if out is not None:
         Path(out).write_text(json.dumps({"machine": machine(), "tables": [table.to_json() for table in tables]}, indent=1))
     return missed
