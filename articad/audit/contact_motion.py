@@ -31,6 +31,7 @@ BISECTIONS = 30
 CONTACT_MM3 = 1e-6  # shared volume at which contact begins: an edge 10 mm long is then 0.3 µm deep
 MOTION = "E_MOTION_COLLISION"
 AT_REST = ("E_OVERLAP", "E_STATIC_OVERLAP", "W_STATIC_OVERLAP")
+PATIENCE = 4.0  # times as long as the processor's time may it take by the clock
 DEEPER = 2.0  # a pair that overlaps at rest is told of again where motion makes it so many times as deep
 
 
@@ -52,9 +53,25 @@ class _Together(Groups):
         return self._rigid.together(a, b) or self._case.by_design((a, b))
 
 
+class _Clock:
+    """Time for the motion, of the processor, so that a busy machine looks at as much; within reason of the wall's.
+
+    Args:
+        seconds: That there are.
+    """
+
+    def __init__(self, seconds: float) -> None:
+        self._cpu, self._wall = time.process_time() + seconds, time.monotonic() + PATIENCE * seconds
+
+    @property
+    def left(self) -> float:
+        """What is left [s]; negative when it is spent."""
+        return min(self._cpu - time.process_time(), (self._wall - time.monotonic()) / PATIENCE)
+
+
 def sample_motion(case: Case, found: Contacts, budget: float) -> None:
     """Move each joint over its range, then two at a time, until the time is spent."""
-    end = time.monotonic() + budget
+    clock = _Clock(budget)
     sweep = Sweep(replace(case.scene, relations=_Quiet(case)), case.assembly.mechanism)
     ranges = [freedom for joint in sweep.driving for freedom in freedoms(joint)]
     guilty = {frozenset(finding.parts) for finding in found.findings}
@@ -62,20 +79,20 @@ def sample_motion(case: Case, found: Contacts, budget: float) -> None:
     late: list[str] = []
     steps = FEWEST_STEPS if case.assembly.mechanism.loop_joints else STEPS  # to close loops takes long: the first joint tells how long
     for at, freedom in enumerate(ranges):
-        if time.monotonic() > end:
+        if clock.left <= 0:
             late.append(freedom.name)
             continue
-        start = time.monotonic()
+        before = clock.left
         values = np.linspace(freedom.lower, freedom.upper, steps).tolist()
         checks = sweep.sampled([{freedom.name: value} for value in values], (freedom.name,), values[1] - values[0])
-        left, cost = len(ranges) - at - 1, (time.monotonic() - start) / steps
-        steps = max(FEWEST_STEPS, min(STEPS, int((end - time.monotonic()) / max(cost * left, 1e-9)))) if left else steps
+        left, cost = len(ranges) - at - 1, (before - clock.left) / steps
+        steps = max(FEWEST_STEPS, min(STEPS, int(clock.left / max(cost * left, 1e-9)))) if left else steps
         fresh = [finding for finding in checks.findings if _is_news(finding, resting, guilty)]
-        found.findings += _collisions(case, sweep, freedom, fresh, resting, end)
+        found.findings += _collisions(case, sweep, freedom, fresh, resting, clock)
         guilty |= {frozenset(finding.parts) for finding in fresh}
     if late:
         found.findings.append(_unfinished(late, len(ranges), budget))
-    undone = _pairs(case, found, sweep, ranges, guilty, end)
+    undone = _pairs(case, found, sweep, ranges, guilty, clock)
     if undone:
         found.undone.append(f"{undone} of {math.comb(len(ranges), 2)} pairs of joints together: the time was spent")
 
@@ -93,11 +110,11 @@ def _is_news(finding: Finding, resting: Mapping[frozenset[str], float], guilty: 
 
 
 def _collisions(
-    case: Case, sweep: Sweep, freedom: Freedom, findings: list[Finding], resting: Mapping[frozenset[str], float], end: float
+    case: Case, sweep: Sweep, freedom: Freedom, findings: list[Finding], resting: Mapping[frozenset[str], float], clock: _Clock
 ) -> list[Finding]:
     """Say where each collision begins. In simulators' formats the first one of each joint stands for the others."""
     met = [
-        (finding, None) if frozenset(finding.parts) in resting or time.monotonic() > end else _first_contact(case, sweep, freedom, finding)
+        (finding, None) if frozenset(finding.parts) in resting or clock.left <= 0 else _first_contact(case, sweep, freedom, finding)
         for finding in findings
     ]
     if not case.foreign or len(met) < 2:
@@ -111,11 +128,11 @@ def _collisions(
     ]
 
 
-def _pairs(case: Case, found: Contacts, sweep: Sweep, ranges: list[Freedom], guilty: set[frozenset[str]], end: float) -> int:
+def _pairs(case: Case, found: Contacts, sweep: Sweep, ranges: list[Freedom], guilty: set[frozenset[str]], clock: _Clock) -> int:
     """Move two joints at a time on a grid; return how many pairs there was no time for."""
     undone, together = 0, list[Finding]()
     for first, second in combinations(ranges, 2):
-        if time.monotonic() > end:
+        if clock.left <= 0:
             undone += 1
             continue
         names = (first.name, second.name)

@@ -50,7 +50,7 @@ class Choices:
 
     Attributes:
         root: Folder that meshes may be read from; by default the package that the file lies in.
-        budget: Seconds for sampling the motion.
+        budget: Seconds of processor time for sampling the motion.
         certified: Seconds for proving the motion instead of sampling it.
         engines: Whether to ask simulators to load the file.
         motion: Whether to look at motion at all.

@@ -207,18 +207,18 @@ def density(declared: Declared) -> Iterator[Finding]:
         mass, volume = inertial.mass or 0.0, _largest_volume(link)
         if volume is None:
             continue
-        least, most = mass / (max(volume, _hull_volume(link)) * 1e-9), mass / (volume * 1e-9)
-        if least > DENSEST_KG_M3:
-            filled, found, limit, what = max(volume, _hull_volume(link)), least, DENSEST_KG_M3, "more than osmium"
-        elif most < THINNEST_KG_M3:
-            filled, found, limit, what = volume, most, THINNEST_KG_M3, "less than air"
-        else:
+        found, heavy = mass / (volume * 1e-9), mass / (volume * 1e-9) > DENSEST_KG_M3
+        if heavy:  # a hollow body may be, a filled one not
+            volume = max(volume, _hull_volume(link))
+            found = mass / (volume * 1e-9)
+        limit = DENSEST_KG_M3 if heavy else THINNEST_KG_M3
+        if (found <= limit) if heavy else (found >= limit):
             continue
         yield Finding(
             code="W_AUDIT_DENSITY",
             where=link.where,
             parts=(link.name,),
-            message=f"{link.name} weighs {mass:.4g} kg and its shapes, hollows filled, take {filled:.4g} mm³: {found:.4g} kg/m³, {what}.",
+            message=f"{link.name} weighs {mass:.4g} kg and its shapes, hollows filled, take {volume:.4g} mm³: {found:.4g} kg/m³, {'more than osmium' if heavy else 'less than air'}.",
             hint="Check the units of mass and mesh; steel is 7850 kg/m³, wood 700. --fix --density computes masses.",
             value=found,
             limit=limit,

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     argument("target", metavar="FILE|DIR"),
     argument("--table", action="store_true", help="one line a file, for a folder of many"),
     argument("--root", metavar="DIR", help="folder that meshes may be read from (the file's ROS package, or its own folder)"),
-    argument("--budget", metavar="SECONDS", type=amount, default=12.0, help="time for looking at the motion of a file (12)"),
+    argument("--budget", metavar="SECONDS", type=amount, default=12.0, help="processor time for looking at the motion of a file (12)"),
     argument("--certify", metavar="SECONDS", type=amount, default=None, help="prove the motion free instead of sampling it, in this time"),
     argument("--no-engines", dest="engines", action="store_false", help="do not ask simulators to load the file"),
     argument("--fix", metavar="OUT", help="write a copy with everything mended that can be without guessing (URDF)"),
