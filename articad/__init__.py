@@ -36,6 +36,7 @@ _MODULE_OF = {
     "build": "assembly",
     "check_plan": "plan.check",
     "cylindrical": "kinematics.declare",
+    "edit": "agents.edit",
     "fixed": "kinematics.declare",
     "generate": "agents.pipeline",
     "planar": "kinematics.declare",
@@ -69,6 +70,7 @@ def __dir__() -> list[str]:
 
 
 if TYPE_CHECKING:
+    from articad.agents.edit import edit as edit
     from articad.agents.live import LiteLLM as LiteLLM
     from articad.agents.llm import Budget as Budget
     from articad.agents.llm import Replay as Replay

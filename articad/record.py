@@ -188,6 +188,10 @@ def run_report(run: Run) -> Report:
     verdict = run.verdict()
     if verdict is not None:
         proven["verdict"] = {key: verdict[key] for key in ("schema", "ok", "findings", "by", "round", "rulings")}
+    if (edit := run.edit()) is not None:
+        proven["edit"] = edit
+    if (review := run.review()) is not None:
+        proven["review"] = review
     return {
         "schema": "articad.build/1",
         "ok": all(report["ok"] for report in (assembly, checks, *proven.values(), *exports.values())),

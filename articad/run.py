@@ -61,6 +61,7 @@ _IMAGES, _PLANS, _PARTS, _REMOVED, _ATTEMPTS, _REPLIES, _SUPERSEDED, _EXPORT = (
 _SCRIPT, _BRIEF, _CONNECTORS, _PART, _STL = "script.py", "brief.json", "connectors.json", "part.json", "part.stl"
 _OUTCOME, _PICTURE = "outcome.json", "partial.png"
 _RECALLED = "recalled"
+_BASE, _EDIT, _REVIEW = "base.json", "edit.json", "review.json"
 _VIEWS, _MOTION, _PAGE = "views", "motion", "report.html"
 _CERTIFICATE, _CERTIFIED = "certificate.json", "certificate"
 _TEMPORARY = re.compile(r"\..+\.tmp-[0-9a-f]{8}$")
@@ -281,6 +282,14 @@ class Run:
             self._write_json(f"{_SUPERSEDED}/{Path(_reply_file(step)).stem}.{old['key'][:8]}.json", old)
         self._write_json(_reply_file(step), record)
 
+    def base(self) -> Json | None:
+        """Return what an edit began with, `articad.base/1`, or None."""
+        return self._read_json(_BASE)
+
+    def save_base(self, base: Json) -> None:
+        """Keep what an edit begins with: with it the run needs no other one."""
+        self._write_json(_BASE, base)
+
     # ------------------------------------------------------------------ the plan
 
     def plan_text(self) -> str | None:
@@ -306,6 +315,11 @@ class Run:
     def part_names(self) -> tuple[str, ...]:
         """Return the names of the finished parts."""
         return tuple(sorted(file.parent.name for file in (self.path / _PARTS).glob(f"*/{_PART}")))
+
+    def part_files(self, name: str) -> dict[str, str]:
+        """Return the sha256 of each file of a part by its name, pictures left out."""
+        files = (file for file in sorted((self.path / _PARTS / name).iterdir()) if file.is_file())
+        return {file.name: hashlib.sha256(file.read_bytes()).hexdigest() for file in files}
 
     def save_part(
         self,
@@ -402,6 +416,22 @@ class Run:
     def save_round(self, number: int, report: Json) -> None:
         """Keep what a round found and what became of each part."""
         self._write_json(f"{_ROUNDS}/{number}.json", report)
+
+    def edit(self) -> Json | None:
+        """Return what an edit has changed and what not, `articad.edit/1`, or None."""
+        return self._read_json(_EDIT)
+
+    def save_edit(self, report: Json) -> None:
+        """Keep what an edit has changed and what not."""
+        self._write_json(_EDIT, report)
+
+    def review(self) -> Json | None:
+        """Return the report `articad.review/1`, or None."""
+        return self._read_json(_REVIEW)
+
+    def save_review(self, report: Json) -> None:
+        """Keep the report `articad.review/1`."""
+        self._write_json(_REVIEW, report)
 
     def certificate(self) -> Json | None:
         """Return the report `articad.certificate/1`, or None."""

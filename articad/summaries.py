@@ -10,6 +10,8 @@ if TYPE_CHECKING:
     from articad.findings import Findings
     from articad.terminal import Report, Terminal
 
+_CELL = 60  # characters of a value in a table
+
 
 def print_run(report: Report, terminal: Terminal) -> None:
     """Print what a finished run made, how it was judged, and where it is."""
@@ -83,6 +85,33 @@ def print_verdict(report: Report, checks: Report, terminal: Terminal) -> None:
     print_findings([finding for finding in report["findings"] if finding["message"] not in known], terminal)
 
 
+def print_edit(report: Report, terminal: Terminal) -> None:
+    """Print what an edit has changed, and what became of each part."""
+    terminal.say()
+    terminal.say(f"Edit: {report['summary']}" if report["summary"] else "Edit:")
+    changed = [(change["where"], _shortly(change["before"]), _shortly(change["after"])) for change in report["changes"]]
+    terminal.table(["in the plan", "before", "after"], changed)
+    terminal.say()
+    rows = [
+        (name, row["fate"], row["why"], f"{row['equal']} of {row['files']}", ", ".join(row["different"]))
+        for name, row in report["parts"].items()
+    ]
+    terminal.table(["part", "fate", "why", "files equal", "files that differ"], rows)
+    untouched = [row for row in report["parts"].values() if row["fate"] == "untouched"]
+    terminal.say(
+        f"Untouched: {counted_things(len(untouched), 'part', 'parts')}, {counted_things(sum(row['files'] for row in untouched), 'file', 'files')} "
+        f"equal by sha256. Pairs of parts: {report['pairs']['checked']} checked, {report['pairs']['carried']} carried over."
+    )
+
+
+def print_review(report: Report, terminal: Terminal) -> None:
+    """Print the scores of a review."""
+    rules = ", ".join(f"{name.replace('_', ' ')} {score:.2f}" for name, score in report["rules"].items())
+    terminal.say(f"Review by rules (0 to 1): {rules}.")
+    for aspect, scored in (report["model"] or {}).items():
+        terminal.say(f"  {aspect}: {scored['score']} of 5. {scored['reason']}")
+
+
 def print_exports(exports: Mapping[str, Report], terminal: Terminal) -> None:
     """Print each export's main file, and everything that was lost in it."""
     for name, export in exports.items():
@@ -117,6 +146,11 @@ def counted_things(count: int, one: str, many: str) -> str:
 def _counts(words: Iterable[str]) -> str:
     counter = Counter(words)
     return ", ".join(f"{count} {word}" for word, count in sorted(counter.items()))
+
+
+def _shortly(value: object) -> str:
+    text = "" if value is None else str(value.get("name", "an entry")) if isinstance(value, dict) else str(value)
+    return text if len(text) <= _CELL else f"{text[: _CELL - 1]}…"
 
 
 def _number(value: float | None, form: str) -> str:

@@ -7,13 +7,14 @@ Every verdict says how strong it is, and every finding has its root cause where 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Final
 
 from articad.agents.numbers import listed_numbers, short
-from articad.assembly import Assembly, FloatArray
+from articad.assembly import Assembly, FloatArray, Poses
 from articad.findings import Finding, Findings
+from articad.interference.check import check_scene
 from articad.interference.diagnosis import diagnose
 from articad.interference.fits import FitReport, check_fits
 from articad.interference.motion import freedoms
@@ -49,8 +50,25 @@ class Evidence:
         return self.checks.findings
 
 
-def examine(assembly: Assembly) -> Evidence:
+@dataclass(frozen=True)
+class Known:
+    """Verdicts that hold already, because neither the two parts nor their motion against each other have changed.
+
+    Attributes:
+        rest: At rest, by pair.
+        motion: Of samples of a joint's range, by joint and pair.
+    """
+
+    rest: Mapping[tuple[str, str], PairCheck] = field(default_factory=dict)
+    motion: Mapping[str, Mapping[tuple[str, str], PairCheck]] = field(default_factory=dict)
+
+
+def examine(assembly: Assembly, known: Known | None = None) -> Evidence:
     """Check an assembly at rest and, if that holds, its fits and samples of each joint's range.
+
+    Args:
+        assembly: As built.
+        known: Pairs that need not be looked at again.
 
     Returns:
         The checks of the rest pose, and with them a sampled verdict for every pair that meets in motion.
@@ -58,12 +76,12 @@ def examine(assembly: Assembly) -> Evidence:
     meshes = {name: mesh for name, part in assembly.parts.items() if (mesh := part.mesh) is not None}
     deflection = {name: part.deflection for name, part in assembly.parts.items()}
     scene = Scene.of(meshes, assembly.joints, waivers=assembly.waivers, deflection=deflection, fits=assembly.fits)
-    checks = assembly.check()
+    checks = assembly.check() if known is None else check_scene(scene, assembly.at(), ground=assembly.ground, known=known.rest)
     fits = None
     if checks.ok:  # what overlaps at rest overlaps in motion too: one thing at a time
         fits = check_fits(scene)
         for joint in dict.fromkeys(driver.joint for driver in assembly.drivers):
-            checks = _with_motion(checks, assembly, joint)
+            checks = _with_motion(checks, assembly, joint, scene, {} if known is None else known.motion.get(joint, {}))
         checks = replace(checks, findings=checks.findings + fits.findings)
     checks = replace(checks, findings=diagnose(scene, assembly.mechanism.tree, checks.findings))
     return Evidence(checks, fits, _sizes(assembly))
@@ -95,16 +113,26 @@ def told(assembly: Assembly, evidence: Evidence) -> str:
     return "\n".join(lines)
 
 
-def _with_motion(checks: Checks, assembly: Assembly, joint: str) -> Checks:
+def _with_motion(checks: Checks, assembly: Assembly, joint: str, scene: Scene, carried: Mapping[tuple[str, str], PairCheck]) -> Checks:
     captions, configurations = motion_frames(assembly, joint, POSES)
     worst: dict[tuple[str, str], tuple[PairCheck, str]] = {}
     for caption, q in zip(captions, configurations, strict=True):
-        for pair in assembly.check(q).pairs:
+        for pair in _pairs_at(assembly, q, scene, carried):
             known = worst.get(pair.parts)
             if known is None or pair.depth > known[0].depth:
                 worst[pair.parts] = replace(pair, over=(joint,), strength=_sampled(pair, len(captions)), pose=pose_of(assembly, q)), caption
     collisions = [_collision(pair, joint, caption) for pair, caption in worst.values() if pair.verdict == "overlap" and not _waived(pair)]
-    return replace(checks, findings=Findings([*checks.findings, *collisions]), pairs=(*checks.pairs, *(pair for pair, _ in worst.values())))
+    pairs = (*checks.pairs, *(pair for pair, _ in worst.values()), *carried.values())
+    return replace(checks, findings=Findings([*checks.findings, *collisions]), pairs=pairs)
+
+
+def _pairs_at(assembly: Assembly, q: FloatArray, scene: Scene, carried: Mapping[tuple[str, str], PairCheck]) -> Iterable[PairCheck]:
+    """Return the verdicts at a configuration `(nq,)`, but for those that are carried."""
+    if not carried:
+        return assembly.check(q).pairs
+    poses = Poses(assembly.mechanism.parts, assembly.poses(q))
+    checks = check_scene(scene, poses, over="pose", ground=assembly.ground, known=carried)
+    return (pair for pair in checks.pairs if pair.parts not in carried)
 
 
 def _sampled(pair: PairCheck, poses: int) -> Strength:

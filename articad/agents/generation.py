@@ -35,8 +35,8 @@ _EXAMPLES: Final = {"build123d": "lid_left.txt", "freecad": "door_left_freecad.t
 Build = Callable[[str, bytes], RealisedPart]
 """Builds the script of a part, or raises `KernelError`."""
 
-Complaint = Literal["part_repair", "part_again", "look_repair"]
-"""The prompt by which an answer is given back: its script failed, the assembly did, or an inspector complains."""
+Complaint = Literal["part_repair", "part_again", "part_edit", "look_repair"]
+"""The prompt by which an answer is given back: its script failed, the assembly did, its entry is another now, or an inspector complains."""
 
 
 @dataclass(frozen=True)

@@ -210,7 +210,7 @@ def inspect(assembly: Assembly, evidence: Evidence, request: RunRequest, require
     Raises:
         OutputError: If no reply has the form.
     """
-    product = f"{_asked(request, requirements)}\n\n{_structure(assembly)}"
+    product = f"{asked_for(request, requirements)}\n\n{structure(assembly)}"
     observations = _observed(assembly, product, llm, number)
     seen = json.dumps(observations.model_dump(mode="json"), indent=1, ensure_ascii=False)
     words = f"{product}\n\nMeasured:\n\n{told(assembly, evidence)}\n\nThe observer saw:\n\n```json\n{seen}\n```"
@@ -275,14 +275,15 @@ def _weighed(problems: Iterable[Problem], evidence: Evidence) -> Iterable[Findin
         )
 
 
-def _asked(request: RunRequest, requirements: Requirements) -> str:
+def asked_for(request: RunRequest, requirements: Requirements) -> str:
+    """Return a request and its analysis in words."""
     analysis = json.dumps({name: value for name, value in requirements.to_json().items() if name != "schema"}, indent=1, ensure_ascii=False)
     words = request.prompt.strip() or "(no words; there were pictures)"
     return f"The customer's request:\n\n{words}\n\nIts analysis:\n\n```json\n{analysis}\n```"
 
 
-def _structure(assembly: Assembly) -> str:
-    """Return the parts and joints of a plan in words."""
+def structure(assembly: Assembly) -> str:
+    """Return the parts and joints of an assembly in words."""
     resolved: ResolvedPlan | None = assembly.resolved
     lines = ["Parts:"]
     for name in assembly.parts:

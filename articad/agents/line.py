@@ -18,6 +18,7 @@ from articad.agents.llm import Image, closed_port
 from articad.agents.pictures import offence_picture
 from articad.agents.requirements import Requirements, analyse
 from articad.agents.retrieval import Memory
+from articad.agents.review import review
 from articad.agents.rollback import Repair, Router
 from articad.agents.workshop import PartsError, Workshop
 from articad.assembly import Assembly
@@ -26,6 +27,8 @@ from articad.plan.resolve import resolve
 from articad.plan.schema import AssemblyPlan
 from articad.record import record_assembly, record_checks, record_export
 
+ROUNDS: Final = 3
+FORMATS: Final = ("urdf", "mjcf")
 _SHOWN_PLACES: Final = 3  # pictures of offending places that one agent gets at once
 
 Chooser = Callable[[Sequence[Alternative]], tuple[int, str]]
@@ -118,8 +121,13 @@ class Line:
         """Return what is measured of an assembly."""
         return examine(assembly)
 
-    def finish(self, assembly: Assembly, evidence: Evidence, requirements: Requirements | None) -> None:  # noqa: ARG002 - for those who review
-        """Write what the run is for."""
+    def finish(self, assembly: Assembly, evidence: Evidence, requirements: Requirements | None) -> None:
+        """Have the result reviewed, if that was asked for, and write what the run is for."""
+        if "review" in self.options:
+            self.shop.tell("review", "started")
+            who = self.port if self.options["review"] == "model" else None
+            self.run.save_review(review(self.run, assembly, evidence, self.asked, requirements, who))
+            self.shop.tell("review", "written")
         with closed_port("exports are deterministic"):
             for name in self.options["formats"]:
                 record_export(self.run, assembly, name)

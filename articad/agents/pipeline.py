@@ -11,12 +11,13 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import Any, Final, Literal
+from typing import Any, Literal
 
 from articad.agents.brainstorm import Alternative, Choose
 from articad.agents.design import TRIES
+from articad.agents.edit import EditLine
 from articad.agents.generation import REPAIRS
-from articad.agents.line import Line
+from articad.agents.line import FORMATS, ROUNDS, Chooser, Line
 from articad.agents.llm import LLM, Recorded, Replay
 from articad.agents.recollection import KeptDocumentation, KeptMemory
 from articad.agents.retrieval import Documentation, Memory
@@ -27,8 +28,6 @@ from articad.kernels.kernel import BuildCache, PartKernel
 from articad.record import kernel_named
 from articad.run import Run, RunRequest, UserImage, differences, open_or_create
 
-ROUNDS: Final = 3
-FORMATS: Final = ("urdf", "mjcf")
 Variant = Literal["full", "no-rollback", "no-memory"]
 Brainstorm = Literal["auto", "always", "never"]
 
@@ -52,6 +51,7 @@ def generate(
     ideas: Brainstorm = "auto",
     pick: int | None = None,
     choose: Choose | None = None,
+    review: Literal["none", "rules", "model"] = "none",
     variant: Variant = "full",
     memory: Memory | None = None,
     documentation: Documentation | None = None,
@@ -80,6 +80,7 @@ def generate(
         ideas: Whether alternatives are proposed first: "auto" where the request leaves open what is to be built.
         pick: The alternative to make, from 1; asks for alternatives in any case.
         choose: Called with the alternatives, returns the number of the one to make; without it and `pick` the first is made.
+        review: Who scores the finished assembly: "rules" what was measured, "model" also one that sees.
         variant: "no-rollback" neither looks nor judges, and sends nothing back that was assembled: the paper's ablation.
         memory: What earlier runs teach; nothing by default.
         documentation: What the kernel's API says; nothing by default.
@@ -102,12 +103,20 @@ def generate(
     options: dict[str, Any] = {"task": "generate", "designs": designs, "repairs": repairs, "rounds": rounds, "formats": list(formats)}
     options |= {"kernel": kernel.name, "variant": variant, "look": look and rolls_back, "inspection": inspection and rolls_back}
     options |= {"ideas": "always" if pick is not None else ideas, "pick": pick, "finetune": True}
+    options |= {} if review == "none" else {"review": review}  # not asked for, it is not mentioned: older recordings stay what they are
     request = RunRequest(prompt=prompt, images=tuple(pictures), options=options)
     with open_or_create(request, out) as run:
         known, told = KeptMemory(run, memory), KeptDocumentation(run, documentation)
         shop = Workshop(run, Recorded(llm, run), kernel, cache or BuildCache(), jobs, progress, known, told)
-        Line(shop, partial(_chosen_by_user, pick, choose), known).work()
+        _line(shop, partial(_chosen_by_user, pick, choose), known).work()
     return run
+
+
+def _line(shop: Workshop, chooser: Chooser, memory: Memory | None) -> Line:
+    """Return the line that a run's request asks for."""
+    options = shop.run.request.options
+    kind = EditLine if options.get("task") == "edit" else Line
+    return kind(shop, chooser, memory)
 
 
 def _chosen_by_user(pick: int | None, choose: Choose | None, alternatives: Sequence[Alternative]) -> tuple[int, str]:
@@ -171,10 +180,12 @@ def replay(
     source = Run.view(recording)
     answers = Replay(source, strict=strict)
     with Run.create(source.request, out=out, version=source.version) as run:
+        if (base := source.base()) is not None:
+            run.save_base(base)
         kernel = kernel or kernel_named(str(source.request.options.get("kernel", "build123d")), sandbox=sandbox)
         known, told = KeptMemory(run, recorded=source), KeptDocumentation(run, recorded=source)
         shop = Workshop(run, Recorded(answers, run), kernel, cache or BuildCache(), jobs, progress, known, told)
-        Line(shop, partial(_chosen_before, source), known).work()
+        _line(shop, partial(_chosen_before, source), known).work()
         for finding in answers.findings:
             run.trace_finding(finding)
     return Replayed(run, tuple(differences(source, run)), answers.findings)

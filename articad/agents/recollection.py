@@ -17,6 +17,7 @@ from articad.agents.llm import LLM, system, user
 from articad.agents.prompts import prompt
 from articad.agents.requirements import Requirements
 from articad.agents.retrieval import Documentation, Memory, NoDocumentation, NoMemory, Recalled
+from articad.agents.review import scores
 from articad.memory.case import Case
 from articad.memory.distil import case_of
 from articad.memory.documentation import DocumentationStore
@@ -127,43 +128,23 @@ def remember(run: Run, store: ExperienceStore) -> Case | None:
         return None
     resolved = resolve(AssemblyPlan.loads(text))
     scripts = {name: script for name in run.part_names() if (script := run.script(name)) is not None}
-    verdict = run.verdict() or {}
+    verdict, review = run.verdict() or {}, run.review() or {}
     measured = [finding for finding in checks["findings"] if finding["severity"] == "error"]
     judged = [finding for finding in verdict.get("findings", ()) if finding["severity"] == "error" and finding not in measured]
     case = case_of(
         resolved,
         scripts,
         kernel=str(run.request.options.get("kernel", "build123d")),
-        prompt=run.prompt,
+        prompt=_wanted(run),
         requirements=str((run.requirements() or {}).get("summary", "")),
         defects=[_defect(finding) for finding in (*measured, *judged)],
         repairs=_repairs(run),
-        scores=scores(run),
+        scores=scores(run) | {aspect: float(scored["score"]) for aspect, scored in (review.get("model") or {}).items()},
+        lessons=review.get("lessons", ()),
         version=run.version,
     )
     store.add(case)
     return case
-
-
-def scores(run: Run) -> dict[str, float]:
-    """Return what the rules say of a finished run, each between 0 and 1.
-
-    `geometric_fidelity` is the share of parts that neither a check nor an inspector has anything against; `kinematic_health`
-    the share of pairs of parts that were found clear, at rest and in motion, of those looked at; `first_shot` the share of
-    scripts that kept their contract at once.
-    """
-    names = run.part_names()
-    checks, verdict = run.checks() or {}, run.verdict() or {}
-    findings = (*checks.get("findings", ()), *verdict.get("findings", ()))
-    blamed = {part for finding in findings if finding["severity"] != "info" for part in finding.get("parts", ())}
-    pairs = [pair["verdict"] for pair in checks.get("pairs", ())]
-    scripts = [name for name in names if run.script(name) is not None]
-    again = [name for name in scripts if run.attempt(name, 1) is not None]
-    return {
-        "geometric_fidelity": _share(len(set(names) - blamed), len(names)),
-        "kinematic_health": _share(sum(verdict in {"clear", "contact"} for verdict in pairs), len(pairs)),
-        "first_shot": _share(len(scripts) - len(again), len(scripts)),
-    }
 
 
 def _kept(run: Run, recorded: Run | None, label: str, asked: Callable[[], Json]) -> Json:
@@ -181,13 +162,23 @@ def _mark(*texts: str) -> str:
     return hashlib.sha256("\0".join(texts).encode()).hexdigest()[:16]
 
 
+def _wanted(run: Run) -> str:
+    """Return what a run was asked for; of an edit, with what it began with."""
+    base = run.base()
+    return run.prompt if base is None else f"{base['prompt']}\n\nChanged since: {run.prompt}"
+
+
 def _heuristic(case: Case) -> str:
     mended = f"\nMended on the way: {_quoted('; '.join(case.repairs))}" if case.repairs else ""
-    return f"Asked for: {_quoted(case.prompt)}\nDesigned: {_quoted(case.design[:_DESIGN_CHARACTERS])}{mended}"
+    return f"Asked for: {_quoted(case.prompt)}\nDesigned: {_quoted(case.design[:_DESIGN_CHARACTERS])}{mended}{_learned(case)}"
 
 
 def _constraint(case: Case) -> str:
-    return f"Asked for: {_quoted(case.prompt)}\nFound at the end: {_quoted('; '.join(case.defects))}"
+    return f"Asked for: {_quoted(case.prompt)}\nFound at the end: {_quoted('; '.join(case.defects))}{_learned(case)}"
+
+
+def _learned(case: Case) -> str:
+    return f"\nLearned: {_quoted(' '.join(case.lessons))}" if case.lessons else ""
 
 
 def _quoted(text: str) -> str:
@@ -214,7 +205,3 @@ def _repairs(run: Run) -> list[str]:
                 told[_defect(finding)] = None
             number += 1
     return list(told)[:_REPAIRS]
-
-
-def _share(count: int, total: int) -> float:
-    return round(count / total, 4) if total else 1.0

@@ -76,6 +76,8 @@ class Workshop:
         documentation: Knows the kernel's API.
         complaints: What the authors of scripts are told in the next round, by part.
         fates: What became of each part in this round.
+        begun: Scripts that were written for other entries of these parts, for their authors to change.
+        ending: What follows every script that is written.
         planned: The parts of the last plan.
         made: What was made or tried, by part.
     """
@@ -90,6 +92,8 @@ class Workshop:
     documentation: Documentation | None = None
     complaints: dict[str, tuple[str, Image | None]] = field(default_factory=dict)
     fates: dict[str, Fate] = field(default_factory=dict)
+    begun: dict[str, bytes] = field(default_factory=dict)
+    ending: bytes = b""
     planned: tuple[str, ...] = ()
     made: dict[str, _Made] = field(default_factory=dict)
 
@@ -115,19 +119,38 @@ class Workshop:
             AgentError: If a model cannot be asked.
         """
         resolved = resolve(plan)
-        sources = [name for name, part in resolved.parts.items() if part.derivation is None]
-        gone = [name for name in self.planned if name not in resolved.parts]
-        self.planned = tuple(resolved.parts)
-        self.fates = dict.fromkeys(gone, "removed")
-        self.made = {name: made for name, made in self.made.items() if name in sources}
-        with ThreadPoolExecutor(max_workers=min(CALLS_AT_ONCE, len(sources))) as pool:
-            futures = {name: pool.submit(self._make, resolved, name) for name in sources}
-        self.complaints = {}
-        self.fates = {name: self.fates[name] for name in (*sources, *gone) if name in self.fates}
-        _raise_failures(futures, len(sources))
+        self.make({name: resolved for name, part in resolved.parts.items() if part.derivation is None}, tuple(resolved.parts))
         self.tell("assembly", "started")
         with closed_port("assembly is deterministic"):
             return self._joined(plan, resolved)
+
+    def adopt(self, resolved: Mapping[str, ResolvedPlan], scripts: Mapping[str, bytes]) -> None:
+        """Take scripts for what these plans say of their parts; each is kept as long as that stays the same and builds."""
+        for name, script in scripts.items():
+            old = self.made.get(name)
+            answers, opinions = (0, Findings()) if old is None else (old.answers, old.opinions)
+            self.made[name] = _Made(brief_digest(resolved[name], name), answers, script, opinions)
+
+    def make(self, resolved: Mapping[str, ResolvedPlan], planned: tuple[str, ...]) -> None:
+        """Make parts side by side, or keep them as they are.
+
+        Args:
+            resolved: By part, the plan that has its entry.
+            planned: All parts of the product, copies included.
+
+        Raises:
+            PartsError, AgentError: As `assembled`.
+        """
+        sources = list(resolved)
+        gone = [name for name in self.planned if name not in planned]
+        self.planned = planned
+        self.fates = dict.fromkeys(gone, "removed")
+        self.made = {name: made for name, made in self.made.items() if name in sources}
+        with ThreadPoolExecutor(max_workers=min(CALLS_AT_ONCE, len(sources))) as pool:
+            futures = {name: pool.submit(self._make, resolved[name], name) for name in sources}
+        self.complaints = {}
+        self.fates = {name: self.fates[name] for name in (*sources, *gone) if name in self.fates}
+        _raise_failures(futures, len(sources))
 
     def tell(self, what: str, event: str) -> None:
         """Note what happens in the trace, and tell who waits."""
@@ -155,16 +178,18 @@ class Workshop:
         answers, previous = 0 if old is None else old.answers, None
         if old is not None and old.brief == digest and old.script is not None:
             if complaint is not None:
-                previous = Attempt(_fenced(old.script), complaint[0], complaint[1], complaint="part_again")
+                previous = Attempt(self._shown(old.script), complaint[0], complaint[1], complaint="part_again")
             else:
                 try:
                     self._build(resolved, name, old.script)
                 except KernelError as error:
-                    previous = Attempt(_fenced(old.script), f"The specification has changed since. {failure_text(error)}", error=error)
+                    previous = Attempt(self._shown(old.script), f"The specification has changed since. {failure_text(error)}", error=error)
                 else:
                     self.fates[name] = "kept"
                     self.tell(name, "kept")
                     return
+        elif name in self.begun:
+            previous = Attempt(self._shown((old and old.script) or self.begun[name]), "", complaint="part_edit")
         self.fates[name] = "new" if old is None else "regenerated"
         self.tell(name, "started")
         modeller = Modeller(
@@ -172,7 +197,7 @@ class Workshop:
             name,
             llm=self.port,
             run=self.run,
-            build=lambda part, script: self._build(resolved, part, script),
+            build=lambda part, script: self._build(resolved, part, script + self.ending),
             kernel=self.kernel,
             repairs=self._options["repairs"],
             looks=self._options.get("look", False),
@@ -185,6 +210,9 @@ class Workshop:
         self.made[name] = _Made(digest, modelled.answers, modelled.realised.script, modelled.opinions)
         self.tell(name, "built")
 
+    def _shown(self, script: bytes) -> str:
+        return f"```python\n{script.removesuffix(self.ending).decode()}```"
+
     def _build(self, resolved: ResolvedPlan, name: str, script: bytes) -> RealisedPart:
         """Build a script; a connector that is off is taken into the plan if it holds there, else the script must build it in place."""
         with self._building:
@@ -194,10 +222,6 @@ class Workshop:
                 return part
             raise ContractError("\n".join(map(str, drift)), findings=drift, parts=(name,))
         return part
-
-
-def _fenced(script: bytes) -> str:
-    return f"```python\n{script.decode()}```"
 
 
 def _unbuilt(name: str, finding: Finding) -> str:

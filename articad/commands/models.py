@@ -1,4 +1,4 @@
-"""Have a model design; make its run again without it."""
+"""Have a model design, or change what it has designed; make its run again without it."""
 
 from __future__ import annotations
 
@@ -6,14 +6,16 @@ import argparse
 import os
 import sys
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 from articad.commands.command import argument, command
-from articad.commands.options import EXPORT, FORCE, JOBS, MODEL_ARGUMENTS, OUT, PICTURES, SANDBOX
+from articad.commands.options import ANSWERING, EXPORT, FORCE, GENERATING, JOBS, OUT, PICTURES, SANDBOX, SET
 from articad.commands.steps import build_cache, draw, reported, sandbox_level
 
 if TYPE_CHECKING:
     from articad.agents.brainstorm import Alternative, Choose
+    from articad.agents.llm import Budget
+    from articad.run import Run
     from articad.terminal import Report, Terminal
 
 
@@ -21,7 +23,8 @@ if TYPE_CHECKING:
     "generate",
     "Have a model write the plan and the part scripts of what you describe; then build, check and export it.",
     argument("text", metavar="TEXT", help="what is wanted"),
-    *MODEL_ARGUMENTS,
+    *ANSWERING,
+    *GENERATING,
     OUT,
     EXPORT,
     SANDBOX,
@@ -30,20 +33,13 @@ if TYPE_CHECKING:
     PICTURES,
 )
 def _generate(options: argparse.Namespace, terminal: Terminal) -> Report:
-    from articad.agents.live import DEFAULT_MODEL, LiteLLM
-    from articad.agents.llm import Budget
     from articad.agents.pipeline import generate
-    from articad.agents.recollection import StoredDocumentation, StoredMemory, remember
+    from articad.agents.recollection import StoredDocumentation, StoredMemory
     from articad.memory.experience import ExperienceStore
     from articad.record import kernel_named
 
-    name = options.model or os.environ.get("ARTICAD_MODEL") or DEFAULT_MODEL
-    model = LiteLLM(name, api_base=options.api_base, vision_model=options.vision_model, judge_model=options.judge_model)
-    sees = bool(getattr(model, "sees", True))
-    if not sees and (options.look or options.inspection):
-        terminal.say(f"{options.vision_model or name} does not see: parts and assembly are held to exact checks alone.")
+    budget, sees = _asked_model(options, terminal)
     store = ExperienceStore(options.memory)
-    budget = Budget(model, calls=options.max_calls, tokens=options.max_tokens, cost=options.max_cost, minutes=options.max_minutes)
     with terminal.progress("Generating") as tell:
         run = generate(
             options.text,
@@ -61,17 +57,97 @@ def _generate(options: argparse.Namespace, terminal: Terminal) -> Report:
             ideas=options.ideas,
             pick=options.pick,
             choose=_asking(terminal) if _is_asked(options) else None,
+            review=_review(options, sees=sees),
             variant=options.variant,
             memory=StoredMemory(store),
             documentation=StoredDocumentation() if options.docs else None,
             jobs=options.jobs,
             progress=tell,
         )
-    if options.variant != "no-memory" and (case := remember(run, store)) is not None:
+    return _told(run, options, terminal, budget, remembered=options.variant not in {"no-memory", "single-loop"})
+
+
+@command(
+    "edit",
+    "Change a finished run by words, or its parameters by numbers, and prove that nothing else has changed.",
+    argument("run", metavar="RUN"),
+    argument("text", metavar="TEXT", nargs="?", default="", help="what shall be otherwise; without it only --set, and no model"),
+    SET,
+    *ANSWERING,
+    OUT,
+    EXPORT,
+    SANDBOX,
+    JOBS,
+    FORCE,
+    PICTURES,
+)
+def _edit(options: argparse.Namespace, terminal: Terminal) -> Report:
+    from articad.agents.edit import edit
+    from articad.agents.recollection import StoredDocumentation, StoredMemory
+    from articad.memory.experience import ExperienceStore
+
+    budget, sees = _asked_model(options, terminal) if options.text.strip() else (None, False)
+    with terminal.progress("Editing") as tell:
+        run = edit(
+            options.run,
+            options.text,
+            llm=budget,
+            values=dict(options.parameters),
+            images=options.images,
+            out=options.out,
+            sandbox=sandbox_level(options),
+            cache=build_cache(options),
+            formats=options.formats,
+            repairs=options.repairs,
+            rounds=options.rounds,
+            look=options.look and sees,
+            inspection=options.inspection and sees,
+            review=_review(options, sees=sees),
+            memory=StoredMemory(ExperienceStore(options.memory)),
+            documentation=StoredDocumentation() if options.docs else None,
+            jobs=options.jobs,
+            progress=tell,
+        )
+    return _told(run, options, terminal, budget, remembered=budget is not None)
+
+
+def _asked_model(options: argparse.Namespace, terminal: Terminal) -> tuple[Budget, bool]:
+    """Return the model that was asked for, within its budget, and whether it sees."""
+    from articad.agents.live import DEFAULT_MODEL, LiteLLM
+    from articad.agents.llm import Budget
+
+    name = options.model or os.environ.get("ARTICAD_MODEL") or DEFAULT_MODEL
+    model = LiteLLM(name, api_base=options.api_base, vision_model=options.vision_model, judge_model=options.judge_model)
+    sees = bool(getattr(model, "sees", True))
+    if not sees and (options.look or options.inspection or options.review):
+        terminal.say(f"{options.vision_model or name} does not see: parts and assembly are held to exact checks alone.")
+    limits = {"calls": options.max_calls, "tokens": options.max_tokens, "cost": options.max_cost, "minutes": options.max_minutes}
+    return Budget(model, **limits), sees
+
+
+def _review(options: argparse.Namespace, *, sees: bool) -> Literal["none", "rules", "model"]:
+    """Return who reviews."""
+    return "none" if not options.review else "model" if sees else "rules"
+
+
+def _told(run: Run, options: argparse.Namespace, terminal: Terminal, budget: Budget | None, *, remembered: bool) -> Report:
+    """Remember a finished run, draw it, print it and return its report."""
+    from articad.agents.recollection import remember
+    from articad.memory.experience import ExperienceStore
+    from articad.summaries import print_edit, print_review
+
+    store = ExperienceStore(options.memory)
+    if remembered and (case := remember(run, store)) is not None:
         terminal.detail(f"Remembered as {case.id[:8]}, {case.kind}, in {store.folder}.")
     if options.pictures:
         draw(run)
     report = reported(run, terminal)
+    if "edit" in report:
+        print_edit(report["edit"], terminal)
+    if "review" in report:
+        print_review(report["review"], terminal)
+    if budget is None:
+        return report
     price = "of unknown price" if budget.cost_unknown_of else f"${budget.cost:.4f}"
     terminal.say(f"Model: {budget.calls} calls, {budget.tokens} tokens, {price}.")
     return report | {"model": {"calls": budget.calls, "tokens": budget.tokens, "cost_usd": None if budget.cost_unknown_of else budget.cost}}

@@ -69,10 +69,11 @@ JOBS = argument("--jobs", metavar="N", type=positive, default=None, help="parts 
 FORCE = argument("--force", action="store_true", help="build every part anew, whatever the cache holds")
 EXPORT = argument("--export", metavar="FORMATS", dest="formats", type=formats, default=USUAL, help="formats to write (urdf,mjcf)")
 PICTURES = argument("--no-pictures", dest="pictures", action="store_false", help="draw neither parts nor motion, write no page")
+SET = argument("--set", metavar="NAME=VALUE", dest="parameters", type=parameter, action="append", default=[], help="replace a parameter")
 BUILD_ARGUMENTS = (
     OUT,
     argument("--kernel", choices=["build123d", "freecad"], default=None, help="what builds part scripts (the plan's own choice)"),
-    argument("--set", metavar="NAME=VALUE", dest="parameters", type=parameter, action="append", default=[], help="replace a parameter"),
+    SET,
     argument("--verify", choices=["rest", "sampled", "certified"], default="rest", help="how much motion is checked (rest)"),
     EXPORT,
     SANDBOX,
@@ -80,21 +81,17 @@ BUILD_ARGUMENTS = (
     FORCE,
     PICTURES,
 )
-MODEL_ARGUMENTS = (
+ANSWERING = (
     argument("--image", metavar="FILE", dest="images", action="append", default=[], help="a picture that belongs to the request"),
-    argument("--part-image", metavar="NAME=FILE", dest="part_images", type=assignment, action="append", default=[], help="of one part"),
     argument(
         "--model", metavar="NAME", default=None, help="the model, as LiteLLM names it ($ARTICAD_MODEL, else gemini/gemini-3-flash-preview)"
     ),
     argument("--vision-model", metavar="NAME", help="the model that gets pictures (the same)"),
     argument("--judge-model", metavar="NAME", help="the model that judges the assembly (the same)"),
     argument("--api-base", metavar="URL", help="an OpenAI-compatible endpoint"),
-    argument("--kernel", choices=["build123d", "freecad"], default="build123d", help="what part scripts are written for (build123d)"),
-    argument("--ideas", choices=["auto", "always", "never"], default="auto", help="propose alternatives first (auto: for open requests)"),
-    argument("--pick", metavar="N", type=positive, default=None, help="propose alternatives and make the N-th, without asking"),
     argument("--no-look", dest="look", action="store_false", help="compare no pictures of parts with their specification"),
     argument("--no-inspection", dest="inspection", action="store_false", help="have the assembly neither observed nor judged by models"),
-    argument("--variant", choices=["full", "no-rollback", "no-memory"], default="full", help="the others are the paper's ablations (full)"),
+    argument("--review", action="store_true", help="score the finished assembly, by rules and by a model that looks at all of it"),
     argument("--memory", metavar="DIR", help="the store of earlier runs ($ARTICAD_MEMORY, or the user's own)"),
     argument("--docs", action="store_true", help="have the model name what it would look up in the kernel's documentation, and tell it"),
     argument("--rounds", metavar="N", type=positive, default=3, help="designs that are built and checked (3)"),
@@ -103,4 +100,16 @@ MODEL_ARGUMENTS = (
     argument("--max-tokens", metavar="N", type=positive, default=None, help="tokens of all calls (unlimited)"),
     argument("--max-cost", metavar="USD", type=amount, default=None, help="cost of all calls (unlimited)"),
     argument("--max-minutes", metavar="N", type=amount, default=60.0, help="wall clock (60)"),
+)
+GENERATING = (
+    argument("--part-image", metavar="NAME=FILE", dest="part_images", type=assignment, action="append", default=[], help="of one part"),
+    argument("--kernel", choices=["build123d", "freecad"], default="build123d", help="what part scripts are written for (build123d)"),
+    argument("--ideas", choices=["auto", "always", "never"], default="auto", help="propose alternatives first (auto: for open requests)"),
+    argument("--pick", metavar="N", type=positive, default=None, help="propose alternatives and make the N-th, without asking"),
+    argument(
+        "--variant",
+        choices=["full", "no-rollback", "no-memory"],
+        default="full",
+        help="the others are the paper's ablations and its baseline (full)",
+    ),
 )

@@ -62,8 +62,9 @@ def check_scene(
     ground: str | None = None,
     pose: Mapping[str, float] | None = None,
     gaps: bool = False,
+    known: Mapping[tuple[str, str], PairCheck] | None = None,
 ) -> Checks:
-    """Check one pose of a scene; see `check_pose`."""
+    """Check one pose of a scene; see `check_pose`. What is `known` of a pair of parts is taken as it is, without findings."""
     placed = {name: poses[name] for name in scene.bodies}
     findings = [broken_finding(name, reason) for name, reason in scene.broken.items()]
     pairs: dict[tuple[str, str], PairCheck] = {}
@@ -71,6 +72,9 @@ def check_scene(
         if over != "rest" and scene.relations.rigid.together(a, b):
             continue
         if a in scene.broken or b in scene.broken:
+            continue
+        if known is not None and (a, b) in known:
+            pairs[a, b] = known[a, b]
             continue
         found = measured(scene.bodies[a], scene.bodies[b], relative(placed[a], placed[b]))
         gap = distance(scene.bodies[a], scene.bodies[b], relative(placed[a], placed[b])) if gaps and not found.volume else None

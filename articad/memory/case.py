@@ -48,6 +48,7 @@ class Case:
         repairs: What went wrong on the way and was mended.
         defects: What the checks measured at the end; of an issue there is at least one.
         scores: Numbers of the review, by name.
+        lessons: What the review would tell the next designer.
         articad: Version that made the run.
     """
 
@@ -59,6 +60,7 @@ class Case:
     repairs: tuple[str, ...] = ()
     defects: tuple[str, ...] = ()
     scores: Mapping[str, float] = field(default_factory=dict, hash=False)
+    lessons: tuple[str, ...] = ()
     articad: str = ""
 
     @cached_property
@@ -74,7 +76,10 @@ class Case:
 
     def to_json(self) -> Json:
         """Return the form `articad.case/1`."""
-        return {"schema": SCHEMA} | asdict(self)
+        stored = {"schema": SCHEMA} | asdict(self)
+        if not self.lessons:
+            stored.pop("lessons")  # cases without any are what they were before there were lessons, to their id
+        return stored
 
     @classmethod
     def from_json(cls, stored: Mapping[str, Any]) -> Case:
@@ -88,7 +93,7 @@ class Case:
             _require(content.pop("schema") == SCHEMA, "another schema")
             _require(content["kind"] in {"good", "issue"}, f"kind {content['kind']!r}")
             content["parts"] = tuple(PartExample(**part) for part in content["parts"])
-            texts = ("repairs", "defects")
+            texts = [name for name in ("repairs", "defects", "lessons") if name in content]
             return cls(**content | {name: tuple(map(str, content[name])) for name in texts})
         except (KeyError, TypeError, ValueError) as error:
             message = f"This is not a case of the form {SCHEMA}: {type(error).__name__}: {error}."

@@ -22,6 +22,7 @@ def case_of(
     defects: Sequence[str] = (),
     repairs: Sequence[str] = (),
     scores: Mapping[str, float] | None = None,
+    lessons: Sequence[str] = (),
     version: str = "",
 ) -> Case:
     """Return the case of a finished assembly: an issue if it has a defect, else a good one.
@@ -35,6 +36,7 @@ def case_of(
         defects: Errors that were found at the end.
         repairs: What went wrong on the way and was mended.
         scores: Numbers of the review.
+        lessons: What the review would tell the next designer.
         version: Of articad.
     """
     parts = [PartExample(name, specification(resolved, name), kernel, scripts[name].decode(errors="replace")) for name in sorted(scripts)]
@@ -47,6 +49,7 @@ def case_of(
         repairs=tuple(repairs),
         defects=tuple(defects),
         scores=dict(scores or {}),
+        lessons=tuple(lessons),
         articad=version,
     )
 

@@ -12,11 +12,13 @@ from pydantic import BaseModel
 
 from articad.agents.brainstorm import Alternatives
 from articad.agents.design import response_schema
+from articad.agents.edit import Change
 from articad.agents.inspection import Judgement, Look, Observations
 from articad.agents.live import _TOLD
 from articad.agents.prompts import prompt, prompt_file
 from articad.agents.replies import parse_object, parse_script
 from articad.agents.requirements import Requirements
+from articad.agents.review import Opinion
 from articad.agents.rollback import Decisions
 from articad.plan.check import check_plan
 from articad.plan.expressions import FUNCTIONS
@@ -104,7 +106,15 @@ def test_the_example_of_the_requirements_prompt_has_the_form() -> None:
 
 @pytest.mark.parametrize(
     ("name", "form"),
-    [("look", Look), ("observe", Observations), ("judge", Judgement), ("rollback", Decisions), ("brainstorm", Alternatives)],
+    [
+        ("look", Look),
+        ("observe", Observations),
+        ("judge", Judgement),
+        ("rollback", Decisions),
+        ("brainstorm", Alternatives),
+        ("edit", Change),
+        ("review", Opinion),
+    ],
 )
 def test_the_answer_that_a_prompt_shows_has_the_form_that_is_read(name: str, form: type[BaseModel]) -> None:
     told = prompt_file(f"{name}.md")
@@ -123,13 +133,13 @@ def _inner(form: type[BaseModel]) -> set[type[BaseModel]]:
 
 
 def test_every_prompt_that_wants_an_object_tells_its_form_and_is_left_alone_by_the_adapter() -> None:
-    for name in ("requirements", "design", "look", "observe", "judge", "rollback", "brainstorm"):
+    for name in ("requirements", "design", "look", "observe", "judge", "rollback", "brainstorm", "edit", "review"):
         assert _TOLD in prompt_file(f"{name}.md"), name
 
 
 def test_every_blank_of_a_prompt_is_filled_by_somebody() -> None:
     blanks = {blank for file in Path(str(PROMPTS)).glob("*.md") for blank in re.findall(r"\{\{(\w+)\}\}", file.read_text())}
-    assert blanks == {"example", "findings", "failure", "problem", "note", "concept", "count"}
+    assert blanks == {"example", "findings", "failure", "problem", "note", "concept", "count", "kernel", "rules"}
 
 
 def test_the_prompts_have_no_blank_left_and_no_path_or_address() -> None:

@@ -10,7 +10,8 @@ import pytest
 
 from articad.agents.llm import Scripted
 from articad.agents.pipeline import generate, replay
-from articad.agents.recollection import StoredDocumentation, StoredMemory, remember, scores
+from articad.agents.recollection import StoredDocumentation, StoredMemory, remember
+from articad.agents.review import scores
 from articad.memory.case import Case, PartExample
 from articad.memory.experience import ExperienceStore
 from articad.run import Run

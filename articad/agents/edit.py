@@ -1,0 +1,321 @@
+"""Edit: a finished run changed by words or by numbers, and nothing of it that the change does not reach.
+
+A designer who sees the whole plan answers with changes to it, by address; what they reach is worked out before anything is
+built, and held against what they were meant to reach. Scripts and solids of all other parts stay as they are, verdicts of
+pairs that cannot have changed are carried over, and the report proves both.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from functools import cached_property
+from pathlib import Path
+from typing import Any, Final, Literal, NoReturn
+
+from articad.agents import edit_report
+from articad.agents.design import TRIES, listed
+from articad.agents.edit_base import Base, document_of, with_values
+from articad.agents.evidence import Evidence, Known, examine
+from articad.agents.forms import Form, reader, schema_of
+from articad.agents.generation import REPAIRS
+from articad.agents.line import FORMATS, ROUNDS, Chooser, Line, Planner
+from articad.agents.llm import LLM, Image, Message, Recorded, Reply, Request, assistant, system, user
+from articad.agents.prompts import prompt, prompt_file
+from articad.agents.recollection import KeptDocumentation, KeptMemory
+from articad.agents.requirements import Requirements, pictures_of
+from articad.agents.retrieval import Documentation, Memory
+from articad.agents.workshop import Progress, Workshop
+from articad.assembly import Assembly
+from articad.errors import AgentError, OutputError, PlanError, ReadError, did_you_mean
+from articad.findings import Finding, Findings
+from articad.kernels.kernel import BuildCache, PartKernel
+from articad.plan.amending import amended
+from articad.plan.check import check_plan
+from articad.plan.resolve import resolve
+from articad.plan.schema import AssemblyPlan
+from articad.record import kernel_named
+from articad.run import Run, RunRequest, UserImage, open_or_create
+
+ROLE: Final = "edit"
+_RULES: Final = ("# 1. Units", "# 7. Example")  # the sections of the design prompt that are rules of every plan, from and to
+
+
+def edit(
+    run: Run | str | Path,
+    text: str = "",
+    *,
+    llm: LLM | None = None,
+    values: Mapping[str, float] | None = None,
+    images: Iterable[str | Path | bytes] = (),
+    out: str | Path | None = None,
+    kernel: PartKernel | None = None,
+    sandbox: Literal["strict", "weak"] = "strict",
+    cache: BuildCache | None = None,
+    formats: Sequence[str] = FORMATS,
+    designs: int = TRIES,
+    repairs: int = REPAIRS,
+    rounds: int = ROUNDS,
+    look: bool = True,
+    inspection: bool = True,
+    review: Literal["none", "rules", "model"] = "none",
+    memory: Memory | None = None,
+    documentation: Documentation | None = None,
+    jobs: int | None = None,
+    progress: Progress | None = None,
+) -> Run:
+    """Change a finished run; the run that is edited stays as it is.
+
+    Called again with the same arguments and the same `out`, it goes on where it was interrupted and repeats no call.
+
+    Args:
+        run: The finished run, made by a model or built.
+        text: What shall be otherwise.
+        llm: Who answers; not needed where there are only `values`, as long as all scripts build with them.
+        values: Parameters of the plan that get other values, in mm and degrees.
+        images: Pictures that belong to the text.
+        out: The directory of the new run; by default a new one under `runs/`.
+        kernel: Builds the part scripts; the run's own by default.
+        sandbox: As for `generate`.
+        cache: As for `generate`.
+        formats: As for `generate`.
+        designs: Answers until a changed plan must validate.
+        repairs: As for `generate`.
+        rounds: As for `generate`.
+        look: As for `generate`; only parts that are written anew are looked at.
+        inspection: As for `generate`; without a text nobody inspects.
+        review: As for `generate`.
+        memory: As for `generate`.
+        documentation: As for `generate`.
+        jobs: As for `generate`.
+        progress: As for `generate`.
+
+    Returns:
+        The new run, closed; `run.edit()` says what has changed and proves that nothing else has.
+
+    Raises:
+        ReadError: If the run is not finished, or nothing is asked for.
+        PlanError, ContractError, AgentError: As `generate`.
+    """
+    finished = run if isinstance(run, Run) else Run.view(run)
+    if not text.strip() and not values:
+        raise ReadError("Nothing is to be changed: give a text, or values of parameters.", path=str(finished.path))
+    base = Base.of(finished)
+    worded = bool(text.strip())
+    options: dict[str, Any] = {"task": "edit", "base": base.mark, "set": dict(sorted((values or {}).items()))}
+    options |= {"designs": designs, "repairs": repairs, "rounds": rounds if worded else 1, "formats": list(formats)}
+    options |= {"kernel": base.stored["kernel"], "variant": "full", "finetune": worded}
+    options |= {"look": look and worded, "inspection": inspection and worded}
+    options |= {} if review == "none" else {"review": review}
+    request = RunRequest(prompt=text.strip(), images=tuple(UserImage.read(image) for image in images), options=options)
+    kernel = kernel or kernel_named(base.stored["kernel"], sandbox=sandbox)
+    with open_or_create(request, out) as edited:
+        edited.save_base(base.stored)
+        known, told = KeptMemory(edited, memory), KeptDocumentation(edited, documentation)
+        shop = Workshop(edited, Recorded(llm or _Nobody(), edited), kernel, cache or BuildCache(), jobs, progress, known, told)
+        EditLine(shop, _nothing_to_choose, known).work()
+    return edited
+
+
+class EditLine(Line):
+    """An edit at work: the line from a finished run on."""
+
+    def __init__(self, shop: Workshop, chooser: Chooser, memory: Memory | None) -> None:
+        super().__init__(shop, chooser, memory)
+        stored = self.run.base()
+        if stored is None:
+            raise ReadError(f"{self.run.path} is an edit that has lost what it began with.", path=str(self.run.path))
+        self.base = Base(stored)
+        request = shop.run.request
+        changed = f"\n\nChanged since: {request.prompt}" if request.prompt else ""
+        self.asked = RunRequest(prompt=f"{stored['prompt']}{changed}", images=request.images, options=request.options)
+        shop.begun = self.base.scripts
+        shop.planned = tuple(self.base.resolved.parts)
+        shop.adopt(dict.fromkeys(self.base.scripts, self.base.resolved), self.base.scripts)
+
+    def requirements(self) -> Requirements:
+        """Return what was wanted when the run was made."""
+        requirements = self.base.requirements
+        self.run.save_requirements(requirements.to_json())
+        return requirements
+
+    def planner(self, requirements: Requirements) -> Planner:  # noqa: ARG002 - the line's
+        """Return who changes the plan."""
+        self.shop.tell("design", "started")
+        return self._editor
+
+    @cached_property
+    def _editor(self) -> Editor:
+        return Editor(self.base, self.run.request, self.port, tries=self.options["designs"], tell=self.tell_of_plan)
+
+    def examined(self, assembly: Assembly) -> Evidence:
+        """Return what is measured of an assembly; pairs that cannot have changed are not looked at again."""
+        self._known = self.base.known(assembly, self.run.version)
+        return examine(assembly, self._known)
+
+    def finish(self, assembly: Assembly, evidence: Evidence, requirements: Requirements | None) -> None:
+        """Write the exports, and the report of what has changed."""
+        super().finish(assembly, evidence, requirements)
+        assert assembly.resolved is not None
+        report = edit_report.report(self.base, self.run, assembly.resolved, evidence.checks, self._known, summary=self._editor.summary)
+        self.run.save_edit(report)
+        self.shop.tell("edit", "proved" if report["ok"] else "NOT proved")
+
+    _known = Known()
+
+
+class Change(Form):
+    """A designer's answer: what a plan states otherwise."""
+
+    summary: str
+    touches: tuple[str, ...]
+    changes: dict[str, Any]
+
+
+class Editor:
+    """Changes the plan of a finished product.
+
+    Args:
+        base: The product.
+        request: What is asked for.
+        llm: Who is asked; nobody where there are only numbers.
+        tries: Answers until the changed plan must validate.
+        tell: Told of each answer.
+
+    Attributes:
+        summary: What was changed, in a sentence.
+    """
+
+    def __init__(self, base: Base, request: RunRequest, llm: LLM, *, tries: int, tell: Any) -> None:
+        self._base, self._request, self._llm, self._tries, self._tell = base, request, llm, tries, tell
+        self._values: Mapping[str, float] = request.options.get("set") or {}
+        self._answered = 0
+        self._said = ""
+        self.summary = ", ".join(f"{name} = {value:g}" for name, value in self._values.items())
+
+    @cached_property
+    def _begin(self) -> AssemblyPlan:
+        """The plan with the values that were given."""
+        return with_values(self._base.plan, self._values) if self._values else self._base.plan
+
+    @cached_property
+    def _opening(self) -> tuple[Message, ...]:
+        pictures = pictures_of(self._request)
+        shown = f"\n\n{len(pictures)} picture(s) of what is asked for follow." if pictures else ""
+        words = (
+            f"The product was asked for like this:\n\n{self._base.stored['prompt'].strip() or '(no words)'}\n\n"
+            f"Its plan:\n\n```json\n{self._begin.dumps()}```\n\nThe change that the customer asks for:\n\n{self._request.prompt}{shown}"
+        )
+        return (system(prompt("edit", rules=_rules())), user(words, *pictures))
+
+    def first(self) -> AssemblyPlan:
+        """Return the changed plan.
+
+        Raises:
+            PlanError: If the last answer still has errors, or the plan does not hold with the values that were given.
+            OutputError: If the last answer has no form.
+        """
+        if self._request.prompt:
+            return self._until_valid(self._opening)
+        findings = check_plan(self._begin)
+        self._tell(self._begin, findings)
+        if not findings.ok:
+            raise PlanError("\n".join(map(str, findings.errors)), findings=findings)
+        return self._begin
+
+    def again(
+        self,
+        plan: AssemblyPlan,  # noqa: ARG002 - an answer is told from the plan as it was, not from the last one
+        findings: Iterable[Finding],
+        *,
+        pictures: Sequence[Image] = (),
+        stubborn: Iterable[Finding] = (),
+    ) -> AssemblyPlan:
+        """Return another changed plan, after this one was built and findings came up; see `Designer.again`."""
+        if not self._request.prompt:
+            every = Findings(findings)
+            raise PlanError("\n".join(map(str, every)), findings=every)
+        came_back = listed(stubborn)
+        note = (
+            f" These came back although you changed something for them; solve them in another way:\n\n{came_back}\n\n" if came_back else ""
+        )
+        words = prompt("edit_again", findings=listed(findings), note=note)
+        if pictures:
+            words += "\n\nPictures of the places follow; what parts have in common is red."
+        return self._until_valid((*self._opening, assistant(self._said), user(words, *pictures)))
+
+    def _until_valid(self, messages: tuple[Message, ...]) -> AssemblyPlan:
+        for number in range(1, self._tries + 1):
+            self._answered += 1
+            step = f"edit/{self._answered}"
+            reply = self._llm.complete(Request(ROLE, step, messages, schema_of(Change)))
+            self._said = reply.text
+            problem: OutputError | None = None
+            plan, findings = None, Findings()
+            try:
+                change = reader(Change)(reply.text, step)
+                plan, findings = self._changed(change)
+            except OutputError as error:
+                problem = error
+                findings = error.findings
+            except (PlanError, ReadError) as error:
+                findings = error.findings
+            self._tell(plan, findings)
+            if plan is not None and findings.ok:
+                self.summary = change.summary
+                return plan
+            if number == self._tries:
+                raise problem or PlanError(f"No valid change in {number} answers.\n{findings}", findings=findings)
+            complaint = prompt("form_repair", problem=problem.message) if problem else prompt("edit_repair", findings=listed(findings))
+            messages = (*self._opening, assistant(reply.text), user(complaint))
+        raise AssertionError("the last try either returns or raises")
+
+    def _changed(self, change: Change) -> tuple[AssemblyPlan, Findings]:
+        """Return the changed plan, and what is to be said of it: what it is, and what it reaches.
+
+        Raises:
+            ReadError, PlanError: If it cannot be made.
+        """
+        plan = AssemblyPlan.from_json(amended(document_of(self._begin), change.changes))
+        findings = check_plan(plan)
+        if not findings.ok:
+            return plan, findings
+        return plan, findings + self._out_of_reach(plan, change.touches)
+
+    def _out_of_reach(self, plan: AssemblyPlan, touches: Sequence[str]) -> Iterable[Finding]:
+        """Yield the parts that a plan changes and was not to change."""
+        before, after = resolve(self._begin), resolve(plan)
+        every = list(dict.fromkeys((*before.parts, *after.parts)))
+        patterns = {part.name for part in plan.parts} | {part.name for part in self._begin.parts}
+        for name in touches:
+            if name not in every and name not in patterns:
+                message = f'"touches" names {name!r}, which is no part.{did_you_mean(name, every)}'
+                yield Finding(code="E_EDIT_REACH", where="touches", message=message, hint="Name parts of the plan.")
+        for name, how in edit_report.reach(before, after).items():
+            if name in touches or how == "follows its source" or any(name.startswith(f"{one}_") for one in touches if one not in every):
+                continue
+            told = edit_report.told_otherwise(before, after, name)
+            message = f'The changes reach {name} too ({how}{f": {told}" if told else ""}), which "touches" does not name.'
+            hint = "If the customer wants that, or it must follow, name it; else change something that reaches less."
+            yield Finding(code="E_EDIT_REACH", where=f"parts.{name}", parts=(name,), message=message, hint=hint)
+
+
+class _Nobody:
+    """Who answers where no model was named."""
+
+    def complete(self, request: Request) -> Reply:
+        """Refuse.
+
+        Raises:
+            AgentError: Always.
+        """
+        raise AgentError(f"{request.step!r} needs a model: a script does not build with the new numbers, or a text was given. Name one.")
+
+
+def _nothing_to_choose(_alternatives: Sequence[Any]) -> NoReturn:
+    raise AgentError("An edit has no alternatives.")
+
+
+def _rules() -> str:
+    """Return the rules of every plan, as the design prompt has them."""
+    text = prompt_file("design.md")
+    return text[text.index(_RULES[0]) : text.index(_RULES[1])].strip()

@@ -1,0 +1,274 @@
+"""A finished run is changed by words and by numbers: what is meant changes, nothing else does, and the report proves it."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from articad.agents.edit import edit
+from articad.agents.evidence import examine
+from articad.agents.llm import Scripted
+from articad.agents.pipeline import generate, replay
+from articad.errors import AgentError, PlanError, ReadError
+from articad.kernels.kernel import BuildCache
+from articad.record import assembly_of, run_report
+from articad.run import Run, differences
+from tests.agents import stories
+from tests.agents.stories import FLAP_SCRIPTS, fenced, flap
+
+TALLER = {"summary": "The drawer is 20 mm taller.", "touches": ["body", "drawer"], "changes": {"parameters.drawer_height.value": 60}}
+THICKER = {"summary": "A thicker flap.", "touches": ["flap"], "changes": {"parts.flap.dimensions.thickness": 3}}
+QUIET: dict[str, Any] = {"look": False, "inspection": False}
+
+
+def said(llm: Scripted, step: str) -> str:
+    request = next(request for request in llm.requests if request.step == step)
+    return "\n".join(part["text"] for message in request.to_json()["messages"] for part in message["content"] if part["type"] == "text")
+
+
+def edited(base: Run, folder: Path, *answers: Any, text: str = "change it", **options: Any) -> tuple[Run, Scripted]:
+    """Edit a run with these answers of the designer."""
+    script = {f"edit/{number}": answer if isinstance(answer, str) else json.dumps(answer) for number, answer in enumerate(answers, 1)}
+    llm = Scripted(script | options.pop("also", {}))
+    made: dict[str, Any] = {"kernel": stories.kernel(), "cache": stories.shared_cache()} | QUIET
+    return edit(base, text, llm=llm, out=folder, **(made | options)), llm
+
+
+@pytest.fixture(scope="module")
+def box(tmp_path_factory: pytest.TempPathFactory) -> Run:
+    """A sewing box: body, two lids, drawer and knob."""
+    folder = tmp_path_factory.mktemp("box") / "run"
+    return generate(
+        stories.SEWING_BOX_PROMPT, llm=stories.sewing_box(), out=folder, kernel=stories.kernel(), cache=stories.shared_cache(), **QUIET
+    )
+
+
+@pytest.fixture(scope="module")
+def plate(tmp_path_factory: pytest.TempPathFactory) -> Run:
+    """A plate with a flap."""
+    folder = tmp_path_factory.mktemp("plate") / "run"
+    return generate(stories.FLAP_PROMPT, llm=flap(), out=folder, kernel=stories.kernel(), cache=stories.shared_cache(), **QUIET)
+
+
+@pytest.fixture(scope="module")
+def taller(box: Run, tmp_path_factory: pytest.TempPathFactory) -> Run:
+    """The box with a taller drawer."""
+    return edited(box, tmp_path_factory.mktemp("taller") / "run", TALLER, text="make the drawer 20 mm taller")[0]
+
+
+# ---------------------------------------------------------------------- what changes, and what does not
+
+
+def test_a_taller_drawer_rebuilds_the_parts_whose_digest_changed_and_all_other_files_are_equal(box: Run, taller: Run) -> None:
+    def digests(run: Run) -> dict[str, Any]:
+        return {name: (run.part(name) or {}).get("digests") for name in run.part_names()}
+
+    changed = {name for name in digests(box) if digests(box)[name] != digests(taller)[name]}
+    before, after = box.hashes(), taller.hashes()
+    unlike = {name.split("/")[1] for name in before | after if name.startswith("parts/") and before.get(name) != after.get(name)}
+    fates = {name: row["fate"] for name, row in (taller.edit() or {})["parts"].items()}
+
+    assert changed == unlike == {"body", "drawer"}
+    assert {name for name, fate in fates.items() if fate != "untouched"} == changed
+    assert fates["body"] == fates["drawer"] == "rebuilt"
+    for name in ("knob", "lid_left"):
+        for file in ("part.step", "part.npz", "script.py", "part.json", "connectors.json"):
+            assert before[f"parts/{name}/{file}"] == after[f"parts/{name}/{file}"]
+    assert (taller.part("drawer") or {})["shape"]["bbox_mm"][1][2] == pytest.approx(
+        (box.part("drawer") or {})["shape"]["bbox_mm"][1][2] + 20
+    )
+    assert (taller.checks() or {})["ok"]
+
+
+def test_the_findings_tell_what_has_changed(taller: Run) -> None:
+    findings = (taller.edit() or {})["findings"]
+    told = {finding["where"]: finding["message"] for finding in findings}
+
+    assert told["parameters.drawer_height.value"] == "40 → 60."
+    assert "dimensions.height" in told["parts.drawer"]
+    assert set(told) == {"parameters.drawer_height.value", "parts.drawer", "parts.body"}
+    assert {finding["code"] for finding in findings} == {"I_EDITED", "I_PART_EDITED"}
+    assert run_report(taller)["edit"]["summary"] == TALLER["summary"]
+
+
+def test_only_touched_pairs_are_looked_at_again_and_the_report_is_that_of_a_whole_check(box: Run, tmp_path: Path) -> None:
+    changes = {"parts.knob.dimensions.length": 20, "parts.knob.envelope_mm": [18, 20, 18]}
+    run, _ = edited(box, tmp_path / "run", {"summary": "x", "touches": ["knob"], "changes": changes})
+    whole = examine(assembly_of(run, cache=stories.shared_cache()))
+    counted = (run.edit() or {})["pairs"]
+
+    def told(pairs: list[dict[str, Any]]) -> list[str]:
+        return sorted(json.dumps(pair, sort_keys=True) for pair in pairs)
+
+    assert told((run.checks() or {})["pairs"]) == told(whole.checks.to_json()["pairs"])
+    assert (run.checks() or {})["findings"] == whole.checks.to_json()["findings"]
+    with_knob = [pair for pair in whole.checks.pairs if "knob" in pair.parts]
+    assert counted == {"carried": len(whole.checks.pairs) - len(with_knob), "checked": len(with_knob)}
+    assert counted["carried"] > len(with_knob) > 0
+
+
+def test_the_run_that_is_edited_stays_as_it_is_and_is_not_needed_any_more(plate: Run, tmp_path: Path) -> None:
+    before = plate.hashes()
+    base = Run.view(shutil.copytree(plate.path, tmp_path / "base"))
+    run, _ = edited(base, tmp_path / "run", THICKER)
+    assert plate.hashes() == base.hashes() == before
+    shutil.rmtree(base.path)
+
+    again = replay(run.path, out=tmp_path / "again", strict=True, kernel=stories.kernel(), cache=BuildCache(tmp_path / "empty"))
+    assert again.differences == ()
+
+
+# ---------------------------------------------------------------------- reach
+
+
+def test_an_answer_that_reaches_more_than_it_names_goes_back(plate: Run, tmp_path: Path) -> None:
+    wide = {"summary": "x", "touches": ["flap"], "changes": {"parts.flap.dimensions.thickness": 3, "parts.plate.dimensions.length": 44}}
+    run, llm = edited(plate, tmp_path / "run", wide, THICKER)
+
+    assert "E_EDIT_REACH" in said(llm, "edit/2")
+    assert "dimensions.length 40.0 → 44.0" in said(llm, "edit/2")
+    assert (run.edit() or {})["parts"]["plate"]["fate"] == "untouched"
+
+
+def test_addresses_that_lead_nowhere_and_plans_that_do_not_hold_go_back(plate: Run, tmp_path: Path) -> None:
+    lost = THICKER | {"changes": {"parts.flop.dimensions.thickness": 3}}
+    broken = THICKER | {"changes": {"parts.flap.rest_pose.at": [0, 0, 11]}}
+    strange = THICKER | {"touches": ["flap", "flop"]}
+    _, llm = edited(plate, tmp_path / "run", lost, broken, strange, "no object", THICKER)
+
+    assert "parts.flop" in said(llm, "edit/2")
+    assert "E_MATE_OFFSET" in said(llm, "edit/3")
+    assert "'flop', which is no part" in said(llm, "edit/4")
+    assert "could not be read" in said(llm, "edit/5")
+    with pytest.raises(PlanError, match="E_MATE_OFFSET"):
+        edited(plate, tmp_path / "other", broken, designs=1)
+
+
+def test_a_part_that_is_described_anew_gets_its_own_script_to_change(plate: Run, tmp_path: Path) -> None:
+    text = "Box x from 0 to length, y from 0 to side, z from lift to lift + thickness, with a hole of hole_radius through its middle."
+    change = {
+        "summary": "A hole in the flap.",
+        "touches": ["flap"],
+        "changes": {"parts.flap.description": text, "parts.flap.dimensions.hole_radius": 2},
+    }
+    script = FLAP_SCRIPTS["flap"].replace("import Align, Box, Pos", "import Align, Box, Cylinder, Pos")
+    script = script.replace(
+        "    return", '    shape -= Pos(d["length"] / 2, d["side"] / 2, 0) * Cylinder(d["hole_radius"], 99)\n    return'
+    )
+    run, llm = edited(plate, tmp_path / "run", change, also={"part/flap/1": fenced(script)})
+
+    assert "earlier specification" in said(llm, "part/flap/1")
+    assert FLAP_SCRIPTS["flap"].strip() in said(llm, "part/flap/1")
+    assert llm.steps == ["edit/1", "part/flap/1"]
+    assert (run.edit() or {})["parts"]["flap"]["fate"] == "rewritten"
+    assert (run.part("flap") or {})["shape"]["volume_mm3"] < (plate.part("flap") or {})["shape"]["volume_mm3"]
+
+
+def test_parts_are_added_and_removed(plate: Run, tmp_path: Path) -> None:
+    knob = {
+        "name": "knob",
+        "material": "steel",
+        "description": "Box x from 0 to length, y from 0 to side, z from 0 to side.",
+        "dimensions": {"length": 5, "side": 10},
+        "rest_pose": {"at": [40, 0, 0]},
+        "connectors": [{"name": "face", "kind": "mount_face", "o": [0, 5, 5], "z": [1, 0, 0], "x": [0, 1, 0], "label": "left face"}],
+    }
+    face = {"kind": "mount_face", "o": [40, 5, 5], "z": [1, 0, 0], "x": [0, 1, 0], "label": "right face"}
+    changes = {
+        "parts.knob": knob,
+        "parts.plate.connectors.face": face,
+        "joints.knob": {"type": "fixed", "parent": "plate.face", "child": "knob.face"},
+        "parts.flap": None,
+        "joints.hinge": None,
+        "parts.plate.connectors.axis": None,
+        "parameters.lift": None,
+        "freedoms": 0,
+    }
+    change = {"summary": "A knob for a flap.", "touches": ["knob", "plate", "flap"], "changes": changes}
+    plain = FLAP_SCRIPTS["plate"]
+    scripts = {
+        "part/plate/1": plain.replace(
+            '"axis": {"o": (0, d["side"] / 2, d["side"]), "z": (0, -1, 0), "x": (1, 0, 0)}', FACE.format('d["length"]')
+        ),
+        "part/knob/1": plain.replace('"axis": {"o": (0, d["side"] / 2, d["side"]), "z": (0, -1, 0), "x": (1, 0, 0)}', FACE.format("0")),
+    }
+    run, _ = edited(plate, tmp_path / "run", change, also={step: fenced(script) for step, script in scripts.items()})
+    fates = {name: row["fate"] for name, row in (run.edit() or {})["parts"].items()}
+
+    assert fates == {"flap": "removed", "plate": "rewritten", "knob": "new"}
+    assert run.part_names() == ("knob", "plate")
+
+
+FACE = '"face": {{"o": ({}, d["side"] / 2, d["side"] / 2), "z": (1, 0, 0), "x": (0, 1, 0)}}'
+
+
+def test_a_part_that_only_moves_is_not_touched(plate: Run, tmp_path: Path) -> None:
+    moved = {"summary": "x", "touches": [], "changes": {"parts.plate.rest_pose": {"at": [0, 0, 5]}, "parts.flap.rest_pose.at": [0, 0, 15]}}
+    run, _ = edited(plate, tmp_path / "run", moved)
+    report = run.edit() or {}
+    assert {row["fate"] for row in report["parts"].values()} == {"untouched"}
+    assert report["pairs"]["checked"] == 0
+    assert (run.assembly() or {})["parts"]["flap"]["rest"][2] == 15
+
+
+def test_a_collision_goes_back_to_who_changes_the_plan(plate: Run, tmp_path: Path) -> None:
+    deep = THICKER | {"changes": {"parameters.lift.value": -1}}
+    run, llm = edited(plate, tmp_path / "run", deep, THICKER)
+
+    assert "E_STATIC_OVERLAP" in said(llm, "edit/2")
+    assert (run.checks() or {})["ok"]
+    assert (run.round(1) or {})["kept"] == ["plate", "flap"]
+    assert (run.edit() or {})["changes"] == [{"where": "parts.flap.dimensions.thickness", "before": 2, "after": 3}]
+
+
+def test_files_that_were_changed_by_hand_are_not_taken_for_untouched(plate: Run, tmp_path: Path) -> None:
+    base = Run.view(shutil.copytree(plate.path, tmp_path / "base"))
+    with (base.path / "parts/plate/part.step").open("ab") as stream:
+        stream.write(b"\n")
+    run, _ = edited(base, tmp_path / "run", THICKER)
+    report = run.edit() or {}
+
+    assert not report["ok"]
+    assert [f["code"] for f in report["findings"] if f["severity"] == "error"] == ["E_EDIT_UNEQUAL"]
+    assert report["parts"]["plate"]["fate"] == "unequal"
+    assert not run_report(run)["ok"]
+
+
+# ---------------------------------------------------------------------- numbers alone
+
+
+def test_numbers_need_no_model(plate: Run, tmp_path: Path) -> None:
+    run = edit(plate, values={"lift": 2}, out=tmp_path / "run", kernel=stories.kernel(), cache=stories.shared_cache())
+    report = run.edit() or {}
+
+    assert report["changes"] == [{"where": "parameters.lift.value", "before": 1, "after": 2}]
+    assert {name: row["fate"] for name, row in report["parts"].items()} == {"plate": "untouched", "flap": "rebuilt"}
+    assert run.replies() == ()
+    assert replay(run.path, out=tmp_path / "again", strict=True, kernel=stories.kernel(), cache=stories.shared_cache()).ok
+
+
+def test_numbers_that_do_not_hold_are_refused(plate: Run, tmp_path: Path) -> None:
+    with pytest.raises(PlanError, match="lofd"):
+        edit(plate, values={"lofd": 2}, out=tmp_path / "a")
+    with pytest.raises(ReadError, match="Nothing is to be changed"):
+        edit(plate, out=tmp_path / "b")
+    with pytest.raises(AgentError, match="needs a model"):
+        edit(plate, "wider", out=tmp_path / "c", kernel=stories.kernel(), cache=stories.shared_cache())
+
+
+def test_an_edit_can_be_edited_and_interrupted(plate: Run, tmp_path: Path) -> None:
+    first, _ = edited(plate, tmp_path / "first", THICKER, text="a thicker flap")
+    longer = {"summary": "x", "touches": ["plate"], "changes": {"parts.plate.dimensions.length": 44}}
+    second, llm = edited(first, tmp_path / "second", longer, text="a longer plate")
+    assert f"{stories.FLAP_PROMPT}\n\nChanged since: a thicker flap" in said(llm, "edit/1")
+
+    with pytest.raises(AgentError):
+        edited(first, tmp_path / "third", text="a longer plate")
+    third, _ = edited(first, tmp_path / "third", longer, text="a longer plate")
+    resumed, nobody = edited(first, tmp_path / "third", text="a longer plate")
+    assert nobody.requests == []
+    assert list(differences(second, third)) == list(differences(second, resumed)) == []
