@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import sys
 import threading
 import time
@@ -28,6 +29,10 @@ Progress = Callable[[str, str], None]
 
 _STARTED = "started"
 _UNREMARKABLE = {"cached", "derived", "kept"}  # nothing had to be done
+# Control and format characters of Unicode, separators of lines, halves of characters; not the end of a line, and not the tab.
+_OBEYED = re.compile(
+    "[\x00-\x08\x0b-\x1f\x7f-\x9f\xad\u061c\u180e\u200b-\u200f\u2028-\u202e\u2060-\u2064\u2066-\u206f\ufeff\ufff9-\ufffb\ud800-\udfff]"
+)
 _SHOWN_AT_ONCE = 4  # names under way beside the bar: more do not fit into 80 columns
 
 
@@ -60,12 +65,12 @@ class Terminal:
     def say(self, text: str = "") -> None:
         """Print a line of the result."""
         if not (self.as_json or self.quiet):
-            print(text, file=self.out)
+            print(plain(text), file=self.out)
 
     def detail(self, text: str) -> None:
         """Print a line for those who asked for more."""
         if self.verbose:
-            print(text, file=self.err)
+            print(plain(text), file=self.err)
 
     def table(self, columns: Sequence[str], rows: Sequence[Sequence[object]], *, right: Sequence[int] = ()) -> None:
         """Print a table.
@@ -77,7 +82,7 @@ class Terminal:
         """
         if self.as_json or self.quiet or not rows:
             return
-        cells = [[str(cell) for cell in row] for row in rows]
+        cells = [[plain(str(cell)) for cell in row] for row in rows]
         if self._is_watched(self.out):
             self._rich_table(columns, cells, right)
             return
@@ -102,7 +107,7 @@ class Terminal:
     def finish(self, report: Report) -> None:
         """Print the report, if that was asked for."""
         if self.as_json:
-            print(json.dumps(report, indent=1, ensure_ascii=False, allow_nan=False), file=self.out)
+            print(plain(json.dumps(report, indent=1, ensure_ascii=False, allow_nan=False)), file=self.out)
         self.out.flush()
 
     # ------------------------------------------------------------------ what went wrong
@@ -122,17 +127,17 @@ class Terminal:
         told = "\n".join(f"{finding}\n{finding.message}" for finding in error.findings)
         news = [line for line in error.message.splitlines() if line not in told]  # a message may list its own findings
         headline = "\n".join(news) or f"cannot go on, because of the {error.stage}:"
-        print(self._painted("articad: ", "31;1", self.err) + headline, file=self.err)
+        print(self._painted("articad: ", "31;1", self.err) + plain(headline), file=self.err)
         for finding in error.findings:
             print(self._line_of(finding.to_json(), self.err), file=self.err)
         how_to_get = getattr(error, "how_to_get", "")
         if how_to_get and how_to_get not in told:
-            print(f"  {how_to_get}", file=self.err)
+            print(f"  {plain(how_to_get)}", file=self.err)
         script_traceback = getattr(error, "traceback", "")
         if script_traceback:
-            print(script_traceback.rstrip(), file=self.err)
+            print(plain(script_traceback.rstrip()), file=self.err)
         if self.verbose:
-            traceback.print_exception(error, file=self.err)
+            print(plain("".join(traceback.format_exception(error))), end="", file=self.err)
 
     @staticmethod
     def described(error: ArticadError) -> dict[str, Any]:
@@ -146,9 +151,9 @@ class Terminal:
             {"schema": "articad.error/1", "ok": False, "error": {"type": name, "stage": None, "message": str(error)}, "findings": []}
         )
         if not self.as_json:
-            print(self._painted("articad: ", "31;1", self.err) + f"{explanation}", file=self.err)
+            print(self._painted("articad: ", "31;1", self.err) + plain(explanation), file=self.err)
         if self.verbose:
-            traceback.print_exception(error, file=self.err)
+            print(plain("".join(traceback.format_exception(error))), end="", file=self.err)
 
     def interrupted(self) -> None:
         """Say that the user stopped the program."""
@@ -187,7 +192,7 @@ class Terminal:
                     started[name] = now
                 elif state not in _UNREMARKABLE or self.verbose:
                     took = f", {now - started[name]:.1f} s" if name in started else ""
-                    print(f"  {name}: {state}{took}", file=self.err, flush=True)
+                    print(plain(f"  {name}: {state}{took}"), file=self.err, flush=True)
 
         return tell
 
@@ -197,7 +202,7 @@ class Terminal:
         from rich.progress import BarColumn, MofNCompleteColumn, SpinnerColumn, TextColumn, TimeElapsedColumn  # noqa: PLC0415
         from rich.progress import Progress as Bars  # noqa: PLC0415
 
-        columns = (SpinnerColumn(), TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
+        columns = (SpinnerColumn(), TextColumn("{task.description}", markup=False), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
         console = Console(file=self.err, no_color=not self._color, highlight=False)
         under_way: dict[str, None] = {}
         lock = threading.Lock()
@@ -229,7 +234,7 @@ class Terminal:
         if finding["value"] is not None and finding["limit"] is not None:
             numbers = f" ({finding['value']:.6g} against {finding['limit']:.6g} {finding['unit'] or ''}".rstrip() + ")"
         hint = f"\n    {finding['hint']}" if finding["hint"] else ""
-        return f"  {code} {finding['where']}: {finding['message']}{numbers}{hint}"
+        return f"  {code} " + plain(f"{finding['where']}: {finding['message']}{numbers}{hint}")
 
     def _rich_table(self, columns: Sequence[str], cells: Sequence[Sequence[str]], right: Sequence[int]) -> None:
         from rich.box import SIMPLE_HEAD  # noqa: PLC0415 - 100 ms that only a terminal needs
@@ -243,6 +248,18 @@ class Terminal:
         for row in cells:
             table.add_row(*map(Text, row))  # Text: a name with [brackets] is a name, not markup
         Console(file=self.out).print(table)
+
+
+def plain(text: str) -> str:
+    """Return text that a terminal shows and does not obey: names and messages may come from anyone's file, script or model.
+
+    Escape sequences and what turns the reading direction are shown by their numbers; lines and tabs stay.
+    """
+    return _OBEYED.sub(_spelled, text)
+
+
+def _spelled(found: re.Match[str]) -> str:
+    return f"\\u{ord(found[0]):04x}"  # in JSON this is the same character
 
 
 def _silent(_name: str, _state: str) -> None:

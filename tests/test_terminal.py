@@ -6,6 +6,8 @@ import io
 import json
 import threading
 
+import pytest
+
 from articad.errors import BuildError, PlanError
 from articad.findings import Finding, Findings
 from articad.terminal import Terminal
@@ -146,3 +148,40 @@ def test_no_color_keeps_a_terminal_plain() -> None:
     watched.findings(Findings([ERROR]))
     watched.table(["a"], [("b",)])
     assert "\x1b" not in out(watched)
+
+
+HOSTILE = "\x1b]0;owned\x07\x1b[2J\x9b31m\u202etxt.exe\u2028\r."
+
+
+def hostile_said(**options: bool) -> str:
+    """Everything that a terminal says, of a name and message that would be obeyed."""
+    out, err = io.StringIO(), io.StringIO()
+    terminal = Terminal(out=out, err=err, verbose=True, **options)
+    finding = Finding(code="E_READ", where=HOSTILE, message=HOSTILE, hint=HOSTILE)
+    error = BuildError(HOSTILE, script=HOSTILE, traceback=HOSTILE, findings=[finding])
+    terminal.say(HOSTILE)
+    terminal.detail(HOSTILE)
+    terminal.table(["name"], [[HOSTILE]])
+    terminal.findings(Findings([finding]))
+    with terminal.progress("x") as tell:
+        tell(HOSTILE, HOSTILE)
+    terminal.failure(ValueError("no"), HOSTILE)
+    terminal.error(error)
+    terminal.finish({"ok": True, "name": HOSTILE})
+    return out.getvalue() + err.getvalue()
+
+
+@pytest.mark.parametrize("as_json", [False, True])
+def test_nothing_that_is_said_is_obeyed(as_json: bool) -> None:
+    said = hostile_said(as_json=as_json)
+
+    assert "owned" in said
+    assert not set(said) & set("\x1b\x07\x9b\u202e\u2028\r")
+
+
+def test_a_json_report_with_hostile_names_reads_back_as_it_was() -> None:
+    out = io.StringIO()
+    Terminal(out=out, as_json=True).finish({"name": HOSTILE, "ä": "naïve ☃ 🙂"})
+
+    assert json.loads(out.getvalue()) == {"name": HOSTILE, "ä": "naïve ☃ 🙂"}
+    assert "☃" in out.getvalue()
