@@ -30,14 +30,15 @@ def features_of(assembly: Assembly) -> list[Feature]:
     closing = {joint.name for joint in mechanism.loop_joints}
     features = []
     for joint in mechanism.joints:
-        features.extend(_loop_features(joint) if joint.name in closing else _joint_features(joint))
+        features.extend(_loop_features(joint) if joint.name in closing else joint_features(joint))
     features.extend(_coupling_features(assembly))
     features.extend(_part_features(assembly))
     features.extend(Feature("fit", f"joints.{joint}") for joint in assembly.fits)
     return features
 
 
-def _joint_features(joint: Joint) -> list[Feature]:
+def joint_features(joint: Joint) -> list[Feature]:
+    """Return the features of a joint that closes no loop, or that a format holds whether it does or not."""
     where = f"joints.{joint.name}"
     features = [Feature(_key(joint), where)]
     for unit, lower, upper in zip(joint.type.units, joint.limits.lower, joint.limits.upper, strict=False):

@@ -69,7 +69,7 @@ def write_freecad(assembly: Assembly, *, strict: bool = False, freecad: FreeCAD 
         report = json.loads((folder / "report.json").read_text())
         content = (folder / "assembly.FCStd").read_bytes()
     look = Look(report["colors"], tuple(report["hidden"]), tuple(report["joints"]), report["grounded"], tuple(report["tips"]))
-    return Bundle({f"{job.name}.FCStd": normalised(content, look)}, tuple(job.losses), _opinion(report))
+    return Bundle({f"{job.name}.FCStd": normalised(content, look)}, job.losses, _opinion(report))
 
 
 def write_freecad_alone(assembly: Assembly, *, strict: bool = False) -> Bundle:
@@ -96,7 +96,7 @@ def write_freecad_alone(assembly: Assembly, *, strict: bool = False) -> Bundle:
         message="The document was written without FreeCAD: its shapes are B-rep, and FreeCAD's solver has not been asked.",
         hint=f"{freecad_install.HOW_TO_GET}.",
     )
-    return Bundle({f"{job.name}.FCStd": normalised(content, look)}, tuple(job.losses), Findings([unseen]))
+    return Bundle({f"{job.name}.FCStd": normalised(content, look)}, job.losses, Findings([unseen]))
 
 
 def _opinion(report: Mapping[str, Any]) -> Findings:

@@ -18,8 +18,10 @@ import numpy as np
 from articad.connectors.mate import FLIP, Mate
 from articad.connectors.se3 import SE3
 from articad.export.bundle import Loss
+from articad.export.features import joint_features
 from articad.export.freecad_expressions import Followed
 from articad.export.freecad_file import mesh_kernel
+from articad.export.losses import Feature, losses_of
 from articad.export.lowering import lower
 from articad.export.metadata import dumps, records
 from articad.export.names import Names
@@ -58,14 +60,14 @@ class Job:
         features: Keep the bodies that the FreeCAD kernel made with all their features: only FreeCAD can copy them.
 
     Attributes:
-        losses: What FreeCAD has no words for; complete after `told`.
         name: Of the document.
         names: Of its objects, those taken so far.
     """
 
     def __init__(self, assembly: Assembly, folder: Path, *, features: bool = True) -> None:
         self.assembly, self.folder, self.features = assembly, folder, features
-        self.losses: list[Loss] = []
+        self._told = [feature for joint in assembly.joints for feature in joint_features(joint)]
+        self._told += [Feature("fit", f"joints.{joint}") for joint in assembly.fits]
         self.model = lower(assembly)
         self.name = self.model.name
         names = Names()
@@ -134,7 +136,7 @@ class Job:
         derivation = target.derivation
         if derivation is not None and derivation.S is None:
             if part.color != self.assembly.parts[derivation.source].color:
-                self._lose(f"parts.{name}", "a link to its source", f"its colour {part.color}; it has its source's", refused=False)
+                self._tell("freecad.color", f"parts.{name}", part.color)
             return {"kind": "link", "source": derivation.source}
         if derivation is not None:
             point, normal = _plane(np.asarray(derivation.S, dtype=np.float64))
@@ -150,8 +152,7 @@ class Job:
             seated = realised.built.folder / "seat.json"
             seat = json.loads(seated.read_text()) if seated.is_file() else _seven(SE3.identity())
             return {"kind": "body", "file": self._file(document, f"{name}.FCStd"), "body": "Body", "seat": seat}
-        remedy = "write with FreeCAD to keep them" if document.is_file() else "build with the FreeCAD kernel to keep them"
-        self._lose(f"parts.{name}", "its B-rep", f"its features: it follows no parameter; {remedy}", refused=False)
+        self._tell("freecad.features" if document.is_file() else "freecad.brep", f"parts.{name}")
         return {"kind": "shape", "file": self._file(realised.built.folder / "part.brep", f"{name}.brep")}
 
     def _loose(self, name: str, part: Part) -> Json:
@@ -159,9 +160,8 @@ class Job:
         if part.solid is not None and part.solid.brep is not None and part.solid.brep.is_file():
             return {"kind": "shape", "file": self._file(part.solid.brep, f"{name}.brep")}
         if part.mesh is None:
-            self._lose(f"parts.{name}", "an empty part", "nothing: it has no shape", refused=False)
             return {"kind": "empty"}
-        self._lose(f"parts.{name}", "a mesh", "coordinates beyond single precision, and a solid to edit", refused=False)
+        self._tell("freecad.mesh", f"parts.{name}")
         (self.folder / f"{self.objects[name]}.bms").write_bytes(mesh_kernel(part.mesh))
         return {"kind": "mesh", "file": f"{self.objects[name]}.bms"}
 
@@ -196,12 +196,12 @@ class Job:
             if text is not None and "Parameters." in text:
                 return {"Placement": text}
             if turns or self.followed.follows(*form.o):
-                self._lose(where, "a fixed frame", "that it follows parameters", refused=False)
+                self._tell("freecad.frame", where)
             return {}
         if turns and form.x is not None:
             return {"Placement": self.followed.frame(form.o, form.z, form.x)}
         if turns:
-            self._lose(where, "a fixed direction", "that its direction follows parameters: its x is chosen by rule", refused=False)
+            self._tell("freecad.direction", where)
         found = {f"Placement.Base.{axis}": self.followed.number(number, "mm") for axis, number in zip("xyz", form.o, strict=True)}
         return {name: text for name, text in found.items() if text is not None}
 
@@ -211,7 +211,6 @@ class Job:
         for joint in self.assembly.joints:
             form = self._joint(joint)
             yield form
-            where = f"joints.{joint.name}"
             if joint.type is JointType.UNIVERSAL:
                 turned = {
                     "type": "Perpendicular",
@@ -219,7 +218,6 @@ class Job:
                     "offset_2": _seven(_flip(joint) @ _TURNED["y"]),
                 }
                 yield form | turned | {"object": self.names.claim(f"{joint.name}__axes"), "label": f"{joint.name} axes", "limits": {}}
-                self._lose(where, "a ball and a perpendicular joint", "its two limits", refused=True)
             if joint.type is JointType.SCREW:
                 yield (
                     form
@@ -230,11 +228,6 @@ class Job:
                         "active": False,
                     }
                 )
-                self._lose(where, "a cylindrical joint and a thread", "FreeCAD's solver does not hold the thread's lead", refused=True)
-            if joint.type is JointType.BALL and (joint.limits.cone is not None or joint.limits.twist is not None):
-                self._lose(where, "a ball", "its cone and twist: FreeCAD has no limits of a ball", refused=False)
-            if joint.type is JointType.PLANAR:
-                self._lose(where, "a distance of zero between two planes", "its limits", refused=False)
 
     def _joint(self, joint: Joint) -> Json:
         turned = self._limit_expressions(joint)
@@ -280,10 +273,10 @@ class Job:
         for coupling in self.assembly.mechanism.couplings:
             where, kind = f"couplings.{coupling.name}", _COUPLINGS.get(coupling.kind)
             if kind is None:
-                self._lose(where, "a record", "FreeCAD has no such coupling", refused=True)
+                self._tell("freecad.coupling", where, coupling.kind)
                 continue
             a, b = (joints[column.partition(".")[0]] for column in (coupling.a, coupling.b))
-            self._lose(where, f"a joint of its kind ({coupling.kind}), switched off", "FreeCAD's solver does not hold it", refused=True)
+            self._tell("coupling", where, coupling.kind)
             yield {
                 "name": coupling.name,
                 "object": self.names.claim(coupling.name),
@@ -301,8 +294,13 @@ class Job:
                 "expressions": {},
             }
 
-    def _lose(self, where: str, kept: str, lost: str, *, refused: bool) -> None:
-        self.losses.append(Loss("freecad", where, kept, lost, refused))
+    def _tell(self, key: str, where: str, detail: str = "") -> None:
+        self._told.append(Feature(key, where, detail))
+
+    @property
+    def losses(self) -> tuple[Loss, ...]:
+        """What FreeCAD has no words for; complete after `told`."""
+        return losses_of("freecad", self._told)
 
 
 def _distances(coupling: Coupling) -> dict[str, float]:

@@ -13,7 +13,7 @@ from articad.errors import UnrepresentableError
 from articad.export.bundle import Loss
 from articad.findings import Finding
 
-Format = Literal["urdf", "mjcf", "sdf", "usd", "glb", "3mf", "step", "plan"]
+Format = Literal["urdf", "mjcf", "sdf", "usd", "freecad", "glb", "3mf", "step", "plan"]
 
 MECHANISM_FORMATS: tuple[Format, ...] = ("urdf", "mjcf", "sdf", "usd")  # hold joints; the others hold shapes
 
@@ -271,6 +271,34 @@ TABLE: dict[str, dict[Format, Row]] = {
 }
 
 
+_BALL = Row("a ball joint", "its cone and twist: FreeCAD has no limits of a ball")
+_FREECAD: dict[str, Row] = {
+    "fixed": Row("a fixed joint"),
+    "revolute": Row("a revolute joint with its limits"),
+    "revolute.endless": Row("a revolute joint without limits"),
+    "slider": Row("a slider joint with its limits"),
+    "cylindrical": Row("a cylindrical joint with its limits"),
+    "ball": _BALL,
+    "ball.free": Row("a ball joint"),
+    "ball.wide": _BALL,
+    "screw": Row("a cylindrical joint and a thread", "FreeCAD's solver does not hold the thread's lead", refused=True),
+    "planar": Row("a distance of zero between two planes", "its limits"),
+    "universal": Row("a ball and a perpendicular joint", "its two limits", refused=True),
+    "limits.open": Row("a limit to one side only"),
+    "slide.endless": Row("a joint without that limit"),
+    "velocity": Row("a record", "FreeCAD has no limit on a joint's velocity"),
+    "coupling": Row("a joint of its kind, switched off", "FreeCAD's solver does not hold it", refused=True),
+    "fit": Row("a record", "fits: FreeCAD has no word for them"),
+    "freecad.coupling": Row("a record", "FreeCAD has no such coupling", refused=True),
+    "freecad.color": Row("a link to its source", "its colour: it has its source's"),
+    "freecad.features": Row("its B-rep", "its features: it follows no parameter; write with FreeCAD to keep them"),
+    "freecad.brep": Row("its B-rep", "features to edit: it follows no parameter; build with the FreeCAD kernel to have them"),
+    "freecad.mesh": Row("a mesh", "coordinates beyond single precision, and a solid to edit"),
+    "freecad.frame": Row("a fixed frame", "that it follows parameters"),
+    "freecad.direction": Row("a fixed direction", "that its direction follows parameters: its x is chosen by rule"),
+}
+"""What a FreeCAD document holds for FreeCAD itself; its records hold the rest."""
+
 _PLAN: dict[str, Row] = {
     "mass.missing": Row("a density of 1000 kg/m³", "the mass of a moving part is not known", refused=True),
     "name": Row("a name of lower-case words", "the name as given"),
@@ -285,7 +313,9 @@ _PLAN: dict[str, Row] = {
 }
 """What a plan does not hold as it is; everything else that a mechanism has, it was made for."""
 
-TABLE |= {key: {} for key in _PLAN if key not in TABLE}
+TABLE |= {key: {} for key in (*_FREECAD, *_PLAN) if key not in TABLE}
+for _key, _row in _FREECAD.items():
+    TABLE[_key]["freecad"] = _row
 for _key, _rows in TABLE.items():
     if _key in _PLAN or (
         "urdf" in _rows and not _key.startswith(("hull", "collision", "limits", "slide.", "loop.points", "loop.mimic", "loop.rest"))

@@ -3,6 +3,7 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 from itertools import product
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -12,6 +13,7 @@ from articad.assembly import Assembly
 from articad.errors import UnrepresentableError
 from articad.export.convex import whole_hull
 from articad.export.features import features_of, solid_enough
+from articad.export.freecad_job import Job
 from articad.export.losses import MECHANISM_FORMATS, TABLE, losses_of
 from articad.export.mjcf import write_mjcf
 from articad.export.plan import write_plan
@@ -58,6 +60,7 @@ def test_the_table_has_every_joint_kind_and_every_format() -> None:
     assert set(JointType) <= TABLE.keys()
     assert all(set(MECHANISM_FORMATS) <= row.keys() or not set(MECHANISM_FORMATS) & row.keys() for row in TABLE.values())
     assert set(MECHANISM_FORMATS) == WRITERS.keys()
+    assert all(TABLE[kind].keys() >= {"freecad", "plan"} for kind in JOINTS)
     assert all(row.becomes for rows in TABLE.values() for row in rows.values())
 
 
@@ -66,6 +69,24 @@ def test_a_loss_of_a_joint_kind_is_always_reported(kind: str, writer: Any) -> No
     row = TABLE[kind][writer]
 
     assert losses(pair(JOINTS[kind]), writer) == ([f"joints.j: {row.lost}"] if row.lost else [])
+
+
+@pytest.mark.parametrize("kind", JOINTS)
+def test_a_loss_of_a_joint_kind_in_freecad_is_always_reported(kind: str, tmp_path: Path) -> None:
+    job = Job(pair(JOINTS[kind]), tmp_path)
+    job.told()
+    row = TABLE[kind]["freecad"]
+    meshes = [f"parts.{part}: {TABLE['freecad.mesh']['freecad'].lost}" for part in ("base", "part")]
+
+    found = [f"{loss.where}: {loss.lost}" for loss in job.losses]
+    assert found == [*([f"joints.j: {row.lost}"] if row.lost else []), *meshes]
+
+
+def test_a_coupling_of_freecad_is_a_loss(tmp_path: Path) -> None:
+    job = Job(geared_pair(), tmp_path)
+    job.told()
+
+    assert [loss.where for loss in job.losses if loss.refused] == ["couplings.mesh", "couplings.pinion"]
 
 
 @pytest.mark.parametrize(("kind", "writer"), list(product(JOINTS, WRITERS)))
