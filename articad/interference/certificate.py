@@ -11,6 +11,7 @@ import io
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from itertools import combinations
 from typing import Any
 
@@ -22,23 +23,25 @@ from articad.errors import KinematicsError
 from articad.findings import Finding, Findings
 from articad.geometry.mesh import TriMesh
 from articad.interference.claims import Claim
+from articad.interference.clearing import MOST_PAIRS
 from articad.interference.cover import Budget, cover_line
-from articad.interference.linkage import LOOKS, LinkageProver
-from articad.interference.motion import Chain, freedoms
+from articad.interference.linkage import LOOKS, LinkageProver, Way
+from articad.interference.motion import Route, Values, freedoms, routes
 from articad.interference.overlap import NOTHING, Overlap, overlap
 from articad.interference.proof import Proof, Prover, beyond
-from articad.interference.relations import FitLike, WaiverLike, all_pairs
+from articad.interference.relations import FitLike, WaiverLike
 from articad.interference.report import PairCheck, Strength, rounded
 from articad.interference.scene import Scene
+from articad.interference.surface import Surface, surface_distance, whole_surface
 from articad.interference.verdict import judge
 from articad.kinematics.joints import Joint, JointType
 from articad.kinematics.mechanism import Mechanism
-from articad.kinematics.tree import KinematicTree
 
 DEFAULT_EPSILON_MM = 1e-3
 DEFAULT_BUDGET_S = 600.0
-FIRST_BOXES = 64  # spent on each pair along a driver, before those that need more hold up the others
-WIDE_BOXES = 256  # boxes spent on all joints at once before they are taken one by one
+FIRST_PAIRS = 40_000  # of pieces, spent on each pair along a driver before those that need more hold up the others
+WIDE_PAIRS = 60_000  # of pieces, spent on all joints at once before they are taken one by one
+_END_SLACK = 1e-6  # rad or mm: by which a driver may end before its limit
 _ENTRY_MM = 1e-6  # distance at which meshes are said to touch
 
 
@@ -79,9 +82,8 @@ class Certificate:
         mechanism: What moved.
         asked: Names of the joints to be proven.
         together: Whether joints were to be moved two at a time, too.
-        followed: What is proven along the drivers of loops and couplings; it rests on the tubes of kinematics, which no checker repeats.
         constrained: Names of the joints of loops and couplings.
-        queries: Distances asked for.
+        queries: Pairs of pieces of surface that were looked at.
         seconds: Time spent.
     """
 
@@ -95,7 +97,6 @@ class Certificate:
     mechanism: Mechanism
     asked: tuple[str, ...] = ()
     together: bool = True
-    followed: tuple[Claim, ...] = ()
     constrained: frozenset[str] = frozenset()
     queries: int = 0
     seconds: float = 0.0
@@ -112,8 +113,9 @@ class Certificate:
             "ok": self.ok,
             "findings": [finding.to_json() for finding in self.findings],
             "epsilon_mm": self.epsilon,
-            "asked": [name for name in self.asked if name not in self.constrained],
+            "asked": list(self.asked),
             "linkage": sorted(self.constrained),
+            "drivers": [driver.name for driver in self.mechanism.drivers if driver.joint in self.constrained & set(self.asked)],
             "together": self.together,
             "meshes": {name: {"sha256": mesh.digest, "deflection_mm": self.deflections[name]} for name, mesh in self.meshes.items()},
             "mechanism": mechanism_json(self.mechanism),
@@ -123,7 +125,6 @@ class Certificate:
                 for r in self.ranges
             ],
             "claims": [claim.to_json() for claim in self.claims],
-            "followed": [claim.to_json() for claim in self.followed],
         }
 
     def mesh_files(self) -> dict[str, bytes]:
@@ -157,7 +158,7 @@ def certify(
         fits: By joint name.
     """
     scene = Scene.of(meshes, mechanism.joints, waivers=waivers, deflection=deflection, fits=fits)
-    return _Certifying(scene, mechanism, joints, together=pairs, epsilon=epsilon, budget=Budget(budget)).run()
+    return _Certifying(scene, mechanism, joints, pairs, epsilon, Budget(budget)).run()
 
 
 @dataclass
@@ -172,30 +173,23 @@ class _Certifying:
     verdicts: list[PairCheck] = field(default_factory=list)
     claims: list[Claim] = field(default_factory=list)
     ranges: dict[str, Range] = field(default_factory=dict)
-    followed: list[Claim] = field(default_factory=list)
-    later: list[tuple[tuple[str, str], LinkageProver]] = field(default_factory=list)
+    later: list[LinkageProver] = field(default_factory=list)
     left: dict[tuple[str, ...], list[tuple[str, str]]] = field(default_factory=dict)
     _constrained: frozenset[str] = frozenset()
-
-    def __init__(
-        self, scene: Scene, mechanism: Mechanism, asked: Sequence[str] | None, *, together: bool, epsilon: float, budget: Budget
-    ) -> None:
-        self.scene, self.mechanism, self.asked = scene, mechanism, asked
-        self.together, self.epsilon, self.budget = together, epsilon, budget
-        self.findings, self.verdicts, self.claims, self.followed, self.ranges, self.left = [], [], [], [], {}, {}
-        self.later = []
-        self._constrained = constrained_joints(mechanism)
+    _ways: dict[int, Way | str] = field(default_factory=dict)
 
     def run(self) -> Certificate:
-        for a, b in all_pairs(name for name in self.mechanism.parts if name in self.scene.bodies):
-            if not self.scene.relations.rigid.together(a, b):
-                self._pair(a, b)
-        for parts, prover in self.later:
-            if self.budget.is_spent:
-                self.left.setdefault((prover.coordinate.joint,), []).append(parts)
-            else:
-                self._followed(parts, prover, prover.prove())
+        self._constrained = constrained_joints(self.mechanism)
+        solid = [name for name in self.mechanism.parts if name in self.scene.bodies]
+        for at, a in enumerate(solid):
+            found = routes(self.mechanism.joints, a)
+            for b in solid[at + 1 :]:
+                if not self.scene.relations.rigid.together(a, b):
+                    self._pair(found[b])
+        for prover in self.later:
+            self._followed(prover, prover.prove())
         self._report_left()
+        self._report_unreached()
         return Certificate(
             Findings(self.findings),
             tuple(self.verdicts),
@@ -205,30 +199,39 @@ class _Certifying:
             self.scene.meshes,
             self.scene.deflections,
             self.mechanism,
-            tuple(joint.name for joint in self.mechanism.joints if freedoms(joint) and (self.asked is None or joint.name in self.asked)),
+            tuple(joint.name for joint in self.mechanism.joints if freedoms(joint) and self._is_asked(joint.name)),
             self.together,
-            tuple(self.followed),
             self._constrained,
             self.budget.queries,
             self.budget.spent,
         )
 
-    def _pair(self, a: str, b: str) -> None:
-        moving = [joint.name for joint in self.mechanism.tree.joints_between(a, b) if freedoms(joint)]
-        wanted = [name for name in moving if self.asked is None or name in self.asked]
-        if not wanted:
-            return
-        if a in self.scene.broken or b in self.scene.broken:
-            self._refuse((a, b), tuple(wanted), "; ".join(self.scene.broken[name] for name in (a, b) if name in self.scene.broken))
-            return
+    def _is_asked(self, name: str) -> bool:
+        return self.asked is None or name in self.asked
+
+    def _pair(self, route: Route) -> None:
+        moving = [joint.name for joint in route.joints if freedoms(joint)]
         tied = [name for name in moving if name in self._constrained]
-        if tied:
-            self._follow(a, b, tuple(tied))
-        wanted = [name for name in wanted if name not in tied]
-        if len(wanted) > 1 and self._prove(a, b, tuple(wanted), most=WIDE_BOXES, tentative=True):
+        wanted = [name for name in moving if name not in tied and self._is_asked(name)]
+        drivers = [
+            k for k, driver in enumerate(self.mechanism.drivers) if driver.joint in self._constrained and self._is_asked(driver.joint)
+        ]
+        if not wanted and not (tied and drivers):
+            return
+        a, b = route.parts[0], route.parts[-1]
+        if a in self.scene.broken or b in self.scene.broken:
+            over = (*wanted, *(self.mechanism.drivers[k].joint for k in drivers if tied))
+            self._refuse((a, b), over, "; ".join(self.scene.broken[name] for name in (a, b) if name in self.scene.broken))
+            return
+        if tied and drivers:
+            if self._prove(route, (*tied, *wanted), most=WIDE_PAIRS, tentative=True):
+                return  # whatever the linkage does
+            for driver in drivers:
+                self._follow(route, tied, wanted, driver)
+        if len(wanted) > 1 and self._prove(route, tuple(wanted), most=WIDE_PAIRS, tentative=True):
             return
         for sets in self._smaller(wanted):
-            self._prove(a, b, sets)
+            self._prove(route, sets)
 
     def _smaller(self, wanted: Sequence[str]) -> Iterator[tuple[str, ...]]:
         for name in wanted:
@@ -236,75 +239,99 @@ class _Certifying:
         if self.together and len(wanted) > 1:
             yield from combinations(wanted, 2)
 
-    def _prove(self, a: str, b: str, joints: tuple[str, ...], *, most: int | None = None, tentative: bool = False) -> bool:
+    def _prove(self, route: Route, joints: tuple[str, ...], *, most: int = MOST_PAIRS, tentative: bool = False) -> bool:
         """Prove one pair over some joints; a tentative failure is not reported."""
+        parts = route.parts[0], route.parts[-1]
         if self.budget.is_spent:
             if not tentative:
-                self.left.setdefault(joints, []).append((a, b))
+                self.left.setdefault(joints, []).append(parts)
             return False
-        prover = Prover(self.scene, self.mechanism.tree, (a, b), joints, epsilon=self.epsilon, budget=self.budget)
-        proof = prover.prove(most=most)
+        prover = Prover(self.scene, route, joints, epsilon=self.epsilon, budget=self.budget)
+        proof = prover.prove(most=most, tentative=tentative)
         if proof.is_complete:
-            self.claims += proof.claims
-            self._note_ranges(joints, proof)
-            contact = "contact" if proof.overlap.volume > 0 or any(claim.shrink for claim in proof.claims) else "clear"
-            self._verdict((a, b), joints, Strength.certified(proof.epsilon), proof.overlap, contact)
+            self._proven(prover, proof)
             return True
         if tentative:
             return False
         if proof.out_of_budget and not proof.contacts:
-            self.left.setdefault(joints, []).append((a, b))
+            self.left.setdefault(joints, []).append(parts)
         else:
-            self._stopped((a, b), joints, proof)
+            self._stopped(prover, proof)
         return False
 
-    def _follow(self, a: str, b: str, tied: tuple[str, ...]) -> None:
-        """Prove one pair along each driver of the loops and couplings between them, the others at rest."""
-        for index, coordinate in enumerate(self.mechanism.drivers):
-            if coordinate.joint not in self._constrained or (self.asked is not None and coordinate.joint not in self.asked):
-                continue
-            if self.budget.is_spent:
-                self.left.setdefault((coordinate.joint,), []).append((a, b))
-                continue
-            try:
-                prover = LinkageProver(self.scene, self.mechanism, (a, b), tied, index, epsilon=self.epsilon, budget=self.budget)
-                proof = prover.prove(most=FIRST_BOXES)
-            except (KinematicsError, KeyError, ValueError) as error:
-                self._refuse((a, b), (coordinate.joint,), f"the linkage cannot be followed: {error}")
-                continue
-            if proof.out_of_budget and not proof.contacts:
-                self.later.append(((a, b), prover))
-            else:
-                self._followed((a, b), prover, proof)
+    def _proven(self, prover: Prover, proof: Proof, over: tuple[str, ...] = ()) -> None:
+        self.claims += proof.claims
+        if not over:
+            self._note_ranges(proof.joints, proof)
+        contact = "contact" if proof.overlap.volume > 0 or proof.shrink.depth else "clear"
+        self._verdict(prover.parts, over or proof.joints, Strength.certified(proof.epsilon), proof.overlap, contact)
 
-    def _followed(self, parts: tuple[str, str], prover: LinkageProver, proof: Proof) -> None:
-        joint, name = prover.coordinate.joint, prover.coordinate.name
-        if proof.is_complete:
-            # what is invariant rests on no tube, and a checker can tell
-            invariant = all(claim.separation is not None or not claim.reach for claim in proof.claims)
-            (self.claims if invariant else self.followed).extend(proof.claims)
-            contact = "contact" if proof.overlap.volume > 0 or any(claim.shrink for claim in proof.claims) else "clear"
-            self._verdict(parts, (joint,), Strength.certified(proof.epsilon), proof.overlap, contact)
-        elif proof.out_of_budget and not proof.contacts:
+    def _follow(self, route: Route, tied: Sequence[str], wanted: Sequence[str], driver: int) -> None:
+        """Prove one pair along a driver of the loops and couplings between them, then with each joint that moves by itself."""
+        joint, parts = self.mechanism.drivers[driver].joint, (route.parts[0], route.parts[-1])
+        if self.budget.is_spent:
             self.left.setdefault((joint,), []).append(parts)
+            return
+        way = self._way(driver)
+        if isinstance(way, str):
+            self._refuse(parts, (joint,), f"the linkage cannot be followed: {way}")
+            return
+        own = list(wanted) if self.together else []
+        if own and self._along(route, tied, own, way, tentative=True):
+            return
+        for others in ([], *([name] for name in own)):
+            self._along(route, tied, others, way)
+
+    def _along(self, route: Route, tied: Sequence[str], own: Sequence[str], way: Way, *, tentative: bool = False) -> bool:
+        prover = LinkageProver(self.scene, route, (*tied, *own), way, epsilon=self.epsilon, budget=self.budget)
+        proof = prover.prove(most=FIRST_PAIRS, tentative=tentative)
+        if tentative and not proof.is_complete:
+            return False
+        if proof.out_of_budget and not proof.contacts:
+            self.later.append(prover)
+        else:
+            self._followed(prover, proof)
+        return proof.is_complete
+
+    def _way(self, driver: int) -> Way | str:
+        if driver not in self._ways:
+            try:
+                self._ways[driver] = Way(self.mechanism, driver)
+            except (KinematicsError, ValueError) as error:
+                self._ways[driver] = str(error)
+        return self._ways[driver]
+
+    def _followed(self, prover: LinkageProver, proof: Proof) -> None:
+        name, parts = prover.coordinate.name, prover.parts
+        own = [joint for joint in prover.joints if joint not in self._constrained]
+        over = (prover.coordinate.joint, *own)
+        if proof.is_complete:
+            self._proven(prover, proof, over)
+        elif proof.out_of_budget and not proof.contacts:
+            self.left.setdefault(over, []).append(parts)
             return
         else:
             worst, value = prover.worst(proof)
             pose = None if value is None else {name: value}
             check, found = judge(
-                self.scene, parts, worst, over=(joint,), pose=pose, baseline=proof.overlap.volume, strength=Strength.sampled(LOOKS)
+                self.scene, parts, worst, over=over, pose=pose, baseline=proof.overlap.volume, strength=Strength.sampled(LOOKS)
             )
             self.verdicts.append(check)
             self.findings += found
             if not any(finding.code == "E_MOTION_COLLISION" for finding in found) and check.strength.kind != "waived":
-                self.findings.append(_unproven(parts, (joint,), worst, check.allowed, LOOKS))
+                self.findings.append(_unproven(parts, over, worst, check.allowed, LOOKS))
+        if own:
+            return
+        known = self.ranges.get(name, Range(name, *prover.way.bounds, prover.way.bounds))
         if proof.lower is not None and proof.upper is not None:
-            known = self.ranges.get(name, Range(name, *prover.bounds, prover.bounds))
             self.ranges[name] = replace(known, lower=max(known.lower, proof.lower), upper=min(known.upper, proof.upper))
+        else:
+            free = prover.free_range(proof.shrink)
+            self.ranges[name] = replace(known, lower=max(known.lower, free[0]), upper=min(known.upper, free[1]))
 
-    def _stopped(self, parts: tuple[str, str], joints: tuple[str, ...], proof: Proof) -> None:
+    def _stopped(self, prover: Prover, proof: Proof) -> None:
         """Say what is where a proof stopped: a collision, or contact that only samples can judge."""
-        looks = Looks(self.scene, self.mechanism.tree, parts, joints, proof)
+        parts, joints, looks = prover.parts, proof.joints, Looks(prover, proof)
         worst, pose = looks.worst()
         check, found = judge(
             self.scene, parts, worst, over=joints, pose=pose, baseline=proof.overlap.volume, strength=Strength.sampled(looks.count)
@@ -382,6 +409,28 @@ class _Certifying:
             )
         )
 
+    def _report_unreached(self) -> None:
+        """Say where the declared range of a driver is longer than what its linkage can be followed over."""
+        for way in self._ways.values():
+            if isinstance(way, str):
+                continue
+            driver = way.coordinate
+            for sign, declared, reason in ((-1, driver.lower, way.reasons[0]), (1, driver.upper, way.reasons[1])):
+                end = way.reached(sign)
+                wanted = declared if math.isfinite(declared) else way.track.start + sign * math.pi
+                if abs(end - wanted) > _END_SLACK:
+                    self.findings.append(
+                        Finding(
+                            code="E_NOT_CHECKED",
+                            where=f"joints.{driver.joint}",
+                            message=f"{driver.name} is proven up to {end:.6g} only, not to {wanted:.6g}: {reason}.",
+                            hint=f"Set the limit of {driver.joint} to what the linkage can do.",
+                            value=end,
+                            limit=wanted,
+                            unit=driver.unit,
+                        )
+                    )
+
     def _report_left(self) -> None:
         for joints, pairs in self.left.items():
             for parts in pairs:
@@ -403,11 +452,9 @@ class _Certifying:
 class Looks:
     """Looks at the poses beyond the one where a proof stopped, with exact booleans."""
 
-    def __init__(self, scene: Scene, tree: KinematicTree, parts: tuple[str, str], joints: tuple[str, ...], proof: Proof) -> None:
-        self.proof = proof
-        self.chain = Chain(tree, *parts, joints)
-        self.bodies = scene.bodies[parts[0]], scene.bodies[parts[1]]
-        self.allowed = scene.tolerated(*parts)
+    def __init__(self, prover: Prover, proof: Proof) -> None:
+        self.prover, self.proof, self.chain = prover, proof, prover.chain
+        self.bodies = prover.body_a, prover.body_b
         self.count = 0
 
     def worst(self) -> tuple[Overlap, dict[str, float] | None]:
@@ -417,14 +464,14 @@ class Looks:
             self.count += 1
             found = overlap(*self.bodies, SE3.from_matrix(self.chain.matrix(point)))
             if found.depth > worst.depth:
-                worst, where = found, dict(zip((freedom.name for freedom in self.chain.freedoms), point, strict=True))
+                worst, where = found, self.prover.named(point)
         return worst, where
 
     def _points(self) -> Iterator[tuple[float, ...]]:
         """Yield poses from where a proof stopped, or from rest where it could not begin."""
-        speeds = self.chain.reach(self.bodies[0].mesh.vertices, self.bodies[1].mesh.vertices)
         for contact in self.proof.contacts:
-            yield from beyond(self.chain, speeds, [contact[freedom.name] for freedom in self.chain.freedoms], self.allowed)
+            start = [contact[freedom.name] for freedom in self.chain.freedoms]
+            yield from beyond(self.chain, self.prover.speeds, start, self.prover.allowed)
 
     def entry(self, allowed: float, pose: Mapping[str, float] | None) -> tuple[str, float, float]:
         """Return the coordinate, where the meshes first meet, and the end of what is proven, towards the pose of the collision.
@@ -433,14 +480,37 @@ class Looks:
         """
         (freedom,) = self.chain.freedoms
         hit = freedom.rest if pose is None else pose[freedom.name]
-        stopped = [(patch, values[0]) for patch, values in self.proof.stopped if (values[0] - freedom.rest) * (hit - freedom.rest) >= 0]
-        patch, proven = min(stopped, key=lambda found: abs(found[1] - freedom.rest))
-        if patch.shrink:
-            return freedom.name, self._deeper_than(allowed, proven, hit), proven
-        bounds = (proven, max(proven, hit)) if hit >= proven else (hit, proven)
-        reach = float(patch.reach[0])
-        touch = cover_line(patch.distance, bounds, proven, reach=reach, epsilon=_ENTRY_MM, budget=Budget(60.0), most=2000)
-        return freedom.name, touch.upper if hit >= proven else touch.lower, proven
+        stopped = [contact[freedom.name] for contact in self.proof.contacts]
+        proven = min((v for v in stopped if (v - freedom.rest) * (hit - freedom.rest) >= 0), key=lambda v: abs(v - freedom.rest))
+        met = hit
+        other = whole_surface(self.bodies[1].mesh)
+        for surface in self._strict():
+            touch = cover_line(
+                partial(self._distance, surface, other),
+                (min(proven, hit), max(proven, hit)),
+                proven,
+                reach=float(self.prover.speeds[0]),
+                epsilon=_ENTRY_MM,
+                budget=Budget(60.0),
+                most=2000,
+            )
+            met = touch.upper if hit >= proven else touch.lower
+        if self.proof.shrink.depth:
+            met = min(met, self._deeper_than(allowed, proven, hit), key=lambda value: abs(value - proven))
+        return freedom.name, met, proven
+
+    def _distance(self, a: Surface, b: Surface, values: Values) -> float:
+        return surface_distance(a, b, self.chain.matrix(values))
+
+    def _strict(self) -> list[Surface]:
+        """Return what of the first surface must not even touch, if there is any."""
+        whole, within = whole_surface(self.bodies[0].mesh), self.proof.shrink.within
+        if not self.proof.shrink.depth:
+            return [whole]
+        if not math.isfinite(within) or self.prover.axis is None:
+            return []
+        outside = (self.prover.axis.radii(whole.corners) > within).all(axis=1)
+        return [Surface(whole.corners[outside])] if outside.any() else []
 
     def _deeper_than(self, allowed: float, free: float, hit: float) -> float:
         for _ in range(30):
@@ -484,6 +554,7 @@ def mechanism_json(mechanism: Mechanism) -> dict[str, Any]:
             }
             for joint in mechanism.joints
         ],
+        "couplings": [{"a": c.a, "b": c.b, "ratio": c.ratio, "offset": c.offset} for c in mechanism.couplings],
     }
 
 
@@ -501,7 +572,15 @@ def _steps_json(joint: Joint) -> list[dict[str, Any]]:
         JointType.BALL: [(0, none, X), (0, none, Y), (1, none, Z)],
     }
     return [
-        {"name": freedom.name, "joint": joint.name, "range": [freedom.lower, freedom.upper], "step": step, "slide": slide, "turn": turn}
+        {
+            "name": freedom.name,
+            "joint": joint.name,
+            "range": [freedom.lower, freedom.upper],
+            "rest": freedom.rest,
+            "step": step,
+            "slide": slide,
+            "turn": turn,
+        }
         for freedom, (step, slide, turn) in zip(freedoms(joint), steps[joint.type], strict=True)
     ]
 

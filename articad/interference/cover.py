@@ -1,20 +1,20 @@
-"""Covering a range of motion with boxes in each of which a distance at the centre excludes contact.
+"""Covering the range of one coordinate with intervals in each of which a distance at the centre excludes contact.
 
-A distance d at q clears every q' with Σ reach·|q' − q| < d − margin. `cover_line` walks from the rest pose to both ends of a
-single coordinate with boxes that overlap as little as can be (conservative advancement with two-sided intervals);
-`cover_box` bisects several coordinates.
+A distance d at q clears every q' with reach·|q' − q| < d − margin. `cover_line` walks from a start to both ends with intervals that
+overlap as little as can be (conservative advancement, two-sided). It finds first contacts exactly; what proves whole ranges is
+`clearing`.
 """
 
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
-from articad.interference.motion import Distance, Values
+from articad.interference.motion import Distance
 
 FloatArray = NDArray[np.float64]
 
@@ -72,8 +72,6 @@ class Cover:
         upper: The same above it.
         contacts: Values at which the distance was not above the margin, one per end of a line.
         out_of_budget: True when it was given up.
-        spans: Along a driver that others follow: its values within each box.
-        stopped_at: The driver's value at each contact.
     """
 
     boxes: list[CoverBox] = field(default_factory=list)
@@ -81,8 +79,6 @@ class Cover:
     upper: float = 0.0
     contacts: list[tuple[float, ...]] = field(default_factory=list)
     out_of_budget: bool = False
-    spans: list[tuple[float, float]] = field(default_factory=list)
-    stopped_at: list[float] = field(default_factory=list)
 
     @property
     def is_complete(self) -> bool:
@@ -193,78 +189,3 @@ class _Walk:
         half = spare / self.reach * (1 - STRICT)
         self.cover.boxes.append(CoverBox((q,), (half,), spare + self.margin))
         return half
-
-
-def cover_box(
-    distance: Distance,
-    bound: Distance,
-    bounds: Sequence[tuple[float, float]],
-    *,
-    reach: Sequence[float] | FloatArray,
-    margin: float = 0.0,
-    epsilon: float = 1e-3,
-    budget: Budget,
-    most: int = 100_000,
-    left_out: Callable[[FloatArray, FloatArray], bool] | None = None,
-) -> Cover:
-    """Clear several coordinates at once by bisection, up to the first contact.
-
-    Args:
-        distance: At a point [mm].
-        bound: A cheap lower bound of it [mm], tried first.
-        bounds: Of each coordinate [rad or mm].
-        reach: Of each coordinate [mm/rad or 1].
-        margin: Part of every distance that proves nothing [mm].
-        epsilon: A distance that is above the margin by no more is contact [mm].
-        budget: Time and queries.
-        most: Boxes looked at.
-        left_out: Whether a box (centre, half) lies outside what the joints allow, such as the corners of a cone.
-    """
-    cover = Cover()
-    speed = np.asarray(reach, dtype=np.float64)
-    low, high = np.array(bounds, dtype=np.float64).T
-    todo = [((low + high) / 2, (high - low) / 2)]
-    while todo:
-        if budget.is_spent or most <= 0:
-            cover.out_of_budget = True
-            return cover
-        most -= 1
-        centre, half = todo.pop()
-        if left_out is not None and left_out(centre, half):
-            continue
-        needed = float(speed @ half) * (1 + STRICT) + margin
-        values: Values = centre.tolist()
-        known = bound(values)
-        if known <= needed:
-            budget.queries += 1
-            known = distance(values)
-        if known > needed:
-            cover.boxes.append(CoverBox(tuple(centre.tolist()), tuple(half.tolist()), known))
-            continue
-        if known - margin <= epsilon:
-            cover.contacts.append(tuple(centre.tolist()))
-            return cover
-        at = int(np.argmax(speed * half))
-        step = np.zeros(len(half))
-        step[at] = half[at] / 2
-        smaller = half.copy()
-        smaller[at] /= 2
-        todo += [(centre + step, smaller), (centre - step, smaller)]
-    return cover
-
-
-def box_distance(T: FloatArray, box_a: tuple[FloatArray, FloatArray], box_b: tuple[FloatArray, FloatArray]) -> float:
-    """Return a lower bound of the distance of two boxes, each given by centre and half sides in its own part's frame [mm].
-
-    Args:
-        T: `T_a_b (4, 4)`.
-        box_a: In a's frame.
-        box_b: In b's frame.
-    """
-    R = T[:3, :3]
-    size = np.abs(R)
-    offset = R @ box_b[0] + T[:3, 3] - box_a[0]
-    gap_a = np.abs(offset) - box_a[1] - size @ box_b[1]
-    gap_b = np.abs(offset @ R) - box_b[1] - box_a[1] @ size
-    squares = max(float((np.maximum(gap, 0.0) ** 2).sum()) for gap in (gap_a, gap_b))
-    return float(np.sqrt(squares))

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from articad.connectors.se3 import SE3
 from articad.findings import Finding, Findings
 from articad.interference.body import Body, winding_numbers
-from articad.interference.motion import Chain, freedoms
+from articad.interference.motion import Chain, Route, freedoms
 from articad.interference.overlap import VOLUME_NOISE_MM3, distance, intersection
 from articad.interference.scene import Scene
 from articad.interference.surface import Core
@@ -103,7 +103,7 @@ class Case:
         pose = dict(finding.pose or {})
         joints = tree.joints_between(self.a, self.b)
         self.moving = [joint for joint in joints if any(freedom.name in pose for freedom in freedoms(joint))]
-        self.chain = Chain(tree, self.a, self.b, [joint.name for joint in self.moving])
+        self.chain = Chain(Route(tree.path(self.a, self.b), joints), [joint.name for joint in self.moving])
         rest = {freedom.name: freedom.rest for freedom in self.chain.freedoms}
         self.values = [pose.get(name, value) for name, value in rest.items()]
         self.T = self.chain.matrix(self.values)
@@ -281,7 +281,7 @@ class Case:
     def _frame_of(self, joint: Joint) -> FloatArray:
         """Return a joint's parent connector in the first part's frame, at the finding's pose."""
         values = {freedom.name: value for freedom, value in zip(self.chain.freedoms, self.values, strict=True)}
-        chain = Chain(self.tree, self.a, joint.parent, (), values)
+        chain = Chain(Route(self.tree.path(self.a, joint.parent), self.tree.joints_between(self.a, joint.parent)), (), values)
         return np.asarray(chain.matrix(()) @ joint.T_parent_connector.matrix)
 
     def _material(self, name: str, points: FloatArray) -> FloatArray:

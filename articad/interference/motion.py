@@ -7,6 +7,7 @@ clears a whole neighbourhood of that pose (kinematics: certified motion).
 
 from __future__ import annotations
 
+import heapq
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -17,10 +18,11 @@ from numpy.typing import NDArray
 
 from articad.connectors.mate import flip
 from articad.kinematics.joints import Joint, JointType
-from articad.kinematics.tree import KinematicTree
 
 FloatArray = NDArray[np.float64]
 
+_PRIMES = (2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53, 59, 61, 67, 71)
+_TINY = 1e-9  # rad: of an angle whose sine is itself
 FULL_TURN = (-math.pi, math.pi)  # an endless joint is proven over one turn about its rest
 
 
@@ -56,6 +58,27 @@ def freedoms(joint: Joint) -> tuple[Freedom, ...]:
     return tuple(found)
 
 
+def scattered(ranges: Sequence[Freedom], count: int) -> list[tuple[float, ...]]:
+    """Return points of a Halton sequence over ranges: they fill any number of dimensions more evenly than random ones.
+
+    Beyond 20 dimensions the primes repeat, shifted.
+    """
+    columns = []
+    for at, freedom in enumerate(ranges):
+        shares = np.array([_radical_inverse(index + 1 + 409 * (at // len(_PRIMES)), _PRIMES[at % len(_PRIMES)]) for index in range(count)])
+        columns.append(freedom.lower + shares * (freedom.upper - freedom.lower))
+    return [tuple(row) for row in np.array(columns).T.tolist()]
+
+
+def _radical_inverse(index: int, base: int) -> float:
+    result, share = 0.0, 1.0
+    while index:
+        share /= base
+        result += share * (index % base)
+        index //= base
+    return result
+
+
 def driver_values(joint: Joint, values: Sequence[float]) -> tuple[float, ...]:
     """Return the joint's own coordinates for values of its `freedoms`: only a ball's differ."""
     if joint.type is not JointType.BALL:
@@ -66,6 +89,17 @@ def driver_values(joint: Joint, values: Sequence[float]) -> tuple[float, ...]:
     x, y = s * sx, s * sy
     cz, sz = math.cos(twist / 2), math.sin(twist / 2)
     return (x * cz + y * sz, y * cz - x * sz, c * sz, c * cz)
+
+
+def swing_and_twist(quaternion: FloatArray) -> list[float]:
+    """Return a ball's swing (sx, sy) and twist [rad] for its quaternion x y z w: the inverse of `driver_values`."""
+    x, y, z, w = quaternion.tolist()
+    twist = 2 * math.atan2(z, w)
+    c, s = math.cos(twist / 2), math.sin(twist / 2)
+    sx, sy = x * c - y * s, y * c + x * s  # the quaternion without its twist, whose z is 0
+    half = math.atan2(math.hypot(sx, sy), math.hypot(z, w))
+    size = 2 * half / (math.sin(half) or 1.0) if half > _TINY else 2.0
+    return [sx * size, sy * size, twist]
 
 
 def motion_matrix(joint: Joint, values: Sequence[float]) -> FloatArray:
@@ -87,6 +121,40 @@ def motion_matrix(joint: Joint, values: Sequence[float]) -> FloatArray:
 def _turn_z(angle: float, x: float, y: float, z: float) -> FloatArray:
     c, s = math.cos(angle), math.sin(angle)
     return np.array([[c, -s, 0.0, x], [s, c, 0.0, y], [0.0, 0.0, 1.0, z], [0.0, 0.0, 0.0, 1.0]])
+
+
+class Route(NamedTuple):
+    """A way from one part to another.
+
+    Attributes:
+        parts: From the first to the last.
+        joints: Between them, one fewer.
+    """
+
+    parts: tuple[str, ...]
+    joints: tuple[Joint, ...]
+
+
+def routes(joints: Sequence[Joint], start: str) -> dict[str, Route]:
+    """Return the way of fewest freedoms from a part to every other, also across joints that close loops."""
+    near: dict[str, list[tuple[Joint, str]]] = {}
+    for joint in joints:
+        near.setdefault(joint.parent, []).append((joint, joint.child))
+        near.setdefault(joint.child, []).append((joint, joint.parent))
+    found: dict[str, Route] = {}
+    heap: list[tuple[int, int, str, Route]] = [(0, 0, start, Route((start,), ()))]
+    count = 0
+    while heap:
+        cost, _, part, route = heapq.heappop(heap)
+        if part in found:
+            continue
+        found[part] = route
+        for joint, far in near.get(part, ()):
+            if far not in found:
+                count += 1
+                step = Route((*route.parts, far), (*route.joints, joint))
+                heapq.heappush(heap, (cost + 8 * len(freedoms(joint)) + 1, count, far, step))
+    return found
 
 
 @dataclass(frozen=True, eq=False)
@@ -112,21 +180,22 @@ class Chain:
     Attributes:
         a: The part from which is looked.
         b: The part that moves.
+        via: Names of all joints on the way.
         freedoms: What moves, in the order of the values.
         hold: Values of all other freedoms on the way, by name.
         movers: The joints that move, from a to b.
         last: K behind the last of them.
     """
 
-    def __init__(self, tree: KinematicTree, a: str, b: str, moving: Sequence[str], values: Mapping[str, float] | None = None) -> None:
-        self.a, self.b = a, b
+    def __init__(self, route: Route, moving: Sequence[str], values: Mapping[str, float] | None = None) -> None:
+        self.a, self.b = route.parts[0], route.parts[-1]
+        self.via = tuple(joint.name for joint in route.joints)
         held = dict(values or {})
         self.hold: dict[str, float] = {}
         self.movers: list[Mover] = []
         found: list[Freedom] = []
         K: FloatArray = np.eye(4)
-        parts = tree.path(a, b)
-        for joint, near in zip(tree.joints_between(a, b), parts, strict=False):
+        for joint, near in zip(route.joints, route.parts, strict=False):
             forward = joint.parent == near
             L, R = joint.T_parent_connector.matrix, (flip(joint.mate) @ joint.T_child_connector.inverse()).matrix
             if not forward:

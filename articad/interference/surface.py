@@ -12,7 +12,6 @@ from typing import Any
 from weakref import WeakKeyDictionary
 
 import fcl
-import manifold3d
 import numpy as np
 from numpy.typing import NDArray
 
@@ -20,12 +19,6 @@ from articad.geometry.mesh import TriMesh
 from articad.interference.body import make_bvh
 
 FloatArray = NDArray[np.float64]
-
-OUTER_SLACK_MM = 1e-6  # how far the outer polytope keeps off the surface, so that rounding leaves it outside
-_LATTICE = [(x, y, z) for x in (-2, -1, 0, 1, 2) for y in (-2, -1, 0, 1, 2) for z in (-2, -1, 0, 1, 2)]
-_OUTER_DIRECTIONS = np.array([v for v in _LATTICE if np.gcd.reduce(v) == 1 and sum(map(abs, v)) <= 3], dtype=np.float64)
-_OUTER_DIRECTIONS /= np.linalg.norm(_OUTER_DIRECTIONS, axis=1)[:, None]
-
 
 _whole: WeakKeyDictionary[TriMesh, Surface] = WeakKeyDictionary()
 
@@ -41,9 +34,11 @@ class Surface:
     corners: FloatArray
 
     @classmethod
-    def of(cls, mesh: TriMesh, shrink: float = 0.0) -> Surface:
-        """Return the whole surface, its vertices moved inwards by `shrink` [mm]."""
+    def of(cls, mesh: TriMesh, shrink: float = 0.0, near: Core | None = None, within: float = np.inf) -> Surface:
+        """Return the whole surface, its vertices moved inwards by `shrink`, those only that are `within` a radius of a core [mm]."""
         vertices = shrunk(mesh, shrink) if shrink else mesh.vertices
+        if near is not None:
+            vertices = np.where((near.radii(mesh.vertices) <= within)[:, None], vertices, mesh.vertices)
         return cls(vertices[mesh.triangles])
 
     @property
@@ -61,19 +56,6 @@ class Surface:
         """Centre and half sides of the bounding box, `(3,)` each."""
         low, high = self.points.min(axis=0), self.points.max(axis=0)
         return (low + high) / 2, (high - low) / 2
-
-    @cached_property
-    def outer(self) -> Polytope:
-        """A polytope of few faces around it: the intersection of half-spaces in 50 directions."""
-        low, high = self.points.min(axis=0), self.points.max(axis=0)
-        size = float(np.linalg.norm(high - low)) + 1.0
-        solid = manifold3d.Manifold.cube([2 * size] * 3, center=True).translate((low + high) / 2)
-        offsets = (self.points @ _OUTER_DIRECTIONS.T).max(axis=0) + OUTER_SLACK_MM
-        for direction, offset in zip(_OUTER_DIRECTIONS, offsets, strict=True):
-            solid = solid.trim_by_plane(-direction, -offset)
-        mesh = solid.to_mesh64()
-        corners = np.asarray(mesh.vert_properties)[:, :3][np.asarray(mesh.tri_verts).astype(np.int64)]
-        return Polytope(Surface(corners), np.asarray(offsets))
 
     @cached_property
     def standing(self) -> Any:
@@ -117,7 +99,7 @@ def shrunk(mesh: TriMesh, depth: float) -> FloatArray:
     return np.asarray(mesh.vertices - depth * total / np.where(size > 0, size, 1.0)[:, None])
 
 
-def split_by_radius(mesh: TriMesh, core: Core, radius: float, edge: float, shrink: float = 0.0) -> tuple[Surface, Surface, Surface]:
+def split_by_radius(mesh: TriMesh, core: Core, radius: float, edge: float) -> tuple[Surface, Surface, Surface]:
     """Cut a mesh's surface at a cylinder or sphere.
 
     Triangles that may cross it are quartered until no edge is longer than `edge`.
@@ -127,17 +109,15 @@ def split_by_radius(mesh: TriMesh, core: Core, radius: float, edge: float, shrin
         core: The axis or centre.
         radius: [mm].
         edge: [mm].
-        shrink: How far the inner piece is moved inwards [mm]; cutting is linear, so a triangle's quarters move as it does.
 
     Returns:
-        Triangles inside, shrunk; those that still cross; those that reach outside, the crossing ones included.
+        Triangles inside; those that still cross; those that reach outside, the crossing ones included.
     """
-    moved = shrunk(mesh, shrink) if shrink else mesh.vertices
-    todo = np.concatenate([mesh.vertices, moved], axis=1)[mesh.triangles]
-    none = np.empty((0, 3, 6))
+    todo = mesh.vertices[mesh.triangles]
+    none = np.empty((0, 3, 3))
     inside, crossing, outside = [none], [none], [none]
     while len(todo):
-        local = core.local(todo[..., :3])
+        local = core.local(todo)
         middle = local.mean(axis=1)
         is_in = (np.linalg.norm(local, axis=2) <= radius).all(axis=1)
         # certainly outside: no point of a triangle is further from its centre than a corner is
@@ -146,15 +126,15 @@ def split_by_radius(mesh: TriMesh, core: Core, radius: float, edge: float, shrin
         inside.append(todo[is_in])
         outside.append(todo[is_out])
         mixed = todo[~is_in & ~is_out]
-        long = np.linalg.norm(mixed[..., :3] - mixed[:, [1, 2, 0], :3], axis=2).max(axis=1, initial=0.0) > edge
+        long = np.linalg.norm(mixed - mixed[:, [1, 2, 0]], axis=2).max(axis=1, initial=0.0) > edge
         crossing.append(mixed[~long])
         todo = quartered(mixed[long])
-    seam = np.concatenate(crossing)[..., :3]
-    return Surface(np.concatenate(inside)[..., 3:]), Surface(seam), Surface(np.concatenate([seam, *(piece[..., :3] for piece in outside)]))
+    seam = np.concatenate(crossing)
+    return Surface(np.concatenate(inside)), Surface(seam), Surface(np.concatenate([seam, *outside]))
 
 
 def quartered(corners: FloatArray) -> FloatArray:
-    """Cut each triangle into four at the middles of its edges, `(T, 3, n)` to `(4T, 3, n)`."""
+    """Cut each triangle into four at the middles of its edges, `(T, 3, 3)` to `(4T, 3, 3)`."""
     a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
     ab, bc, ca = (a + b) / 2, (b + c) / 2, (c + a) / 2
     return np.concatenate([np.stack(t, axis=1) for t in ((a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca))])
@@ -221,22 +201,12 @@ def surface_distance(a: Surface, b: Surface, T_a_b: FloatArray) -> float:
     return max(float(fcl.distance(a.standing, b.moving, fcl.DistanceRequest(), fcl.DistanceResult())), 0.0)
 
 
-@dataclass(frozen=True, eq=False)
-class Polytope:
-    """A convex solid around a surface: its distances are never larger, and cost a hundredth of them for large meshes.
-
-    Attributes:
-        surface: Of the polytope.
-        offsets: Of its half-spaces, one per direction [mm].
-    """
-
-    surface: Surface
-    offsets: FloatArray
-
-    def distance(self, other: Polytope, T: FloatArray) -> float:
-        """Return the distance of two solids [mm], 0 where one holds the other; `T (4, 4)` places the other."""
-        p = T[:3, :3] @ other.surface.points[0] + T[:3, 3]
-        q = T[:3, :3].T @ (self.surface.points[0] - T[:3, 3])
-        if (_OUTER_DIRECTIONS @ p <= self.offsets).all() or (_OUTER_DIRECTIONS @ q <= other.offsets).all():
-            return 0.0
-        return surface_distance(self.surface, other.surface, T)
+def near_by(a: Surface, b: Surface, T_a_b: FloatArray, reach: float) -> Surface:
+    """Return the triangles of a that are no further than `reach` [mm] from b, `T_a_b (4, 4)`."""
+    if a.is_empty or b.is_empty:
+        return Surface(a.corners[:0])
+    points = b.points @ T_a_b[:3, :3].T + T_a_b[:3, 3]
+    near = (a.corners.max(axis=1) >= points.min(axis=0) - reach) & (a.corners.min(axis=1) <= points.max(axis=0) + reach)
+    rows = np.flatnonzero(near.all(axis=1))
+    touching = [row for row in rows if surface_distance(Surface(a.corners[row][None]), b, T_a_b) <= reach]
+    return Surface(a.corners[touching])

@@ -5,7 +5,7 @@ A pair is asked again only where its relative pose is new: while one joint moves
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import combinations, product
 from typing import Any
@@ -18,7 +18,7 @@ from articad.errors import KinematicsError
 from articad.findings import Finding, Findings
 from articad.geometry.mesh import TriMesh
 from articad.interference.check import broken_finding, unknown_pairs
-from articad.interference.motion import Freedom, driver_values, freedoms
+from articad.interference.motion import driver_values, freedoms, scattered
 from articad.interference.overlap import VOLUME_NOISE_MM3, Overlap, may_overlap, overlap, volume
 from articad.interference.relations import FitLike, WaiverLike
 from articad.interference.report import Checks, PairCheck, Strength
@@ -32,7 +32,6 @@ FloatArray = NDArray[np.float64]
 DEFAULT_STEPS = 60
 _KEY_DIGITS = 9  # of millimetres and of rotation entries: relative poses that agree so far are one
 _DEEPEST = 2  # poses of largest volume at which the depth of a pair is measured
-_PRIMES = (2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53, 59, 61, 67, 71)
 
 
 @dataclass
@@ -199,27 +198,6 @@ class Sweep:
             hint="Narrow the limits to what the mechanism can reach.",
         )
         return Checks(Findings([*error.findings, finding]), (), self.scene.deflection, over, tuple(self.scene.bodies))
-
-
-def scattered(ranges: Sequence[Freedom], count: int) -> Iterable[tuple[float, ...]]:
-    """Return points of a Halton sequence over ranges: they fill any number of dimensions more evenly than random ones.
-
-    Beyond 20 dimensions the primes repeat, shifted.
-    """
-    columns = []
-    for at, freedom in enumerate(ranges):
-        shares = np.array([_radical_inverse(index + 1 + 409 * (at // len(_PRIMES)), _PRIMES[at % len(_PRIMES)]) for index in range(count)])
-        columns.append(freedom.lower + shares * (freedom.upper - freedom.lower))
-    return [tuple(row) for row in np.array(columns).T.tolist()]
-
-
-def _radical_inverse(index: int, base: int) -> float:
-    result, share = 0.0, 1.0
-    while index:
-        share /= base
-        result += share * (index % base)
-        index //= base
-    return result
 
 
 def _matrices(poses: FloatArray) -> FloatArray:

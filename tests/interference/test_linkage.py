@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import json
 import math
+from collections.abc import Callable
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 import pytest
@@ -12,8 +14,7 @@ import pytest
 from articad.connectors import SE3
 from articad.geometry import TriMesh, box, cylinder, merged
 from articad.interference.certificate import Certificate, certify
-from articad.interference.cover import Budget
-from articad.interference.linkage import LinkageProver
+from articad.interference.linkage import Way
 from articad.interference.overlap import overlap
 from articad.interference.scene import Scene
 from articad.kinematics.joints import Coupling, Joint
@@ -63,46 +64,49 @@ def proven(meshes: dict[str, TriMesh], joints: list[Joint], couplings: tuple[Cou
     return certify(meshes, Mechanism(tuple(meshes), next(iter(meshes)), joints, couplings), deflection=0.01)
 
 
+def refutations(certificate: Certificate, change: Callable[[dict[str, Any]], object] | None = None) -> list[str]:
+    document = json.loads(json.dumps(certificate.to_json()))
+    if change is not None:
+        change(document)
+    return verify(document, {name: (mesh.vertices, mesh.triangles) for name, mesh in certificate.meshes.items()})
+
+
 def test_a_four_bar_in_layers_is_certified_over_a_full_turn() -> None:
     meshes, joints = four_bar((0.0, 5.0, 10.0))
     certificate = proven(meshes, joints)
     assert certificate.ok
     assert all(pair.strength.kind == "certified" for pair in certificate.pairs)
     assert len(certificate.pairs) == 6
-    assert len(certificate.claims) == 6  # the layers keep apart wherever the links are, so that a checker can judge it
-    assert certificate.followed == ()
+    assert len(certificate.claims) == 6
     assert certificate.ranges[0].upper - certificate.ranges[0].lower == pytest.approx(2 * math.pi)
-    assert (
-        verify(json.loads(json.dumps(certificate.to_json())), {n: (m.vertices, m.triangles) for n, m in certificate.meshes.items()}) == []
-    )
+    assert refutations(certificate) == []
 
 
 def test_links_of_one_layer_that_pass_each_other_are_certified_by_tubes() -> None:
     meshes, joints = four_bar((0.0, 5.0, 0.0))
     certificate = proven(meshes, joints)
     assert certificate.ok
-    (claim,) = [claim for claim in certificate.followed if set(claim.parts) == {"crank", "rocker"}]
-    assert len(claim.boxes) > 10
-    spans = sorted(claim.spans)
-    assert all(after[0] == pytest.approx(before[1], abs=1e-9) for before, after in pairwise(spans))
+    (claim,) = [claim for claim in certificate.claims if set(claim.parts) == {"crank", "rocker"}]
+    assert list(claim.vary) == ["crank"]  # whatever follows it
+    assert refutations(certificate) == []
 
 
-def test_every_solution_lies_in_the_box_of_its_span() -> None:
+def test_every_solution_lies_in_the_box_of_its_step() -> None:
     meshes, joints = four_bar((0.0, 5.0, 0.0))
     mechanism = Mechanism(tuple(meshes), "frame", joints)
-    prover = LinkageProver(
-        Scene.of(meshes, joints), mechanism, ("crank", "rocker"), ["crank", "pin_b", "pin_c", "rock"], 0, budget=Budget(60)
-    )
-    proof = prover.prove()
-    assert proof.is_complete
-    (claim,) = proof.claims
+    way = Way(mechanism, 0)
     rng = np.random.default_rng(0)
-    names = list(claim.reach)
-    for box_, span in zip(claim.boxes, claim.spans, strict=True):
-        for value in rng.uniform(*span, 3):
+    steps = [step for sign in (1, -1) for step in way.steps(sign)]
+    steps += [half for step in steps[::5] for half in way.halves(step)]
+    for step in steps:
+        for value in rng.uniform(*way.values(step), 3):
             Q = mechanism.configuration(np.array([value]))
-            actual = np.array([Q.values[name][0] for name in names])
-            assert (np.abs(actual - box_.centre) <= np.array(box_.half) + 1e-9).all()
+            for name, column in way.layout.column_of.items():
+                freedom = way.layout.freedom_of(column)
+                assert abs(Q.values[name][0] - step.middle[column]) <= abs(step.line[freedom]) + step.tube[freedom] + 1e-9
+    spans = sorted(way.values(step) for sign in (1, -1) for step in way.steps(sign))
+    assert all(after[0] == pytest.approx(before[1], abs=1e-9) for before, after in pairwise(spans))
+    assert (spans[0][0], spans[-1][1]) == pytest.approx(way.bounds)
 
 
 def test_a_collision_within_a_loop_is_found_with_the_drivers_value() -> None:
@@ -135,6 +139,7 @@ def test_wheels_tied_by_a_gear_are_followed() -> None:
     tied = proven(meshes, joints, (Coupling(name="mesh", kind="gear", a="one", b="two", ratio=-1.0, offset=0.0),))
     assert tied.ok
     assert {pair.strength.kind for pair in tied.pairs} == {"certified"}
+    assert refutations(tied) == []
     loose = proven(meshes, joints)
     assert "E_MOTION_COLLISION" in loose.findings.codes
 
@@ -144,3 +149,66 @@ def test_a_spent_budget_leaves_loops_unchecked_and_says_so() -> None:
     certificate = certify(meshes, Mechanism(tuple(meshes), "frame", joints), budget=0.0)
     assert not certificate.ok
     assert set(certificate.findings.codes) == {"E_NOT_CHECKED"}
+
+
+def test_a_joint_beside_the_loop_is_proven_together_with_its_driver() -> None:
+    meshes, joints = four_bar((0.0, 5.0, 0.0))
+    meshes["slide"] = box(4, 4, 4).transformed(at(50, 80, 0))
+    joints.append(joint("lift", "slider", "frame", "slide", lower=(0.0,), upper=(10.0,)))
+    certificate = proven(meshes, joints)
+    assert certificate.ok
+    assert any({"crank", "lift"} <= set(claim.vary) for claim in certificate.claims)
+    assert refutations(certificate) == []
+
+
+# --- planted lies on a loop
+
+
+@pytest.fixture(scope="module")
+def honest() -> Certificate:
+    meshes, joints = four_bar((0.0, 5.0, 0.0))
+    return proven(meshes, joints)
+
+
+def followed(document: dict[str, Any]) -> dict[str, Any]:
+    claim: dict[str, Any] = next(claim for claim in document["claims"] if set(claim["parts"]) == {"crank", "rocker"})
+    return claim
+
+
+def narrow(document: dict[str, Any]) -> None:
+    followed(document)["vary"]["crank"][1] -= 0.5
+
+
+def enlarge(document: dict[str, Any]) -> None:
+    followed(document)["clear_mm"] = 70.0
+
+
+def drop(document: dict[str, Any]) -> None:
+    document["claims"].remove(followed(document))
+
+
+def shift_a_pin(document: dict[str, Any]) -> None:
+    frame = next(j for j in document["mechanism"]["joints"] if j["name"] == "rock")["parent_frame"]
+    frame[0][3] -= 40.0  # the linkage does not close there, nor at rest
+
+
+def turn_the_branch(document: dict[str, Any]) -> None:
+    next(j for j in document["mechanism"]["joints"] if j["name"] == "pin_b")["freedoms"][0]["rest"] += 0.5
+
+
+def free_the_loop(document: dict[str, Any]) -> None:
+    document["mechanism"]["joints"] = [{**j, "loop": False} for j in document["mechanism"]["joints"] if not j["loop"]]
+
+
+def swap_mesh(document: dict[str, Any]) -> None:
+    document["meshes"]["crank"]["sha256"] = document["meshes"]["rocker"]["sha256"]
+
+
+@pytest.mark.parametrize("lie", [narrow, enlarge, drop, shift_a_pin, turn_the_branch, swap_mesh], ids=lambda lie: lie.__name__)
+def test_a_planted_lie_on_a_loop_is_refuted(honest: Certificate, lie: Callable[[dict[str, Any]], None]) -> None:
+    assert refutations(honest) == []
+    assert refutations(honest, lie)
+
+
+def test_links_that_are_said_to_follow_although_nothing_closes_the_loop_are_refuted(honest: Certificate) -> None:
+    assert refutations(honest, free_the_loop)

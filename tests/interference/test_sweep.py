@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from articad.geometry import box, cylinder
-from articad.interference.motion import freedoms
+from articad.interference.motion import freedoms, scattered
 from articad.interference.scene import Scene
-from articad.interference.sweep import Sweep, scattered, sweep
+from articad.interference.sweep import Sweep, sweep
 from articad.kinematics.mechanism import Mechanism
 from tests.interference.mechanisms import Waiver, at, block_with_bore, fixed, joint, without_triangle
 

@@ -1,0 +1,78 @@
+"""A tree of boxes over a surface: every node bounds the triangles below it, down to single ones."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from weakref import WeakKeyDictionary
+
+import numpy as np
+from numpy.typing import NDArray
+
+from articad.interference.surface import Surface
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+_trees: WeakKeyDictionary[Surface, BoxTree] = WeakKeyDictionary()
+
+
+@dataclass(frozen=True, eq=False)
+class BoxTree:
+    """Boxes aligned with the part's frame, halved at the median of their longest side.
+
+    Attributes:
+        centre: `(nodes, k)` [mm], in space k = 3; the root is node 0, children follow their parents.
+        half: Half sides, `(nodes, k)` [mm].
+        children: `(nodes, 2)`; −1 for a single triangle.
+        triangle: Of a leaf, its place among `corners`; −1 for the others.
+        corners: `(T, 3, 3)` [mm].
+    """
+
+    centre: FloatArray
+    half: FloatArray
+    children: IntArray
+    triangle: IntArray
+    corners: FloatArray
+
+    @classmethod
+    def of(cls, surface: Surface) -> BoxTree:
+        """Return the tree of a surface; made once."""
+        tree = _trees.get(surface)
+        if tree is None:
+            tree = _trees[surface] = cls.over(surface.corners.min(axis=1), surface.corners.max(axis=1), surface.corners)
+        return tree
+
+    @classmethod
+    def over(cls, low: FloatArray, high: FloatArray, corners: FloatArray) -> BoxTree:
+        """Return the tree over boxes `(T, k)` of the triangles: in space, or in other coordinates.
+
+        Args:
+            low: Lower ends.
+            high: Upper ends.
+            corners: Of the triangles, `(T, 3, 3)`.
+        """
+        middle = (low + high) / 2
+        order, starts, size = np.arange(len(low)), np.array([0]), np.array([len(low)])
+        lows, highs, children, triangle, first = [], [], [], [], 0
+        while len(starts):
+            bottom, top = np.minimum.reduceat(low[order], starts), np.maximum.reduceat(high[order], starts)
+            lows.append(bottom)
+            highs.append(top)
+            single = size == 1
+            triangle.append(np.where(single, order[starts], -1))
+            below = np.full((len(starts), 2), -1)
+            parents = np.flatnonzero(~single)
+            below[parents] = first + len(starts) + np.arange(2 * len(parents)).reshape(-1, 2)
+            children.append(below)
+            first += len(starts)
+            # the triangles of all nodes to be cut, in order of the longest side of each; leaves go
+            block = np.repeat(np.arange(len(starts)), size)
+            axis = np.argmax(top - bottom, axis=1)[block]
+            keep = ~single[block]
+            order, block, axis = order[keep], block[keep], axis[keep]
+            order = order[np.lexsort((middle[order, axis], block))]
+            left = size[parents] // 2
+            size = np.stack([left, size[parents] - left], axis=1).ravel()
+            starts = np.concatenate([[0], np.cumsum(size)[:-1]]) if len(size) else np.empty(0, dtype=np.int64)
+        bottom, top = np.concatenate(lows), np.concatenate(highs)
+        return cls((bottom + top) / 2, (top - bottom) / 2, np.concatenate(children), np.concatenate(triangle), corners)
