@@ -106,7 +106,7 @@ class DocumentationStore:
             freecad = freecad_install.find()
         except KernelUnavailableError:
             return tuple(_helpers())
-        return (*_helpers(), *self._catalogue(freecad.version_text, _HERE / "catalogue_freecad.py"))
+        return (*_helpers(), *self._catalogue(freecad.version_text, _HERE / "inside_freecad" / "catalogue.py"))
 
     @cached_property
     def snippets(self) -> tuple[Snippet, ...]:

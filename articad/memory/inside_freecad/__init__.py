@@ -1,0 +1,1 @@
+"""Programs that run inside FreeCAD's own process and know nothing of articad: files in, files out."""
