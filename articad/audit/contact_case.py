@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
@@ -15,8 +16,11 @@ from articad.interference.overlap import volume
 from articad.interference.report import Checks
 from articad.interference.scene import Scene
 from articad.interference.verdict import STATIC_SHARE
+from articad.kinematics.joints import JointType
 
 MOST_DIAGNOSED = 20
+SHORTEST = 1.5  # times the depth, the shortest way out: overlaps are seldom boxes
+_ENDS = re.compile(r"ends ([-+.\de]+) mm inside")
 
 
 @dataclass
@@ -79,16 +83,24 @@ def explained(case: Case, findings: Sequence[Finding]) -> list[Finding]:
     named = []
     for finding in (*diagnose(case.scene, case.assembly.mechanism.tree, kept[:MOST_DIAGNOSED]), *kept[MOST_DIAGNOSED:]):
         depth = depths.get((finding.code, finding.parts, str(finding.pose)))
-        if depth is not None and finding.cause == "pitch" and _one_carries_the_other(case, finding.parts):
-            finding = depth  # noqa: PLW2901 - the pitch of two axes says nothing of parts that one chain carries
+        if depth is not None and _is_doubtful(case, finding, depth):
+            finding = depth  # noqa: PLW2901 - what was measured stays, the cause goes
         # the cause names its own numbers in the message; the finding's number stays the depth that was measured
         named.append(finding if depth is None else replace(finding, value=depth.value, limit=depth.limit, unit=depth.unit))
     return [finding for finding in named if finding.code != "E_NOT_ONE_SOLID"]  # `shapes` tells of pieces, once for each file
 
 
-def _one_carries_the_other(case: Case, parts: Sequence[str]) -> bool:
-    a, b = (case.assembly.mechanism.tree.path(case.assembly.ground, name) for name in parts)
-    return a[-1] in b or b[-1] in a
+def _is_doubtful(case: Case, finding: Finding, depth: Finding) -> bool:
+    """True where a cause that explains many machines does not explain these parts.
+
+    A pitch says something of two parts that turn on one base, each by its own joint, and nothing of limbs and chains. A part that
+    ends in another is too long only where its end is the shortest way out.
+    """
+    if finding.cause == "pitch":
+        joints = case.assembly.mechanism.tree.joints_between(*finding.parts)
+        return sum(joint.type is not JointType.FIXED for joint in joints) > 2
+    ends = _ENDS.search(finding.message)
+    return finding.cause == "envelope" and ends is not None and float(ends[1]) > SHORTEST * (depth.value or 0.0)
 
 
 def _by_share(case: Case, finding: Finding) -> Finding:

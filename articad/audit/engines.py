@@ -14,6 +14,8 @@ NAMES: Final = {"mujoco": "MuJoCo", "pinocchio": "Pinocchio", "pybullet": "PyBul
 _CAUSES: Final = (
     (r"mass and inertia of moving bodies", "no_inertia", "Give every body that moves a mass and an inertia; --fix computes them."),
     (r"no decoder found|unknown mesh file type|[Uu]nsupported.*mesh", "mesh_format", "MuJoCo reads STL, OBJ and MSH; convert the meshes."),
+    (r"package:", "package_uri", "It knows no ROS packages: name meshes relative to the file, as --fix does."),
+    (r"geometry specification not found", "geometry", "Use a box, a cylinder, a sphere or a mesh: engines differ in what else they take."),
     (r"opening file|resource not found|not found", "mesh_absent", 'Put it there; MuJoCo drops folders from URDF names without <mujoco><compiler strippath="false"/></mujoco>.'),
     (r"inertia must satisfy|A \+ B >= C|positive definite|inertia", "inertia", "Correct the inertia that is named."),
     (r"repeated name|duplicate", "name_twice", "Rename one of the two."),
