@@ -90,6 +90,7 @@ class Assembly:
     findings: Findings = field(default_factory=Findings)
     deflection: float = DEFLECTION_MM
     _kernel: PartKernel | None = None
+    _cache: BuildCache | None = None  # a temporary one, and the B-rep files in it, go with whoever holds it last
 
     def __post_init__(self) -> None:
         for attribute in ("parts", "materials", "fits", "realised"):
@@ -122,7 +123,7 @@ class Assembly:
             deflection: Largest distance of a mesh from its solid [mm].
             cache: Keeps built parts; by default `$ARTICAD_CACHE` or `~/.cache/articad`.
             progress: Told of each part's fate.
-            parameters: Values that replace the plan's own.
+            parameters: Values that replace the plan's own [mm, degrees].
 
         Raises:
             PlanError: If the plan has errors.
@@ -135,10 +136,9 @@ class Assembly:
             scripts = {name: text.encode() if isinstance(text, str) else text for name, text in parts.items()}
         else:
             scripts = find_scripts(Path(parts), resolved, kernel.name)
-        realised = build_parts(
-            resolved, scripts, kernel=kernel, cache=cache or BuildCache(), deflection=deflection, jobs=jobs, progress=progress
-        )
-        return cls.from_realised(resolved, realised, kernel=kernel, deflection=deflection)
+        cache = cache or BuildCache()
+        realised = build_parts(resolved, scripts, kernel=kernel, cache=cache, deflection=deflection, jobs=jobs, progress=progress)
+        return cls.from_realised(resolved, realised, kernel=kernel, cache=cache, deflection=deflection)
 
     @classmethod
     def from_realised(
@@ -147,9 +147,18 @@ class Assembly:
         realised: Mapping[str, RealisedPart],
         *,
         kernel: PartKernel | None = None,
+        cache: BuildCache | None = None,
         deflection: float = DEFLECTION_MM,
     ) -> Self:
-        """Assemble parts that are built already; no model, no kernel."""
+        """Assemble parts that are built already; no model, no kernel.
+
+        Args:
+            resolved: The plan with its numbers.
+            realised: Its parts, by name.
+            kernel: Builds parts anew when parameters change.
+            cache: Holds their files, and those of parts that are built anew.
+            deflection: Largest distance of their meshes from the solids [mm].
+        """
         mechanism = resolved.mechanism
         return cls(
             name=resolved.plan.name,
@@ -163,6 +172,7 @@ class Assembly:
             findings=Findings(finding for part in realised.values() for finding in part.findings),
             deflection=deflection,
             _kernel=kernel,
+            _cache=cache,
         )
 
     @classmethod
@@ -202,6 +212,9 @@ class Assembly:
     def with_parameters(self, **values: float) -> Assembly:
         """Return the assembly with other parameter values; only parts whose numbers changed are built again.
 
+        Args:
+            values: By name, in the unit that the plan gives them: mm, degrees or none.
+
         Raises:
             PlanError: If there is no plan, a parameter is unknown, or the plan does not hold at these values.
         """
@@ -209,7 +222,9 @@ class Assembly:
             raise PlanError("This assembly was not made from a plan, so it has no parameters.")
         scripts = {name: part.script for name, part in self.realised.items() if part.script is not None}
         parameters = {**self.resolved.overrides, **values}
-        return Assembly.from_plan(self.resolved.plan, scripts, kernel=self._kernel, deflection=self.deflection, parameters=parameters)
+        return Assembly.from_plan(
+            self.resolved.plan, scripts, kernel=self._kernel, cache=self._cache, deflection=self.deflection, parameters=parameters
+        )
 
     # ------------------------------------------------------------------ what it is
 
@@ -248,6 +263,7 @@ class Assembly:
         Raises:
             UnknownJointError: If a name is not that of a joint that drives.
             LimitError: If a value is outside its limits.
+            PlanError: If a joint gets more or fewer values than it has coordinates.
         """
         q = np.array(self.mechanism.rest, dtype=np.float64)
         columns: dict[str, list[int]] = {}
@@ -301,14 +317,23 @@ class Assembly:
         Args:
             driver: Name of a driver.
             lower: First value [rad, mm].
-            upper: Last value.
+            upper: Last value [rad, mm].
             steps: How many values, both ends included.
-            at: Values of other drivers; at rest by default.
+            at: Values of other drivers [rad, mm]; at rest by default.
+
+        Raises:
+            UnknownJointError: If there is no such driver.
+            LoopError: If the loops do not close at rest.
         """
         return self.mechanism.sweep(driver, lower, upper, steps, at=at)
 
     def feasible_range(self, driver: str, *, at: Mapping[str, float] | None = None) -> FeasibleRange:
-        """Return how far a driver can go from rest before a limit, a dead point or a singular pose stops it."""
+        """Return how far a driver can go from rest before a limit, a dead point or a singular pose stops it.
+
+        Args:
+            driver: Name of a driver.
+            at: Values of other drivers [rad, mm]; at rest by default.
+        """
         return self.mechanism.feasible_range(driver, at=at)
 
     def reach(self, part: str, target: SE3 | ArrayLike, frame: SE3 | str | None = None) -> Reach:
@@ -324,7 +349,11 @@ class Assembly:
     # ------------------------------------------------------------------ what is true of it
 
     def check(self, q: ArrayLike | None = None) -> Checks:
-        """Check one pose, by default the rest pose, for overlap, floating parts and broken meshes."""
+        """Check one pose for overlap, floating parts, fits and broken meshes.
+
+        Args:
+            q: Configuration `(nq,)` [rad, mm]; the rest pose by default.
+        """
         at_rest = q is None
         poses = self.poses(self.mechanism.rest if q is None else q)
         return check_pose(
@@ -373,7 +402,7 @@ class Assembly:
             joints: Names of the joints to be proven; all that move by default.
             pairs: Whether joints are also moved two at a time.
             epsilon: Distances up to here are contact [mm].
-            budget: Seconds.
+            budget: Time [s]; what is not proven by then is "not checked", which is not ok.
         """
         return certify(
             self._meshes(),
@@ -388,9 +417,10 @@ class Assembly:
         )
 
     def mass(self, q: ArrayLike | None = None) -> MassProperties:
-        """Return mass, centre of mass and inertia of the whole in the ground frame, by default at rest.
+        """Return mass, centre of mass and inertia of the whole in the ground frame; parts without mass count as massless.
 
-        Parts without mass count as massless.
+        Args:
+            q: Configuration `(nq,)` [rad, mm]; the rest pose by default.
         """
         poses = Poses(self.mechanism.parts, self.poses(self.mechanism.rest if q is None else q))
         return MassProperties.combined([part.mass.moved(poses[name]) for name, part in self.parts.items() if part.mass is not None])
@@ -456,5 +486,14 @@ def build(
     jobs: int | None = None,
     deflection: float = DEFLECTION_MM,
 ) -> Assembly:
-    """Build every part script of a plan in the sandbox and assemble the result; see `Assembly.from_plan`."""
+    """Build every part script of a plan in the sandbox and assemble the result; see `Assembly.from_plan`.
+
+    Args:
+        plan: What is to be built.
+        parts: Folder of the part scripts, or their sources by part.
+        kernel: Builds them; the plan's own choice by default.
+        sandbox: "weak" runs scripts with less isolation than Landlock or bubblewrap give.
+        jobs: Parts built at once; all processors by default.
+        deflection: Largest distance of the meshes from the solids [mm].
+    """
     return Assembly.from_plan(plan, parts, kernel=kernel, sandbox=sandbox, jobs=jobs, deflection=deflection)

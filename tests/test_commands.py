@@ -118,6 +118,13 @@ def test_build_again_is_the_same_byte_for_byte(chest: Path, tmp_path: Path, repo
     assert Run.view(tmp_path / "first").hashes() == Run.view(tmp_path / "second").hashes()
 
 
+def test_a_run_that_was_forced_to_build_anew_holds_the_kernels_files_too(chest: Path, tmp_path: Path, report: Any) -> None:
+    report("build", str(chest), "--out", str(tmp_path / "run"), "--force", "--no-pictures")
+
+    for name in ("box", "lid"):
+        assert {"part.brep", "part.step", "part.npz"} <= {file.name for file in (tmp_path / "run" / "parts" / name).iterdir()}
+
+
 def test_build_prints_parts_verdict_deepest_overlap_and_place(chest: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert cli.main(["build", str(chest), "--out", str(tmp_path / "out")]) == 0
     told = capsys.readouterr().out

@@ -99,7 +99,14 @@ class MassProperties:
         return MassProperties(self.mass, R @ self.com + T.translation, R @ self.inertia @ R.T)
 
     def mirrored(self, S: ArrayLike) -> MassProperties:
-        """Return the mirror image under a reflection `(4, 4)`: the centre is mapped, the inertia becomes S I S."""
+        """Return the mirror image under a reflection: the centre is mapped, the inertia becomes S I S.
+
+        Args:
+            S: A reflection `(4, 4)`, its last column in mm.
+
+        Raises:
+            InvalidSolidError: If it is none.
+        """
         matrix = np.asarray(S, dtype=np.float64)
         Q = matrix[:3, :3]
         if matrix.shape != (4, 4) or np.abs(Q @ Q.T - np.eye(3)).max() > SYMMETRY_TOLERANCE or not np.linalg.det(Q) < 0:

@@ -145,7 +145,11 @@ class TriMesh:
         return TriMesh(self.vertices @ S[:3, :3].T + S[:3, 3], self.triangles[:, ::-1], self.face)
 
     def scaled(self, factor: float) -> TriMesh:
-        """Return the mesh with all coordinates multiplied by a positive factor."""
+        """Return the mesh with all coordinates multiplied by a positive factor.
+
+        Raises:
+            InvalidSolidError: If the factor is not positive and finite.
+        """
         if not (math.isfinite(factor) and factor > 0):
             raise InvalidSolidError(f"A mesh is scaled by a positive number, not {factor}.", status="scale")
         return TriMesh(self.vertices * factor, self.triangles, self.face)

@@ -205,7 +205,16 @@ class Part:
         color: str = DEFAULT_COLOR,
         material: str | None = None,
     ) -> Self:
-        """Return a part that is one solid; its mesh is what is drawn and what collides."""
+        """Return a part that is one solid; its mesh is what is drawn and what collides.
+
+        Args:
+            name: Of the part.
+            solid: Its shape.
+            density: Gives it mass [kg/m³]; None leaves it without.
+            connectors: By name, in the part's frame.
+            color: "#rrggbb".
+            material: Name of the material.
+        """
         shape = Shape(solid.mesh, name=name)
         return cls(name, connectors or {}, (shape,), (shape,), solid, None if density is None else solid.mass(density), color, material)
 
@@ -225,6 +234,16 @@ class Part:
         """Return a part from a STEP file.
 
         B-rep never enters this process, so the reader is handed in: the kernels' worker, which meshes and measures the solid.
+
+        Args:
+            name: Of the part.
+            path: Of the file.
+            read: Reads a file with a deflection and returns the solid.
+            deflection: Largest distance of the mesh from the solid [mm].
+            density: Gives it mass [kg/m³]; None leaves it without.
+            connectors: By name, in the part's frame.
+            color: "#rrggbb".
+            material: Name of the material.
         """
         solid = read(Path(path), deflection)
         return cls.from_solid(name, solid, density=density, connectors=connectors, color=color, material=material)

@@ -199,9 +199,9 @@ class Mechanism:
         Args:
             driver: Name of a driver.
             lo: First value [rad, mm].
-            hi: Last value.
+            hi: Last value [rad, mm].
             steps: How many values, both ends included.
-            at: Values of other drivers; at rest by default.
+            at: Values of other drivers [rad, mm]; at rest by default.
             certify: Prove that each step stays on its branch (about ten times the work).
 
         Returns:
@@ -218,7 +218,7 @@ class Mechanism:
 
         Args:
             driver: Name of a driver.
-            at: Values of other drivers; at rest by default.
+            at: Values of other drivers [rad, mm]; at rest by default.
 
         Raises:
             UnknownJointError: If there is no such driver.
@@ -230,7 +230,7 @@ class Mechanism:
         """Return the ways found of assembling the mechanism at the drivers' values; the rest pose's own branch first.
 
         Args:
-            q: Values of the drivers `(nq,)`; at rest by default.
+            q: Values of the drivers `(nq,)` [rad, mm]; at rest by default.
             starts: Random starts; a way that none of them falls into is not found.
         """
         values = self.rest if q is None else self._drivers_array(q)
