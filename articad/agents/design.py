@@ -21,6 +21,9 @@ TRIES: Final = 5  # answers until a plan validates; the findings of each go back
 SHOWN_FINDINGS: Final = 40  # more at once is not read; the next answer brings the rest
 ROLE: Final = "design"
 
+Judged = tuple[AssemblyPlan | None, Findings, OutputError | None]
+"""The plan of a reply, if it could be read; what is to be said of it; and the problem if it is not even JSON."""
+
 Tell = Callable[[AssemblyPlan | None, Findings], None]
 """Told of each answer: the plan, if it could be read, and what was found in it."""
 
@@ -58,6 +61,8 @@ class Designer:
         tries: Answers until a plan must validate.
         tell: Told of each answer.
         memory: Knows earlier runs.
+        instructions: What the role is and does; by default the design prompt.
+        judge: Reads an answer and its step.
     """
 
     def __init__(
@@ -69,14 +74,17 @@ class Designer:
         tries: int = TRIES,
         tell: Tell | None = None,
         memory: Memory | None = None,
+        instructions: str | None = None,
+        judge: Callable[[str, str], Judged] | None = None,
     ) -> None:
         self._llm = llm
+        self._judge = judge or judged
         self._tries = tries
         self._tell = tell or (lambda _plan, _findings: None)
         self._answered = 0
         self._said = ""
-        task = _task(request, requirements) + _recalled(memory or NoMemory(), request, requirements)
-        self._opening = (system(_instructions()), user(task, *pictures_of(request)))
+        words = task(request, requirements) + _recalled(memory or NoMemory(), request, requirements)
+        self._opening = (system(instructions or _instructions()), user(words, *pictures_of(request)))
 
     def first(self) -> AssemblyPlan:
         """Return a plan that has no errors.
@@ -120,7 +128,7 @@ class Designer:
             step = f"design/{self._answered}"
             reply = self._llm.complete(Request(ROLE, step, messages, response_schema()))
             self._said = reply.text
-            plan, findings, problem = _judged(reply.text, step)
+            plan, findings, problem = self._judge(reply.text, step)
             self._tell(plan, findings)
             if plan is not None and findings.ok:
                 return plan
@@ -147,7 +155,7 @@ def listed(findings: Iterable[Finding]) -> str:
     return "\n".join(lines)
 
 
-def _judged(text: str, step: str) -> tuple[AssemblyPlan | None, Findings, OutputError | None]:
+def judged(text: str, step: str) -> Judged:
     """Return the plan of a reply, what is to be said of it, and the problem if it is not even JSON."""
     try:
         plan = AssemblyPlan.loads(object_text(text, step=step))
@@ -162,7 +170,8 @@ def _instructions() -> str:
     return prompt("design", example=prompt_file("sewing_box.json"))
 
 
-def _task(request: RunRequest, requirements: Requirements) -> str:
+def task(request: RunRequest, requirements: Requirements) -> str:
+    """Return a request and its analysis in words."""
     analysis = json.dumps({name: value for name, value in requirements.to_json().items() if name != "schema"}, indent=1, ensure_ascii=False)
     words = request.prompt.strip() or "(no words; see the pictures)"
     return f"The customer's request:\n\n{words}\n\nIts analysis:\n\n```json\n{analysis}\n```"

@@ -20,7 +20,7 @@ from articad.agents.forms import Form, reader, schema_of
 from articad.agents.generation import REPAIRS
 from articad.agents.line import FORMATS, ROUNDS, Chooser, Line, Planner
 from articad.agents.llm import LLM, Image, Message, Recorded, Reply, Request, assistant, system, user
-from articad.agents.prompts import prompt, prompt_file
+from articad.agents.prompts import prompt, prompt_section
 from articad.agents.recollection import KeptDocumentation, KeptMemory
 from articad.agents.requirements import Requirements, pictures_of
 from articad.agents.retrieval import Documentation, Memory
@@ -205,7 +205,7 @@ class Editor:
             f"The product was asked for like this:\n\n{self._base.stored['prompt'].strip() or '(no words)'}\n\n"
             f"Its plan:\n\n```json\n{self._begin.dumps()}```\n\nThe change that the customer asks for:\n\n{self._request.prompt}{shown}"
         )
-        return (system(prompt("edit", rules=_rules())), user(words, *pictures))
+        return (system(prompt("edit", rules=prompt_section("design.md", *_RULES))), user(words, *pictures))
 
     def first(self) -> AssemblyPlan:
         """Return the changed plan.
@@ -313,9 +313,3 @@ class _Nobody:
 
 def _nothing_to_choose(_alternatives: Sequence[Any]) -> NoReturn:
     raise AgentError("An edit has no alternatives.")
-
-
-def _rules() -> str:
-    """Return the rules of every plan, as the design prompt has them."""
-    text = prompt_file("design.md")
-    return text[text.index(_RULES[0]) : text.index(_RULES[1])].strip()

@@ -11,16 +11,18 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any, Final, Literal
 
 from articad.agents.brainstorm import Alternative, Choose
 from articad.agents.design import TRIES
 from articad.agents.edit import EditLine
 from articad.agents.generation import REPAIRS
+from articad.agents.late import LateLine
 from articad.agents.line import FORMATS, ROUNDS, Chooser, Line
 from articad.agents.llm import LLM, Recorded, Replay
 from articad.agents.recollection import KeptDocumentation, KeptMemory
 from articad.agents.retrieval import Documentation, Memory
+from articad.agents.single import SingleLine
 from articad.agents.workshop import Progress, Workshop
 from articad.errors import AgentError
 from articad.findings import Findings
@@ -28,7 +30,7 @@ from articad.kernels.kernel import BuildCache, PartKernel
 from articad.record import kernel_named
 from articad.run import Run, RunRequest, UserImage, differences, open_or_create
 
-Variant = Literal["full", "no-rollback", "no-memory"]
+Variant = Literal["full", "late", "no-rollback", "no-memory", "single-loop"]
 Brainstorm = Literal["auto", "always", "never"]
 
 
@@ -81,7 +83,9 @@ def generate(
         pick: The alternative to make, from 1; asks for alternatives in any case.
         choose: Called with the alternatives, returns the number of the one to make; without it and `pick` the first is made.
         review: Who scores the finished assembly: "rules" what was measured, "model" also one that sees.
-        variant: "no-rollback" neither looks nor judges, and sends nothing back that was assembled: the paper's ablation.
+        variant: The paper's ablations: "late" plans connectors and joints when the parts exist; "no-rollback" neither looks nor
+            judges, and sends nothing back that was assembled; "no-memory" recalls no cases; and its baseline: "single-loop" has
+            one script make and assemble all parts, and only what fails to run goes back.
         memory: What earlier runs teach; nothing by default.
         documentation: What the kernel's API says; nothing by default.
         jobs: How many parts are built at once; by default the number of processors.
@@ -98,8 +102,9 @@ def generate(
     pictures = [UserImage.read(image) for image in images]
     pictures += [UserImage.read(image, part) for part, image in sorted((part_images or {}).items())]
     kernel = kernel or kernel_named("build123d", sandbox=sandbox)
-    rolls_back = variant != "no-rollback"
-    memory = None if variant == "no-memory" else memory
+    rolls_back = variant not in {"no-rollback", "single-loop"}
+    memory = None if variant in {"no-memory", "single-loop"} else memory
+    documentation = None if variant == "single-loop" else documentation
     options: dict[str, Any] = {"task": "generate", "designs": designs, "repairs": repairs, "rounds": rounds, "formats": list(formats)}
     options |= {"kernel": kernel.name, "variant": variant, "look": look and rolls_back, "inspection": inspection and rolls_back}
     options |= {"ideas": "always" if pick is not None else ideas, "pick": pick, "finetune": True}
@@ -115,8 +120,11 @@ def generate(
 def _line(shop: Workshop, chooser: Chooser, memory: Memory | None) -> Line:
     """Return the line that a run's request asks for."""
     options = shop.run.request.options
-    kind = EditLine if options.get("task") == "edit" else Line
+    kind = EditLine if options.get("task") == "edit" else _LINES.get(options.get("variant", "full"), Line)
     return kind(shop, chooser, memory)
+
+
+_LINES: Final[Mapping[str, type[Line]]] = {"late": LateLine, "single-loop": SingleLine}
 
 
 def _chosen_by_user(pick: int | None, choose: Choose | None, alternatives: Sequence[Alternative]) -> tuple[int, str]:

@@ -98,6 +98,7 @@ class Workshop:
     made: dict[str, _Made] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
+        self._before: dict[str, Fate] = {}
         self._building = threading.Semaphore(self.jobs or os.cpu_count() or 1)
         self._options: Mapping[str, Any] = self.run.request.options
 
@@ -122,10 +123,17 @@ class Workshop:
         self.make({name: resolved for name, part in resolved.parts.items() if part.derivation is None}, tuple(resolved.parts))
         self.tell("assembly", "started")
         with closed_port("assembly is deterministic"):
-            return self._joined(plan, resolved)
+            return self.joined(plan, resolved)
 
-    def adopt(self, resolved: Mapping[str, ResolvedPlan], scripts: Mapping[str, bytes]) -> None:
-        """Take scripts for what these plans say of their parts; each is kept as long as that stays the same and builds."""
+    def adopt(self, resolved: Mapping[str, ResolvedPlan], scripts: Mapping[str, bytes], fates: Mapping[str, Fate] | None = None) -> None:
+        """Take scripts for what these plans say of their parts; each is kept as long as that stays the same and builds.
+
+        Args:
+            resolved: By part, the plan that has its entry.
+            scripts: By part.
+            fates: What became of them before in this round; without it they count as kept.
+        """
+        self._before = dict(fates or {})
         for name, script in scripts.items():
             old = self.made.get(name)
             answers, opinions = (0, Findings()) if old is None else (old.answers, old.opinions)
@@ -152,13 +160,26 @@ class Workshop:
         self.fates = {name: self.fates[name] for name in (*sources, *gone) if name in self.fates}
         _raise_failures(futures, len(sources))
 
+    def alone(self, resolved: Mapping[str, ResolvedPlan]) -> dict[str, RealisedPart]:
+        """Return made parts as these plans of single parts have them."""
+        return {name: self._build(plan, name, self.scripts[name]) for name, plan in resolved.items()}
+
+    def shown(self, name: str) -> str:
+        """Return the script of a part that was made, as its author wrote it."""
+        return self._shown(self.scripts[name])
+
     def tell(self, what: str, event: str) -> None:
         """Note what happens in the trace, and tell who waits."""
         self.run.trace("stage", name=what, state=event)
         if self.progress is not None:
             self.progress(what, event)
 
-    def _joined(self, plan: AssemblyPlan, resolved: ResolvedPlan) -> tuple[AssemblyPlan, Assembly]:
+    def joined(self, plan: AssemblyPlan, resolved: ResolvedPlan) -> tuple[AssemblyPlan, Assembly]:
+        """Return the assembly of parts whose scripts are there, and the plan as `assembled` does.
+
+        Raises:
+            ContractError: With the findings of every part that could not be built.
+        """
         realised = self._built(resolved)
         drifted = {name: part for name, part in realised.items() if part.findings.of("W_CONNECTOR_DRIFT")}
         if drifted and (tuned := absorbed(resolved, drifted)) is not None:
@@ -185,7 +206,7 @@ class Workshop:
                 except KernelError as error:
                     previous = Attempt(self._shown(old.script), f"The specification has changed since. {failure_text(error)}", error=error)
                 else:
-                    self.fates[name] = "kept"
+                    self.fates[name] = self._before.pop(name, "kept")
                     self.tell(name, "kept")
                     return
         elif name in self.begun:

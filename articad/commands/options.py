@@ -108,7 +108,7 @@ GENERATING = (
     argument("--pick", metavar="N", type=positive, default=None, help="propose alternatives and make the N-th, without asking"),
     argument(
         "--variant",
-        choices=["full", "no-rollback", "no-memory"],
+        choices=["full", "late", "no-rollback", "no-memory", "single-loop"],
         default="full",
         help="the others are the paper's ablations and its baseline (full)",
     ),

@@ -14,6 +14,7 @@ from articad.agents.brainstorm import Alternatives
 from articad.agents.design import response_schema
 from articad.agents.edit import Change
 from articad.agents.inspection import Judgement, Look, Observations
+from articad.agents.late import Connections
 from articad.agents.live import _TOLD
 from articad.agents.prompts import prompt, prompt_file
 from articad.agents.replies import parse_object, parse_script
@@ -114,6 +115,7 @@ def test_the_example_of_the_requirements_prompt_has_the_form() -> None:
         ("brainstorm", Alternatives),
         ("edit", Change),
         ("review", Opinion),
+        ("connect", Connections),
     ],
 )
 def test_the_answer_that_a_prompt_shows_has_the_form_that_is_read(name: str, form: type[BaseModel]) -> None:
@@ -133,13 +135,25 @@ def _inner(form: type[BaseModel]) -> set[type[BaseModel]]:
 
 
 def test_every_prompt_that_wants_an_object_tells_its_form_and_is_left_alone_by_the_adapter() -> None:
-    for name in ("requirements", "design", "look", "observe", "judge", "rollback", "brainstorm", "edit", "review"):
+    for name in (
+        "requirements",
+        "design",
+        "look",
+        "observe",
+        "judge",
+        "rollback",
+        "brainstorm",
+        "edit",
+        "review",
+        "design_late",
+        "connect",
+    ):
         assert _TOLD in prompt_file(f"{name}.md"), name
 
 
 def test_every_blank_of_a_prompt_is_filled_by_somebody() -> None:
     blanks = {blank for file in Path(str(PROMPTS)).glob("*.md") for blank in re.findall(r"\{\{(\w+)\}\}", file.read_text())}
-    assert blanks == {"example", "findings", "failure", "problem", "note", "concept", "count", "kernel", "rules"}
+    assert blanks == {"example", "findings", "failure", "problem", "note", "concept", "count", "kernel", "rules", "api", "shape"}
 
 
 def test_the_prompts_have_no_blank_left_and_no_path_or_address() -> None:

@@ -16,6 +16,13 @@ def prompt_file(name: str) -> str:
     return (files(__name__) / name).read_text("utf-8").strip()
 
 
+def prompt_section(name: str, first: str, after: str) -> str:
+    """Return what stands in a file from one heading up to another: rules that several roles share are written once."""
+    text = prompt_file(name)
+    start = text.index(first)
+    return text[start : text.index(after, start)].strip()
+
+
 def prompt(name: str, **values: str) -> str:
     """Return the prompt `<name>.md` with its blanks `{{…}}` filled; what is filled in is never read for blanks.
 
