@@ -92,10 +92,13 @@ def told(assembly: Assembly, evidence: Evidence) -> str:
     mechanism = assembly.mechanism
     lines = [f"Exact checks: {'passed' if evidence.ok else 'NOT passed'}."]
     lines += [f"- {finding}" for finding in evidence.findings] or ["- no findings"]
-    kinds = sorted({str(pair.strength).split("(")[0] for pair in evidence.checks.pairs})
-    lines += [f"- {len(evidence.checks.pairs)} pairs of parts near each other were compared ({', '.join(kinds) or 'none'})."]
+    pairs = len({pair.parts for pair in evidence.checks.pairs})
+    lines += [f"- {pairs} pairs of parts come near each other: compared at rest and along each joint's range, all other joints at rest."]
+    lines += ["- Two joints were not moved together."] if len(assembly.drivers) > 1 else []
+    whole = assembly.mass()
+    lines += ["", f"Mass {short(whole.mass)} kg; centre of mass at rest {listed_numbers(whole.com)} mm."]
     lines += ["", f"Mobility: {mechanism.mobility} freedoms. What drives, and its range:"]
-    lines += [f"- {driver.name}: {_bound(driver.lower, driver.unit)} to {_bound(driver.upper, driver.unit)}" for driver in assembly.drivers]
+    lines += [f"- {driver.name}: {_range(driver.lower, driver.upper, driver.unit)}" for driver in assembly.drivers]
     lines += ["", "Bounding boxes at rest, in the assembly's frame (mm):"]
     lines += [f"- {name}: from {listed_numbers(low)} to {listed_numbers(high)}" for name, (low, high) in evidence.sizes.items()]
     if evidence.fits is not None and evidence.fits.rows:
@@ -190,7 +193,13 @@ def _sizes(assembly: Assembly) -> dict[str, tuple[FloatArray, FloatArray]]:
     return {name: (points.min(axis=0), points.max(axis=0)) for name, points in placed.items()}
 
 
+def _range(lower: float, upper: float, unit: str) -> str:
+    if math.isinf(lower) and math.isinf(upper):
+        return "endless"
+    return f"{_bound(lower, unit)} to {_bound(upper, unit)}"
+
+
 def _bound(value: float, unit: str) -> str:
     if math.isinf(value):
-        return "endless"
+        return "no end"
     return f"{short(math.degrees(value))} degrees" if unit == "rad" else f"{short(value)} {unit}"

@@ -210,7 +210,7 @@ def inspect(assembly: Assembly, evidence: Evidence, request: RunRequest, require
     Raises:
         OutputError: If no reply has the form.
     """
-    product = f"{asked_for(request, requirements)}\n\n{structure(assembly)}"
+    product = f"{asked_for(request, requirements)}\n\n{structure(assembly)}{_assumed(assembly)}"
     observations = _observed(assembly, product, llm, number)
     seen = json.dumps(observations.model_dump(mode="json"), indent=1, ensure_ascii=False)
     words = f"{product}\n\nMeasured:\n\n{told(assembly, evidence)}\n\nThe observer saw:\n\n```json\n{seen}\n```"
@@ -219,6 +219,12 @@ def inspect(assembly: Assembly, evidence: Evidence, request: RunRequest, require
     )
     rulings = tuple((aspect, getattr(judgement, aspect)) for aspect in _ASPECTS)
     return Verdict(Findings(_weighed(judgement.problems, evidence)), "judge", number, observations, rulings)
+
+
+def _assumed(assembly: Assembly) -> str:
+    """Return what the designer took for granted, such as motions that exclude one another."""
+    assumptions = () if assembly.plan is None else assembly.plan.assumptions
+    return "" if not assumptions else "\n\nThe designer's assumptions:\n" + "\n".join(f"- {assumption}" for assumption in assumptions)
 
 
 def verdict_of(evidence: Evidence, number: int) -> Verdict:

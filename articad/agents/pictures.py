@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from PIL.Image import Image as Picture
 
 VIEWS: Final = ("iso", "front", "right", "top")
+PART_VIEWS: Final = (*VIEWS, "iso_back", "iso_below")  # hollows, bores and lugs may be on any side
 SIZE: Final = 320  # pixels of each view: a feature of a hundredth of the part is still seen
 ASSEMBLY_SIZE: Final = 448  # pixels of each view of the whole: its parts' names must be legible
 KEYFRAMES: Final = 6  # of each coordinate of a joint
@@ -36,7 +37,7 @@ _drawing = threading.Lock()  # pictures for several parts at once would only tak
 
 
 def partial_picture(folder: Path | None, name: str, build: str) -> Image | None:
-    """Draw the solids that a failed script had made, from four sides.
+    """Draw the solids that a failed script had made, from six sides.
 
     Args:
         folder: Where the kernel left them; None if there were none.
@@ -57,20 +58,20 @@ def partial_picture(folder: Path | None, name: str, build: str) -> Image | None:
         from articad.render import Camera, Item, Scene, picture  # noqa: PLC0415 - pictures are drawn when something failed, and not before
 
         scene = Scene((Item(name, mesh, SE3.identity(), _COLOR),))
-        return [picture(scene, Camera.fit(view, scene.bounds, width=SIZE, height=SIZE), labels=False, title=view) for view in VIEWS]
+        return [picture(scene, Camera.fit(view, scene.bounds, width=SIZE, height=SIZE), labels=False, title=view) for view in PART_VIEWS]
 
-    return _sheet(draw, 2, {"of": "partial", "build": build, "views": list(VIEWS), "size": SIZE})
+    return _sheet(draw, 3, {"of": "partial", "build": build, "views": list(PART_VIEWS), "size": SIZE})
 
 
 def part_picture(part: Part, build: str) -> Image:
-    """Draw a part in its own frame, from four sides; `build` is the digest of its build."""
+    """Draw a part in its own frame, from six sides; `build` is the digest of its build."""
 
     def draw() -> list[Picture]:
         from articad.render import render_part  # noqa: PLC0415 - as above
 
-        return list(render_part(part, VIEWS, size=SIZE).values())
+        return list(render_part(part, PART_VIEWS, size=SIZE).values())
 
-    return _sheet(draw, 2, {"of": "part", "build": build, "views": list(VIEWS), "size": SIZE})
+    return _sheet(draw, 3, {"of": "part", "build": build, "views": list(PART_VIEWS), "size": SIZE})
 
 
 def assembly_picture(assembly: Assembly) -> Image:

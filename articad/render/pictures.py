@@ -144,7 +144,11 @@ def render_part(
     scene = scene_of({part.name: part}, {part.name: SE3.identity()})
     return {
         view: picture(
-            scene, Camera.fit(view, scene.bounds, width=size, height=size), supersample=supersample, title=f"{part.name} · {view}"
+            scene,
+            Camera.fit(view, scene.bounds, width=size, height=size),
+            supersample=supersample,
+            labels=False,  # the title names it; a label would lie on the very part
+            title=f"{part.name} · {view}",
         )
         for view in views
     }

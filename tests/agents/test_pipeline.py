@@ -179,7 +179,7 @@ def test_a_repair_shows_what_the_script_had_made_and_the_run_keeps_the_picture(t
     recipe = asked.to_json()["messages"][-1]["content"][-1]["recipe"]
 
     assert "E_NOT_ONE_SOLID" in said(asked)
-    assert recipe["views"] == ["iso", "front", "right", "top"]
+    assert recipe["views"] == ["iso", "front", "right", "top", "iso_back", "iso_below"]
     assert len(recipe["build"]) == 64
     assert (run.path / "attempts/flap-1/partial.png").read_bytes() == asked.messages[-1].parts[-1].content  # type: ignore[union-attr]
 
