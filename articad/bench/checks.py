@@ -1,0 +1,524 @@
+"""The checks of a task: data that says what must hold, judged by measurement alone, whoever made the assembly.
+
+Nothing is found by its name, since tools name things as they please: a joint is known by its type, its axis and its range,
+a part by its size. Each judgement says what was wanted and what was measured.
+"""
+
+from __future__ import annotations
+
+import math
+from abc import abstractmethod
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Annotated, Any, Final, Literal
+
+import numpy as np
+from pydantic import Field
+
+from articad.bench.subject import Subject
+from articad.connectors import FloatArray
+from articad.errors import ArticadError
+from articad.interference.captivity import escapes
+from articad.interference.fits import Gauge
+from articad.kinematics.joints import Joint, JointType
+from articad.plan.fields import Form
+from articad.plan.resolve import Fit
+from articad.simulate.examine import simulate_assembly
+
+AXIS_RAD: Final = math.radians(5)  # by which an axis may lean from the one asked for
+STROKE: Final = 9  # values of a driver at which what follows it is measured
+CLOSED_MM: Final = 1e-6
+
+Bounds = tuple[float, float]
+Vector = tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class Judgement:
+    """Whether a check holds, and the numbers that say so.
+
+    Attributes:
+        kind: Of the check.
+        ok: Whether it holds.
+        wanted: In words.
+        measured: In words.
+    """
+
+    kind: str
+    ok: bool
+    wanted: str
+    measured: str
+
+    def to_json(self) -> dict[str, Any]:
+        """Return the row of a report."""
+        return {"kind": self.kind, "ok": self.ok, "wanted": self.wanted, "measured": self.measured}
+
+
+class Check(Form):
+    """Base of all checks."""
+
+    kind: str
+
+    def judge(self, subject: Subject) -> Judgement:
+        """Measure and judge; what cannot be measured does not hold."""
+        try:
+            ok, measured = self.measured(subject)
+        except ArticadError as error:
+            ok, measured = False, str(error)
+        return Judgement(self.kind, ok, self.wanted, measured)
+
+    @property
+    @abstractmethod
+    def wanted(self) -> str:
+        """What must hold, in words."""
+
+    @abstractmethod
+    def measured(self, subject: Subject) -> tuple[bool, str]:
+        """Return whether it holds, and the measured numbers in words."""
+
+
+class JointWanted(Form):
+    """Which joints are meant: by type, direction of axis at rest and range."""
+
+    type: JointType
+    axis: Vector | None = None
+    span: Bounds | Literal["endless"] | None = None
+
+    def found(self, subject: Subject) -> list[Joint]:
+        """Return the joints of a subject that are like this."""
+        return [joint for joint in subject.assembly.joints if self._is(subject, joint)]
+
+    def _is(self, subject: Subject, joint: Joint) -> bool:
+        if joint.type is not self.type:
+            return False
+        if self.axis is not None and not _parallel(subject.axis(joint), np.array(self.axis)):
+            return False
+        span = subject.span(joint)
+        if self.span == "endless":
+            return math.isinf(span)
+        return self.span is None or self.span[0] <= span <= self.span[1]
+
+    def __str__(self) -> str:
+        axis = "" if self.axis is None else f" about or along {_numbers(self.axis)}"
+        unit = "mm" if self.type in {JointType.SLIDER, JointType.CYLINDRICAL} else "°"
+        span = "" if self.span is None else ", endless" if self.span == "endless" else f", range {_range(self.span)} {unit}"
+        return f"{self.type}{axis}{span}"
+
+
+class Parts(Check):
+    """So many parts that have a shape."""
+
+    kind: Literal["parts"] = "parts"
+    number: Bounds
+
+    @property
+    def wanted(self) -> str:
+        return f"{_range(self.number)} parts"
+
+    def measured(self, subject: Subject) -> tuple[bool, str]:
+        count = len(subject.shaped)
+        return self.number[0] <= count <= self.number[1], f"{count} parts"
+
+
+class Freedoms(Check):
+    """So many independent motions."""
+
+    kind: Literal["freedoms"] = "freedoms"
+    number: int
+
+    @property
+    def wanted(self) -> str:
+        return f"{self.number} freedoms"
+
+    def measured(self, subject: Subject) -> tuple[bool, str]:
+        mobility = subject.assembly.mechanism.mobility
+        return mobility == self.number, f"{mobility} freedoms"
+
+
+class Joints(Check):
+    """So many joints of a kind."""
+
+    kind: Literal["joints"] = "joints"
+    joint: JointWanted
+    number: Bounds
+
+    @property
+    def wanted(self) -> str:
+        return f"{_range(self.number)} joints: {self.joint}"
+
+    def measured(self, subject: Subject) -> tuple[bool, str]:
+        found = self.joint.found(subject)
+        others = [f"{joint.name} {joint.type} {_numbers(subject.axis(joint))} {subject.span(joint):.4g}" for joint in _moving(subject)]
+        return self.number[0] <= len(found) <= self.number[1], f"{len(found)} ({'; '.join(others[:8]) or 'no joint moves'})"
+
+
+class Size(Check):
+    """Sides of the box around the whole at rest; None where any side will do."""
+
+    kind: Literal["size"] = "size"
+    mm: tuple[float | None, float | None, float | None]
+    tolerance: float = 0.02
+
+    @property
+    def wanted(self) -> str:
+        return f"{' x '.join('any' if side is None else f'{side:g}' for side in self.mm)} mm within {100 * self.tolerance:g} %"
+
+    def measured(self, subject: Subject) -> tuple[bool, str]:
+        size = subject.size
+        ok = all(side is None or abs(found - side) <= self.tolerance * side for side, found in zip(self.mm, size, strict=True))
+        return ok, f"{_by(size)} mm"
+
+
+class PartSize(Check):
+    """So many parts with these sides, in any order; None where any side will do (it counts as the largest)."""
+
+    kind: Literal["part_size"] = "part_size"
+    mm: tuple[float | None, float | None, float | None]
+    number: Bounds = (1, 999)
+    tolerance: float = 0.02
+
+    @property
+    def wanted(self) -> str:
+        sides = " x ".join("any" if side is None else f"{side:g}" for side in self.mm)
+        return f"{_range(self.number)} parts of {sides} mm within {100 * self.tolerance:g} %"
+
+    def measured(self, subject: Subject) -> tuple[bool, str]:
+        sides = sorted(side for side in self.mm if side is not None)
+        found = [name for name in subject.shaped if self._fits(sides, subject.extents(name))]
+        sizes = ", ".join(f"{name} {_by(subject.extents(name))}" for name in subject.shaped[:12])
+        return self.number[0] <= len(found) <= self.number[1], f"{len(found)} ({sizes})"
+
+    def _fits(self, sides: list[float], extents: FloatArray) -> bool:
+        left = list(extents)
+        for side in sides:
+            near = min(left, key=lambda extent: abs(extent - side))
+            if abs(near - side) > self.tolerance * side:
+                return False
+            left.remove(near)
+        return True
+
+
+class Mass(Check):
+    """Mass of the whole."""
+
+    kind: Literal["mass"] = "mass"
+    kg: Bounds
+
+    @property
+    def wanted(self) -> str:
+        return f"{_range(self.kg)} kg"
+
+    def measured(self, subject: Subject) -> tuple[bool, str]:
+        mass = subject.assembly.mass().mass
+        return self.kg[0] <= mass <= self.kg[1], f"{mass:.4g} kg"
+
+
+class Solids(Check):
+    """Every part is one closed solid."""
+
+    kind: Literal["solids"] = "solids"
+
+    @property
+    def wanted(self) -> str:
+        return "every part is one closed solid"
+
+    def measured(self, subject: Subject) -> tuple[bool, str]:
+        wrong = []
+        for name in subject.shaped:
+            mesh = subject.assembly.parts[name].mesh
+            if mesh is None or not mesh.welded().is_closed or len(mesh.welded().components()) != 1:
+                wrong.append(name)
+        return bool(subject.shaped) and not wrong, f"not: {', '.join(wrong)}" if wrong else f"all {len(subject.shaped)} are"
+
+
+class ClearAtRest(Check):
+    """No two parts share volume at rest."""
+
+    kind: Literal["clear_at_rest"] = "clear_at_rest"
+
+    @property
+    def wanted(self) -> str:
+        return "no overlap at rest"
+
+    def measured(self, subject: Subject) -> tuple[bool, str]:
+        wrong = [pair for pair in subject.at_rest.pairs if pair.verdict in {"overlap", "unknown"}]
+        told = ", ".join(f"{' and '.join(pair.parts)} {pair.depth:.3g} mm" for pair in wrong[:5])
+        return not wrong and bool(subject.shaped), told or "none"
+
+
+class Joined(Check):
+    """Every part touches, or is held by, another: nothing floats."""
+
+    kind: Literal["joined"] = "joined"
+
+    @property
+    def wanted(self) -> str:
+        return "no part floats"
+
+    def measured(self, subject: Subject) -> tuple[bool, str]:
+        wrong = [finding.message for finding in subject.at_rest.findings if finding.code in {"E_FLOATING", "E_NOT_TOUCHING"}]
+        return not wrong, " ".join(wrong[:3]) or "none"
+
+
+class ClearInMotion(Check):
+    """Nothing collides while each driver goes over its range; sampled."""
+
+    kind: Literal["clear_in_motion"] = "clear_in_motion"
+    steps: int = 24
+
+    @property
+    def wanted(self) -> str:
+        return f"no collision at {self.steps} poses of each driver"
+
+    def measured(self, subject: Subject) -> tuple[bool, str]:
+        found = subject.assembly.sweep(steps=self.steps)
+        return found.ok and bool(_moving(subject)), "; ".join(finding.message for finding in found.findings.errors[:3]) or "none"
+
+
+class Certified(Check):
+    """It is proven that nothing collides while each driver goes over its range."""
+
+    kind: Literal["certified"] = "certified"
+    seconds: float = 60.0
+    pairs: bool = False
+
+    @property
+    def wanted(self) -> str:
+        return f"motion proven free within {self.seconds:g} s"
+
+    def measured(self, subject: Subject) -> tuple[bool, str]:
+        certificate = subject.assembly.certify(pairs=self.pairs, budget=self.seconds)
+        return certificate.ok and bool(_moving(subject)), "; ".join(f.message for f in certificate.findings.errors[:3]) or "proven"
+
+
+class Loops(Check):
+    """So many closed loops, closed wherever the drivers are."""
+
+    kind: Literal["loops"] = "loops"
+    number: Bounds
+
+    @property
+    def wanted(self) -> str:
+        return f"{_range(self.number)} closed loops"
+
+    def measured(self, subject: Subject) -> tuple[bool, str]:
+        mechanism = subject.assembly.mechanism
+        count = len(mechanism.loop_joints)
+        if not self.number[0] <= count <= self.number[1]:
+            return False, f"{count} loops"
+        gap = max((_closing_error(subject, driver.name) for driver in subject.assembly.drivers), default=0.0)
+        return gap <= CLOSED_MM, f"{count} loops, open by at most {gap:.3g} mm"
+
+
+class Ratio(Check):
+    """One joint follows another: its change over that of the other's [deg/deg, mm/deg, deg/mm or mm/mm]."""
+
+    kind: Literal["ratio"] = "ratio"
+    driver: JointWanted
+    follower: JointWanted
+    ratio: float
+    tolerance: float = 0.01
+
+    @property
+    def wanted(self) -> str:
+        return f"{self.follower} changes by ±{abs(self.ratio):g} when {self.driver} changes by 1, within {100 * self.tolerance:g} %"
+
+    def measured(self, subject: Subject) -> tuple[bool, str]:
+        found = [
+            ratio
+            for leader in self.driver.found(subject)
+            for joint in self.follower.found(subject)
+            if joint.name != leader.name and (ratio := _ratio(subject, leader, joint)) is not None
+        ]
+        ok = any(abs(abs(ratio) - abs(self.ratio)) <= self.tolerance * abs(self.ratio) for ratio in found)
+        return ok, ", ".join(f"{ratio:.4g}" for ratio in found[:6]) or "no such two joints follow one another"
+
+
+class Rise(Check):
+    """While the drivers move one by one, the box around the whole grows or moves by so much along an axis."""
+
+    kind: Literal["rise"] = "rise"
+    axis: Literal["x", "y", "z"] = "z"
+    mm: Bounds
+
+    @property
+    def wanted(self) -> str:
+        return f"the end along {self.axis} moves by {_range(self.mm)} mm"
+
+    def measured(self, subject: Subject) -> tuple[bool, str]:
+        column = "xyz".index(self.axis)
+        best = 0.0
+        for driver in subject.assembly.drivers:
+            ends = [subject.corners(poses)[:, column] for poses in _stroke_poses(subject, driver.name)]
+            best = max(best, float(np.ptp([end[1] for end in ends])), float(np.ptp([end[0] for end in ends]))) if ends else best
+        return self.mm[0] <= best <= self.mm[1], f"{best:.4g} mm"
+
+
+class Gap(Check):
+    """Parts that a joint connects keep this distance at rest; `within` counts only surface so near the joint's axis [mm]."""
+
+    kind: Literal["gap"] = "gap"
+    joint: JointWanted
+    mm: Bounds
+    within: float | None = None
+    number: Bounds = (1, 999)
+
+    @property
+    def wanted(self) -> str:
+        return f"{_range(self.number)} joints ({self.joint}) with a gap of {_range(self.mm)} mm"
+
+    def measured(self, subject: Subject) -> tuple[bool, str]:
+        near = Fit(within=self.within)
+        gaps = [Gauge(subject.scene, joint, near).rest() for joint in self.joint.found(subject) if _shaped(subject, joint)]
+        count = sum(self.mm[0] <= gap <= self.mm[1] for gap in gaps)
+        told = ", ".join(f"{gap:.3g}" for gap in gaps)
+        return self.number[0] <= count <= self.number[1], f"{count} ({told} mm)"
+
+
+class Captive(Check):
+    """So many moving parts cannot leave in a straight line, whatever their limits."""
+
+    kind: Literal["captive"] = "captive"
+    number: Bounds
+
+    @property
+    def wanted(self) -> str:
+        return f"{_range(self.number)} moving parts are held by shape"
+
+    def measured(self, subject: Subject) -> tuple[bool, str]:
+        scene = subject.scene
+        moving = {joint.child for joint in _moving(subject)}
+        free = [name for name in subject.shaped if name in moving and any(way.free for way in escapes(scene, subject.rest, name))]
+        held = len([name for name in subject.shaped if name in moving]) - len(free)
+        return self.number[0] <= held <= self.number[1], f"{held}" + (f" (free: {', '.join(free)})" if free else "")
+
+
+class Simulates(Check):
+    """Simulators load it, hold it, and bring every joint to its ends."""
+
+    kind: Literal["simulates"] = "simulates"
+
+    @property
+    def wanted(self) -> str:
+        return "stands and moves in MuJoCo"
+
+    def measured(self, subject: Subject) -> tuple[bool, str]:
+        verdict = simulate_assembly(subject.assembly, subject.assembly.name, engines=("mujoco",))
+        return verdict.ok, "; ".join(finding.message for finding in verdict.findings.errors[:3]) or "it does"
+
+
+class Unchanged(Check):
+    """After an edit, so many parts are the same to the last bit."""
+
+    kind: Literal["unchanged"] = "unchanged"
+    number: Bounds
+
+    @property
+    def wanted(self) -> str:
+        return f"{_range(self.number)} parts are unchanged"
+
+    def measured(self, subject: Subject) -> tuple[bool, str]:
+        before = {} if subject.before is None else {name: part.mesh for name, part in subject.before.parts.items()}
+        same = [
+            name
+            for name in subject.shaped
+            if (mesh := subject.assembly.parts[name].mesh) is not None
+            and (old := before.get(name)) is not None
+            and mesh.digest == old.digest
+        ]
+        return self.number[0] <= len(same) <= self.number[1], f"{len(same)} of {len(subject.shaped)}"
+
+
+AnyCheck = Annotated[
+    Parts
+    | Freedoms
+    | Joints
+    | Size
+    | PartSize
+    | Mass
+    | Solids
+    | ClearAtRest
+    | Joined
+    | ClearInMotion
+    | Certified
+    | Loops
+    | Ratio
+    | Rise
+    | Gap
+    | Captive
+    | Simulates
+    | Unchanged,
+    Field(discriminator="kind"),
+]
+
+
+def _moving(subject: Subject) -> list[Joint]:
+    return [joint for joint in subject.assembly.joints if joint.type is not JointType.FIXED]
+
+
+def _parallel(a: FloatArray, b: FloatArray) -> bool:
+    return abs(float(a @ b)) >= math.cos(AXIS_RAD) * float(np.linalg.norm(a) * np.linalg.norm(b))
+
+
+def _stroke(subject: Subject, driver: str) -> FloatArray:
+    reached = subject.driver_range(driver)
+    if reached is None:
+        return np.empty(0)
+    inset = 1e-3 * (reached[1] - reached[0])  # the very ends may be dead points
+    return np.linspace(reached[0] + inset, reached[1] - inset, STROKE)
+
+
+def _stroke_poses(subject: Subject, driver: str) -> Iterator[Any]:
+    assembly = subject.assembly
+    column = [coordinate.name for coordinate in assembly.drivers].index(driver)
+    for point in _stroke(subject, driver):
+        q = np.array(assembly.mechanism.rest)
+        q[column] = point
+        yield dict(zip(assembly.mechanism.parts, assembly.poses(q), strict=True))
+
+
+def _closing_error(subject: Subject, driver: str) -> float:
+    """Return by how much the connectors of loop joints lie apart where they should not [mm]."""
+    worst = 0.0
+    mechanism = subject.assembly.mechanism
+    column = [coordinate.name for coordinate in subject.assembly.drivers].index(driver)
+    for point in _stroke(subject, driver):
+        q = np.array(mechanism.rest)
+        q[column] = point
+        values, poses = mechanism.configuration(q), dict(zip(mechanism.parts, mechanism.poses(q), strict=True))
+        for joint in mechanism.loop_joints:
+            here = poses[joint.parent] @ joint.T_parent_connector @ joint.motion(values[joint.name])
+            worst = max(worst, float(here.distance_to(poses[joint.child] @ joint.T_child_connector)))
+    return worst
+
+
+def _ratio(subject: Subject, leader: Joint, follower: Joint) -> float | None:
+    """Return the change of one joint by that of another over a small stroke of each driver, in degrees and mm; None if it does not follow."""
+    for driver in subject.assembly.drivers:
+        points = _stroke(subject, driver.name)
+        if not len(points):
+            continue
+        led, followed = subject.values(leader.name, driver.name, points), subject.values(follower.name, driver.name, points)
+        if np.ptp(led) > 1e-6 and np.ptp(followed) > 1e-6:
+            slope, _ = np.polyfit(led, followed, 1)
+            if float(np.abs(followed - np.polyval(np.polyfit(led, followed, 1), led)).max()) > 1e-3 * float(np.ptp(followed)):
+                continue  # it follows, but not by a ratio
+            return float(slope * subject.per_unit(follower) / subject.per_unit(leader))
+    return None
+
+
+def _shaped(subject: Subject, joint: Joint) -> bool:
+    return {joint.parent, joint.child} <= set(subject.shaped) - set(subject.scene.broken)
+
+
+def _numbers(vector: Any) -> str:
+    return "(" + ", ".join(f"{float(x):.3g}" for x in vector) + ")"
+
+
+def _by(sides: FloatArray) -> str:
+    return " x ".join(f"{float(side):.4g}" for side in sides)
+
+
+def _range(bounds: Bounds) -> str:
+    low, high = bounds
+    return f"{low:g}" if low == high else f"at least {low:g}" if high >= 999 else f"{low:g} to {high:g}"

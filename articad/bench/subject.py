@@ -1,0 +1,104 @@
+"""What checks look at: an assembly made by anyone, in any format that articad reads, with what is measured of it kept."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from articad.assembly import Assembly, Poses
+from articad.connectors import SE3, FloatArray
+from articad.errors import ArticadError
+from articad.interference.report import Checks
+from articad.interference.scene import Scene
+from articad.kinematics.joints import Joint, JointType
+
+_SLIDING = frozenset({JointType.SLIDER, JointType.CYLINDRICAL, JointType.PLANAR})
+
+
+@dataclass(frozen=True)
+class Subject:
+    """An assembly under check.
+
+    Attributes:
+        assembly: Made by articad, or read from a file of any tool.
+        before: The same product before an edit, if there was one.
+    """
+
+    assembly: Assembly
+    before: Assembly | None = None
+
+    @cached_property
+    def rest(self) -> Poses:
+        """Where the parts are at rest."""
+        mechanism = self.assembly.mechanism
+        return Poses(mechanism.parts, self.assembly.poses(mechanism.rest))
+
+    @cached_property
+    def at_rest(self) -> Checks:
+        """Interference at rest."""
+        return self.assembly.check()
+
+    @cached_property
+    def scene(self) -> Scene:
+        """Bodies and relations, for measurements of interference."""
+        assembly = self.assembly
+        meshes = {name: mesh for name, part in assembly.parts.items() if (mesh := part.mesh) is not None}
+        deflections = {name: part.deflection for name, part in assembly.parts.items()}
+        return Scene.of(meshes, assembly.joints, waivers=assembly.waivers, deflection=deflections, fits=assembly.fits)
+
+    @cached_property
+    def shaped(self) -> tuple[str, ...]:
+        """Names of the parts that have a shape: links without one hold no matter."""
+        return tuple(name for name, part in self.assembly.parts.items() if part.mesh is not None)
+
+    @cached_property
+    def size(self) -> FloatArray:
+        """Sides of the box around the whole at rest, along the axes `(3,)` [mm]."""
+        return np.asarray(np.ptp(self.corners(self.rest), axis=0))
+
+    def corners(self, poses: Mapping[str, SE3]) -> FloatArray:
+        """Return the ends of the whole, `(2, 3)` [mm]."""
+        points = [poses[name].apply(self.assembly.parts[name].mesh.vertices) for name in self.shaped]  # type: ignore[union-attr]
+        return np.array([np.min([p.min(axis=0) for p in points], axis=0), np.max([p.max(axis=0) for p in points], axis=0)])
+
+    def axis(self, joint: Joint) -> FloatArray:
+        """Return the direction of a joint's z axis at rest, in the frame of the whole."""
+        return np.asarray((self.rest[joint.parent] @ joint.T_parent_connector).z_axis)
+
+    def extents(self, part: str) -> FloatArray:
+        """Return a part's sides in its own frame, ascending `(3,)` [mm]."""
+        mesh = self.assembly.parts[part].mesh
+        return np.sort(np.ptp(mesh.vertices, axis=0)) if mesh is not None else np.zeros(3)
+
+    def per_unit(self, joint: Joint) -> float:
+        """Return what turns a joint's main coordinate into degrees or mm."""
+        return 1.0 if joint.type in _SLIDING else math.degrees(1.0)
+
+    def span(self, joint: Joint) -> float:
+        """Return how far a joint is allowed to go by its main coordinate [deg or mm], inf for an endless one."""
+        width = (joint.limits.upper or (0.0,))[0] - (joint.limits.lower or (0.0,))[0]
+        return width * self.per_unit(joint)
+
+    def values(self, joint: str, driver: str, points: FloatArray) -> FloatArray:
+        """Return the main coordinate of a joint while a driver takes other values, the others at rest [rad or mm]."""
+        mechanism = self.assembly.mechanism
+        q = np.repeat(np.array(mechanism.rest)[None], len(points), axis=0)
+        q[:, [coordinate.name for coordinate in self.assembly.drivers].index(driver)] = points
+        configuration = mechanism.configuration(q)
+        column = next(i for i, coordinate in enumerate(mechanism.coordinates) if coordinate.joint == joint)
+        return np.asarray(configuration.columns[..., column])
+
+    def driver_range(self, driver: str, turns: float = 1.0) -> tuple[float, float] | None:
+        """Return how far a driver can go, by limits and loops [rad or mm]; for an endless one, so many turns from rest."""
+        try:
+            reached = self.assembly.feasible_range(driver)
+        except ArticadError:
+            return None
+        low, high = reached.lower, reached.upper
+        if math.isinf(low) or math.isinf(high):
+            low, high = 0.0, turns * 2 * math.pi
+        return low, high

@@ -1,0 +1,67 @@
+"""Every kind of check holds of a sound assembly, and refuses one that is wrong in its own way."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Any
+
+import pytest
+from pydantic import TypeAdapter
+
+from articad import examples
+from articad.assembly import Assembly
+from articad.bench.checks import AnyCheck, Check
+from articad.bench.subject import Subject
+from articad.plan.schema import AssemblyPlan
+from tests.bench.wrong import VARIANTS, wrong_for
+
+pytestmark = pytest.mark.slow
+
+HINGE: dict[str, Any] = {"type": "revolute", "axis": [0, 0, 1]}
+CHECKS: list[tuple[str, dict[str, Any]]] = [
+    ("wardrobe", {"kind": "parts", "number": [18, 18]}),
+    ("desk_lamp", {"kind": "freedoms", "number": 5}),
+    ("wardrobe", {"kind": "joints", "joint": HINGE, "number": [2, 2]}),
+    ("wardrobe", {"kind": "joints", "joint": {"type": "slider"}, "number": [2, 2]}),
+    ("wardrobe", {"kind": "size", "mm": [None, None, 1800]}),
+    ("wardrobe", {"kind": "part_size", "mm": [None, None, 1800]}),
+    ("wardrobe", {"kind": "mass", "kg": [50, 80]}),
+    ("wardrobe", {"kind": "solids"}),
+    ("wardrobe", {"kind": "clear_at_rest"}),
+    ("wardrobe", {"kind": "joined"}),
+    ("wardrobe", {"kind": "clear_in_motion", "steps": 8}),
+    ("slider_crank", {"kind": "certified", "seconds": 60}),
+    ("four_bar", {"kind": "loops", "number": [1, 1]}),
+    ("geared_four_bar", {"kind": "ratio", "driver": {"type": "revolute"}, "follower": {"type": "revolute"}, "ratio": 2}),
+    ("scissor_lift", {"kind": "rise", "axis": "z", "mm": [50, 1000]}),
+    ("slider_crank", {"kind": "gap", "joint": {"type": "revolute"}, "mm": [0.05, 0.5]}),
+    ("wardrobe", {"kind": "captive", "number": [1, 18]}),
+    ("slider_crank", {"kind": "simulates"}),
+    ("four_bar", {"kind": "unchanged", "number": [4, 4]}),
+]
+
+
+@cache
+def example(name: str) -> Assembly:
+    folder = examples.folder(name)
+    return Assembly.from_plan(AssemblyPlan.load(folder), folder / "parts")
+
+
+def form(row: dict[str, Any]) -> Check:
+    check: Check = TypeAdapter(AnyCheck).validate_python(row)
+    return check
+
+
+@pytest.mark.parametrize(("name", "row"), CHECKS, ids=[f"{row['kind']}-{name}" for name, row in CHECKS])
+def test_a_check_holds_of_a_sound_assembly_and_refuses_a_wrong_one(name: str, row: dict[str, Any]) -> None:
+    check, assembly = form(row), example(name)
+
+    sound = check.judge(Subject(assembly, before=assembly))
+    wrong = check.judge(wrong_for(check, assembly))
+
+    assert sound.ok, sound
+    assert not wrong.ok, wrong
+
+
+def test_every_kind_of_check_is_shown_red() -> None:
+    assert {row["kind"] for _, row in CHECKS} == set(VARIANTS)

@@ -1,0 +1,229 @@
+"""Assemblies made wrong on purpose: for each kind of check a variant of a sound assembly that it must refuse."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from articad.assembly import Assembly
+from articad.bench.checks import Check, Joints, Ratio
+from articad.bench.subject import Subject
+from articad.connectors import SE3
+from articad.geometry import MassProperties, Part, TriMesh, merged
+from articad.geometry.part import Solid
+from articad.kinematics.joints import Joint, JointLimits, JointType
+
+
+def wrong_for(check: Check, assembly: Assembly) -> Subject:
+    """Return a variant of a sound assembly that a check must refuse."""
+    return VARIANTS[check.kind](check, Subject(assembly))
+
+
+def changed(assembly: Assembly, parts: Sequence[Part] | None = None, joints: Sequence[Joint] | None = None, **options: object) -> Assembly:
+    mechanism = assembly.mechanism
+    rows = {"couplings": mechanism.couplings, "fits": assembly.fits, "T_ground": mechanism.T_ground} | options
+    return Assembly.from_parts(
+        assembly.name,
+        parts=list(assembly.parts.values()) if parts is None else parts,
+        joints=assembly.joints if joints is None else joints,
+        ground=assembly.ground,
+        **rows,  # type: ignore[arg-type]
+    )
+
+
+def shaped_as(part: Part, mesh: TriMesh | None) -> Part:
+    if mesh is None:
+        return Part.without_geometry(part.name, part.connectors, part.mass)
+    solid = Solid.from_mesh(mesh)
+    mass = None if part.mass is None else MassProperties.from_solid(abs(solid.volume), solid.com, solid.inertia_mm5, 1000.0)
+    return replace(part, solid=solid, visuals=(), collisions=(), mass=mass)
+
+
+def _bare(check: Check, subject: Subject) -> Subject:
+    """Too few parts have a shape."""
+    keep = set(subject.shaped[: int(check.number[0]) - 1])  # type: ignore[attr-defined]
+    parts = [part if name in keep else shaped_as(part, None) for name, part in subject.assembly.parts.items()]
+    return Subject(changed(subject.assembly, parts))
+
+
+def _welded(_check: Check, subject: Subject) -> Subject:
+    """What drives, is fixed."""
+    drivers = {driver.joint for driver in subject.assembly.drivers}
+    return Subject(changed(subject.assembly, joints=[_fixed(j) if j.name in drivers else j for j in subject.assembly.joints], couplings=()))
+
+
+def _fixed(joint: Joint) -> Joint:
+    held = joint.T_parent_connector @ joint.motion(joint.rest)
+    return replace(
+        joint, type=JointType.FIXED, T_parent_connector=held, limits=JointLimits(), rest=(), effort=(), velocity=(), driver=False
+    )
+
+
+def _other_joints(check: Check, subject: Subject) -> Subject:
+    """The joints that are meant have another axis."""
+    assert isinstance(check, Joints)
+    names = {joint.name for joint in check.joint.found(subject)}
+    if check.number[0] == 0:
+        return _none(check, subject)
+    turn = SE3.from_axis_angle(np.array([0.6, 0.5, 0.4]), 0.6)
+
+    def leaning(joint: Joint) -> Joint:
+        if check.joint.axis is None:
+            return _fixed(joint)
+        return replace(
+            joint, T_parent_connector=joint.T_parent_connector @ turn, T_child_connector=joint.T_child_connector @ turn, rest=joint.rest
+        )
+
+    joints = [leaning(joint) if joint.name in names else joint for joint in subject.assembly.joints]
+    return Subject(changed(subject.assembly, joints=joints, couplings=()))
+
+
+def _none(_check: Check, _subject: Subject) -> Subject:
+    raise NotImplementedError("A check for no joints needs a variant of its own.")
+
+
+def _larger(_check: Check, subject: Subject) -> Subject:
+    """Everything is half as large again: an inch for … well, a unit slip."""
+    factor = 1.5
+
+    def scaled(T: SE3) -> SE3:
+        return SE3.from_rotation(T.rotation, T.translation * factor)
+
+    parts = [shaped_as(part, mesh.scaled(factor)) if (mesh := part.mesh) is not None else part for part in subject.assembly.parts.values()]
+    joints = [
+        replace(j, T_parent_connector=scaled(j.T_parent_connector), T_child_connector=scaled(j.T_child_connector), rest=_long(j, factor))
+        for j in subject.assembly.joints
+    ]
+    return Subject(changed(subject.assembly, parts, joints, couplings=(), T_ground=scaled(subject.assembly.mechanism.T_ground)))
+
+
+def _long(joint: Joint, factor: float) -> tuple[float, ...]:
+    return tuple(value * factor if unit == "mm" else value for value, unit in zip(joint.rest, joint.type.units, strict=True))
+
+
+def _open_mesh(_check: Check, subject: Subject) -> Subject:
+    """A part lacks a triangle."""
+    name = subject.shaped[-1]
+    mesh = subject.assembly.parts[name].mesh
+    assert mesh is not None
+    return _with_mesh(subject, name, TriMesh(mesh.vertices, mesh.triangles[1:]))
+
+
+def _overlapping(_check: Check, subject: Subject) -> Subject:
+    """A part fills its neighbour's place."""
+    a, b = subject.shaped[-1], subject.shaped[0]
+    other = subject.assembly.parts[b].mesh
+    assert other is not None
+    return _with_mesh(subject, a, other.transformed(subject.rest[a].inverse() @ subject.rest[b]))
+
+
+def _adrift(_check: Check, subject: Subject) -> Subject:
+    """A part is far from all others."""
+    name = subject.shaped[-1]
+    mesh = subject.assembly.parts[name].mesh
+    assert mesh is not None
+    return _with_mesh(subject, name, mesh.transformed(SE3.from_translation(np.array([0.0, 0.0, 20 * float(subject.size.max())]))))
+
+
+def _in_the_way(_check: Check, subject: Subject) -> Subject:
+    """Something stands where a moving part comes by."""
+    assembly = subject.assembly
+    for driver in assembly.drivers:
+        reached = subject.driver_range(driver.name)
+        assert reached is not None
+        q = np.array(assembly.mechanism.rest)
+        column = [each.name for each in assembly.drivers].index(driver.name)
+        q[column] = reached[0] + 0.7 * (reached[1] - reached[0])
+        poses = dict(zip(assembly.mechanism.parts, assembly.poses(q), strict=True))
+        mover = next(joint.child for joint in assembly.joints if joint.name == driver.joint)
+        mover = (
+            mover if mover in subject.shaped else next(name for name in subject.shaped if poses[name].distance_to(subject.rest[name]) > 1)
+        )
+        stands = next(name for name in subject.shaped if float(poses[name].distance_to(subject.rest[name])) < 1e-9)
+        ghost, mesh = assembly.parts[mover].mesh, assembly.parts[stands].mesh
+        assert ghost is not None
+        assert mesh is not None
+        return _with_mesh(subject, stands, merged([mesh, ghost.transformed(poses[stands].inverse() @ poses[mover])]))
+    raise AssertionError("Nothing moves.")
+
+
+def _unclosed(_check: Check, subject: Subject) -> Subject:
+    """A loop is left open, and what was coupled goes its own way."""
+    loops = {joint.name for joint in subject.assembly.mechanism.loop_joints}
+    return Subject(changed(subject.assembly, joints=[j for j in subject.assembly.joints if j.name not in loops], couplings=()))
+
+
+def _uncoupled(check: Check, subject: Subject) -> Subject:
+    assert isinstance(check, Ratio)
+    return _unclosed(check, subject)
+
+
+def _short(_check: Check, subject: Subject) -> Subject:
+    """Hardly anything may move."""
+
+    def narrowed(joint: Joint) -> Joint:
+        rest = joint.rest
+        limits = (
+            replace(joint.limits, lower=tuple(x - 1e-3 for x in rest), upper=tuple(x + 1e-3 for x in rest))
+            if joint.limits.lower
+            else joint.limits
+        )
+        return replace(joint, limits=limits)
+
+    return Subject(changed(subject.assembly, joints=[narrowed(joint) for joint in subject.assembly.joints]))
+
+
+def _thin(check: Check, subject: Subject) -> Subject:
+    """What a joint carries is too small for it."""
+    names = {joint.child for joint in check.joint.found(subject)}  # type: ignore[attr-defined]
+    parts = []
+    for name, part in subject.assembly.parts.items():
+        mesh = part.mesh
+        if name in names and mesh is not None:
+            middle = SE3.from_translation(mesh.bounds.mean(axis=0))
+            mesh = mesh.transformed(middle.inverse()).scaled(0.5).transformed(middle)
+        parts.append(part if mesh is part.mesh else shaped_as(part, mesh))
+    return Subject(changed(subject.assembly, parts))
+
+
+def _nothing_around(_check: Check, subject: Subject) -> Subject:
+    """Parts that could hold others have no shape."""
+    moving = {joint.child for joint in subject.assembly.joints if joint.type is not JointType.FIXED}
+    last = next(name for name in reversed(subject.shaped) if name in moving)
+    return Subject(
+        changed(subject.assembly, [part if name == last else shaped_as(part, None) for name, part in subject.assembly.parts.items()])
+    )
+
+
+def _all_new(_check: Check, subject: Subject) -> Subject:
+    """Every part was made anew."""
+    return Subject(subject.assembly, before=_larger(_check, subject).assembly)
+
+
+def _with_mesh(subject: Subject, name: str, mesh: TriMesh) -> Subject:
+    parts = [shaped_as(part, mesh) if part.name == name else part for part in subject.assembly.parts.values()]
+    return Subject(changed(subject.assembly, parts))
+
+
+VARIANTS: dict[str, Callable[[Check, Subject], Subject]] = {
+    "parts": _bare,
+    "freedoms": _welded,
+    "joints": _other_joints,
+    "size": _larger,
+    "part_size": _larger,
+    "mass": _larger,
+    "solids": _open_mesh,
+    "clear_at_rest": _overlapping,
+    "joined": _adrift,
+    "clear_in_motion": _in_the_way,
+    "certified": _in_the_way,
+    "simulates": _in_the_way,
+    "loops": _unclosed,
+    "ratio": _uncoupled,
+    "rise": _short,
+    "gap": _thin,
+    "captive": _nothing_around,
+    "unchanged": _all_new,
+}
