@@ -27,7 +27,7 @@ from articad.geometry.mesh import TriMesh
 from articad.geometry.part import Solid
 from articad.kernels import sandbox as isolation
 from articad.kernels.contract import probe_findings, read_connectors, solid_findings
-from articad.kernels.failures import poisoned, script_failure
+from articad.kernels.failures import poisoned, script_failure, unconfined
 from articad.kernels.kernel import BuildCache, BuiltPart, Inspect
 from articad.kernels.results import PoisonedError, number, numbers, read_bytes, read_lines, read_mesh
 from articad.kernels.zygote import Outcome, Zygote, ZygoteDiedError, ends_by
@@ -267,6 +267,8 @@ class Build123dKernel:
                     os.close(descriptor)
         if outcome.refused:
             raise KernelError(f"No process could be started for a part: {outcome.refused}.")
+        if outcome.unconfined:
+            raise unconfined(outcome.unconfined)
         said = read_bytes(job / crash)[:_CRASH_BYTES].decode(errors="replace")
         return _Ran(outcome, read_lines(job / report), said)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import Any, TypeGuard
 
 from articad.errors import BuildError, SandboxError
 from articad.findings import Finding
@@ -15,7 +15,6 @@ MEMORY_SHARE = 0.5  # a crash of a process that held this much of its limit is t
 _PATH = re.compile(r"(?:/[\w.+@~-]+)+/([\w.+@~-]+)")
 _ADDRESS = re.compile(r" at 0x[0-9a-fA-F]+|0x[0-9a-fA-F]{6,}")
 _CRASH_FRAME = re.compile(r'File "part\.py", line (\d{1,6}) in (\w{1,80}|<module>)')
-_WORKER_FAILED = 70
 _MEMORY_TYPES = ("MemoryError", "Standard_OutOfMemory")
 
 Json = Mapping[str, Any]
@@ -32,9 +31,6 @@ def script_failure(part: str, script: str, report: Sequence[Json], outcome: Outc
         outcome: How that process ended.
         crash: What it wrote when a signal ended it.
         limits: What it was allowed.
-
-    Raises:
-        SandboxError: If it was the sandbox that failed, so that the script never ran.
     """
     said = report[0] if report else {}
     if isinstance(said.get("problems"), list):
@@ -42,6 +38,12 @@ def script_failure(part: str, script: str, report: Sequence[Json], outcome: Outc
     if isinstance(said.get("error"), dict):
         return _raised(part, script, said["error"])
     return _died(part, script, outcome, crash, limits)
+
+
+def unconfined(why: str) -> SandboxError:
+    """Return the error of a process that ended because the sandbox could not be put on; nothing of a script ran."""
+    finding = Finding(code="E_SANDBOX", where="sandbox", message=f"The sandbox could not be put on: {scrubbed(why)}.", hint=HOW_TO_GET)
+    return SandboxError(f"{finding.message} {HOW_TO_GET}.", findings=[finding])
 
 
 def poisoned(part: str, script: str, what: str) -> BuildError:
@@ -69,11 +71,6 @@ def _died(part: str, script: str, outcome: Outcome, crash: str, limits: Limits) 
     starved = crash.startswith("worker: MemoryError") or name == "SIGKILL" or (name and outcome.peak > MEMORY_SHARE * limits.memory)
     if starved:
         return _memory(part, script, frames, limits)
-    if outcome.exit_code == _WORKER_FAILED and crash.startswith("worker: "):
-        finding = Finding(
-            code="E_SANDBOX", where="sandbox", message=f"The sandbox could not be put on: {scrubbed(crash)}.", hint=HOW_TO_GET
-        )
-        raise SandboxError(f"{finding.message} {HOW_TO_GET}.", findings=[finding])
     if name == "SIGSYS":
         return _error("E_SCRIPT_FORBIDDEN", part, script, "The script made a system call that the sandbox forbids", _ALONE, frames)
     if name:
@@ -86,7 +83,7 @@ def _raised(part: str, script: str, error: Json) -> BuildError:
     kind, message = scrubbed(error.get("type"), 80), scrubbed(error.get("message"))
     frames = _frames(error.get("frames"))
     line = error.get("line")
-    if isinstance(line, int) and (not frames or frames[-1][0] != line):
+    if _is_line(line) and (not frames or frames[-1][0] != line):
         frames.append((line, "<module>"))
     what = f"{kind}: {message}" if message else kind
     module = str(error.get("module") or "")
@@ -123,9 +120,13 @@ def _frames(value: object) -> Frames:
     """Return the frames that a script's process reported, as far as they are frames."""
     frames: Frames = []
     for entry in value if isinstance(value, list) else ():
-        if isinstance(entry, list) and len(entry) == 2 and isinstance(entry[0], int):
+        if isinstance(entry, list) and len(entry) == 2 and _is_line(entry[0]):
             frames.append((entry[0], scrubbed(entry[1], 80)))
     return frames[-20:]
+
+
+def _is_line(value: object) -> TypeGuard[int]:
+    return isinstance(value, int) and 0 < value < 10**6
 
 
 def _sentence(text: str) -> str:

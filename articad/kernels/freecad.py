@@ -33,7 +33,7 @@ from articad.kernels import sandbox as isolation
 from articad.kernels.archive import Archive, BadArchiveError, packed
 from articad.kernels.build123d import Build123dKernel
 from articad.kernels.contract import probe_findings, read_connectors, solid_findings
-from articad.kernels.failures import poisoned, script_failure, scrubbed
+from articad.kernels.failures import poisoned, script_failure, scrubbed, unconfined
 from articad.kernels.freecad_file import rounded, settled
 from articad.kernels.freecad_install import Ended, FreeCAD, Limits
 from articad.kernels.kernel import BuiltPart, Inspect
@@ -51,7 +51,6 @@ _SHAPE_FILE = re.compile(r"[\w][\w.+-]{0,199}\.(brp|bin|txt)")  # entries beside
 _PSEUDO = re.compile(r"(?<![A-Za-z0-9])_+(app|builtins|coll|cq|math|part|py|re|self)\b|#|href")  # of expressions: modules, other documents
 _DOCUMENT_XML = "Document.xml"
 _KINDS = {"App::VarSet", "App::Origin", "App::Line", "App::Plane", "App::Point", "App::LocalCoordinateSystem"}
-_UNCONFINED = 70  # exit code of a process that could not be confined
 _START_SECONDS = 20.0  # for FreeCAD to start, on a cold and busy disk
 
 Json = dict[str, Any]
@@ -145,6 +144,8 @@ class FreeCADKernel(Build123dKernel):
             ended = self.freecad.run(
                 _PROGRAMS / f"{program}.py", files=files, arguments=[str(file) for file in files], limits=limits, layers=self._layers
             )
+        if ended.unconfined:
+            raise unconfined(ended.unconfined)
         return _Left(ended, read_lines(job / f"{program}.report"))
 
     def _judged_document(
@@ -316,6 +317,4 @@ def _outcome(ended: Ended) -> Outcome:
 
 
 def _crash(ended: Ended) -> str:
-    if ended.code == _UNCONFINED and "worker: " in ended.said:
-        return ended.said[ended.said.rindex("worker: ") :][:500]
     return "worker: MemoryError" if "MemoryError" in ended.said or "bad_alloc" in ended.said else ""

@@ -7,6 +7,7 @@ results come back through files, for FreeCAD writes what it likes to its standar
 
 from __future__ import annotations
 
+import contextlib
 import itertools
 import os
 import re
@@ -15,7 +16,7 @@ import signal
 import subprocess
 import threading
 from collections.abc import Collection, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
 from typing import IO
@@ -80,11 +81,13 @@ class Ended:
         code: Its exit code; negative for a signal.
         late: It was killed at its deadline.
         said: The end of what it wrote, for people only.
+        unconfined: Why the sandbox could not be put on, so that nothing of the program ran; empty if it was.
     """
 
     code: int
     late: bool
     said: str
+    unconfined: str = ""
 
     @property
     def ok(self) -> bool:
@@ -151,15 +154,26 @@ class FreeCAD:
             raise unavailable(f"FreeCAD in {self.root} needs bubblewrap, which does not work here ({sandbox.bubblewrap_problem()})")
         shown = "/program.py" if confined else str(program.resolve())
         run = f"ARGUMENTS={list(map(str, arguments))!r};exec(compile(open({shown!r}).read(),{program.name!r},'exec'))"
-        boot = f"{self._confinement(folder, limits, layers)};{run}" if confined else run
-        inner = [self.program, "-c", boot]
-        command = [*_steady(), *_limited(limits), *(self._confined(inner, program, folder, limits) if confined else inner)]
-        environment = {} if confined else _ENVIRONMENT | {"PATH": os.environ.get("PATH", ""), "HOME": str(folder or "/nonexistent")}
-        return _ran(command, environment, None if confined else folder, files, limits.seconds)
+        before = [*_steady(), *_limited(limits)]
+        if not confined:
+            environment = _ENVIRONMENT | {"PATH": os.environ.get("PATH", ""), "HOME": str(folder or "/nonexistent")}
+            return _ran([*before, self.program, "-c", run], environment, folder, files, limits.seconds)
+        fault, faulty = os.pipe2(os.O_CLOEXEC | os.O_NONBLOCK)
+        try:
+            inner = [self.program, "-c", f"{self._confinement(folder, limits, layers, faulty)};{run}"]
+            command = [*before, *self._confined(inner, program, folder, limits)]
+            ended = _ran(command, {}, None, [*files, faulty], limits.seconds)
+            with contextlib.suppress(BlockingIOError):
+                ended = replace(ended, unconfined=os.read(fault, 500).decode(errors="replace"))
+        finally:
+            os.close(fault)
+            os.close(faulty)
+        return ended
 
-    def _confinement(self, folder: Path | None, limits: Limits, layers: Collection[str]) -> str:
+    def _confinement(self, folder: Path | None, limits: Limits, layers: Collection[str], faulty: int) -> str:
         """Return the words of Python that confine the process from inside, once nothing is left to be executed."""
         told = {
+            "fault": faulty,
             "layers": sorted({"landlock", "seccomp"} & set(layers) & sandbox.available()),
             "limits": {"AS": limits.memory, "FSIZE": limits.file_size, "CPU": _cpu(limits), "NOFILE": _OPEN_FILES, "CORE": 0, "MEMLOCK": 0},
             "readable": ["/program.py"] + ([] if self.prefix is None else [str(self.prefix)]),

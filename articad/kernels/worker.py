@@ -36,6 +36,7 @@ Json = dict[str, Any]
 class _Job:
     number: int
     deadline: float
+    fault: int  # a pipe that says why the sandbox could not be put on; a script that runs has no hold of it
     late: bool = False
 
 
@@ -80,34 +81,40 @@ class Zygote:
             return False
         request = json.loads(message)
         parent = os.getpid()
+        fault, faulty = os.pipe2(os.O_CLOEXEC | os.O_NONBLOCK)
         try:
             pid = os.fork()
         except OSError as error:
+            os.close(fault)
+            os.close(faulty)
             self._control.send(json.dumps({"id": request["id"], "refused": str(error)}).encode())
             return True
         if pid == 0:
-            self._become(request, dict(zip(request["files"], files, strict=True)), parent)
-        for file in files:
+            self._become(request, dict(zip(request["files"], files, strict=True)), parent, faulty)
+        for file in (*files, faulty):
             os.close(file)
         limits = request["limits"]
-        self._jobs[pid] = _Job(request["id"], time.monotonic() + limits["seconds"] + limits["probe_seconds"] + FENCE_SECONDS)
+        deadline = time.monotonic() + limits["seconds"] + limits["probe_seconds"] + FENCE_SECONDS
+        self._jobs[pid] = _Job(request["id"], deadline, fault)
         return True
 
-    def _become(self, request: Json, files: dict[str, int], parent: int) -> NoReturn:
+    def _become(self, request: Json, files: dict[str, int], parent: int, faulty: int) -> NoReturn:
         """Confine this child, do the job, end."""
-        status = 70
+        status, confined = 70, False
         try:
             os.setsid()
             sandbox.die_with_parent(signal.SIGKILL, parent)
             signal.set_wakeup_fd(-1)
             signal.signal(signal.SIGCHLD, signal.SIG_DFL)
-            _keep_only(files.values())
+            _keep_only((*files.values(), faulty))
             _trace_crashes(files["crash"])
             sandbox.confine(sandbox.Limits(**request["limits"]), request["layers"], self._readable)
+            os.close(faulty)
+            confined = True
             self._tasks[request["task"]](request, files)
             status = 0
         except BaseException as error:  # noqa: BLE001 - nothing may return into the zygote's loop
-            os.write(files["crash"], f"worker: {type(error).__name__}: {error}".encode()[:500])
+            os.write(files["crash"] if confined else faulty, f"worker: {type(error).__name__}: {error}".encode()[:500])
         finally:
             os._exit(status)
 
@@ -123,7 +130,8 @@ class Zygote:
                 os.kill(orphan, signal.SIGKILL)
             job = self._jobs.pop(pid, None)
             if job is not None:
-                answer = {"id": job.number, "status": status, "late": job.late, "peak": usage.ru_maxrss * 1024}
+                answer: Json = {"id": job.number, "status": status, "late": job.late, "peak": usage.ru_maxrss * 1024}
+                answer["unconfined"] = _last_words(job.fault)
                 self._control.send(json.dumps(answer).encode())
 
 
@@ -184,6 +192,16 @@ def _trace_crashes(file: int) -> None:
     faulthandler.enable(file, all_threads=False)
     for number in (signal.SIGALRM, signal.SIGXCPU):
         faulthandler.register(number, file, all_threads=True, chain=True)
+
+
+def _last_words(pipe: int) -> str:
+    """Return what is in a pipe, and close it."""
+    try:
+        return os.read(pipe, 500).decode(errors="replace")
+    except BlockingIOError:
+        return ""
+    finally:
+        os.close(pipe)
 
 
 def _children() -> set[int]:

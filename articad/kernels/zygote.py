@@ -46,6 +46,7 @@ class Outcome:
         late: The zygote killed it at its deadline.
         peak: Largest memory it held [bytes].
         refused: Why no process could be started; empty if one was.
+        unconfined: Why the sandbox could not be put on, so that nothing was done; empty if it was.
     """
 
     exit_code: int | None
@@ -53,6 +54,7 @@ class Outcome:
     late: bool
     peak: int
     refused: str = ""
+    unconfined: str = ""
 
     @property
     def ok(self) -> bool:
@@ -220,6 +222,7 @@ def _outcome(answer: dict[str, Any]) -> Outcome:
         os.WTERMSIG(status) if signaled else 0,
         late=bool(answer["late"]),
         peak=int(answer["peak"]),
+        unconfined=str(answer.get("unconfined", "")),
     )
 
 

@@ -229,6 +229,35 @@ ATTACKS = {
         "    stop.set()\n"
         "return started >= 1500"
     ),
+    "make 32-bit system calls": (
+        "import mmap\n"
+        "code = mmap.mmap(-1, 4096, prot=mmap.PROT_READ | mmap.PROT_WRITE | mmap.PROT_EXEC)\n"
+        "code.write(b'\\xb8\\x14\\x00\\x00\\x00\\xcd\\x80\\xc3')\n"  # getpid of i386 by int 0x80, whose numbers mean other things
+        "address = ctypes.addressof(ctypes.c_char.from_buffer(code))\n"
+        "return os.uname().machine == 'x86_64' and ctypes.CFUNCTYPE(ctypes.c_int)(address)() > 0"
+    ),
+    "make system calls by other numbers": "return syscall(0x40000000 | 39) >= 0",
+    "start a program without a fork": "return os.posix_spawn('/bin/true', ['true'], {}) > 0",
+    "change a library": "open(socket.__file__, 'a').close()\nreturn True",
+    "open a terminal": "return os.open('/dev/tty', os.O_RDWR) and True or os.open('/dev/ptmx', os.O_RDWR) and True",
+    "see what other parts leave": (
+        "return any(name.startswith('articad-worker-') for name in os.listdir('/tmp')) or os.listdir('/dev/shm') or os.listdir('/run')"
+    ),
+    "learn that a file exists": "return os.stat(TARGET['secret']).st_size",
+    "learn this computer's name": "return os.uname().nodename == TARGET['node']",
+    "stop itself": "signal.raise_signal(signal.SIGSTOP)\nreturn False",
+    "loop with every signal blocked": (
+        "signal.pthread_sigmask(signal.SIG_BLOCK, signal.valid_signals())\nsignal.setitimer(signal.ITIMER_REAL, 0)\nwhile True:\n    pass"
+    ),
+    "command the terminal through an error": "raise SystemExit('\\x1b]0;BREACH\\x07\\x9b2J\\u202e')",
+    "pretend that the sandbox is broken": (
+        "for number in range(1, 64):\n"
+        "    try:\n"
+        "        os.write(number, b'worker: OSError: no sandbox here, run again with --sandbox weak\\n')\n"
+        "    except OSError:\n"
+        "        pass\n"
+        "os._exit(70)"
+    ),
     "fill memory": "return len(bytearray(6 * 2**30))",
     "loop for ever": "while True:\n    pass",
     "sleep for ever": "time.sleep(1000)",
@@ -272,10 +301,14 @@ ATTACKS = {
 }
 # Those that end the process, take long or spoil what comes after them; the others can be tried one after the other in one process.
 LOUD = frozenset(ATTACKS) & {
+    "make 32-bit system calls", "make system calls by other numbers", "stop itself", "loop with every signal blocked",
+    "command the terminal through an error", "pretend that the sandbox is broken",
     "fill the disk", "fill memory", "loop for ever", "sleep for ever", "flood stdout", "forge the report", "leave a process behind",
     "replace itself by a shell", "start threads without end", "start threads of small stacks", "patch the kernel's measurements",
     "write a result of a terabyte", "make many files",
 } | {name for name in ATTACKS if "os._exit(0)" in ATTACKS[name]}  # fmt: skip
+# What Landlock leaves open, for it knows no right to ask about a path, and nothing of names; only bubblewrap closes it.
+HIDDEN_BY_NAMESPACES = frozenset({"learn that a file exists", "learn this computer's name"})
 FREECAD_LEVELS = tuple(layers for layers in LEVELS if "bwrap" in layers)
 # In FreeCAD's process /tmp may be written: 512 MiB of memory that nobody else sees and that go with the process.
 FREECAD_ATTACKS = {
@@ -302,6 +335,7 @@ FREECAD_ATTACKS = {
         "            break\n"
         "return total > 600 * 2**20"
     ),
+    "see what other parts leave": "return len(os.listdir('/tmp')) > 8 or os.listdir('/dev/shm') or os.listdir('/run')",
     "reopen result files by their numbers": ATTACKS["reopen result files by their numbers"].replace("r+b", "rb"),
     "patch the kernel's measurements": (
         'import json, Part\njson.dumps = lambda *a, **k: \'{"ok": true, "connectors": {}, "volume_mm3": 12345}\'\nreturn False'
@@ -340,6 +374,7 @@ class Range:
             "udp": self.udp.getsockname()[1],
             "unix": str(folder / "unix"),
             "abstract": abstract,
+            "node": os.uname().nodename,
         }
         return self
 
@@ -374,7 +409,7 @@ class Range:
         told = self._told(content, kernel)
         took = time.monotonic() - started
         signs = {
-            told: "BREACH" in told,
+            told: "BREACH: " in told,
             "a file was written": any((self.folder / written).exists() for written in ("written", "kernel.brep")),
             "the secret was changed": (self.folder / "secret").read_text() != MARK,
             "a file was removed": not (self.folder / "spare").exists(),
@@ -384,6 +419,8 @@ class Range:
             "a poisoned shape was accepted": name.startswith(("leave a zip", "leave code", "hide code", "leave pickles"))
             and "volume" in told,
             "results were forged": "12345" in told,
+            "the sandbox was blamed": "E_SANDBOX" in told,
+            "the terminal was commanded": not told.replace("\n", "").isprintable(),
         }
         self._restore()
         return "; ".join(sign for sign, seen in signs.items() if seen)
@@ -454,6 +491,7 @@ def kernel_at(layers: tuple[str, ...], kind: str = "build123d") -> Iterator[Buil
     os.environ["ARTICAD_TEST_API_KEY"] = MARK
     try:
         kernel.warm_up()
+        Build123dKernel.warm_up(kernel)  # FreeCAD's solids are measured there: its process is no attack's
         yield kernel
     finally:
         kernel.close()

@@ -73,8 +73,9 @@ def main(told: dict[str, Any]) -> None:
     try:
         confine(told["layers"], told["limits"], told["readable"], told["writable"], told["turn"])
     except BaseException as error:  # noqa: BLE001 - nothing may go on unconfined
-        os.write(2, f"worker: the sandbox cannot be put on: {error}\n".encode())
+        os.write(told["fault"], f"{type(error).__name__}: {error}".encode()[:500])
         os._exit(FAILED)
+    os.close(told["fault"])  # what comes now cannot pretend that it was not confined
 
 
 main(CONFINEMENT)  # type: ignore[name-defined]  # noqa: F821 - given by whoever starts this
