@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
@@ -11,7 +12,7 @@ from articad.assembly import Assembly
 from articad.bench.checks import Check, Joints, Ratio
 from articad.bench.subject import Subject
 from articad.connectors import SE3
-from articad.geometry import MassProperties, Part, TriMesh, merged
+from articad.geometry import MassProperties, Part, TriMesh, box, merged
 from articad.geometry.part import Solid
 from articad.kinematics.joints import Joint, JointLimits, JointType
 
@@ -103,12 +104,24 @@ def _long(joint: Joint, factor: float) -> tuple[float, ...]:
     return tuple(value * factor if unit == "mm" else value for value, unit in zip(joint.rest, joint.type.units, strict=True))
 
 
-def _open_mesh(_check: Check, subject: Subject) -> Subject:
-    """A part lacks a triangle."""
+def _two_solids(_check: Check, subject: Subject) -> Subject:
+    """A part comes in two pieces."""
     name = subject.shaped[-1]
     mesh = subject.assembly.parts[name].mesh
     assert mesh is not None
-    return _with_mesh(subject, name, TriMesh(mesh.vertices, mesh.triangles[1:]))
+    crumb = box(1, 1, 1).transformed(SE3.from_translation(mesh.bounds[1] + 5))
+    return _with_mesh(subject, name, merged([mesh, crumb]))
+
+
+def _endless(_check: Check, subject: Subject) -> Subject:
+    """What drives is said to turn for ever, where the linkage does not let it."""
+    drivers = {driver.joint for driver in subject.assembly.drivers}
+
+    def turning(joint: Joint) -> Joint:
+        limits = replace(joint.limits, lower=tuple(-math.inf for _ in joint.rest), upper=tuple(math.inf for _ in joint.rest))
+        return replace(joint, limits=limits) if joint.name in drivers else joint
+
+    return Subject(changed(subject.assembly, joints=[turning(joint) for joint in subject.assembly.joints]))
 
 
 def _overlapping(_check: Check, subject: Subject) -> Subject:
@@ -214,12 +227,12 @@ VARIANTS: dict[str, Callable[[Check, Subject], Subject]] = {
     "size": _larger,
     "part_size": _larger,
     "mass": _larger,
-    "solids": _open_mesh,
+    "solids": _two_solids,
     "clear_at_rest": _overlapping,
     "joined": _adrift,
     "clear_in_motion": _in_the_way,
     "certified": _in_the_way,
-    "simulates": _in_the_way,
+    "simulates": _endless,
     "loops": _unclosed,
     "ratio": _uncoupled,
     "rise": _short,
