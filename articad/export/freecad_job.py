@@ -234,7 +234,7 @@ class Job:
         return {
             "name": joint.name,
             "object": self.names.claim(joint.name),
-            "label": joint.name,
+            "label": self._shown(joint.name),
             "type": _TYPES[joint.type],
             "active": True,
             "parent": joint.parent,
@@ -247,6 +247,10 @@ class Job:
             "distances": {"Distance": 0.0} if joint.type is JointType.PLANAR else {},
             "expressions": turned,
         }
+
+    def _shown(self, name: str) -> str:
+        """Return the label of a joint: FreeCAD would number one that a part bears already."""
+        return f"{name} joint" if name in self.assembly.parts else name
 
     def _limit_expressions(self, joint: Joint) -> dict[str, str]:
         """Return the expressions of a joint's limits, where the plan gives them as such."""
@@ -280,7 +284,7 @@ class Job:
             yield {
                 "name": coupling.name,
                 "object": self.names.claim(coupling.name),
-                "label": coupling.name,
+                "label": self._shown(coupling.name),
                 "type": kind,
                 "active": False,  # switched on, its references would be solved as what they are not
                 "parent": a.child,

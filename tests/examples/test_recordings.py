@@ -9,17 +9,22 @@ import pytest
 
 from articad.agents.pipeline import replay
 from articad.run import Run
+from tests.freecad.opened import needs_freecad
 
 RECORDINGS = sorted(path.parent for path in (Path(__file__).resolve().parents[2] / "examples").glob("*/recording/request.json"))
+OF_FREECAD = [path for path in RECORDINGS if '"kernel": "freecad"' in (path / "request.json").read_text()]
+MADE = [pytest.param(path, marks=[pytest.mark.freecad, needs_freecad] if path in OF_FREECAD else []) for path in RECORDINGS]
 
 pytestmark = pytest.mark.slow
 
 
 def test_there_are_recordings() -> None:
     assert RECORDINGS
+    assert OF_FREECAD
+    assert len(OF_FREECAD) < len(RECORDINGS)
 
 
-@pytest.mark.parametrize("recording", RECORDINGS, ids=lambda path: path.parent.name)
+@pytest.mark.parametrize("recording", MADE, ids=lambda path: path.parent.name)
 def test_a_recorded_run_is_made_again_byte_for_byte(recording: Path, tmp_path: Path) -> None:
     again = replay(recording, out=tmp_path / "run")
 
