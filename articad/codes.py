@@ -477,6 +477,16 @@ CODES: dict[str, Code] = {
     "I_IMPORT_FUSED": Code(
         "import", None, "A chain of joints over bare links is read as one joint.", "Read with fuse off to keep them apart."
     ),
+    "I_ADOPT_MERGED": Code(
+        "import", None, "A part without shape is fixed to another, and is part of it in the adopted plan.", "Nothing, if it is a frame."
+    ),
+    "I_ADOPT_FITS": Code("import", "design", "Joints of an adopted file have no fits.", "Declare the play of each joint in the plan."),
+    "W_ADOPT_SHAPE": Code(
+        "import", "code", "An adopted part's script differs from its mesh.", "Draw the part anew in its script, after the mesh."
+    ),
+    "W_ADOPT_PLACEHOLDER": Code(
+        "import", "code", "An adopted part has no shape; a small ball stands for it.", "Draw the part in its script."
+    ),
     "E_UNSAFE_PATH": Code("import", None, "A file names a path outside its own folder.", "Keep meshes beside the file."),
     # --- audit and simulation of files that anyone made
     "E_AUDIT_NUMBER": Code(

@@ -21,6 +21,7 @@ from articad.export.usd import write_usd
 from articad.findings import Finding
 from articad.importers.freecad import read_freecad
 from articad.importers.mjcf import read_mjcf
+from articad.importers.step import read_step
 from articad.importers.urdf import read_urdf
 from articad.plan.schema import AssemblyPlan
 
@@ -55,6 +56,8 @@ READERS: Final[Mapping[str, Callable[..., Assembly]]] = {
     ".xml": read_mjcf,
     ".mjcf": read_mjcf,
     ".fcstd": read_freecad,
+    ".step": read_step,
+    ".stp": read_step,
     ".json": read_plan,
 }
 """Reader of each file name's ending."""
@@ -79,7 +82,7 @@ def read(path: str | Path, *, root: str | Path | None = None) -> Assembly:
     """Read an assembly from a file in any format that articad reads.
 
     Args:
-        path: A URDF, MJCF or FreeCAD file, or a plan with its part scripts.
+        path: A URDF, MJCF, FreeCAD or STEP file, or a plan with its part scripts.
         root: Folder that meshes may be read from; the file's own by default.
 
     Raises:

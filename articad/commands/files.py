@@ -1,4 +1,4 @@
-"""Write a run in other formats; convert files."""
+"""Write a run in other formats; convert files; adopt what others made."""
 
 from __future__ import annotations
 
@@ -44,9 +44,9 @@ def _export(options: argparse.Namespace, terminal: Terminal) -> Report:
 
 @command(
     "convert",
-    "Convert a URDF or MJCF file into another format.",
-    argument("source", metavar="IN", help="a .urdf or .xml file"),
-    argument("target", metavar="OUT", help="its ending says the format: .urdf .xml .sdf .usda .step .glb .3mf"),
+    "Convert a file into another format.",
+    argument("source", metavar="IN", help="a .urdf, .xml (MJCF), .FCStd or .step file, or a plan.json"),
+    argument("target", metavar="OUT", help="its ending says the format: .urdf .xml .FCStd .json .sdf .usda .step .glb .3mf"),
     argument("--strict", action="store_true", help="refuse what the format cannot hold, instead of reporting it as lost"),
 )
 def _convert(options: argparse.Namespace, terminal: Terminal) -> Report:
@@ -63,3 +63,53 @@ def _convert(options: argparse.Namespace, terminal: Terminal) -> Report:
     terminal.findings(assembly.findings + bundle.findings)
     summaries.print_exports({FORMAT_OF[target.suffix.lower()]: report}, terminal)
     return report | {"findings": [finding.to_json() for finding in assembly.findings + bundle.findings]}
+
+
+@command(
+    "adopt",
+    "Make a plan folder, which builds at once, of a file that somebody else made.",
+    argument("source", metavar="FILE", help="a .urdf, .xml (MJCF), .FCStd or .step file"),
+    argument("--out", metavar="DIR", required=True, help="the folder: plan.json, parts/*.py, meshes/*.stl; it must be empty or new"),
+    argument("--root", metavar="DIR", default=None, help="folder that meshes may be read from (the file's own)"),
+    argument("--script", metavar="FILE", default=None, help="what made the file, to keep it beside the plan"),
+    argument("--no-audit", dest="audit", action="store_false", help="do not look for what is wrong with the file"),
+)
+def _adopt(options: argparse.Namespace, terminal: Terminal) -> Report:
+    import json
+    import shutil
+
+    from articad import summaries
+    from articad.adopt import adopt
+    from articad.errors import WriteError
+
+    source, folder = Path(options.source), Path(options.out)
+    if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
+        raise WriteError(f"{folder} is not empty.", path=str(folder))
+    if options.script is not None and not Path(options.script).is_file():
+        raise WriteError(f"There is no file {options.script}.", path=options.script)
+    with terminal.progress("Reading"):
+        assembly, bundle = adopt(source, root=options.root)
+    files = bundle.write(folder)
+    if options.script is not None:
+        (folder / "source").mkdir()
+        files.append(Path(shutil.copy(options.script, folder / "source")))
+    terminal.findings(bundle.findings)
+    summaries.print_exports({"plan": bundle.to_json() | {"main": str(files[0])}}, terminal)
+    report = bundle.to_json() | {"schema": "articad.adopt/1", "folder": str(folder), "files": [str(file) for file in files]}
+    report |= {"parts": len(assembly.parts), "joints": len(assembly.joints), "freedoms": assembly.mechanism.mobility}
+    if options.audit:
+        found = _audit_of(source, options.root, terminal)
+        (folder / "audit.json").write_text(json.dumps(found, indent=1), encoding="utf-8")
+        report |= {"audit": found}
+    terminal.say(f"Next: articad build {folder}")
+    return report
+
+
+def _audit_of(source: Path, root: str | None, terminal: Terminal) -> Report:
+    """Audit the file that was adopted; what is wrong with it does not keep it from being adopted."""
+    from articad.audit.examine import Choices, audit
+
+    found = audit(source, Choices(root=None if root is None else Path(root)))
+    terminal.say(f"What is wrong with {source.name}: {'nothing found' if found.ok else ''}")
+    terminal.findings(found.findings)
+    return found.to_json()
