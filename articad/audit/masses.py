@@ -46,10 +46,11 @@ def _without_mass(declared: Declared, *, shaped: bool) -> Iterator[Finding]:
     names = tuple(next((name for name in group if links[name].shapes), group[0]) for group in groups)
     moving = len(declared.moving_groups)
     if shaped:
-        code, what = "E_AUDIT_NO_INERTIA", "have shapes but no <inertial>"
+        code, what = "E_AUDIT_NO_INERTIA", "has shapes but no <inertial>" if len(groups) == 1 else "have shapes but no <inertial>"
         hint = "Give each a mass and an inertia; --fix computes them from closed meshes and --density."
     else:
-        code, what = "E_AUDIT_MASSLESS", "carry joints but have neither mass nor shape"
+        code, what = "E_AUDIT_MASSLESS", "carries joints but has" if len(groups) == 1 else "carry joints but have"
+        what += " neither mass nor shape"
         hint = "Give each a small mass and inertia, or make the chain one joint; simulators refuse massless bodies that move."
     yield Finding(
         code=code,

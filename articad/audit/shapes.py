@@ -72,7 +72,7 @@ def no_collision(declared: Declared) -> Iterator[Finding]:
             code="W_AUDIT_NO_COLLISION",
             where=bare[0].where,
             parts=names,
-            message=f"{len(bare)} of {counted(len(drawn), 'drawn link')} have no collision shape, so that everything passes through them: {listed(names)}.",
+            message=f"{len(bare)} of {counted(len(drawn), 'drawn link')} {'has' if len(bare) == 1 else 'have'} no collision shape, so that everything passes through them: {listed(names)}.",
             hint="Collide with the same mesh or a simpler one; --fix adds the closed visual meshes.",
             value=len(bare),
             limit=0,
