@@ -66,6 +66,7 @@ _VIEWS, _MOTION, _PAGE = "views", "motion", "report.html"
 _CERTIFICATE, _CERTIFIED = "certificate.json", "certificate"
 _TEMPORARY = re.compile(r"\..+\.tmp-[0-9a-f]{8}$")
 
+_IMAGE_FILE = re.compile(rf"{_IMAGES}/[0-9]{{1,6}}\.(png|jpg|gif|webp)")
 _SLUG_LENGTH = 40  # characters of the prompt in a run's name: enough to recognise it in a listing
 _NAME_TRIES = 20  # random names to try before giving up; two equal ones are a 1 in 65536 chance
 _IMAGE_LIMIT = 20 * 2**20  # bytes; no provider takes larger ones
@@ -498,8 +499,10 @@ class Run:
     def events(self) -> Iterator[Json]:
         """Yield the trace's events; a line that a killed process left torn is skipped."""
         for line in (self._read(_TRACE) or b"").decode(errors="replace").splitlines():
-            with contextlib.suppress(ValueError):
-                yield json.loads(line)
+            with contextlib.suppress(ValueError, RecursionError):
+                event = json.loads(line)
+                if isinstance(event, dict):
+                    yield event
 
     def hashes(self) -> dict[str, str]:
         """Return the sha256 of every file by its path in the run, but for the trace, and pictures and page, which are drawn from the rest."""
@@ -522,8 +525,8 @@ class Run:
         if content is None:
             return None
         try:
-            value = json.loads(content)
-        except ValueError as error:
+            value = json.loads(content, parse_constant=_no_number)
+        except (ValueError, RecursionError) as error:
             raise _unreadable(str(self.path / name), f"{self.path / name} is not JSON: {error}.") from error
         if not isinstance(value, dict):
             raise _unreadable(str(self.path / name), f"{self.path / name} is not a JSON object.")
@@ -625,8 +628,18 @@ def _read_request(path: Path) -> RunRequest:
     stored = run._read_json(_REQUEST)  # noqa: SLF001 - the same class, before it is whole
     if stored is None or stored.get("schema") != REQUEST_SCHEMA:
         raise _refused(path, f"{path} is not a run: it has no {_REQUEST} of the form {REQUEST_SCHEMA}.", "Name a run directory.")
-    images = tuple(UserImage.read(path / image["file"], image.get("part")) for image in stored["images"])
-    return RunRequest(prompt=stored["prompt"], images=images, options=stored["options"])
+    try:
+        prompt, options, named = stored["prompt"], stored["options"], [(image["file"], image.get("part")) for image in stored["images"]]
+        whole = isinstance(prompt, str) and isinstance(options, dict) and all(isinstance(name, str) for name, _ in named)
+    except (KeyError, TypeError, AttributeError):
+        whole = False
+    if not whole:
+        raise _refused(path, f"{path / _REQUEST} is incomplete.", "Name another run directory.")
+    for name, _ in named:  # a run may be a stranger's, and its pictures are sent to a model
+        if not _IMAGE_FILE.fullmatch(name) or (path / name).is_symlink() or (path / _IMAGES).is_symlink():
+            raise _refused(path, f"{path / _REQUEST} names the picture {name[:100]!r}, which is none of the run.", "Do not use this run.")
+    images = tuple(UserImage.read(path / name, None if part is None else str(part)) for name, part in named)
+    return RunRequest(prompt=prompt, images=images, options=options)
 
 
 def _locked(path: Path) -> int:
@@ -658,6 +671,10 @@ def _writing(path: Path) -> Iterator[None]:
 
 def _refused(path: Path, message: str, hint: str) -> RunError:
     return RunError(f"{message} {hint}", path=str(path), findings=[Finding(code="E_RUN", where=str(path), message=message, hint=hint)])
+
+
+def _no_number(constant: str) -> None:
+    raise ValueError(f"{constant} is no number of JSON")
 
 
 def _unreadable(name: str, message: str) -> ReadError:

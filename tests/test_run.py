@@ -278,3 +278,48 @@ def test_an_atomic_write_replaces(tmp_path: Path) -> None:
     write_atomically(tmp_path / "deep/file", b"1")
     write_atomically(tmp_path / "deep/file", b"2")
     assert (tmp_path / "deep/file").read_bytes() == b"2"
+
+
+def stored_request(folder: Path, **changed: object) -> Path:
+    with Run.create(RunRequest(prompt="a box", options={"rounds": 1}), out=folder) as run:
+        path = run.path / "request.json"
+    path.write_text(json.dumps(json.loads(path.read_text()) | changed))
+    return folder
+
+
+@pytest.mark.parametrize("name", ["../secret.png", "/etc/secret.png", "images/../../secret.png", "images/1.png/../1.png", "secret.png"])
+def test_a_strangers_run_cannot_have_other_pictures_sent_to_a_model(tmp_path: Path, name: str) -> None:
+    (tmp_path / "secret.png").write_bytes(b"\x89PNG\r\n\x1a\n secret")
+    folder = stored_request(tmp_path / "run", images=[{"file": name, "sha256": ""}])
+    (folder / "secret.png").write_bytes(b"\x89PNG\r\n\x1a\n secret")
+
+    with pytest.raises(RunError, match="none of the run"):
+        Run.view(folder)
+
+
+def test_a_picture_that_is_a_link_is_not_followed(tmp_path: Path) -> None:
+    (tmp_path / "secret.png").write_bytes(b"\x89PNG\r\n\x1a\n secret")
+    folder = stored_request(tmp_path / "run", images=[{"file": "images/1.png", "sha256": ""}])
+    (folder / "images").mkdir()
+    (folder / "images" / "1.png").symlink_to(tmp_path / "secret.png")
+
+    with pytest.raises(RunError, match="none of the run"):
+        Run.view(folder)
+
+
+@pytest.mark.parametrize("changed", [{"images": 3}, {"images": [3]}, {"images": [{}]}, {"prompt": None}, {"options": []}])
+def test_an_incomplete_request_is_an_error_of_ours(tmp_path: Path, changed: dict[str, object]) -> None:
+    with pytest.raises(RunError, match="incomplete"):
+        Run.view(stored_request(tmp_path / "run", **changed))
+
+
+@pytest.mark.parametrize("content", [b"[" * 100_000, b'{"a": NaN}', b"\xff", b"3"])
+def test_a_spoiled_file_of_a_run_is_an_error_of_ours(tmp_path: Path, content: bytes) -> None:
+    folder = stored_request(tmp_path / "run")
+    (folder / "checks.json").write_bytes(content)
+    (folder / "trace.jsonl").write_bytes(b"3\n" + content + b'\n{"t": 1}\n')
+
+    run = Run.view(folder)
+    with pytest.raises(ReadError):
+        run.checks()
+    assert [event["t"] for event in run.events() if "t" in event] == [1]

@@ -28,6 +28,8 @@ FIRST_WAIT_S: Final = 1.0  # doubled after each try: 31 s in all
 LONGEST_WAIT_S: Final = 60.0
 _RETRIED_STATUS: Final = frozenset({408, 409, 425, 429, 500, 502, 503, 504, 529})
 _LOOKING: Final = frozenset({"look", "observe"})  # roles that are nothing without sight
+_LONGEST_ANSWER: Final = 4_000_000  # characters; the plan of a thousand parts has a tenth of that
+_LONGEST_MARK: Final = 200  # characters
 _SHOWN_CHARACTERS: Final = 300  # of a provider's own message
 _LOCAL_HOSTS: Final = frozenset({"localhost", "127.0.0.1", "::1", "0.0.0.0", "host.docker.internal"})  # noqa: S104 - compared, never bound
 _SECRET_NAME = re.compile(r"KEY|TOKEN|SECRET|PASSWORD|CREDENTIAL", re.IGNORECASE)
@@ -190,11 +192,14 @@ class LiteLLM:
         text = response.choices[0].message.content
         if not isinstance(text, str) or not text.strip():
             raise _EmptyAnswerError
+        if len(text) > _LONGEST_ANSWER:
+            message = f"{model} answered with {len(text)} characters; {_LONGEST_ANSWER} are the most that are read."
+            raise transport_error("E_TRANSPORT", message, "Name another model; no plan and no script is as long.")
         used = getattr(response, "usage", None)
-        usage = Usage(int(getattr(used, "prompt_tokens", 0) or 0), int(getattr(used, "completion_tokens", 0) or 0))
+        usage = Usage(*(max(int(getattr(used, name, 0) or 0), 0) for name in ("prompt_tokens", "completion_tokens")))
         marks = (getattr(response, "system_fingerprint", None), getattr(response, "model", None))  # the second says which version it was
         fingerprint = next((mark for mark in marks if isinstance(mark, str) and mark), None)
-        return Reply(text, model, usage, self._cost(response, model), fingerprint)
+        return Reply(text, model, usage, self._cost(response, model), fingerprint and fingerprint[:_LONGEST_MARK])
 
     def _cost(self, response: Any, model: str) -> float | None:
         if self._api_base is not None:

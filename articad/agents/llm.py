@@ -10,6 +10,7 @@ from __future__ import annotations
 import difflib
 import fnmatch
 import hashlib
+import math
 import threading
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -20,7 +21,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any, Final, Literal, Protocol
 
-from articad.errors import BudgetError, ReplayMissError, TransportError
+from articad.errors import BudgetError, ReadError, ReplayMissError, TransportError
 from articad.findings import Finding, Findings
 from articad.run import Run, canonical_json, digest
 
@@ -177,8 +178,22 @@ class Reply:
 
     @classmethod
     def from_json(cls, stored: Mapping[str, Any]) -> Reply:
-        """Return the reply of a record."""
-        return cls(stored["text"], stored["model"], Usage(**stored["usage"]), stored["cost"], stored["fingerprint"])
+        """Return the reply of a record.
+
+        Raises:
+            ReadError: If it is of another form.
+        """
+        try:
+            used, cost = stored["usage"], stored["cost"]
+            usage = Usage(_count(used["input_tokens"]), _count(used["output_tokens"]))
+            texts = [stored["text"], stored["model"], stored["fingerprint"] or ""]
+            if all(isinstance(text, str) for text in texts) and (cost is None or isinstance(cost, int | float)):
+                return cls(stored["text"], stored["model"], usage, cost, stored["fingerprint"])
+        except (KeyError, TypeError, ValueError):
+            pass
+        message = "A recorded reply is incomplete."
+        finding = Finding(code="E_READ", where="llm", message=message, hint="Delete its file; the question is then asked again.")
+        raise ReadError(message, path="llm", findings=[finding])
 
 
 class LLM(Protocol):
@@ -283,8 +298,8 @@ class Recorded:
     def complete(self, request: Request) -> Reply:
         """Answer from the run if it has this very request, else ask and record."""
         stored = self._run.reply(request.step)
-        if stored is not None and stored["key"] == request.key:
-            return Reply.from_json(stored["reply"])
+        if stored is not None and stored.get("key") == request.key:
+            return Reply.from_json(stored.get("reply") or {})
         began = time.monotonic()
         reply = self._llm.complete(request)
         self._run.save_reply(request.step, {"schema": RECORD_SCHEMA, "key": request.key} | request.to_json() | {"reply": reply.to_json()})
@@ -328,7 +343,7 @@ class Replay:
         stored = self.run.reply(request.step)
         if stored is None:
             raise _miss("The recording", request, self.run.replies())
-        if stored["key"] != request.key:
+        if stored.get("key") != request.key:
             where = _first_difference(stored, request)
             message = f"The prompt of {request.step} is not the recorded one: {where}."
             if self._strict:
@@ -343,7 +358,7 @@ class Replay:
                         hint="The recorded reply was used; record again, or replay strictly to refuse.",
                     )
                 )
-        return Reply.from_json(stored["reply"])
+        return Reply.from_json(stored.get("reply") or {})
 
 
 class Budget:
@@ -392,11 +407,12 @@ class Budget:
             self.calls += 1
         reply = self._llm.complete(request)
         with self._guard:
-            self.tokens += reply.usage.total
-            if reply.cost is None:
+            # what an endpoint says of itself may be wrong, but gives nothing back
+            self.tokens += max(reply.usage.input_tokens, 0) + max(reply.usage.output_tokens, 0)
+            if reply.cost is None or not math.isfinite(reply.cost):
                 self.cost_unknown_of = reply.model
             else:
-                self.cost += reply.cost
+                self.cost += max(reply.cost, 0.0)
         return reply
 
     def _spent(self) -> str | None:
@@ -417,6 +433,12 @@ class Budget:
         return None
 
 
+def _count(value: object) -> int:
+    if isinstance(value, int) and not isinstance(value, bool):
+        return value
+    raise ValueError(value)
+
+
 def _miss(who: str, request: Request, known: Mapping[str, Any] | Sequence[str]) -> ReplayMissError:
     steps = sorted(known)
     nearest = next(iter(difflib.get_close_matches(request.step, steps, n=1, cutoff=0.3)), None)
@@ -429,9 +451,10 @@ def _first_difference(stored: Mapping[str, Any], request: Request) -> str:
     """Say where a prompt leaves the recorded one."""
     now = request.to_json()
     for name in ("role", "response_schema"):
-        if canonical_json(stored[name]) != canonical_json(now[name]):
+        if canonical_json(stored.get(name)) != canonical_json(now[name]):
             return f"its {name.replace('_', ' ')} differs"
-    if len(stored["messages"]) != len(now["messages"]):
-        return f"it has {len(now['messages'])} messages, not {len(stored['messages'])}"
-    number = next((n for n, (a, b) in enumerate(zip(stored["messages"], now["messages"], strict=True), 1) if a != b), 0)
+    before = stored.get("messages")
+    if not isinstance(before, list) or len(before) != len(now["messages"]):
+        return f"it has {len(now['messages'])} messages, not {len(before) if isinstance(before, list) else 0}"
+    number = next((n for n, (a, b) in enumerate(zip(before, now["messages"], strict=True), 1) if a != b), 0)
     return f"message {number} differs"

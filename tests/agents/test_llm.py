@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from articad.agents.llm import Budget, Image, Recorded, Replay, Reply, Request, Scripted, Usage, assistant, system, user
-from articad.errors import BudgetError, ReplayMissError
+from articad.errors import BudgetError, ReadError, ReplayMissError
 from articad.run import Run, RunRequest, canonical_json
 
 
@@ -142,3 +142,42 @@ def test_without_limits_a_budget_only_counts() -> None:
     for _ in range(4):
         budget.complete(request())
     assert (budget.calls, budget.tokens, budget.cost) == (4, 12, 1.0)
+
+
+@pytest.mark.parametrize("usage", [Usage(-(10**9), 4), Usage(-6, 4)])
+def test_an_endpoint_that_gives_tokens_back_is_not_believed(usage: Usage) -> None:
+    budget = Budget(Scripted({"*": [Reply("", "m", Usage(3, 3)), Reply("", "m", usage)]}), tokens=10)
+    budget.complete(request())
+    budget.complete(request())
+
+    with pytest.raises(BudgetError, match="10 tokens"):
+        budget.complete(request())
+
+
+@pytest.mark.parametrize(("cost", "more"), [(-1.0, 2), (float("nan"), 1), (float("inf"), 1)])
+def test_no_price_that_is_told_lengthens_a_budget(cost: float, more: int) -> None:
+    budget = Budget(Scripted({"*": [Reply("", "m", cost=0.5), Reply("", "m", cost=cost), Reply("", "m", cost=0.5)]}), cost=1.0)
+    for _ in range(1 + more):
+        budget.complete(request())
+    with pytest.raises(BudgetError):
+        budget.complete(request())
+
+
+@pytest.mark.parametrize(
+    "spoilt",
+    [
+        {},
+        {"reply": 3},
+        {"reply": {"text": "x"}},
+        {"reply": {"text": 3, "model": "m", "usage": {"input_tokens": 1, "output_tokens": 1}, "cost": None, "fingerprint": None}},
+        {"reply": {"text": "x", "model": "m", "usage": {"input_tokens": "1", "output_tokens": 1}, "cost": None, "fingerprint": None}},
+        {"reply": {"text": "x", "model": "m", "usage": [], "cost": None, "fingerprint": None}},
+    ],
+)
+@pytest.mark.parametrize("key", [request().key, "another", None])
+def test_a_spoilt_recording_is_an_error_of_ours(tmp_path: Path, spoilt: dict[str, object], key: str | None) -> None:
+    with Run.create(RunRequest(prompt="a box"), out=tmp_path / "run") as run:
+        run.save_reply(request().step, spoilt | {"key": key})
+
+    with pytest.raises(ReadError, match="recorded reply is incomplete"):
+        Replay(tmp_path / "run").complete(request())
