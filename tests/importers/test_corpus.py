@@ -1,0 +1,62 @@
+"""Every robot in the packages that ship robots: posed as its engine poses it, and the same again after a round trip.
+
+The packages are gigabytes, so they are no dependency: `scripts/corpus` fetches and unpacks them, and runs this.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+from pathlib import Path
+
+import pytest
+
+from articad.errors import ReadError
+from tests.foreign import TOLERANCE, assert_survives, configurations, difference, oracle_of, read
+
+ROOT = Path(os.environ.get("ARTICAD_CORPUS", "/nonexistent"))
+LARGEST_TAKEN_ROUND = 80  # links: an export of more takes a minute of looking for contacts, and shows nothing new
+REFUSED_SHARE = 0.15
+
+REFUSED = {  # besides MJCF that MuJoCo itself refuses, because it is a piece of another file or its meshes are not there
+    "romeo_laas_small.urdf": "leads out of",  # names meshes by an absolute path of somebody's machine
+}
+
+
+def models() -> list[Path]:
+    """URDF files, and MJCF files that are a model: with bodies, and no piece that others include."""
+    found = [*ROOT.rglob("*.urdf")]
+    for path in ROOT.rglob("*.xml"):
+        text = path.read_text(errors="replace")
+        if re.search(r"<mujoco[\s>]", text) and "<worldbody" in text:
+            found.append(path)
+    return sorted(found)
+
+
+pytestmark = [pytest.mark.corpus, pytest.mark.skipif(not ROOT.is_dir(), reason="scripts/corpus fetches the packages")]
+MODELS = models() if ROOT.is_dir() else []
+refused: dict[str, str] = {}
+
+
+@pytest.mark.parametrize("path", MODELS, ids=lambda path: str(path.relative_to(ROOT)))
+def test_a_robot_is_posed_as_its_engine_poses_it_and_comes_back(path: Path, tmp_path: Path) -> None:
+    package = ROOT / path.relative_to(ROOT).parts[0]
+    try:
+        assembly = read(path, package)
+    except ReadError as error:
+        refused[str(path)] = str(error)
+        if REFUSED.get(path.name, "MuJoCo does not take it") not in str(error):
+            raise
+        return
+    q = configurations(assembly, 2)
+    for row in q:
+        assert difference(assembly, row, oracle_of(path)(assembly, path, row)) < TOLERANCE
+    if len(assembly.parts) <= LARGEST_TAKEN_ROUND:
+        assert_survives(assembly, tmp_path, q)
+
+
+def test_few_are_refused() -> None:
+    for path, reason in refused.items():
+        print(f"refused {path}: {reason.splitlines()[0]}")  # noqa: T201 - each by name, with -s
+    assert len(MODELS) >= 60
+    assert len(refused) <= REFUSED_SHARE * len(MODELS)
