@@ -41,10 +41,9 @@ WHY_NOT = why_not()
 needs_freecad = pytest.mark.skipif(bool(WHY_NOT) and os.environ.get("CI") != "true", reason=f"no FreeCAD 1.0 or later here: {WHY_NOT}")
 
 
-def newer() -> list[FreeCAD]:
-    """Return the FreeCAD of the next series that `scripts/install-freecad --next` leaves beside the other, if it is there."""
-    place = freecad_install.tree().with_name("freecad-next")
-    return [FreeCAD("/usr/bin/freecadcmd", root=place)] if (place / "usr" / "bin" / "freecadcmd").is_symlink() else []
+def newer() -> FreeCAD:
+    """Return the FreeCAD of the next series, which `scripts/install-freecad --next` leaves beside the other."""
+    return FreeCAD("/usr/bin/freecadcmd", root=freecad_install.tree().with_name("freecad-next"))
 
 
 def steps(content: bytes, *wanted: Json, freecad: FreeCAD | None = None) -> list[Json]:

@@ -43,11 +43,11 @@ def test_a_new_process_solves_without_moving_a_part_and_mends_disturbances(name:
     assert look["touched"] == []
 
 
-@pytest.mark.skipif(not opened.newer(), reason="no newer FreeCAD here: scripts/install-freecad --next")
+@pytest.mark.freecad_next
 @pytest.mark.parametrize("name", sorted(path.parent.name for path in EXAMPLES.glob("*/plan.json")))
 def test_the_same_file_passes_in_the_next_freecad(name: str) -> None:
     """It comes to be recomputed there, as a file of an earlier FreeCAD; nothing in it may become invalid."""
-    look = solved_and_mended(name, opened.newer()[0])
+    look = solved_and_mended(name, opened.newer())
     assert tuple(map(int, look["version"][:2])) >= (1, 1)
 
 
