@@ -291,7 +291,11 @@ class Editor:
                 message = f'"touches" names {name!r}, which is no part.{did_you_mean(name, every)}'
                 yield Finding(code="E_EDIT_REACH", where="touches", message=message, hint="Name parts of the plan.")
         for name, how in edit_report.reach(before, after).items():
-            if name in touches or how == "follows its source" or any(name.startswith(f"{one}_") for one in touches if one not in every):
+            if (
+                name in touches
+                or how in {"follows its source", "mirrored anew"}
+                or any(name.startswith(f"{one}_") for one in touches if one not in every)
+            ):
                 continue
             told = edit_report.told_otherwise(before, after, name)
             message = f'The changes reach {name} too ({how}{f": {told}" if told else ""}), which "touches" does not name.'

@@ -115,7 +115,7 @@ class Base:
             assembly: As edited.
             version: Of articad: what another one has found is not relied on.
         """
-        if version != self.stored["articad"] or self.stored["task"] == "build" or assembly.resolved is None:
+        if version != self.stored["articad"] or assembly.resolved is None:
             return Known()
         if dict(assembly.fits) != dict(self.resolved.fits) or assembly.waivers != self.resolved.waivers:
             return Known()
@@ -142,7 +142,7 @@ class Base:
                 continue
             if pair.over == "rest":
                 rest[pair.parts] = pair
-            elif isinstance(pair.over, tuple):
+            elif isinstance(pair.over, tuple) and self.stored["task"] != "build":  # a build samples motion otherwise, if at all
                 motion.setdefault(pair.over[0], {})[pair.parts] = pair
         joints = {joint.name for joint in assembly.joints if self._same_joint(joint)}
         return Known(rest, {joint: pairs for joint, pairs in motion.items() if joint in joints})

@@ -21,7 +21,7 @@ from articad.plan.schema import AssemblyPlan
 from articad.run import Run
 
 Json = dict[str, Any]
-Reach = Literal["new", "removed", "described anew", "other numbers", "follows its source"]
+Reach = Literal["new", "removed", "described anew", "other numbers", "follows its source", "mirrored anew"]
 
 SCHEMA: Final = "articad.edit/1"
 _SHOWN = 60  # characters of a value in a sentence
@@ -44,6 +44,8 @@ def reach(before: ResolvedPlan, after: ResolvedPlan) -> dict[str, Reach]:
                 touched[name] = "other numbers"
         elif not _derived_alike(old, part):
             touched[name] = "described anew"
+        elif not _same_bits(old, part):
+            touched[name] = "mirrored anew"
     following = True
     while following:  # copies of copies follow as well
         follows = [n for n, p in after.parts.items() if n not in touched and p.derivation is not None and p.derivation.source in touched]
@@ -68,6 +70,12 @@ def _derived_alike(old: ResolvedPart, new: ResolvedPart) -> bool:
         return False
     a, b = old.derivation.S, new.derivation.S
     return (a is None) == (b is None) and (a is None or b is None or bool(np.allclose(a, b, rtol=0.0, atol=1e-9)))
+
+
+def _same_bits(old: ResolvedPart, new: ResolvedPart) -> bool:
+    """Whether two mirrors are the same to the last bit; where a part stands elsewhere, its mirror may be rounded otherwise."""
+    a, b = (part.derivation.S if part.derivation is not None else None for part in (old, new))
+    return a is None or b is None or np.array_equal(a, b)
 
 
 # ---------------------------------------------------------------------- what has changed in a plan

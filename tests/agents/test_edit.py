@@ -9,12 +9,17 @@ from typing import Any
 
 import pytest
 
+from articad import examples
+from articad.agents import edit_report
 from articad.agents.edit import edit
+from articad.agents.edit_base import with_values
 from articad.agents.evidence import examine
 from articad.agents.llm import Scripted
 from articad.agents.pipeline import generate, replay
 from articad.errors import AgentError, PlanError, ReadError
 from articad.kernels.kernel import BuildCache
+from articad.plan.resolve import resolve
+from articad.plan.schema import AssemblyPlan
 from articad.record import assembly_of, run_report
 from articad.run import Run, differences
 from tests.agents import stories
@@ -123,6 +128,21 @@ def test_the_run_that_is_edited_stays_as_it_is_and_is_not_needed_any_more(plate:
 
 
 # ---------------------------------------------------------------------- reach
+
+
+def test_what_a_change_reaches_is_told_from_the_plans_alone() -> None:
+    plan = AssemblyPlan.load(examples.folder("wardrobe"))
+    reached = edit_report.reach(resolve(plan), resolve(with_values(plan, {"drawer_height": 220})))
+
+    assert {name: how for name, how in reached.items() if how != "mirrored anew"} == {
+        "cabinet": "other numbers",
+        "door_left": "other numbers",
+        "door_right": "follows its source",
+        "drawer_lower": "other numbers",
+        "drawer_upper": "follows its source",
+    }
+    assert set(reached) - {"handle_right"} == set(reached) - {name for name, how in reached.items() if how == "mirrored anew"}
+    assert edit_report.reach(resolve(plan), resolve(plan)) == {}
 
 
 def test_an_answer_that_reaches_more_than_it_names_goes_back(plate: Run, tmp_path: Path) -> None:
