@@ -12,7 +12,6 @@ from articad.connectors.connector import Connector
 from articad.errors import KernelUnavailableError, ReadError
 from articad.export.bundle import Bundle
 from articad.export.freecad import write_freecad
-from articad.export.urdf import Loops, write_urdf
 from articad.findings import Finding
 from articad.geometry.mesh_files import write_stl
 from articad.geometry.part import Solid
@@ -151,20 +150,31 @@ def _hurried(run: Run) -> list[Report]:
     return [{key: value for key, value in event.items() if key not in {"t", "event"}} for event in found.values()]
 
 
-def written(assembly: Assembly, format_name: str, *, strict: bool = False, loops: Loops = "none") -> Bundle:
-    """Return the assembly in a format of `WRITERS`; `loops` says how URDF closes loops.
+_CHOICES: Final[Mapping[str, tuple[str, ...]]] = {
+    "urdf": ("loops", "collision", "package", "srdf", "ros2_control"),
+    "mjcf": ("collision", "actuators"),
+}
+
+
+def written(assembly: Assembly, format_name: str, *, strict: bool = False, **choices: Any) -> Bundle:
+    """Return the assembly in a format of `WRITERS`.
+
+    Args:
+        assembly: What to write.
+        format_name: Key of `WRITERS`.
+        strict: Refuse losses of motion, mass or shape.
+        choices: Arguments of `write_urdf` and `write_mjcf`, such as `loops` or `collision`; each format takes those that it knows.
 
     Raises:
         UnrepresentableError: If `strict` and the format cannot hold it.
     """
-    if format_name == "urdf":
-        return write_urdf(assembly, strict=strict, loops=loops)
-    return WRITERS[format_name](assembly, strict=strict)
+    known = _CHOICES.get(format_name, ())
+    return WRITERS[format_name](assembly, strict=strict, **{key: value for key, value in choices.items() if key in known})
 
 
-def record_export(run: Run, assembly: Assembly, format_name: str, *, strict: bool = False, loops: Loops = "none") -> Report:
-    """Keep an export; return its report `articad.losses/1`, with the folder."""
-    bundle = written(assembly, format_name, strict=strict, loops=loops)
+def record_export(run: Run, assembly: Assembly, format_name: str, *, strict: bool = False, **choices: Any) -> Report:
+    """Keep an export; return its report `articad.losses/1`, with the folder. For `choices` see `written`."""
+    bundle = written(assembly, format_name, strict=strict, **choices)
     run.save_export(format_name, bundle.files, bundle.to_json())
     run.trace("artifact", kind=format_name, file=f"export/{format_name}/{bundle.main}")
     return run.exports()[format_name]

@@ -14,6 +14,7 @@ from typing import Any
 import pytest
 
 from articad import cli
+from articad.commands import models
 from articad.record import kernel_named
 from articad.run import Run
 from tests.agents import stories
@@ -344,3 +345,21 @@ def test_ctrl_c_ends_a_build_at_once_though_a_script_never_ends(chest: Path, tmp
     assert time.monotonic() - started < 20  # it is 1 s on an idle machine; the script itself would be given 60
     assert "interrupted" in told
     assert "Traceback" not in told
+
+
+def test_export_takes_collision_servos_and_a_ros_package(chest: Path, tmp_path: Path, report: Any) -> None:
+    run, out = tmp_path / "run", tmp_path / "out"
+    assert report("build", chest, "--out", run)[0] == 0
+    code, _ = report("export", run, "--to", "urdf,mjcf", "--out", out, "--collision", "hull", "--actuators", "--ros", "chest_description")
+
+    assert code == 0
+    assert "package://chest_description/meshes/" in (out / "urdf/urdf/chest.urdf").read_text()
+    assert "<ros2_control" in (out / "urdf/urdf/chest.urdf").read_text()
+    assert list((out / "urdf").rglob("*.srdf"))
+    assert "<position" in (out / "mjcf/chest.xml").read_text()
+
+
+@pytest.mark.parametrize(("flags", "asked"), [([], True), (["--json"], False), (["-q"], False)])
+def test_at_a_terminal_somebody_is_asked_which_idea_to_make(flags: list[str], asked: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("sys.stdin.isatty", lambda: True, raising=False)
+    assert models._is_asked(cli._parsed(["generate", "a toy for two", *flags])) is asked

@@ -21,6 +21,14 @@ if TYPE_CHECKING:
     argument("--out", metavar="DIR", help="where to write, a folder for each format; by default RUN/export"),
     argument("--strict", action="store_true", help="refuse what a format cannot hold, instead of reporting it as lost"),
     argument("--loops", choices=["none", "isaac", "drake", "mimic"], default="none", help="how URDF closes loops (none)"),
+    argument(
+        "--collision",
+        choices=["solid", "hull", "decompose"],
+        default="solid",
+        help="what URDF and MJCF collide with: the parts' own meshes, their hulls, or convex pieces (solid)",
+    ),
+    argument("--actuators", action="store_true", help="give every driver of an MJCF a servo"),
+    argument("--ros", metavar="PACKAGE", default=None, help="lay URDF out as a ROS 2 package, with SRDF and ros2_control"),
 )
 def _export(options: argparse.Namespace, terminal: Terminal) -> Report:
     from articad import summaries
@@ -29,13 +37,22 @@ def _export(options: argparse.Namespace, terminal: Terminal) -> Report:
 
     with Run.view(options.run) as run, terminal.progress("Reading") as tell:
         assembly = assembly_of(run, progress=tell)
+    ros = options.ros is not None
+    choices = {
+        "loops": options.loops,
+        "collision": "pieces" if options.collision == "decompose" else options.collision,
+        "actuators": options.actuators,
+        "package": options.ros,
+        "srdf": ros,
+        "ros2_control": ros,
+    }
     exports: dict[str, Report] = {}
     if options.out is None:
         with Run.open(options.run) as run:
-            exports = {name: record_export(run, assembly, name, strict=options.strict, loops=options.loops) for name in options.formats}
+            exports = {name: record_export(run, assembly, name, strict=options.strict, **choices) for name in options.formats}
     else:
         for name in options.formats:
-            bundle = written(assembly, name, strict=options.strict, loops=options.loops)
+            bundle = written(assembly, name, strict=options.strict, **choices)
             main = bundle.write(Path(options.out) / name)[0]
             exports[name] = bundle.to_json() | {"folder": str(main.parent), "main": str(main)}
     summaries.print_exports(exports, terminal)
