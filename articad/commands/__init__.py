@@ -5,4 +5,18 @@ Importing this package registers them all.
 
 from __future__ import annotations
 
-from articad.commands import auditing, building, completing, files, machine, models, parts, pictures, proving, remembering, serving, showing  # noqa: F401 - registers them
+from articad.commands import (  # noqa: F401 - registers them
+    auditing,
+    benchmarking,
+    building,
+    completing,
+    files,
+    machine,
+    models,
+    parts,
+    pictures,
+    proving,
+    remembering,
+    serving,
+    showing,
+)

@@ -81,18 +81,17 @@ BUILD_ARGUMENTS = (
     FORCE,
     PICTURES,
 )
-ANSWERING = (
-    argument("--image", metavar="FILE", dest="images", action="append", default=[], help="a picture that belongs to the request"),
+ASKING = (
     argument(
         "--model", metavar="NAME", default=None, help="the model, as LiteLLM names it ($ARTICAD_MODEL, else gemini/gemini-3-flash-preview)"
     ),
     argument("--vision-model", metavar="NAME", help="the model that gets pictures (the same)"),
     argument("--judge-model", metavar="NAME", help="the model that judges the assembly (the same)"),
-    argument("--api-base", metavar="URL", help="an OpenAI-compatible endpoint"),
+    API_BASE,
     argument("--no-look", dest="look", action="store_false", help="compare no pictures of parts with their specification"),
     argument("--no-inspection", dest="inspection", action="store_false", help="have the assembly neither observed nor judged by models"),
-    argument("--review", action="store_true", help="score the finished assembly, by rules and by a model that looks at all of it"),
-    argument("--memory", metavar="DIR", help="the store of earlier runs ($ARTICAD_MEMORY, or the user's own)"),
+    MEMORY,
+    EMBEDDINGS,
     argument("--docs", action="store_true", help="have the model name what it would look up in the kernel's documentation, and tell it"),
     argument("--rounds", metavar="N", type=positive, default=3, help="designs that are built and checked (3)"),
     argument("--repairs", metavar="N", type=positive, default=3, help="attempts to mend one part (3)"),
@@ -100,6 +99,14 @@ ANSWERING = (
     argument("--max-tokens", metavar="N", type=positive, default=None, help="tokens of all calls (unlimited)"),
     argument("--max-cost", metavar="USD", type=amount, default=None, help="cost of all calls (unlimited)"),
     argument("--max-minutes", metavar="N", type=amount, default=60.0, help="wall clock (60)"),
+)
+MEMORY = argument("--memory", metavar="DIR", help="the store of earlier runs ($ARTICAD_MEMORY, or the user's own)")
+EMBEDDINGS = argument("--embeddings", metavar="NAME", help="a provider's model that says which cases are alike (offline word vectors)")
+API_BASE = argument("--api-base", metavar="URL", help="an OpenAI-compatible endpoint")
+ANSWERING = (
+    argument("--image", metavar="FILE", dest="images", action="append", default=[], help="a picture that belongs to the request"),
+    argument("--review", action="store_true", help="score the finished assembly, by rules and by a model that looks at all of it"),
+    *ASKING,
 )
 GENERATING = (
     argument("--part-image", metavar="NAME=FILE", dest="part_images", type=assignment, action="append", default=[], help="of one part"),

@@ -1,0 +1,107 @@
+"""Run the benchmark with a model, or score what any tool has made."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from articad.commands.command import argument, command
+from articad.commands.options import ASKING, FORCE, SANDBOX, positive
+from articad.commands.steps import build_cache, sandbox_level
+
+if TYPE_CHECKING:
+    from articad.bench.runner import Row
+    from articad.bench.task import Task
+    from articad.terminal import Report, Terminal
+
+_WORDS = 44  # characters of what failed, in a table
+
+
+@command(
+    "bench",
+    "Run the benchmark with a model; score the files of any tool; list the tasks.",
+    argument("action", choices=["run", "score", "table", "list"], help="what to do"),
+    argument("what", nargs="?", metavar="DIR", help="score: folder of models named after tasks; table: folder of a run"),
+    argument("--tasks", metavar="DIR", help="folder of tasks (the project's own)"),
+    argument("--task", metavar="NAME", dest="names", action="append", default=[], help="only this one; may be repeated"),
+    argument("--kind", choices=["articulated", "static", "industrial", "hard"], default=None, help="only tasks of this kind"),
+    argument("--out", metavar="DIR", default="bench", help="where rows and runs are kept; what is there is not made again (bench)"),
+    argument(
+        "--variant",
+        choices=["full", "late", "no-rollback", "no-memory", "single-loop"],
+        default="full",
+        help="the paper's ablations (full)",
+    ),
+    argument("--kernel", choices=["build123d", "freecad"], default="build123d", help="what part scripts are written for (build123d)"),
+    argument("--at-once", metavar="N", type=positive, default=1, help="tasks at the same time (1)"),
+    *ASKING,
+    SANDBOX,
+    FORCE,
+)
+def _bench(options: argparse.Namespace, terminal: Terminal) -> Report:
+    from articad.bench.runner import rows_in, score_files
+    from articad.bench.table import table
+    from articad.bench.task import TASKS, tasks_in
+    from articad.errors import ReadError
+
+    if options.action == "table":
+        return _printed(table(rows_in(options.what or options.out, options.names)), terminal)
+    tasks = tasks_in(options.tasks or TASKS, names=options.names, kind=options.kind)
+    if options.action == "list":
+        return _listed([task for _, task in tasks], terminal)
+    if options.action == "score":
+        if not options.what:
+            raise ReadError("`articad bench score` needs a folder of models named after tasks.", path="bench")
+        return _printed(table(score_files(tasks, options.what)), terminal)
+    return _printed(table(_run(tasks, options, terminal)), terminal)
+
+
+def _run(tasks: list[tuple[Path, Task]], options: argparse.Namespace, terminal: Terminal) -> list[Row]:
+    from articad.agents.recollection import StoredMemory, remember
+    from articad.bench.runner import run_tasks
+    from articad.commands.models import asked_model
+    from articad.memory.experience import ExperienceStore
+    from articad.record import kernel_named
+
+    store = ExperienceStore(options.memory)
+    budgets = [asked_model(options, terminal)]  # says at once what is missing
+    with terminal.progress("Tasks", total=len(tasks)) as tell:
+        return run_tasks(
+            tasks,
+            options.out,
+            lambda _task: asked_model(options, terminal)[0],
+            variant=options.variant,
+            kernel=kernel_named(options.kernel, sandbox=sandbox_level(options)),
+            cache=build_cache(options),
+            memory=StoredMemory(store),
+            look=budgets[0][1] and options.look,
+            jobs=options.at_once,
+            finished=lambda run: remember(run, store),
+            progress=lambda row: tell(row.task, "passed" if row.ok else "failed"),
+        )
+
+
+def _listed(tasks: list[Task], terminal: Terminal) -> Report:
+    rows = [(task.name, task.kind, task.modality, task.product, len(task.checks)) for task in tasks]
+    terminal.table(["task", "kind", "asked by", "product", "checks"], rows)
+    terminal.say(f"{len(tasks)} tasks.")
+    return {"schema": "articad.bench-tasks/1", "ok": True, "findings": [], "tasks": [task.model_dump(mode="json") for task in tasks]}
+
+
+def _printed(report: Report, terminal: Terminal) -> Report:
+    rows = [
+        (row["task"], "yes" if row["passed"] else "no", _short(row["error"] or ", ".join(row["failed"])), row["iterations"], row["calls"])
+        for row in report["rows"]
+    ]
+    terminal.table(["task", "passed", "failed checks", "iterations", "calls"], rows)
+    for name, group in {"all": report["all"], **report["by_kind"]}.items():
+        passed = group["passed"]
+        low, high = (0.0 if end is None else 100 * end for end in passed["interval"])
+        share = 0.0 if passed["mean"] is None else 100 * passed["mean"]
+        terminal.say(f"{name}: {share:.1f} % of {group['tasks']} passed (95 %: {low:.1f} to {high:.1f})")
+    return report
+
+
+def _short(text: str) -> str:
+    return text if len(text) <= _WORDS else text[: _WORDS - 1] + "…"
