@@ -12,12 +12,18 @@ import os
 import random
 import re
 import time
-from collections.abc import Callable, Mapping
-from typing import Any, Final
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
+from typing import Any, Final, TypeVar
 from urllib.parse import urlsplit
+
+import numpy as np
 
 from articad.agents.llm import Image, Message, Reply, Request, Text, Usage, require_open_port, transport_error
 from articad.errors import TransportError
+from articad.memory.embedding import FloatArray, normalised
+
+_Answer = TypeVar("_Answer")
 
 Json = dict[str, Any]
 
@@ -29,6 +35,7 @@ LONGEST_WAIT_S: Final = 60.0
 _RETRIED_STATUS: Final = frozenset({408, 409, 425, 429, 500, 502, 503, 504, 529})
 _LOOKING: Final = frozenset({"look", "observe"})  # roles that are nothing without sight
 _LONGEST_ANSWER: Final = 4_000_000  # characters; the plan of a thousand parts has a tenth of that
+_BATCH: Final = 64  # texts that are embedded at once; providers take about a hundred
 _LONGEST_MARK: Final = 200  # characters
 _SHOWN_CHARACTERS: Final = 300  # of a provider's own message
 _LOCAL_HOSTS: Final = frozenset({"localhost", "127.0.0.1", "::1", "0.0.0.0", "host.docker.internal"})  # noqa: S104 - compared, never bound
@@ -117,9 +124,22 @@ class LiteLLM:
         """
         require_open_port()
         model = self.model_for(request)
+        return self._patiently(model, lambda: self._asked(model, request))
+
+    def vectors(self, texts: Sequence[str]) -> list[list[float]]:
+        """Return the vector of each text, from a model for embeddings; the port may be closed: nothing is decided by them.
+
+        Raises:
+            TransportError: As `complete`.
+        """
+        batches = (list(texts[start : start + _BATCH]) for start in range(0, len(texts), _BATCH))
+        return [vector for batch in batches for vector in self._patiently(self._model, partial(self._embedded, batch))]
+
+    def _patiently(self, model: str, call: Callable[[], _Answer]) -> _Answer:
+        """Call, again after a pause when the provider is busy."""
         for number in range(1, self._tries + 1):
             try:
-                return self._asked(model, request)
+                return call()
             except Exception as error:  # noqa: BLE001 - litellm raises what its providers raise
                 failure = self._translated(error, model, number)
                 if failure is not None:
@@ -139,23 +159,30 @@ class LiteLLM:
 
     # ------------------------------------------------------------------ one call
 
-    def _asked(self, model: str, request: Request) -> Reply:
-        blind = model in self._blind or (self._api_base is None and request.has_images and not self._sees(model))
-        if blind and request.role in _LOOKING:
-            raise transport_error("E_TRANSPORT", f"{model} cannot see, and {request.step} is about pictures.", _SIGHT)
-        arguments: Json = {
-            "model": model,
-            "messages": [_as_chat(_in_words(message) if blind else message) for message in request.messages],
-            "timeout": self._timeout,
-            "num_retries": 0,
-            "max_retries": 0,
-        }
-        if self._temperature is not None:
-            arguments["temperature"] = self._temperature
+    def _arguments(self, model: str) -> Json:
+        """Return what every call says."""
+        arguments: Json = {"model": model, "timeout": self._timeout, "num_retries": 0, "max_retries": 0}
         if self._api_base is not None:
             arguments["api_base"] = self._api_base
         if self._is_local and not self._key_is_set(model):
             arguments["api_key"] = "local"  # the client library insists on one; a local endpoint reads none
+        return arguments
+
+    def _embedded(self, texts: list[str]) -> list[list[float]]:
+        response = self._litellm.embedding(input=texts, **self._arguments(self._model))
+        rows = sorted((dict(row) for row in response.data), key=lambda row: int(row["index"]))
+        if len(rows) != len(texts):
+            raise _EmptyAnswerError
+        return [[float(number) for number in row["embedding"]] for row in rows]
+
+    def _asked(self, model: str, request: Request) -> Reply:
+        blind = model in self._blind or (self._api_base is None and request.has_images and not self._sees(model))
+        if blind and request.role in _LOOKING:
+            raise transport_error("E_TRANSPORT", f"{model} cannot see, and {request.step} is about pictures.", _SIGHT)
+        arguments = self._arguments(model)
+        arguments["messages"] = [_as_chat(_in_words(message) if blind else message) for message in request.messages]
+        if self._temperature is not None:
+            arguments["temperature"] = self._temperature
         if request.response_schema is not None:
             schema = dict(request.response_schema)
             if self.takes_schemas(model):
@@ -277,6 +304,27 @@ class LiteLLM:
         message = f"{model} {what}, asked {number} times: {shown[0][:_SHOWN_CHARACTERS]}"
         hint = "Check --api-base and the network." if self._api_base else "Check the network, the model's name and the provider's status."
         return transport_error("E_TRANSPORT", message, hint)
+
+
+class LiteLLMEmbedder:
+    """A provider's own vectors, for the experience store: nearer to what is meant than the offline ones, at its price.
+
+    Args:
+        model: A model for embeddings in litellm's spelling, such as `gemini/gemini-embedding-001`.
+        api_base: As for `LiteLLM`.
+    """
+
+    def __init__(self, model: str, *, api_base: str | None = None) -> None:
+        self._llm = LiteLLM(model, api_base=api_base)
+        self.name = f"litellm {model}"
+
+    def embed(self, texts: Sequence[str]) -> FloatArray:
+        """Return unit vectors, shape (texts, dimension).
+
+        Raises:
+            TransportError: If the provider cannot be reached.
+        """
+        return normalised(self._llm.vectors(texts) if texts else np.zeros((0, 1)))
 
 
 def without_secrets(text: str) -> str:

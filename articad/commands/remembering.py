@@ -8,7 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from articad.commands.command import argument, command
-from articad.commands.options import positive
+from articad.commands.options import API_BASE, EMBEDDINGS, MEMORY, positive
+from articad.commands.steps import experience
 
 if TYPE_CHECKING:
     from articad.memory.case import Case
@@ -34,14 +35,15 @@ _WORDS: Final = 60  # characters of a request in a table
     "Look into the experience of earlier runs, fill it, thin it out.",
     argument("action", choices=list(_WHAT), help="what to do"),
     argument("what", nargs="?", metavar="ID|TEXT|FILE", help="a case to show or remove; a request to search for; a file of cases"),
-    argument("--memory", metavar="DIR", help="the store ($ARTICAD_MEMORY, or the user's own)"),
+    MEMORY,
+    EMBEDDINGS,
+    API_BASE,
     argument("--keep", metavar="N", type=positive, default=1000, help="cases of each kind that prune leaves (1000)"),
 )
 def _memory(options: argparse.Namespace, terminal: Terminal) -> Report:
     from articad.errors import ReadError
-    from articad.memory.experience import ExperienceStore
 
-    store = ExperienceStore(options.memory)
+    store = experience(options)
     if _WHAT[options.action] and not options.what:
         raise ReadError(f"`articad memory {options.action}` needs one more word: {_WHAT[options.action]}.", path="memory")
     report = _ACTIONS[options.action](store, options, terminal)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Literal
 if TYPE_CHECKING:
     from articad.assembly import Assembly
     from articad.kernels.kernel import BuildCache
+    from articad.memory.experience import ExperienceStore
     from articad.plan.schema import AssemblyPlan
     from articad.run import Run
     from articad.terminal import Report, Terminal
@@ -40,6 +41,17 @@ def reported(run: Run, terminal: Terminal) -> Report:
     report = run_report(run)
     print_run(report, terminal)
     return report
+
+
+def experience(options: argparse.Namespace) -> ExperienceStore:
+    """Return the store of earlier runs, by the vectors that were asked for."""
+    from articad.memory.experience import ExperienceStore
+
+    if not options.embeddings:
+        return ExperienceStore(options.memory)
+    from articad.agents.live import LiteLLMEmbedder
+
+    return ExperienceStore(options.memory, LiteLLMEmbedder(options.embeddings, api_base=options.api_base))
 
 
 def build_cache(options: argparse.Namespace) -> BuildCache:

@@ -13,9 +13,11 @@ from pathlib import Path
 
 import pytest
 
-from articad.agents.live import LiteLLM, without_secrets
+from articad.agents.live import LiteLLM, LiteLLMEmbedder, without_secrets
 from articad.agents.llm import Image, Recorded, Request, closed_port, system, user
 from articad.errors import TransportError
+from articad.memory.case import Case
+from articad.memory.experience import ExperienceStore
 from articad.run import Run, RunRequest
 from tests.agents.openai_stub import Canned, openai_stub
 
@@ -231,3 +233,28 @@ def test_text_from_outside_loses_every_key(monkeypatch: pytest.MonkeyPatch) -> N
 def test_neither_articad_nor_the_port_imports_litellm() -> None:
     script = "import sys, articad.agents.llm, articad.agents.live; assert 'litellm' not in sys.modules"
     subprocess.run([sys.executable, "-c", script], check=True)
+
+
+def test_an_answer_without_end_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("articad.agents.live._LONGEST_ANSWER", 100)
+    with openai_stub([Canned("x" * 101)]) as stub, pytest.raises(TransportError, match="101 characters"):
+        live(stub.address)[0].complete(question())
+    assert len(stub.received) == 1  # it is not asked again for as much
+
+
+def test_a_providers_vectors_are_a_space_of_their_own_and_find_cases(tmp_path: Path) -> None:
+    def vectors(*rows: list[float]) -> Canned:
+        entries = [{"object": "embedding", "index": index, "embedding": row} for index, row in enumerate(rows)]
+        whole = {"object": "list", "data": entries[::-1], "model": "m", "usage": {"prompt_tokens": 1, "total_tokens": 1}}
+        return Canned(body=json.dumps(whole).encode())
+
+    lamp, box = Case(kind="good", prompt="a lamp"), Case(kind="good", prompt="a box")
+    with openai_stub([vectors([3.0, 4.0]), vectors([3.0, 4.0], [0.0, 2.0])]) as stub:
+        embedder = LiteLLMEmbedder("vectors", api_base=stub.address)
+        store = ExperienceStore(tmp_path, embedder)
+        store.add(lamp, box)
+        first, second = store.like_request("something that shines", "good")
+
+        assert stub.received[0]["input"] == ["something that shines"]
+        assert (first.case.prompt, round(first.likeness, 3), round(second.likeness, 3)) == (stub.received[1]["input"][0], 1.0, 0.8)
+        assert embedder.embed([]).shape == (0, 1)
