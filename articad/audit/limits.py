@@ -112,20 +112,23 @@ def endless(declared: Declared) -> Iterator[Finding]:
 
 
 def zero_outside(declared: Declared) -> Iterator[Finding]:
-    """A range that does not hold zero, where every reader places the joint at first."""
+    """Ranges that do not hold zero, where every reader places the joint at first; those that turn and those that slide together."""
     if declared.format != "urdf":
         return
-    for joint in _bounded(declared):
-        assert joint.lower is not None
-        assert joint.upper is not None
-        if joint.mimics is None and not joint.lower <= 0 <= joint.upper and joint.lower <= joint.upper:
+    for turns in (True, False):
+        rows = []
+        for joint in _bounded(declared):
             lower, upper, unit = _shown(joint)
-            out = lower if lower > 0 else -upper
+            if joint.turns == turns and joint.mimics is None and lower <= upper and not lower <= 0 <= upper:
+                rows.append((max(lower, -upper), f"{joint.name} from {lower:.6g} to {upper:.6g} {unit}", joint.where, unit))
+        if rows:
+            out, _, where, unit = max(rows)
             yield Finding(
                 code="I_AUDIT_ZERO_OUTSIDE",
-                where=joint.where,
-                message=f"Joint {joint.name!r} moves from {lower:.6g} to {upper:.6g} {unit}, but readers place it at 0, {out:.4g} {unit} outside.",
-                hint="Turn or shift its origin, so that zero is within its range.",
+                where=where,
+                message=f"Readers place joints at 0, which is outside of {counted(len(rows), 'range')}, by up to {out:.4g} {unit}: "
+                f"{listed([row[1] for row in rows])}.",
+                hint="Turn or shift their origins, so that zero is within their range, or place them inside before simulating.",
                 value=out,
                 limit=0.0,
                 unit=unit,
