@@ -81,6 +81,9 @@ BUILD_ARGUMENTS = (
     FORCE,
     PICTURES,
 )
+MEMORY = argument("--memory", metavar="DIR", help="the store of earlier runs ($ARTICAD_MEMORY, or the user's own)")
+EMBEDDINGS = argument("--embeddings", metavar="NAME", help="a provider's model that says which cases are alike (offline word vectors)")
+API_BASE = argument("--api-base", metavar="URL", help="an OpenAI-compatible endpoint")
 ASKING = (
     argument(
         "--model", metavar="NAME", default=None, help="the model, as LiteLLM names it ($ARTICAD_MODEL, else gemini/gemini-3-flash-preview)"
@@ -100,9 +103,6 @@ ASKING = (
     argument("--max-cost", metavar="USD", type=amount, default=None, help="cost of all calls (unlimited)"),
     argument("--max-minutes", metavar="N", type=amount, default=60.0, help="wall clock (60)"),
 )
-MEMORY = argument("--memory", metavar="DIR", help="the store of earlier runs ($ARTICAD_MEMORY, or the user's own)")
-EMBEDDINGS = argument("--embeddings", metavar="NAME", help="a provider's model that says which cases are alike (offline word vectors)")
-API_BASE = argument("--api-base", metavar="URL", help="an OpenAI-compatible endpoint")
 ANSWERING = (
     argument("--image", metavar="FILE", dest="images", action="append", default=[], help="a picture that belongs to the request"),
     argument("--review", action="store_true", help="score the finished assembly, by rules and by a model that looks at all of it"),
