@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Literal
 
 from articad.commands.command import argument, command
 from articad.commands.options import ANSWERING, EXPORT, FORCE, GENERATING, JOBS, OUT, PICTURES, SANDBOX, SET
-from articad.commands.steps import build_cache, draw, reported, sandbox_level
+from articad.commands.steps import build_cache, draw, experience, reported, sandbox_level
 
 if TYPE_CHECKING:
     from articad.agents.brainstorm import Alternative, Choose
@@ -35,11 +35,10 @@ if TYPE_CHECKING:
 def _generate(options: argparse.Namespace, terminal: Terminal) -> Report:
     from articad.agents.pipeline import generate
     from articad.agents.recollection import StoredDocumentation, StoredMemory
-    from articad.memory.experience import ExperienceStore
     from articad.record import kernel_named
 
     budget, sees = _asked_model(options, terminal)
-    store = ExperienceStore(options.memory)
+    store = experience(options)
     with terminal.progress("Generating") as tell:
         run = generate(
             options.text,
@@ -84,7 +83,6 @@ def _generate(options: argparse.Namespace, terminal: Terminal) -> Report:
 def _edit(options: argparse.Namespace, terminal: Terminal) -> Report:
     from articad.agents.edit import edit
     from articad.agents.recollection import StoredDocumentation, StoredMemory
-    from articad.memory.experience import ExperienceStore
 
     budget, sees = _asked_model(options, terminal) if options.text.strip() else (None, False)
     with terminal.progress("Editing") as tell:
@@ -103,7 +101,7 @@ def _edit(options: argparse.Namespace, terminal: Terminal) -> Report:
             look=options.look and sees,
             inspection=options.inspection and sees,
             review=_review(options, sees=sees),
-            memory=StoredMemory(ExperienceStore(options.memory)),
+            memory=StoredMemory(experience(options)),
             documentation=StoredDocumentation() if options.docs else None,
             jobs=options.jobs,
             progress=tell,
@@ -133,10 +131,9 @@ def _review(options: argparse.Namespace, *, sees: bool) -> Literal["none", "rule
 def _told(run: Run, options: argparse.Namespace, terminal: Terminal, budget: Budget | None, *, remembered: bool) -> Report:
     """Remember a finished run, draw it, print it and return its report."""
     from articad.agents.recollection import remember
-    from articad.memory.experience import ExperienceStore
     from articad.summaries import print_edit, print_review
 
-    store = ExperienceStore(options.memory)
+    store = experience(options)
     if remembered and (case := remember(run, store)) is not None:
         terminal.detail(f"Remembered as {case.id[:8]}, {case.kind}, in {store.folder}.")
     if options.pictures:
