@@ -446,6 +446,12 @@ CODES: dict[str, Code] = {
     "I_PROMPT_DRIFT": Code(
         "model", None, "A prompt differs from the recorded one; the recorded reply was used.", "Record again, or use --strict to refuse."
     ),
+    "W_REPLAY_DRIFT": Code(
+        "model", None, "A replay's geometry differs by rounding: another kernel, version or platform made it.", "Nothing, or record again."
+    ),
+    "E_REPLAY_DIFFERS": Code(
+        "model", None, "A replay made other files than the recording.", "Replay with what it was recorded with, or record again."
+    ),
     "E_BUDGET": Code("model", None, "The budget is spent.", "Raise --max-calls, --max-cost or --max-minutes, and resume."),
     "E_TRANSPORT": Code("model", None, "The model could not be reached.", "Check --api-base, the network and the provider's status."),
     "E_KEY_MISSING": Code("model", None, "The provider's key is missing or was refused.", "Set the environment variable that is named."),

@@ -15,6 +15,7 @@ from typing import Any, Final, Literal
 
 from articad.agents.brainstorm import Alternative, Choose
 from articad.agents.design import TRIES
+from articad.agents.drift import drift, note
 from articad.agents.edit import EditLine
 from articad.agents.generation import REPAIRS
 from articad.agents.late import LateLine
@@ -111,6 +112,7 @@ def generate(
     options |= {} if review == "none" else {"review": review}  # not asked for, it is not mentioned: older recordings stay what they are
     request = RunRequest(prompt=prompt, images=tuple(pictures), options=options)
     with open_or_create(request, out) as run:
+        note(run, kernel)
         known, told = KeptMemory(run, memory), KeptDocumentation(run, documentation)
         shop = Workshop(run, Recorded(llm, run), kernel, cache or BuildCache(), jobs, progress, known, told)
         _line(shop, partial(_chosen_by_user, pick, choose), known).work()
@@ -145,7 +147,7 @@ class Replayed:
     Attributes:
         run: The new run, closed.
         differences: Files, the trace apart, that are not equal to the recording's.
-        findings: Prompts that differ from the recorded ones.
+        findings: Prompts that differ from the recorded ones; what of the files differs, by how much, and why.
     """
 
     run: Run
@@ -154,8 +156,8 @@ class Replayed:
 
     @property
     def ok(self) -> bool:
-        """Whether every file but the trace is the same."""
-        return not self.differences
+        """Whether every file but the trace is the same, or differs by another kernel's or platform's rounding alone."""
+        return not self.differences or (self.findings.ok and "W_REPLAY_DRIFT" in self.findings.codes)
 
 
 def replay(
@@ -191,12 +193,14 @@ def replay(
         if (base := source.base()) is not None:
             run.save_base(base)
         kernel = kernel or kernel_named(str(source.request.options.get("kernel", "build123d")), sandbox=sandbox)
+        note(run, kernel)
         known, told = KeptMemory(run, recorded=source), KeptDocumentation(run, recorded=source)
         shop = Workshop(run, Recorded(answers, run), kernel, cache or BuildCache(), jobs, progress, known, told)
         _line(shop, partial(_chosen_before, source), known).work()
         for finding in answers.findings:
             run.trace_finding(finding)
-    return Replayed(run, tuple(differences(source, run)), answers.findings)
+    different = tuple(differences(source, run))
+    return Replayed(run, different, Findings((*answers.findings, *drift(source, run, different))))
 
 
 def _chosen_before(recording: Run, alternatives: Sequence[Alternative]) -> tuple[int, str]:
