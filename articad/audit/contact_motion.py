@@ -31,7 +31,7 @@ BISECTIONS = 30
 CONTACT_MM3 = 1e-6  # shared volume at which contact begins: an edge 10 mm long is then 0.3 µm deep
 MOTION = "E_MOTION_COLLISION"
 AT_REST = ("E_OVERLAP", "E_STATIC_OVERLAP", "W_STATIC_OVERLAP")
-PATIENCE = 4.0  # times as long as the processor's time may it take by the clock
+PATIENCE = 8.0  # times as long as the processor's time may it take by the clock
 DEEPER = 2.0  # a pair that overlaps at rest is told of again where motion makes it so many times as deep
 
 
