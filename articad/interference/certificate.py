@@ -26,7 +26,7 @@ from articad.interference.claims import Claim
 from articad.interference.clearing import MOST_PAIRS
 from articad.interference.cover import Budget, cover_line
 from articad.interference.linkage import LOOKS, LinkageProver, Way
-from articad.interference.motion import Route, Values, freedoms, routes
+from articad.interference.motion import ENDLESS_SLIDE_MM, Route, Values, freedoms, routes
 from articad.interference.overlap import NOTHING, Overlap, overlap
 from articad.interference.proof import Proof, Prover, beyond
 from articad.interference.relations import FitLike, WaiverLike
@@ -180,6 +180,9 @@ class _Certifying:
 
     def run(self) -> Certificate:
         self._constrained = constrained_joints(self.mechanism)
+        driving = {driver.joint for driver in self.mechanism.drivers} & self._constrained
+        if self.asked is not None and set(self.asked) & self._constrained - driving:  # what follows moves with what drives it
+            self.asked = [*self.asked, *sorted(driving - set(self.asked))]
         solid = [name for name in self.mechanism.parts if name in self.scene.bodies]
         for at, a in enumerate(solid):
             found = routes(self.mechanism.joints, a)
@@ -219,12 +222,16 @@ class _Certifying:
         if not wanted and not (tied and drivers):
             return
         a, b = route.parts[0], route.parts[-1]
+        for name in [name for name in wanted if _is_endless_slide(self._joint(name))]:
+            self._refuse((a, b), (name,), "it slides without limits")
+            wanted.remove(name)
         if a in self.scene.broken or b in self.scene.broken:
             over = (*wanted, *(self.mechanism.drivers[k].joint for k in drivers if tied))
             self._refuse((a, b), over, "; ".join(self.scene.broken[name] for name in (a, b) if name in self.scene.broken))
             return
         if tied and drivers:
-            if self._prove(route, (*tied, *wanted), most=WIDE_PAIRS, tentative=True):
+            bounded = not any(_is_endless_slide(self._joint(name)) for name in tied)
+            if bounded and self._prove(route, (*tied, *wanted), most=WIDE_PAIRS, tentative=True):
                 return  # whatever the linkage does
             for driver in drivers:
                 self._follow(route, tied, wanted, driver)
@@ -597,6 +604,10 @@ def _unproven(parts: tuple[str, str], joints: tuple[str, ...], worst: Overlap, a
         limit=allowed,
         unit="mm",
     )
+
+
+def _is_endless_slide(joint: Joint) -> bool:
+    return any(freedom.upper - freedom.lower >= ENDLESS_SLIDE_MM for freedom in freedoms(joint))
 
 
 def _up(value: float) -> float:

@@ -23,6 +23,7 @@ FloatArray = NDArray[np.float64]
 
 _PRIMES = (2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53, 59, 61, 67, 71)
 _TINY = 1e-9  # rad: of an angle whose sine is itself
+ENDLESS_SLIDE_MM = 1e6  # how far what slides without limits may be: as far as an assembly may be large
 FULL_TURN = (-math.pi, math.pi)  # an endless joint is proven over one turn about its rest
 
 
@@ -44,7 +45,7 @@ class Freedom(NamedTuple):
 
 
 def freedoms(joint: Joint) -> tuple[Freedom, ...]:
-    """Return the coordinates along which a joint moves; an endless one over one turn."""
+    """Return the coordinates along which a joint moves; one that turns endlessly over one turn."""
     if joint.type is JointType.BALL:
         cone = math.pi if joint.limits.cone is None else joint.limits.cone
         twist = FULL_TURN if joint.limits.twist is None else joint.limits.twist
@@ -52,8 +53,9 @@ def freedoms(joint: Joint) -> tuple[Freedom, ...]:
         return tuple(Freedom(f"{joint.name}.{key}", lo, hi, 0.0) for key, (lo, hi) in ranges.items())
     found = []
     for column in joint.columns:
-        lower = column.lower if math.isfinite(column.lower) else column.rest - math.pi
-        upper = column.upper if math.isfinite(column.upper) else column.rest + math.pi
+        endless = ENDLESS_SLIDE_MM if column.unit == "mm" else math.pi
+        lower = column.lower if math.isfinite(column.lower) else column.rest - endless
+        upper = column.upper if math.isfinite(column.upper) else column.rest + endless
         found.append(Freedom(column.name, lower, upper, column.rest))
     return tuple(found)
 

@@ -18,7 +18,7 @@ from articad.errors import KinematicsError
 from articad.findings import Finding, Findings
 from articad.geometry.mesh import TriMesh
 from articad.interference.check import broken_finding, unknown_pairs
-from articad.interference.motion import driver_values, freedoms, scattered
+from articad.interference.motion import ENDLESS_SLIDE_MM, Freedom, driver_values, freedoms, scattered
 from articad.interference.overlap import VOLUME_NOISE_MM3, Overlap, may_overlap, overlap, volume
 from articad.interference.relations import FitLike, WaiverLike
 from articad.interference.report import Checks, PairCheck, Strength
@@ -30,6 +30,7 @@ from articad.kinematics.mechanism import Mechanism
 FloatArray = NDArray[np.float64]
 
 DEFAULT_STEPS = 60
+ENDLESS_SAMPLED_MM = 100.0  # either way of rest, of what slides without limits
 _KEY_DIGITS = 9  # of millimetres and of rotation entries: relative poses that agree so far are one
 _DEEPEST = 2  # poses of largest volume at which the depth of a pair is measured
 
@@ -94,7 +95,7 @@ class Sweep:
     def run(self, joints: Sequence[str] | None, *, steps: int, together: bool, samples: int) -> Checks:
         """Sweep and report; see `sweep`."""
         chosen = [joint for joint in self.driving if joints is None or joint.name in joints]
-        ranges = [freedom for joint in chosen for freedom in freedoms(joint)]
+        ranges = [_sampled(freedom) for joint in chosen for freedom in freedoms(joint)]
         over = tuple(freedom.name for freedom in ranges)
         broken = Findings(broken_finding(name, reason) for name, reason in self.scene.broken.items())
         report = Checks(broken, tuple(unknown_pairs(self.scene, over).values()), self.scene.deflection, over, tuple(self.scene.bodies))
@@ -198,6 +199,15 @@ class Sweep:
             hint="Narrow the limits to what the mechanism can reach.",
         )
         return Checks(Findings([*error.findings, finding]), (), self.scene.deflection, over, tuple(self.scene.bodies))
+
+
+def _sampled(freedom: Freedom) -> Freedom:
+    """Return a range that can be sampled: of what slides without limits a piece about rest."""
+    if freedom.upper - freedom.lower < ENDLESS_SLIDE_MM:
+        return freedom
+    return freedom._replace(
+        lower=max(freedom.lower, freedom.rest - ENDLESS_SAMPLED_MM), upper=min(freedom.upper, freedom.rest + ENDLESS_SAMPLED_MM)
+    )
 
 
 def _matrices(poses: FloatArray) -> FloatArray:

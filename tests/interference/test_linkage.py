@@ -234,3 +234,19 @@ def test_an_honest_certificate_of_a_loop_is_accepted(honest: Certificate) -> Non
 
 def test_links_that_are_said_to_follow_although_nothing_closes_the_loop_are_refuted(honest: Certificate) -> None:
     assert refutations(honest, free_the_loop)
+
+
+def test_a_joint_that_only_follows_is_proven_with_its_driver() -> None:
+    meshes, joints = four_bar((0.0, 5.0, 10.0))
+    certificate = certify(meshes, Mechanism(tuple(meshes), "frame", joints), joints=["rock"])
+    assert certificate.ok
+    assert "crank" in certificate.asked
+    assert len(certificate.claims) == 6
+
+
+def test_what_slides_without_limits_is_not_checked() -> None:
+    meshes = {"base": box(4, 4, 4), "cart": box(4, 4, 4).transformed(at(20))}
+    endless = joint("run", "slider", "base", "cart", lower=(-math.inf,), upper=(math.inf,))
+    certificate = certify(meshes, Mechanism(("base", "cart"), "base", [endless]))
+    assert certificate.findings.codes == ("E_NOT_CHECKED",)
+    assert not certificate.ok
