@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import combinations
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
 from articad.export.contacts import ContactSearch, poses_in_motion
@@ -49,7 +50,9 @@ def collide(assembly: Assembly, model: LoweredModel, collision: Collision, skip:
     cache = cache or BuildCache()
     shaped = {link.part.name: _Shaped(link, collision, cache) for link in model.links}
     own = {name: tuple(placed.shape for placed in one.link.collisions) for name, one in shaped.items()}
-    search = ContactSearch(assembly.mechanism.parts, poses_in_motion(assembly.mechanism), own, skip)
+    asked = any(own[a] and own[b] and (a, b) not in skip and (b, a) not in skip for a, b in combinations(assembly.mechanism.parts, 2))
+    poses = poses_in_motion(assembly.mechanism) if asked else assembly.poses(assembly.mechanism.rest)[None].matrix
+    search = ContactSearch(assembly.mechanism.parts, poses, own, skip)
     for name, one in shaped.items():
         search.update(name, one.shapes)
     while True:

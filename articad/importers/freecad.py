@@ -19,7 +19,8 @@ from articad.connectors.mate import FLIP, Mate
 from articad.connectors.se3 import SE3
 from articad.errors import ArticadError
 from articad.findings import Finding, Findings
-from articad.geometry.part import DEFAULT_COLOR, Part, Solid
+from articad.geometry.part import DEFAULT_COLOR, Part, Shape, Solid
+from articad.importers.freecad_mesh import read_mesh_kernel
 from articad.importers.reading import LARGEST_MM, Folder, parse_xml, unreadable
 from articad.importers.records import assembly_of, read_records
 from articad.kernels.archive import Archive, BadArchiveError
@@ -227,11 +228,28 @@ class _Model:
             try:
                 return self._reader.read_brep(self.document.archive.read(file), name=name, T=T, deflection=self.deflection)
             except (ArticadError, BadArchiveError) as error:
-                message = f"The shape of {item} is not one valid solid: {str(error)[:200]}"
-                self.findings.append(
-                    Finding(code="W_FREECAD_SHAPE", where=f"parts.{name}", parts=(name,), message=message, hint="Repair it in FreeCAD.")
-                )
+                self._misshapen(name, f"The shape of {item} is not one valid solid: {str(error)[:200]}")
         return None
+
+    def meshes(self, name: str) -> tuple[Shape, ...]:
+        """Return the meshes of a part that is no solid, in the part's own frame."""
+        container = self.container(self.parts[name])
+        own = self.document.types.get(container) == "Mesh::Feature"
+        found = []
+        for item in [container] if own else self.document.links(container, "Group"):
+            file = self.document.value(item, "Mesh", "Mesh", "file")
+            if self.document.types.get(item) == "Mesh::Feature" and file in self.document.archive.names:
+                try:
+                    mesh = read_mesh_kernel(self.document.archive.read(file))
+                except (ArticadError, BadArchiveError) as error:
+                    self._misshapen(name, f"The mesh of {item} is left out: {str(error)[:200]}")
+                    continue
+                found.append(Shape(mesh, IDENTITY if own else self.document.placement(item)))
+        return tuple(found)
+
+    def _misshapen(self, name: str, message: str) -> None:
+        hint = "Repair it in FreeCAD."
+        self.findings.append(Finding(code="W_FREECAD_SHAPE", where=f"parts.{name}", parts=(name,), message=message, hint=hint))
 
     # ------------------------------------------------------------------ joints
 
@@ -332,7 +350,7 @@ class _Model:
             solid = self.solid(name)
             connectors = {key: Connector(key, frame) for key, frame in frames.items()}
             parts.append(
-                Part.without_geometry(name, connectors)
+                Part(name, connectors, self.meshes(name))
                 if solid is None
                 else Part.from_solid(name, solid, connectors=connectors, color=DEFAULT_COLOR)
             )
@@ -369,7 +387,7 @@ def _part_now(part: Part, frames: dict[str, SE3], model: _Model) -> Part:
     }
     solid = model.solid(part.name)
     if solid is None:
-        return replace(part, connectors=connectors)
+        return replace(part, connectors=connectors, visuals=model.meshes(part.name))
     shown = Part.from_solid(part.name, solid, connectors=connectors, color=part.color, material=part.material)
     return replace(shown, mass=part.mass)
 
