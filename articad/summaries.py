@@ -113,7 +113,7 @@ def print_review(report: Report, terminal: Terminal) -> None:
 
 
 def print_exports(exports: Mapping[str, Report], terminal: Terminal) -> None:
-    """Print each export's main file, and everything that was lost in it."""
+    """Print each export's main file, everything that was lost in it, and what else its writer had to say."""
     for name, export in exports.items():
         losses = counted_things(len(export["rows"]), "loss", "losses")
         terminal.say(f"{name.upper()}: {export['main']} ({counted_things(len(export['files']), 'file', 'files')}, {losses})")
@@ -123,6 +123,7 @@ def print_exports(exports: Mapping[str, Report], terminal: Terminal) -> None:
         for lost, rows in alike.items():
             others = f" and {len(rows) - 1} more" if len(rows) > 1 else ""
             terminal.say(f"  {rows[0]['where']}{others}: written as {rows[0]['kept']}; lost: {lost}")
+        print_findings(export.get("findings", []), terminal)
 
 
 def print_findings(findings: list[Report], terminal: Terminal) -> None:

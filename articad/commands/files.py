@@ -77,7 +77,7 @@ def _convert(options: argparse.Namespace, terminal: Terminal) -> Report:
     bundle = replace(bundle, files={target.name if path == bundle.main else path: content for path, content in bundle.files.items()})
     bundle.write(target.parent)
     report = bundle.to_json() | {"folder": str(target.parent), "main": str(target)}
-    terminal.findings(assembly.findings + bundle.findings)
+    terminal.findings(assembly.findings)
     summaries.print_exports({FORMAT_OF[target.suffix.lower()]: report}, terminal)
     return report | {"findings": [finding.to_json() for finding in assembly.findings + bundle.findings]}
 
@@ -110,7 +110,6 @@ def _adopt(options: argparse.Namespace, terminal: Terminal) -> Report:
     if options.script is not None:
         (folder / "source").mkdir()
         files.append(Path(shutil.copy(options.script, folder / "source")))
-    terminal.findings(bundle.findings)
     summaries.print_exports({"plan": bundle.to_json() | {"main": str(files[0])}}, terminal)
     report = bundle.to_json() | {"schema": "articad.adopt/1", "folder": str(folder), "files": [str(file) for file in files]}
     report |= {"parts": len(assembly.parts), "joints": len(assembly.joints), "freedoms": assembly.mechanism.mobility}
