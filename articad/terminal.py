@@ -28,12 +28,15 @@ Progress = Callable[[str, str], None]
 """Told of a part's or stage's name and its new state; may be called from any thread."""
 
 _STARTED = "started"
+_DONE = "done"  # a step of the program's own
 _UNREMARKABLE = {"cached", "derived", "kept"}  # nothing had to be done
+_SMOOTH = {"built", _DONE, "made", "ok", "read", "written"}  # it went as it should
+_WORTH_A_LINE_S = 2.0  # of a step that takes less there is no news
 # Control and format characters of Unicode, separators of lines, halves of characters; not the end of a line, and not the tab.
 _OBEYED = re.compile(
     "[\x00-\x08\x0b-\x1f\x7f-\x9f\xad\u061c\u180e\u200b-\u200f\u2028-\u202e\u2060-\u2064\u2066-\u206f\ufeff\ufff9-\ufffb\ud800-\udfff]"
 )
-_SHOWN_AT_ONCE = 4  # names under way beside the bar: more do not fit into 80 columns
+_SHOWN_AT_ONCE = 3  # names under way beside the bar: more do not fit into 80 columns
 
 
 class Terminal:
@@ -166,17 +169,20 @@ class Terminal:
     # ------------------------------------------------------------------ progress
 
     @contextmanager
-    def progress(self, title: str, total: int | None = None) -> Iterator[Progress]:
+    def progress(self, title: str, total: int | None = None, note: Callable[[], str] | None = None) -> Iterator[Progress]:
         """Show what is under way: live on a terminal, a line for each thing that ends otherwise.
+
+        On a terminal only what did not go smoothly stays when the bar is gone.
 
         Args:
             title: What is being done.
             total: How many things will end, if that is known.
+            note: Says what else changes meanwhile, such as the tokens that were spent.
         """
         if self.as_json or self.quiet:
             yield _silent
         elif self._is_watched(self.err):
-            with self._live(title, total) as tell:
+            with self._live(title, total, note) as tell:
                 yield tell
         else:
             yield self._lines()
@@ -190,33 +196,48 @@ class Terminal:
             with lock:
                 if state == _STARTED:
                     started[name] = now
-                elif state not in _UNREMARKABLE or self.verbose:
-                    took = f", {now - started[name]:.1f} s" if name in started else ""
-                    print(plain(f"  {name}: {state}{took}"), file=self.err, flush=True)
+                elif self.verbose or (state not in _UNREMARKABLE and not self._too_short(name, state, started, now)):
+                    print(plain(_ended(name, state, started, now)), file=self.err, flush=True)
 
         return tell
 
-    @contextmanager
-    def _live(self, title: str, total: int | None) -> Iterator[Progress]:
-        from rich.console import Console  # noqa: PLC0415 - 100 ms that only a terminal needs
-        from rich.progress import BarColumn, MofNCompleteColumn, SpinnerColumn, TextColumn, TimeElapsedColumn  # noqa: PLC0415
-        from rich.progress import Progress as Bars  # noqa: PLC0415
+    @staticmethod
+    def _too_short(name: str, state: str, started: dict[str, float], now: float) -> bool:
+        return state == _DONE and now - started.get(name, now) < _WORTH_A_LINE_S
 
-        columns = (SpinnerColumn(), TextColumn("{task.description}", markup=False), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
+    @contextmanager
+    def _live(self, title: str, total: int | None, note: Callable[[], str] | None) -> Iterator[Progress]:
+        from rich.console import Console  # noqa: PLC0415 - 100 ms that only a terminal needs
+        from rich.progress import BarColumn, MofNCompleteColumn, ProgressColumn, SpinnerColumn, Task, TextColumn  # noqa: PLC0415
+        from rich.progress import Progress as Bars  # noqa: PLC0415
+        from rich.text import Text  # noqa: PLC0415
+
+        class Elapsed(ProgressColumn):
+            def render(self, task: Task) -> Text:
+                seconds = int(task.elapsed or 0)
+                clock = f"{seconds // 60}:{seconds % 60:02d}"
+                return Text(f"{clock} · {note()}" if note is not None else clock, style="dim")
+
+        counted = (BarColumn(16), MofNCompleteColumn()) if total is not None else ()
+        columns = (SpinnerColumn(), TextColumn("{task.description}", markup=False), *counted, Elapsed())
         console = Console(file=self.err, no_color=not self._color, highlight=False)
-        under_way: dict[str, None] = {}
+        started: dict[str, float] = {}
         lock = threading.Lock()
         with Bars(*columns, console=console, transient=True) as bars:
             task = bars.add_task(title, total=total)
 
             def tell(name: str, state: str) -> None:
+                now = time.monotonic()
                 with lock:
                     if state == _STARTED:
-                        under_way[name] = None
+                        started[name] = now
                     else:
-                        under_way.pop(name, None)
+                        if state not in _UNREMARKABLE | _SMOOTH:
+                            bars.console.print(Text(plain(_ended(name, state, started, now))))
+                        started.pop(name, None)
                         bars.advance(task)
-                    bars.update(task, description=f"{title} {', '.join(list(under_way)[-_SHOWN_AT_ONCE:])}".rstrip())
+                    more = f" and {len(started) - _SHOWN_AT_ONCE} more" if len(started) > _SHOWN_AT_ONCE else ""
+                    bars.update(task, description=plain(f"{title} {', '.join(list(started)[-_SHOWN_AT_ONCE:])}{more}".rstrip()))
 
             yield tell
 
@@ -248,6 +269,11 @@ class Terminal:
         for row in cells:
             table.add_row(*map(Text, row))  # Text: a name with [brackets] is a name, not markup
         Console(file=self.out).print(table)
+
+
+def _ended(name: str, state: str, started: dict[str, float], now: float) -> str:
+    """Return the line that says how something ended, and after what time if that is known."""
+    return f"  {name}: {state}" + (f", {now - started[name]:.1f} s" if name in started else "")
 
 
 def plain(text: str) -> str:

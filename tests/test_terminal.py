@@ -143,6 +143,26 @@ def test_on_a_terminal_progress_is_live_and_leaves_nothing_behind() -> None:
     assert out(watched) == ""
 
 
+def test_on_a_terminal_what_went_wrong_stays_and_what_was_spent_is_seen() -> None:
+    watched = Terminal(out=Screen(), err=Screen())
+    with watched.progress("Generating", note=lambda: "3 calls, 1200 tokens, $0.02") as tell:
+        tell("design", "started")
+        tell("design", "5 parts, 2 errors")
+        tell("lid", "started")
+        tell("lid", "built")
+    assert "design: 5 parts, 2 errors" in err(watched)
+    assert "3 calls, 1200 tokens, $0.02" in err(watched)
+    assert "lid: built" not in err(watched)
+
+
+def test_off_a_terminal_a_short_step_of_the_programs_own_is_no_news() -> None:
+    speaking = terminal()
+    with speaking.progress("Finishing", note=lambda: "3 calls") as tell:
+        tell("checks", "started")
+        tell("checks", "done")
+    assert err(speaking) == ""
+
+
 def test_no_color_keeps_a_terminal_plain() -> None:
     watched = Terminal(color=False, out=Screen(), err=Screen())
     watched.findings(Findings([ERROR]))

@@ -109,6 +109,7 @@ class Line:
         if requirements is None or (ideas == "auto" and requirements.open_ended):
             requirements = analyse(self.run.request, self.port, concept=self._concept())
         self.run.save_requirements(requirements.to_json())
+        self.shop.tell("requirements", "read")
         return requirements
 
     def planner(self, requirements: Requirements) -> Planner:
@@ -176,6 +177,8 @@ class Line:
         self._save(plan)
         with closed_port("assembly and checks are deterministic"):
             record_assembly(self.run, assembly)
+        self.shop.tell("assembly", "made")
+        self.shop.tell("parts", "made")
         return plan, assembly
 
     def _judged(self, assembly: Assembly, requirements: Requirements, number: int) -> tuple[Evidence, Verdict]:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from articad.commands.command import argument, command
 from articad.commands.options import BUILD_ARGUMENTS
-from articad.commands.steps import assembled, reported
+from articad.commands.steps import assembled, reported, stage
 
 if TYPE_CHECKING:
     from articad.terminal import Report, Terminal
@@ -25,17 +25,26 @@ def _build(options: argparse.Namespace, terminal: Terminal) -> Report:
     scripts = (folder if folder.is_dir() else folder.parent) / "parts"
     choices = {"task": "build", "kernel": options.kernel or plan.kernel, "parameters": dict(options.parameters)}
     assembly = assembled(plan, scripts, options, terminal)
-    with open_or_create(RunRequest(prompt=plan.name, options=choices), options.out) as run:
+    with open_or_create(RunRequest(prompt=plan.name, options=choices), options.out) as run, terminal.progress("Finishing") as tell:
         run.save_plan(plan.dumps(), 0)
         record_assembly(run, assembly)
-        record_checks(run, assembly.check() + assembly.sweep() if options.verify == "sampled" else assembly.check())
+        with stage(tell, "checks at rest"):
+            checks = assembly.check()
+        if options.verify == "sampled":
+            with stage(tell, "samples of motion"):
+                checks += assembly.sweep()
+        record_checks(run, checks)
         if options.verify == "certified":
-            record_certificate(run, assembly.certify())
+            with stage(tell, "proof of motion"):
+                record_certificate(run, assembly.certify())
         for name in options.formats:
-            record_export(run, assembly, name)
+            with stage(tell, f"export {name}"):
+                record_export(run, assembly, name)
         if options.pictures:
-            record_pictures(run, assembly)
-            record_page(run, assembly)
+            with stage(tell, "pictures"):
+                record_pictures(run, assembly)
+            with stage(tell, "page"):
+                record_page(run, assembly)
     return reported(run, terminal)
 
 

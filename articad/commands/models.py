@@ -37,9 +37,9 @@ def _generate(options: argparse.Namespace, terminal: Terminal) -> Report:
     from articad.agents.recollection import StoredDocumentation, StoredMemory
     from articad.record import kernel_named
 
-    budget, sees = _asked_model(options, terminal)
+    budget, sees = asked_model(options, terminal)
     store = experience(options)
-    with terminal.progress("Generating") as tell:
+    with terminal.progress("Generating", note=lambda: _spent(budget)) as tell:
         run = generate(
             options.text,
             llm=budget,
@@ -84,8 +84,8 @@ def _edit(options: argparse.Namespace, terminal: Terminal) -> Report:
     from articad.agents.edit import edit
     from articad.agents.recollection import StoredDocumentation, StoredMemory
 
-    budget, sees = _asked_model(options, terminal) if options.text.strip() else (None, False)
-    with terminal.progress("Editing") as tell:
+    budget, sees = asked_model(options, terminal) if options.text.strip() else (None, False)
+    with terminal.progress("Editing", note=None if budget is None else lambda: _spent(budget)) as tell:
         run = edit(
             options.run,
             options.text,
@@ -109,7 +109,7 @@ def _edit(options: argparse.Namespace, terminal: Terminal) -> Report:
     return _told(run, options, terminal, budget, remembered=budget is not None)
 
 
-def _asked_model(options: argparse.Namespace, terminal: Terminal) -> tuple[Budget, bool]:
+def asked_model(options: argparse.Namespace, terminal: Terminal) -> tuple[Budget, bool]:
     """Return the model that was asked for, within its budget, and whether it sees."""
     from articad.agents.live import DEFAULT_MODEL, LiteLLM
     from articad.agents.llm import Budget
@@ -117,7 +117,7 @@ def _asked_model(options: argparse.Namespace, terminal: Terminal) -> tuple[Budge
     name = options.model or os.environ.get("ARTICAD_MODEL") or DEFAULT_MODEL
     model = LiteLLM(name, api_base=options.api_base, vision_model=options.vision_model, judge_model=options.judge_model)
     sees = bool(getattr(model, "sees", True))
-    if not sees and (options.look or options.inspection or options.review):
+    if not sees and (options.look or options.inspection or getattr(options, "review", False)):
         terminal.say(f"{options.vision_model or name} does not see: parts and assembly are held to exact checks alone.")
     limits = {"calls": options.max_calls, "tokens": options.max_tokens, "cost": options.max_cost, "minutes": options.max_minutes}
     return Budget(model, **limits), sees
@@ -137,7 +137,7 @@ def _told(run: Run, options: argparse.Namespace, terminal: Terminal, budget: Bud
     if remembered and (case := remember(run, store)) is not None:
         terminal.detail(f"Remembered as {case.id[:8]}, {case.kind}, in {store.folder}.")
     if options.pictures:
-        draw(run)
+        draw(run, terminal)
     report = reported(run, terminal)
     if "edit" in report:
         print_edit(report["edit"], terminal)
@@ -145,14 +145,18 @@ def _told(run: Run, options: argparse.Namespace, terminal: Terminal, budget: Bud
         print_review(report["review"], terminal)
     if budget is None:
         return report
-    price = "of unknown price" if budget.cost_unknown_of else f"${budget.cost:.4f}"
-    terminal.say(f"Model: {budget.calls} calls, {budget.tokens} tokens, {price}.")
+    terminal.say(f"Model: {_spent(budget)}.")
     return report | {"model": {"calls": budget.calls, "tokens": budget.tokens, "cost_usd": None if budget.cost_unknown_of else budget.cost}}
+
+
+def _spent(budget: Budget) -> str:
+    price = "of unknown price" if budget.cost_unknown_of else f"${budget.cost:.4f}"
+    return f"{budget.calls} calls, {budget.tokens} tokens, {price}"
 
 
 def _is_asked(options: argparse.Namespace) -> bool:
     """Whether somebody is there to choose."""
-    return sys.stdin.isatty() and not options.json and not options.quiet
+    return sys.stdin.isatty() and not options.as_json and not options.quiet
 
 
 def _asking(terminal: Terminal) -> Choose:

@@ -32,7 +32,8 @@ def _certify(options: argparse.Namespace, terminal: Terminal) -> Report:
     with Run.open(options.run) as run:
         with terminal.progress("Reading") as tell:
             assembly = assembly_of(run, progress=tell)
-        certificate = assembly.certify(options.joints, pairs=options.pairs, budget=options.budget, epsilon=options.epsilon)
+        with terminal.progress("Proving"):
+            certificate = assembly.certify(options.joints, pairs=options.pairs, budget=options.budget, epsilon=options.epsilon)
         report = record_certificate(run, certificate)
         summaries.print_certificate(report, terminal)
         terminal.say(f"Certificate: {run.path / 'certificate.json'}, {len(certificate.claims)} claims")

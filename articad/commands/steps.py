@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import argparse
 import os
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
@@ -13,7 +15,7 @@ if TYPE_CHECKING:
     from articad.memory.experience import ExperienceStore
     from articad.plan.schema import AssemblyPlan
     from articad.run import Run
-    from articad.terminal import Report, Terminal
+    from articad.terminal import Progress, Report, Terminal
 
 
 def assembled(plan: AssemblyPlan, scripts: Path, options: argparse.Namespace, terminal: Terminal) -> Assembly:
@@ -31,6 +33,14 @@ def assembled(plan: AssemblyPlan, scripts: Path, options: argparse.Namespace, te
             progress=tell,
             parameters=dict(options.parameters),
         )
+
+
+@contextmanager
+def stage(tell: Progress, name: str) -> Iterator[None]:
+    """Tell that a step of the program's own begins, and that it is done."""
+    tell(name, "started")
+    yield
+    tell(name, "done")
 
 
 def reported(run: Run, terminal: Terminal) -> Report:
@@ -83,15 +93,17 @@ def loaded(target: str, options: argparse.Namespace, terminal: Terminal) -> Asse
         return Assembly.from_plan(plan, folder / "parts", kernel=kernel_named(plan.kernel, sandbox=sandbox_level(options)), progress=tell)
 
 
-def draw(run: Run) -> None:
+def draw(run: Run, terminal: Terminal) -> None:
     """Draw what a finished run has made; its parts come from the cache."""
     from articad.record import assembly_of, record_page, record_pictures
     from articad.run import Run
 
-    with Run.open(run.path) as opened:
+    with Run.open(run.path) as opened, terminal.progress("Finishing") as tell:
         assembly = assembly_of(opened)
-        record_pictures(opened, assembly)
-        record_page(opened, assembly)
+        with stage(tell, "pictures"):
+            record_pictures(opened, assembly)
+        with stage(tell, "page"):
+            record_page(opened, assembly)
 
 
 def sandbox_level(options: argparse.Namespace) -> Literal["strict", "weak"]:

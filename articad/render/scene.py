@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import Literal
 
 import numpy as np
@@ -36,7 +37,7 @@ class Item:
     color: str
     manner: Manner = "solid"
 
-    @property
+    @cached_property
     def vertices(self) -> FloatArray:
         """Vertices in the ground frame [mm], `(V, 3)`."""
         return self.T_ground.apply(self.mesh.vertices)
@@ -98,7 +99,7 @@ class Scene:
     axes: tuple[Axis, ...] = ()
     section: Section | None = field(default=None)
 
-    @property
+    @cached_property
     def bounds(self) -> FloatArray:
         """Smallest and largest coordinates of all items [mm], `(2, 3)`; a unit box when there are none."""
         corners = [item.vertices for item in self.items if len(item.mesh.vertices)]
