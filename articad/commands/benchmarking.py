@@ -1,4 +1,4 @@
-"""Run the benchmark with a model, or score what any tool has made."""
+"""Run the benchmark with a model, or score what any tool has made; make assemblies by the thousand."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from articad.commands.command import argument, command
-from articad.commands.options import ASKING, FORCE, SANDBOX, positive
+from articad.commands.options import ASKING, FORCE, SANDBOX, amount, positive
 from articad.commands.steps import build_cache, sandbox_level
 
 if TYPE_CHECKING:
@@ -55,6 +55,39 @@ def _bench(options: argparse.Namespace, terminal: Terminal) -> Report:
             raise ReadError("`articad bench score` needs a folder of models named after tasks.", path="bench")
         return _printed(table(score_files(tasks, options.what)), terminal)
     return _printed(table(_run(tasks, options, terminal)), terminal)
+
+
+@command(
+    "batch",
+    "Make many assemblies: plans with values for their parameters, checked, exported and kept with their provenance.",
+    argument("spec", metavar="BATCH.json", help="items, or samples of plans' parameters"),
+    argument("--out", metavar="DIR", default="batch", help="a folder for each item; what is there is not made again (batch)"),
+    argument("--engine", choices=["local", "dask"], default="local", help="processes of this machine, or a Dask cluster (local)"),
+    argument("--scheduler", metavar="URL", help="address of the Dask scheduler; its workers must see --out"),
+    argument("--jobs", metavar="N", type=positive, default=None, help="workers of this machine (one a processor)"),
+    argument("--memory", metavar="GB", type=amount, default=4.0, help="of each worker of this machine (4)"),
+)
+def _batch(options: argparse.Namespace, terminal: Terminal) -> Report:
+    from articad.bench.batch import read_batch, run_dask, run_local, summary
+
+    items = read_batch(options.spec)
+    with terminal.progress("Items", total=len(items)) as tell:
+
+        def told(record: Report) -> None:
+            tell(record["digest"][:12], "built" if record["ok"] else "failed")
+
+        if options.engine == "dask":
+            records = run_dask(items, options.out, scheduler=options.scheduler, told=told)
+        else:
+            records = run_local(items, options.out, workers=options.jobs, memory_gb=options.memory, told=told)
+    report = summary(records)
+    terminal.say(f"{report['passed']} of {report['items']} passed; {report['made_before']} were there already.")
+    for code, count in report["refused_by"].items():
+        terminal.say(f"  {code}: {count}")
+    spent = ", ".join(f"{stage} {seconds:.1f} s" for stage, seconds in report["seconds"].items())
+    terminal.say(f"Parts: {report['parts_built']} built, {report['parts_kept']} kept. Time: {spent or 'none'}.")
+    terminal.say(f"Items: {options.out}")
+    return report
 
 
 def _run(tasks: list[tuple[Path, Task]], options: argparse.Namespace, terminal: Terminal) -> list[Row]:

@@ -1,0 +1,182 @@
+"""Batches: nothing twice, nothing half, a dead worker loses its own item alone, here and on Dask."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import signal
+import subprocess
+import threading
+import time
+from collections import Counter
+from pathlib import Path
+from typing import Any
+
+import mujoco
+import pytest
+
+from articad.bench.batch import read_batch, run_dask, run_local, summary
+from articad.bench.items import ITEM, Item, Json, make
+from articad.cli import main
+from articad.errors import ReadError
+from tests.agents import stories
+
+pytestmark = pytest.mark.slow
+
+
+@pytest.fixture(scope="module")
+def plan(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A plate with a flap, whose lift may be chosen."""
+    folder = tmp_path_factory.mktemp("flap")
+    (folder / "parts").mkdir()
+    (folder / "plan.json").write_text(json.dumps(stories.FLAP_PLAN))
+    for name, script in stories.FLAP_SCRIPTS.items():
+        (folder / "parts" / f"{name}.py").write_text(script)
+    return folder
+
+
+def lifts(plan: Path, *values: float, **options: Any) -> list[Item]:
+    return [Item(str(plan), {"lift": value}, **options) for value in values]
+
+
+def test_an_item_is_checked_exported_and_not_made_twice(plan: Path, tmp_path: Path) -> None:
+    (item,) = lifts(plan, 1.0, gates=("rest", "motion"))
+
+    first, second = make(item, tmp_path), make(item, tmp_path)
+
+    assert first["ok"], first
+    assert (first["made"], second["made"]) == ("now", "before")
+    folder = tmp_path / item.digest[:2] / item.digest
+    (scene,) = folder.glob("mjcf/*.xml")
+    mujoco.MjModel.from_xml_path(str(scene))
+    assert {str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file()} == {*first["files"], ITEM}
+    assert first["values"] == {"lift": 1.0}
+
+
+def test_what_a_gate_refuses_is_kept_without_exports(plan: Path, tmp_path: Path) -> None:
+    (item,) = lifts(plan, -1.0)
+
+    record = make(item, tmp_path)
+
+    assert not record["ok"]
+    assert [finding["code"] for finding in record["findings"]] == ["E_STATIC_OVERLAP"]
+    assert [path.name for path in (tmp_path / item.digest[:2] / item.digest).iterdir()] == [ITEM]
+
+
+def test_scripts_values_gates_and_formats_make_another_item(plan: Path, tmp_path: Path) -> None:
+    other = tmp_path / "other"
+    shutil.copytree(plan, other)
+    script = next((other / "parts").iterdir())
+    script.write_text(script.read_text() + "# changed\n")
+
+    items = [*lifts(plan, 1, 2), *lifts(plan, 1, gates=("motion",)), *lifts(plan, 1, formats=("urdf",)), *lifts(other, 1)]
+
+    assert len({item.digest for item in items}) == 5
+
+
+def test_a_dead_worker_loses_its_own_item_alone_and_that_is_tried_again(plan: Path, tmp_path: Path) -> None:
+    items = lifts(plan, *(1 + 0.01 * index for index in range(8)), formats=("urdf",))
+    killed: list[int] = []
+
+    def kill_once(_record: Json) -> None:
+        if not killed:
+            killed.append(victim := children_of(os.getpid())[0])
+            os.kill(victim, signal.SIGKILL)
+
+    records = run_local(items, tmp_path, workers=2, told=kill_once)
+
+    assert killed
+    assert [record["ok"] for record in records] == [True] * 8
+    assert len(list(tmp_path.glob("*/*/item.json"))) == 8
+    assert Counter(record["made"] for record in run_local(items, tmp_path, workers=2)) == {"before": 8}
+
+
+def test_an_item_that_kills_its_worker_each_time_is_told(tmp_path: Path, plan: Path) -> None:
+    (item,) = lifts(plan, 1.5)
+    stop = threading.Event()
+
+    def kill_all() -> None:
+        while not stop.is_set():
+            for child in children_of(os.getpid()):
+                os.kill(child, signal.SIGKILL)
+            time.sleep(0.02)
+
+    killer = threading.Thread(target=kill_all)
+    killer.start()
+    try:
+        (record,) = run_local([item], tmp_path, workers=1, retries=1)
+    finally:
+        stop.set()
+        killer.join()
+
+    assert record["made"] == "never"
+    assert "died 2 times" in record["error"]
+    assert not summary([record])["ok"]
+
+
+def children_of(process: int) -> list[int]:
+    """Return the workers that a process has started."""
+    found = subprocess.run(["pgrep", "-P", str(process), "-f", "articad.bench.worker"], capture_output=True, text=True, check=False).stdout
+    return [int(line) for line in found.split()]
+
+
+def test_a_sample_fills_the_ranges_evenly_and_is_the_same_for_a_seed(plan: Path, tmp_path: Path) -> None:
+    spec = tmp_path / "batch.json"
+    sample = {"plan": os.path.relpath(plan, tmp_path), "count": 20, "seed": 3, "parameters": {"lift": [1, 3]}, "formats": ["urdf"]}
+    spec.write_text(json.dumps({"schema": "articad.batch/1", "sample": [sample]}))
+
+    items = read_batch(spec)
+
+    values = sorted(item.values["lift"] for item in items)
+    assert [int((value - 1) * 10) for value in values] == list(range(20))  # one in each twentieth
+    assert items == read_batch(spec)
+    assert all(item.formats == ("urdf",) for item in items)
+
+
+def test_the_command_makes_a_batch_and_says_what_came_of_it(plan: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    spec = tmp_path / "batch.json"
+    spec.write_text(json.dumps({"items": [{"plan": str(plan), "values": {"lift": lift}, "formats": ["urdf"]} for lift in (1, -1)]}))
+
+    assert main(["batch", str(spec), "--out", str(tmp_path / "out"), "--jobs", "1"]) == 0
+
+    said = capsys.readouterr().out
+    assert "1 of 2 passed" in said
+    assert "E_STATIC_OVERLAP: 1" in said
+
+
+@pytest.mark.parametrize(
+    ("row", "words"),
+    [
+        ({}, "needs `plan`|no batch"),
+        ({"plan": ".", "gates": ["sealed"]}, "no 'sealed'"),
+        ({"plan": ".", "values": {"a": "x"}}, "may have `values`"),
+    ],
+)
+def test_a_wrong_item_is_told(row: Json, words: str, tmp_path: Path) -> None:
+    spec = tmp_path / "batch.json"
+    spec.write_text(json.dumps({"items": [row]}))
+    with pytest.raises(ReadError, match=words):
+        read_batch(spec)
+
+
+def test_dask_makes_all_items_though_a_worker_is_killed(plan: Path, tmp_path: Path) -> None:
+    from distributed import Client, LocalCluster
+
+    items = lifts(plan, *(1 + 0.01 * index for index in range(10)), formats=("urdf",))
+    killed: list[int] = []
+    with (
+        LocalCluster(n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None, host="127.0.0.1") as cluster,
+        Client(cluster) as client,
+    ):
+
+        def kill_once(_record: Json) -> None:
+            if not killed:
+                killed.append(next(iter(cluster.workers.values())).process.pid)
+                os.kill(killed[0], signal.SIGKILL)
+
+        records = run_dask(items, tmp_path, client=client, told=kill_once)
+
+    assert killed
+    assert [record["ok"] for record in records] == [True] * 10
+    assert len(list(tmp_path.glob("*/*/item.json"))) == 10
