@@ -14,34 +14,41 @@ import os
 import struct
 import tempfile
 import zipfile
-from collections.abc import Callable, Iterator, Mapping
-from functools import cache
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import cache, partial
 from pathlib import Path
 from typing import Any
 from unittest import mock
 
 import numpy as np
+from numpy.typing import NDArray
 
-from articad.agents.design import _judged
+from articad.agents.design import judged
 from articad.agents.forms import reader
+from articad.agents.inspection import Judgement, Look, Observations
+from articad.agents.llm import Replay, Request
 from articad.agents.replies import object_text, parse_script
 from articad.agents.requirements import Requirements
+from articad.agents.rollback import Decisions
 from articad.errors import ArticadError, ReadError
-from articad.findings import Finding
+from articad.findings import Finding, Findings
 from articad.geometry.mesh_files import read_mesh
 from articad.importers.freecad import read_freecad
 from articad.importers.mjcf import read_mjcf
 from articad.importers.urdf import read_urdf
 from articad.kernels import results
+from articad.kernels.build123d import Build123dKernel
 from articad.kernels.contract import probe_findings, read_connectors, solid_findings
 from articad.kernels.failures import script_failure
 from articad.kernels.freecad import tree_findings
 from articad.kernels.sandbox import Limits
 from articad.kernels.zygote import Outcome
+from articad.memory.experience import ExperienceStore
 from articad.plan.check import check_plan
 from articad.plan.expressions import parse
 from articad.plan.resolve import resolve
 from articad.plan.schema import AssemblyPlan
+from articad.run import Run
 
 CORPUS = Path(__file__).parent / "corpus"
 NAMES = {"a": 1.5, "width": 40.0, "inset": -2.0, "zero": 0.0}
@@ -123,12 +130,14 @@ def ply(content: bytes) -> None:
 def reply(content: bytes) -> None:
     """A model's reply, as every role reads it."""
     text = content.decode("utf-8", errors="replace")
-    for read in (
+    reads: tuple[Callable[[], object], ...] = (
         lambda: object_text(text, step="fuzz"),
         lambda: parse_script(text, step="fuzz"),
         lambda: reader(Requirements, ignore=frozenset({"schema"}))(text, "fuzz"),
-        lambda: _judged(text, "fuzz"),
-    ):
+        lambda: judged(text, "fuzz"),
+        *(partial(reader(form), text, "fuzz") for form in (Judgement, Look, Observations, Decisions)),
+    )
+    for read in reads:
         with contextlib.suppress(ArticadError):
             read()
 
@@ -160,6 +169,48 @@ def worker(content: bytes) -> None:
         list(probe_findings(BRIEF, probes, ended=True, crashed=""))
 
 
+def step(content: bytes) -> None:
+    """A STEP file; the confined worker reads it, and may crash or be late without harm."""
+    _solid("step", content)
+
+
+def brep(content: bytes) -> None:
+    """The B-rep of a FreeCAD file."""
+    _solid("brep", content)
+
+
+def shape(content: bytes) -> None:
+    """The shape that a part script's process leaves for the one that measures it."""
+    _solid("bin", content)
+
+
+def run(content: bytes) -> None:
+    """A run directory that somebody else made: JSON of its request, a reply, a report and a line of its trace."""
+    lines = [*content.split(b"\n"), b"", b"", b"", b""]
+    folder = _folder(os.getpid()) / "run"
+    (folder / "llm").mkdir(parents=True, exist_ok=True)
+    files = ("request.json", "llm/design.1.json", "checks.json", "trace.jsonl")
+    for name, line in zip(files, lines, strict=False):
+        (folder / name).write_bytes(line)
+    found = Run.view(folder)
+    list(found.events())
+    with contextlib.suppress(ArticadError):
+        found.checks()
+    with contextlib.suppress(ArticadError):
+        Replay(found).complete(Request("design", "design/1", (), {"type": "object"}))
+    assert all(isinstance(part, dict) for part in found.events())
+
+
+def case(content: bytes) -> None:
+    """A line of somebody's memory of earlier runs."""
+    text = content.decode("utf-8", errors="replace")
+    with tempfile.TemporaryDirectory(dir=_folder(os.getpid())) as folder:
+        memory = ExperienceStore(folder, _NoWords())
+        memory.import_lines(text.split("\n"))
+        for line in memory.export():
+            memory.import_lines([line])
+
+
 READERS: Mapping[str, Callable[[bytes], None]] = {
     "plan": plan,
     "expression": expression,
@@ -172,6 +223,11 @@ READERS: Mapping[str, Callable[[bytes], None]] = {
     "ply": ply,
     "reply": reply,
     "worker": worker,
+    "step": step,
+    "brep": brep,
+    "shape": shape,
+    "run": run,
+    "case": case,
 }
 
 
@@ -184,6 +240,29 @@ def attempt(name: str, content: bytes) -> None:
 def seeds(name: str) -> list[bytes]:
     """Return the corpus of a reader."""
     return [path.read_bytes() for path in sorted((CORPUS / name).iterdir())]
+
+
+class _NoWords:
+    """Stands for the word vectors, which take a second to load."""
+
+    name = "none"
+
+    def embed(self, texts: Sequence[str]) -> NDArray[np.float32]:
+        return np.full((len(texts), 4), 0.5, dtype=np.float32)
+
+
+@cache
+def kernel() -> Build123dKernel:
+    """The kernel whose worker reads shapes, with little time and memory."""
+    return Build123dKernel(timeout=5.0, memory=2 * 2**30)
+
+
+def _solid(form: str, content: bytes) -> None:
+    with kernel()._job() as job, contextlib.suppress(results.PoisonedError):
+        (job / "shape.bin").write_bytes(content)
+        said = kernel()._measured(job, form=form, name="part", deflection=0.5)
+        if Findings(solid_findings({"name": "part"}, said)).ok:
+            kernel()._checked(job, said, 0.5)
 
 
 class _NoBrep:
