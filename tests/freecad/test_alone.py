@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import articad as ac
+from articad import cli
 from articad.connectors.connector import Connector
 from articad.connectors.se3 import SE3
 from articad.errors import ExportError, UnrepresentableError
@@ -19,6 +20,7 @@ from articad.export.freecad_file import mesh_kernel
 from articad.geometry.mesh import TriMesh
 from articad.geometry.shapes import box
 from articad.importers.freecad import read_freecad
+from articad.kernels import freecad_install
 from tests.freecad import opened
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
@@ -133,6 +135,22 @@ def test_without_freecad_documents_are_written_and_what_is_lost_is_told(monkeypa
     assert [loss.lost for loss in bundle.losses if loss.where == "parts.leg"]
     with pytest.raises(UnrepresentableError):
         write_freecad(assembly("geared_four_bar"), strict=True)
+
+
+def test_without_freecad_the_commands_that_need_it_say_so_in_a_sentence(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for variable in ("ARTICAD_FREECAD", "XDG_DATA_HOME"):
+        monkeypatch.setenv(variable, str(tmp_path))
+    monkeypatch.setattr(freecad_install, "_NAMES", ("no_freecad",))  # a distribution may have one of its own
+    plan = EXAMPLES / "metronome"
+    assert cli.main(["build", str(plan), "--kernel", "freecad", "--out", str(tmp_path / "run")]) == 3
+    refused = capsys.readouterr().err
+    assert "FreeCAD 1.0 or later was not found" in refused
+    assert "Run scripts/install-freecad as root" in refused
+    assert cli.main(["convert", str(plan / "plan.json"), str(tmp_path / "metronome.FCStd")]) == 0
+    assert "I_FREECAD_UNSEEN" in capsys.readouterr().out
+    assert len(read_freecad(tmp_path / "metronome.FCStd").parts) == len(assembly("metronome").parts)
 
 
 @pytest.mark.parametrize("name", ["wardrobe", "jansen_leg", "stewart_platform"])
