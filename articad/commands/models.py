@@ -191,7 +191,8 @@ def _replay(options: argparse.Namespace, terminal: Terminal) -> Report:
     from articad.errors import ReadError
     from articad.run import Run
 
-    if not Run.view(options.run).replies():
+    recorded = Run.view(options.run)
+    if not recorded.replies() and recorded.base() is None:
         raise ReadError(
             f"{options.run} holds no answers of a model, so there is nothing to replay. Use `articad build` on its plan.", path=options.run
         )

@@ -23,7 +23,7 @@ from articad.plan.schema import AssemblyPlan
 from articad.record import assembly_of, run_report
 from articad.run import Run, differences
 from tests.agents import stories
-from tests.agents.stories import FLAP_SCRIPTS, fenced, flap
+from tests.agents.stories import FLAP_PLAN, FLAP_SCRIPTS, fenced, flap
 
 TALLER = {"summary": "The drawer is 20 mm taller.", "touches": ["body", "drawer"], "changes": {"parameters.drawer_height.value": 60}}
 THICKER = {"summary": "A thicker flap.", "touches": ["flap"], "changes": {"parts.flap.dimensions.thickness": 3}}
@@ -114,6 +114,41 @@ def test_only_touched_pairs_are_looked_at_again_and_the_report_is_that_of_a_whol
     with_knob = [pair for pair in whole.checks.pairs if "knob" in pair.parts]
     assert counted == {"carried": len(whole.checks.pairs) - len(with_knob), "checked": len(with_knob)}
     assert counted["carried"] > len(with_knob) > 0
+
+
+@pytest.fixture(scope="module")
+def flush(tmp_path_factory: pytest.TempPathFactory) -> Run:
+    """A plate whose flap lies on it."""
+    plan = json.loads(json.dumps(FLAP_PLAN))
+    plan["parameters"][0]["value"] = 0
+    plan["parts"][1]["dimensions"]["lift"] = 0
+    lower = FLAP_SCRIPTS["flap"].replace('d["lift"]', "0")
+    planned = FLAP_SCRIPTS["plate"].replace('(0, d["side"] / 2, d["side"])', 'part.connectors["axis"].o')
+    llm = flap(design__1=json.dumps(plan), part__flap__1=fenced(lower), part__plate__1=fenced(planned))
+    folder = tmp_path_factory.mktemp("flush") / "run"
+    return generate(stories.FLAP_PROMPT, llm=llm, out=folder, kernel=stories.kernel(), cache=stories.shared_cache(), **QUIET)
+
+
+def test_a_pair_whose_solids_are_the_same_is_looked_at_again_where_they_stand_otherwise(flush: Run, tmp_path: Path) -> None:
+    deeper = {"parts.plate.connectors.axis.o": [0, 5, 9], "parts.flap.rest_pose.at": [0, 0, 9]}
+    change = {"summary": "x", "touches": ["plate"], "changes": deeper}
+    run, _ = edited(flush, tmp_path / "run", change, rounds=1)
+
+    assert (run.part("plate") or {})["shape"] == (flush.part("plate") or {})["shape"]
+    assert (flush.checks() or {})["ok"]
+    assert [finding["code"] for finding in (run.checks() or {})["findings"]] == ["E_STATIC_OVERLAP"]
+    assert (run.edit() or {})["pairs"]["carried"] == 0
+
+
+def test_a_pair_whose_joint_turns_farther_is_looked_at_again(flush: Run, tmp_path: Path) -> None:
+    change = {"summary": "x", "touches": ["plate", "flap"], "changes": {"joints.hinge.angle_deg": [-20, 90]}}
+    run, _ = edited(flush, tmp_path / "run", change, rounds=1)
+
+    assert "E_MOTION_COLLISION" in [finding["code"] for finding in (run.checks() or {})["findings"]]
+    assert {name: row["different"].keys() for name, row in (run.edit() or {})["parts"].items()} == {
+        "plate": {"brief.json", "part.json"},
+        "flap": {"brief.json", "part.json"},
+    }
 
 
 def test_the_run_that_is_edited_stays_as_it_is_and_is_not_needed_any_more(plate: Run, tmp_path: Path) -> None:
