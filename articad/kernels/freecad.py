@@ -218,6 +218,8 @@ def tree_findings(part: str, tree: Mapping[str, Any]) -> Iterator[Finding]:
         yield _not_editable(part, f"The document has {scrubbed(tree['bodies'], 20)} bodies, not one.")
         return
     if tree.get("ok") is not True:
+        if tree.get("problem"):
+            yield _not_editable(part, f"FreeCAD cannot make sense of the saved document: {scrubbed(tree['problem'], 300)}.")
         return
     for name in _names(tree.get("off_tip")):
         yield Finding(
@@ -227,7 +229,7 @@ def tree_findings(part: str, tree: Mapping[str, Any]) -> Iterator[Finding]:
             message=f"Feature {name!r} is in the body but not in its solid: it is no ancestor of the tip.",
             hint="After each pattern, set body.Tip to it before the next feature is added, or use the functions of `part`, which do.",
         )
-    if invalid := _names(tree.get("invalid")):
+    if invalid := _names(tree.get("invalid"), 200):
         yield _not_editable(part, f"{', '.join(invalid)} cannot be recomputed.")
     if tree.get("sketched") is not True or tree.get("frozen"):
         yield _not_editable(part, "The body is a frozen shape: no sketch drives it.")
@@ -235,9 +237,9 @@ def tree_findings(part: str, tree: Mapping[str, Any]) -> Iterator[Finding]:
         yield _not_editable(part, f"Dimension {', '.join(map(repr, untied))} drives nothing: no expression names it.")
 
 
-def _names(value: object) -> list[str]:
+def _names(value: object, characters: int = 60) -> list[str]:
     """Return the names that a process reported, as far as they are a list; a script chose them."""
-    return [scrubbed(name, 60) for name in value[:20]] if isinstance(value, list) else []
+    return [scrubbed(name, characters) for name in value[:20]] if isinstance(value, list) else []
 
 
 def _not_editable(part: str, message: str) -> Finding:

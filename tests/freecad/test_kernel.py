@@ -53,6 +53,21 @@ def build(part):
     part.document.recompute()
     return part.body, {}
 """
+OWN = """
+def build(part):
+    part.box((0, 0, 0), ("width", "width", "thickness"))
+    part.settle()
+    block = part.body.Tip
+    bevel = part.body.newObject("PartDesign::Chamfer", "Bevel")
+    bevel.Base = (block, [])
+    bevel.UseAllEdges = True
+    bevel.setExpression("Size", "0.1 * " + part.expression("thickness"))
+    part.body.Tip = bevel
+    part.document.recompute()
+    return part.body, {}
+"""
+CYCLE = OWN.replace("(block, [])", "(part.body.Tip, [])")
+TOO_LARGE = OWN.replace("0.1 *", "3 *")
 UNTIED = GOOD.replace('"thickness"))', "5))").replace('2, "thickness"', "2, 5")
 
 
@@ -79,6 +94,13 @@ def test_a_plate_has_its_volume_and_every_dimension_drives_it() -> None:
     assert built.sandbox == sandbox.level()
 
 
+def test_a_feature_of_freecads_own_is_tied_by_an_expression() -> None:
+    built = build(OWN, PLATE | {"dimensions": {"width": 40.0, "thickness": 5.0}})
+    assert not built.findings, built.findings
+    edges, bevel = 4 * (40 + 40 + 5), 0.5  # a bevelled corner of a box lacks less than three bevelled edges
+    assert 40 * 40 * 5 - edges * bevel**2 / 2 < built.solid.volume < 40 * 40 * 5 - (edges - 24 * bevel) * bevel**2 / 2
+
+
 @pytest.mark.parametrize("name", ["leg", "drawer_lower"])
 def test_both_kernels_build_the_same_solid(name: str) -> None:
     resolved = resolve(ac.AssemblyPlan.load(EXAMPLES / "wardrobe" / "plan.json"))
@@ -94,6 +116,14 @@ def test_both_kernels_build_the_same_solid(name: str) -> None:
 
 def test_a_frozen_shape_is_not_editable() -> None:
     assert "E_NOT_EDITABLE" in codes(FROZEN, probe=False)
+
+
+@pytest.mark.parametrize(("script", "reason"), [(CYCLE, "cyclic dependency"), (TOO_LARGE, "Bevel (")])
+def test_what_freecad_says_of_a_feature_is_told(script: str, reason: str) -> None:
+    with pytest.raises(ContractError) as raised:
+        build(script, PLATE | {"dimensions": {"width": 40.0, "thickness": 5.0}}, probe=False)
+    assert [finding.code for finding in raised.value.findings] == ["E_NOT_EDITABLE"]
+    assert reason in raised.value.findings.errors[0].message
 
 
 def test_a_pattern_that_is_not_the_tip_is_named() -> None:

@@ -37,7 +37,13 @@ def main(job: int, document: int, report: int, shape: int) -> None:
     while content:
         content = content[os.write(shape, content) :]
     systems = {name: entry["object"] for name, entry in told["connectors"].items() if "object" in entry}
-    _say(report, _judged(opened, body) | {"connectors": _frames(opened, systems)})
+    try:
+        judged = _judged(opened, body)
+    except Exception as error:  # noqa: BLE001 - of whatever a script has left; FreeCAD raises its own kinds
+        problem = "; ".join([str(error), *_invalid(opened)])
+        _say(report, {"ok": False, "problem": problem})
+        return
+    _say(report, judged | {"connectors": _frames(opened, systems)})
     until = time.monotonic() + told["seconds"]
     if told["seconds"] > 0:
         for outcome in _probe(opened, body, systems, told["dimensions"], until):
@@ -62,11 +68,16 @@ def _judged(document: Any, body: Any) -> Json:
         "sketched": any(getattr(item, "Profile", None) for item in history),
         "frozen": [item.Name for item in history if item.isDerivedFrom("PartDesign::FeatureBase")],
         "off_tip": [item.Name for item in solid if item.Name not in used],
-        "invalid": [item.Name for item in document.Objects if "Invalid" in item.State],
+        "invalid": _invalid(document),
         "untied": [] if values is None else [n[2:] for n in values.PropertiesList if n.startswith("d_") and not any(n in t for t in texts)],
         "features": [item.TypeId for item in reversed(history)],
         "volume": body.Shape.Volume,
     }
+
+
+def _invalid(document: Any) -> list[str]:
+    """Return the objects that could not be recomputed, with what FreeCAD says of them."""
+    return [f"{item.Name} ({item.getStatusString()})" for item in document.Objects if "Invalid" in item.State]
 
 
 def _frames(document: Any, systems: dict[str, str]) -> Json:
