@@ -15,7 +15,7 @@ from articad.export.inertia import Inertial
 from articad.export.losses import Feature, losses_of, refuse
 from articad.export.lowering import Follows, Freedom, Link, LoweredJoint, LoweredModel, Placed, lower
 from articad.export.markup import child, document, number, numbers, rgba, rpy
-from articad.export.meshes import MM_TO_M, MeshFiles
+from articad.export.meshes import MM_TO_M, MeshFiles, MeshKind
 from articad.export.metadata import dumps, records
 from articad.kinematics.joints import JointType
 
@@ -37,7 +37,7 @@ _NATIVE = {
 }
 
 
-def write_sdf(assembly: Assembly, *, strict: bool = False) -> Bundle:
+def write_sdf(assembly: Assembly, *, strict: bool = False, meshes: MeshKind = "stl") -> Bundle:
     """Write an assembly as an SDFormat model.
 
     A tree is posed where all values are zero, as in URDF. A model with loops is posed at rest, where its loops are closed, and values and
@@ -46,6 +46,7 @@ def write_sdf(assembly: Assembly, *, strict: bool = False) -> Bundle:
     Args:
         assembly: What to write.
         strict: Refuse what SDFormat holds only with a loss of motion, mass or shape.
+        meshes: Format of the mesh files: STL holds single precision, OBJ, which Drake wants, nine digits.
 
     Returns:
         `<name>.sdf`, `meshes/…`, and the losses.
@@ -57,13 +58,13 @@ def write_sdf(assembly: Assembly, *, strict: bool = False) -> Bundle:
     losses = losses_of("sdf", [*model.features, *([Feature("loop.rest", "joints")] if model.loops else [])])
     if strict:
         refuse(losses)
-    writer = _Writer(assembly, model)
+    writer = _Writer(assembly, model, MeshFiles(meshes))
     return Bundle({f"{model.name}.sdf": document(writer.document()), **writer.files.files}, losses)
 
 
 class _Writer:
-    def __init__(self, assembly: Assembly, model: LoweredModel) -> None:
-        self.assembly, self.model, self.files = assembly, model, MeshFiles()
+    def __init__(self, assembly: Assembly, model: LoweredModel, files: MeshFiles) -> None:
+        self.assembly, self.model, self.files = assembly, model, files
         self.at_rest = bool(model.loops)
         self.follows = followers(model, [driver.name for driver in assembly.mechanism.drivers])
         self.poses: dict[str, SE3] = {}

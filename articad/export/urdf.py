@@ -234,9 +234,9 @@ def _drake(root: Any, loop: LoweredJoint, point: TiedPoint) -> None:
     """Write a point that Drake's parser ties."""
     element = child(root, f"{{{DRAKE}}}ball_constraint")
     for tag, link in (("body_A", loop.parent), ("body_B", loop.child)):
-        child(element, f"{{{DRAKE}}}{tag}", {"name": link})
+        child(element, f"{{{DRAKE}}}ball_constraint_{tag}", {"name": link})
     for tag, T in (("p_AP", point.near), ("p_BQ", point.far)):
-        child(element, f"{{{DRAKE}}}{tag}", {"value": numbers(T.translation)})
+        child(element, f"{{{DRAKE}}}ball_constraint_{tag}", {"value": numbers(T.translation)})
 
 
 def _loop_features(model: LoweredModel, loops: Loops, tied: Mapping[str, tuple[TiedPoint, ...]]) -> list[Feature]:

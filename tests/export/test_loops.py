@@ -175,7 +175,10 @@ def drake_points(root: Any) -> list[Any]:
     namespace = {"drake": "http://drake.mit.edu"}
     return [
         [
-            (tie.find(f"drake:{body}", namespace).get("name"), floats(tie.find(f"drake:{point}", namespace).get("value")))
+            (
+                tie.find(f"drake:ball_constraint_{body}", namespace).get("name"),
+                floats(tie.find(f"drake:ball_constraint_{point}", namespace).get("value")),
+            )
             for body, point in (("body_A", "p_AP"), ("body_B", "p_BQ"))
         ]
         for tie in root.iterfind("drake:ball_constraint", namespace)
