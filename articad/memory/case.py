@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import math
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from functools import cached_property
@@ -93,12 +94,20 @@ class Case:
             _require(content.pop("schema") == SCHEMA, "another schema")
             _require(content["kind"] in {"good", "issue"}, f"kind {content['kind']!r}")
             content["parts"] = tuple(PartExample(**part) for part in content["parts"])
+            words = [content["prompt"], *(content.get(name, "") for name in ("requirements", "design", "articad"))]
+            words += [word for part in content["parts"] for word in (part.name, part.specification, part.kernel, part.script)]
+            _require(all(isinstance(word, str) for word in words), "a text is none")
+            _require(all(_is_number(value) for value in dict(content.get("scores", {})).values()), "a score is no number")
             texts = [name for name in ("repairs", "defects", "lessons") if name in content]
             return cls(**content | {name: tuple(map(str, content[name])) for name in texts})
-        except (KeyError, TypeError, ValueError) as error:
+        except (KeyError, TypeError, ValueError, OverflowError) as error:
             message = f"This is not a case of the form {SCHEMA}: {type(error).__name__}: {error}."
             finding = Finding(code="E_READ", where="case", message=message, hint="Export cases with `articad memory export`.")
             raise ReadError(message, path="case", findings=[finding]) from error
+
+
+def _is_number(value: object) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
 
 
 def _require(holds: bool, otherwise: str) -> None:

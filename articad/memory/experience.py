@@ -165,7 +165,7 @@ class ExperienceStore:
         for number, line in enumerate(lines, 1):
             try:
                 cases.append(Case.from_json(json.loads(line)))
-            except (ValueError, ReadError) as error:
+            except (ValueError, RecursionError, ReadError) as error:
                 raise _unreadable(Path(f"line {number}"), f"Line {number} is not a case: {error}", "Nothing was added.") from error
         return self.add(*cases)
 

@@ -183,3 +183,28 @@ def test_what_was_committed_survives_kill_9(tmp_path: Path) -> None:
         assert told <= kept
         assert len(kept - told) <= attempt + 1  # at most the case that was committed and not yet told, of each writer
     assert json.loads(next(iter(ExperienceStore(tmp_path).export())))["schema"] == "articad.case/1"
+
+
+GOOD = Case(kind="good", prompt="a box", scores={"a": 1.0}).to_json()
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        json.dumps(GOOD | {"prompt": 3}),
+        json.dumps(GOOD | {"design": {"a": 1}}),
+        json.dumps(GOOD | {"scores": {"a": "much"}}),
+        json.dumps(GOOD | {"scores": {"a": 10**400}}),
+        json.dumps(GOOD | {"scores": {"a": float("nan")}}),
+        json.dumps(GOOD | {"parts": [{"name": ["a"], "specification": "", "kernel": "build123d", "script": ""}]}),
+        "3",
+        "[" * 100_000,
+        "",
+    ],
+    ids=range(9),
+)
+def test_a_strangers_line_that_is_no_case_adds_nothing(tmp_path: Path, line: str) -> None:
+    store = ExperienceStore(tmp_path / "memory")
+    with pytest.raises(ReadError):
+        store.import_lines([json.dumps(GOOD), line])
+    assert len(store) == 0
