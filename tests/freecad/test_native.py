@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import cache
 from pathlib import Path
 
@@ -10,7 +11,9 @@ import pytest
 
 import articad as ac
 from articad.export.freecad import write_freecad
+from articad.kernels import freecad_install
 from articad.kernels.freecad import FreeCADKernel
+from articad.kernels.freecad_install import FreeCAD
 from articad.plan.brief import brief
 from articad.plan.resolve import resolve
 from tests.freecad import opened
@@ -98,3 +101,17 @@ def test_the_same_script_makes_the_same_files() -> None:
         folders.append(kernels[-1].build(script, told, probe=False).folder)
     for name in ("part.FCStd", "part.brep", "part.npz"):
         assert (folders[0] / name).read_bytes() == (folders[1] / name).read_bytes(), name
+
+
+@pytest.mark.parametrize("freecad", [freecad_install.find, pytest.param(opened.newer, marks=pytest.mark.freecad_next)], ids=["1.0", "next"])
+def test_a_recorded_document_follows_an_edit_in_each_freecad(freecad: Callable[[], FreeCAD]) -> None:
+    document = EXAMPLES / "sewing_things_box" / "recording" / "export" / "freecad" / "sewing_things_box.FCStd"
+    values = {"do": "set", "values": {"width": 150.0, "height": 70.0}}
+    before, solved, after = opened.steps(document.read_bytes(), {"do": "look"}, {"do": "solve"}, values, freecad=freecad())
+    assert before["invalid"] == after["invalid"] == []
+    assert solved["code"] == after["code"] == 0
+    assert opened.moved(opened.frames(before["parts"]), opened.frames(solved["parts"])) <= (1e-6, 1e-8)
+    assert np.asarray(before["boxes"]["case"]) == pytest.approx(np.array([[-60.0, 0.0, 0.0], [60.0, 80.0, 58.8]]), abs=1e-6)
+    assert np.asarray(after["boxes"]["case"]) == pytest.approx(np.array([[-75.0, 0.0, 0.0], [75.0, 80.0, 68.8]]), abs=1e-6)
+    assert after["connectors"]["case"]["pin"][:3] == pytest.approx([0.0, 77.2, 66.0], abs=1e-9)
+    assert after["parts"]["lid"][:3] == pytest.approx([0.0, 77.2, 66.0], abs=1e-6)  # the solver has followed its connector
