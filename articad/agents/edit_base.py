@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, Final, Self
@@ -14,7 +14,7 @@ from articad.assembly import Assembly
 from articad.errors import ReadError
 from articad.interference.report import PairCheck, Strength
 from articad.interference.scene import Scene
-from articad.kinematics.joints import Joint
+from articad.kinematics.joints import Coupling, Joint
 from articad.plan.amending import amended
 from articad.plan.resolve import ResolvedPlan, resolve
 from articad.plan.schema import AssemblyPlan
@@ -109,7 +109,7 @@ class Base:
         """Return the verdicts that hold for an edited assembly too.
 
         A pair's verdict holds where both meshes are the same, their poses against each other at rest are, and the joints
-        between them are; with loops or couplings, where all joints and couplings are. Only pairs in order are carried.
+        between them are, with all that couplings tie to these; with loops, where all joints are. Only pairs in order are carried.
 
         Args:
             assembly: As edited.
@@ -153,16 +153,17 @@ class Base:
         now, then = ({name: mechanism.rest_poses()[name] for name in (a, b)} for mechanism in (after, before))
         if not (now[a].inverse() @ now[b]).allclose(then[a].inverse() @ then[b], mm=_SAME_MM, rad=_SAME_RAD):
             return False
-        if any((mechanism.loop_joints or mechanism.couplings) for mechanism in (before, after)):
-            names = [joint.name for joint in before.joints]
-            return (
-                names == [joint.name for joint in after.joints]
-                and all(map(self._same_joint, after.joints))
-                and (before.couplings == after.couplings)
-            )
-        between = after.tree.joints_between(a, b)
-        return [joint.name for joint in between] == [joint.name for joint in before.tree.joints_between(a, b)] and all(
-            map(self._same_joint, between)
+        if before.loop_joints or after.loop_joints:
+            held, held_before = [joint.name for joint in after.joints], [joint.name for joint in before.joints]
+        else:
+            held, held_before = ([joint.name for joint in one.tree.joints_between(a, b)] for one in (after, before))
+        moving = _tied(held, after.couplings)
+        by_name = {joint.name: joint for joint in after.joints}
+        return (
+            held == held_before
+            and moving == _tied(held_before, before.couplings)
+            and [one for one in after.couplings if _ends(one) & moving] == [one for one in before.couplings if _ends(one) & moving]
+            and all(self._same_joint(by_name[name]) for name in moving)
         )
 
     def _same_joint(self, joint: Joint) -> bool:
@@ -174,6 +175,19 @@ class Base:
         if not all(getattr(old, frame).allclose(getattr(joint, frame), mm=_SAME_MM, rad=_SAME_RAD) for frame in frames):
             return False
         return replace(joint, **{frame: getattr(old, frame) for frame in frames}) == old
+
+
+def _ends(coupling: Coupling) -> set[str]:
+    """Return the joints that a coupling ties; it names columns of theirs."""
+    return {column.split(".", maxsplit=1)[0] for column in (coupling.a, coupling.b)}
+
+
+def _tied(joints: Iterable[str], couplings: Sequence[Coupling]) -> set[str]:
+    """Return joints and all that move with them by couplings."""
+    tied = set(joints)
+    while more := {end for one in couplings if _ends(one) & tied for end in _ends(one)} - tied:
+        tied |= more
+    return tied
 
 
 def document_of(plan: AssemblyPlan) -> Json:

@@ -162,6 +162,24 @@ def test_the_run_that_is_edited_stays_as_it_is_and_is_not_needed_any_more(plate:
     assert again.differences == ()
 
 
+@pytest.mark.slow
+def test_of_a_recorded_run_with_gears_only_what_a_number_reaches_is_built_and_looked_at_again(tmp_path: Path) -> None:
+    recorded = Run.view(examples.folder("metronome") / "recording")
+    cache = BuildCache(tmp_path / "cache")
+    run = edit(recorded, values={"scale_z": 96}, out=tmp_path / "run", kernel=stories.kernel(), cache=cache)
+    report = run.edit() or {}
+    before, after = recorded.hashes(), run.hashes()
+    digests = [{name: (one.part(name) or {}).get("digests") for name in one.part_names()} for one in (recorded, run)]
+    changed = {name for name in digests[0] if digests[0][name] != digests[1][name]}
+    unlike = {file.split("/")[1] for file in before if file.startswith("parts/") and before[file] != after.get(file)}
+    whole = examine(assembly_of(run, cache=cache)).checks.to_json()
+
+    assert changed == unlike == {name for name, row in report["parts"].items() if row["fate"] != "untouched"} == {"scale_plate", "housing"}
+    assert sorted(map(json.dumps, (run.checks() or {})["pairs"])) == sorted(map(json.dumps, whole["pairs"]))
+    assert (run.checks() or {})["findings"] == whole["findings"]
+    assert report["pairs"]["carried"] > report["pairs"]["checked"]
+
+
 # ---------------------------------------------------------------------- reach
 
 

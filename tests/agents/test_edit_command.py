@@ -70,3 +70,24 @@ def test_an_edit_of_nothing_and_of_no_run_is_refused(plate: Run, tmp_path: Path,
     assert cli.main(["edit", str(plate.path)]) == 3
     assert "Nothing is to be changed" in capsys.readouterr().err
     assert cli.main(["edit", str(tmp_path), "wider", "--model", "none/none"]) == 3
+
+
+@pytest.mark.freecad
+def test_a_feature_tree_is_edited_and_the_other_document_stays_as_it_is(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.undo()
+    monkeypatch.setenv("ARTICAD_CACHE", str(tmp_path / "cache"))
+    monkeypatch.chdir(tmp_path)
+    for line in (
+        "new box --kernel freecad",
+        "build box --out run --no-pictures --export urdf",
+        "edit run --set height=40 --out taller --no-pictures --export urdf --json",
+    ):
+        capsys.readouterr()
+        assert cli.main(line.split()) == 0
+    parts = json.loads(capsys.readouterr().out)["edit"]["parts"]
+
+    assert (parts["lid"]["fate"], parts["tray"]["fate"]) == ("untouched", "rebuilt")
+    assert "part.FCStd" in parts["tray"]["different"]
+    assert (tmp_path / "run/parts/lid/part.FCStd").read_bytes() == (tmp_path / "taller/parts/lid/part.FCStd").read_bytes()
