@@ -348,9 +348,10 @@ class _Model:
                 if joint.child == name:
                     frames[joint.child_connector] = joint.T_child_connector
             solid = self.solid(name)
+            shapes = self.meshes(name) if solid is None else ()
             connectors = {key: Connector(key, frame) for key, frame in frames.items()}
             parts.append(
-                Part(name, connectors, self.meshes(name))
+                Part(name, connectors, shapes, shapes)
                 if solid is None
                 else Part.from_solid(name, solid, connectors=connectors, color=DEFAULT_COLOR)
             )
@@ -387,7 +388,8 @@ def _part_now(part: Part, frames: dict[str, SE3], model: _Model) -> Part:
     }
     solid = model.solid(part.name)
     if solid is None:
-        return replace(part, connectors=connectors, visuals=model.meshes(part.name))
+        shapes = model.meshes(part.name)
+        return replace(part, connectors=connectors, visuals=shapes, collisions=shapes)
     shown = Part.from_solid(part.name, solid, connectors=connectors, color=part.color, material=part.material)
     return replace(shown, mass=part.mass)
 
