@@ -161,7 +161,7 @@ class FreeCAD:
         fault, faulty = os.pipe2(os.O_CLOEXEC | os.O_NONBLOCK)
         try:
             inner = [self.program, "-c", f"{self._confinement(folder, limits, layers, faulty)};{run}"]
-            command = [*before, *self._confined(inner, program, folder, limits)]
+            command = [*before, *self._confined(inner, program, folder, limits, layers)]
             ended = _ran(command, {}, None, [*files, faulty], limits.seconds)
             with contextlib.suppress(BlockingIOError):
                 ended = replace(ended, unconfined=os.read(fault, 500).decode(errors="replace"))
@@ -182,13 +182,15 @@ class FreeCAD:
         }
         return f"exec(compile(open('/confinement/confinement.py').read(),'confinement.py','exec'),{{'CONFINEMENT':{told!r}}})"
 
-    def _confined(self, inner: Sequence[str], program: Path, folder: Path | None, limits: Limits) -> list[str]:
+    def _confined(
+        self, inner: Sequence[str], program: Path, folder: Path | None, limits: Limits, layers: Collection[str] = sandbox.LAYERS
+    ) -> list[str]:
         work = ["--bind", str(folder), "/work", "--chdir", "/work"] if folder is not None else ["--chdir", "/tmp"]  # noqa: S108 - a private one
         variables = [word for name, value in _ENVIRONMENT.items() for word in ("--setenv", name, value)]
         return [
             shutil.which("bwrap") or "bwrap",
             *self._mounts(),
-            *("--size", str(limits.scratch), "--tmpfs", "/tmp", "--proc", "/proc", "--dev", "/dev", "--remount-ro", "/dev"),  # noqa: S108 - a private one
+            *("--size", str(limits.scratch), "--tmpfs", "/tmp", *self._processes(layers), "--dev", "/dev", "--remount-ro", "/dev"),  # noqa: S108 - a private one
             *("--ro-bind", str(program.resolve()), "/program.py"),
             *("--ro-bind", str(_INSIDE_PROGRAMS / "passwd"), "/etc/passwd"),  # one line, ours: without a home in it FreeCAD crashes
             *(word for name, file in _confinement_files().items() for word in ("--ro-bind", str(file), f"/confinement/{name}")),
@@ -200,6 +202,27 @@ class FreeCAD:
             *("--remount-ro", "/"),  # bubblewrap's own root is memory, of no bounded size
             *inner,
         ]
+
+    def _processes(self, layers: Collection[str]) -> tuple[str, ...]:
+        """Return what is mounted at /proc.
+
+        Landlock closes all of it but a process's own folder. Without Landlock there is none: whoever runs as root could set
+        the kernel there, and whoever does not could write into the memory of bubblewrap's own process, which seccomp does not bind.
+        FreeCAD only asks where its program is.
+        """
+        if "landlock" in layers and "landlock" in sandbox.available():
+            return ("--proc", "/proc")
+        return ("--dir", "/proc/self", "--symlink", self._resolved(), "/proc/self/exe")
+
+    def _resolved(self) -> str:
+        """Return the program's own path, as the process inside sees it."""
+        path, root = self.program, self.root or Path("/")
+        for _ in range(16):
+            place = root / path.lstrip("/")
+            if not place.is_symlink():
+                break
+            path = os.path.normpath(Path(path).parent / place.readlink())
+        return path
 
     def _mounts(self) -> Iterator[str]:
         """Yield what is shown: the libraries and settings of a system, never its homes or data."""

@@ -263,3 +263,13 @@ def test_a_sandbox_that_cannot_be_put_on_is_said_by_nobody_but_the_worker(brief:
     with pytest.raises(SandboxError, match="could not be put on: worker: TypeError") as true:
         broken.build(b"def build(part):\n    return None\n", brief)
     assert true.value.findings.codes == ("E_SANDBOX",)
+
+
+@pytest.mark.freecad
+@opened.needs_freecad
+@pytest.mark.skipif("bwrap" not in sandbox.available(), reason="FreeCAD is confined by bubblewrap")
+def test_without_landlock_freecad_has_no_proc_to_climb_out_by(tmp_path: Path) -> None:
+    """As root the kernel could be set there; as anybody, bubblewrap's own process be written to, which seccomp does not bind."""
+    ways = ("change kernel settings", "read the worker's memory", "reopen result files by their numbers", "read kernel settings")
+    with Range(tmp_path) as targets, kernel_at(("bwrap", "seccomp"), "freecad") as kernel:
+        assert {way: targets.open_to(way, kernel) for way in ways} == dict.fromkeys(ways, "")

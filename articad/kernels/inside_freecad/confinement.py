@@ -13,7 +13,7 @@ import resource
 import sys
 from typing import Any
 
-_NO_NEW_PRIVILEGES = 38
+_NO_NEW_PRIVILEGES, _CLONE_THREAD = 38, 0x10000
 _READABLE = (
     "/usr",
     "/bin",
@@ -55,8 +55,8 @@ def confine(layers: list[str], limits: dict[str, int], more: list[str], writable
     libc = ctypes.CDLL(None, use_errno=True)
     if libc.prctl(_NO_NEW_PRIVILEGES, 1, 0, 0, 0) != 0:
         raise OSError(ctypes.get_errno(), "no_new_privs")
-    if len(os.listdir("/proc/self/task")) != 1:  # noqa: PTH208 - the other threads would stay free
-        raise OSError("FreeCAD has started threads already")
+    if libc.unshare(_CLONE_THREAD) != 0:  # succeeds, and changes nothing, in a process of one thread; others would stay free
+        raise OSError(ctypes.get_errno(), "FreeCAD has started threads already")
     sys.path.insert(0, "/confinement")
     import landlock  # type: ignore[import-not-found]  # noqa: PLC0415
     import seccomp  # type: ignore[import-not-found]  # noqa: PLC0415
