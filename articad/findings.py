@@ -7,6 +7,7 @@ carry the finding of the same cause when the work cannot go on. Forms: `docs/ref
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Literal, overload
@@ -20,6 +21,8 @@ Stage = Literal["plan", "build", "interference", "motion", "fit", "export", "imp
 
 _SEVERITY_OF_PREFIX: dict[str, Severity] = {"E": "error", "W": "warning", "I": "info"}
 _SEVERITY_ORDER = {"error": 0, "warning": 1, "info": 2}
+_NUMBER = re.compile(r"\d+(?:\.\d+)?(?:e[+-]?\d+)?")
+_SAID = 2e-3  # a message that names a number this near, relatively, has said it
 _SIGNIFICANT_DIGITS = 6  # numbers in reports are for reading, and must not depend on the last bits
 
 
@@ -167,3 +170,17 @@ def _rounded(number: float | None) -> float | None:
     if number is None or not math.isfinite(number):
         return None
     return float(f"{number:.{_SIGNIFICANT_DIGITS}g}")
+
+
+def measured_against(finding: Mapping[str, Any]) -> str:
+    """Return what was measured and the limit, such as ` (5.3 against 0.12 mm)`; nothing where the message says the number itself.
+
+    Args:
+        finding: As a report has it.
+    """
+    value, limit = finding.get("value"), finding.get("limit")
+    if value is None or limit is None:
+        return ""
+    if any(abs(float(said) - abs(value)) <= _SAID * abs(value) for said in _NUMBER.findall(finding["message"])):
+        return ""
+    return f" ({value:.6g} against {limit:.6g} {finding.get('unit') or ''}".rstrip() + ")"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from articad.findings import Findings
@@ -127,9 +127,15 @@ def print_exports(exports: Mapping[str, Report], terminal: Terminal) -> None:
 
 
 def print_findings(findings: list[Report], terminal: Terminal) -> None:
-    """Print the findings of a report."""
-    for finding in findings:
-        terminal.finding(finding)
+    """Print the findings of a report; of the same fault of the same parts at several poses the worst, unless all are asked for."""
+    groups: dict[tuple[Any, ...], list[Report]] = {}
+    for number, finding in enumerate(findings):
+        parts = tuple(finding.get("parts") or ())
+        groups.setdefault((finding["code"], parts) if parts and not terminal.verbose else (number,), []).append(finding)
+    for group in groups.values():
+        terminal.finding(max(group, key=lambda finding: abs(finding.get("value") or 0.0)))
+        if len(group) > 1 and not (terminal.quiet and group[0]["severity"] != "error"):
+            terminal.say(f"    … and {len(group) - 1} more of these parts (-v lists them)")
 
 
 def counted(findings: Findings) -> str:

@@ -251,9 +251,9 @@ class Terminal:
 
     def _line_of(self, finding: Report, stream: TextIO) -> str:
         code = self._painted(finding["code"], {"error": "31", "warning": "33", "info": "36"}[finding["severity"]], stream)
-        numbers = ""
-        if finding["value"] is not None and finding["limit"] is not None:
-            numbers = f" ({finding['value']:.6g} against {finding['limit']:.6g} {finding['unit'] or ''}".rstrip() + ")"
+        from articad.findings import measured_against  # noqa: PLC0415 - not before there is something to say
+
+        numbers = measured_against(finding)
         hint = f"\n    {finding['hint']}" if finding["hint"] else ""
         return f"  {code} " + plain(f"{finding['where']}: {finding['message']}{numbers}{hint}")
 

@@ -5,11 +5,13 @@ from __future__ import annotations
 import io
 import json
 import threading
+from typing import Any
 
 import pytest
 
 from articad.errors import BuildError, PlanError
 from articad.findings import Finding, Findings
+from articad.summaries import print_findings
 from articad.terminal import Terminal
 
 ERROR = Finding(code="E_DUP_NAME", where="parts[1]", message="'lid' is used twice.", hint="Rename one.")
@@ -108,6 +110,30 @@ def test_a_finding_shows_its_number_against_its_limit() -> None:
         Findings([Finding(code="E_MATE_ROLL", where="joints.a", message="Rolled.", hint="Turn x.", value=180.0, limit=0.05, unit="deg")])
     )
     assert "(180 against 0.05 deg)" in out(speaking)
+
+
+def test_a_number_that_the_message_says_is_not_said_twice() -> None:
+    speaking = terminal()
+    told: dict[str, Any] = {"code": "E_OVERLAP", "where": "parts.a", "hint": "", "unit": "mm", "limit": 0.12}
+    speaking.findings(Findings([Finding(**told, message="a and b overlap, 5.3 mm deep.", value=5.3001)]))
+    speaking.findings(Findings([Finding(**told, message="a and b overlap, 53 mm³.", value=5.3001)]))
+    assert [("against" in line) for line in out(speaking).splitlines()] == [False, True]
+
+
+def test_of_the_same_fault_of_the_same_parts_the_worst_is_printed() -> None:
+    many = [
+        Finding(code="E_OVERLAP", where="parts.a", parts=parts, message=f"{depth} mm deep.", hint="", value=depth, limit=0.1, unit="mm")
+        for parts, depth in ((("a", "b"), 1.0), (("a", "b"), 3.0), (("a", "b"), 2.0), (("a", "c"), 4.0))
+    ]
+    speaking, asked = terminal(), terminal(verbose=True)
+    for each in (speaking, asked):
+        print_findings([finding.to_json() for finding in many], each)
+    assert [line for line in out(speaking).splitlines() if "deep" in line] == [
+        "  E_OVERLAP parts.a: 3.0 mm deep.",
+        "  E_OVERLAP parts.a: 4.0 mm deep.",
+    ]
+    assert "2 more of these parts" in out(speaking)
+    assert out(asked).count("deep") == len(many)
 
 
 def test_off_a_terminal_progress_is_a_line_for_each_end_from_any_thread() -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from html import escape
@@ -11,6 +12,7 @@ from typing import Any
 from urllib.parse import quote
 
 from articad.assembly import Assembly
+from articad.findings import measured_against
 from articad.html_tables import Cell, Html, html_table
 
 Json = dict[str, Any]
@@ -104,20 +106,20 @@ def _findings(findings: Sequence[Json], known: set[str]) -> str:
     if not findings:
         return '<p class="quiet">Nothing was found.</p>'
     rows: list[list[Cell]] = []
-    for finding in findings:
-        numbers = ""
-        if finding.get("value") is not None and finding.get("limit") is not None:
-            numbers = f" ({finding['value']:.6g} against {finding['limit']:.6g} {finding.get('unit') or ''})".replace(" )", ")")
+    same = Counter((finding["code"], finding["message"]) for finding in findings)
+    for finding in {(entry["code"], entry["message"]): entry for entry in reversed(findings)}.values():
+        numbers = measured_against(finding)
+        times = same[finding["code"], finding["message"]]
         hint = f'<br><span class="hint">{escape(finding["hint"])}</span>' if finding.get("hint") else ""
         parts, pose = finding.get("parts") or [], finding.get("pose")
         rows.append(
             [
                 Html(f'<span class="{_SEVERITY[finding["severity"]]}">{escape(finding["code"])}</span>'),
-                Html(f"{escape(finding['message'] + numbers)}{hint}"),
+                Html(f"{escape(finding['message'] + numbers)}{f' <b>{times} times</b>' if times > 1 else ''}{hint}"),
                 _show(finding["code"], parts, pose, known) if pose or known.intersection(parts) else None,
             ]
         )
-    return _scroll(html_table(["code", "what", ""], rows))
+    return _scroll(html_table(["code", "what", ""], rows[::-1]))
 
 
 def _parts(assembly: Assembly) -> str:
