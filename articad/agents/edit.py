@@ -14,6 +14,7 @@ from typing import Any, Final, Literal, NoReturn
 
 from articad.agents import edit_report
 from articad.agents.design import TRIES, listed
+from articad.agents.drift import note
 from articad.agents.edit_base import Base, document_of, with_values
 from articad.agents.evidence import Evidence, Known, examine
 from articad.agents.forms import Form, reader, schema_of
@@ -110,6 +111,7 @@ def edit(
     kernel = kernel or kernel_named(base.stored["kernel"], sandbox=sandbox)
     with open_or_create(request, out) as edited:
         edited.save_base(base.stored)
+        note(edited, kernel)
         known, told = KeptMemory(edited, memory), KeptDocumentation(edited, documentation)
         shop = Workshop(edited, Recorded(llm or _Nobody(), edited), kernel, cache or BuildCache(), jobs, progress, known, told)
         EditLine(shop, _nothing_to_choose, known).work()

@@ -13,11 +13,14 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
-from articad.agents.llm import LLM, Replay, Reply, Request
+from articad.agents.edit import edit
+from articad.agents.llm import LLM, Replay, Reply, Request, Scripted
 from articad.agents.pipeline import generate
 from articad.assembly import Assembly
 from articad.kernels.build123d import Build123dKernel
 from articad.kernels.kernel import BuildCache, PartKernel
+from articad.memory.case import Case
+from articad.memory.experience import ExperienceStore
 from articad.plan.schema import AssemblyPlan
 from articad.record import record_assembly, record_checks, record_export
 from articad.run import Run, RunRequest, open_or_create
@@ -64,6 +67,14 @@ def generated(folder: Path, kernel_name: str = "fixed", recording: Path | None =
     """What `articad generate` does, answered from a recording."""
     llm: LLM = stories.flap() if recording is None else Counted(Replay(recording), folder / "calls")
     generate(stories.FLAP_PROMPT, llm=llm, out=folder / "run", kernel=kernel(kernel_name), cache=BuildCache(folder / "cache"), **OPTIONS)  # type: ignore[arg-type]
+
+
+def edited(folder: Path, recording: Path) -> None:
+    """What `articad edit` does with a recorded run, answered by a script."""
+    change = {"summary": "x", "touches": ["flap"], "changes": {"parts.flap.dimensions.thickness": 3}}
+    llm = Counted(Scripted({"edit/1": json.dumps(change)}), folder / "calls")
+    options = {name: value for name, value in OPTIONS.items() if name != "ideas"}
+    edit(recording, "a thicker flap", llm=llm, out=folder / "run", kernel=kernel("fixed"), cache=BuildCache(folder / "cache"), **options)  # type: ignore[arg-type]
 
 
 def files(folder: Path) -> Mapping[str, str]:
@@ -130,7 +141,20 @@ def _read_lines(folder: Path) -> set[tuple[int, int]]:
     return found
 
 
-STORES: Mapping[str, Store] = {"cache of parts": Store(_write_part, _read_parts), "trace of a run": Store(_write_line, _read_lines)}
+def _write_case(folder: Path, writer: int, number: int) -> None:
+    ExperienceStore(folder).add(Case(kind="good", prompt=f"{writer} {number}", design="words " * 500))
+
+
+def _read_cases(folder: Path) -> set[tuple[int, int]]:
+    told = (case.prompt.split() for case in ExperienceStore(folder).cases())
+    return {(int(writer), int(number)) for writer, number in told}
+
+
+STORES: Mapping[str, Store] = {
+    "cache of parts": Store(_write_part, _read_parts),
+    "trace of a run": Store(_write_line, _read_lines),
+    "experience": Store(_write_case, _read_cases),
+}
 
 
 def write_for_ever(store: Store, folder: Path, writer: int, told: int) -> None:
