@@ -106,6 +106,31 @@ def test_the_first_contact_of_a_bar_with_a_post_is_exact_for_the_meshes() -> Non
     assert refutations(certificate) == []  # what is claimed, up to the contact, still holds
 
 
+def test_a_bar_of_10_meets_a_post_of_02_at_100_100_at_its_known_angle() -> None:
+    meshes = {"post": cylinder(0.1, 60, 64).transformed(at(100, 100)), "bar": box(200, 10, 10, center=False).transformed(at(0, -5, -5))}
+    (finding,) = proven(meshes, [joint("turn", "revolute", "post", "bar", lower=(0.0,), upper=(2.0,))]).findings
+    assert finding.code == "E_MOTION_COLLISION"
+    assert finding.value == pytest.approx(math.radians(42.9333259), abs=1e-4)  # 45° − asin((5 + 0.1) / √2·100)
+
+
+def test_an_arm_on_its_pin_meets_the_edge_of_a_stop_at_its_known_angle() -> None:
+    known, radius = math.radians(127.543748), 40.0
+    meshes = hinge_with_stop()
+    edge = known + math.asin(5 / radius)  # the arm is 5 to either side, and its side meets the edge of the stop
+    stop = (
+        m3.Manifold.cube([8, 8, 40], center=True).rotate([0, 0, 45]).translate([0, 4 * math.sqrt(2), 0]).rotate([0, 0, math.degrees(edge)])
+    )
+    stop = stop.translate([radius * math.cos(edge), radius * math.sin(edge), 0])
+    pin, foot = m3.Manifold.cylinder(30, 5, 5, 64, center=True), m3.Manifold.cube([60, 10, 10], center=True).translate([-20, 0, -20])
+    meshes["base"] = manifold_mesh(pin + foot + stop + m3.Manifold.cube([80, 80, 4], center=True).translate([0, 0, -22]))
+    hinge = joint("hinge", "revolute", "base", "arm", lower=(0.0,), upper=(2.6,))
+    certificate = proven(meshes, [hinge])
+    (finding,) = certificate.findings
+    assert finding.code == "E_MOTION_COLLISION"
+    assert finding.value == pytest.approx(known, abs=1e-4)
+    assert known - 1e-4 < certificate.ranges[0].upper <= known
+
+
 def test_with_deflection_the_solids_contact_is_an_interval_whose_width_is_printed() -> None:
     meshes, exact = bar_and_post()
     certificate = proven(meshes, [joint("turn", "revolute", "post", "bar", lower=(0.0,), upper=(6.0,))], deflection=0.05)
