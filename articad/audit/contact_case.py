@@ -97,8 +97,10 @@ def _is_doubtful(case: Case, finding: Finding, depth: Finding) -> bool:
     ends in another is too long only where its end is the shortest way out.
     """
     if finding.cause == "pitch":
-        joints = case.assembly.mechanism.tree.joints_between(*finding.parts)
-        return sum(joint.type is not JointType.FIXED for joint in joints) > 2
+        tree = case.assembly.mechanism.tree
+        a, b = (tree.path(case.assembly.ground, name) for name in finding.parts)
+        moving = sum(joint.type is not JointType.FIXED for joint in tree.joints_between(*finding.parts))
+        return moving > 2 or a[-1] in b or b[-1] in a
     ends = _ENDS.search(finding.message)
     return finding.cause == "envelope" and ends is not None and float(ends[1]) > SHORTEST * (depth.value or 0.0)
 

@@ -168,6 +168,22 @@ class Declared:
         """Names of joints that follow another, or that another follows: a stop of one is a stop of both."""
         return frozenset(name for joint in self.joints if joint.mimics is not None for name in (joint.name, joint.mimics))
 
+    def fixed_poses(self, name: str) -> dict[str, SE3]:
+        """Return where the links that are fixed to one stand, as seen from it; itself is one of them."""
+        found = {name: SE3.identity()}
+        fixed = [joint for joint in self.joints if joint.type == "fixed" and joint.frame is not None]
+        for _ in fixed:
+            before = len(found)
+            for joint in fixed:
+                assert joint.frame is not None
+                if joint.parent in found and joint.child in self.by_name and joint.child not in found:
+                    found[joint.child] = found[joint.parent] @ joint.frame
+                elif joint.child in found and joint.parent in self.by_name and joint.parent not in found:
+                    found[joint.parent] = found[joint.child] @ joint.frame.inverse()
+            if len(found) == before:
+                break
+        return found
+
     def poses(self) -> dict[str, SE3]:
         """Return where each link stands when every joint is at zero, as seen from the first root; links that cannot be reached are left out."""
         found = {self.roots[0]: SE3.identity()} if self.roots else {}
@@ -203,7 +219,9 @@ def _joints(assembly: Assembly) -> Iterator[DeclaredJoint]:
         names = joint.column_names if joint.type is not JointType.BALL else ()
         ends = (joint.parent, joint.child)
         if not names:
-            yield DeclaredJoint(joint.name, f"joints.{joint.name}", "spherical" if joint.type is JointType.BALL else "fixed", *ends)
+            ball = joint.type is JointType.BALL
+            frame = None if ball else joint.T_parent_connector @ joint.T_child_connector.inverse()
+            yield DeclaredJoint(joint.name, f"joints.{joint.name}", "spherical" if ball else "fixed", *ends, frame)
         for index, (name, unit) in enumerate(zip(names, joint.type.units, strict=False)):
             kind = "screw" if joint.type is JointType.SCREW else "revolute" if unit == "rad" else "prismatic"
             lower, upper = joint.limits.lower[index], joint.limits.upper[index]

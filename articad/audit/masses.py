@@ -22,6 +22,7 @@ SLACK = 1.05  # of bounds from shapes, which are drawn a little smaller than wha
 SLACK_MM = 1.0
 DENSEST_KG_M3 = 22_600.0  # osmium
 THINNEST_KG_M3 = 1.2  # air
+UNITS = 1e5  # times too dense or too thin: metres for millimetres are a factor of 10⁹, inches of 2·10⁷
 LEAST_SIZE_MM = 0.1
 
 
@@ -224,7 +225,7 @@ def density(declared: Declared) -> Iterator[Finding]:
             value=found,
             limit=limit,
             unit="kg/m³",
-            cause="units" if max(found / limit, limit / found) > 1e3 else None,
+            cause="units" if max(found / limit, limit / found) > UNITS and any(shape.kind == "mesh" for shape in link.shapes) else None,
         )
 
 

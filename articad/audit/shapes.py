@@ -142,31 +142,24 @@ def pieces(declared: Declared) -> Iterator[Finding]:
         key = tuple((shape.file or shape.where, shape.scale) for shape in shapes)
         if key in seen or any(shape.mesh is None or shape.kind == "geom" for shape in shapes):
             continue
-        seen.add(key)
         bodies = _solid_pieces(shapes)
         if bodies is not None and len(bodies) > 1:
-            finding = _apart(link, bodies, whole=len(shapes) == 1)
+            finding = _apart(link, bodies, _fixed_to(declared, link), whole=len(shapes) == 1)
             if finding is not None:
+                seen.add(key)
                 yield finding
 
 
-def _apart(link: DeclaredLink, bodies: list[Body], *, whole: bool) -> Finding | None:
-    """Return what is wrong with a link of several bodies; several shapes may touch, but one mesh should be one body."""
-    names = [str(at) for at in range(len(bodies))]
-    groups = Groups(names)
-    for i, a in enumerate(bodies):
-        for j in range(i + 1, len(bodies)):
-            if not groups.together(names[i], names[j]) and _near(a, bodies[j]):
-                groups.join(names[i], names[j])
-    sets = groups.sets()
+def _apart(link: DeclaredLink, own: list[Body], fixed: list[Body], *, whole: bool) -> Finding | None:
+    """Return what is wrong with a link of several bodies; several shapes may touch, but one mesh should be one body.
+
+    What the link is fixed to may hold its bodies together.
+    """
+    alone = len(_touching(own)) == 1
+    sets = [[0]] if alone else [kept for group in _touching([*own, *fixed]) if (kept := [at for at in group if at < len(own)])]
     if len(sets) > 1:
-        largest = max(sets, key=lambda group: sum(bodies[int(name)].volume for name in group))
-        gaps = [
-            min(distance(bodies[int(a)], bodies[int(b)], _IDENTITY) for a in group for b in largest)
-            for group in sets
-            if group is not largest
-        ]
-        gap = max(gaps)
+        largest = max(sets, key=lambda group: sum(own[at].volume for at in group))
+        gap = max(min(distance(own[a], own[b], _IDENTITY) for a in group for b in largest) for group in sets if group is not largest)
         return Finding(
             code="W_AUDIT_PIECES",
             where=link.where,
@@ -178,19 +171,30 @@ def _apart(link: DeclaredLink, bodies: list[Body], *, whole: bool) -> Finding | 
             unit="mm",
             cause="multi_solid",
         )
-    if whole:
+    if whole and alone:
         return Finding(
             code="I_AUDIT_UNFUSED",
             where=link.where,
             parts=(link.name,),
-            message=f"The mesh of {link.name} is {len(bodies)} bodies that touch or overlap but are not fused: where they overlap, its volume counts twice.",
+            message=f"The mesh of {link.name} is {len(own)} bodies that touch or overlap but are not fused: where they overlap, its volume counts twice.",
             hint="Fuse the bodies into one.",
-            value=len(bodies),
+            value=len(own),
             limit=1,
             unit="bodies",
             cause="multi_solid",
         )
     return None
+
+
+def _touching(bodies: list[Body]) -> list[list[int]]:
+    """Return the sets of bodies that touch, directly or by others."""
+    names = [str(at) for at in range(len(bodies))]
+    groups = Groups(names)
+    for i, a in enumerate(bodies):
+        for j in range(i + 1, len(bodies)):
+            if not groups.together(names[i], names[j]) and _near(a, bodies[j]):
+                groups.join(names[i], names[j])
+    return [[int(name) for name in group] for group in groups.sets()]
 
 
 def scale(declared: Declared) -> Iterator[Finding]:
@@ -336,6 +340,19 @@ def _rigid_with(declared: Declared, link: DeclaredLink) -> Iterator[DeclaredLink
             other = joint.child if joint.parent == link.name else joint.parent
             if other in declared.by_name and not declared.by_name[other].of("visual"):
                 yield declared.by_name[other]
+
+
+def _fixed_to(declared: Declared, link: DeclaredLink) -> list[Body]:
+    """Return the solids, in the link's frame, of what it is fixed to."""
+    poses = declared.fixed_poses(link.name)
+    meshes = [
+        shape.mesh.transformed(T)
+        for name, T in poses.items()
+        if name != link.name
+        for shape in (declared.by_name[name].of("visual") or declared.by_name[name].of("collision"))
+        if shape.mesh is not None and len(shape.mesh.triangles) <= MOST_PIECE_TRIANGLES
+    ]
+    return [body for mesh in meshes[:MOST_PIECES] if (body := body_of(_closed(mesh))).fault is None]
 
 
 def _solid_pieces(shapes: tuple[DeclaredShape, ...]) -> list[Body] | None:

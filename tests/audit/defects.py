@@ -208,6 +208,15 @@ def carried_with_mass(root: Any, folder: Path) -> None:
     )
 
 
+def held_together(folder: Path) -> Any:
+    """The stand whose block is two bodies that a bar, fixed to it, joins."""
+    root = stand(folder)
+    mesh_of("block", two_pieces(4.0))(root, folder)
+    root.append(link("bar", moved(box(32, 8, 6), 5, 0, 13), folder))
+    root.append(joint("rivet", "fixed", "block", "bar", "0 0 0"))
+    return root
+
+
 def lone_link(root: Any, folder: Path) -> None:
     root.append(link("lone", box(10, 10, 10), folder))
 

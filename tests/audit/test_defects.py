@@ -24,7 +24,9 @@ def test_there_are_enough_defects() -> None:
     assert len({defect.code for defect in DEFECTS}) >= 25
 
 
-@pytest.mark.parametrize("base", [defects.stand, defects.three_turns, defects.glb_in_metres, defects.with_post, defects.two_arms])
+@pytest.mark.parametrize(
+    "base", [defects.stand, defects.three_turns, defects.glb_in_metres, defects.with_post, defects.two_arms, defects.held_together]
+)
 def test_the_sound_twin_gives_nothing(base: Any, tmp_path: Path) -> None:
     assert not findings(base(tmp_path), tmp_path)
 
