@@ -32,7 +32,7 @@ ASSEMBLY_SIZE: Final = 448  # pixels of each view of the whole: its parts' names
 KEYFRAMES: Final = 6  # of each coordinate of a joint
 _COLOR = "#c8a46e"
 _MESH = "part.npz"
-_RECIPE = "articad.picture/2"  # of `articad.render`, which is loaded only where something is drawn; a test compares the two
+_RECIPE = "articad.picture/3"  # of `articad.render`, which is loaded only where something is drawn; a test compares the two
 _drawing = threading.Lock()  # pictures for several parts at once would only take each other's processor
 
 

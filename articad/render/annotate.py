@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from PIL import Image, ImageDraw, ImageFont
 
 from articad.render.camera import Camera
-from articad.render.raycast import Buffers
+from articad.render.raycast import BACKGROUND, Buffers
 from articad.render.scene import Axis, Scene
 
 FloatArray = NDArray[np.float64]
@@ -20,9 +20,14 @@ QUIET: Color = (110, 116, 124)
 HALO: Color = (250, 250, 248)
 AXIS_COLORS: tuple[Color, Color, Color] = ((200, 40, 40), (30, 140, 60), (40, 80, 200))
 JOINT: Color = (0, 96, 160)
+MARK: Color = (214, 28, 36)
 _SMALLEST_LABELLED = 40  # pixels: a part of which less is seen gets no name
 _MOST_NAMES = 12  # names in one picture; more would hide it
 _MOST_AXES = 7
+_END_ON = 14.0  # pixels: half of the box of an axis that is seen end on
+_SMALLEST_RING = 13.0  # pixels: radius round a highlight however small it is
+_LARGEST_RING = 0.16  # of the picture's width: a larger highlight is seen without a ring
+_MOST_RINGS = 12
 _LOWERED = 4  # how often a name gives way to others before it is left out
 _TRIAD_PIXELS = 26
 _AXIS_SHARE = 0.13  # of the picture's width, to each side of the joint
@@ -34,9 +39,12 @@ def annotate(
     """Return the picture with its annotations; `buffers` may have more pixels than the picture."""
     draw = ImageDraw.Draw(image)
     taken: list[tuple[float, float, float, float]] = []
+    _rings(draw, camera, buffers, taken)
     if axes:
-        for axis in scene.axes if len(scene.axes) <= _MOST_AXES else ():
-            _joint_axis(draw, axis, camera, taken)
+        shown = scene.axes if len(scene.axes) <= _MOST_AXES else ()
+        anchors = [_joint_axis(draw, axis, camera, taken) for axis in shown]
+        for axis, anchor in zip(shown, anchors, strict=True):  # all marks first: none lies on a name
+            _place(draw, anchor, axis.name, JOINT, camera, taken)
     if labels:
         _part_names(draw, scene, camera, buffers, taken)
     _triad(draw, camera)
@@ -101,7 +109,27 @@ def _part_names(
         _place(draw, (float(columns[nearest] / ratio), float(rows[nearest] / ratio)), name, INK, camera, taken)
 
 
-def _joint_axis(draw: ImageDraw.ImageDraw, axis: Axis, camera: Camera, taken: list[tuple[float, float, float, float]]) -> None:
+def _rings(draw: ImageDraw.ImageDraw, camera: Camera, buffers: Buffers, taken: list[tuple[float, float, float, float]]) -> None:
+    """Draw a ring round each highlight that could be missed, and keep names out of it."""
+    ratio = buffers.item.shape[1] / camera.width
+    found = []
+    for index in np.unique(buffers.over[buffers.over != BACKGROUND]).tolist():
+        rows, columns = np.nonzero(buffers.over == index)
+        box = np.array([columns.min(), rows.min(), columns.max() + 1, rows.max() + 1]) / ratio
+        found.append((float(np.hypot(box[2] - box[0], box[3] - box[1])) / 2 + 4, (box[:2] + box[2:]) / 2))
+    for reach, at in sorted(found, key=lambda entry: -entry[0])[:_MOST_RINGS]:
+        radius = max(reach, _SMALLEST_RING)
+        box = (at[0] - radius, at[1] - radius, at[0] + radius, at[1] + radius)
+        taken.append(box)
+        if radius <= _LARGEST_RING * camera.width:
+            draw.ellipse((box[0] - 1, box[1] - 1, box[2] + 1, box[3] + 1), outline=HALO, width=5)
+            draw.ellipse(box, outline=MARK, width=3)
+
+
+def _joint_axis(
+    draw: ImageDraw.ImageDraw, axis: Axis, camera: Camera, taken: list[tuple[float, float, float, float]]
+) -> tuple[float, float]:
+    """Draw a joint's axis and its positive motion; return where its name belongs."""
     direction = np.array(axis.direction)
     along = camera.project(camera.centre + direction * camera.mm_per_pixel) - camera.project(camera.centre[None])
     seen = float(np.linalg.norm(along))
@@ -109,8 +137,8 @@ def _joint_axis(draw: ImageDraw.ImageDraw, axis: Axis, camera: Camera, taken: li
     towards = float(direction @ camera.eye)
     if seen < 0.08:
         _end_on(draw, at, towards=towards > 0, turns=axis.turns)
-        _place(draw, (at[0], at[1] - 24), axis.name, JOINT, camera, taken)
-        return
+        taken.append((at[0] - _END_ON, at[1] - _END_ON, at[0] + _END_ON, at[1] + _END_ON))
+        return float(at[0]), float(at[1]) - 24
     unit = along.reshape(2) / seen
     length = _AXIS_SHARE * camera.width * max(seen, 0.35)
     tail, tip = at - unit * length, at + unit * length
@@ -118,7 +146,7 @@ def _joint_axis(draw: ImageDraw.ImageDraw, axis: Axis, camera: Camera, taken: li
     _arrow_head(draw, tip, unit)
     if axis.turns:
         _turn_arrow(draw, at + unit * length * 0.72, unit, towards)
-    _place(draw, (float(tip[0] + unit[0] * 14), float(tip[1] + unit[1] * 12)), axis.name, JOINT, camera, taken)
+    return float(tip[0] + unit[0] * 14), float(tip[1] + unit[1] * 12)
 
 
 def _dashed(draw: ImageDraw.ImageDraw, start: FloatArray, end: FloatArray) -> None:

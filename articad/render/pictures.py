@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 FloatArray = NDArray[np.float64]
 Renderer = Literal["embree", "pyvista"]
 
-RECIPE = "articad.picture/2"  # changes when the same scene would be drawn differently; part of a model request's key
+RECIPE = "articad.picture/3"  # changes when the same scene would be drawn differently; part of a model request's key
 DEFAULT_VIEWS = ("iso", "front", "right", "top")
 DEFAULT_SIZE = 512
 MOTION_VIEWS = ("iso", "iso_left", "front", "right", "top", "iso_back", "iso_below")

@@ -23,6 +23,7 @@ from articad.geometry.shapes import box, sphere
 from articad.kinematics import declare
 from articad.render import (
     Camera,
+    annotate,
     before_after,
     best_view,
     cast,
@@ -203,6 +204,15 @@ def test_parts_out_of_focus_are_faded_and_highlights_are_red(rail: Assembly) -> 
     assert faded[base].sum() > plain[base].sum() + 60, "nearer to paper"
     red_before, red_after = (int(((image[..., 0] > 180) & (image[..., 1] < 100)).sum()) for image in (plain, marked))
     assert red_after > red_before + 20
+
+
+def test_a_highlight_that_could_be_missed_gets_a_ring_and_a_large_one_none(rail: Assembly) -> None:
+    def ringed(radius: float) -> int:
+        drawn = render_views(rail, ["front"], size=300, labels=False, axes=False, highlights=[sphere(radius)])["front"]
+        return int((np.abs(np.asarray(drawn).astype(int) - annotate.MARK).max(axis=2) < 3).sum())
+
+    assert ringed(0.3) > 100
+    assert ringed(30.0) == 0
 
 
 def test_an_exploded_view_moves_parts_apart(rail: Assembly) -> None:
