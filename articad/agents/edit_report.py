@@ -24,6 +24,7 @@ Json = dict[str, Any]
 Reach = Literal["new", "removed", "described anew", "other numbers", "follows its source", "mirrored anew"]
 
 SCHEMA: Final = "articad.edit/1"
+_DIGITS = 6  # decimals of mm in a sentence
 _SHOWN = 60  # characters of a value in a sentence
 
 
@@ -113,8 +114,15 @@ def _by_name(value: Any) -> dict[str, Any] | None:
 def _quoted(value: Any) -> str:
     if value is None:
         return "nothing"
-    text = str(value.get("name", "an entry")) if isinstance(value, Mapping) else str(value)
+    text = str(value.get("name", "an entry")) if isinstance(value, Mapping) else str(_plain(value))
     return text if len(text) <= _SHOWN else f"{text[:_SHOWN]}…"
+
+
+def _plain(value: Any) -> Any:
+    """Return a value without the last bits of its numbers, which differ between machines and may stand in a prompt."""
+    if isinstance(value, float):
+        return int(value) if value.is_integer() else round(value, _DIGITS)
+    return [_plain(one) for one in value] if isinstance(value, list) else value
 
 
 # ---------------------------------------------------------------------- the proof

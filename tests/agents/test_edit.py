@@ -203,7 +203,7 @@ def test_an_answer_that_reaches_more_than_it_names_goes_back(plate: Run, tmp_pat
     run, llm = edited(plate, tmp_path / "run", wide, THICKER)
 
     assert "E_EDIT_REACH" in said(llm, "edit/2")
-    assert "dimensions.length 40.0 → 44.0" in said(llm, "edit/2")
+    assert "dimensions.length 40 → 44" in said(llm, "edit/2")
     assert (run.edit() or {})["parts"]["plate"]["fate"] == "untouched"
 
 
