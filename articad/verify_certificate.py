@@ -10,6 +10,7 @@ from __future__ import annotations
 import hashlib
 import itertools
 import json
+import zipfile
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -19,22 +20,37 @@ import numpy as np
 from articad.verify_apart import Search, Tree, normal
 from articad.verify_motion import ROUNDING, Mechanism
 
+# what comes of a certificate that is none, whatever it holds instead
+_SPOILT = (LookupError, TypeError, ValueError, ArithmeticError, AttributeError, AssertionError, RecursionError, MemoryError)
+
 
 def verify_file(file: Path, folder: Path) -> list[str]:
     """Return why a certificate file is refuted, nothing if it is accepted; `folder` holds `<part>.npz` of every part."""
-    certificate = json.loads(file.read_text())
-    found = {name: np.load(folder / f"{name}.npz", allow_pickle=False) for name in certificate["meshes"]}
-    if left := sorted({file.stem for file in folder.glob("*.npz")} - set(found)):
-        return [f"it says nothing of {', '.join(left)}"]
-    return verify(certificate, {name: (arrays["vertices"], arrays["triangles"]) for name, arrays in found.items()})
+    content = file.read_bytes()
+    try:
+        certificate = json.loads(content)
+        names = list(certificate["meshes"])
+        if outside := [name for name in names if Path(name).name != name]:
+            return [f"{outside[0]!r} is no name of a mesh"]
+        if left := sorted({file.stem for file in folder.glob("*.npz")} - set(names)):
+            return [f"it says nothing of {', '.join(left)}"]
+        found = {name: _mesh(folder / f"{name}.npz") for name in names}
+    except (*_SPOILT, OSError, EOFError, zipfile.BadZipFile) as error:
+        return [f"it cannot be read: {error!r}"[:500]]
+    return verify(certificate, found)
+
+
+def _mesh(file: Path) -> tuple[Any, Any]:
+    with np.load(file, allow_pickle=False) as arrays:
+        return arrays["vertices"], arrays["triangles"]
 
 
 def verify(certificate: dict[str, Any], meshes: dict[str, tuple[Any, Any]]) -> list[str]:
     """Return why the certificate is refuted, nothing if it is accepted; `meshes`: vertices (V, 3), triangles (T, 3) by part."""
     try:
         return _faults(certificate, meshes)
-    except (LookupError, TypeError, ValueError, ArithmeticError) as error:
-        return [f"it does not hold together: {error!r}"]
+    except _SPOILT as error:
+        return [f"it does not hold together: {error!r}"[:500]]
 
 
 def _faults(certificate: dict[str, Any], meshes: dict[str, tuple[Any, Any]]) -> list[str]:

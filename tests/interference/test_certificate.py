@@ -678,3 +678,31 @@ def test_speeds_through_a_slider_that_does_not_rest_at_zero_are_accepted() -> No
     assert certificate.ok
     assert any(len(claim.vary) == 2 for claim in certificate.claims)
     assert refutations(certificate) == []
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        b"",
+        b"3",
+        b"[" * 100_000,
+        b"\xff",
+        b"{}",
+        b'{"meshes": 3}',
+        b'{"meshes": {"../secret": {}}}',
+        b'{"meshes": {"lid": {}}}',
+        b'{"meshes": {}}',
+        b'{"meshes": {}, "mechanism": null}',
+    ],
+)
+def test_a_file_that_is_no_certificate_is_refuted(tmp_path: Path, content: bytes) -> None:
+    (tmp_path / "certificate.json").write_bytes(content)
+    assert verify_file(tmp_path / "certificate.json", tmp_path)
+
+
+@pytest.mark.parametrize("content", [b"", b"PK\x05\x06" + bytes(18), b"\x93NUMPY\x01\x00", b"not a zip"])
+def test_a_mesh_that_is_none_refutes_its_certificate(tmp_path: Path, content: bytes) -> None:
+    (tmp_path / "lid.npz").write_bytes(content)
+    (tmp_path / "certificate.json").write_bytes(b'{"meshes": {"lid": {"sha256": ""}}}')
+    (fault,) = verify_file(tmp_path / "certificate.json", tmp_path)
+    assert fault.startswith("it cannot be read")
