@@ -13,6 +13,7 @@ from enum import StrEnum
 from typing import NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
 from articad.connectors import FloatArray
 from articad.kinematics.loops import CLOSED, RANK_TOLERANCE, BoolArray, ClosureSystem
@@ -97,10 +98,13 @@ class Follower:
         self.reach = _reach(system)
         self._c = math.hypot(self.reach / system.length, 1.0)
         self.rank = len(self.where)
+        self._weight = _row_weights(system, self.where)
+        self._longest = _STEP_LIMIT if system.loops else math.inf  # couplings alone are linear: one step arrives
+        self._share = _SIGMA_SHARE if system.loops else math.inf
 
     def linearized(self, Q: FloatArray) -> _Linear:
         """Return the constraints' Jacobian at Q and the singular values of its dependent columns."""
-        J = self.system.evaluate_one(Q)[1]
+        J = self.system.evaluate_one(Q)[1] * self._weight
         return _Linear(J, *np.linalg.svd(J[:, self.where], full_matrices=False))
 
     def start(self, Q: FloatArray) -> None:
@@ -140,7 +144,7 @@ class Follower:
             fastest = max(float(np.abs(node.rate).max()), 1e-300)
             if node.sigma < _SINGULAR:
                 return self._stopped(nodes, direction, certify=certify)
-            h = min(2.0 * h, length - node.s, min(_STEP_LIMIT, _SIGMA_SHARE * node.sigma) / fastest)
+            h = min(2.0 * h, length - node.s, min(self._longest, self._share * node.sigma) / fastest)
             if certify:
                 h = min(h, self.certified_step(node))
             while h * fastest >= _SMALLEST_STEP or h >= length - node.s:
@@ -277,11 +281,11 @@ class Follower:
             if not run.size:
                 break
             D = displacement[run]
-            J = self.system.evaluate(at[run])[1]
+            J = self.system.evaluate(at[run])[1] * self._weight
             J_dep = J[:, :, self.where]
             sigma, rate = self._rates(J_dep, (J @ D[..., None])[..., 0], D)
             fastest = np.maximum(np.abs(rate).max(axis=1), 1e-300)
-            limit = np.minimum(_STEP_LIMIT, _SIGMA_SHARE * sigma) / fastest
+            limit = np.minimum(self._longest, self._share * sigma) / fastest
             step = np.minimum(np.minimum(2.0 * h[run], limit), 1.0 - s[run])
             predicted = self.system.move(at[run], step[:, None] * rate)
             closed, norm = self.system.close_many(predicted, self.dependent, iterations=6)
@@ -304,6 +308,18 @@ class Follower:
         rate[:, self.where] = -(Vt[:, :k].swapaxes(-1, -2) @ b[..., None])[..., 0]
         sigma: FloatArray = s[:, k - 1]
         return sigma, rate
+
+
+def _row_weights(system: ClosureSystem, where: npt.NDArray[np.intp]) -> FloatArray:
+    """Return factors `(rows, 1)` that make the largest coefficient of a dependent freedom 1 in each coupling's row.
+
+    A coupling is linear, so no branch is near however small its coefficient: a screw that turns 150 rad while its nut
+    travels one length L would otherwise be followed in steps of a degree, or taken for singular.
+    """
+    weights = np.ones((system.n_rows, 1))
+    largest = np.abs(system.coupling_rows[:, where]).max(axis=1, initial=0.0)
+    weights[system.n_rows - len(largest) :, 0] = 1.0 / np.where(largest > 0, largest, 1.0)
+    return weights
 
 
 def _reach(system: ClosureSystem) -> float:

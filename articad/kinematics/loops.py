@@ -131,6 +131,11 @@ class ClosureSystem:
 
     # --- equations
 
+    @property
+    def coupling_rows(self) -> FloatArray:
+        """The last rows of the Jacobian, which never change `(couplings, freedoms)`."""
+        return self._tied.J
+
     def evaluate(self, Q: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return residuals `(batch, rows)` and their Jacobian `(batch, rows, freedoms)`, scaled, at `Q` `(batch, columns)`."""
         J = np.tile(self._linear, (len(Q), 1, 1))

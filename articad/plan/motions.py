@@ -95,6 +95,8 @@ def motion(form: JointSpec, evaluation: Evaluation) -> Motion | None:
 
 def _limits(form: JointForm, joint_type: JointType, where: str, evaluation: Evaluation) -> tuple[JointLimits | None, tuple[float, ...]]:
     lower, upper, rests = [], [], []
+    coupled = {reference.split(".")[0] for coupling in evaluation.plan.couplings for reference in coupling.joints}
+    many_turns = joint_type is JointType.SCREW or form.name in coupled  # a lead screw turns as often as its nut's travel asks for
     for axis in AXES[joint_type]:
         given, scale = getattr(form, axis.range), math.radians(1.0) if axis.unit == "deg" else 1.0
         rest = 0.0 if axis.rest is None else evaluation.number(getattr(form, axis.rest), where, axis.rest)
@@ -104,7 +106,7 @@ def _limits(form: JointForm, joint_type: JointType, where: str, evaluation: Eval
             low = high = math.nan
         elif given != "endless":
             low, high = (evaluation.number(bound, where, f"{axis.range}[{i}]") for i, bound in enumerate(given))
-            _check_range((low, high), rest, axis, joint_type, where, evaluation)
+            _check_range((low, high), rest, axis, where, evaluation, many_turns=many_turns)
         lower.append(low * scale)
         upper.append(high * scale)
         rests.append(rest * scale)
@@ -120,7 +122,9 @@ def _report_missing(form: JointForm, axis: _Axis, where: str, evaluation: Evalua
     evaluation.report("E_LIMITS_MISSING", f"{where}.{axis.range}", f"The {form.type} joint has no {axis.range}.", hint)
 
 
-def _check_range(limits: tuple[float, float], rest: float, axis: _Axis, joint_type: JointType, where: str, evaluation: Evaluation) -> None:
+def _check_range(
+    limits: tuple[float, float], rest: float, axis: _Axis, where: str, evaluation: Evaluation, *, many_turns: bool = False
+) -> None:
     low, high = limits
     path, unit, given = f"{where}.{axis.range}", axis.unit, f"[{low:.6g}, {high:.6g}]"
     if low > high:
@@ -131,7 +135,7 @@ def _check_range(limits: tuple[float, float], rest: float, axis: _Axis, joint_ty
         hint = "Make it a fixed joint, or open the range."
         evaluation.report("W_LIMITS_EQUAL", path, f"Limits {given}: the joint cannot move.", hint, value=low, limit=high, unit=unit)
     if unit == "deg":
-        _check_degrees(limits, path, evaluation, many_turns=joint_type is JointType.SCREW)
+        _check_degrees(limits, path, evaluation, many_turns=many_turns)
     if rest < low - _SLACK or rest > high + _SLACK:
         nearest = low if rest < low else high
         widened = f"[{min(low, rest):.12g}, {max(high, rest):.12g}]"
@@ -176,7 +180,7 @@ def _ball_limits(form: BallSpec, where: str, evaluation: Evaluation) -> JointLim
     twist = None
     if form.twist_deg is not None:
         low, high = (evaluation.number(bound, where, f"twist_deg[{i}]") for i, bound in enumerate(form.twist_deg))
-        _check_range((low, high), 0.0, _Axis("twist_deg", None, "deg"), JointType.BALL, where, evaluation)
+        _check_range((low, high), 0.0, _Axis("twist_deg", None, "deg"), where, evaluation)
         twist = (math.radians(low), math.radians(high))
     if math.isnan(cone) or (twist is not None and any(map(math.isnan, twist))):
         return None

@@ -8,7 +8,7 @@ import pytest
 
 from articad.connectors import SE3
 from articad.errors import KinematicsError, UnknownJointError
-from articad.kinematics import JointLimits, JointType, Mechanism, continuation
+from articad.kinematics import Coupling, Joint, JointLimits, JointType, Mechanism, continuation
 from articad.kinematics.continuation import Follower
 from tests.kinematics.linkages import (
     at,
@@ -426,3 +426,33 @@ def test_a_loop_reaches_only_on_its_own_branch_and_within_limits() -> None:
     limited = slider_crank(travel=(80.0, 150.0)).reach("piston", (50, 10, 0), starts=3)
     assert limited.limits == ("piston",)
     assert limited.distance == pytest.approx(30, abs=1e-6)
+
+
+@pytest.mark.parametrize("lead", [4.0, 0.05], ids=["eighteen turns", "sixteen hundred turns"])
+def test_a_nut_is_followed_however_often_its_screw_turns(lead: float) -> None:
+    """A coupling is linear: no turn of the screw is a singularity, and none is too many."""
+    slide = Joint(
+        name="slide",
+        type=JointType.SLIDER,
+        parent="body",
+        child="jaw",
+        parent_connector="p",
+        child_connector="c",
+        T_parent_connector=SE3.identity(),
+        T_child_connector=SE3.identity(),
+        limits=JointLimits((0.0,), (80.0,)),
+        rest=(0.0,),
+        driver=True,
+    )
+    turn = replace(
+        slide, name="turn", type=JointType.REVOLUTE, parent="jaw", child="screw", limits=JointLimits((0.0,), (1e5,)), driver=False
+    )
+    mechanism = Mechanism(
+        ("body", "jaw", "screw"), "body", (slide, turn), (Coupling("lead", "screw", "turn", "slide", lead / (2 * math.pi)),)
+    )
+
+    free = mechanism.feasible_range("slide")
+
+    assert (free.lower, free.upper, free.findings.codes) == (0.0, 80.0, ())
+    configuration = mechanism.configuration(np.array([[0.0], [33.0], [80.0]]))
+    assert configuration["turn"][:, 0] == pytest.approx(np.array([0.0, 33.0, 80.0]) * 2 * math.pi / lead, rel=1e-12)

@@ -946,3 +946,14 @@ def test_numbers_that_nothing_has_are_refused() -> None:
     connector(plan, "box", "hinge")["o"] = [1e300, 0, 0]
     finding = only(check(plan), "E_SCALE")
     assert (finding.where, finding.value, finding.limit) == ("parts.box.connectors.hinge.o[0]", 1e300, 1e12)
+
+
+def test_a_coupled_joint_may_turn_as_often_as_its_partner_asks_for() -> None:
+    def turns_ten_times(plan: Json) -> None:
+        joint(plan, "turn_small")["angle_deg"] = [0, 3600]
+
+    screw = gears_with(turns_ten_times, type="screw", joints=["turn_small", "slide"], lead_mm=10)
+    wheel = gears_with(turns_ten_times, type="screw", joints=["turn_large", "slide"], lead_mm=200)
+
+    assert "W_LIMITS_UNITS" not in check(screw).codes
+    assert "W_LIMITS_UNITS" in check(wheel).codes
