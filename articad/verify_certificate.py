@@ -41,7 +41,7 @@ def verify_file(file: Path, folder: Path) -> list[str]:
 
 
 def _mesh(file: Path) -> tuple[Any, Any]:
-    with np.load(file, allow_pickle=False) as arrays:
+    with file.open("rb") as stream, np.load(stream, allow_pickle=False) as arrays:
         return arrays["vertices"], arrays["triangles"]
 
 

@@ -49,6 +49,7 @@ from articad.plan.expressions import parse
 from articad.plan.resolve import resolve
 from articad.plan.schema import AssemblyPlan
 from articad.run import Run
+from articad.verify_certificate import verify_file
 
 CORPUS = Path(__file__).parent / "corpus"
 NAMES = {"a": 1.5, "width": 40.0, "inset": -2.0, "zero": 0.0}
@@ -211,6 +212,16 @@ def case(content: bytes) -> None:
             memory.import_lines([line])
 
 
+def certificate(content: bytes) -> None:
+    """A certificate of motion beside its meshes, or one of the meshes; whatever it says, it is accepted or refuted."""
+    folder = _folder(os.getpid()) / "certificate"
+    folder.mkdir(exist_ok=True)
+    for file in (CORPUS / "certificate").iterdir():
+        (folder / file.name).write_bytes(file.read_bytes())
+    (folder / ("lid.npz" if content.startswith(b"PK") else "certificate.json")).write_bytes(content)
+    assert all(isinstance(fault, str) for fault in verify_file(folder / "certificate.json", folder))
+
+
 READERS: Mapping[str, Callable[[bytes], None]] = {
     "plan": plan,
     "expression": expression,
@@ -228,6 +239,7 @@ READERS: Mapping[str, Callable[[bytes], None]] = {
     "shape": shape,
     "run": run,
     "case": case,
+    "certificate": certificate,
 }
 
 
