@@ -13,6 +13,7 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Final
 
 from articad.agents.forms import Form, ask, reader, schema_of
+from articad.agents.late import ENDING
 from articad.agents.llm import LLM, system, user
 from articad.agents.prompts import prompt
 from articad.agents.requirements import Requirements
@@ -128,6 +129,7 @@ def remember(run: Run, store: ExperienceStore) -> Case | None:
         return None
     resolved = resolve(AssemblyPlan.loads(text))
     scripts = {name: script for name in run.part_names() if (script := run.script(name)) is not None}
+    scripts = {name: script for name, script in scripts.items() if not script.endswith(ENDING)}  # no examples: they know no connectors
     verdict, review = run.verdict() or {}, run.review() or {}
     measured = [finding for finding in checks["findings"] if finding["severity"] == "error"]
     judged = [finding for finding in verdict.get("findings", ()) if finding["severity"] == "error" and finding not in measured]

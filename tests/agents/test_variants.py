@@ -14,7 +14,7 @@ from articad.agents.late import ENDING
 from articad.agents.llm import Scripted
 from articad.agents.pipeline import Variant, generate, replay
 from articad.agents.prompts import prompt_file
-from articad.agents.recollection import StoredMemory
+from articad.agents.recollection import StoredMemory, remember
 from articad.agents.replies import parse_script
 from articad.agents.single import _plan, _whole
 from articad.commands.command import COMMANDS
@@ -74,6 +74,18 @@ def test_there_is_one_spelling_of_the_variants_everywhere() -> None:
     assert tuple(choices or ()) == get_args(Variant) == ("full", "late", "no-rollback", "no-memory", "single-loop")
 
 
+@pytest.mark.parametrize("variant", ["no-rollback", "no-memory"])
+def test_what_a_variant_does_not_leave_out_is_asked_in_the_same_words(tmp_path: Path, variant: Variant) -> None:
+    keys = {}
+    for name in ("full", variant):
+        llm = stories.flap()
+        made(tmp_path / name, llm, variant=name)
+        keys[name] = {request.step: request.key for request in llm.requests}
+    assert keys[variant].items() <= keys["full"].items()
+    assert {"requirements", "design/1", "part/flap/1", "part/plate/1"} <= keys[variant].keys()
+    assert (keys[variant] == keys["full"]) == (variant == "no-memory")
+
+
 # ---------------------------------------------------------------------- late
 
 
@@ -96,6 +108,9 @@ def test_late_connects_parts_that_were_made_without_connections(tmp_path: Path) 
     assert "hinge" not in said(llm, "part/plate/1").split("The specification:")[1]
     assert "Measured, in its own frame: from (0, 0, 0) to (40, 10, 10) mm" in said(llm, "connect/1")
     assert [joint["name"] for joint in json.loads(run.plan_text() or "")["joints"]] == ["hinge"]
+    case = remember(run, ExperienceStore(tmp_path / "memory"))
+    assert case is not None
+    assert case.parts == ()  # scripts that know no connectors are no examples to others
     assert_replayed(run, tmp_path / "again")
 
 
