@@ -58,7 +58,7 @@ def chain(parts: int, triangles: int) -> tuple[Scene, Mechanism]:
     joints = []
     for i in range(1, parts):
         frame = SE3.from_translation([LINK_MM, 0.0, (HEIGHT_MM + 0.05) * (1 if i % 2 else -1)])
-        rest = 0.0 if i == 1 else 0.9 * math.sin(1.7 * i) + (0.6 if parts <= 10 else 0.15)
+        rest = 0.0 if i == 1 else 0.9 * math.sin(1.7 * i) + (0.6 if parts <= 10 else 0.15 if parts <= 50 else 0.0)  # none curls up
         limits = JointLimits((0.0,), (2 * math.pi * (STEPS - 1) / STEPS,)) if i == 1 else JointLimits((-3.0,), (3.0,))
         joints.append(
             Joint(

@@ -23,7 +23,7 @@ from articad.agents.requirements import Requirements
 from articad.assembly import Assembly
 from articad.findings import Finding, Findings
 from articad.kernels.parts import RealisedPart
-from articad.plan.resolve import ResolvedPlan
+from articad.plan.resolve import ResolvedPart, ResolvedPlan
 from articad.run import RunRequest
 
 VERDICT_SCHEMA: Final = "articad.verdict/1"
@@ -294,9 +294,16 @@ def structure(assembly: Assembly) -> str:
     lines = ["Parts:"]
     for name in assembly.parts:
         part = None if resolved is None else resolved.parts[name]
-        role = "" if part is None else part.role or part.description.split(". ")[0][:160]
+        role = "" if part is None else _role(part, resolved)
         copy = f", a copy of {part.derivation.source}" if part is not None and part.derivation is not None else ""
         lines.append(f"- {name}{' (stands still)' if name == assembly.ground else ''}{copy}: {role}")
     lines += ["", "Joints:"]
     lines += [f"- {joint.name}: {joint.type}, {joint.child} against {joint.parent}" for joint in assembly.joints]
     return "\n".join(lines)
+
+
+def _role(part: ResolvedPart, resolved: ResolvedPlan | None) -> str:
+    """Return what a part is for; of a copy its own description where it has one, not its source's role."""
+    source = None if part.derivation is None or resolved is None else resolved.parts.get(part.derivation.source)
+    own = source is not None and part.description != source.description
+    return (part.description if own else part.role or part.description).split(". ")[0][:160]
