@@ -700,7 +700,22 @@ def test_a_file_that_is_no_certificate_is_refuted(tmp_path: Path, content: bytes
     assert verify_file(tmp_path / "certificate.json", tmp_path)
 
 
-@pytest.mark.parametrize("content", [b"", b"PK\x05\x06" + bytes(18), b"\x93NUMPY\x01\x00", b"not a zip"])
+def zipped(**changed: int) -> bytes:
+    """A mesh file with numbers in its table changed: the method of compression, the version that is needed, the flags."""
+    stream = io.BytesIO()
+    np.savez(stream, vertices=np.zeros((3, 3)), triangles=np.zeros((1, 3), dtype=np.int32))
+    content = bytearray(stream.getvalue())
+    entry = content.index(b"PK\x01\x02")
+    for name, value in changed.items():
+        at = entry + {"version": 6, "flags": 8, "method": 10}[name]
+        content[at : at + 2] = value.to_bytes(2, "little")
+    return bytes(content)
+
+
+@pytest.mark.parametrize(
+    "content",
+    [b"", b"PK\x05\x06" + bytes(18), b"\x93NUMPY\x01\x00", b"not a zip", zipped(method=99), zipped(version=123), zipped(flags=1)],
+)
 def test_a_mesh_that_is_none_refutes_its_certificate(tmp_path: Path, content: bytes) -> None:
     (tmp_path / "lid.npz").write_bytes(content)
     (tmp_path / "certificate.json").write_bytes(b'{"meshes": {"lid": {"sha256": ""}}}')
