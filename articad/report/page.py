@@ -15,7 +15,7 @@ from importlib.resources import files
 
 from articad.assembly import Assembly
 from articad.report.model import viewer_model
-from articad.report.sections import Documents, all_sections, badges
+from articad.report.sections import Documents, all_sections, badges, total_mass
 
 __all__ = ["Documents", "report_page"]
 
@@ -87,9 +87,8 @@ def _json_text(text: str) -> str:
 
 
 def _header(assembly: Assembly, documents: Documents) -> str:
-    mass = sum(part.mass.mass for part in assembly.parts.values() if part.mass is not None)
-    freedoms = assembly.mechanism.mobility
-    told = f"{len(assembly.parts)} parts, {len(assembly.joints)} joints, {freedoms} freedom{'' if freedoms == 1 else 's'}, {mass:.4g} kg"
+    counts = {"part": len(assembly.parts), "joint": len(assembly.joints), "freedom": assembly.mechanism.mobility}
+    told = ", ".join(f"{count} {thing}{'' if count == 1 else 's'}" for thing, count in counts.items()) + f", {total_mass(assembly)}"
     return (
         f'<header><h1>{escape(assembly.name)}</h1><span class="quiet">{escape(told)}</span>{badges(documents)}'
         '<button type="button" id="theme" aria-label="light or dark">◐</button></header>\n'

@@ -145,9 +145,17 @@ def _parts(assembly: Assembly) -> str:
                 Html(f'<button type="button" data-stl="{number}" aria-label="save {escape(name)} as STL">STL</button>'),
             ]
         )
-    total = sum(part.mass.mass for part in assembly.parts.values() if part.mass is not None)
-    note = f'<p class="quiet">Together {total:.4g} kg. A name shows the part alone; indented parts hang from those above.</p>'
+    note = f'<p class="quiet">Together: {total_mass(assembly)}. A name shows the part alone; indented parts hang from those above.</p>'
     return _scroll(html_table(["", "part", "material", "mass kg", "volume mm³", ""], rows, numbers=(3, 4))) + note
+
+
+def total_mass(assembly: Assembly) -> str:
+    """Return the mass of all parts, and of how many it is not known."""
+    known = [part.mass.mass for part in assembly.parts.values() if part.mass is not None]
+    if not known:
+        return "mass unknown"
+    unknown = len(assembly.parts) - len(known)
+    return f"{sum(known):.4g} kg" + (f" without {unknown} of unknown mass" if unknown else "")
 
 
 def _joints(assembly: Assembly) -> str:
