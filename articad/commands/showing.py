@@ -7,7 +7,6 @@ import json
 import re
 import shutil
 import tempfile
-import webbrowser
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
@@ -33,6 +32,8 @@ _BROWSER = argument("--no-browser", dest="browser", action="store_false", help="
     SANDBOX,
 )
 def _show(options: argparse.Namespace, terminal: Terminal) -> Report:
+    import webbrowser
+
     from articad.record import assembly_of, documents_of, record_page
     from articad.report import Documents, report_page
     from articad.run import Run
@@ -108,6 +109,8 @@ def _new(options: argparse.Namespace, terminal: Terminal) -> Report:
     FORCE,
 )
 def _watch(options: argparse.Namespace, terminal: Terminal) -> Report:
+    import webbrowser
+
     from articad.commands.watching import PageServer, watch
 
     with PageServer(options.port) as server:
