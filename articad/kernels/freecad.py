@@ -294,7 +294,8 @@ def _harms(root: Any) -> Iterator[str]:
         file = element.get("file")
         if file and not _SHAPE_FILE.fullmatch(file):
             yield f"a file named {scrubbed(file, 60)}"
-        if _PSEUDO.search(element.get("expression") or ""):
+        cell = element.get("content") or ""  # of a spreadsheet: FreeCAD gives =_py the module of Python's built-in functions
+        if _PSEUDO.search(element.get("expression") or "") or (cell.lstrip().startswith("=") and _PSEUDO.search(cell)):
             yield "an expression that reaches out of it"
 
 

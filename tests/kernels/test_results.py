@@ -15,7 +15,9 @@ import pytest
 
 from articad.errors import BuildError
 from articad.geometry.shapes import box
+from articad.kernels.archive import packed
 from articad.kernels.build123d import Build123dKernel
+from articad.kernels.freecad import harmless
 from articad.kernels.results import REPORT_BYTES, PoisonedError, numbers, read_lines, read_mesh
 from articad.kernels.zygote import Outcome
 
@@ -207,3 +209,37 @@ def test_forged_results_are_refused(brief: dict[str, Any], script: Any, measured
         kernel.build(b"", {**brief, "connectors": connectors})
 
     assert caught.value.findings.codes == ("E_SCRIPT_FORBIDDEN",)
+
+
+def document(inner: str) -> bytes:
+    return packed({"Document.xml": f"<Document><Objects/><ObjectData>{inner}</ObjectData></Document>".encode()})
+
+
+@pytest.mark.parametrize(
+    ("inner", "what"),
+    [
+        ('<Cell address="A1" content="=_py"/>', "an expression that reaches out"),
+        ('<Cell address="A1" content=" =_re"/>', "an expression that reaches out"),
+        ('<Cell address="A1" content="=href(A2)"/>', "an expression that reaches out"),
+        ('<Cell address="A1" content="=other#Box.Length"/>', "an expression that reaches out"),
+        ('<Expression path="Length" expression="_py.open"/>', "an expression that reaches out"),
+        ('<Property type="App::PropertyPythonObject"><Python module="os" class="x"/></Property>', "Python objects"),
+        ('<XLink file="/etc/passwd" name="a"/>', "links to other files"),
+        ('<Part file="../../a.brp"/>', "a file named"),
+    ],
+)
+def test_a_document_that_would_do_something_when_it_is_opened_is_refused(inner: str, what: str) -> None:
+    with pytest.raises(PoisonedError, match=what):
+        harmless(document(inner))
+
+
+@pytest.mark.parametrize(
+    "inner",
+    [
+        '<Cell address="A1" content="=1 + B2"/>',
+        '<Cell address="A1" content="bolt #4, see href"/>',
+        '<A expression="Dimensions.d_a * 1 mm"/>',
+    ],
+)
+def test_a_document_of_features_is_kept(inner: str) -> None:
+    assert harmless(document(inner)) == document(inner)
