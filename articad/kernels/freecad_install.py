@@ -264,6 +264,9 @@ def _found(asked: str, path: str, conda: str, data: str) -> FreeCAD:
     for label, candidate in _candidates(asked, path, conda, data):
         looked_in.append(label)
         if candidate is None:
+            if label.startswith("$"):
+                older.append(f"{asked} holds none")
+                break
             continue
         version = candidate.version
         if version is not None and version[:2] >= OLDEST:

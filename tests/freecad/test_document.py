@@ -144,3 +144,9 @@ def test_without_freecad_the_remedy_is_one_sentence(monkeypatch: pytest.MonkeyPa
     with pytest.raises(KernelUnavailableError, match="scripts/install-freecad") as raised:
         freecad_install.find()
     assert raised.value.looked_in
+
+
+def test_a_freecad_that_is_named_is_not_replaced_by_another(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setenv("ARTICAD_FREECAD", str(tmp_path / "mistyped"))
+    with pytest.raises(KernelUnavailableError, match="mistyped holds none"):
+        freecad_install.find()
