@@ -7,7 +7,7 @@ import re
 import struct
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -18,7 +18,7 @@ from articad.errors import BuildError, SandboxError
 from articad.kernels import sandbox, seccomp
 from articad.kernels.build123d import Build123dKernel
 from tests.freecad import opened
-from tests.kernels.attacks import ATTACKS, HIDDEN_BY_NAMESPACES, Range, kernel_at
+from tests.kernels.attacks import ATTACKS, FREECAD_LEVELS, HIDDEN_BY_NAMESPACES, LEVELS, Range, kernel_at
 
 ENOUGH = [layers for layers in (("bwrap", "landlock", "seccomp"), ("landlock", "seccomp")) if set(layers) <= sandbox.available()]
 
@@ -273,3 +273,17 @@ def test_without_landlock_freecad_has_no_proc_to_climb_out_by(tmp_path: Path) ->
     ways = ("change kernel settings", "read the worker's memory", "reopen result files by their numbers", "read kernel settings")
     with Range(tmp_path) as targets, kernel_at(("bwrap", "seccomp"), "freecad") as kernel:
         assert {way: targets.open_to(way, kernel) for way in ways} == dict.fromkeys(ways, "")
+
+
+@pytest.mark.parametrize(("kernel", "levels"), [("build123d", LEVELS), ("freecad", FREECAD_LEVELS)])
+def test_the_documentation_has_every_attack_at_every_level_and_nothing_open_by_default(
+    kernel: str, levels: Sequence[tuple[str, ...]]
+) -> None:
+    text = (Path(__file__).parents[2] / "docs/reference/sandbox.md").read_text()
+    table = text[text.index(f"Kernel {kernel}") :].partition("\n\n")[2].partition("\n\n")[0].splitlines()
+    rows = {cells[1].strip(): [cell.strip() for cell in cells[2:-1]] for cells in (line.split("|") for line in table)}
+
+    assert rows.pop("attack") == ["+".join(layers) or "limits only" for layers in levels]
+    assert rows.pop("---")
+    assert set(rows) == set(ATTACKS)
+    assert {row[-1] for row in rows.values()} == {"blocked"}
