@@ -38,6 +38,7 @@ def _page(folders: list[Path]) -> str:
         "Every example of the repository, drawn by `scripts/gallery.py` from the plan and the part scripts, with no display or GPU:",
         "two views, then for each driver the two ends of its motion, or the first quarter of more than half a turn. What stands still is faded.",
         "Axes point along +z of the parent connector, arrows turn by the right hand; a dot is an axis towards you, a cross one away from you.",
+        "*Move it* opens the example with a slider for each driver, made when this site was.",
         "",
     ]
     for folder in folders:
@@ -46,7 +47,10 @@ def _page(folders: list[Path]) -> str:
         title = plan.name.replace("_", " ").capitalize()
         lines += [f"## {title}", "", plan.description or title, ""]
         lines += [f"![{title}: views and motions](images/gallery/{folder.name}.png)", ""]
-        lines += [f"`articad build examples/{folder.name}` · {len(plan.parts)} entries in the plan, {joints} joints that move.", ""]
+        lines += [
+            f"[Move it](live/{folder.name}.html){{ .md-button }} or `articad build examples/{folder.name}` · {len(plan.parts)} entries in the plan, {joints} joints that move.",
+            "",
+        ]
     return "\n".join(lines).rstrip() + "\n"
 
 

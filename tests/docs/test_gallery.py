@@ -1,0 +1,34 @@
+"""The gallery shows every example, with its sheet and a page that moves."""
+
+from __future__ import annotations
+
+import importlib.util
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+NAMES = sorted(path.parent.name for path in (ROOT / "examples").glob("*/plan.json"))
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_an_example_has_its_sheet_and_its_moving_page(name: str) -> None:
+    text = (ROOT / "docs" / "gallery.md").read_text()
+    assert f"(images/gallery/{name}.png)" in text
+    assert f"(live/{name}.html)" in text
+    assert (ROOT / "docs" / "images" / "gallery" / f"{name}.png").is_file()
+
+
+def test_the_sites_hook_makes_a_page_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("ARTICAD_CACHE", str(tmp_path))
+    spec = importlib.util.spec_from_file_location("live_pages", ROOT / "scripts" / "live_pages.py")
+    assert spec is not None
+    assert spec.loader is not None
+    hook = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(hook)
+
+    page = hook.live_page(ROOT / "examples" / "four_bar")
+
+    assert '"drivers":[{"kind":"plain","name":"crank"' in page.read_text().replace("\\u0022", '"')
+    made = page.stat().st_mtime_ns
+    assert hook.live_page(ROOT / "examples" / "four_bar").stat().st_mtime_ns == made
