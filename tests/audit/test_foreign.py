@@ -9,13 +9,14 @@ import json
 import resource
 import time
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import pytest
 from lxml import etree
 
 from articad.audit.examine import Choices, audit
 from articad.codes import CODES
+from articad.findings import Finding
 from articad.geometry.shapes import box, cylinder
 from tests.audit import defects
 
@@ -101,3 +102,60 @@ def test_a_robot_of_fifty_links_takes_less_than_twenty_seconds(tmp_path: Path) -
     assert not [finding for finding in found.findings if finding.code != "W_AUDIT_NOT_CHECKED"]
     assert spent() - before < LONGEST_FIFTY_S
     assert time.monotonic() - start < 10 * LONGEST_FIFTY_S
+
+
+# ---------------------------------------------------------------------- worked out by hand
+
+
+class Drawn(NamedTuple):
+    """A finding that was drawn at random, with the number that was worked out by other means."""
+
+    file: str
+    code: str
+    part: str
+    value: float
+    tolerance: float = 1e-3
+    unit: str | None = None
+
+
+DRAWN = [
+    Drawn("mini_cheetah/mini_cheetah.urdf", "E_STATIC_OVERLAP", "abduct_fl", 139.712 - 135.514, 0.01, "mm"),
+    Drawn("racecar/racecar_differential.urdf", "I_AUDIT_BASE", "right_rear_wheel", 50.0, unit="mm"),
+    Drawn("quadruped/spirit40.urdf", "W_AUDIT_ENDLESS", "", 720.0, unit="deg"),
+    Drawn("cartpole.urdf", "W_AUDIT_NO_COLLISION", "slideBar", 1),
+    Drawn("aliengo/aliengo.urdf", "I_AUDIT_BASE", "FL_toe", 526.5, unit="mm"),
+    Drawn("aliengo/aliengo.urdf", "W_AUDIT_INERTIA_SHAPE", "imu_link", 1e-4, unit="kg·m²"),
+    Drawn("cube_no_rotation.urdf", "W_AUDIT_DENSITY", "baseLink", 0.1, unit="kg/m³"),
+    Drawn("cube_no_rotation.urdf", "W_AUDIT_NO_EFFORT", "", 4),
+    Drawn("teddy_large.urdf", "W_AUDIT_COM", "baseLink", 983.44, unit="mm"),
+    Drawn("kuka_iiwa/model_free_base.urdf", "W_AUDIT_MESH_OPEN", "lbr_iiwa_link_6", 21, unit="edges"),
+    Drawn("laikago/laikago_toes.urdf", "I_AUDIT_UNFUSED", "FR_upper_leg", 2, unit="bodies"),
+    Drawn("mjcf/thrower.xml", "W_AUDIT_DENSITY", "shoulder_lift_link", 1e-4, 0.03, "kg/m³"),
+    Drawn("quadruped/minitaur_rainbow_dash_v1.urdf", "E_NOT_TOUCHING", "chassis_right", 53.5, unit="mm"),
+]
+MENDED = [  # false alarms that were drawn
+    ("mjcf/pusher.xml", "W_AUDIT_PIECES", "fingertip"),
+    ("quadruped/minitaur.urdf", "W_AUDIT_PIECES", "chassis_left"),
+    ("humanoid/humanoid.urdf", "E_FLOATING", "chest"),
+]
+
+
+def told(file: str, code: str, part: str) -> list[Finding]:
+    """What is told of a file at rest."""
+    found = audit(ROOT / file, Choices(root=ROOT, engines=file.endswith(".xml"), budget=1e-9)).findings.of(code)
+    return [finding for finding in found if not part or part in finding.parts]
+
+
+@pytest.mark.corpus
+@pytest.mark.parametrize("drawn", DRAWN, ids=lambda drawn: f"{drawn.file}-{drawn.code}")
+def test_a_number_is_what_was_worked_out_by_hand(drawn: Drawn) -> None:
+    found = told(drawn.file, drawn.code, drawn.part)
+
+    assert any(finding.value == pytest.approx(drawn.value, rel=drawn.tolerance) for finding in found), [finding.value for finding in found]
+    assert {finding.unit for finding in found} == {drawn.unit}
+
+
+@pytest.mark.corpus
+@pytest.mark.parametrize(("file", "code", "part"), MENDED)
+def test_a_false_alarm_does_not_come_back(file: str, code: str, part: str) -> None:
+    assert not told(file, code, part)
