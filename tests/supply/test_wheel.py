@@ -117,9 +117,7 @@ def test_the_wheel_holds_every_file_that_the_code_opens_and_no_test(wheel: Path)
 
 @pytest.mark.parametrize("which", [CORE, pytest.param(ALL, marks=pytest.mark.supply)], ids=["core", "all"])
 def test_the_installed_wheel_passes_the_tests(which: tuple[str, ...], python: Path, tmp_path: Path) -> None:
-    shutil.copytree(ROOT / "tests", tmp_path / "tests", ignore=shutil.ignore_patterns("__pycache__"))
-    shutil.copytree(ROOT / "examples", tmp_path / "examples", ignore=shutil.ignore_patterns("__pycache__", "recording"))
-    shutil.copyfile(ROOT / "pyproject.toml", tmp_path / "pyproject.toml")
+    shutil.rmtree(sources(tmp_path) / "articad")
     quiet = {name: value for name, value in os.environ.items() if name not in {"PYTHONPATH", "PYTEST_ADDOPTS"}}
     where = subprocess.run(
         [python, "-c", "import articad; print(articad.__file__)"], cwd=tmp_path, env=quiet, capture_output=True, text=True, check=True
