@@ -23,7 +23,7 @@ from articad.interference.fits import Gauge
 from articad.kinematics.joints import Joint, JointType
 from articad.plan.fields import Form
 from articad.plan.resolve import Fit
-from articad.simulate.examine import simulate_assembly
+from articad.simulate.examine import simulate_assembly, simulate_file
 
 AXIS_RAD: Final = math.radians(5)  # by which an axis may lean from the one asked for
 STROKE: Final = 9  # values of a driver at which what follows it is measured
@@ -403,7 +403,10 @@ class Simulates(Check):
         return "stands and moves in MuJoCo"
 
     def measured(self, subject: Subject) -> tuple[bool, str]:
-        verdict = simulate_assembly(subject.assembly, subject.assembly.name, engines=("mujoco",))
+        if subject.file is not None:
+            verdict = simulate_file(subject.file, engines=("mujoco",))
+        else:
+            verdict = simulate_assembly(subject.assembly, subject.assembly.name, engines=("mujoco",))
         return verdict.ok, "; ".join(finding.message for finding in verdict.findings.errors[:3]) or "it does"
 
 

@@ -19,7 +19,6 @@ from articad.agents.llm import LLM
 from articad.agents.pipeline import Variant, generate
 from articad.agents.retrieval import Memory
 from articad.agents.review import trajectory
-from articad.assembly import Assembly
 from articad.bench.checks import Judgement
 from articad.bench.subject import Subject
 from articad.bench.task import Task
@@ -30,6 +29,7 @@ from articad.run import Run, digest, write_atomically
 
 SCHEMA: Final = "articad.bench-row/1"
 _ROW = "row.json"
+_SIMULATED: Final = frozenset({".urdf", ".xml", ".mjcf"})
 
 Ask = Callable[[Task], LLM]
 """Who answers a task's requests."""
@@ -149,11 +149,6 @@ def score_files(tasks: Iterable[tuple[Path, Task]], folder: str | Path) -> list[
     return [_scored(task, Path(folder)) for _, task in tasks]
 
 
-def judged(task: Task, assembly: Assembly, before: Assembly | None = None) -> tuple[Judgement, ...]:
-    """Return what the checks of a task say of an assembly."""
-    return task.judge(Subject(assembly, before))
-
-
 def _made(task: Task, folder: Path, place: Path, key: str, ask: Ask, finished: Finished | None, **options: Any) -> Row:
     row = Row(task.name, task.kind, task.modality, key=key)
     look = options.pop("look")
@@ -169,7 +164,7 @@ def _made(task: Task, folder: Path, place: Path, key: str, ask: Ask, finished: F
             inspection=look,
             **options,
         )
-        judgements = judged(task, assembly_of(run, cache=options["cache"]))
+        judgements = task.judge(Subject(assembly_of(run, cache=options["cache"])))
         row = replace(row, judgements=judgements)
         if finished is not None:
             finished(run)
@@ -202,8 +197,8 @@ def _scored(task: Task, folder: Path) -> Row:
         return replace(row, error=f"There is no model of {task.name} in {folder}.")
     started = time.monotonic()
     try:
-        assembly = _read(found)
-        return replace(row, judgements=judged(task, assembly), seconds=time.monotonic() - started)
+        judgements = task.judge(_subject(found))
+        return replace(row, judgements=judgements, seconds=time.monotonic() - started)
     except ArticadError as error:
         return replace(row, error=f"{type(error).__name__}: {error}", seconds=time.monotonic() - started)
 
@@ -220,10 +215,10 @@ def _model_of(name: str, folder: Path) -> Path | None:
     return files[0] if files else None
 
 
-def _read(found: Path) -> Assembly:
+def _subject(found: Path) -> Subject:
     if found.is_dir():
-        return assembly_of(Run.view(found))
-    return convert.read(found)
+        return Subject(assembly_of(Run.view(found)))
+    return Subject(convert.read(found), file=found if found.suffix.lower() in _SIMULATED else None)
 
 
 def _kept(place: Path, key: str) -> Row | None:

@@ -6,6 +6,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from pathlib import Path
 
 import numpy as np
 
@@ -26,10 +27,12 @@ class Subject:
     Attributes:
         assembly: Made by articad, or read from a file of any tool.
         before: The same product before an edit, if there was one.
+        file: URDF or MJCF that it was read from: what a simulator is given, as it is.
     """
 
     assembly: Assembly
     before: Assembly | None = None
+    file: Path | None = None
 
     @cached_property
     def rest(self) -> Poses:

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
-import math
+import atexit
+import re
+import shutil
+import tempfile
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 
@@ -12,6 +16,7 @@ from articad.assembly import Assembly
 from articad.bench.checks import Check, Joints, Ratio
 from articad.bench.subject import Subject
 from articad.connectors import SE3
+from articad.export.urdf import write_urdf
 from articad.geometry import MassProperties, Part, TriMesh, box, merged
 from articad.geometry.part import Solid
 from articad.kinematics.joints import Joint, JointLimits, JointType
@@ -72,13 +77,23 @@ def _other_joints(check: Check, subject: Subject) -> Subject:
 
     def leaning(joint: Joint) -> Joint:
         if check.joint.axis is None:
-            return _fixed(joint)
+            return _plain(joint)
         return replace(
             joint, T_parent_connector=joint.T_parent_connector @ turn, T_child_connector=joint.T_child_connector @ turn, rest=joint.rest
         )
 
     joints = [leaning(joint) if joint.name in names else joint for joint in subject.assembly.joints]
     return Subject(changed(subject.assembly, joints=joints, couplings=()))
+
+
+def _plain(joint: Joint) -> Joint:
+    """Return a joint of another type that carries its child as it rests."""
+    if joint.type is not JointType.BALL:
+        return _fixed(joint)
+    held = joint.T_parent_connector @ joint.motion(joint.rest)
+    return replace(
+        joint, type=JointType.REVOLUTE, T_parent_connector=held, limits=JointLimits((-1.0,), (1.0,)), rest=(0.0,), effort=(), velocity=()
+    )
 
 
 def _none(_check: Check, _subject: Subject) -> Subject:
@@ -113,15 +128,13 @@ def _two_solids(_check: Check, subject: Subject) -> Subject:
     return _with_mesh(subject, name, merged([mesh, crumb]))
 
 
-def _endless(_check: Check, subject: Subject) -> Subject:
-    """What drives is said to turn for ever, where the linkage does not let it."""
-    drivers = {driver.joint for driver in subject.assembly.drivers}
-
-    def turning(joint: Joint) -> Joint:
-        limits = replace(joint.limits, lower=tuple(-math.inf for _ in joint.rest), upper=tuple(math.inf for _ in joint.rest))
-        return replace(joint, limits=limits) if joint.name in drivers else joint
-
-    return Subject(changed(subject.assembly, joints=[turning(joint) for joint in subject.assembly.joints]))
+def _massless(_check: Check, subject: Subject) -> Subject:
+    """The file tells of no mass, as many published ones."""
+    folder = Path(tempfile.mkdtemp(prefix="articad-massless-"))
+    atexit.register(shutil.rmtree, folder, ignore_errors=True)
+    (file,) = (path for path in write_urdf(subject.assembly).write(folder) if path.suffix == ".urdf")
+    file.write_text(re.sub(r"<inertial>.*?</inertial>", "", file.read_text(), flags=re.DOTALL))
+    return Subject(subject.assembly, file=file)
 
 
 def _overlapping(_check: Check, subject: Subject) -> Subject:
@@ -232,7 +245,7 @@ VARIANTS: dict[str, Callable[[Check, Subject], Subject]] = {
     "joined": _adrift,
     "clear_in_motion": _in_the_way,
     "certified": _in_the_way,
-    "simulates": _endless,
+    "simulates": _massless,
     "loops": _unclosed,
     "ratio": _uncoupled,
     "rise": _short,
