@@ -1,5 +1,9 @@
-# The tray as a FreeCAD feature tree. Every number is a text with the plan's names: FreeCAD keeps it as an expression, so that the
-# dimensions can be edited there.
+"""The tray as a FreeCAD feature tree.
+
+Every number is a text with the plan's names: FreeCAD keeps it as an expression, so that the dimensions can be edited there.
+"""
+
+
 def build(part):
     part.box(("-width / 2", 0, 0), ("width", "depth", "height"), name="Outside")
     part.box(("-width / 2 + wall", "wall", "wall"), ("width - 2 * wall", "depth - 2 * wall", "height"), cut=True, name="Inside")
