@@ -31,7 +31,7 @@ class Contacts:
         pairs: Of the rest pose, with every pair.
         findings: All of them.
         undone: What was not checked, in words.
-        strength: "sampled" or "certified", of the motion.
+        strength: "sampled", "certified" or "certified in part", of the motion.
         certificate: Of the motion, if it was to be proven.
     """
 

@@ -30,6 +30,7 @@ SCAN = 24  # poses between rest and a collision, among which the first contact i
 BISECTIONS = 30
 CONTACT_MM3 = 1e-6  # shared volume at which contact begins: an edge 10 mm long is then 0.3 µm deep
 MOTION = "E_MOTION_COLLISION"
+UNPROVEN = "E_NOT_CHECKED"
 AT_REST = ("E_OVERLAP", "E_STATIC_OVERLAP", "W_STATIC_OVERLAP")
 PATIENCE = 8.0  # times as long as the processor's time may it take by the clock
 DEEPER = 2.0  # a pair that overlaps at rest is told of again where motion makes it so many times as deep
@@ -166,7 +167,12 @@ def prove_motion(case: Case, found: Contacts, budget: float) -> None:
     guilty = {frozenset(finding.parts) for finding in found.findings}
     resting = _depths_at_rest(found)
     fresh = [finding for finding in certificate.findings if _is_news(finding, resting, guilty)]
-    found.findings += explained(case, fresh)
+    found.findings += explained(case, [finding for finding in fresh if finding.code != UNPROVEN])
+    unproven = [finding for finding in fresh if finding.code == UNPROVEN]
+    if unproven:
+        found.strength = "certified in part"
+        found.findings.append(_unproven(unproven))
+        found.undone += [finding.message for finding in unproven]
 
 
 def _together(finding: Finding, names: tuple[str, str]) -> Finding:
@@ -228,6 +234,24 @@ def _turns(case: Case, freedom: Freedom) -> bool:
     if joint.name == freedom.name or joint.type is JointType.BALL:
         return joint.type is not JointType.SLIDER
     return joint.type.units[joint.type.coordinates.index(coordinate)] == "rad"
+
+
+def _unproven(findings: list[Finding]) -> Finding:
+    """Return one finding on everything that a proof has left open; the report lists each."""
+    first = findings[0]
+    others = (
+        f" {counted(len(findings) - 1, 'other row')} of the report's `not_checked` {'is' if len(findings) == 2 else 'are'} of this kind."
+        if findings[1:]
+        else ""
+    )
+    return Finding(
+        code="W_AUDIT_NOT_CHECKED",
+        where=first.where,
+        message=f"{first.message}{others}",
+        hint="Give the proof more time with --certify, and repair meshes that are named.",
+        value=len(findings),
+        limit=0,
+    )
 
 
 def _unfinished(late: list[str], count: int, budget: float) -> Finding:

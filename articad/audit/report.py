@@ -24,7 +24,7 @@ class Audit:
         findings: All, in order of severity.
         engines: Which simulators load the file.
         undone: What was not looked at, in words; none of it was asked for.
-        motion: How the motion was checked: "sampled", "certified" or "none".
+        motion: How the motion was checked: "sampled", "certified", "certified in part" or "none".
         seconds: Time spent.
         certificate: Of the motion, if it was to be proven.
     """

@@ -127,6 +127,15 @@ def test_a_proof_replaces_the_samples(tmp_path: Path) -> None:
     assert math.degrees(free["turn"].upper) == pytest.approx(defects.FIRST_CONTACT_DEG, abs=0.05)
 
 
+def test_a_proof_that_is_not_finished_is_told_once(tmp_path: Path) -> None:
+    found = audit(defects.write(defects.stand(tmp_path), tmp_path), Choices(engines=False, certified=1e-9))
+
+    (finding,) = found.findings
+    assert finding.code == "W_AUDIT_NOT_CHECKED"
+    assert finding.value == len(found.undone)
+    assert found.motion == "certified in part"
+
+
 def spoiled_ranges(found: Any) -> Any:
     assert found.certificate is not None
     return found.certificate.ranges
