@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from itertools import combinations
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, NamedTuple
 
 import manifold3d
 import numpy as np
@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 FloatArray = NDArray[np.float64]
 
 POSES_PER_FREEDOM = 13  # over its range, the others at rest
+CONVEX_SHARE = 1e-9  # of its volume: what the hull of a convex part adds to it by rounding
 LIMIT_SLACK = 1e-6  # mm or rad by which a joint may be outside its limits
 _KEY_DIGITS = 6  # of mm and rotation entries: relative poses that agree so far are asked once
 
@@ -64,6 +65,15 @@ def _walked(mechanism: Mechanism, sweep: Sweep, name: str, values: FloatArray) -
     return reached
 
 
+class _Placed(NamedTuple):
+    """A body in its part's frame, the corners of its bounding box and its vertices [mm]."""
+
+    body: manifold3d.Manifold
+    low: FloatArray
+    high: FloatArray
+    vertices: FloatArray
+
+
 @dataclass
 class ContactSearch:
     """Looks for new contacts between parts, and looks again only at parts whose pieces have changed.
@@ -80,9 +90,9 @@ class ContactSearch:
     solids: Mapping[str, tuple[Shape, ...]]
     skip: set[Pair]
     _bodies: dict[tuple[str, bool], manifold3d.Manifold] = field(default_factory=dict)
-    _pieces: dict[str, list[Any]] = field(default_factory=dict)
+    _pieces: dict[str, list[_Placed]] = field(default_factory=dict)
     _found: dict[Pair, HullOverlap | None] = field(default_factory=dict)
-    _solids: dict[str, list[Any]] = field(default_factory=dict)
+    _solids: dict[str, list[_Placed]] = field(default_factory=dict)
 
     def update(self, part: str, pieces: Iterable[Shape]) -> None:
         """Give a part other pieces."""
@@ -96,13 +106,16 @@ class ContactSearch:
             if (a, b) in self.skip or (b, a) in self.skip or (a, b) in self._found:
                 continue
             low, high = (np.maximum(boxes[a][0], boxes[b][0]), np.minimum(boxes[a][1], boxes[b][1]))
-            self._found[a, b] = self._first_contact(a, b, np.flatnonzero((low < high).all(axis=1)))
+            near = np.flatnonzero((low < high).all(axis=1))
+            if self._is_convex(a) and self._is_convex(b):
+                near = near[near == 0]  # in motion, where such pieces meet the solids do
+            self._found[a, b] = self._first_contact(a, b, near)
         found = (self._found.get(pair) for pair in combinations(self.order, 2))
         return [contact for contact in found if contact is not None]
 
     def _boxes(self, part: str) -> tuple[FloatArray, FloatArray]:
         """Return the corners of the part's bounding box in every pose, `(n, 3)` each."""
-        lows, highs = zip(*((low, high) for _, low, high in self._pieces[part]), strict=True)
+        lows, highs = zip(*((piece.low, piece.high) for piece in self._pieces[part]), strict=True)
         low, high = np.min(lows, axis=0), np.max(highs, axis=0)
         T = self.poses[:, self.order.index(part)]
         centre = T[:, :3, :3] @ ((low + high) / 2) + T[:, :3, 3]
@@ -125,19 +138,27 @@ class ContactSearch:
         return None
 
     def _solids_meet(self, a: str, b: str, T: FloatArray) -> bool:
-        for part in (a, b):
-            if part not in self._solids:
-                self._solids[part] = self._placed(self.solids[part], convex=False)
-        return _overlap(self._solids[a], self._solids[b], T)[1] > HULL_DEPTH_MM
+        return _overlap(self._solid(a), self._solid(b), T)[1] > HULL_DEPTH_MM
 
-    def _placed(self, shapes: Iterable[Shape], *, convex: bool) -> list[tuple[manifold3d.Manifold, FloatArray, FloatArray]]:
-        """Return the shapes' bodies in the part's frame, and the corners of their bounding boxes; what is open or flat has no body."""
+    def _solid(self, part: str) -> list[_Placed]:
+        if part not in self._solids:
+            self._solids[part] = self._placed(self.solids[part], convex=False)
+        return self._solids[part]
+
+    def _is_convex(self, part: str) -> bool:
+        """True where one piece is all of the part's one solid."""
+        pieces, solids = self._pieces[part], self._solid(part)
+        return len(pieces) == len(solids) == 1 and pieces[0].body.volume() <= solids[0].body.volume() * (1 + CONVEX_SHARE)
+
+    def _placed(self, shapes: Iterable[Shape], *, convex: bool) -> list[_Placed]:
+        """Return the shapes' bodies in the part's frame; what is open or flat has no body."""
         found = []
         for shape in shapes:
             body = self._body(shape.mesh, convex=convex).transform(shape.frame.matrix[:3])
             if not body.is_empty():
                 corners = body.bounding_box()
-                found.append((body, np.array(corners[:3]), np.array(corners[3:])))
+                vertices = np.ascontiguousarray(body.to_mesh64().vert_properties[:, :3])
+                found.append(_Placed(body, np.array(corners[:3]), np.array(corners[3:]), vertices))
         return found
 
     def _body(self, mesh: TriMesh, *, convex: bool) -> manifold3d.Manifold:
@@ -149,20 +170,31 @@ class ContactSearch:
         return self._bodies[key]
 
 
-def _overlap(first: list[Any], second: list[Any], T: FloatArray) -> tuple[float, float]:
+def _overlap(first: list[_Placed], second: list[_Placed], T: FloatArray) -> tuple[float, float]:
     """Return the volume that two lists of bodies share [mm³], the second ones moved by T, and its mean depth [mm]."""
     volume = area = 0.0
-    for other, low, high in second:
-        centre = T[:3, :3] @ ((low + high) / 2) + T[:3, 3]
-        half = np.abs(T[:3, :3]) @ ((high - low) / 2)
-        near = [body for body, a_low, a_high in first if (a_low < centre + half).all() and (centre - half < a_high).all()]
+    for other in second:
+        centre = T[:3, :3] @ ((other.low + other.high) / 2) + T[:3, 3]
+        half = np.abs(T[:3, :3]) @ ((other.high - other.low) / 2)
+        near = [one for one in first if (one.low < centre + half).all() and (centre - half < one.high).all()]
         if near:
-            moved = other.transform(T[:3])
-            for body in near:
-                shared = body ^ moved
+            vertices = other.vertices @ T[:3, :3].T + T[:3, 3]
+            near = [one for one in near if not _are_apart(one.vertices, vertices, T[:3, :3])]
+        if near:
+            moved = other.body.transform(T[:3])
+            for one in near:
+                shared = one.body ^ moved
                 volume += float(shared.volume())
                 area += float(shared.surface_area())
     return (volume, 2 * volume / area) if volume > HULL_VOLUME_MM3 else (0.0, 0.0)
+
+
+def _are_apart(first: FloatArray, second: FloatArray, R: FloatArray) -> bool:
+    """True where a plane between two sets of points is found: across an axis of either frame, or two of them, or between their middles."""
+    across = np.cross(np.eye(3)[:, None], R.T[None]).reshape(-1, 3)
+    axes = np.vstack([np.eye(3), R.T, across, second.mean(axis=0) - first.mean(axis=0)])
+    mine, theirs = first @ axes.T, second @ axes.T
+    return bool(((mine.max(axis=0) < theirs.min(axis=0)) | (theirs.max(axis=0) < mine.min(axis=0))).any())
 
 
 def _inverse(T: FloatArray) -> FloatArray:
