@@ -9,8 +9,10 @@ from __future__ import annotations
 
 import math
 import re
+import tempfile
 from collections.abc import Iterator
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 
 from articad.assembly import Assembly
@@ -69,6 +71,12 @@ def read_freecad(path: str | Path, *, root: str | Path | None = None, metadata: 
         recorded = assembly_of(read_records(text.split("\n"), path), folder, path)
         return _updated(model, recorded)
     return model.assemble()
+
+
+@cache
+def _kept() -> tempfile.TemporaryDirectory[str]:
+    """Return the folder of the B-rep that was read: it can be written again as it is, until this process ends."""
+    return tempfile.TemporaryDirectory(prefix="articad-read-")
 
 
 class _Document:
@@ -226,7 +234,8 @@ class _Model:
             # B-rep is written where its object stands; a body that is a part itself stands in the assembly
             T = self.document.placement(item).inverse() if own else IDENTITY
             try:
-                return self._reader.read_brep(self.document.archive.read(file), name=name, T=T, deflection=self.deflection)
+                folder = Path(tempfile.mkdtemp(dir=_kept().name))
+                return self._reader.read_brep(self.document.archive.read(file), name=name, T=T, deflection=self.deflection, folder=folder)
             except (ArticadError, BadArchiveError) as error:
                 self._misshapen(name, f"The shape of {item} is not one valid solid: {str(error)[:200]}")
         return None

@@ -34,7 +34,7 @@ from articad.kernels.archive import Archive, BadArchiveError, packed
 from articad.kernels.build123d import Build123dKernel
 from articad.kernels.contract import probe_findings, read_connectors, solid_findings
 from articad.kernels.failures import poisoned, script_failure, scrubbed, unconfined
-from articad.kernels.freecad_file import rounded, settled
+from articad.kernels.freecad_file import rounded, settled, shortened
 from articad.kernels.freecad_install import Ended, FreeCAD, Limits
 from articad.kernels.kernel import BuiltPart, Inspect
 from articad.kernels.results import PoisonedError, numbers, read_bytes, read_lines
@@ -192,14 +192,21 @@ class BrepReader(Build123dKernel):
     def read_brep(self, content: bytes, *, name: str, T: SE3, deflection: float, folder: Path | None = None) -> Solid:
         """Return the one solid of a B-rep, moved by `T`.
 
+        Args:
+            content: The B-rep, as text.
+            name: Of the part, for messages.
+            T: Where it stands.
+            deflection: Largest distance of the mesh from it [mm].
+            folder: Where the solid's B-rep stays; without one the solid has no file.
+
         Raises:
             ReadError: If it is not B-rep or does not hold exactly one valid solid.
         """
         self._require_sandbox()
-        folder = folder or self._new_folder()
+        kept, folder = folder is not None, folder or self._new_folder()
         try:
             with self._job() as job:
-                (job / "shape.bin").write_bytes(content)
+                (job / "shape.bin").write_bytes(shortened(content))
                 matrix = None if T.allclose(SE3.identity(), mm=0.0, rad=0.0) else T.matrix.tolist()
                 shape = self._measured(job, form="brep", name=name, deflection=deflection, matrix=matrix)
                 findings = Findings(solid_findings({"name": name}, shape))
@@ -209,7 +216,9 @@ class BrepReader(Build123dKernel):
         except (PoisonedError, BuildError) as error:
             raise ReadError(f"The B-rep cannot be read: {error}", path=name) from error
         solid = BuiltPart.load(folder).solid
-        return replace(solid, brep=None, step=None)  # the folder goes with the worker
+        for file in (file for file in folder.iterdir() if kept and file != solid.brep):
+            file.unlink()
+        return replace(solid, brep=solid.brep if kept else None, step=None)  # its own folder goes with the worker
 
 
 def tree_findings(part: str, tree: Mapping[str, Any]) -> Iterator[Finding]:

@@ -17,6 +17,7 @@ from lxml import etree
 EPOCH = "2000-01-01T00:00:00Z"
 DIGITS = 12  # decimals of mm kept of a shape
 _NUMBER = re.compile(rb"-?\d+(?:\.\d+)?e[+-]?\d+|-?\d+\.\d{%d,}" % (DIGITS + 1))
+_LONG = re.compile(rb"-?\d{30,}\.\d+")  # FreeCAD writes 2e100, where a surface has no end, with all its digits
 _ZIP_TIME = (2000, 1, 1, 0, 0, 0)
 _NAMESPACE = uuid.UUID("6d1d9a3e-0c1b-5b6e-9b35-0a2f4f1c7c11")  # of the Uids that stand in for random ones
 _DATES = {"CreationDate", "LastModifiedDate"}
@@ -26,6 +27,11 @@ _PEOPLE = {"CreatedBy", "LastModifiedBy", "Company"}
 def rounded(brep: bytes) -> bytes:
     """Return a B-rep as text with its numbers to 12 decimals."""
     return _NUMBER.sub(lambda number: b"%r" % (round(float(number[0]), DIGITS) + 0.0), brep)
+
+
+def shortened(brep: bytes) -> bytes:
+    """Return a B-rep as text without numbers so long that OCCT 7.9 overruns its buffer on reading them."""
+    return _LONG.sub(lambda number: b"%r" % float(number[0]), brep)
 
 
 def settled(content: bytes) -> bytes:

@@ -11,7 +11,7 @@ import pytest
 
 import articad as ac
 from articad.errors import ReadError
-from articad.export.freecad import write_freecad
+from articad.export.freecad import write_freecad, write_freecad_alone
 from articad.export.urdf import write_urdf
 from articad.importers.freecad import read_freecad
 from articad.importers.urdf import read_urdf
@@ -60,11 +60,13 @@ def test_writing_reading_and_writing_again_keeps_the_mechanism(name: str, tmp_pa
     diagonal = float(np.linalg.norm(mesh.bounds[1] - mesh.bounds[0]))
     same_mechanism(made, once, mm=1e-9 * diagonal, rad=1e-9)
     (again,) = write_freecad(once).write(tmp_path / "twice")
-    same_mechanism(once, read_freecad(again), mm=1e-9 * diagonal, rad=1e-9)
-    for part, solid in ((name, part.solid) for name, part in made.parts.items()):
-        read = once.parts[part].solid
-        if solid is not None and read is not None:
-            assert read.volume == pytest.approx(solid.volume, rel=1e-6), part
+    twice = read_freecad(again)
+    same_mechanism(once, twice, mm=1e-9 * diagonal, rad=1e-9)
+    for solid, read, again_read in zip(*(of.parts.values() for of in (made, once, twice)), strict=True):
+        assert solid.solid is not None
+        assert read.solid is not None
+        assert again_read.solid is not None  # not a mesh: the B-rep has come along
+        assert [read.solid.volume, again_read.solid.volume] == pytest.approx([solid.solid.volume] * 2, rel=1e-6), solid.name
     assert opened.moved(dict(made.at()), dict(once.at())) == pytest.approx((0, 0), abs=1e-9)
 
 
@@ -105,6 +107,9 @@ def test_a_document_made_by_hand_is_read_as_freecad_means_it_and_goes_on_to_urdf
     volumes = {name: part.solid.volume for name, part in read.parts.items() if part.solid is not None}
     bar, pin = 78 * 16 * 6, np.pi * 4.8**2 * 20
     assert volumes == pytest.approx({"bracket": 60 * 40 * 20 - np.pi * 25 * 20, "lever": bar + pin, "weight": np.pi * 49 * 12})
+    (copy,) = write_freecad_alone(read).write(tmp_path / "copy")
+    same_mechanism(read, copied := read_freecad(copy), mm=1e-9, rad=1e-9)
+    assert {name: part.solid.volume for name, part in copied.parts.items() if part.solid is not None} == pytest.approx(volumes)
     urdf = write_urdf(read)
     (path,) = [path for path in urdf.write(tmp_path / "urdf") if path.suffix == ".urdf"]
     again = read_urdf(path)
