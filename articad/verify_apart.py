@@ -167,7 +167,7 @@ class Search:
         if leaf and (most.max(1, initial=0.0) < STILL_MM).any():
             return [], int(box[np.argmax(most.max(1) < STILL_MM)])
         thick = (np.ptp(mine, axis=2) + np.ptp(theirs, axis=2))[left][at, best] / 2
-        split = np.full(len(x), leaf) | (most[at, best] > thick)
+        split = np.full(len(x), leaf) | ((most[at, best] > thick) & (most[at, best] > 1e-3 * most.max(1, initial=0.0)))
         share = shares[left].max(2)[at, best]
         for number in set(box[split].tolist()) - set(self.halves):
             self.halves[number] = [*self.cut(number, share[box == number].sum(0)), -1, -1][:2]

@@ -118,7 +118,7 @@ def memory() -> None:
     meshes, poses = {}, {}
     for k in range(50):
         solid = m3.Manifold.cube([20, 20, 20], center=True) - m3.Manifold.cylinder(40, 5 + 0.01 * k, 5 + 0.01 * k, 64, center=True)
-        meshes[f"p{k}"] = mesh_of(solid.refine_to_length(0.76))
+        meshes[f"p{k}"] = mesh_of(solid.refine_to_length(0.74))
         poses[f"p{k}"] = SE3.from_translation([20.0 * (k % 10), 20.0 * (k // 10), 0.0])
     count = sum(len(mesh.triangles) for mesh in meshes.values()) // len(meshes)
     started = time.process_time()

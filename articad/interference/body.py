@@ -49,7 +49,7 @@ class Body:
             return f"the mesh encloses {self.mesh.volume:.6g} mm³: it is flat or inside out"
         if self._shell_outside_all is not None:
             return f"a shell of the mesh encloses {self._shell_outside_all:.6g} mm³ outside all others: it is inside out"
-        status = self.manifold.status()
+        status = self._new_manifold().status()  # not kept: most parts of a large assembly never come near another
         if status != manifold3d.Error.NoError:
             return f"the mesh is not a manifold ({status.name})"
         return None
@@ -57,6 +57,9 @@ class Body:
     @cached_property
     def manifold(self) -> Any:
         """The mesh as a `manifold3d.Manifold` in double precision; look at `fault` before trusting it."""
+        return self._new_manifold()
+
+    def _new_manifold(self) -> Any:
         # copies: manifold3d takes only arrays that it could write
         return manifold3d.Manifold(manifold3d.Mesh64(self.mesh.vertices.copy(), self.mesh.triangles.astype(np.uint64)))
 

@@ -24,6 +24,7 @@ IntArray = NDArray[np.int64]
 ROUNDING_MM = 1e-9  # what a distance must be above what it needs, for the arithmetic of poses
 CHUNK = 4096  # pairs of pieces looked at together
 MOTION_SHARE = 1.0  # of the pieces' size: when the motion is larger, the range is cut before the pieces
+LEAST_SHARE = 1e-3  # of the motion in any direction: along the normal of faces in one plane there is nothing to cut
 MOST_PAIRS = 4_000_000  # of pieces, after which a search is given up
 _EYE = np.eye(3)
 
@@ -146,7 +147,8 @@ class _Search:
         left = ~((still - motion).max(axis=1) > self.needed)
         rows, best = rows.of(left), np.argmax(still[left], axis=1)
         at = np.arange(len(rows))
-        moving = motion[left][at, best] > MOTION_SHARE * thick[left][at, best]
+        along, most = motion[left][at, best], motion[left].max(axis=1)
+        moving = (along > MOTION_SHARE * thick[left][at, best]) & (along > LEAST_SHARE * most)
         shares = shares[left]
         return [*self._cut_range(rows.of(moving), shares[at, best][moving]), *self._cut_pieces(rows.of(~moving))]
 

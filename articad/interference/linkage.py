@@ -35,6 +35,7 @@ IntArray = NDArray[np.int64]
 
 SMALLEST_STEP = 1e-4  # of the driver, scaled: to which the end of its free range is found
 LOOKS = 24  # poses looked at beyond contact
+_LINEAR_ROUNDING = 1e-9  # rad or mm: of what is in proportion to the driver
 _REACHED = 1e-9  # of the range: what the steps of kinematics leave uncovered
 
 
@@ -80,6 +81,7 @@ class Way:
         feasible = mechanism.feasible_range(self.coordinate.name)
         self.bounds = self._bound(feasible.lower, -1), self._bound(feasible.upper, 1)
         self.reasons = feasible.lower_reason, feasible.upper_reason
+        self._exact = [self.layout.freedom_of(self.layout.column_of[name]) for name in tied_to(mechanism, self.coordinate.name)]
         self._halves: dict[Step, tuple[Step, Step]] = {}
         self._whole: dict[int, list[Step]] = {}
 
@@ -131,8 +133,18 @@ class Way:
 
     def _step(self, sign: int, node: Node, length: float) -> Step:
         system, half = self.follower.system, length / 2
-        tube = float(self.follower.tube(node, np.asarray(length)))
-        return Step(sign, node, length, system.move(node.Q, half * node.rate), node.rate * half * system.scale, tube * system.scale)
+        tube = float(self.follower.tube(node, np.asarray(length))) * system.scale
+        tube[self._exact] = np.minimum(tube[self._exact], _LINEAR_ROUNDING)  # no loop bends what a coupling ties to the driver
+        return Step(sign, node, length, system.move(node.Q, half * node.rate), node.rate * half * system.scale, tube)
+
+
+def tied_to(mechanism: Mechanism, name: str) -> list[str]:
+    """Return the coordinates that couplings alone tie to one, itself included: they follow it in proportion."""
+    found = [name]
+    for near in found:
+        for c in mechanism.couplings:
+            found += [far for one, far in ((c.a, c.b), (c.b, c.a)) if one == near and far not in found]
+    return found
 
 
 class Steps:
