@@ -66,6 +66,8 @@ def read_urdf(path: str | Path, *, root: str | Path | None = None, metadata: boo
 
 
 def _model(document: Any, folder: Folder, path: Path) -> RawModel:
+    if not document.get("name"):
+        raise unreadable(path, f"line {document.sourceline}", "The robot has no name.")
     _require_numbers(document, path)
     findings = _strip(document, path)
     robot = _parse(document, path)

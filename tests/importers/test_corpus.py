@@ -20,6 +20,7 @@ REFUSED_SHARE = 0.15
 
 REFUSED = {  # besides MJCF that MuJoCo itself refuses, because it is a piece of another file or its meshes are not there
     "romeo_laas_small.urdf": "leads out of",  # names meshes by an absolute path of somebody's machine
+    "ur3.urdf": "has no name",
 }
 
 
