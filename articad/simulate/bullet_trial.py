@@ -44,12 +44,17 @@ class _Trial:
         joints = list(self._joints())
         self._reset(joints)
         steps = int(HOLD_S * STEPS_PER_S)
+        seen: dict[_Joint, list[float]] = {joint: [] for joint in joints}
         for step in range(steps):
-            fastest = self._step({joint: joint.start for joint in joints})
+            self._step({joint: joint.start for joint in joints})
             if self.outcome.exploded:
                 return self.outcome
             if step >= 0.9 * steps:
-                self.outcome.speed_at_rest = max(self.outcome.speed_at_rest, fastest)
+                for joint, values in seen.items():
+                    values.append(self._value(joint))
+        # by way over time: a motor at a stop reports a speed for ever, against which the stop sets it back in each step
+        ways = (max(values) - min(values) for values in seen.values())
+        self.outcome.speed_at_rest = max(ways, default=0.0) / (0.1 * HOLD_S)
         away = (abs(self._value(joint) - joint.start) for joint in joints)
         self.outcome.moved_at_rest = max(away, default=0.0)
         self.outcome.untried = max(0, len(joints) - MOST_JOINTS)
