@@ -47,7 +47,7 @@ def _parser() -> _Parser:
     parser = _Parser(prog="articad", description="Editable, articulated CAD assemblies from text, images or a plan.", allow_abbrev=False)
     parser.add_argument("--version", action="version", version=f"articad {__version__}")
     _add_global_flags(parser, default=False)
-    subparsers = parser.add_subparsers(dest="command", metavar="COMMAND", parser_class=_Parser)
+    subparsers = parser.add_subparsers(title="commands", dest="command", metavar="COMMAND", parser_class=_Parser)
     for command in sorted(COMMANDS.values()):
         sub = subparsers.add_parser(command.name, help=command.summary, description=command.summary, allow_abbrev=False)
         command.arguments(sub)
