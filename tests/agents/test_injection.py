@@ -38,7 +38,15 @@ def ordering_plan() -> dict[str, Any]:
 def made(folder: Path, plan: dict[str, Any], words: str = stories.FLAP_PROMPT, **answers: Any) -> tuple[Run, Scripted]:
     llm = stories.flap(design__1=json.dumps(plan), **answers)
     run = generate(
-        words, llm=llm, out=folder, kernel=stories.kernel(), cache=stories.shared_cache(), look=False, inspection=False, rounds=1
+        words,
+        llm=llm,
+        out=folder,
+        kernel=stories.kernel(),
+        cache=stories.shared_cache(),
+        look=False,
+        inspection=False,
+        rounds=1,
+        jobs=1,  # part after part, so that steps have an order
     )
     return run, llm
 
