@@ -7,6 +7,7 @@ it as an STL file for whoever draws the part anew. Parts without shape that are 
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -197,7 +198,8 @@ class _Writer:
     """Writes one part script."""
 
     def __init__(self, part: Part, name: str, source: str) -> None:
-        self.part, self.name, self.source = part, name, source
+        self.part, self.name = part, name
+        self.source = re.sub(r"[^\w .-]", "_", source, flags=re.ASCII)  # it stands in a script
         self.dimensions: dict[str, float] = {}
         self.words: list[str] = []
         self.terms: list[str] = []
@@ -219,7 +221,7 @@ class _Writer:
         if not any("Plane(" in term for term in self.terms):
             self.used.discard("Plane")
         script = (
-            f'"""{self.name}, adopted from {ascii(self.source)[1:-1]}."""\n\n'
+            f'"""{self.name}, adopted from {self.source}."""\n\n'
             f"from build123d import {', '.join(sorted(self.used))}\n\n{''.join(self.data)}{helper}\n\n"
             f"def build(part):\n{reads}{sums}\n"
             '    return shape, {name: {"o": one.o, "z": one.z, "x": one.x} for name, one in part.connectors.items()}\n'

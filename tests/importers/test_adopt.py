@@ -142,6 +142,16 @@ def test_frames_and_missing_shapes_are_told(tmp_path: Path) -> None:
     assert codes >= {"I_ADOPT_MERGED", "W_ADOPT_PLACEHOLDER"}
 
 
+def test_a_files_name_is_no_code(tmp_path: Path) -> None:
+    path = tmp_path / 'a"""\nimport os\n"""\\.urdf'
+    path.write_text('<robot name="a"><link name="b"><visual><geometry><box size="1 1 1"/></geometry></visual></link></robot>')
+    adopted(path, tmp_path / "out")
+    script = (tmp_path / "out/parts/b.py").read_text()
+
+    assert script.startswith('"""b, adopted from a____import os_____.urdf."""\n\nfrom build123d import')
+    compile(script, "b.py", "exec")
+
+
 def test_a_folder_with_something_in_it_and_a_plan_are_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (tmp_path / "mine").write_text("")
 
