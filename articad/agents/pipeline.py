@@ -156,8 +156,15 @@ class Replayed:
 
     @property
     def ok(self) -> bool:
-        """Whether every file but the trace is the same, or differs by another kernel's or platform's rounding alone."""
-        return not self.differences or (self.findings.ok and "W_REPLAY_DRIFT" in self.findings.codes)
+        """Whether every result is the same, or differs by another kernel's or platform's rounding alone; prompts may have changed since."""
+        return not self.results_that_differ or (self.findings.ok and "W_REPLAY_DRIFT" in self.findings.codes)
+
+    @property
+    def results_that_differ(self) -> tuple[str, ...]:
+        """Files that are not equal, without the requests that `findings` tells of as drifted prompts."""
+        steps = (finding.where.removeprefix("llm.") for finding in self.findings.of("I_PROMPT_DRIFT"))
+        drifted = {f"llm/{step.replace('/', '.')}.json" for step in steps}
+        return tuple(name for name in self.differences if name not in drifted)
 
 
 def replay(

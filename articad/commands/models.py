@@ -207,10 +207,16 @@ def _replay(options: argparse.Namespace, terminal: Terminal) -> Report:
             progress=tell,
         )
     report = reported(replayed.run, terminal)
-    terminal.findings(replayed.findings)
-    for name in replayed.differences:
+    drifted = replayed.findings.of("I_PROMPT_DRIFT")
+    for told in replayed.findings:
+        if terminal.verbose or told not in drifted:
+            terminal.finding(told.to_json())
+    for name in replayed.results_that_differ:
         terminal.say(f"differs: {name}")
-    verdict = "every file but the trace is equal" if replayed.ok else f"{len(replayed.differences)} files differ"
+    if drifted:
+        terminal.say(f"{len(drifted)} prompts are not the recorded ones any more; the recorded replies were used (-v lists them).")
+    different = len(replayed.results_that_differ)
+    verdict = f"{different} files differ" if different else "every result is equal" if drifted else "every file but the trace is equal"
     terminal.say(f"Replay of {options.run}: {verdict}.")
     findings = [finding.to_json() for finding in replayed.findings]
     return report | {"ok": report["ok"] and replayed.ok, "differences": list(replayed.differences), "findings": findings}

@@ -340,6 +340,8 @@ def test_a_prompt_that_drifted_is_reported_and_strictly_refused(tmp_path: Path, 
 
     assert result.findings.codes == ("I_PROMPT_DRIFT",)
     assert result.differences == ("llm/design.1.json",)
+    assert result.results_that_differ == ()
+    assert result.ok
     with pytest.raises(ReplayMissError, match="design/1"):
         replay(run.path, out=tmp_path / "strict", strict=True, kernel=stories.kernel(), cache=stories.shared_cache())
 
