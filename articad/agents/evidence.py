@@ -11,7 +11,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Final
 
-from articad.agents.numbers import listed_numbers, short
+from articad.agents.numbers import placed, short
 from articad.assembly import Assembly, FloatArray, Poses
 from articad.findings import Finding, Findings
 from articad.interference.check import check_scene
@@ -96,11 +96,11 @@ def told(assembly: Assembly, evidence: Evidence) -> str:
     lines += [f"- {pairs} pairs of parts come near each other: compared at rest and along each joint's range, all other joints at rest."]
     lines += ["- Two joints were not moved together."] if len(assembly.drivers) > 1 else []
     whole = assembly.mass()
-    lines += ["", f"Mass {short(whole.mass)} kg; centre of mass at rest {listed_numbers(whole.com)} mm."]
+    lines += ["", f"Mass {short(whole.mass)} kg; centre of mass at rest {placed(whole.com)} mm."]
     lines += ["", f"Mobility: {mechanism.mobility} freedoms. What drives, and its range:"]
     lines += [f"- {driver.name}: {_range(driver.lower, driver.upper, driver.unit)}" for driver in assembly.drivers]
     lines += ["", "Bounding boxes at rest, in the assembly's frame (mm):"]
-    lines += [f"- {name}: from {listed_numbers(low)} to {listed_numbers(high)}" for name, (low, high) in evidence.sizes.items()]
+    lines += [f"- {name}: from {placed(low)} to {placed(high)}" for name, (low, high) in evidence.sizes.items()]
     if evidence.fits is not None and evidence.fits.rows:
         lines += ["", "Declared fits:"]
         for row in evidence.fits.rows:

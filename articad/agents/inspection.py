@@ -7,7 +7,8 @@ another judges its observations beside the measurements.
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Sequence
+import math
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Final, Literal, Self
 
@@ -16,6 +17,7 @@ from pydantic import model_validator
 from articad.agents.evidence import Evidence, told
 from articad.agents.forms import Form, ask, reader, schema_of
 from articad.agents.llm import LLM, Image, system, user
+from articad.agents.numbers import short
 from articad.agents.pictures import assembly_picture, motion_picture, part_picture
 from articad.agents.prompts import prompt
 from articad.agents.replies import unusable
@@ -23,6 +25,7 @@ from articad.agents.requirements import Requirements
 from articad.assembly import Assembly
 from articad.findings import Finding, Findings
 from articad.kernels.parts import RealisedPart
+from articad.kinematics.joints import Coupling
 from articad.plan.resolve import ResolvedPart, ResolvedPlan
 from articad.run import RunRequest
 
@@ -299,7 +302,19 @@ def structure(assembly: Assembly) -> str:
         lines.append(f"- {name}{' (stands still)' if name == assembly.ground else ''}{copy}: {role}")
     lines += ["", "Joints:"]
     lines += [f"- {joint.name}: {joint.type}, {joint.child} against {joint.parent}" for joint in assembly.joints]
+    couplings = assembly.mechanism.couplings
+    if couplings:
+        units = {coordinate.name: coordinate.unit for coordinate in assembly.mechanism.coordinates}
+        lines += ["", "Couplings, held exactly:", *(_coupled(coupling, units) for coupling in couplings)]
     return "\n".join(lines)
+
+
+def _coupled(coupling: Coupling, units: Mapping[str, str]) -> str:
+    """Return what a coupling does, in degrees and mm."""
+    turns = {name: units[name] == "rad" for name in (coupling.a, coupling.b)}
+    ratio = coupling.ratio * (math.degrees(1.0) if turns[coupling.b] else 1.0) / (math.degrees(1.0) if turns[coupling.a] else 1.0)
+    led, followed = ("degree" if turns[name] else "mm" for name in (coupling.a, coupling.b))
+    return f"- {coupling.name}, {coupling.kind}: each {led} of {coupling.a} moves {coupling.b} by {short(ratio)} {followed}{'s' if followed == 'degree' else ''}"
 
 
 def _role(part: ResolvedPart, resolved: ResolvedPlan | None) -> str:

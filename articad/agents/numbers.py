@@ -13,3 +13,8 @@ def short(number: float) -> str:
 def listed_numbers(values: Iterable[float]) -> str:
     """Return `(1, 2.5, 3)`; what is nothing but rounding is 0."""
     return f"({', '.join(short(0.0 if abs(value) < 1e-6 else value) for value in values)})"
+
+
+def placed(values: Iterable[float]) -> str:
+    """Return places in mm `(-579.5, 0, 1837.5)`, to a tenth: three digits would move a door into its frame."""
+    return f"({', '.join(f'{round(value, 1) + 0.0:g}' for value in values)})"
