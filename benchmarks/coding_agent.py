@@ -70,10 +70,10 @@ async def design(agent: Counting, name: str) -> None:
             script = (folder / "parts" / f"{part['name']}.py").read_text()
             await agent.call("build_part", design="mine", part=part["name"], script=script)
     built = await agent.call("build", design="mine")
-    await agent.call("render", target="mine")
+    await agent.call("render", design="mine")
     await agent.call("certify", design="mine", joints=[built["drivers"][0]["name"]], pairs=False)
-    await agent.call("sim", target="mine")
-    await agent.call("audit", target="mine")
+    await agent.call("sim", design="mine")
+    await agent.call("audit", design="mine")
     await agent.call("export", design="mine", formats=["mjcf", "step", "glb"])
     parameter = next((each for each in plan.get("parameters", []) if isinstance(each["value"], int | float)), None)
     if parameter:

@@ -18,8 +18,9 @@ from pydantic import Field
 from articad import __version__
 from articad.codes import CODES
 from articad.errors import ArticadError, did_you_mean
+from articad.mcp import answers
 from articad.mcp.skill import section
-from articad.mcp.workbench import BRIEF_BYTES, FULL_BYTES, Json, Tell, Workbench, condensed
+from articad.mcp.workbench import BRIEF_BYTES, Json, Tell, Workbench, condensed
 
 Tool = Callable[..., Awaitable[Any]]
 Dialect = Literal["build123d", "freecad"]
@@ -30,6 +31,7 @@ _BUILD_S: Final = 600.0
 _PART_S: Final = 180.0
 _LOOK_S: Final = 300.0
 _GRACE_S: Final = 60.0  # beyond a certificate's own budget: reading, and the claim that is under way
+_INLINED: Final = 2  # levels of types within types that a schema tells at once
 _PICTURES: Final = 4  # of one answer
 _PIXELS: Final = 512
 
@@ -117,25 +119,25 @@ class Tools:
         words += ["--pairs" if pairs else "--no-pairs", "--budget", repr(budget_s)]
         run = str(self.bench.target(design))
         report = await self.bench.run("certify", run, *words, seconds=budget_s + _GRACE_S, tell=_teller(context))
-        return condensed(report | {"claims": len(report.get("claims", ()))}, detail=detail, keep=("ranges", "epsilon_mm", "claims"))
+        return condensed(report if detail else report | {"proven": answers.proof(report)}, detail=detail, keep=("proven",))
 
     async def audit(
-        self, target: Annotated[str, Field(description="a design, or a URDF, MJCF or FCStd file under the root")], detail: Detail = False
+        self, design: Annotated[str, Field(description="a design, or a URDF, MJCF or FCStd file under the root")], detail: Detail = False
     ) -> Json:
         """Say what is wrong with a file, whoever made it: structure, units, inertias, collision, overlap, motion, engines."""
+        report = await self.bench.run("audit", str(self.bench.target(design)), seconds=_BUILD_S)
         return condensed(
-            await self.bench.run("audit", str(self.bench.target(target)), seconds=_BUILD_S), detail=detail, keep=("engines", "counts")
+            report if detail else report | {"engines": answers.engines(report)}, detail=detail, keep=("engines", "links", "joints")
         )
 
-    async def sim(self, target: Annotated[str, Field(description="a design or a file under the root")], detail: Detail = False) -> Json:
-        """Run it in a simulator: does it load, settle, reach the ends of its joints, and keep its energy?"""
-        return condensed(
-            await self.bench.run("sim", str(self.bench.target(target)), seconds=_BUILD_S), detail=detail, keep=("trials", "joints")
-        )
+    async def sim(self, design: Annotated[str, Field(description="a design, or a file under the root")], detail: Detail = False) -> Json:
+        """Run it in simulators: does it load, settle, reach the ends of its joints, and keep its energy?"""
+        report = await self.bench.run("sim", str(self.bench.target(design)), seconds=_BUILD_S)
+        return condensed(report if detail else report | {"engines": answers.trials(report)}, detail=detail, keep=("engines",))
 
     async def render(
         self,
-        target: Annotated[str, Field(description="a design or a file under the root")],
+        design: Annotated[str, Field(description="a design, or a file under the root")],
         views: Sequence[str] = ("iso",),
         motion: Annotated[str | None, Field(description="a joint: its motion as a filmstrip instead of views")] = None,
         parts: Annotated[Sequence[str], Field(description="shown in full; the others are faded")] = (),
@@ -147,7 +149,7 @@ class Tools:
         try:
             words = ["--motion", motion] if motion else ["--views", ",".join(views[:_PICTURES]), "--explode", repr(explode)]
             words += [*(["--parts", ",".join(parts)] if parts and not motion else []), *(["--overlaps"] if overlaps and not motion else [])]
-            place = self.bench.target(target)
+            place = self.bench.target(design)
             report = await self.bench.run("render", str(place), *words, "--size", str(_PIXELS), "--out", folder, seconds=_LOOK_S)
             files = [Path(file) for file in report.get("files", ()) if file.endswith(".png")][:_PICTURES]
             pictures = [Image(data=file.read_bytes(), format="png") for file in files]
@@ -162,7 +164,7 @@ class Tools:
         words = ["--to", ",".join(formats), *(["--strict"] if strict else [])]
         report = await self.bench.run("export", str(self.bench.target(design)), *words, seconds=_BUILD_S)
         exports = {
-            name: {"file": self._shown(entry.get("main", "")), "losses": len(entry.get("rows", entry.get("losses", ())))}
+            name: {"file": self._shown(entry.get("main", "")), "lost": answers.losses(entry.get("rows", ()))}
             for name, entry in report.get("exports", {}).items()
         }
         return condensed(report if detail else report | {"exports": exports}, detail=detail, keep=("exports",))
@@ -227,7 +229,7 @@ class Tools:
         return report | {
             "freedoms": assembly.get("freedoms"),
             "mass_kg": assembly.get("mass_kg"),
-            "drivers": assembly.get("drivers", []),
+            "drivers": answers.drivers(assembly.get("drivers", [])),
             "deepest_overlap_mm": max(depths, default=0.0),
             "files": {name: self._shown(entry["main"]) for name, entry in report.get("exports", {}).items()},
         }
@@ -258,9 +260,10 @@ def _told(method: Tool) -> Tool:
     @wraps(method)
     async def told(*arguments: Any, **named: Any) -> Any:
         try:
-            return await method(*arguments, **named)
+            answer = await method(*arguments, **named)
         except ArticadError as error:
             raise ToolError("\n".join(map(str, error.findings)) or str(error)) from error
+        return answers.compact(answer) if isinstance(answer, dict) else answer
 
     return told
 
@@ -291,4 +294,16 @@ def _json_schema(topic: str) -> str:
     matching = {name: form for name, form in definitions.items() if topic.lower().replace("_", "") in name.lower()}
     if not matching:
         raise ToolError(f"There is no type like {topic!r}; there are {', '.join(sorted(definitions))}, and the page 'plan'.")
-    return json.dumps(matching, separators=(",", ":"))[:FULL_BYTES]
+    return json.dumps(_inlined(matching, definitions, _INLINED), separators=(",", ":"))[:BRIEF_BYTES]
+
+
+def _inlined(form: Any, definitions: Mapping[str, Any], depth: int) -> Any:
+    """Put the types that a form refers to in their places, so many levels deep."""
+    if isinstance(form, list):
+        return [_inlined(entry, definitions, depth) for entry in form]
+    if not isinstance(form, dict):
+        return form
+    name = str(form.get("$ref", "")).rpartition("/")[2]
+    if name in definitions and depth:
+        return _inlined(definitions[name], definitions, depth - 1)
+    return {key: _inlined(value, definitions, depth) for key, value in form.items() if key not in {"title", "discriminator"}}

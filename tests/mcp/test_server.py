@@ -80,7 +80,7 @@ def test_an_agent_designs_builds_certifies_and_exports_through_tools_alone(name:
         assembled = await agent.call("build", design="mine")
         assert assembled["ok"], assembled
         assert assembled["freedoms"] == plan["freedoms"]
-        (picture,) = await agent.call("render", target="mine")
+        (picture,) = await agent.call("render", design="mine")
         assert picture.mime_type == "image/png"
         moving = assembled["drivers"][0]["name"]
         proof = await agent.call("certify", design="mine", joints=[moving], pairs=False, budget_s=240)
@@ -125,8 +125,8 @@ def test_a_long_certificate_can_be_cancelled_and_leaves_no_process(tmp_path: Pat
         ("check_plan", {"design": "../else", "plan": {}}, "no name of a design"),
         ("build_part", {"design": "chest", "part": "../../x", "script": ""}, "no name of a part"),
         ("build_part", {"design": "chest", "part": "lid", "script": "#" * 300_000}, "at most 200000"),
-        ("audit", {"target": "/etc/passwd"}, "outside the root"),
-        ("render", {"target": "link"}, "outside the root"),
+        ("audit", {"design": "/etc/passwd"}, "outside the root"),
+        ("render", {"design": "link"}, "outside the root"),
         ("convert", {"source": "chest/plan.json", "target": "../x.urdf"}, "outside the root"),
         ("export", {"design": "no_such"}, "There is no no_such"),
         ("explain", {"code": "E_OVERLAPS"}, "Did you mean 'E_OVERLAP'"),

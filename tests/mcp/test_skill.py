@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import json
+import math
 import re
 from pathlib import Path
 
@@ -17,9 +18,11 @@ from articad.mcp.server import make_server
 from articad.mcp.skill import section, skill
 from articad.plan.check import check_plan
 from articad.plan.json_schema import json_schema
+from articad.plan.resolve import resolve
 from articad.plan.schema import AssemblyPlan
 
-PLANS = [AssemblyPlan.loads(text) for text in re.findall(r"```json\n(.*?)```", skill(), re.DOTALL)]
+BLOCKS = re.findall(r"```json\n(.*?)```", skill(), re.DOTALL)
+PLANS = [AssemblyPlan.loads(text) for text in BLOCKS if '"schema"' in text]
 LID = """from build123d import Align, Box
 def build(part):
     d = part.dimensions
@@ -35,6 +38,31 @@ def test_it_is_short() -> None:
 @pytest.mark.parametrize("plan", PLANS, ids=lambda plan: plan.name)
 def test_its_plans_have_no_finding(plan: AssemblyPlan) -> None:
     assert not check_plan(plan), str(check_plan(plan))
+
+
+def test_its_mirror_image_stands_where_it_says_and_opens_the_other_way() -> None:
+    (image,) = (json.loads(text) for text in BLOCKS if '"schema"' not in text)
+    pin = {"o": [0, 0, 0], "z": [0, 0, 1], "x": [1, 0, 0], "label": "pin"}
+    plan = {
+        "schema": "articad.plan/1",
+        "name": "case",
+        "ground": "case",
+        "freedoms": 2,
+        "materials": [{"name": "oak", "density_kg_m3": 700, "color": "#b08d57"}],
+        "parts": [
+            {"name": "case", "material": "oak", "description": "", "connectors": [{"name": "pin_left", **pin}, image["connector of case"]]},
+            {"name": "door_left", "material": "oak", "description": "", "connectors": [{"name": "pin", **pin}]},
+            image["part"],
+        ],
+        "joints": [
+            {"name": "turn_left", "type": "revolute", "parent": "case.pin_left", "child": "door_left.pin", "angle_deg": [-110, 0]},
+            image["joint"],
+        ],
+    }
+    loaded = AssemblyPlan.loads(json.dumps(plan))
+    assert {finding.code for finding in check_plan(loaded)} <= {"I_MIRROR_SIDE"}
+    turn = resolve(loaded).mechanism.drivers[1]
+    assert (math.degrees(turn.lower), math.degrees(turn.upper)) == pytest.approx((0, 110))
 
 
 def test_its_script_builds_its_first_plan() -> None:

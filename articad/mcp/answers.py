@@ -1,0 +1,108 @@
+"""Answers: what a command's report says to an agent that pays for each byte, in the units of its plan."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any, Final
+
+Json = dict[str, Any]
+
+_DIGITS: Final = 6  # of a measured number
+_SHOWN: Final = 3  # places that a loss names
+
+
+def compact(answer: Any) -> str:
+    """Return JSON without spaces, numbers with 6 digits, and nothing that is null."""
+    return json.dumps(_spare(answer), ensure_ascii=False, separators=(",", ":"))
+
+
+def drivers(rows: Sequence[Json]) -> list[Json]:
+    """Return what drives: name, range and rest in degrees and mm; an endless joint has no range."""
+    return [
+        {
+            "name": row["name"],
+            "unit": "deg" if row.get("unit") == "rad" else row.get("unit"),
+            "range": None if row.get("lower") is None else [_shown(row["lower"], row), _shown(row["upper"], row)],
+            "rest": _shown(row.get("rest"), row),
+        }
+        for row in rows
+    ]
+
+
+def proof(report: Json) -> Json:
+    """Return what a certificate claims: how much of it, and which ranges are free where they are not the declared ones."""
+    turning = {
+        freedom["name"] for joint in report.get("mechanism", {}).get("joints", ()) for freedom in joint["freedoms"] if any(freedom["turn"])
+    }
+    narrower = {
+        name: [_in_units(end, name in turning) for end in row["free"]]
+        for name, row in report.get("ranges", {}).items()
+        if row.get("free") and row.get("declared") and row["free"] != row["declared"] and not _whole_turn(row)
+    }
+    return {
+        "claims": len(report.get("claims", ())),
+        "joints": report.get("asked"),
+        "clearance_of_at_least_mm": report.get("epsilon_mm"),
+        "free_only_in": narrower or None,
+    }
+
+
+def trials(report: Json) -> list[str]:
+    """Return a line for each simulator: whether it loads, stands, and what its joints reached."""
+    return [_trial(row) for row in report.get("engines", ())]
+
+
+def engines(report: Json) -> str:
+    """Return which simulators load the file, and in whose words others do not."""
+    rows = report.get("engines", ())
+    loading = sorted({row["engine"] for row in rows if row.get("loads")})
+    failing = [f"not in {row['engine']}: {row['message']}" for row in rows if row.get("loads") is False]
+    return "; ".join([f"loads in {', '.join(loading)}", *failing]) if rows else "not asked"
+
+
+def losses(rows: Sequence[Json]) -> list[str]:
+    """Return what a format cannot hold, each thing once with how often and where."""
+    grouped: dict[str, list[str]] = {}
+    for row in rows:
+        grouped.setdefault(row["lost"], []).append(row["where"])
+    return [f"{lost} ({len(where)}: {', '.join(where[:_SHOWN])}{' …' if len(where) > _SHOWN else ''})" for lost, where in grouped.items()]
+
+
+def _trial(row: Json) -> str:
+    if row.get("loads") is None:
+        return f"{row['engine']}: not installed"
+    if not row["loads"]:
+        return f"{row['engine']}: does not load: {row['message']}"
+    reaches = row.get("reaches", ())
+    reached = sum(reach["share"] > _REACHED for reach in reaches)
+    speed, residual = row.get("speed_at_rest", 0.0), 1e3 * row.get("residual", 0.0)
+    open_by = f", loops open by {residual:.2g} mm" if residual else ""
+    return f"{row['engine']}: loads, {speed:.2g} rad/s or m/s at rest, {reached} of {len(reaches)} driven joints reach their ends{open_by}"
+
+
+_REACHED: Final = 0.95  # of its range, as the verdict has it
+
+
+def _whole_turn(row: Mapping[str, Sequence[float]]) -> bool:
+    """Return whether a range is the full turn that stands for an endless joint."""
+    return any(end is None or math.isinf(end) for end in row["declared"]) and row["free"][1] - row["free"][0] >= 2 * math.pi - 1e-9
+
+
+def _shown(value: float | None, row: Json) -> float | None:
+    return None if value is None else _in_units(value, row.get("unit") == "rad")
+
+
+def _in_units(value: float, turns: bool) -> float:
+    return math.degrees(value) if turns else value
+
+
+def _spare(value: Any) -> Any:
+    if isinstance(value, float):
+        return float(f"{value:.{_DIGITS}g}") if math.isfinite(value) else str(value)
+    if isinstance(value, dict):
+        return {key: _spare(entry) for key, entry in value.items() if entry is not None}
+    if isinstance(value, list | tuple):
+        return [_spare(entry) for entry in value]
+    return value

@@ -1,0 +1,72 @@
+"""Answers are short, in the plan's units, and say what was proven, tried and lost."""
+
+from __future__ import annotations
+
+import json
+import math
+from typing import Any
+
+from articad.mcp.answers import compact, drivers, engines, losses, proof, trials
+from articad.mcp.server import _json_schema
+
+
+def test_answers_have_no_spaces_no_nulls_and_six_digits() -> None:
+    assert compact({"a": math.pi, "b": None, "c": [1.0, {"d": None, "e": "é"}]}) == '{"a":3.14159,"c":[1.0,{"e":"é"}]}'
+
+
+def test_drivers_are_told_in_the_units_of_the_plan() -> None:
+    rows: list[dict[str, Any]] = [
+        {"name": "lid", "unit": "rad", "lower": -math.pi / 2, "upper": 0.0, "rest": 0.0},
+        {"name": "wheel", "unit": "rad", "lower": None, "upper": None, "rest": 0.0},
+        {"name": "drawer", "unit": "mm", "lower": 0.0, "upper": 250.0, "rest": 0.0},
+    ]
+    assert json.loads(compact(drivers(rows))) == [
+        {"name": "lid", "unit": "deg", "range": [-90, 0], "rest": 0},
+        {"name": "wheel", "unit": "deg", "rest": 0},
+        {"name": "drawer", "unit": "mm", "range": [0, 250], "rest": 0},
+    ]
+
+
+def test_a_proof_tells_only_ranges_that_are_narrower_than_declared() -> None:
+    freedoms = [{"name": "lid", "turn": [0, 0, 1]}, {"name": "crank", "turn": [0, 0, 1]}, {"name": "slide", "turn": [0, 0, 0]}]
+    report = {
+        "claims": [1, 2, 3],
+        "asked": ["lid"],
+        "epsilon_mm": 0.001,
+        "mechanism": {"joints": [{"freedoms": freedoms}]},
+        "ranges": {
+            "lid": {"declared": [0.0, math.pi], "free": [0.0, math.pi / 2]},
+            "crank": {"declared": [None, None], "free": [-math.pi, math.pi]},
+            "slide": {"declared": [0.0, 10.0], "free": [0.0, 10.0]},
+        },
+    }
+    told = proof(report)
+    assert told["free_only_in"] == {"lid": [0.0, 90.0]}
+    assert (told["claims"], told["clearance_of_at_least_mm"]) == (3, 0.001)
+
+
+def test_what_simulators_did_is_one_line_each() -> None:
+    reach = {"joint": "turn", "share": 1.0}
+    rows = [
+        {"engine": "mujoco", "loads": True, "speed_at_rest": 0.0, "residual": 2e-6, "reaches": [reach, {**reach, "share": 0.4}]},
+        {"engine": "pybullet", "loads": None},
+        {"engine": "other", "loads": False, "message": "no mass"},
+    ]
+    assert trials({"engines": rows}) == [
+        "mujoco: loads, 0 rad/s or m/s at rest, 1 of 2 driven joints reach their ends, loops open by 0.002 mm",
+        "pybullet: not installed",
+        "other: does not load: no mass",
+    ]
+    assert engines({"engines": rows}) == "loads in mujoco; not in other: no mass"
+
+
+def test_a_loss_is_told_once_with_how_often_and_where() -> None:
+    rows = [{"lost": "mass and inertia", "where": f"parts.p{index}"} for index in range(5)] + [{"lost": "limits", "where": "joints.a"}]
+    assert losses(rows) == ["mass and inertia (5: parts.p0, parts.p1, parts.p2 …)", "limits (1: joints.a)"]
+
+
+def test_a_schema_holds_the_types_that_it_refers_to() -> None:
+    told = _json_schema("derived_part")
+    assert '"count"' in told
+    assert '"normal"' in told
+    assert len(told) <= 6000
