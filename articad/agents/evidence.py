@@ -11,6 +11,8 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Final
 
+import numpy as np
+
 from articad.agents.numbers import placed, short
 from articad.assembly import Assembly, FloatArray, Poses
 from articad.findings import Finding, Findings
@@ -23,6 +25,7 @@ from articad.interference.scene import Scene
 from articad.kinematics.joints import Joint, JointType
 from articad.render.pictures import motion_frames
 
+FOLLOWED: Final = 61  # poses at which it is seen how far joints of a linkage go
 POSES: Final = 9  # of each joint's range: enough for a flap that digs in, quick enough for every round
 
 
@@ -79,7 +82,7 @@ def examine(assembly: Assembly, known: Known | None = None) -> Evidence:
     checks = assembly.check() if known is None else check_scene(scene, assembly.at(), ground=assembly.ground, known=known.rest)
     fits = None
     if checks.ok:  # what overlaps at rest overlaps in motion too: one thing at a time
-        fits = check_fits(scene)
+        fits = check_fits(scene, _reached(assembly))
         for joint in dict.fromkeys(driver.joint for driver in assembly.drivers):
             checks = _with_motion(checks, assembly, joint, scene, {} if known is None else known.motion.get(joint, {}))
         checks = replace(checks, findings=checks.findings + fits.findings)
@@ -114,6 +117,18 @@ def told(assembly: Assembly, evidence: Evidence) -> str:
             )
             lines.append(f"- {row.joint}: {declared}{gaps}: {row.verdict}")
     return "\n".join(lines)
+
+
+def _reached(assembly: Assembly) -> dict[str, tuple[float, float]]:
+    """Return how far each coordinate of a linkage goes while its drivers move, one joint at a time [rad, mm]; of a tree nothing."""
+    mechanism = assembly.mechanism
+    if mechanism.is_tree:
+        return {}
+    driving = dict.fromkeys(driver.joint for driver in assembly.drivers)
+    rows = np.concatenate([mechanism.configuration(motion_frames(assembly, joint, FOLLOWED)[1]).columns for joint in driving])
+    return {
+        c.name: (float(low), float(high)) for c, low, high in zip(mechanism.coordinates, rows.min(axis=0), rows.max(axis=0), strict=True)
+    }
 
 
 def _with_motion(checks: Checks, assembly: Assembly, joint: str, scene: Scene, carried: Mapping[tuple[str, str], PairCheck]) -> Checks:

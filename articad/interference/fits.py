@@ -97,27 +97,32 @@ class FitReport:
         }
 
 
-def check_fits(scene: Scene) -> FitReport:
-    """Measure every declared fit of a scene."""
+def check_fits(scene: Scene, reached: Mapping[str, tuple[float, float]] | None = None) -> FitReport:
+    """Measure every declared fit of a scene.
+
+    Args:
+        scene: Bodies and relations.
+        reached: How far coordinates go that follow others, by name [rad, mm]: a joint of a linkage need not reach its own limits.
+    """
     rows: list[FitCheck] = []
     findings: list[Finding] = []
     for joint in scene.relations.joints:
         fit = scene.fits.get(joint.name)
         if fit is None:
             continue
-        row, finding = _check_fit(scene, joint, fit)
+        row, finding = _check_fit(scene, joint, fit, reached or {})
         rows.append(row)
         findings += finding
     return FitReport(Findings(findings), tuple(rows))
 
 
-def _check_fit(scene: Scene, joint: Joint, fit: FitLike) -> tuple[FitCheck, list[Finding]]:
+def _check_fit(scene: Scene, joint: Joint, fit: FitLike, reached: Mapping[str, tuple[float, float]]) -> tuple[FitCheck, list[Finding]]:
     parts = (joint.parent, joint.child)
     unable = [name for name in parts if name not in scene.bodies or name in scene.broken]
     if unable:
         return FitCheck(joint.name, parts, fit, None, None, None, "not_checked"), [_unmeasured(joint, unable)]
     gauge = Gauge(scene, joint, fit)
-    rest, least, where = gauge.rest(), *gauge.least()
+    rest, least, where = gauge.rest(), *gauge.least(reached)
     slack = scene.deflection_of(*parts)
     verdict, value, limit = _verdict(fit, rest, least, slack)
     row = FitCheck(joint.name, parts, fit, rest, least, where, verdict)
@@ -151,13 +156,14 @@ class Gauge:
         """Return the gap at rest [mm]; negative is a depth."""
         return self.at([freedom.rest for freedom in freedoms(self.joint)])
 
-    def least(self) -> tuple[float, dict[str, float] | None]:
-        """Return the smallest gap over the motion, one coordinate at a time, and where."""
+    def least(self, reached: Mapping[str, tuple[float, float]]) -> tuple[float, dict[str, float] | None]:
+        """Return the smallest gap over the motion, one coordinate at a time, and where; `reached` replaces declared ranges."""
         moving = freedoms(self.joint)
         rest = [freedom.rest for freedom in moving]
         least, where = self.at(rest), None
         for column, freedom in enumerate(moving):
-            for value in np.linspace(freedom.lower, freedom.upper, STEPS).tolist():
+            low, high = reached.get(freedom.name, (freedom.lower, freedom.upper))
+            for value in np.linspace(low, high, STEPS).tolist():
                 gap = self.at([*rest[:column], value, *rest[column + 1 :]])
                 if gap < least:
                     least, where = gap, {freedom.name: value}

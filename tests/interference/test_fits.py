@@ -61,6 +61,16 @@ def test_the_lower_bound_holds_over_the_motion_and_the_upper_at_rest() -> None:
     assert report.rows[0].least == pytest.approx(0.05)
 
 
+def test_a_joint_that_follows_is_held_to_what_it_reaches_not_to_what_it_declares() -> None:
+    slide = joint("slide", "slider", "a", "b", lower=(0.0,), upper=(9.95,))
+    meshes = {"a": box(10, 10, 10), "b": box(10, 10, 10).transformed(at(z=-20))}
+    scene = Scene.of(meshes, [slide], fits={"slide": Fit(0.1, 12.0)})
+
+    assert check_fits(scene).findings.codes == ("E_FIT_TIGHT",)
+    assert check_fits(scene, {"slide": (0.0, 6.0)}).rows[0].least == pytest.approx(4)
+    assert check_fits(scene, {"slide": (0.0, 6.0)}).ok
+
+
 def test_deflection_is_no_breach() -> None:
     report = fits(*pin_in_bore(0.095), HINGE, Fit(0.1, 0.4), deflection=0.0125)
     assert report.ok  # 0.095 less a sagitta, measured on meshes that may be off by 0.0125 each
