@@ -207,6 +207,35 @@ def test_a_judge_sends_a_wrong_motion_to_the_designer(tmp_path: Path) -> None:
     assert (run.verdict() or {})["round"] == 2
 
 
+@pytest.mark.parametrize(
+    ("change", "code"),
+    [({"o": [0, 5, 2]}, "E_MATE_OFFSET"), ({"z": [0, 1, 0]}, "E_MATE_FLIP"), ({"x": [-1, 0, 0]}, "E_MATE_ROLL")],
+    ids=["beside", "turned over", "rolled"],
+)
+def test_a_wrong_mate_goes_back_to_the_designer_before_anything_is_built(tmp_path: Path, change: dict[str, Any], code: str) -> None:
+    plan = copy.deepcopy(FLAP_PLAN)
+    plan["parts"][1]["connectors"][0] |= change
+    llm = flap(design__1=json.dumps(plan), design__2=json.dumps(FLAP_PLAN))
+
+    run = made(tmp_path, llm)
+
+    assert code in said(llm, "design/2")
+    assert llm.steps.index("design/2") < min(index for index, step in enumerate(llm.steps) if step.startswith("part/"))
+    assert (run.checks() or {})["ok"]
+
+
+def test_a_mate_that_turns_the_wrong_way_is_found_by_the_motion_and_goes_to_the_designer(tmp_path: Path) -> None:
+    plan = copy.deepcopy(FLAP_PLAN)
+    plan["joints"][0]["angle_deg"] = [-90, 0]  # down, into the plate
+    llm = flap(design__1=json.dumps(plan), design__2=json.dumps(FLAP_PLAN))
+
+    run = made(tmp_path, llm)
+
+    assert "E_MOTION_COLLISION" in said(llm, "design/2")
+    assert [step for step in llm.steps if step.startswith("part/")].count("part/plate/1") == 1
+    assert (run.checks() or {})["ok"]
+
+
 def test_a_judge_sends_a_part_that_is_not_as_specified_to_its_author(tmp_path: Path) -> None:
     llm = flap(judge__1__1=judged("placement", "code", "flap"), part__flap__2=fenced(FLAP_SCRIPTS["flap"]), part__flap__1=fenced(THINNER))
     run = made(tmp_path, llm)
