@@ -1,6 +1,6 @@
-"""Eight designs whose requests were answered by a reader who knew the prompts alone, made again from the answers.
+"""Nine designs whose requests were answered by a reader who knew the prompts alone, made again from the answers.
 
-Of each run only the request, the answers, and the plan and checks it ended with are kept; everything else is made again here.
+Of each run only the request, the answers, what was recalled, and the plan and checks it ended with are kept; everything else is made again here.
 The answers are kept as they were given, so prompts that were mended since are told as drifted.
 """
 
@@ -37,5 +37,5 @@ def test_a_design_is_made_again_from_its_answers(design: Path, tmp_path: Path) -
     assert model.nbody > len(json.loads((design / "plan.json").read_text())["parts"]) / 2
 
 
-def test_there_are_eight() -> None:
-    assert len(DESIGNS) == 8
+def test_there_are_nine() -> None:
+    assert len(DESIGNS) == 9
