@@ -30,6 +30,7 @@ CLEARANCE_MM: dict[Process, float] = {"fdm": 0.2, "sla": 0.1, "sls": 0.3}
 SAME_PLANE_MM = 0.01  # faces this close to the lowest point lie on the bed
 SAME_DIRECTION = 1e-3  # rad: normals that count as one
 CANDIDATES = 12  # directions tried as "down", those with the most flat area first
+MOST_TRIANGLES = 2000  # flat faces are made of large triangles; small ones belong to curved faces
 _CORE = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02"
 _TIME = (2000, 1, 1, 0, 0, 0)  # the same part gives the same bytes
 _CONTENT_TYPES = (
@@ -94,17 +95,19 @@ def _flat_directions(mesh: TriMesh) -> list[FloatArray]:
     twice = mesh.normals_of_twice_area
     area = np.linalg.norm(twice, axis=1)
     order = np.argsort(-area, kind="stable")
-    found: list[tuple[float, FloatArray]] = [(0.0, np.array([0.0, 0.0, -1.0]))]
-    for index in order[:2000]:  # flat faces are made of large triangles; small ones belong to curved faces
+    largest = order[:MOST_TRIANGLES]
+    normals, total = np.zeros((len(largest) + 1, 3)), np.zeros(len(largest) + 1)
+    normals[0], count = (0.0, 0.0, -1.0), 1
+    for index in largest:
         if area[index] <= 0:
             break
         normal = twice[index] / area[index]
-        match = next((place for place, (_, other) in enumerate(found) if np.linalg.norm(normal - other) < SAME_DIRECTION), None)
-        if match is None:
-            found.append((float(area[index]), normal))
-        else:
-            found[match] = found[match][0] + float(area[index]), found[match][1]
-    return [normal for _, normal in sorted(found, key=lambda entry: -entry[0])[:CANDIDATES]]
+        alike = np.flatnonzero(((normals[:count] - normal) ** 2).sum(axis=1) < SAME_DIRECTION**2)
+        place = int(alike[0]) if alike.size else count
+        if place == count:
+            normals[place], count = normal, count + 1
+        total[place] += area[index]
+    return list(normals[np.argsort(-total[:count], kind="stable")[:CANDIDATES]])
 
 
 def _turned_down(normal: FloatArray) -> SE3:
