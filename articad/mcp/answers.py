@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import Any, Final
 
 Json = dict[str, Any]
@@ -33,13 +33,12 @@ def drivers(rows: Sequence[Json]) -> list[Json]:
 
 def proof(report: Json) -> Json:
     """Return what a certificate claims: how much of it, and which ranges are free where they are not the declared ones."""
-    turning = {
-        freedom["name"] for joint in report.get("mechanism", {}).get("joints", ()) for freedom in joint["freedoms"] if any(freedom["turn"])
-    }
+    freedoms = [freedom for joint in report.get("mechanism", {}).get("joints", ()) for freedom in joint["freedoms"]]
+    turning = {freedom["name"] for freedom in freedoms if any(freedom["turn"])}
     narrower = {
-        name: [_in_units(end, name in turning) for end in row["free"]]
-        for name, row in report.get("ranges", {}).items()
-        if row.get("free") and row.get("declared") and row["free"] != row["declared"] and not _whole_turn(row)
+        row["joint"]: [_in_units(end, row["joint"] in turning) for end in row["free"]]
+        for row in report.get("ranges", ())
+        if row["free"] != row["declared"] and row["free"] is not None
     }
     return {
         "claims": len(report.get("claims", ())),
@@ -83,11 +82,6 @@ def _trial(row: Json) -> str:
 
 
 _REACHED: Final = 0.95  # of its range, as the verdict has it
-
-
-def _whole_turn(row: Mapping[str, Sequence[float]]) -> bool:
-    """Return whether a range is the full turn that stands for an endless joint."""
-    return any(end is None or math.isinf(end) for end in row["declared"]) and row["free"][1] - row["free"][0] >= 2 * math.pi - 1e-9
 
 
 def _shown(value: float | None, row: Json) -> float | None:

@@ -34,14 +34,14 @@ def test_a_proof_tells_only_ranges_that_are_narrower_than_declared() -> None:
         "asked": ["lid"],
         "epsilon_mm": 0.001,
         "mechanism": {"joints": [{"freedoms": freedoms}]},
-        "ranges": {
-            "lid": {"declared": [0.0, math.pi], "free": [0.0, math.pi / 2]},
-            "crank": {"declared": [None, None], "free": [-math.pi, math.pi]},
-            "slide": {"declared": [0.0, 10.0], "free": [0.0, 10.0]},
-        },
+        "ranges": [
+            {"joint": "lid", "declared": [0.0, math.pi], "free": [0.0, math.pi / 2]},
+            {"joint": "crank", "declared": [-math.pi, math.pi], "free": [-math.pi, math.pi]},
+            {"joint": "slide", "declared": [0.0, 10.0], "free": [0.0, 9.0]},
+        ],
     }
     told = proof(report)
-    assert told["free_only_in"] == {"lid": [0.0, 90.0]}
+    assert told["free_only_in"] == {"lid": [0.0, 90.0], "slide": [0.0, 9.0]}
     assert (told["claims"], told["clearance_of_at_least_mm"]) == (3, 0.001)
 
 
