@@ -19,6 +19,7 @@ from articad.geometry.mesh import TriMesh
 from articad.geometry.part import MassProperties, Part
 from articad.interference.certificate import DEFAULT_BUDGET_S, DEFAULT_EPSILON_MM, Certificate, certify
 from articad.interference.check import Checks, check_pose
+from articad.interference.scene import Scene
 from articad.interference.sweep import sweep
 from articad.kernels.build123d import Build123dKernel
 from articad.kernels.kernel import BuildCache, PartKernel
@@ -456,6 +457,10 @@ class Assembly:
     def __repr__(self) -> str:
         joints = ", ".join(f"{joint.name}: {joint.type}" for joint in self.joints if joint.type is not JointType.FIXED)
         return f"<Assembly {self.name}: {len(self.parts)} parts, {self.mechanism.mobility} freedoms ({joints})>"
+
+    def scene(self) -> Scene:
+        """Return bodies, relations and fits, for measurements of interference beyond `check`, `sweep` and `certify`."""
+        return Scene.of(self._meshes(), self.joints, waivers=self.waivers, deflection=self._deflections(), fits=self.fits)
 
     def _meshes(self) -> dict[str, TriMesh]:
         return {name: mesh for name, part in self.parts.items() if (mesh := part.mesh) is not None}

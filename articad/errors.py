@@ -31,6 +31,7 @@ from __future__ import annotations
 import difflib
 from collections.abc import Iterable
 from pathlib import Path
+from typing import Self
 
 from articad.findings import Finding, Findings
 
@@ -158,6 +159,12 @@ class ReadError(ArticadError):
     def __init__(self, message: str, *, path: str, where: str = "", findings: Iterable[Finding] = ()) -> None:
         self.path, self.where = path, where
         super().__init__(message, findings=findings)
+
+    @classmethod
+    def told(cls, where: object, message: str, hint: str, *, said: str | None = None) -> Self:
+        """Return the error E_READ about one place; as a text it reads `said`, by default message and hint."""
+        finding = Finding(code="E_READ", where=str(where), message=message, hint=hint)
+        return cls(f"{message} {hint}" if said is None else said, path=str(where), findings=[finding])
 
 
 class WriteError(ArticadError):

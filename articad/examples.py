@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import Final
 
 from articad.errors import ReadError, did_you_mean
-from articad.findings import Finding
 
 _FOLDERS: Final = (Path(__file__).parent / "shipped_examples", Path(__file__).parents[1] / "examples")
 
@@ -24,7 +23,7 @@ def folder(name: str) -> Path:
     """
     if name not in names():
         message = f"There is no example {name!r}.{did_you_mean(name, names())} There are {', '.join(names())}."
-        raise ReadError(message, path=name, findings=[Finding(code="E_READ", where=name, message=message, hint="Name one of these.")])
+        raise ReadError.told(name, message, "Name one of these.", said=message)
     return _root() / name
 
 

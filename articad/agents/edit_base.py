@@ -13,7 +13,6 @@ from articad.agents.requirements import Component, Requirements
 from articad.assembly import Assembly
 from articad.errors import ReadError
 from articad.interference.report import PairCheck, Strength
-from articad.interference.scene import Scene
 from articad.kinematics.joints import Coupling, Joint
 from articad.plan.amending import amended
 from articad.plan.resolve import ResolvedPlan, resolve
@@ -119,11 +118,9 @@ class Base:
             return Known()
         if dict(assembly.fits) != dict(self.resolved.fits) or assembly.waivers != self.resolved.waivers:
             return Known()
-        meshes = {name: mesh for name, part in assembly.parts.items() if (mesh := part.mesh) is not None}
+        scene = assembly.scene()
         built = {name: realised.built.solid.mesh.digest for name, realised in assembly.realised.items()}
-        same = {name for name in meshes if built.get(name) == self.stored["meshes"].get(name)}
-        deflection = {name: part.deflection for name, part in assembly.parts.items()}
-        scene = Scene.of(meshes, assembly.joints, waivers=assembly.waivers, deflection=deflection, fits=assembly.fits)
+        same = {name for name in scene.meshes if built.get(name) == self.stored["meshes"].get(name)}
         blamed = {frozenset(finding["parts"]) for finding in self.stored["checks"]["findings"]}
         rest: dict[Pair, PairCheck] = {}
         motion: dict[str, dict[Pair, PairCheck]] = {}

@@ -76,9 +76,7 @@ def examine(assembly: Assembly, known: Known | None = None) -> Evidence:
     Returns:
         The checks of the rest pose, and with them a sampled verdict for every pair that meets in motion.
     """
-    meshes = {name: mesh for name, part in assembly.parts.items() if (mesh := part.mesh) is not None}
-    deflection = {name: part.deflection for name, part in assembly.parts.items()}
-    scene = Scene.of(meshes, assembly.joints, waivers=assembly.waivers, deflection=deflection, fits=assembly.fits)
+    scene = assembly.scene()
     checks = assembly.check() if known is None else check_scene(scene, assembly.at(), ground=assembly.ground, known=known.rest)
     fits = None
     if checks.ok:  # what overlaps at rest overlaps in motion too: one thing at a time

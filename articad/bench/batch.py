@@ -19,7 +19,6 @@ from scipy.stats import qmc
 
 from articad.bench.items import Item, Json, make
 from articad.errors import ReadError
-from articad.findings import Finding
 from articad.plan.schema import AssemblyPlan
 
 RETRIES: Final = 2  # of an item whose worker died
@@ -250,5 +249,4 @@ def summary(records: Iterable[Json]) -> Json:
 
 
 def _refused(path: Path, message: str) -> ReadError:
-    finding = Finding(code="E_READ", where=str(path), message=message, hint="See `articad batch --help`.")
-    return ReadError(message, path=str(path), findings=[finding])
+    return ReadError.told(path, message, "See `articad batch --help`.", said=message)

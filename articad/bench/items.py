@@ -20,7 +20,7 @@ from typing import Any, Final, Literal
 from articad import __version__
 from articad.assembly import Assembly
 from articad.errors import ArticadError, ReadError
-from articad.findings import Finding, Findings
+from articad.findings import Findings
 from articad.kernels.kernel import BuildCache, PartKernel
 from articad.kernels.parts import find_scripts
 from articad.plan.resolve import resolve
@@ -188,5 +188,4 @@ class _Clock:
 
 
 def _refused(path: Path, message: str) -> ReadError:
-    finding = Finding(code="E_READ", where=str(path), message=message, hint="Correct the batch's specification.")
-    return ReadError(message, path=str(path), findings=[finding])
+    return ReadError.told(path, message, "Correct the batch's specification.", said=message)

@@ -48,10 +48,7 @@ class Subject:
     @cached_property
     def scene(self) -> Scene:
         """Bodies and relations, for measurements of interference."""
-        assembly = self.assembly
-        meshes = {name: mesh for name, part in assembly.parts.items() if (mesh := part.mesh) is not None}
-        deflections = {name: part.deflection for name, part in assembly.parts.items()}
-        return Scene.of(meshes, assembly.joints, waivers=assembly.waivers, deflection=deflections, fits=assembly.fits)
+        return self.assembly.scene()
 
     @cached_property
     def shaped(self) -> tuple[str, ...]:

@@ -12,7 +12,6 @@ from pydantic import Field, ValidationError
 from articad.bench.checks import AnyCheck, Judgement
 from articad.bench.subject import Subject
 from articad.errors import ReadError, did_you_mean
-from articad.findings import Finding
 from articad.plan.fields import Form
 
 TASKS: Final = Path(__file__).with_name("tasks")
@@ -77,13 +76,13 @@ def read_task(folder: str | Path) -> Task:
     try:
         return Task.model_validate(json.loads(file.read_text(encoding="utf-8")))
     except OSError as error:
-        raise _refused(file, f"There is no task: {error.strerror}.", "Name a folder with a task.json.") from error
+        raise ReadError.told(file, f"There is no task: {error.strerror}.", "Name a folder with a task.json.") from error
     except ValidationError as error:
         first: Any = error.errors()[0]
         where = ".".join(str(step) for step in first["loc"])
-        raise _refused(file, f"{where}: {first['msg']}.", "Correct the field.") from error
+        raise ReadError.told(file, f"{where}: {first['msg']}.", "Correct the field.") from error
     except ValueError as error:
-        raise _refused(file, f"It is no JSON: {error}.", "Correct it there.") from error
+        raise ReadError.told(file, f"It is no JSON: {error}.", "Correct it there.") from error
 
 
 def tasks_in(folder: str | Path = TASKS, *, names: Sequence[str] = (), kind: Kind | None = None) -> list[tuple[Path, Task]]:
@@ -95,7 +94,7 @@ def tasks_in(folder: str | Path = TASKS, *, names: Sequence[str] = (), kind: Kin
     found = {task.name: (path, task) for path, task in _all(Path(folder))}
     for name in names:
         if name not in found:
-            raise _refused(
+            raise ReadError.told(
                 Path(folder), f"There is no task {name!r}.", did_you_mean(name, list(found)).strip() or f"There are {len(found)} tasks."
             )
     return [found[name] for name in (names or sorted(found)) if kind is None or found[name][1].kind == kind]
@@ -104,7 +103,3 @@ def tasks_in(folder: str | Path = TASKS, *, names: Sequence[str] = (), kind: Kin
 def _all(folder: Path) -> Iterator[tuple[Path, Task]]:
     for file in sorted(folder.glob("**/task.json")):
         yield file.parent, read_task(file.parent)
-
-
-def _refused(path: Path, message: str, hint: str) -> ReadError:
-    return ReadError(f"{message} {hint}", path=str(path), findings=[Finding(code="E_READ", where=str(path), message=message, hint=hint)])

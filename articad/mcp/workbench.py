@@ -19,7 +19,6 @@ from pathlib import Path
 from typing import Any, Final
 
 from articad.errors import ReadError
-from articad.findings import Finding
 from articad.plan.amending import amended
 from articad.run import write_atomically
 
@@ -59,7 +58,7 @@ class Workbench:
         """
         path = (self.root / name).resolve()
         if not path.is_relative_to(self.root) or "\0" in name:
-            raise _refused(name, f"{name} is outside the root.", "Name a file under it, relative to it.")
+            raise ReadError.told(name, f"{name} is outside the root.", "Name a file under it, relative to it.")
         return path
 
     def design(self, name: str, *, new: bool = False) -> Path:
@@ -69,11 +68,13 @@ class Workbench:
             ReadError: If it is no name, or there is no such design and it is not to be `new`.
         """
         if not _NAME.match(name):
-            raise _refused(name, f"{name!r} is no name of a design.", "Use letters, digits, - and _, at most 60.")
+            raise ReadError.told(name, f"{name!r} is no name of a design.", "Use letters, digits, - and _, at most 60.")
         folder = self.path(name)
         if not new and not (folder / "plan.json").is_file():
             known = sorted(file.parent.name for file in self.root.glob("*/plan.json"))
-            raise _refused(name, f"There is no design {name!r}; there are {', '.join(known) or 'none'}.", "Start one with check_plan.")
+            raise ReadError.told(
+                name, f"There is no design {name!r}; there are {', '.join(known) or 'none'}.", "Start one with check_plan."
+            )
         return folder
 
     def write_plan(self, name: str, plan: Mapping[str, Any]) -> Path:
@@ -84,7 +85,7 @@ class Workbench:
         """
         content = (json.dumps(plan, indent=1, ensure_ascii=False) + "\n").encode()
         if len(content) > PLAN_BYTES:
-            raise _refused(name, f"The plan has {len(content)} bytes; at most {PLAN_BYTES} are accepted.", "Use derived parts.")
+            raise ReadError.told(name, f"The plan has {len(content)} bytes; at most {PLAN_BYTES} are accepted.", "Use derived parts.")
         file = self.design(name, new=True) / "plan.json"
         write_atomically(file, content)
         return file
@@ -98,7 +99,7 @@ class Workbench:
         try:
             plan = dict(json.loads((self.design(name) / "plan.json").read_text(encoding="utf-8")))
         except ValueError as error:
-            raise _refused(name, f"The plan of {name!r} cannot be read: {error}.", "Give the whole plan.") from error
+            raise ReadError.told(name, f"The plan of {name!r} cannot be read: {error}.", "Give the whole plan.") from error
         return self.write_plan(name, amended(plan, changes))
 
     def write_script(self, design: str, part: str, script: str, kernel: str) -> Path:
@@ -109,12 +110,12 @@ class Workbench:
         """
         content = script.encode()
         if len(content) > SCRIPT_BYTES:
-            raise _refused(part, f"The script has {len(content)} bytes; at most {SCRIPT_BYTES} are accepted.", "Write it shorter.")
+            raise ReadError.told(part, f"The script has {len(content)} bytes; at most {SCRIPT_BYTES} are accepted.", "Write it shorter.")
         if not _NAME.match(part):
-            raise _refused(part, f"{part!r} is no name of a part.", "Use the name that the plan gives it.")
+            raise ReadError.told(part, f"{part!r} is no name of a part.", "Use the name that the plan gives it.")
         file = self.design(design) / "parts" / f"{part}{'.freecad.py' if kernel == 'freecad' else '.py'}"
         if not file.resolve().is_relative_to(self.root):
-            raise _refused(part, f"{file} leads out of the root.", "Remove the link.")
+            raise ReadError.told(part, f"{file} leads out of the root.", "Remove the link.")
         write_atomically(file, content)
         return file
 
@@ -124,7 +125,7 @@ class Workbench:
         if (path / "run" / "request.json").is_file():
             return path / "run"
         if not path.exists():
-            raise _refused(name, f"There is no {name} under the root.", "Name a design, or a file relative to the root.")
+            raise ReadError.told(name, f"There is no {name} under the root.", "Name a design, or a file relative to the root.")
         return path
 
     # ------------------------------------------------------------------ work
@@ -159,7 +160,7 @@ class Workbench:
             return dict(json.loads(out[:_REPORT_BYTES]))
         except ValueError as error:
             last = said.decode(errors="replace").strip()[-400:]
-            raise _refused(arguments[0], f"`articad {arguments[0]}` left no report: {last}", "Try it with fewer parts.") from error
+            raise ReadError.told(arguments[0], f"`articad {arguments[0]}` left no report: {last}", "Try it with fewer parts.") from error
 
     async def _finished(self, process: asyncio.subprocess.Process, command: str, seconds: float, tell: Tell | None) -> tuple[bytes, bytes]:
         work = asyncio.ensure_future(process.communicate())
@@ -173,7 +174,7 @@ class Workbench:
                 await tell(waited, f"{command}: {waited:.0f} s")
             if waited >= seconds:
                 work.cancel()
-                raise _refused(
+                raise ReadError.told(
                     command, f"`articad {command}` was ended after {seconds:.0f} s.", "Ask for less at once, or for more seconds."
                 )
 
@@ -229,7 +230,3 @@ def _fitted(answer: Json, limit: int) -> Json:
 
 
 _LEAST: Final = 200  # characters of an entry that is cut
-
-
-def _refused(where: str, message: str, hint: str) -> ReadError:
-    return ReadError(f"{message} {hint}", path=where, findings=[Finding(code="E_READ", where=where, message=message, hint=hint)])

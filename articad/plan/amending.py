@@ -7,7 +7,6 @@ from collections.abc import Mapping
 from typing import Any
 
 from articad.errors import ReadError, did_you_mean
-from articad.findings import Finding
 
 Json = dict[str, Any]
 
@@ -74,4 +73,4 @@ def _lost(address: str, step: str, known: list[str]) -> ReadError:
     hint = did_you_mean(step, known).strip() or (
         f"There are {', '.join(known[:20])}." if known else "A number or a text has nothing in it."
     )
-    return ReadError(f"{message} {hint}", path=address, findings=[Finding(code="E_READ", where=address, message=message, hint=hint)])
+    return ReadError.told(address, message, hint)
