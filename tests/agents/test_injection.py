@@ -46,9 +46,13 @@ def made(folder: Path, plan: dict[str, Any], words: str = stories.FLAP_PROMPT, *
         look=False,
         inspection=False,
         rounds=1,
-        jobs=1,  # part after part, so that steps have an order
     )
     return run, llm
+
+
+def told_by_the_system(llm: Scripted) -> dict[str, list[Any]]:
+    """Return what the system says, by step: parts are asked for side by side, so that steps have no order."""
+    return {request.step: [message.parts for message in request.messages if message.speaker == "system"] for request in llm.requests}
 
 
 def levels(run: Run) -> set[str]:
@@ -60,7 +64,7 @@ def test_orders_in_a_request_and_a_plan_change_no_step_no_option_and_no_sandbox(
     plain, asked = made(tmp_path / "plain", stories.FLAP_PLAN)
     ordered, obeyed = made(tmp_path / "ordered", ordering_plan(), f"{stories.FLAP_PROMPT} {ORDER}")
 
-    assert obeyed.steps == asked.steps
+    assert sorted(obeyed.steps) == sorted(asked.steps)  # parts are asked for side by side
     assert ordered.request.options == plain.request.options
     for run in (plain, ordered):
         assert levels(run) == {sandbox.level()}
@@ -71,9 +75,7 @@ def test_orders_do_not_become_instructions(tmp_path: Path) -> None:
     """What the system says is ours alone, and nothing that was filled in is read for blanks."""
     _, plain = made(tmp_path / "plain", stories.FLAP_PLAN)
     _, ordered = made(tmp_path / "ordered", ordering_plan(), f"{stories.FLAP_PROMPT} {ORDER}")
-    for before, after in zip(plain.requests, ordered.requests, strict=True):
-        assert before.step == after.step
-        assert [m.parts for m in before.messages if m.speaker == "system"] == [m.parts for m in after.messages if m.speaker == "system"]
+    assert told_by_the_system(plain) == told_by_the_system(ordered)
     assert "{{findings}}" in prompt("form_repair", problem=ORDER)
 
 
