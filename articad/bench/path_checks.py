@@ -1,0 +1,100 @@
+"""Checks of paths: what runs straight, and what moves without turning, while the drivers move one by one."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import Final, Literal
+
+import numpy as np
+
+from articad.bench.check import Bounds, Check, in_words
+from articad.bench.subject import Subject
+from articad.connectors import SE3, FloatArray
+from articad.kinematics.joints import JointType
+
+PATH: Final = 121  # values of a driver at which a path is measured
+LEVEL_RAD: Final = math.radians(0.1)  # by which what does not turn may turn
+
+
+class Straight(Check):
+    """A joint that nothing guides runs along a straight line, never farther from it than `off`, over so many mm."""
+
+    kind: Literal["straight"] = "straight"
+    mm: Bounds
+    off: float
+
+    @property
+    def wanted(self) -> str:
+        return f"a joint's centre runs straight over {in_words(self.mm)} mm, within {self.off:g} mm"
+
+    def measured(self, subject: Subject) -> tuple[bool, str]:
+        best = max((_straight(path, self.off) for path in _paths(subject)), default=0.0)
+        return self.mm[0] <= best <= self.mm[1], f"{best:.4g} mm"
+
+
+class Level(Check):
+    """So many parts move by so much without turning, the distance of their two farthest places counting."""
+
+    kind: Literal["level"] = "level"
+    mm: Bounds
+    number: Bounds = (1, 999)
+
+    @property
+    def wanted(self) -> str:
+        return f"{in_words(self.number)} parts move by {in_words(self.mm)} mm without turning"
+
+    def measured(self, subject: Subject) -> tuple[bool, str]:
+        moved = dict.fromkeys(subject.shaped, 0.0)
+        for poses in _strokes(subject):
+            for column, name in enumerate(subject.assembly.mechanism.parts):
+                if name in moved and float(np.max(poses[:, column].angle_to(subject.rest[name]))) <= LEVEL_RAD:
+                    moved[name] = max(moved[name], _farthest(poses[:, column].translation))
+        found = {name: distance for name, distance in moved.items() if self.mm[0] <= distance <= self.mm[1]}
+        told = ", ".join(f"{name} {distance:.4g}" for name, distance in moved.items() if distance > 1e-6)
+        return self.number[0] <= len(found) <= self.number[1], f"{len(found)} ({told or 'none moves without turning'})"
+
+
+def _strokes(subject: Subject) -> Iterator[SE3]:
+    """Yield the poses of all parts along each driver's range, the other drivers at rest `(PATH, N)`."""
+    assembly = subject.assembly
+    for column, driver in enumerate(assembly.drivers):
+        reached = subject.driver_range(driver.name)
+        if reached is None:
+            continue
+        inset = 1e-3 * (reached[1] - reached[0])  # the very ends may be dead points
+        q = np.repeat(np.array(assembly.mechanism.rest)[None], PATH, axis=0)
+        q[:, column] = np.linspace(reached[0] + inset, reached[1] - inset, PATH)
+        yield assembly.poses(q)
+
+
+def _paths(subject: Subject) -> Iterator[FloatArray]:
+    """Yield where the centres of joints come by whose child no slide guides `(PATH, 3)` [mm]."""
+    assembly = subject.assembly
+    slides = {JointType.SLIDER, JointType.CYLINDRICAL, JointType.PLANAR}
+    guided = {part for joint in assembly.joints if joint.type in slides for part in (joint.parent, joint.child)}
+    rows = {name: row for row, name in enumerate(assembly.mechanism.parts)}
+    for poses in _strokes(subject):
+        for joint in assembly.joints:
+            if joint.parent not in guided and joint.child not in guided:
+                yield (poses[:, rows[joint.child]] @ joint.T_child_connector).translation
+
+
+def _straight(path: FloatArray, off: float) -> float:
+    """Return the length of the longest chord that a stretch of a path stays near."""
+    longest = 0.0
+    for start in range(0, len(path) - 2, 2):
+        chords = path[start + 1 :] - path[start]
+        lengths = np.linalg.norm(chords, axis=1)
+        for end in np.argsort(-lengths):
+            if lengths[end] <= longest:
+                break
+            between, along = path[start : start + end + 2] - path[start], chords[end] / lengths[end]
+            if float(np.linalg.norm(between - np.outer(between @ along, along), axis=1).max()) <= off:
+                longest = float(lengths[end])
+                break
+    return longest
+
+
+def _farthest(points: FloatArray) -> float:
+    return float(np.linalg.norm(points[:, None] - points[None], axis=2).max())
