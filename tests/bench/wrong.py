@@ -201,6 +201,21 @@ def _short(_check: Check, subject: Subject) -> Subject:
     return Subject(changed(subject.assembly, joints=[narrowed(joint) for joint in subject.assembly.joints]))
 
 
+def _mispinned(_check: Check, subject: Subject) -> Subject:
+    """A pin that closes a loop sits elsewhere on both of its parts: links are longer or shorter than they should be."""
+    mechanism = subject.assembly.mechanism
+    aside = SE3.from_translation(np.array([0.06, 0.04, 0.0]) * float(subject.size.max()))
+    moved = next(joint for joint in mechanism.loop_joints if joint.type is JointType.REVOLUTE)
+    turn = moved.motion(moved.rest)
+    joints = [
+        replace(j, T_parent_connector=j.T_parent_connector @ aside, T_child_connector=j.T_child_connector @ turn.inverse() @ aside @ turn)
+        if j.name == moved.name
+        else j
+        for j in subject.assembly.joints
+    ]
+    return Subject(changed(subject.assembly, joints=joints))
+
+
 def _thin(check: Check, subject: Subject) -> Subject:
     """What a joint carries is too small for it."""
     names = {joint.child for joint in check.joint.found(subject)}  # type: ignore[attr-defined]
@@ -249,6 +264,9 @@ VARIANTS: dict[str, Callable[[Check, Subject], Subject]] = {
     "loops": _unclosed,
     "ratio": _uncoupled,
     "rise": _short,
+    "travel": _short,
+    "straight": _mispinned,
+    "level": _mispinned,
     "gap": _thin,
     "captive": _nothing_around,
     "unchanged": _all_new,
