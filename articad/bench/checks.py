@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from abc import abstractmethod
+from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Annotated, Any, Final, Literal
@@ -15,6 +16,7 @@ from typing import Annotated, Any, Final, Literal
 import numpy as np
 from pydantic import Field
 
+from articad.assembly import Assembly
 from articad.bench.subject import Subject
 from articad.connectors import FloatArray
 from articad.errors import ArticadError
@@ -411,7 +413,7 @@ class Simulates(Check):
 
 
 class Unchanged(Check):
-    """After an edit, so many parts are the same to the last bit."""
+    """After an edit, so many parts have a shape that one had before, to the last bit, whatever they are called."""
 
     kind: Literal["unchanged"] = "unchanged"
     number: Bounds
@@ -421,15 +423,10 @@ class Unchanged(Check):
         return f"{_range(self.number)} parts are unchanged"
 
     def measured(self, subject: Subject) -> tuple[bool, str]:
-        before = {} if subject.before is None else {name: part.mesh for name, part in subject.before.parts.items()}
-        same = [
-            name
-            for name in subject.shaped
-            if (mesh := subject.assembly.parts[name].mesh) is not None
-            and (old := before.get(name)) is not None
-            and mesh.digest == old.digest
-        ]
-        return self.number[0] <= len(same) <= self.number[1], f"{len(same)} of {len(subject.shaped)}"
+        if subject.before is None:
+            return False, "nothing was there before"
+        same = (_shapes(subject.before) & _shapes(subject.assembly)).total()
+        return self.number[0] <= same <= self.number[1], f"{same} of {len(subject.shaped)}"
 
 
 AnyCheck = Annotated[
@@ -453,6 +450,10 @@ AnyCheck = Annotated[
     | Unchanged,
     Field(discriminator="kind"),
 ]
+
+
+def _shapes(assembly: Assembly) -> Counter[str]:
+    return Counter(part.mesh.digest for part in assembly.parts.values() if part.mesh is not None)
 
 
 def _moving(subject: Subject) -> list[Joint]:

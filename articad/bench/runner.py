@@ -1,93 +1,41 @@
 """Runs of the benchmark: each task generated, judged and written down before the next one; a killed run goes on where it was.
 
-One folder a task: its run directory, `run_` and the key of the way it was run, and `row.json`, its row of the table. A row that is there and was made
-of the same task in the same way is not made again, so the table of a finished benchmark costs nothing to print.
+One folder a task: its run directory, `run_` and the key of the way it was run, that of its edit, `edit_` and the same, and `row.json`,
+its row of the table. A row that is there and was made of the same task in the same way is not made again, so the table of a finished
+benchmark costs nothing to print. A task that failed because the provider could not be reached leaves no row: it is made again.
 """
 
 from __future__ import annotations
 
-import json
 import time
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, Final
 
 from articad import convert
+from articad.agents.edit import edit
 from articad.agents.llm import LLM
 from articad.agents.pipeline import Variant, generate
 from articad.agents.retrieval import Memory
 from articad.agents.review import trajectory
-from articad.bench.checks import Judgement
+from articad.bench.row import Row, keep_row, kept_row
 from articad.bench.subject import Subject
 from articad.bench.task import Task
-from articad.errors import ArticadError
+from articad.errors import ArticadError, ReadError, TransportError
 from articad.kernels.kernel import BuildCache, PartKernel
 from articad.record import assembly_of
-from articad.run import Run, digest, write_atomically
+from articad.run import Run, digest
 
-SCHEMA: Final = "articad.bench-row/1"
-_ROW = "row.json"
 _SIMULATED: Final = frozenset({".urdf", ".xml", ".mjcf"})
+_EDITED: Final = "_edited"  # what is appended to a task's name where a tool's edited model is
 
 Ask = Callable[[Task], LLM]
 """Who answers a task's requests."""
 
 Finished = Callable[[Run], object]
 """Told of each finished run: to remember it, for instance."""
-
-
-@dataclass(frozen=True)
-class Row:
-    """What came of one task.
-
-    Attributes:
-        task: Its name.
-        kind: Of the task.
-        modality: What it was asked by.
-        judgements: Of every check; none if nothing was made.
-        error: Why nothing was made.
-        iterations: Answers with a plan or a script that were needed, beyond one for each plan and part, plus one.
-        calls: Answers of models.
-        tokens: In and out.
-        cost: US dollars; None where a price is unknown.
-        seconds: Wall time.
-        key: Digest of the task and the way it was run.
-    """
-
-    task: str
-    kind: str
-    modality: str
-    judgements: tuple[Judgement, ...] = ()
-    error: str | None = None
-    iterations: int = 0
-    calls: int = 0
-    tokens: int = 0
-    cost: float | None = 0.0
-    seconds: float = 0.0
-    key: str = ""
-
-    @property
-    def made(self) -> bool:
-        """The paper's success: it was built, with all the parts that were asked for."""
-        return self.error is None and all(judgement.ok for judgement in self.judgements if judgement.kind in {"parts", "solids"})
-
-    @property
-    def ok(self) -> bool:
-        """True when every check holds."""
-        return self.error is None and bool(self.judgements) and all(judgement.ok for judgement in self.judgements)
-
-    def to_json(self) -> dict[str, Any]:
-        """Return the row as it is kept."""
-        rows = {name: value for name, value in vars(self).items() if name != "judgements"}
-        return {"schema": SCHEMA, "ok": self.ok} | rows | {"judgements": [judgement.to_json() for judgement in self.judgements]}
-
-    @classmethod
-    def from_json(cls, stored: dict[str, Any]) -> Row:
-        """Read a row that was kept."""
-        judgements = tuple(Judgement(**judgement) for judgement in stored["judgements"])
-        return cls(**{name: stored[name] for name in cls.__dataclass_fields__ if name != "judgements"}, judgements=judgements)
 
 
 def run_tasks(
@@ -100,6 +48,7 @@ def run_tasks(
     cache: BuildCache | None = None,
     memory: Memory | None = None,
     look: bool = True,
+    model: str = "",
     jobs: int = 1,
     finished: Finished | None = None,
     progress: Callable[[Row], object] | None = None,
@@ -115,6 +64,7 @@ def run_tasks(
         cache: Likewise.
         memory: Likewise.
         look: Whether models look at parts and assembly.
+        model: Name of who answers: rows of another model are made again.
         jobs: How many tasks at once.
         finished: Told of each finished run.
         progress: Told of each row.
@@ -126,11 +76,14 @@ def run_tasks(
     def one(pair: tuple[Path, Task]) -> Row:
         folder, task = pair
         place = Path(out) / task.name
-        key = digest({"task": task.model_dump(mode="json"), "variant": variant, "look": look})
-        row = _kept(place, key)
+        way = {"variant": variant, "look": look, "model": model, "kernel": None if kernel is None else kernel.name}
+        key = digest({"task": task.model_dump(mode="json"), **way})
+        row = kept_row(place, key)
         if row is None:
-            row = _made(task, folder, place, key, ask, finished, variant=variant, kernel=kernel, cache=cache, memory=memory, look=look)
-            _keep(place, row)
+            made = _Made(task, folder, place, key, ask(task), finished)
+            row = made.row(variant=variant, kernel=kernel, cache=cache, memory=memory, look=look)
+            if not made.unreached:
+                keep_row(place, row)
         if progress is not None:
             progress(row)
         return row
@@ -142,6 +95,8 @@ def run_tasks(
 def score_files(tasks: Iterable[tuple[Path, Task]], folder: str | Path) -> list[Row]:
     """Judge files that any tool made: `<folder>/<task>.urdf`, or the one model in `<folder>/<task>/`.
 
+    What became of a model by the task's edit is at `<task>_edited` in place of `<task>`.
+
     Args:
         tasks: Folders and tasks; one without a file is a row with an error.
         folder: Where the files are: URDF, MJCF, FreeCAD documents, plans or runs.
@@ -149,93 +104,116 @@ def score_files(tasks: Iterable[tuple[Path, Task]], folder: str | Path) -> list[
     return [_scored(task, Path(folder)) for _, task in tasks]
 
 
-def _made(task: Task, folder: Path, place: Path, key: str, ask: Ask, finished: Finished | None, **options: Any) -> Row:
-    row = Row(task.name, task.kind, task.modality, key=key)
-    look = options.pop("look")
-    started = time.monotonic()
-    try:
-        run = generate(
-            task.prompt,
-            llm=ask(task),
-            images=[folder / image for image in task.images],
-            out=place / f"run_{key[:8]}",
-            ideas="never",
-            look=look,
-            inspection=look,
-            **options,
-        )
-        judgements = task.judge(Subject(assembly_of(run, cache=options["cache"])))
-        row = replace(row, judgements=judgements)
-        if finished is not None:
-            finished(run)
-    except ArticadError as error:
-        row = replace(row, error=f"{type(error).__name__}: {error}")
-    return replace(row, seconds=time.monotonic() - started, **_effort(place / f"run_{key[:8]}"))
+class _Made:
+    """One task at work.
+
+    Attributes:
+        unreached: Whether it failed because the provider could not be reached.
+    """
+
+    def __init__(self, task: Task, folder: Path, place: Path, key: str, llm: LLM, finished: Finished | None) -> None:
+        self._task, self._folder, self._llm, self._finished = task, folder, llm, finished
+        self._run, self._edit = (place / f"{name}_{key[:8]}" for name in ("run", "edit"))
+        self._key = key
+        self.unreached = False
+
+    def row(self, *, look: bool, **options: Any) -> Row:
+        """Return what comes of it."""
+        task, row, started = self._task, Row.of(self._task, self._key), time.monotonic()
+        options |= {"look": look, "inspection": look}
+        try:
+            images = [self._folder / image for image in task.images]
+            run = generate(task.prompt, llm=self._llm, images=images, out=self._run, ideas="never", **options)
+            assembly = assembly_of(run, cache=options["cache"])
+            row = replace(row, judgements=task.judge(Subject(assembly)))
+            self._tell(run)
+            if task.edit is not None:
+                row = self._with_edit(row, run, Subject(assembly), {name: value for name, value in options.items() if name != "variant"})
+        except ArticadError as error:
+            row = replace(row, error=self._told(error))
+        return replace(row, seconds=time.monotonic() - started, **_effort(self._run, self._edit))
+
+    def _with_edit(self, row: Row, run: Run, before: Subject, options: dict[str, Any]) -> Row:
+        assert self._task.edit is not None
+        try:
+            edited = edit(run, self._task.edit.prompt, llm=self._llm, out=self._edit, **options)
+            subject = Subject(assembly_of(edited, cache=options["cache"]), before=before.assembly)
+            row = replace(row, edited=self._task.judge_edit(subject))
+            self._tell(edited)
+        except ArticadError as error:
+            row = replace(row, edit_error=self._told(error))
+        return row
+
+    def _tell(self, run: Run) -> None:
+        if self._finished is not None:
+            self._finished(run)
+
+    def _told(self, error: ArticadError) -> str:
+        self.unreached = self.unreached or isinstance(error, TransportError)
+        return f"{type(error).__name__}: {error}"
 
 
-def _effort(path: Path) -> dict[str, Any]:
-    """Return what a run took, finished or not."""
-    if not (path / "request.json").is_file():
-        return {}
-    run = Run.view(path)
-    replies = [reply["reply"] for step in run.replies() if (reply := run.reply(step)) is not None]
+def _effort(*paths: Path) -> dict[str, Any]:
+    """Return what runs took, finished or not."""
+    runs = [Run.view(path) for path in paths if (path / "request.json").is_file()]
+    replies = [reply["reply"] for run in runs for step in run.replies() if (reply := run.reply(step)) is not None]
     costs = [reply["cost"] for reply in replies]
-    way = trajectory(run)
-    again = max(way["designs"] - 1, 0) + sum(max(answers - 1, 0) for answers in way["scripts"].values())
     return {
-        "iterations": 1 + again,
+        "iterations": sum(_iterations(run) for run in runs),
         "calls": len(replies),
         "tokens": sum(sum(reply["usage"].values()) for reply in replies),
         "cost": None if any(cost is None for cost in costs) else sum(costs),
     }
 
 
+def _iterations(run: Run) -> int:
+    way = trajectory(run)
+    again: int = max(way["designs"] - 1, 0) + sum(max(answers - 1, 0) for answers in way["scripts"].values())
+    return 1 + again
+
+
 def _scored(task: Task, folder: Path) -> Row:
-    row = Row(task.name, task.kind, task.modality)
-    found = _model_of(task.name, folder)
-    if found is None:
-        return replace(row, error=f"There is no model of {task.name} in {folder}.")
-    started = time.monotonic()
+    row, started = Row.of(task), time.monotonic()
     try:
-        judgements = task.judge(_subject(found))
-        return replace(row, judgements=judgements, seconds=time.monotonic() - started)
+        before = _subject(_found(task.name, folder))
+        row = replace(row, judgements=task.judge(before))
+        if task.edit is not None:
+            row = _scored_edit(row, task, folder, before)
     except ArticadError as error:
-        return replace(row, error=f"{type(error).__name__}: {error}", seconds=time.monotonic() - started)
+        row = replace(row, error=f"{type(error).__name__}: {error}")
+    return replace(row, seconds=time.monotonic() - started)
 
 
-def _model_of(name: str, folder: Path) -> Path | None:
+def _scored_edit(row: Row, task: Task, folder: Path, before: Subject) -> Row:
+    try:
+        edited = replace(_subject(_found(f"{task.name}{_EDITED}", folder)), before=before.assembly)
+        return replace(row, edited=task.judge_edit(edited))
+    except ArticadError as error:
+        return replace(row, edit_error=f"{type(error).__name__}: {error}")
+
+
+def _found(name: str, folder: Path) -> Path:
+    """Return the model of a task, or of a task edited.
+
+    Raises:
+        ReadError: If there is none.
+    """
     for suffix in convert.READERS:
         if (file := folder / f"{name}{suffix}").is_file():
             return file
     place = folder / name
-    for run in (place, *sorted(place.glob("run*"))):
+    ours, kind = (folder / name.removesuffix(_EDITED), "edit*") if name.endswith(_EDITED) else (place, "run*")
+    for run in (place, *sorted(ours.glob(kind))):
         if (run / "request.json").is_file():
             return run
     files = [file for suffix in convert.READERS for file in sorted(place.rglob(f"*{suffix}"))]
-    return files[0] if files else None
+    if not files:
+        message = f"There is no model of {name} in {folder}."
+        raise ReadError.told(folder, message, f"Write {name}.urdf there, for instance.", said=message)
+    return files[0]
 
 
 def _subject(found: Path) -> Subject:
     if found.is_dir():
         return Subject(assembly_of(Run.view(found)))
     return Subject(convert.read(found), file=found if found.suffix.lower() in _SIMULATED else None)
-
-
-def _kept(place: Path, key: str) -> Row | None:
-    try:
-        row = Row.from_json(json.loads((place / _ROW).read_text(encoding="utf-8")))
-    except (OSError, ValueError, KeyError, TypeError):
-        return None
-    return row if row.key == key else None
-
-
-def _keep(place: Path, row: Row) -> None:
-    place.mkdir(parents=True, exist_ok=True)
-    write_atomically(place / _ROW, (json.dumps(row.to_json(), indent=1, ensure_ascii=False) + "\n").encode())
-
-
-def rows_in(out: str | Path, names: Sequence[str] = ()) -> list[Row]:
-    """Return the rows that a folder of runs holds, by name."""
-    files = sorted(Path(out).glob(f"*/{_ROW}"))
-    rows = [Row.from_json(json.loads(file.read_text(encoding="utf-8"))) for file in files]
-    return [row for row in rows if not names or row.task in names]

@@ -9,7 +9,7 @@ from typing import Any, Final
 import numpy as np
 
 from articad.bench.agreement import bootstrap_interval
-from articad.bench.runner import Row
+from articad.bench.row import Row
 
 SCHEMA: Final = "articad.bench/1"
 
@@ -37,6 +37,8 @@ def summary(rows: Sequence[Row]) -> dict[str, Any]:
         "passed": _share([row.ok for row in rows]),
         "made": _share([row.made for row in rows]),
         "checks": _share([judgement.ok for row in rows for judgement in row.judgements]),
+        "edited": _share([row.edit_ok for row in rows if row.edit_ok is not None]),
+        "edit_checks": _share([judgement.ok for row in rows for judgement in row.edited]),
         "iterations": _mean(rows, lambda row: row.iterations),
         "calls": _mean(rows, lambda row: row.calls),
         "tokens": _mean(rows, lambda row: row.tokens),
@@ -45,15 +47,16 @@ def summary(rows: Sequence[Row]) -> dict[str, Any]:
 
 
 def _line(row: Row) -> dict[str, Any]:
-    failed = [judgement.kind for judgement in row.judgements if not judgement.ok]
     return {
         "task": row.task,
         "kind": row.kind,
         "modality": row.modality,
         "passed": row.ok,
         "made": row.made,
-        "failed": failed,
+        "failed": list(row.failed),
         "error": row.error,
+        "edited": row.edit_ok,
+        "edit_error": row.edit_error,
         "iterations": row.iterations,
         "calls": row.calls,
         "tokens": row.tokens,

@@ -1,4 +1,22 @@
-"""Tasks: what is asked for, and the checks that say whether it was made."""
+"""Tasks: what is asked for, and the checks that say whether it was made.
+
+A task is a folder with `task.json`, pictures that it is asked by, and a reference solution that passes its checks: `reference/plan.json`
+with `reference/parts/*.py`. A task with an `edit` goes on once the product stands:
+
+    "edit": {
+     "prompt": "Make the drawers 20 % deeper; all else stays.",
+     "checks": [
+      {"kind": "size", "mm": [600, 480, null]},
+      {"kind": "unchanged", "number": [6, 99]}
+     ],
+     "values": {"depth": 480}
+    }
+
+The edited product must pass `edit.checks`, and all checks of the task that are of other kinds once more: so who restates one check of
+a kind restates all of that kind. `unchanged` counts the parts whose shape is the same to the last bit. `values` are what the reference
+makes the change by: parameters of its plan, in the unit that it gives them; `reference` is a second folder with `plan.json`, for changes
+that are more than numbers, whose scripts are its own `parts/*.py` and, where it has none of a name, those of the task's reference.
+"""
 
 from __future__ import annotations
 
@@ -25,11 +43,15 @@ class Edit(Form):
 
     Attributes:
         prompt: What is to change.
-        checks: In place of those before; `unchanged` counts the parts that stayed the same to the last bit.
+        checks: In place of the task's checks of the same kinds; its others must hold once more as they are.
+        values: Of the reference's parameters, in their own units, that make the change.
+        reference: Folder of a second plan that makes the change, relative to the task, where numbers do not.
     """
 
     prompt: str
     checks: tuple[AnyCheck, ...]
+    values: dict[str, float] = Field(default_factory=dict)
+    reference: str | None = None
 
 
 class Task(Form):
@@ -61,9 +83,21 @@ class Task(Form):
         """What it is asked by."""
         return "both" if self.prompt and self.images else "image" if self.images else "text"
 
+    @property
+    def edit_checks(self) -> tuple[AnyCheck, ...]:
+        """What must hold of the edited product: the edit's checks, and the task's own of all other kinds."""
+        if self.edit is None:
+            return ()
+        restated = {check.kind for check in self.edit.checks}
+        return (*(check for check in self.checks if check.kind not in restated), *self.edit.checks)
+
     def judge(self, subject: Subject) -> tuple[Judgement, ...]:
         """Return what every check says."""
         return tuple(check.judge(subject) for check in self.checks)
+
+    def judge_edit(self, subject: Subject) -> tuple[Judgement, ...]:
+        """Return what every check says of the edited product; the subject holds what it was before."""
+        return tuple(check.judge(subject) for check in self.edit_checks)
 
 
 def read_task(folder: str | Path) -> Task:

@@ -11,7 +11,7 @@ from articad.commands.options import ASKING, FORCE, SANDBOX, amount, positive
 from articad.commands.steps import build_cache, sandbox_level
 
 if TYPE_CHECKING:
-    from articad.bench.runner import Row
+    from articad.bench.row import Row
     from articad.bench.task import Task
     from articad.terminal import Report, Terminal
 
@@ -40,7 +40,8 @@ _WORDS = 44  # characters of what failed, in a table
     FORCE,
 )
 def _bench(options: argparse.Namespace, terminal: Terminal) -> Report:
-    from articad.bench.runner import rows_in, score_files
+    from articad.bench.row import rows_in
+    from articad.bench.runner import score_files
     from articad.bench.table import table
     from articad.bench.task import TASKS, tasks_in
     from articad.errors import ReadError
@@ -93,7 +94,7 @@ def _batch(options: argparse.Namespace, terminal: Terminal) -> Report:
 def _run(tasks: list[tuple[Path, Task]], options: argparse.Namespace, terminal: Terminal) -> list[Row]:
     from articad.agents.recollection import StoredMemory, remember
     from articad.bench.runner import run_tasks
-    from articad.commands.models import asked_model
+    from articad.commands.models import asked_model, model_name
     from articad.memory.experience import ExperienceStore
     from articad.record import kernel_named
 
@@ -109,6 +110,7 @@ def _run(tasks: list[tuple[Path, Task]], options: argparse.Namespace, terminal: 
             cache=build_cache(options),
             memory=StoredMemory(store),
             look=budgets[0][1] and options.look,
+            model=",".join(name for name in (model_name(options), options.vision_model, options.judge_model) if name),
             jobs=options.at_once,
             finished=lambda run: remember(run, store),
             progress=lambda row: tell(row.task, "passed" if row.ok else "failed"),
@@ -124,7 +126,7 @@ def _listed(tasks: list[Task], terminal: Terminal) -> Report:
 
 def _printed(report: Report, terminal: Terminal) -> Report:
     rows = [
-        (row["task"], "yes" if row["passed"] else "no", _short(row["error"] or ", ".join(row["failed"])), row["iterations"], row["calls"])
+        (row["task"], "yes" if row["passed"] else "no", _short(row["error"] or row["edit_error"] or ", ".join(row["failed"])), row["iterations"], row["calls"])
         for row in report["rows"]
     ]
     terminal.table(["task", "passed", "failed checks", "iterations", "calls"], rows)

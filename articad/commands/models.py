@@ -111,16 +111,23 @@ def _edit(options: argparse.Namespace, terminal: Terminal) -> Report:
 
 def asked_model(options: argparse.Namespace, terminal: Terminal) -> tuple[Budget, bool]:
     """Return the model that was asked for, within its budget, and whether it sees."""
-    from articad.agents.live import DEFAULT_MODEL, LiteLLM
+    from articad.agents.live import LiteLLM
     from articad.agents.llm import Budget
 
-    name = options.model or os.environ.get("ARTICAD_MODEL") or DEFAULT_MODEL
+    name = model_name(options)
     model = LiteLLM(name, api_base=options.api_base, vision_model=options.vision_model, judge_model=options.judge_model)
     sees = bool(getattr(model, "sees", True))
     if not sees and (options.look or options.inspection or getattr(options, "review", False)):
         terminal.say(f"{options.vision_model or name} does not see: parts and assembly are held to exact checks alone.")
     limits = {"calls": options.max_calls, "tokens": options.max_tokens, "cost": options.max_cost, "minutes": options.max_minutes}
     return Budget(model, **limits), sees
+
+
+def model_name(options: argparse.Namespace) -> str:
+    """Return the name of the model that is asked for: by the flag, else by $ARTICAD_MODEL, else the usual one."""
+    from articad.agents.live import DEFAULT_MODEL
+
+    return options.model or os.environ.get("ARTICAD_MODEL") or DEFAULT_MODEL
 
 
 def _review(options: argparse.Namespace, *, sees: bool) -> Literal["none", "rules", "model"]:

@@ -8,13 +8,14 @@ from typing import Any
 
 import pytest
 
-from articad.agents.llm import LLM, Request, Scripted
+from articad.agents.llm import LLM, Reply, Request, Scripted
 from articad.agents.recollection import StoredMemory, remember
-from articad.bench.runner import Row, rows_in, run_tasks, score_files
+from articad.bench.row import Row, rows_in
+from articad.bench.runner import run_tasks, score_files
 from articad.bench.table import table
 from articad.bench.task import Task, read_task, tasks_in
 from articad.cli import main
-from articad.errors import ReadError
+from articad.errors import ReadError, TransportError
 from articad.memory.experience import ExperienceStore
 from tests.agents import stories
 
@@ -91,6 +92,69 @@ def test_a_benchmark_goes_on_where_it_was_and_a_failed_task_is_a_row(tasks: list
     again = run(tasks, tmp_path / "out", lambda _task: stories.flap(), variant="no-rollback")
     assert [row.ok for row in again] == [True, True, True]  # another way of running is another row
     assert [row.key for row in again] != [row.key for row in rows]
+
+
+THICKER = {"summary": "A thicker flap.", "touches": ["flap"], "changes": {"parts.flap.dimensions.thickness": 3}}
+EDIT = {"prompt": "a thicker flap", "checks": [{"kind": "part_size", "mm": [30, 10, 3]}, {"kind": "unchanged", "number": [1, 1]}]}
+
+
+def edited(tasks: list[tuple[Path, Task]]) -> list[tuple[Path, Task]]:
+    """The first task, with an edit."""
+    (folder, task), *_ = tasks
+    return [(folder, Task.model_validate(task.model_dump(mode="json") | {"edit": EDIT}))]
+
+
+def test_an_edit_is_asked_for_once_the_product_stands_and_is_judged_with_all_that_must_hold_again(
+    tasks: list[tuple[Path, Task]], tmp_path: Path
+) -> None:
+    asked = edited(tasks)
+    good, still = (
+        {"summary": "x", "touches": ["flap"], "changes": changes} for changes in (THICKER["changes"], {"parts.flap.color": "#ff0000"})
+    )
+
+    (row,) = run(asked, tmp_path / "good", lambda _task: stories.flap(edit__1=json.dumps(good)))
+    (poor,) = run(asked, tmp_path / "still", lambda _task: stories.flap(edit__1=json.dumps(still)))
+    (none,) = run(asked, tmp_path / "none", lambda _task: stories.flap(edit__1="no"))
+
+    assert [judgement.kind for judgement in row.edited] == ["parts", "freedoms", "solids", "clear_at_rest", "part_size", "unchanged"]
+    assert row.ok, row
+    assert row.calls == len(list((tmp_path / "good").glob("*/run_*/llm/**/*.json"))) + 1
+    assert poor.failed == ("edit:part_size", "edit:unchanged")
+    assert not poor.ok
+    assert "edit/2" in str(none.edit_error)
+    assert (none.error, none.ok, none.made) == (None, False, True)
+    assert table([row, poor, none])["all"]["edited"]["mean"] == pytest.approx(0.3333)
+
+
+def test_an_edited_file_of_any_tool_is_scored_against_what_it_was(tasks: list[tuple[Path, Task]], tmp_path: Path) -> None:
+    asked = edited(tasks)
+    run(asked, tmp_path / "out", lambda _task: stories.flap(edit__1=json.dumps(THICKER)))
+    models = tmp_path / "models"
+    models.mkdir()
+    for kind, name in (("run", "flap_0"), ("edit", "flap_0_edited")):
+        next((tmp_path / "out" / "flap_0").glob(f"{kind}_*/export/urdf")).rename(models / name)
+
+    (row,) = score_files(asked, models)
+    (ours,) = score_files(asked, tmp_path / "out")
+    (models / "flap_0_edited").rename(models / "flap_1_edited")
+    (missing,) = score_files(asked, models)
+
+    assert row.ok, row
+    assert ours.ok, ours
+    assert "no model of flap_0_edited" in str(missing.edit_error)
+    assert not missing.ok
+
+
+def test_a_task_whose_provider_was_out_of_reach_is_made_again(tasks: list[tuple[Path, Task]], tmp_path: Path) -> None:
+    class Down:
+        def complete(self, request: Request) -> Reply:
+            raise TransportError(f"no line for {request.step}")
+
+    (row,) = run(tasks[:1], tmp_path / "out", lambda _task: Down())
+    (again,) = run(tasks[:1], tmp_path / "out", lambda _task: stories.flap())
+
+    assert "TransportError" in str(row.error)
+    assert again.ok
 
 
 def test_files_of_any_tool_are_scored_and_a_missing_one_is_told(tasks: list[tuple[Path, Task]], tmp_path: Path) -> None:

@@ -4,16 +4,14 @@ from __future__ import annotations
 
 from collections import Counter
 from functools import cache
-from pathlib import Path
 
 import pytest
 
-from articad import examples
 from articad.assembly import Assembly
 from articad.bench.checks import Joints
+from articad.bench.reference import edited_reference, reference
 from articad.bench.subject import Subject
 from articad.bench.task import TASKS, Task, tasks_in
-from articad.plan.schema import AssemblyPlan
 from tests.bench.wrong import wrong_for
 
 ALL = {task.name: (folder, task) for folder, task in tasks_in(TASKS)}
@@ -22,22 +20,34 @@ SOAK = tuple(name for name in ALL if name not in IN_CI)
 
 
 @cache
-def reference(name: str) -> Assembly:
-    folder, task = ALL[name]
-    assert task.reference is not None
-    place = examples.folder(task.reference.removeprefix("example:")) if task.reference.startswith("example:") else folder / task.reference
-    return Assembly.from_plan(AssemblyPlan.load(place), Path(place) / "parts")
+def built(name: str) -> Assembly:
+    return reference(*ALL[name])
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", [*IN_CI, *(pytest.param(name, marks=pytest.mark.soak) for name in SOAK)])
 def test_a_reference_passes_its_own_checks_and_each_is_shown_red(name: str) -> None:
-    assembly, (_, task) = reference(name), ALL[name]
+    assembly, (_, task) = built(name), ALL[name]
 
     wrong = [judgement for judgement in task.judge(Subject(assembly)) if not judgement.ok]
     assert not wrong
     for check in task.checks:
         judgement = check.judge(wrong_for(check, assembly))
+        assert not judgement.ok, judgement
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", [pytest.param(name, marks=pytest.mark.soak) for name, (_, task) in ALL.items() if task.edit is not None])
+def test_a_reference_makes_the_edit_and_who_leaves_all_as_it_was_does_not(name: str) -> None:
+    before, (folder, task) = built(name), ALL[name]
+    after = edited_reference(folder, task, before)
+
+    wrong = [judgement for judgement in task.judge_edit(Subject(after, before=before)) if not judgement.ok]
+    assert not wrong
+    assert not all(judgement.ok for judgement in task.judge_edit(Subject(before, before=before)))
+    assert any(check.kind == "unchanged" for check in task.edit_checks)
+    for check in task.edit.checks if task.edit is not None else ():
+        judgement = check.judge(wrong_for(check, after))
         assert not judgement.ok, judgement
 
 
