@@ -1,4 +1,4 @@
-"""Checks of paths: what runs straight, and what moves without turning, while the drivers move one by one."""
+"""Checks of paths: what runs straight, what moves without turning, what turns in proportion, while the drivers move one by one."""
 
 from __future__ import annotations
 
@@ -14,6 +14,8 @@ from articad.connectors import SE3, FloatArray
 from articad.kinematics.joints import JointType
 
 PATH: Final = 121  # values of a driver at which a path is measured
+SPEEDS: Final = 7  # values of a driver at which speeds are compared
+STILL: Final = 1e-6  # rad per rad or mm of the driver: slower does not turn
 LEVEL_RAD: Final = math.radians(0.1)  # by which what does not turn may turn
 
 
@@ -53,6 +55,50 @@ class Level(Check):
         found = {name: distance for name, distance in moved.items() if self.mm[0] <= distance <= self.mm[1]}
         told = ", ".join(f"{name} {distance:.4g}" for name, distance in moved.items() if distance > 1e-6)
         return self.number[0] <= len(found) <= self.number[1], f"{len(found)} ({told or 'none moves without turning'})"
+
+
+class Turns(Check):
+    """So many parts turn `ratio` times as fast as some other part, in the frame of the whole, about parallel axes, all the way."""
+
+    kind: Literal["turns"] = "turns"
+    ratio: float
+    number: Bounds = (1, 999)
+    tolerance: float = 0.005
+
+    @property
+    def wanted(self) -> str:
+        return f"{in_words(self.number)} parts turn {self.ratio:g} times as fast as another, within {100 * self.tolerance:g} %"
+
+    def measured(self, subject: Subject) -> tuple[bool, str]:
+        best, told = 0, "nothing turns"
+        for speeds in _speeds(subject):
+            size = np.linalg.norm(speeds, axis=2)
+            for column in range(speeds.shape[1]):
+                if size[:, column].min() < STILL:
+                    continue
+                wanted = self.ratio * speeds[:, column, None]
+                off = np.linalg.norm(speeds - wanted, axis=2) / np.linalg.norm(wanted, axis=2)
+                count = int(np.sum(off.max(axis=0) <= self.tolerance))
+                if count > best or told == "nothing turns":
+                    best, told = count, ", ".join(f"{s:.4g}" for s in size.mean(axis=0) / size[:, column].mean())
+        return self.number[0] <= best <= self.number[1], f"{best} ({told})"
+
+
+def _speeds(subject: Subject) -> Iterator[FloatArray]:
+    """Yield how fast the shaped parts turn, per unit of each driver, at places along its range `(SPEEDS, parts, 3)`."""
+    assembly = subject.assembly
+    rows = [row for row, name in enumerate(assembly.mechanism.parts) if name in subject.shaped]
+    for column, driver in enumerate(assembly.drivers):
+        reached = subject.driver_range(driver.name)
+        if reached is None:
+            continue
+        q = np.repeat(np.array(assembly.mechanism.rest)[None], SPEEDS, axis=0)
+        q[:, column] = reached[0] + (reached[1] - reached[0]) * np.linspace(0.05, 0.95, SPEEDS)
+        step = 1e-5 * (reached[1] - reached[0])
+        there = q.copy()
+        there[:, column] += step
+        turned = assembly.poses(there)[:, rows] @ assembly.poses(q)[:, rows].inverse()
+        yield np.asarray(turned.log()[..., 3:] / step)
 
 
 def _strokes(subject: Subject) -> Iterator[SE3]:

@@ -54,8 +54,10 @@ def _bare(check: Check, subject: Subject) -> Subject:
     return Subject(changed(subject.assembly, parts))
 
 
-def _welded(_check: Check, subject: Subject) -> Subject:
-    """What drives, is fixed."""
+def _welded(check: Check, subject: Subject) -> Subject:
+    """What drives, is fixed; what should not move, does."""
+    if check.number == 0:  # type: ignore[attr-defined]
+        return Subject(changed(subject.assembly, joints=[_loose(joint) for joint in subject.assembly.joints]))
     drivers = {driver.joint for driver in subject.assembly.drivers}
     return Subject(changed(subject.assembly, joints=[_fixed(j) if j.name in drivers else j for j in subject.assembly.joints], couplings=()))
 
@@ -65,6 +67,10 @@ def _fixed(joint: Joint) -> Joint:
     return replace(
         joint, type=JointType.FIXED, T_parent_connector=held, limits=JointLimits(), rest=(), effort=(), velocity=(), driver=False
     )
+
+
+def _loose(joint: Joint) -> Joint:
+    return replace(joint, type=JointType.REVOLUTE, limits=JointLimits((-1.0,), (1.0,)), rest=(0.0,), effort=(), velocity=())
 
 
 def _other_joints(check: Check, subject: Subject) -> Subject:
@@ -248,6 +254,22 @@ def _with_mesh(subject: Subject, name: str, mesh: TriMesh) -> Subject:
     return Subject(changed(subject.assembly, parts))
 
 
+def _heavy_beside(_check: Check, subject: Subject) -> Subject:
+    """A lump hangs out on one side, well above the ground."""
+    low, high = subject.corners(subject.rest)
+    side = float((high - low).max())
+    lump = box(side, side, side).transformed(SE3.from_translation(np.array([high[0] + side, high[1] + side, high[2] + side])))
+    name = subject.shaped[0]
+    mesh = subject.assembly.parts[name].mesh
+    assert mesh is not None
+    return _with_mesh(subject, name, merged([mesh, lump.transformed(subject.rest[name].inverse())]))
+
+
+def _other_lead(_check: Check, subject: Subject) -> Subject:
+    """Screws are twice as steep."""
+    return Subject(changed(subject.assembly, joints=[replace(joint, lead=2 * joint.lead) for joint in subject.assembly.joints]))
+
+
 VARIANTS: dict[str, Callable[[Check, Subject], Subject]] = {
     "parts": _bare,
     "freedoms": _welded,
@@ -267,7 +289,16 @@ VARIANTS: dict[str, Callable[[Check, Subject], Subject]] = {
     "travel": _short,
     "straight": _mispinned,
     "level": _mispinned,
+    "turns": _unclosed,
     "gap": _thin,
     "captive": _nothing_around,
     "unchanged": _all_new,
+    "holes": _larger,
+    "studs": _larger,
+    "wall": _larger,
+    "volume": _larger,
+    "holds": _larger,
+    "stands": _heavy_beside,
+    "symmetric": _heavy_beside,
+    "lead": _other_lead,
 }
