@@ -1,8 +1,8 @@
 """Check a motion certificate without trusting it: what `articad verify-certificate` asks.
 
-Written apart from the prover, with NumPy and python-fcl only. A certificate holds statements: these parts keep apart while these
-joints move within these ranges. Each is proven here anew from the meshes and the joints, and none may be missing. Where parts are
-is in `verify_motion`, whether surfaces keep apart in `verify_apart`; that is all a reader has to trust.
+Written apart from the prover, with NumPy alone. A certificate claims that parts keep apart while joints move within ranges. Beside it
+lies how that is seen: how to cut surfaces and ranges, and for each two pieces a direction that separates them. Nothing of that is
+believed and nothing is sought here: every inequality is computed anew from meshes and joints, and no piece, range or pair may be missing.
 """
 
 from __future__ import annotations
@@ -10,219 +10,315 @@ from __future__ import annotations
 import hashlib
 import itertools
 import json
-from collections.abc import Iterator
+import math
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from articad.verify_apart import Search, Tree, normal
-from articad.verify_motion import ROUNDING, Mechanism
+PROOF = "_proof"  # no part bears such a name
+ROUNDING = 1e-9  # of ranges, distances, and what a driver moves
+REST = 1e-4  # rad or mm: by which what follows a driver may be off at rest
+OUTSIDE = -4  # code of two pieces in a box outside the cone of a ball; -3, -2, -1 cut the first piece, the second, the box
+NOTHING = 2**40  # number of a half of what is not to be cut
+ROWS = 4096  # looked at together
+SIDES = np.array(list(itertools.product((False, True), repeat=3)))
+
+
+class Refuted(Exception):  # noqa: N818 - it is no error of the program
+    """Says why a certificate proves nothing."""
+
+
+def need(condition: Any, reason: str) -> None:
+    """Refute the certificate unless a condition holds."""
+    if not condition:
+        raise Refuted(reason)
 
 
 def verify_file(file: Path, folder: Path) -> list[str]:
-    """Return why a certificate file is refuted, nothing if it is accepted; `folder` holds `<part>.npz` of every part."""
-    content = file.read_bytes()
+    """Return why a certificate file is refuted, nothing if it is accepted; `folder` holds `<part>.npz` of every part, and the proof."""
     try:
-        certificate = json.loads(content)
-        names = list(certificate["meshes"])
-        if outside := [name for name in names if Path(name).name != name]:
-            return [f"{outside[0]!r} is no name of a mesh"]
-        if left := sorted({file.stem for file in folder.glob("*.npz")} - set(names)):
-            return [f"it says nothing of {', '.join(left)}"]
-        found = {name: _mesh(folder / f"{name}.npz") for name in names}
-    except Exception as error:  # noqa: BLE001 - zipfile and NumPy raise whatever they stumble over, and each refutes
+        certificate = json.loads(file.read_bytes())
+        names = [*certificate["meshes"], PROOF]
+        need(all(Path(name).name == name for name in names), "a mesh bears the name of no file")
+        left = sorted({found.stem for found in folder.glob("*.npz")} - set(names))
+        need(not left, f"it says nothing of {', '.join(left)}")
+        Checker(certificate, {name: read(folder / f"{name}.npz") for name in names}).check()
+    except Refuted as reason:
+        return [str(reason)]
+    except Exception as error:  # noqa: BLE001 - what breaks its checker, in whatever way, proves nothing
         return [f"it cannot be read: {error!r}"[:500]]
-    return verify(certificate, found)
+    return []
 
 
-def _mesh(file: Path) -> tuple[Any, Any]:
+def read(file: Path) -> dict[str, Any]:
+    """Return the arrays of a file."""
     with file.open("rb") as stream, np.load(stream, allow_pickle=False) as arrays:
-        return arrays["vertices"], arrays["triangles"]
+        return dict(arrays)
 
 
-def verify(certificate: dict[str, Any], meshes: dict[str, tuple[Any, Any]]) -> list[str]:
-    """Return why the certificate is refuted, nothing if it is accepted; `meshes`: vertices (V, 3), triangles (T, 3) by part."""
-    try:
-        return _faults(certificate, meshes)
-    except Exception as error:  # noqa: BLE001 - a certificate that breaks its checker, in whatever way, proves nothing
-        return [f"it does not hold together: {error!r}"[:500]]
-
-
-def _faults(certificate: dict[str, Any], meshes: dict[str, tuple[Any, Any]]) -> list[str]:
-    entries, mechanism = certificate["meshes"], Mechanism(certificate)
-    found = [f"mesh of {name} is missing or another" for name in entries if digest(meshes.get(name)) != entries[name]["sha256"]]
-    for claim in [] if found else certificate["claims"]:
-        try:
-            fault = Claim(certificate, mechanism, meshes, claim).fault()
-        except ValueError as error:
-            fault = str(error)
-        found += [f"{'/'.join(claim['parts'])} over {', '.join(sorted(claim['vary']))}: {fault}"] * bool(fault)
-    waived = [set(pair["parts"]) for pair in certificate["pairs"] if pair["strength"]["kind"] == "waived"]
-    for a, b in itertools.combinations(entries if certificate["ok"] else (), 2):
-        mine = [claim for claim in certificate["claims"] if set(claim["parts"]) == {a, b}]
-        missing = (
-            [] if {a, b} in waived else [names for names in sets(mechanism, a, b) if not any(covers(mechanism, c, names) for c in mine)]
-        )
-        found += [f"{a}/{b} over {', '.join(sorted(names))}: no claim, yet the certificate calls itself ok" for names in missing]
-    if certificate["ok"] and mechanism.linked and set(certificate["linkage"]) <= {*certificate["asked"], *mechanism.still}:
-        J = mechanism.closure(mechanism.rest, mechanism.followers(""))[1][:, 1:]
-        if J.shape[1] > np.linalg.matrix_rank(J, tol=1e-7 * max(np.abs(J).max(initial=0.0), 1.0)):
-            found.append("more moves in the loops than their drivers")
-    return found
-
-
-def sets(mechanism: Mechanism, a: str, b: str) -> list[set[str]]:
-    """Return the sets of coordinates over which two parts are to be proven apart."""
-    names, certificate = [joint["name"] for joint, _ in mechanism.way(a, b)], mechanism.certificate
-    free = [n for n in names if n in certificate["asked"] and n not in certificate["linkage"]]
-    moving = [{f["name"] for f in mechanism.joints[n]["freedoms"]} for n in free]
-    tied = any(f["joint"] in names for f in map(mechanism.freedoms.get, mechanism.linked) if f)
-    drivers = [{name} for name in certificate["drivers"]] if tied else []
-    both = [x | y for x, y in (*itertools.combinations(moving, 2), *itertools.product(drivers, moving)) if certificate["together"]]
-    return [wanted for wanted in [*moving, *drivers, *both] if wanted]
-
-
-def covers(mechanism: Mechanism, claim: dict[str, Any], names: set[str]) -> bool:
-    """Return whether a claim varies these coordinates; one on whatever a linkage does covers all its drivers."""
-    tied = {name for name in mechanism.linked if mechanism.freedoms[name]["joint"] in claim["via"]}
-    return names - (set(mechanism.drivers) if tied <= set(claim["vary"]) else set()) <= set(claim["vary"])
-
-
-def digest(mesh: tuple[Any, Any] | None) -> str:
+def digest(vertices: Any, triangles: Any) -> str:
     """Return the hash of a mesh as it stands in a certificate."""
-    v, f = (np.ascontiguousarray(array, dtype) for array, dtype in zip(mesh or ([], []), ("<f8", "<i4"), strict=True))
+    v, f = np.ascontiguousarray(vertices, "<f8"), np.ascontiguousarray(triangles, "<i4")
     return hashlib.sha256(b"articad.mesh/1" + np.array([len(v), len(f)], "<i8").tobytes() + v.tobytes() + f.tobytes()).hexdigest()
 
 
-def winding(point: Any, corners: Any) -> float:
-    """Return how often a closed surface winds round a point (van Oosterom and Strackee)."""
-    a, b, c = np.moveaxis(corners - point, 1, 0)
-    la, lb, lc = (np.linalg.norm(v, axis=1) for v in (a, b, c))
-    below = la * lb * lc + (a * b).sum(1) * lc + (b * c).sum(1) * la + (c * a).sum(1) * lb
-    return float(np.arctan2((a * np.cross(b, c)).sum(1), below).sum() / (2 * np.pi))
+def is_inside(V: Any, F: Any, corners: Any) -> bool:
+    """Return whether a connected piece of a mesh lies inside a closed surface that it does not meet (van Oosterom and Strackee)."""
+    label = np.arange(len(V))
+    while (label[F] != (least := label[F].min(1, keepdims=True))).any():
+        np.minimum.at(label, F, least)
+    for point in V[np.unique(label[F])]:
+        a, b, c = np.moveaxis(corners - point, 1, 0)
+        la, lb, lc = (np.linalg.norm(v, axis=1) for v in (a, b, c))
+        below = la * lb * lc + (a * b).sum(1) * lc + (b * c).sum(1) * la + (c * a).sum(1) * lb
+        if np.arctan2((a * np.cross(b, c)).sum(1), below).sum() > np.pi:  # half of what a surface winds round a point inside
+            return True
+    return False
 
 
-def shells(corners: Any) -> list[Any]:
-    """Return a point of each connected piece."""
-    points, index = np.unique(corners.reshape(-1, 3), axis=0, return_inverse=True)
-    label, triangles = np.arange(len(points)), index.reshape(-1, 3)
-    while (label[triangles] != (least := label[triangles].min(1)[:, None])).any():
-        np.minimum.at(label, triangles, least)
-    return [points[k] for k in np.unique(label[triangles])]
+def pieces(corners: Any, order: Any, radii: Any) -> tuple[Any, Any, Any]:
+    """Return points whose hulls hold the pieces of a surface `(n, 8, 3)`, the two that each is cut into, and their largest radii."""
+    need(np.array_equal(np.unique(order), np.arange(len(corners))), "a triangle is left out")
+    spans, halves = [(0, len(order))], []
+    for start, end in spans:  # they become more
+        halves.append((len(spans), len(spans) + 1) if end - start > 1 else (NOTHING, NOTHING))
+        spans += [(start, (start + end) // 2), ((start + end) // 2, end)] if end - start > 1 else []
+    leaves, ends, single = corners[order], np.array(spans).ravel(), np.array(halves)[:, 0] == NOTHING
+    low, high, far = (
+        ufunc.reduceat(np.append(each, each[-1:], axis=0), ends)[::2]
+        for ufunc, each in ((np.minimum, leaves.min(1)), (np.maximum, leaves.max(1)), (np.maximum, radii[order]))
+    )
+    points = np.where(SIDES, high[:, None], low[:, None])
+    points[single] = leaves[ends[::2][single]][:, [0, 1, 2, 2, 2, 2, 2, 2]]
+    return points, np.array(halves), far
 
 
-def inwards(V: Any, F: Any, depth: float) -> Any:
-    """Return vertices moved by `depth`: any direction would do for the proof, this is the one that the prover took."""
-    corners, total = V[F], np.zeros_like(V)
-    unit = normal(corners)
-    for k in range(3):
-        u, v = corners[:, (k + 1) % 3] - corners[:, k], corners[:, (k + 2) % 3] - corners[:, k]
-        np.add.at(total, F[:, k], unit * np.arctan2(np.linalg.norm(np.cross(u, v), axis=1), (u * v).sum(1))[:, None])
-    size = np.linalg.norm(total, axis=1, keepdims=True)
-    return V - depth * total / np.where(size > 0, size, 1)
+class Checker:
+    """A certificate, its meshes and its proof: where parts are, and what follows a driver of loops."""
 
+    def __init__(self, certificate: dict[str, Any], arrays: dict[str, dict[str, Any]]) -> None:
+        self.certificate, self.meshes, self.proof = certificate, arrays, arrays[PROOF]
+        self.joints = {joint["name"]: joint for joint in certificate["mechanism"]["joints"]}
+        self.freedoms = {f["name"]: f for joint in self.joints.values() for f in joint["freedoms"]}
+        self.rest: dict[str, float] = {name: f["rest"] for name, f in self.freedoms.items()}
+        self.lines = dict[str, dict[Any, Any]]()
+        self.linked = [f["name"] for name in certificate["linkage"] for f in self.joints[name]["freedoms"]]
+        self.loops = [[*self.way(j["parent"], j["child"]), (j, False)] for j in self.joints.values() if j["loop"]]
 
-def outline(corners: Any, frame: Any, joint: dict[str, Any], swing: tuple[float, float]) -> tuple[Any, Any]:
-    """Return lower and upper ends of triangles in coordinates that a joint keeps: radius, height, sides, angle from a ball's axis."""
-    ball, turns = joint["cone"] is not None, any(any(f["turn"]) for f in joint["freedoms"])
-    local = (corners - frame[:3, 3]) @ frame[:3, :3]
-    flat = local * ([1, 1, 1] if ball else [1, 1, 0])
-    edge, n = np.roll(flat, -1, 1) - flat, normal(flat)
-    t = np.clip(-(flat * edge).sum(2) / np.maximum((edge * edge).sum(2), 1e-300), 0, 1)
-    within = (np.einsum("tki,tki->tk", np.cross(n[:, None], edge), -flat) >= 0).all(1) & n.any(1)
-    least = np.minimum(np.linalg.norm(flat + t[..., None] * edge, axis=2).min(1), np.where(within, np.abs((n * flat[:, 0]).sum(1)), np.inf))
-    low, high = [least], [np.linalg.norm(flat, axis=2).max(1)]
-    for k in () if ball else (2,) if turns else (0, 1, 2):
-        low.append(local[..., k].min(1))
-        high.append(local[..., k].max(1))
-    if ball:
-        size, middle = np.linalg.norm(local, axis=2), local.mean(1)
-        length = np.maximum(np.linalg.norm(middle, axis=1), 1e-300)
-        spread = np.arccos(np.clip((local * middle[:, None]).sum(2) / np.maximum(size * length[:, None], 1e-300), -1, 1)).max(1)
-        wide = spread + swing[0] + np.arcsin(np.clip(swing[1] / np.maximum(least, 1e-300), 0, 1)) + 1e-7
-        wide = np.where((spread < np.pi / 2) & (least > swing[1]), wide, np.pi)
-        angle = np.arccos(np.clip(middle[:, 2] / length, -1, 1))
-        low.append(angle - wide)
-        high.append(angle + wide)
-    return np.stack(low, 1), np.stack(high, 1)
+    def check(self) -> None:
+        """Prove every claim; of what calls itself ok, find what is missing."""
+        whole, claims = self.certificate, self.certificate["claims"]
+        for name, entry in whole["meshes"].items():
+            need(digest(**self.meshes[name]) == entry["sha256"], f"mesh of {name} is missing or another")
+        for number, claim in enumerate(claims):
+            Claim(self, claim, number).check()
+        waived = [set(pair["parts"]) for pair in whole["pairs"] if pair["strength"]["kind"] == "waived"]
+        for a, b in itertools.combinations(whole["meshes"] if whole["ok"] else (), 2):
+            joints = [joint["name"] for joint, _ in self.way(a, b)]
+            free = [{f["name"] for f in self.joints[n]["freedoms"]} for n in joints if n in whole["asked"] and n not in whole["linkage"]]
+            drivers = [{name} for name in whole["drivers"] if set(joints) & set(whole["linkage"])]
+            both = [one | other for one in free for other in [*free, *drivers] if whole["together"]]
+            for names in filter(None, [] if {a, b} in waived else [*free, *drivers, *both]):
+                found = any(set(claim["parts"]) == {a, b} and names <= set(claim["vary"]) for claim in claims)
+                need(found, f"{a}/{b} over {', '.join(sorted(names))}: no claim, yet the certificate calls itself ok")
+        left_out = whole["ok"] and not whole["drivers"] and set(whole["linkage"]) & set(whole["asked"])
+        need(not left_out, "nothing drives the loops, yet the certificate calls itself ok")
 
+    def way(self, a: str, b: str, names: Any = None) -> list[Any]:
+        """Return the joints from a to b, each with whether it is crossed from parent to child: those named, or of the tree."""
+        ways: dict[str, list[Any]] = {a: []}
+        for part in (todo := [a]):
+            for joint in self.joints.values():
+                for near, far, forward in ((joint["parent"], joint["child"], True), (joint["child"], joint["parent"], False)):
+                    if near == part and far not in ways and (not joint["loop"] if names is None else joint["name"] in names):
+                        ways[far] = [*ways[part], (joint, forward)]
+                        todo.append(far)
+        need(b in ways, f"no joints lead from {a} to {b}")
+        return ways[b]
 
-def meeting(a: tuple[Any, Any], b: tuple[Any, Any], needed: Any) -> Any:
-    """Return which of the boxes a `(T, k)` are within `needed` of any of b."""
-    met, tree = np.zeros(len(a[0]), dtype=bool), Tree(*a) if len(a[0]) else None
-    for rows in np.array_split(tree.order, len(tree.order) // 64 + 1) if tree and len(b[0]) else []:
-        near = ((b[0] <= a[1][rows].max(0) + needed) & (b[1] >= a[0][rows].min(0) - needed)).all(1)
-        met[rows] |= ((b[0][near] <= a[1][rows][:, None] + needed) & (b[1][near] >= a[0][rows][:, None] - needed)).all(2).any(1)
-    return met
+    def place(self, way: list[Any], values: dict[str, float]) -> tuple[Any, dict[str, Any]]:
+        """Return T_a_b, and of each freedom on the way its axis and its speed at a's origin, as a sees them."""
+        T, steps = np.eye(4), {}
+        for joint, forward in way:
+            before, after, sign = np.array(joint["parent_frame"]), np.linalg.inv(joint["child_frame"]), 1 if forward else -1
+            T = T @ (before if forward else np.linalg.inv(after))
+            for f in joint["freedoms"][::sign]:
+                axis, speed, angle, motion = sign * T[:3, :3] @ f["turn"], sign * T[:3, :3] @ f["slide"], sign * values[f["name"]], np.eye(4)
+                steps[f["name"]] = axis, speed + np.cross(T[:3, 3], axis)
+                K = np.cross(f["turn"], np.eye(3)).T
+                motion[:3, :3] += math.sin(angle) * K + (1 - math.cos(angle)) * K @ K  # Rodrigues
+                motion[:3, 3] = np.multiply(f["slide"], angle)
+                T = T @ motion
+            T = T @ (after if forward else np.linalg.inv(before))
+        return T, steps
+
+    def closure(self, values: dict[str, float], names: list[str]) -> tuple[Any, Any, Any]:
+        """Return residuals of loops and couplings, their Jacobian, and shares: |r''| <= (share · change)², lengths in levers."""
+        r, J, shares = [], [], []
+        for way in self.loops:
+            T, steps = self.place(way, values)
+            need(np.abs(T[:3, :3] - np.eye(3)).max() < ROUNDING, "a loop is not closed")
+            lever = sum(math.hypot(*np.array(j[key])[:3, 3]) for j, _ in way for key in ("parent_frame", "child_frame"))
+            lever += sum(2 * math.hypot(*self.freedoms[name]["slide"]) * (1 + abs(values[name])) for name in steps) or 1.0
+            columns = {name: np.concatenate([(v + np.cross(w, T[:3, 3])) / lever, w]) for name, (w, v) in steps.items()}
+            r += [*T[:3, 3] / lever, *((T[[2, 0, 1], [1, 2, 0]] - T[[1, 2, 0], [2, 0, 1]]) / 2)]
+            J += np.transpose([columns.get(name, np.zeros(6)) for name in names]).tolist()
+            shares += [[(name in steps) * (1.0 if any(self.freedoms[name]["turn"]) else 1 / lever) for name in names]] * 6
+        for c in self.certificate["mechanism"]["couplings"]:
+            r.append(values[c["b"]] - c["ratio"] * values[c["a"]] - c["offset"])
+            J.append([float(name == c["b"]) - c["ratio"] * (name == c["a"]) for name in names])
+            shares.append([0.0] * len(names))
+        return np.array(r), np.array(J), np.array(shares)
+
+    def piece(self, names: list[str], ends: Any, guess: Any, wide: Any) -> tuple[Any, Any]:
+        """Return rates, and distances from the line that they draw within which is a solution; within `wide` there is no other one.
+
+        If x - A r(x) takes what is within `wide` to what is near and shrinks distances, then Brouwer and Banach say so.
+        """
+        r, J, share = self.closure({**self.rest, **dict(zip(names, guess.tolist(), strict=True))}, names)
+        A, half = np.linalg.pinv(J[:, 1:], rcond=1e-7), (ends[1] - ends[0]) / 2
+        rate = np.array([1.0, *(-A @ J[:, 0])])
+        far = np.abs(rate) * half + wide
+        near = np.array([0.0, *(np.abs(A @ r) + np.abs(A) @ (share @ far) ** 2 / 2 + ROUNDING)])
+        holds = (np.abs(A) @ ((share @ far) * (share @ wide)) < wide[1:]).all() and (near <= wide).all() and (far < 1 + np.abs(guess)).all()
+        exact = (np.abs(A @ J[:, 1:] - np.eye(len(names) - 1)).sum(1) < ROUNDING).all()
+        need(holds and exact, f"{names[0]} cannot be followed from {ends[0]:.9g} to {ends[1]:.9g}")
+        return rate, near
+
+    def followers(self, driver: str) -> list[str]:
+        """Return a driver and all that is linked, but for other drivers, which stand."""
+        return [driver, *(n for n in self.linked if n != driver and n not in self.certificate["drivers"])]
+
+    def join(self, found: list[Any], names: list[str], ends: Any, guess: Any, wide: Any, other: int) -> None:
+        """Add a piece of a driver's range to others if it holds the solution of one that is beside or around it, or at rest."""
+        rate, near = self.piece(names, ends, guess, wide)
+        span, there, slope, close, apart = found[other]
+        at = np.clip(ends.mean(), *span)
+        gap = np.abs(guess + rate * (at - ends.mean()) - there - slope * (at - span.mean()))
+        same = (gap + near <= apart).all() or (gap + close <= wide).all()  # what one holds is the only solution that the other has
+        need(same and ends[0] <= at <= ends[1], f"{names[0]} leaves its branch at {at:.9g}")
+        found.append((ends, guess, rate, near, wide))
+
+    def begin(self, names: list[str]) -> list[Any]:
+        """Return the rest pose as a piece, about which a solution is no further than `REST`."""
+        still, at = np.zeros(len(names)), self.rest[names[0]]
+        return [(np.array([at, at]), np.array([self.rest[name] for name in names]), still, still + REST, still)]
+
+    def line(self, driver: str) -> dict[Any, Any]:
+        """Return pieces of a driver's range by their ends: values, rates and distances by coordinate; all on the branch of the rest pose."""
+        if driver not in self.lines:
+            names = self.followers(driver)
+            found = self.begin(names)
+            for row in zip(*(self.proof[f"{driver}.{key}"] for key in ("ends", "values", "wide", "other")), strict=True):
+                self.join(found, names, *row)
+            self.lines[driver] = {tuple(ends): dict(zip(names, zip(*row, strict=True), strict=True)) for ends, *row, _ in found[1:]}
+        return self.lines[driver]
 
 
 class Claim:
-    """One statement to be proven."""
+    """A statement and its proof."""
 
-    def __init__(self, certificate: dict[str, Any], mechanism: Mechanism, meshes: dict[str, Any], claim: dict[str, Any]) -> None:
-        self.certificate, self.mechanism, self.claim, self.vary = certificate, mechanism, claim, claim["vary"]
-        self.way = mechanism.way(claim["parts"][0], claim["parts"][1], claim["via"])
-        self.freedoms = [f for joint, _ in self.way for f in joint["freedoms"]]
-        self.tied = {f["name"] for f in self.freedoms} - {*self.vary, *claim["hold"]}
-        (self.V, self.F), (V, F) = (meshes[name] for name in claim["parts"])
-        self.corners_b = V[F]
+    def __init__(self, checker: Checker, claim: dict[str, Any], number: int) -> None:
+        self.checker, self.claim, self.vary = checker, claim, claim["vary"]
+        self.label = f"{'/'.join(claim['parts'])} over {', '.join(sorted(self.vary))}"
+        self.proof = {key: checker.proof[f"{number}.{key}"] for key in ("uses", "roots", "cuts", "codes", "along", "kinds")}
+        self.way = checker.way(claim["parts"][0], claim["parts"][1], claim["via"])
+        tied = {f["name"] for joint, _ in self.way for f in joint["freedoms"]} & set(checker.linked) - set(self.vary)
+        drivers = [name for name in self.vary if tied and name in checker.certificate["drivers"]]
+        need(len(drivers) <= 1, f"{self.label}: two drivers at once")
+        self.driver, self.line = drivers[0] if drivers else None, checker.line(drivers[0]) if drivers else {}
 
-    def fault(self) -> str:
-        """Return why the claim is refused, or nothing."""
-        reason, at_rest = next(self.misstated(), ""), self.mechanism.place(self.way, self.mechanism.rest, single=False)
-        if reason:
-            return reason
-        driver = next((n for n in self.vary if n in self.mechanism.drivers), None) if self.tied else None
-        T, corners = at_rest[0], self.moved(at_rest[1])
-        both = corners, self.corners_b @ T[:3, :3].T + T[:3, 3]
-        if any(winding(point, other) > 0.5 for one, other in (both, both[::-1]) for point in shells(one)):
-            return "one part is inside the other at the start"  # if not, surfaces that never meet keep it so
-        search = Search(self.mechanism, self.way, self.claim, driver, (corners, self.corners_b))
-        return search.apart(*self.facing(corners))
+    def check(self) -> None:
+        """Prove it."""
+        checker, (a, b), (moved, of_a, of_b) = self.checker, self.claim["parts"], self.proof["uses"].tolist()
+        whole, (V, F), (there, G) = checker.certificate, *((checker.meshes[n]["vertices"], checker.meshes[n]["triangles"]) for n in (a, b))
+        here, (T, _) = V if moved < 0 else V + checker.proof[f"moved.{moved}"], checker.place(self.way, checker.rest)
+        least = sum(whole["meshes"][name]["deflection_mm"] for name in (a, b))
+        said = [pair["strength"].get("epsilon_mm", 0.0) for pair in whole["pairs"] if {*pair["parts"]} == {a, b}]
+        need(self.claim["clear_mm"] >= least - ROUNDING, f"{self.label}: it keeps less than the deflection of the meshes")
+        need(self.claim["shrink_mm"] <= max(said) + ROUNDING or not whole["ok"], f"{self.label}: it allows more overlap than it says")
+        need(np.linalg.norm(here - V, axis=1).max() <= self.claim["shrink_mm"] + ROUNDING, f"{self.label}: it moves vertices further than it says")
+        for name, (low, high) in self.vary.items():
+            lower, upper = checker.freedoms[name]["range"]
+            need((low < lower + 1e-6 and high > upper - 1e-6) or not whole["ok"], f"{self.label}: not over the whole range of {name}")
+            need(low <= checker.rest[name] + ROUNDING and checker.rest[name] <= high + ROUNDING, f"{self.label}: not about the rest pose")
+        beside = there @ T[:3, :3].T + T[:3, 3]  # if none is inside the other here, surfaces that never meet keep it so
+        need(not is_inside(here, F, beside[G]) and not is_inside(beside, G, here[F]), f"{self.label}: one is inside the other at rest")
+        self.cut()
+        of, (R, t) = checker.proof, (array[0] for array in self.arrays[:2])
+        radii = [np.linalg.norm((points - self.centre) @ self.across, axis=2).max(1) for points in (here[F], there[G] @ R.T + t)]
+        self.separate(pieces(here[F], of[f"order.{of_a}"], radii[0]), pieces(there[G], of[f"order.{of_b}"], radii[1]))
 
-    def misstated(self) -> Iterator[str]:
-        """Yield what is wrong with the statement before anything is proven."""
-        claim, vary, linked = self.claim, self.vary, set(self.mechanism.linked)
-        if self.tied - linked or (self.tied and not set(vary) & set(self.mechanism.drivers)):
-            yield "not all that moves between the two is named"
-        if linked & set(vary) and linked & set(claim["hold"]):
-            yield "what follows a driver is said to stand"
-        if any(abs(value - self.mechanism.rest[name]) > ROUNDING for name, value in claim["hold"].items()):
-            yield "what is held does not stand at rest"
-        for name, (low, high) in vary.items() if self.certificate["ok"] else ():
-            least, most = self.mechanism.freedoms[name]["range"]
-            if low > least + 1e-6 or high < most - 1e-6:
-                yield f"{name} is varied over [{low:.6g}, {high:.6g}] only"
-        entries = [pair["strength"] for pair in self.certificate["pairs"] if set(pair["parts"]) == set(claim["parts"])]
-        if self.certificate["ok"] and claim["shrink_mm"] > max([e.get("epsilon_mm", 0.0) for e in entries], default=0.0) + ROUNDING:
-            yield f"it allows an overlap of {claim['shrink_mm']:.6g} mm, more than it says"
-        if claim["clear_mm"] < sum(self.certificate["meshes"][name]["deflection_mm"] for name in claim["parts"]) - ROUNDING:
-            yield f"a distance of {claim['clear_mm']:.6g} mm is less than the deflection of the meshes"
+    def cut(self) -> None:
+        """Cut the range into boxes; of each keep the pose in its middle, and what may move, how far, and together with what."""
+        names, checker, cuts = list(self.vary), self.checker, self.proof["cuts"]
+        first, roots, rows = self.driver or names[0], self.proof["roots"].tolist(), []
+        need([roots[0], roots[-1]] == list(self.vary[first]), f"{self.label}: a part of the range is left out")
+        boxes, self.halves = [{**self.vary, first: ends} for ends in itertools.pairwise(roots)], np.full((len(cuts), 2), len(cuts))
+        for number, (box, cut) in enumerate(zip(boxes, cuts, strict=True)):  # the boxes become more
+            middle, half = ({name: (high + sign * low) / 2 for name, (low, high) in box.items()} for sign in (1, -1))
+            if cut >= 0:
+                (low, high), name = box[names[cut]], names[cut]
+                self.halves[number] = len(boxes), len(boxes) + 1
+                boxes += [{**box, name: (low, middle[name])}, {**box, name: (middle[name], high)}]
+            line = self.line[tuple(box[self.driver])] if self.driver else {}
+            line = {name: row for name, row in line.items() if name == self.driver or name not in self.vary}
+            moves = {name: (0.0, size) for name, size in half.items()} | {n: (rate * half[first], near) for n, (_, rate, near) in line.items()}
+            T, steps = checker.place(self.way, {**checker.rest, **middle, **{name: value for name, (value, *_) in line.items()}})
+            w, v, along, aside = (np.array(x) for x in zip(*((*steps[n], *moves[n]) for n in steps if n in moves), strict=True))
+            spin, flow = (np.concatenate([along[None] @ x, aside[:, None] * x]) for x in (w, v))
+            swings = [(joint["cone"], *joint["freedoms"][:2]) for joint, _ in self.way if joint["cone"] is not None]
+            tilts = [(cone, *(max(box[f["name"]][0], -box[f["name"]][1], 0.0) for f in fs)) for cone, *fs in swings if fs[0]["name"] in box]
+            outside = any(max(x, y) < math.pi / 2 and math.cos(x) * math.cos(y) < math.cos(cone) - ROUNDING for cone, x, y in tilts)
+            rows.append((T[:3, :3], T[:3, 3], w, v, np.abs(along) + aside, spin, flow, outside))
+        self.arrays = [np.array(column) for column in zip(*rows, strict=True)]
+        w, v = (array[0] for array in self.arrays[2:4])
+        axes, along = w[w.any(1)], np.where(w.any(1, keepdims=True), w * (w * v).sum(1, keepdims=True), v)
+        self.loose = 0.0 if (np.linalg.norm(np.cross(axes, axes[:1]), axis=1) < 1e-12).all() else 1.0  # axes that turn each other
+        M, moment = np.concatenate([np.zeros((0, 3)), *(np.cross(np.eye(3), axis).T for axis in axes)]), (v - along)[w.any(1)].ravel()
+        self.centre, self.across = np.linalg.lstsq(M, moment)[0], np.eye(3) - sum(axis[:, None] * axis for axis in axes[: 1 - int(self.loose)])
+        steady = len(axes) and np.abs(M @ self.centre - moment).max() < ROUNDING and np.abs(along @ self.across).max() < ROUNDING
+        self.across = self.across if steady else np.full((3, 3), np.nan)  # radii about the one axis or point of all turns
 
-    def moved(self, steps: list[Any]) -> Any:
-        """Return the first part's triangles, their vertices moved inwards: all of them, or those near the axis of the joint."""
-        V, within = inwards(self.V, self.F, self.claim["shrink_mm"]), self.claim["within_mm"]
-        if within is not None:
-            frame, ball = next(((T, len(group) > 1) for group, _, _, T in steps if group[0]["name"] in self.vary), (np.eye(4), True))
-            local = (self.V - frame[:3, 3]) @ frame[:3, : 3 if ball else 2]
-            V = np.where(np.linalg.norm(local, axis=1, keepdims=True) <= within, V, self.V)
-        return V[self.F]
+    def motion(self, box: Any, u: Any, p: Any) -> Any:
+        """Bound how far points `(n, k, 3)` go along directions `(n, 3)` in boxes, `(n, k)`.
 
-    def facing(self, a: Any) -> tuple[Any, Any]:
-        """Return the triangles of both parts that a joint about one axis or point could bring together, if it is the only one."""
-        rest, b = self.mechanism.rest, self.corners_b
-        moving = [(joint, forward) for joint, forward in self.way if any(f["name"] not in self.claim["hold"] for f in joint["freedoms"])]
-        if len(moving) != 1 or moving[0][0]["type"] in ("planar", "universal"):
-            return a, b
-        joint = moving[0][0]
-        zero = {**rest, **{f["name"]: 0.0 for f in joint["freedoms"]}}
-        T, steps = self.mechanism.place(self.way, zero, single=False)
-        frame = next(frame for group, _, _, frame in steps if group[0]["joint"] == joint["name"])
-        cone, needed = joint["cone"] or 0.0, self.claim["clear_mm"]
-        mine, theirs = outline(a, frame, joint, (0.0, 0.0)), outline(b @ T[:3, :3].T + T[:3, 3], frame, joint, (cone, needed))
-        if joint["cone"] is None:
-            slides: Any = sum(np.sort(np.multiply(f["range"], f["slide"][2])) for f in joint["freedoms"])
-            theirs[0][:, 1 if len(theirs[0][0]) < 3 else 3] -= max(slides[1], -slides[0])
-            theirs[1][:, 1 if len(theirs[0][0]) < 3 else 3] += max(slides[1], -slides[0])
-        return a[meeting(mine, theirs, needed)], b[meeting(theirs, mine, needed)]
+        That is their speed, and half the second derivative: along u the factor i outside j turns what j moves by |u x axis i|.
+        """
+        w, v, width, spin, flow = (array[box] for array in self.arrays[2:7])
+        moved = np.abs(p @ np.cross(u[:, None], spin).transpose(0, 2, 1) + (flow @ u[..., None])[:, None, :, 0]).sum(2)
+        speed = np.linalg.norm(np.cross(w[:, None], p[:, :, None]) + v[:, None], axis=3)
+        turns = w.any(2) * 1.0
+        tilt = np.linalg.norm(np.cross(u[:, None], w), axis=2) + self.loose * (np.cumsum(turns * width, axis=1) - turns * width)
+        tilt = np.minimum(tilt, 1.0) * turns * width
+        outside, inside = np.cumsum(tilt, axis=1) - tilt, 0.0
+        for f in range(width.shape[1] - 1, -1, -1):
+            carried = width[:, f, None] * (speed[..., f] + inside * turns[:, f, None])
+            moved, inside = moved + carried * (tilt / 2 + outside)[:, f, None], inside + carried
+        return moved
+
+    def separate(self, a: tuple[Any, ...], b: tuple[Any, ...]) -> None:
+        """Follow how pieces of both and boxes were cut, until a direction separates each two of them."""
+        (A, halves_a, far_a), (B, halves_b, far_b), (R, t, *_, outside) = a, b, self.arrays
+        codes, rows = self.proof["codes"], np.array([(0, 0, box) for box in range(len(self.proof["roots"]) - 1)])
+        while len(rows):
+            code, codes = codes[: len(rows)], codes[len(rows) :]
+            need(len(code) == len(rows) and code.min() >= OUTSIDE and outside[rows[code == OUTSIDE, 2]].all(), f"{self.label}: it ends too early")
+            settled = np.flatnonzero(code >= 0)
+            for some in np.array_split(settled, len(settled) // ROWS + 1):
+                (x, y, box), u = rows[some].T, self.proof["along"][code[some]]
+                kind = np.searchsorted(self.proof["kinds"], code[some], side="right")[:, None]  # of a, of b, round with a outside, with b
+                u = np.where(kind % 2, (R[box] @ u[..., None])[..., 0], u)
+                u = u / np.linalg.norm(u, axis=1, keepdims=True)
+                p, q = A[x], B[y] @ R[box].transpose(0, 2, 1) + t[box][:, None]
+                gap = ((q @ u[..., None])[..., 0] - self.motion(box, u, q)).min(1) - (p @ u[..., None])[..., 0].max(1)
+                outer = np.where(kind[..., None] == 3, q, p) - self.centre
+                beyond = (outer @ (u @ self.across)[..., None])[..., 0].min(1) - np.where(kind[:, 0] == 3, far_a[x], far_b[y])
+                need((np.where(kind[:, 0] < 2, gap, beyond) > self.claim["clear_mm"]).all(), f"{self.label}: pieces come too near")
+            cut = []
+            for column, numbers in enumerate((halves_a, halves_b, self.halves)):
+                for side in (0, 1):
+                    cut.append(rows[code == column - 3])
+                    cut[-1][:, column] = numbers[cut[-1][:, column], side]
+            rows = np.concatenate(cut)

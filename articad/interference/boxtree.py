@@ -26,6 +26,9 @@ class BoxTree:
         children: `(nodes, 2)`; −1 for a single triangle.
         triangle: Of a leaf, its place among `corners`; −1 for the others.
         corners: `(T, 3, 3)` [mm].
+        order: Places among `corners` such that each node holds a stretch of them, `(T,)`: its children the two halves.
+        start: Where the stretch of each node begins, `(nodes,)`.
+        size: How many triangles it holds, `(nodes,)`.
     """
 
     centre: FloatArray
@@ -33,6 +36,9 @@ class BoxTree:
     children: IntArray
     triangle: IntArray
     corners: FloatArray
+    order: IntArray
+    start: IntArray
+    size: IntArray
 
     @classmethod
     def of(cls, surface: Surface) -> BoxTree:
@@ -54,6 +60,7 @@ class BoxTree:
         middle = (low + high) / 2
         order, starts, size = np.arange(len(low)), np.array([0]), np.array([len(low)])
         lows, highs, children, triangle, first = [], [], [], [], 0
+        stretches, begin = [], np.array([0])
         while len(starts):
             bottom, top = np.minimum.reduceat(low[order], starts), np.maximum.reduceat(high[order], starts)
             lows.append(bottom)
@@ -65,6 +72,7 @@ class BoxTree:
             below[parents] = first + len(starts) + np.arange(2 * len(parents)).reshape(-1, 2)
             children.append(below)
             first += len(starts)
+            stretches.append((begin, size))
             # the triangles of all nodes to be cut, in order of the longest side of each; leaves go
             block = np.repeat(np.arange(len(starts)), size)
             axis = np.argmax(top - bottom, axis=1)[block]
@@ -72,7 +80,19 @@ class BoxTree:
             order, block, axis = order[keep], block[keep], axis[keep]
             order = order[np.lexsort((middle[order, axis], block))]
             left = size[parents] // 2
+            begin = np.stack([begin[parents], begin[parents] + left], axis=1).ravel()
             size = np.stack([left, size[parents] - left], axis=1).ravel()
             starts = np.concatenate([[0], np.cumsum(size)[:-1]]) if len(size) else np.empty(0, dtype=np.int64)
         bottom, top = np.concatenate(lows), np.concatenate(highs)
-        return cls((bottom + top) / 2, (top - bottom) / 2, np.concatenate(children), np.concatenate(triangle), corners)
+        start, count, leaf = (np.concatenate(column) for column in (*zip(*stretches, strict=True), triangle))
+        final = np.empty(len(low), dtype=np.int64)
+        final[start[leaf >= 0]] = leaf[leaf >= 0]
+        return cls((bottom + top) / 2, (top - bottom) / 2, np.concatenate(children), leaf, corners, final, start, count)
+
+    def over_each(self, values: FloatArray, ufunc: np.ufunc) -> FloatArray:
+        """Return a minimum or maximum over the triangles of each node, of values `(T,)`, `(nodes,)`."""
+        ends = np.stack([self.start, np.minimum(self.start + self.size, len(values) - 1)], axis=1)
+        ordered = values[self.order]
+        found = ufunc.reduceat(ordered, ends.ravel())[::2]
+        last = self.start + self.size == len(values)  # such a stretch ended one too early
+        return np.asarray(np.where(last, ufunc(found, ordered[-1]), found))

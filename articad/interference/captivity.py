@@ -20,7 +20,7 @@ from articad.interference.cover import Budget, cover_line
 from articad.interference.motion import Values
 from articad.interference.report import rounded
 from articad.interference.scene import Scene
-from articad.interference.surface import Surface, surface_distance
+from articad.interference.surface import Surface, inwards, surface_distance
 
 FloatArray = NDArray[np.float64]
 
@@ -156,7 +156,7 @@ class _Leaving:
         self.start = poses[part].matrix
         # contact is allowed to each neighbour by its own relation; the smallest allowance is on the safe side
         self.shrink = min((scene.tolerated(part, name) for name in others), default=0.0)
-        self.surface = Surface.of(body.mesh, self.shrink)
+        self.surface = Surface.of(body.mesh, inwards(body.mesh, self.shrink))
         corners = {name: _placed(Surface.of(scene.bodies[name].mesh).corners, poses[name]) for name in others}
         self.obstacles = {name: Surface(placed) for name, placed in corners.items() if len(placed)}
         merged = np.concatenate([np.empty((0, 3, 3)), *corners.values()])

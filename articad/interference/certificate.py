@@ -26,7 +26,7 @@ from articad.interference.claims import Claim
 from articad.interference.clearing import MOST_PAIRS
 from articad.interference.cover import Budget, cover_line
 from articad.interference.linkage import LOOKS, LinkageProver, Way
-from articad.interference.motion import ENDLESS_SLIDE_MM, Route, Values, freedoms, routes
+from articad.interference.motion import ENDLESS_SLIDE_MM, Route, Values, freedoms, proven_freedoms, routes
 from articad.interference.overlap import NOTHING, Overlap, overlap
 from articad.interference.proof import Proof, Prover, beyond
 from articad.interference.relations import FitLike, WaiverLike
@@ -36,6 +36,7 @@ from articad.interference.surface import Surface, surface_distance, whole_surfac
 from articad.interference.verdict import judge
 from articad.kinematics.joints import Joint, JointType
 from articad.kinematics.mechanism import Mechanism
+from articad.verify_certificate import PROOF
 
 DEFAULT_EPSILON_MM = 1e-3
 DEFAULT_BUDGET_S = 600.0
@@ -85,6 +86,7 @@ class Certificate:
         constrained: Names of the joints of loops and couplings.
         queries: Pairs of pieces of surface that were looked at.
         seconds: Time spent.
+        followed: Pieces of the drivers' ranges, as arrays that a checker reads.
     """
 
     findings: Findings
@@ -100,6 +102,7 @@ class Certificate:
     constrained: frozenset[str] = frozenset()
     queries: int = 0
     seconds: float = 0.0
+    followed: Mapping[str, Any] = field(default_factory=dict)
 
     @property
     def ok(self) -> bool:
@@ -115,7 +118,7 @@ class Certificate:
             "epsilon_mm": self.epsilon,
             "asked": list(self.asked),
             "linkage": sorted(self.constrained),
-            "drivers": [driver.name for driver in self.mechanism.drivers if driver.joint in self.constrained & set(self.asked)],
+            "drivers": driver_names(self.mechanism, self.constrained) if self.constrained & set(self.asked) else [],
             "together": self.together,
             "meshes": {name: {"sha256": mesh.digest, "deflection_mm": self.deflections[name]} for name, mesh in self.meshes.items()},
             "mechanism": mechanism_json(self.mechanism),
@@ -129,7 +132,31 @@ class Certificate:
 
     def mesh_files(self) -> dict[str, bytes]:
         """Return the meshes that a checker needs, as `<part>.npz`; the same meshes give the same bytes."""
-        return {f"{name}.npz": _npz(mesh) for name, mesh in self.meshes.items()}
+        meshes = {f"{name}.npz": _npz(vertices=mesh.vertices, triangles=mesh.triangles) for name, mesh in self.meshes.items()}
+        return {**meshes, f"{PROOF}.npz": _npz(compress=True, **self.proof)}
+
+    @property
+    def proof(self) -> dict[str, Any]:
+        """How the claims were found, as arrays that a checker reads."""
+        found: dict[str, Any] = dict(self.followed)
+        known: dict[bytes, int] = {}
+
+        def number(kind: str, array: Any) -> int:
+            key = kind.encode() + array.tobytes()
+            if key not in known:
+                known[key] = len(known)
+                found[f"{kind}.{known[key]}"] = array
+            return known[key]
+
+        for at, claim in enumerate(self.claims):
+            course = claim.course
+            assert course is not None
+            moved = -1 if course.moved is None else number("moved", course.moved)
+            found[f"{at}.uses"] = np.array([moved, *(number("order", order.astype(np.int32)) for order in course.orders)])
+            found[f"{at}.roots"] = np.array(course.roots)
+            found[f"{at}.cuts"], found[f"{at}.codes"] = course.cuts, course.rows.codes
+            found[f"{at}.along"], found[f"{at}.kinds"] = course.rows.along, course.rows.kinds
+        return found
 
 
 def certify(
@@ -202,12 +229,16 @@ class _Certifying:
             self.scene.meshes,
             self.scene.deflections,
             self.mechanism,
-            tuple(joint.name for joint in self.mechanism.joints if freedoms(joint) and self._is_asked(joint.name)),
+            tuple(name for name in self._moving() if driving or name not in self._constrained),
             self.together,
             self._constrained,
             self.budget.queries,
             self.budget.spent,
+            {key: array for way in self._ways.values() if not isinstance(way, str) for key, array in way.arrays().items()},
         )
+
+    def _moving(self) -> list[str]:
+        return [joint.name for joint in self.mechanism.joints if freedoms(joint) and self._is_asked(joint.name)]
 
     def _is_asked(self, name: str) -> bool:
         return self.asked is None or name in self.asked
@@ -231,7 +262,8 @@ class _Certifying:
             return
         if tied and drivers:
             bounded = not any(_is_endless_slide(self._joint(name)) for name in tied)
-            if bounded and self._prove(route, (*tied, *wanted), most=WIDE_PAIRS, tentative=True):
+            names = driver_names(self.mechanism, self._constrained)
+            if bounded and self._prove(route, (*tied, *wanted), most=WIDE_PAIRS, tentative=True, also=names):
                 return  # whatever the linkage does
             for driver in drivers:
                 self._follow(route, tied, wanted, driver)
@@ -246,8 +278,10 @@ class _Certifying:
         if self.together and len(wanted) > 1:
             yield from combinations(wanted, 2)
 
-    def _prove(self, route: Route, joints: tuple[str, ...], *, most: int = MOST_PAIRS, tentative: bool = False) -> bool:
-        """Prove one pair over some joints; a tentative failure is not reported."""
+    def _prove(
+        self, route: Route, joints: tuple[str, ...], *, most: int = MOST_PAIRS, tentative: bool = False, also: Sequence[str] = ()
+    ) -> bool:
+        """Prove one pair over some joints, whatever further coordinates do; a tentative failure is not reported."""
         parts = route.parts[0], route.parts[-1]
         if self.budget.is_spent:
             if not tentative:
@@ -256,6 +290,10 @@ class _Certifying:
         prover = Prover(self.scene, route, joints, epsilon=self.epsilon, budget=self.budget)
         proof = prover.prove(most=most, tentative=tentative)
         if proof.is_complete:
+            if also:
+                ranges = {f.name: (f.lower, f.upper) for joint in self.mechanism.joints for f in proven_freedoms(joint)}
+                more = {name: ranges[name] for name in also}
+                proof = replace(proof, claims=tuple(replace(claim, vary={**claim.vary, **more}) for claim in proof.claims))
             self._proven(prover, proof)
             return True
         if tentative:
@@ -303,7 +341,9 @@ class _Certifying:
     def _way(self, driver: int) -> Way | str:
         if driver not in self._ways:
             try:
-                self._ways[driver] = Way(self.mechanism, driver)
+                names = driver_names(self.mechanism, self._constrained)
+                document = {"mechanism": mechanism_json(self.mechanism), "linkage": sorted(self._constrained), "drivers": names}
+                self._ways[driver] = Way(self.mechanism, driver, document)
             except (KinematicsError, ValueError) as error:
                 self._ways[driver] = str(error)
         return self._ways[driver]
@@ -471,7 +511,7 @@ class Looks:
             self.count += 1
             found = overlap(*self.bodies, SE3.from_matrix(self.chain.matrix(point)))
             if found.depth > worst.depth:
-                worst, where = found, self.prover.named(point)
+                worst, where = found, self.prover.pose(point)
         return worst, where
 
     def _points(self) -> Iterator[tuple[float, ...]]:
@@ -537,11 +577,16 @@ def constrained_joints(mechanism: Mechanism) -> frozenset[str]:
     return frozenset(tied)
 
 
+def driver_names(mechanism: Mechanism, constrained: frozenset[str]) -> list[str]:
+    """Return the coordinates that drive loops and couplings."""
+    return [driver.name for driver in mechanism.drivers if driver.joint in constrained]
+
+
 def mechanism_json(mechanism: Mechanism) -> dict[str, Any]:
     """Return parts, frames and joints as numbers: all that a checker needs to place two parts.
 
-    A joint is `T_parent_child = parent_frame · Π exp(Σ (slide, turn)·q) · child_frame⁻¹`, the product over its steps in order; the
-    mate is in `child_frame`. Freedoms of one step are summed before the exponential: a ball swings about a vector.
+    A joint is `T_parent_child = parent_frame · Π exp((slide, turn)·q) · child_frame⁻¹`, the product over its freedoms in order; the
+    mate is in `child_frame`. A ball turns about x, y and z, within its cone.
     """
     loops = {joint.name for joint in mechanism.loop_joints}
     return {
@@ -555,9 +600,9 @@ def mechanism_json(mechanism: Mechanism) -> dict[str, Any]:
                 "child": joint.child,
                 "parent_frame": joint.T_parent_connector.matrix.tolist(),
                 "child_frame": (joint.T_child_connector @ flip(joint.mate)).matrix.tolist(),
-                "cone": freedoms(joint)[0].upper if joint.type is JointType.BALL else None,
+                "cone": proven_freedoms(joint)[0].upper if joint.type is JointType.BALL else None,
                 "loop": joint.name in loops,
-                "freedoms": _steps_json(joint),
+                "freedoms": _freedoms_json(joint),
             }
             for joint in mechanism.joints
         ],
@@ -565,18 +610,18 @@ def mechanism_json(mechanism: Mechanism) -> dict[str, Any]:
     }
 
 
-def _steps_json(joint: Joint) -> list[dict[str, Any]]:
+def _freedoms_json(joint: Joint) -> list[dict[str, Any]]:
     X, Y, Z, none = [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.0, 0.0, 0.0]
     rise = [0.0, 0.0, joint.lead / (2 * math.pi)]
-    steps: dict[JointType, list[tuple[int, list[float], list[float]]]] = {
+    steps: dict[JointType, list[tuple[list[float], list[float]]]] = {
         JointType.FIXED: [],
-        JointType.REVOLUTE: [(0, none, Z)],
-        JointType.SLIDER: [(0, Z, none)],
-        JointType.CYLINDRICAL: [(0, Z, none), (1, none, Z)],
-        JointType.SCREW: [(0, rise, Z)],
-        JointType.PLANAR: [(0, X, none), (0, Y, none), (1, none, Z)],
-        JointType.UNIVERSAL: [(0, none, X), (1, none, Y)],
-        JointType.BALL: [(0, none, X), (0, none, Y), (1, none, Z)],
+        JointType.REVOLUTE: [(none, Z)],
+        JointType.SLIDER: [(Z, none)],
+        JointType.CYLINDRICAL: [(Z, none), (none, Z)],
+        JointType.SCREW: [(rise, Z)],
+        JointType.PLANAR: [(X, none), (Y, none), (none, Z)],
+        JointType.UNIVERSAL: [(none, X), (none, Y)],
+        JointType.BALL: [(none, X), (none, Y), (none, Z)],
     }
     return [
         {
@@ -584,11 +629,10 @@ def _steps_json(joint: Joint) -> list[dict[str, Any]]:
             "joint": joint.name,
             "range": [freedom.lower, freedom.upper],
             "rest": freedom.rest,
-            "step": step,
             "slide": slide,
             "turn": turn,
         }
-        for freedom, (step, slide, turn) in zip(freedoms(joint), steps[joint.type], strict=True)
+        for freedom, (slide, turn) in zip(proven_freedoms(joint), steps[joint.type], strict=True)
     ]
 
 
@@ -615,7 +659,7 @@ def _up(value: float) -> float:
     return math.ceil(round(value * 1000, 6)) / 1000 + 0.0
 
 
-def _npz(mesh: TriMesh) -> bytes:
+def _npz(*, compress: bool = False, **arrays: Any) -> bytes:
     buffer = io.BytesIO()
-    np.savez(buffer, vertices=mesh.vertices, triangles=mesh.triangles)
+    (np.savez_compressed if compress else np.savez)(buffer, **arrays)
     return buffer.getvalue()

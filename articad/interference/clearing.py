@@ -16,7 +16,9 @@ from numpy.typing import NDArray
 
 from articad.interference.boxtree import BoxTree
 from articad.interference.cover import Budget
+from articad.interference.rounds import Rounds, unit
 from articad.interference.spread import Spread
+from articad.interference.trail import CUT_A, CUT_B, CUT_RANGE, OF_A, OF_B, ROUND_A, ROUND_B, Trail
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -27,18 +29,35 @@ MOTION_SHARE = 1.0  # of the pieces' size: when the motion is larger, the range 
 LEAST_SHARE = 1e-3  # of the motion in any direction: along the normal of faces in one plane there is nothing to cut
 MOST_PAIRS = 4_000_000  # of pieces, after which a search is given up
 _EYE = np.eye(3)
+_COARSE = 64.0  # directions between boxes are rounded to so many parts: any direction is a proof, and few of them take less room
+
+
+class CannotCut(Exception):  # noqa: N818 - it is no error
+    """A box of which no halves are to be had."""
 
 
 class Boxes(Protocol):
-    """Boxes that can be cut in two."""
+    """Boxes that can be cut in two.
+
+    Attributes:
+        spread: What moves in each.
+        outside: Whether no joint goes there, for each.
+        columns: Which of the claim's coordinates each was cut across, −1 for those that were not.
+        halves: Numbers of what it was cut into.
+        roots: Values at which the first coordinate of the claim is divided to begin with.
+    """
 
     spread: Spread
+    outside: list[bool]
+    columns: list[int]
+    halves: list[tuple[int, int]]
+    roots: list[float]
 
     def root(self) -> IntArray:
         """Add what covers the whole range, and return its numbers."""
 
-    def cut(self, boxes: IntArray, share: FloatArray) -> tuple[IntArray, IntArray]:
-        """Cut boxes `(k,)` where `share (k, G + swings)` of the motion is largest; −1 for halves that need no cover."""
+    def cut(self, boxes: IntArray, share: FloatArray) -> IntArray:
+        """Cut boxes `(k,)` where `share (k, G)` of the motion is largest; return their halves `(k, 2)`."""
 
     def contact(self, box: int) -> tuple[float, ...] | None:
         """Return the centre of a box as coordinates to report, or None when it lies outside what joints allow."""
@@ -54,6 +73,8 @@ class Cleared:
         out_of_budget: True when it was given up.
         pairs: Pairs of pieces that were looked at.
         boxes: Boxes that were looked at.
+        trail: What was done, for a checker to follow.
+        course: The boxes it was done in.
     """
 
     contact: tuple[float, ...] | None = None
@@ -61,6 +82,8 @@ class Cleared:
     out_of_budget: bool = False
     pairs: int = 0
     boxes: int = 0
+    trail: Trail | None = None
+    course: Boxes | None = None
 
     @property
     def is_complete(self) -> bool:
@@ -70,20 +93,31 @@ class Cleared:
 
 @dataclass
 class _Pairs:
-    """Rows: a node of each tree, and a box."""
+    """Rows: a node of each tree, a box, and the row's number in the trail."""
 
     a: IntArray
     b: IntArray
     box: IntArray
+    number: IntArray
 
     def __len__(self) -> int:
         return len(self.a)
 
     def of(self, rows: NDArray[np.bool_] | IntArray) -> _Pairs:
-        return _Pairs(self.a[rows], self.b[rows], self.box[rows])
+        return _Pairs(self.a[rows], self.b[rows], self.box[rows], self.number[rows])
 
 
-def clear(a: BoxTree, b: BoxTree, boxes: Boxes, needed: float, *, epsilon: float, budget: Budget, most: int = MOST_PAIRS) -> Cleared:
+def clear(
+    a: BoxTree,
+    b: BoxTree,
+    boxes: Boxes,
+    needed: float,
+    *,
+    rounds: tuple[Rounds, Rounds] | None = None,
+    epsilon: float,
+    budget: Budget,
+    most: int = MOST_PAIRS,
+) -> Cleared:
     """Prove that two surfaces stay further apart than `needed` [mm] over boxes of motion.
 
     Args:
@@ -91,13 +125,15 @@ def clear(a: BoxTree, b: BoxTree, boxes: Boxes, needed: float, *, epsilon: float
         b: Of the part that moves.
         boxes: Of the motion.
         needed: Distance that proves nothing, such as the deflection of both meshes [mm].
+        rounds: Radii of both about the only axis or point about which the one turns against the other.
         epsilon: What is closer by no more is contact [mm].
         budget: Time.
         most: Pairs of pieces.
     """
-    search = _Search(a, b, boxes, needed + ROUNDING_MM, epsilon)
+    search = _Search(a, b, boxes, needed + ROUNDING_MM, epsilon, rounds)
     root = boxes.root()
-    stack = [_Pairs(np.zeros(len(root), dtype=np.int64), np.zeros(len(root), dtype=np.int64), root)]
+    none = np.zeros(len(root), dtype=np.int64)
+    stack = [_Pairs(none, none, root, search.trail.numbers(len(root)))]
     outcome = search.outcome
     while stack and outcome.contact is None:
         if budget.is_spent or outcome.pairs > most:
@@ -108,28 +144,51 @@ def clear(a: BoxTree, b: BoxTree, boxes: Boxes, needed: float, *, epsilon: float
             stack.append(rows.of(np.arange(len(rows)) < len(rows) - CHUNK))
             rows = rows.of(np.arange(len(rows)) >= len(rows) - CHUNK)
         outcome.pairs += len(rows)
-        stack += [found for found in search.step(rows) if len(found)]
+        try:
+            stack += [found for found in search.step(rows) if len(found)]
+        except CannotCut:
+            outcome.out_of_budget = True
+            break
     outcome.boxes = len(boxes.spread)
+    if outcome.is_complete:
+        outcome.trail = search.trail
     return outcome
 
 
 class _Search:
-    def __init__(self, a: BoxTree, b: BoxTree, boxes: Boxes, needed: float, epsilon: float) -> None:
-        self.a, self.b, self.boxes, self.needed, self.epsilon = a, b, boxes, needed, epsilon
-        self.spread = boxes.spread
+    def __init__(
+        self, a: BoxTree, b: BoxTree, boxes: Boxes, needed: float, epsilon: float, rounds: tuple[Rounds, Rounds] | None
+    ) -> None:
+        self.a, self.b, self.boxes, self.needed, self.epsilon, self.rounds = a, b, boxes, needed, epsilon, rounds
+        self.spread, self.trail = boxes.spread, Trail()
         self.outcome = Cleared()
-        self.children = np.full((0, 2), -2)
         self.size_a, self.size_b = np.linalg.norm(a.half, axis=1), np.linalg.norm(b.half, axis=1)
 
     def step(self, rows: _Pairs) -> list[_Pairs]:
         """Settle what is settled and cut the rest."""
-        single = (self.a.triangle[rows.a] >= 0) & (self.b.triangle[rows.b] >= 0)
+        outside = np.array(self.boxes.outside)[rows.box]
+        if outside.any():
+            rows = rows.of(~outside)
         out: list[_Pairs] = []
+        if self.rounds is not None:
+            rows = self._rounds(rows, *self.rounds, out)
+        single = (self.a.triangle[rows.a] >= 0) & (self.b.triangle[rows.b] >= 0)
         if not single.all():
             out += self._nodes(rows.of(~single))
         if single.any():
             out += self._triangles(rows.of(single))
         return out
+
+    def _rounds(self, rows: _Pairs, a: Rounds, b: Rounds, out: list[_Pairs]) -> _Pairs:
+        """Settle what is further from the axis than the other however it turns; return the rest."""
+        for kind, cut in ((ROUND_A, self._cut_a), (ROUND_B, self._cut_b)):
+            one, other, mine, theirs = (a, b, rows.a, rows.b) if kind == ROUND_A else (b, a, rows.b, rows.a)
+            beyond = one.least[mine] - other.most[theirs] > self.needed
+            self.trail.settle(rows.number[beyond], kind, one.direction[mine[beyond]])
+            certain = ~beyond & (one.certain[mine] - other.most[theirs] > self.needed)  # cutting this piece alone settles it
+            out.append(cut(rows.of(certain)))
+            rows = rows.of(~beyond & ~certain)
+        return rows
 
     def _nodes(self, rows: _Pairs) -> list[_Pairs]:
         T, box = self.spread.T[rows.box], rows.box
@@ -137,14 +196,18 @@ class _Search:
         centre = (R @ self.b.centre[rows.b][..., None])[..., 0] + T[:, :3, 3]
         extent = R.transpose(0, 2, 1) * self.b.half[rows.b][..., None]  # rows: half axes of b's box in a's frame
         apart = centre - self.a.centre[rows.a]
-        length = np.linalg.norm(apart, axis=1)
-        towards = apart / np.where(length > 0, length, 1.0)[:, None]
-        u = np.concatenate([np.broadcast_to(_EYE, (len(rows), 3, 3)), R.transpose(0, 2, 1), towards[:, None]], axis=1)
+        coarse = _coarse(apart)[:, None]
+        if self.rounds is not None:
+            coarse = np.concatenate([coarse, self._turning(self.a.centre[rows.a], centre)[:, None]], axis=1)
+        u = np.concatenate([np.broadcast_to(_EYE, (len(rows), 3, 3)), R.transpose(0, 2, 1), unit(coarse)], axis=1)
         thick = (np.abs(u) @ self.a.half[rows.a][..., None])[..., 0] + np.abs(u @ extent.transpose(0, 2, 1)).sum(axis=2)
-        still = np.abs((u @ apart[..., None])[..., 0]) - thick
+        ahead = (u @ apart[..., None])[..., 0]
+        still = np.abs(ahead) - thick
         shares = self.spread.first_order(box, u, centre, extent)
         motion = shares.sum(axis=2) + self.spread.second_order(box, u, centre, self.size_b[rows.b])
-        left = ~((still - motion).max(axis=1) > self.needed)
+        clear = still - motion > self.needed
+        left = ~clear.any(axis=1)
+        self._settle(rows.of(~left), np.argmax(clear[~left], axis=1), np.sign(ahead[~left]), coarse[~left])
         rows, best = rows.of(left), np.argmax(still[left], axis=1)
         at = np.arange(len(rows))
         along, most = motion[left][at, best], motion[left].max(axis=1)
@@ -152,34 +215,47 @@ class _Search:
         shares = shares[left]
         return [*self._cut_range(rows.of(moving), shares[at, best][moving]), *self._cut_pieces(rows.of(~moving))]
 
+    def _settle(self, rows: _Pairs, best: IntArray, sign: FloatArray, coarse: FloatArray) -> None:
+        """Note the directions that settled pieces: axes of a, of b, or what is between the two."""
+        axis = np.tile(_EYE, (2, 1))
+        for which, kind in ((best < 3, OF_A), ((best >= 3) & (best < 6), OF_B)):
+            chosen = best[which]
+            self.trail.settle(rows.number[which], kind, axis[chosen] * sign[which, chosen][:, None])
+        between = best >= 6
+        self.trail.settle(rows.number[between], OF_A, coarse[between, best[between] - 6] * sign[between, best[between]][:, None])
+
+    def _turning(self, p: FloatArray, q: FloatArray) -> FloatArray:
+        """Return the directions in which places of a and b lie apart as seen from the axis, `(n, 3)`: that in which a turn brings them."""
+        assert self.rounds is not None
+        core = self.rounds[0].core
+        return _coarse((unit(core.local(q)) - unit(core.local(p))) @ core.frame[:3, : core.dimensions].T)
+
     def _cut_pieces(self, rows: _Pairs) -> list[_Pairs]:
         """Cut the larger piece of each pair that has any to cut."""
         whole_a, whole_b = self.a.children[rows.a, 0] < 0, self.b.children[rows.b, 0] < 0
         first = ~whole_a & (whole_b | (self.size_a[rows.a] >= self.size_b[rows.b]))
-        p, q = rows.of(first), rows.of(~first)
-        return [
-            _Pairs(
-                np.concatenate([self.a.children[p.a].ravel(), np.repeat(q.a, 2)]),
-                np.concatenate([np.repeat(p.b, 2), self.b.children[q.b].ravel()]),
-                np.concatenate([np.repeat(p.box, 2), np.repeat(q.box, 2)]),
-            )
-        ]
+        return [self._cut_a(rows.of(first)), self._cut_b(rows.of(~first))]
+
+    def _cut_a(self, rows: _Pairs) -> _Pairs:
+        numbers = self.trail.cut(rows.number, CUT_A)
+        return _Pairs(self.a.children[rows.a].ravel(), np.repeat(rows.b, 2), np.repeat(rows.box, 2), numbers)
+
+    def _cut_b(self, rows: _Pairs) -> _Pairs:
+        numbers = self.trail.cut(rows.number, CUT_B)
+        return _Pairs(np.repeat(rows.a, 2), self.b.children[rows.b].ravel(), np.repeat(rows.box, 2), numbers)
 
     def _cut_range(self, rows: _Pairs, shares: FloatArray) -> list[_Pairs]:
         if not len(rows):
             return []
         boxes, where = np.unique(rows.box, return_inverse=True)
-        if len(self.children) < len(self.spread):
-            self.children = np.concatenate([self.children, np.full((len(self.spread) - len(self.children), 2), -2)])
-        new = self.children[boxes, 0] == -2
+        new = np.array([self.boxes.columns[box] < 0 for box in boxes.tolist()])
         if new.any():
             total = np.zeros((len(boxes), shares.shape[1]))
             np.add.at(total, where, shares / np.maximum(shares.sum(axis=1, keepdims=True), 1e-300))
-            halves = self.boxes.cut(boxes[new], total[new])
-            self.children[boxes[new]] = np.stack(halves, axis=1)
-        children = self.children[rows.box]
-        found = _Pairs(np.repeat(rows.a, 2), np.repeat(rows.b, 2), children.ravel())
-        return [found.of(found.box >= 0)]
+            self.boxes.cut(boxes[new], total[new])
+        halves = np.array([self.boxes.halves[box] for box in boxes.tolist()])[where]
+        numbers = self.trail.cut(rows.number, CUT_RANGE)
+        return [_Pairs(np.repeat(rows.a, 2), np.repeat(rows.b, 2), halves.ravel(), numbers)]
 
     def _triangles(self, rows: _Pairs) -> list[_Pairs]:
         T, box = self.spread.T[rows.box], rows.box
@@ -187,6 +263,8 @@ class _Search:
         q = self.b.corners[self.b.triangle[rows.b]] @ T[:, :3, :3].transpose(0, 2, 1) + T[:, None, :3, 3]
         nearest, towards = shortest_between(p, q)
         u = np.stack([_normals(p), _normals(q), towards], axis=1)
+        if self.rounds is not None:
+            u = np.concatenate([u, unit(self._turning(p.mean(axis=1), q.mean(axis=1)))[:, None]], axis=1)
         mine, theirs = u @ p.transpose(0, 2, 1), u @ q.transpose(0, 2, 1)  # (n, D, 3 corners)
         ahead = theirs.min(axis=2) - mine.max(axis=2) > mine.min(axis=2) - theirs.max(axis=2)
         u = np.where(ahead[..., None], u, -u)
@@ -195,7 +273,15 @@ class _Search:
         shares = [self.spread.first_order(box, u, q[:, k], None) for k in range(3)]
         motion = np.stack([shares[k].sum(axis=2) + self.spread.second_order(box, u, q[:, k], nothing) for k in range(3)], axis=2)
         gap = (theirs - motion).min(axis=2) - mine.max(axis=2)
-        left = np.flatnonzero(gap.max(axis=1) <= self.needed)
+        clear = gap > self.needed
+        first = np.argmax(clear, axis=1)
+        done = clear.any(axis=1)
+        for which, kind in ((done & (first != 1), OF_A), (done & (first == 1), OF_B)):
+            chosen = u[which, first[which]]
+            if kind == OF_B:  # as b sees it, so that a face has one direction wherever it is
+                chosen = _normals(self.b.corners[self.b.triangle[rows.b[which]]]) * np.where(ahead[which, 1], 1.0, -1.0)[:, None]
+            self.trail.settle(rows.number[which], kind, chosen)
+        left = np.flatnonzero(~done)
         touching = left[nearest[left] <= self.needed + self.epsilon]
         for row in touching:
             contact = self.boxes.contact(int(box[row]))
@@ -212,6 +298,11 @@ class _Search:
             self.outcome.contact = self.boxes.contact(self.outcome.box) or ()
             return []
         return self._cut_range(rows.of(left), share + 1e-300)
+
+
+def _coarse(u: FloatArray) -> FloatArray:
+    """Return directions rounded so that few different ones remain."""
+    return np.asarray(np.round(u / np.maximum(np.abs(u).max(axis=1, keepdims=True), 1e-300) * _COARSE) / _COARSE)
 
 
 def _normals(p: FloatArray) -> FloatArray:
@@ -261,52 +352,45 @@ class Ranges:
     Args:
         spread: Empty, of the chain.
         bounds: Of each coordinate.
-        left_out: Whether a box (centre, half) lies outside what the joints allow.
+        left_out: Whether a box (lower ends, upper ends) lies outside what the joints allow.
     """
 
     def __init__(self, spread: Spread, bounds: FloatArray, left_out: Callable[[FloatArray, FloatArray], bool] | None = None) -> None:
         self.spread, self.bounds, self.left_out = spread, bounds, left_out
-        n = len(bounds)
-        self.centre, self.half = np.empty((0, n)), np.empty((0, n))
+        self.ends = np.empty((0, len(bounds), 2))
+        self.outside, self.columns, self.halves = list[bool](), list[int](), list[tuple[int, int]]()
+        self.roots: list[float] = bounds[0].tolist()
 
     def root(self) -> IntArray:
         """Add the whole range."""
-        return self._add(self.bounds.mean(axis=1)[None], np.diff(self.bounds, axis=1).T / 2)
+        return self._add(self.bounds[None])
 
-    def _add(self, centre: FloatArray, half: FloatArray) -> IntArray:
-        self.centre, self.half = np.concatenate([self.centre, centre]), np.concatenate([self.half, half])
-        width = [np.linalg.norm(half[:, list(factor.columns)], axis=1) for _, factor in self.spread.factors]
-        return self.spread.add(centre, np.stack(width, axis=1))
+    def _add(self, ends: FloatArray) -> IntArray:
+        self.ends = np.concatenate([self.ends, ends])
+        self.outside += [self.left_out is not None and self.left_out(*box.T) for box in ends]
+        self.columns += [-1] * len(ends)
+        self.halves += [(-1, -1)] * len(ends)
+        columns = [factor.column for _, factor in self.spread.factors]
+        return self.spread.add((ends[..., 0] + ends[..., 1]) / 2, np.diff(ends, axis=2)[:, columns, 0] / 2)
 
-    def cut(self, boxes: IntArray, share: FloatArray) -> tuple[IntArray, IntArray]:
+    def cut(self, boxes: IntArray, share: FloatArray) -> IntArray:
         """Cut each box across the coordinate that has the largest share."""
-        n_factors, half = len(self.spread.factors), self.half[boxes]
-        by_column = np.zeros(half.shape)
+        by_column = np.full((len(boxes), len(self.bounds)), -1.0)
         for f, (_, factor) in enumerate(self.spread.factors):
-            mine = share[:, f]
-            if factor.is_swing:
-                mine = share[:, n_factors + self.spread.swings.index(f)]
-                larger = np.argmax(half[:, list(factor.columns)], axis=1)
-                by_column[np.arange(len(boxes)), np.array(factor.columns)[larger]] += mine
-            else:
-                by_column[:, factor.columns[0]] += mine
-        by_column[half <= 0] = -1.0
+            by_column[:, factor.column] = share[:, f]
+        by_column[self.ends[boxes, :, 0] >= self.ends[boxes, :, 1]] = -1.0
         at = np.argmax(by_column, axis=1)
         rows = np.arange(len(boxes))
-        smaller = half.copy()
-        smaller[rows, at] /= 2
-        step = np.zeros_like(half)
-        step[rows, at] = smaller[rows, at]
-        centre = self.centre[boxes]
-        numbers = self._add(np.concatenate([centre - step, centre + step]), np.concatenate([smaller, smaller]))
-        if self.left_out is not None:
-            dropped = [self.left_out(self.centre[k], self.half[k]) for k in numbers]
-            numbers = np.where(dropped, -1, numbers)
-        return numbers[: len(boxes)], numbers[len(boxes) :]
+        low, high = self.ends[boxes].copy(), self.ends[boxes].copy()
+        low[rows, at, 1] = high[rows, at, 0] = (low[rows, at, 0] + low[rows, at, 1]) / 2
+        numbers = self._add(np.stack([low, high], axis=1).reshape(-1, *low.shape[1:])).reshape(-1, 2)
+        for box, column, halves in zip(boxes.tolist(), at.tolist(), numbers.tolist(), strict=True):
+            self.columns[box], self.halves[box] = column, (halves[0], halves[1])
+        return numbers
 
     def contact(self, box: int) -> tuple[float, ...] | None:
         """Return the centre of a box."""
-        centre = self.centre[box]
-        if self.left_out is not None and self.left_out(centre, np.zeros_like(centre)):
+        centre = self.ends[box].mean(axis=1)
+        if self.left_out is not None and self.left_out(centre, centre):
             return None
         return tuple(centre.tolist())

@@ -1,8 +1,8 @@
-"""Proof along a driver of loops or couplings: the joints that follow are where Kantorovich's theorem says they are.
+"""Proof along a driver of loops or couplings: the joints that follow stay near lines that the checker of certificates can verify.
 
-Kinematics follows the branch in steps small enough that each has exactly one solution, within a tube about its linear predictor.
-So over a step every coordinate stays within the tube of a straight line: a box with one long side, on which the bounds of
-`spread` hold. Where that does not suffice the step is halved about a solution of its own, and the tube shrinks fourfold.
+Over a short piece of the driver's range every coordinate is the only solution near its linear predictor (Brouwer, Banach), so that a
+box with one long side holds it, on which the bounds of `spread` hold. Where that does not suffice the piece is halved about a solution
+of its own, and its tube shrinks fourfold. The inequalities are the checker's own: what it would not believe is not built upon.
 """
 
 from __future__ import annotations
@@ -16,74 +16,79 @@ import numpy as np
 from numpy.typing import NDArray
 
 from articad.connectors.se3 import SE3
-from articad.interference.clearing import Boxes, Cleared
+from articad.interference.clearing import Boxes, CannotCut, Cleared
 from articad.interference.cover import Budget
-from articad.interference.motion import Chain, Route, swing_and_twist
+from articad.interference.motion import Chain, Route, proven_freedoms, turns
 from articad.interference.overlap import Overlap, overlap
 from articad.interference.proof import Proof, Prover, Shrink
 from articad.interference.scene import Scene
 from articad.interference.spread import Spread
 from articad.interference.verdict import UNRELATED_VOLUME_MM3
-from articad.kinematics.continuation import Node
 from articad.kinematics.joints import Coordinate, JointType
 from articad.kinematics.layout import Layout
 from articad.kinematics.mechanism import Mechanism
 from articad.kinematics.motion import track_of
+from articad.verify_certificate import PROOF, REST, Checker, Refuted
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
-SMALLEST_STEP = 1e-4  # of the driver, scaled: to which the end of its free range is found
+SMALLEST_STEP = 1e-6  # of the driver's range, below which it is not followed further
+FIRST_STEP = 1 / 32  # of the way to a bound
+WIDER = 4.0  # than the distance within which there is a solution: that within which there is no other one
+SMALLEST_PIECE = 1e-4  # rad or mm: to which the end of what is free along a driver is found
 LOOKS = 24  # poses looked at beyond contact
-_LINEAR_ROUNDING = 1e-9  # rad or mm: of what is in proportion to the driver
-_REACHED = 1e-9  # of the range: what the steps of kinematics leave uncovered
 
 
 @dataclass(frozen=True, eq=False)
-class Step:
-    """A piece of the way: from a solution on, by `length`, scaled.
+class Piece:
+    """A piece of the driver's range.
 
     Attributes:
-        sign: Towards growing or falling values of the driver.
-        node: Solution at its beginning.
-        length: Scaled.
-        middle: Coordinates of the predictor at its middle, `(columns,)`.
-        line: How far each freedom goes along the line to either end, with its sign, `(freedoms,)` [rad, mm].
-        tube: How far each may be from the line, `(freedoms,)` [rad, mm].
+        ends: Of the driver [rad or mm].
+        number: Among all pieces.
+        line: Of each coordinate that follows, and of the driver: its value in the middle, its rate, and how far it is from that line.
     """
 
-    sign: int
-    node: Node
-    length: float
-    middle: FloatArray
-    line: FloatArray
-    tube: FloatArray
+    ends: tuple[float, float]
+    number: int
+    line: Mapping[str, tuple[float, float, float]]
 
 
 class Way:
-    """What follows one driver over its range, in steps that are halved when asked for; shared by all pairs.
+    """What follows one driver over its range, in pieces that are halved when asked for; shared by all pairs.
 
     Args:
         mechanism: With loops or couplings.
         driver: Index among its drivers.
+        document: Joints, couplings, linkage and drivers as they stand in a certificate.
 
     Raises:
         LoopError: If the loops cannot be closed.
         ValueError: If nothing follows the driver.
     """
 
-    def __init__(self, mechanism: Mechanism, driver: int) -> None:
+    def __init__(self, mechanism: Mechanism, driver: int, document: Mapping[str, Any]) -> None:
         self.coordinate: Coordinate = mechanism.drivers[driver]
-        found = track_of(mechanism, driver, mechanism.rest, certify=True)
+        found = track_of(mechanism, driver, mechanism.rest, certify=False)
         if found is None:
             raise ValueError(f"{self.coordinate.name} drives no loop or coupling")
         self.track, self.follower = found, found.follower
         feasible = mechanism.feasible_range(self.coordinate.name)
         self.bounds = self._bound(feasible.lower, -1), self._bound(feasible.upper, 1)
         self.reasons = feasible.lower_reason, feasible.upper_reason
-        self._exact = [self.layout.freedom_of(self.layout.column_of[name]) for name in tied_to(mechanism, self.coordinate.name)]
-        self._halves: dict[Step, tuple[Step, Step]] = {}
-        self._whole: dict[int, list[Step]] = {}
+        self._checker = Checker(dict(document), {PROOF: {}})
+        self.names = self._checker.followers(self.coordinate.name)
+        self._found = self._checker.begin(self.names)
+        self.others: list[int] = []
+        self._balls = {
+            freedom.name: (joint.name, at)
+            for joint in mechanism.joints
+            if joint.type is JointType.BALL
+            for at, freedom in enumerate(proven_freedoms(joint))
+        }
+        self._halves: dict[int, tuple[Piece, Piece]] = {}
+        self._whole: dict[int, list[Piece]] = {}
 
     @property
     def layout(self) -> Layout:
@@ -96,55 +101,90 @@ class Way:
         end = min(declared, feasible) if sign > 0 else max(declared, feasible)
         return end if math.isfinite(end) else self.track.start + sign * math.pi
 
-    def steps(self, sign: int) -> list[Step]:
-        """Return the steps that kinematics took towards one end."""
+    def steps(self, sign: int) -> list[Piece]:
+        """Return the pieces from rest towards one end, as far as it can be followed."""
         if sign not in self._whole:
-            end = self.bounds[1 if sign > 0 else 0]
-            trace = self.track.side(end)
-            length = min(abs(end - self.track.start) / self._unit, trace.nodes[-1].s)
-            stations = [node for node in trace.nodes if node.s < length]
-            stops = [node.s for node in stations[1:]] + [length] * bool(stations)
-            self._whole[sign] = [self._step(sign, node, stop - node.s) for node, stop in zip(stations, stops, strict=True)]
+            at, end = self.track.start, self.bounds[1 if sign > 0 else 0]
+            step, last, found = (end - at) * FIRST_STEP, 0, list[Piece]()
+            least = abs(end - at) * SMALLEST_STEP
+            while at != end and abs(step) > least:
+                there = end if abs(end - at) <= abs(step) * 1.5 else at + step
+                piece = self._piece((min(at, there), max(at, there)), last)
+                if piece is None:
+                    step /= 2
+                    continue
+                found.append(piece)
+                at, last, step = there, piece.number, step * 1.5
+            self._whole[sign] = found
         return self._whole[sign]
 
     def reached(self, sign: int) -> float:
-        """Return how far the steps go towards one end: the end, or where no further step is proven."""
-        end, steps = self.bounds[1 if sign > 0 else 0], self.steps(sign)
-        last = self.values(steps[-1])[1 if sign > 0 else 0] if steps else self.track.start
-        return end if abs(last - end) <= _REACHED * max(1.0, abs(end - self.track.start)) else last
+        """Return how far the pieces go towards one end."""
+        steps = self.steps(sign)
+        return steps[-1].ends[1 if sign > 0 else 0] if steps else self.track.start
 
-    def values(self, step: Step) -> tuple[float, float]:
-        """Return the driver's values at the ends of a step, in order."""
-        ends = sorted(self.track.value(step.sign, s) for s in (step.node.s, step.node.s + step.length))
-        return ends[0], ends[1]
+    def halves(self, piece: Piece) -> tuple[Piece, Piece] | None:
+        """Return the two halves of a piece, each about a solution of its own; None where that is not to be had."""
+        if piece.number not in self._halves:
+            low, high = piece.ends
+            middle = (high + low) / 2
+            halves = self._piece((low, middle), piece.number), self._piece((middle, high), piece.number)
+            if halves[0] is None or halves[1] is None:
+                return None
+            self._halves[piece.number] = halves[0], halves[1]
+        return self._halves[piece.number]
 
-    def halves(self, step: Step) -> tuple[Step, Step]:
-        """Return the two halves of a step, the second about a solution of its own."""
-        if step not in self._halves:
-            half, s = step.length / 2, step.node.s + step.length / 2
-            Q, _, _ = self.track.evaluate(np.array([self.track.value(step.sign, s)]))
-            middle = self.follower.node(s, Q[0], self.follower.linearized(Q[0]), self.track.direction(step.sign))
-            self._halves[step] = self._step(step.sign, step.node, half), self._step(step.sign, middle, half)
-        return self._halves[step]
+    def _piece(self, ends: tuple[float, float], beside: int) -> Piece | None:
+        """Return a piece on the branch of another one if the checker would believe it."""
+        span = np.array(ends)
+        guess = self._solution(float(span.mean()))
+        if guess is None:
+            return None
+        try:
+            self._checker.join(self._found, self.names, span, guess, self._tube(span, guess), beside)
+        except Refuted:
+            return None
+        self.others.append(beside)
+        _, values, rates, near, _ = self._found[-1]
+        line = dict(zip(self.names, zip(values.tolist(), rates.tolist(), near.tolist(), strict=True), strict=True))
+        return Piece((float(span[0]), float(span[1])), len(self._found) - 1, line)
 
-    @property
-    def _unit(self) -> float:
-        return abs(self.track.value(1, 1.0) - self.track.start)
+    def _tube(self, ends: FloatArray, guess: FloatArray) -> FloatArray:
+        """Return distances within which there should be no other solution."""
+        values = {**self._checker.rest, **dict(zip(self.names, guess.tolist(), strict=True))}
+        r, J, share = self._checker.closure(values, self.names)
+        A, wide = np.linalg.pinv(J[:, 1:], rcond=1e-7), np.zeros(len(self.names))
+        rate = np.abs(np.array([1.0, *(-A @ J[:, 0])])) * (ends[1] - ends[0]) / 2
+        for _ in range(4):
+            near = np.abs(A @ r) + np.abs(A) @ (share @ (rate + wide)) ** 2 / 2
+            wide[1:] = WIDER * near + 2 * REST
+        return wide
 
-    def _step(self, sign: int, node: Node, length: float) -> Step:
-        system, half = self.follower.system, length / 2
-        tube = float(self.follower.tube(node, np.asarray(length))) * system.scale
-        tube[self._exact] = np.minimum(tube[self._exact], _LINEAR_ROUNDING)  # no loop bends what a coupling ties to the driver
-        return Step(sign, node, length, system.move(node.Q, half * node.rate), node.rate * half * system.scale, tube)
+    def _solution(self, value: float) -> FloatArray | None:
+        """Return what the driver and its followers are at a value of it."""
+        Q, reached, _ = self.track.evaluate(np.array([value]))
+        if not reached[0]:
+            return None
+        known = self.values(Q[0])
+        return np.array([value, *(known.get(name, self._checker.rest[name]) for name in self.names[1:])])
 
+    def values(self, Q: FloatArray) -> dict[str, float]:
+        """Return the coordinates of the joints that take part as they are proven: a ball's are turns."""
+        found = {name: float(Q[column]) for name, column in self.layout.column_of.items()}
+        for name, (joint, at) in self._balls.items():
+            if joint in self.layout.columns:
+                found[name] = turns(SE3.from_quaternion(Q[self.layout.columns[joint]]).rotation)[at]
+        return found
 
-def tied_to(mechanism: Mechanism, name: str) -> list[str]:
-    """Return the coordinates that couplings alone tie to one, itself included: they follow it in proportion."""
-    found = [name]
-    for near in found:
-        for c in mechanism.couplings:
-            found += [far for one, far in ((c.a, c.b), (c.b, c.a)) if one == near and far not in found]
-    return found
+    def arrays(self) -> dict[str, FloatArray | IntArray]:
+        """Return all pieces as a checker reads them."""
+        rows = self._found[1:]
+        return {
+            f"{self.coordinate.name}.ends": np.array([row[0] for row in rows]).reshape(-1, 2),
+            f"{self.coordinate.name}.values": np.array([row[1] for row in rows]).reshape(-1, len(self.names)),
+            f"{self.coordinate.name}.wide": np.array([row[4] for row in rows]).reshape(-1, len(self.names)),
+            f"{self.coordinate.name}.other": np.array(self.others, dtype=np.int64),
+        }
 
 
 class Steps:
@@ -154,81 +194,80 @@ class Steps:
         way: Of the driver.
         chain: Between two parts.
         others: Bounds of the chain's coordinates that do not follow; NaN for those that do.
-        steps: To be covered; by default the whole way.
+        steps: To be covered, in the order of the driver; by default the whole way.
     """
 
-    def __init__(self, way: Way, chain: Chain, others: FloatArray, steps: Sequence[Step] | None = None) -> None:
+    def __init__(self, way: Way, chain: Chain, others: FloatArray, steps: Sequence[Piece] | None = None) -> None:
         self.way, self.chain, self.spread = way, chain, Spread(chain)
-        self.free = ~np.isnan(others[:, 0])
+        self.free = np.flatnonzero(~np.isnan(others[:, 0]))
         self.others = others
-        self.whole = [step for sign in (1, -1) for step in way.steps(sign)] if steps is None else steps
-        self.rows: list[tuple[Step, FloatArray, FloatArray]] = []
+        self.whole = [*way.steps(-1)[::-1], *way.steps(1)] if steps is None else steps
+        self.rows: list[tuple[Piece, FloatArray]] = []
+        self.outside, self.columns, self.halves = list[bool](), list[int](), list[tuple[int, int]]()
+        self.roots = [step.ends[0] for step in self.whole] + [self.whole[-1].ends[1]] * bool(self.whole)
 
     def root(self) -> IntArray:
-        """Add the steps, each with the whole range of the other coordinates."""
-        middle = np.where(self.free, self.others.mean(axis=1), 0.0)
-        half = np.where(self.free, np.diff(self.others, axis=1)[:, 0] / 2, 0.0)
-        return self._add([(step, middle, half) for step in self.whole])
+        """Add the pieces, each with the whole range of the other coordinates."""
+        return self._add([(step, self.others) for step in self.whole])
 
-    def _add(self, rows: list[tuple[Step, FloatArray, FloatArray]]) -> IntArray:
+    def _add(self, rows: list[tuple[Piece, FloatArray]]) -> IntArray:
         if not rows:
             return np.empty(0, dtype=np.int64)
-        placed = [self._placed(*row) for row in rows]
-        centres, lines, tubes = (np.array(part) for part in zip(*placed, strict=True))
+        centres, lines, tubes = (np.array(part) for part in zip(*(self._placed(*row) for row in rows), strict=True))
         generators = np.concatenate([lines[:, None], tubes[:, :, None] * np.eye(tubes.shape[1])], axis=1)
-        for f in self.spread.swings:
-            generators[..., f] = 0.0
         self.rows += rows
+        self.outside += [False] * len(rows)
+        self.columns += [-1] * len(rows)
+        self.halves += [(-1, -1)] * len(rows)
         return self.spread.add(centres, np.abs(lines) + tubes, generators)
 
-    def _placed(self, step: Step, middle: FloatArray, half: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    def _placed(self, step: Piece, ends: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Return the chain's coordinates, and of each factor how far it goes along the line and aside of it."""
-        values, layout = middle.copy(), self.way.layout
+        values = np.where(np.isnan(ends[:, 0]), self.chain.rest, ends.mean(axis=1))  # another driver stands
         line, aside = np.zeros(len(self.spread.factors)), np.zeros(len(self.spread.factors))
-        for f, (at, factor) in enumerate(self.spread.factors):
-            joint = self.chain.movers[at].joint
-            if self.free[factor.columns[0]]:
-                aside[f] = np.linalg.norm(half[list(factor.columns)])
-            elif joint.type is JointType.BALL:
-                place = layout.freedoms[joint.name]
-                if factor.is_swing:  # its whole turn; then the twist has nothing to add
-                    values[list(self.chain.movers[at].columns)] = swing_and_twist(step.middle[layout.columns[joint.name]])
-                    aside[f] = float(np.linalg.norm(step.line[place])) + float(np.max(step.tube[place]))
-            else:
-                column = layout.column_of[self.chain.freedoms[factor.columns[0]].name]
-                values[factor.columns[0]] = step.middle[column]
-                freedom = layout.freedom_of(column)
-                line[f], aside[f] = step.line[freedom], step.tube[freedom]
+        half = (step.ends[1] - step.ends[0]) / 2
+        for f, (_, factor) in enumerate(self.spread.factors):
+            name = self.chain.freedoms[factor.column].name
+            if name in step.line:
+                values[factor.column], rate, aside[f] = step.line[name]
+                line[f] = rate * half
+            elif factor.column in self.free:
+                aside[f] = (ends[factor.column, 1] - ends[factor.column, 0]) / 2
         return values, line, aside
 
-    def cut(self, boxes: IntArray, share: FloatArray) -> tuple[IntArray, IntArray]:
-        """Halve the step, or the range of a coordinate that moves by itself, whichever has the larger share."""
-        pairs = [self._cut(self.rows[box], share[row]) for row, box in enumerate(boxes.tolist())]
-        numbers = self._add([half for pair in pairs for half in pair])
-        return numbers[0::2], numbers[1::2]
+    def cut(self, boxes: IntArray, share: FloatArray) -> IntArray:
+        """Halve the piece, or the range of a coordinate that moves by itself, whichever has the larger share."""
+        pairs = [self._cut(int(box), share[row]) for row, box in enumerate(boxes.tolist())]
+        numbers = self._add([half for pair in pairs for half in pair]).reshape(-1, 2)
+        for box, halves in zip(boxes.tolist(), numbers.tolist(), strict=True):
+            self.halves[box] = halves[0], halves[1]
+        return numbers
 
-    def _cut(self, row: tuple[Step, FloatArray, FloatArray], share: FloatArray) -> list[tuple[Step, FloatArray, FloatArray]]:
-        step, middle, half = row
-        own = np.zeros(len(half))
+    def _cut(self, box: int, share: FloatArray) -> list[tuple[Piece, FloatArray]]:
+        step, ends = self.rows[box]
+        own = np.full(len(ends), -1.0)
         for f, (_, factor) in enumerate(self.spread.factors):
-            if self.free[factor.columns[0]]:
-                larger = max(factor.columns, key=lambda column: half[column])
-                own[larger] += share[len(self.spread.factors) + 1 + self.spread.swings.index(f)] if factor.is_swing else share[1 + f]
-        if own.sum() <= share.sum() - own.sum():
-            return [(part, middle, half) for part in self.way.halves(step)]
+            if factor.column in self.free:
+                own[factor.column] = share[1 + f]
+        halves = self.way.halves(step) if own.max() <= share.sum() - np.maximum(own, 0.0).sum() or not len(self.free) else None
+        if halves is not None or not len(self.free):
+            self.columns[box] = 0
+            if halves is None:
+                raise CannotCut
+            return [(part, ends) for part in halves]
         at = int(np.argmax(own))
-        smaller, shift = half.copy(), np.zeros(len(half))
-        smaller[at] = shift[at] = half[at] / 2
-        return [(step, middle - shift, smaller), (step, middle + shift, smaller)]
+        self.columns[box] = 1 + int(np.searchsorted(self.free, at))
+        low, high = ends.copy(), ends.copy()
+        low[at, 1] = high[at, 0] = (ends[at, 0] + ends[at, 1]) / 2
+        return [(step, low), (step, high)]
 
     def contact(self, box: int) -> tuple[float, ...] | None:
         """Return the chain's coordinates at the middle of a box."""
-        step, middle, half = self.rows[box]
-        return tuple(self._placed(step, middle, half)[0].tolist())
+        return tuple(self._placed(*self.rows[box])[0].tolist())
 
     def value(self, box: int) -> float:
         """Return the driver's value at the middle of a box."""
-        return sum(self.way.values(self.rows[box][0])) / 2
+        return sum(self.rows[box][0].ends) / 2
 
 
 class LinkageProver(Prover):
@@ -278,7 +317,7 @@ class LinkageProver(Prover):
         if outcome.is_complete:
             vary = self.vary(self.bounds)
             lower, upper = vary[self.coordinate.name]
-            claim = replace(self.claim(begun.overlap, vary, shrink), start={self.coordinate.name: self.way.track.start})
+            claim = replace(self.claim(begun.overlap, vary, shrink, outcome), start={self.coordinate.name: self.way.track.start})
             return replace(found, claims=(claim,), lower=lower, upper=upper)
         if outcome.contact is None or self._last is None:
             return found
@@ -304,15 +343,16 @@ class LinkageProver(Prover):
         """Return how far from rest the driver may go either way."""
         ends = [self.way.track.start, self.way.track.start]
         for end, sign in enumerate((-1, 1)):
-            todo = self.way.steps(sign)[::-1]
+            todo = list(self.way.steps(sign)[::-1])
             while todo:
                 step = todo.pop()
                 if self.search_over(Steps(self.way, self.chain, self.others, [step]), shrink).is_complete:
-                    ends[end] = self.way.values(step)[end]
-                elif step.length > SMALLEST_STEP:
-                    todo += self.way.halves(step)[::-1]
-                else:
+                    ends[end] = step.ends[end]
+                    continue
+                halves = self.way.halves(step) if step.ends[1] - step.ends[0] > SMALLEST_PIECE else None
+                if halves is None:
                     break
+                todo += halves[::-sign]
         return ends[0], ends[1]
 
     def worst(self, proof: Proof) -> tuple[Overlap, float | None]:
@@ -330,14 +370,5 @@ class LinkageProver(Prover):
 
     def _values(self, Q: FloatArray, known: Mapping[str, float]) -> list[float]:
         """Return the chain's coordinates where the linkage is at Q, those that move by themselves as at a contact."""
-        layout = self.way.layout
-        values: list[float] = []
-        for mover in self.chain.movers:
-            names = [self.chain.freedoms[column].name for column in mover.columns]
-            if mover.joint.name not in layout.columns:
-                values += [known[name] for name in names]
-            elif mover.joint.type is JointType.BALL:
-                values += swing_and_twist(Q[layout.columns[mover.joint.name]])
-            else:
-                values += Q[layout.columns[mover.joint.name]].tolist()
-        return values
+        followed = self.way.values(Q)
+        return [followed.get(freedom.name, known[freedom.name]) for freedom in self.chain.freedoms]

@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from articad.connectors.mate import flip
+from articad.connectors.se3 import SE3
 from articad.kinematics.joints import Joint, JointType
 
 FloatArray = NDArray[np.float64]
@@ -91,6 +92,32 @@ def driver_values(joint: Joint, values: Sequence[float]) -> tuple[float, ...]:
     x, y = s * sx, s * sy
     cz, sz = math.cos(twist / 2), math.sin(twist / 2)
     return (x * cz + y * sz, y * cz - x * sz, c * sz, c * cz)
+
+
+def proven_freedoms(joint: Joint) -> tuple[Freedom, ...]:
+    """Return the coordinates along which a joint is proven: a ball's are turns about x, y and z, one after the other.
+
+    They hold every swing within its cone and every twist within its limits, and a little more twist: what a turn about y after one
+    about x twists is at most twice atan(tan²(a/2)), where a is the corner at which both turn alike.
+    """
+    if joint.type is not JointType.BALL:
+        return freedoms(joint)
+    cone = min(math.pi if joint.limits.cone is None else joint.limits.cone, math.pi)
+    least, most = FULL_TURN if joint.limits.twist is None else joint.limits.twist
+    more = 2 * math.atan(math.tan(math.acos(math.sqrt(math.cos(cone))) / 2) ** 2) if cone < math.pi / 2 else math.pi
+    twist = FULL_TURN if most - least + 2 * more >= 2 * math.pi else (least - more, most + more)
+    ranges = {"x": (-cone, cone), "y": (-min(cone, math.pi / 2), min(cone, math.pi / 2)), "z": twist}
+    return tuple(Freedom(f"{joint.name}.{key}", lo, hi, 0.0) for key, (lo, hi) in ranges.items())
+
+
+def turns(R: FloatArray) -> list[float]:
+    """Return the turns about x, y and z of a rotation `(3, 3)`, one after the other: what a ball is proven along."""
+    return [math.atan2(-R[1, 2], R[2, 2]), math.asin(max(-1.0, min(1.0, R[0, 2]))), math.atan2(-R[0, 1], R[0, 0])]
+
+
+def turned(values: Sequence[float]) -> FloatArray:
+    """Return the motion of a ball for its turns about x, y and z, `(4, 4)`."""
+    return np.asarray((SE3.rot_x(values[0]) @ SE3.rot_y(values[1]) @ SE3.rot_z(values[2])).matrix)
 
 
 def swing_and_twist(quaternion: FloatArray) -> list[float]:
@@ -187,9 +214,13 @@ class Chain:
         hold: Values of all other freedoms on the way, by name.
         movers: The joints that move, from a to b.
         last: K behind the last of them.
+        proving: Whether balls move along their proven freedoms.
     """
 
-    def __init__(self, route: Route, moving: Sequence[str], values: Mapping[str, float] | None = None) -> None:
+    def __init__(
+        self, route: Route, moving: Sequence[str], values: Mapping[str, float] | None = None, *, proving: bool = False
+    ) -> None:
+        self.proving = proving
         self.a, self.b = route.parts[0], route.parts[-1]
         self.via = tuple(joint.name for joint in route.joints)
         held = dict(values or {})
@@ -203,7 +234,7 @@ class Chain:
             if not forward:
                 L, R = _inverse(R), _inverse(L)
             K = K @ L
-            mine = freedoms(joint)
+            mine = proven_freedoms(joint) if proving else freedoms(joint)
             if joint.name in moving and mine:
                 columns = tuple(range(len(found), len(found) + len(mine)))
                 self.movers.append(Mover(joint, forward, columns, K))
@@ -211,7 +242,7 @@ class Chain:
                 K = R
             else:
                 self.hold.update({freedom.name: held.get(freedom.name, freedom.rest) for freedom in mine})
-                J = motion_matrix(joint, [self.hold[freedom.name] for freedom in mine]) if mine else np.eye(4)
+                J = self._moved(joint, [self.hold[freedom.name] for freedom in mine]) if mine else np.eye(4)
                 K = K @ (J if forward else _inverse(J)) @ R
         self.freedoms = tuple(found)
         self.last = K
@@ -230,12 +261,15 @@ class Chain:
         """Return `T_a_b (4, 4)`."""
         T = None
         for mover in self.movers:
-            J = motion_matrix(mover.joint, [float(values[column]) for column in mover.columns])
+            J = self._moved(mover.joint, [float(values[column]) for column in mover.columns])
             if not mover.forward:
                 J = _inverse(J)
             step = mover.before @ J
             T = step if T is None else T @ step
         return self.last if T is None else np.asarray(T @ self.last)
+
+    def _moved(self, joint: Joint, values: Sequence[float]) -> FloatArray:
+        return turned(values) if self.proving and joint.type is JointType.BALL else motion_matrix(joint, values)
 
     def reach(self, points_a: FloatArray, points_b: FloatArray) -> FloatArray:
         """Bound how far any point of b moves as seen from a, per unit of each freedom.

@@ -1,7 +1,6 @@
 """Proof that two parts keep apart while some joints move, or the pose at which they meet.
 
-First what the joint cannot bring together however it turns is set aside; the rest is kept apart over the range by a search that
-cuts pieces and range (`clearing`). Where parts touch by design, the first one's surface is moved inwards by what is allowed.
+A search cuts pieces of both surfaces, and the range, until each two are apart (`clearing`). Where parts touch by design, the first one's surface is moved inwards by what is allowed.
 """
 
 from __future__ import annotations
@@ -16,15 +15,15 @@ from numpy.typing import NDArray
 
 from articad.connectors.se3 import SE3
 from articad.interference.boxtree import BoxTree
-from articad.interference.claims import Claim
+from articad.interference.claims import Claim, Course
 from articad.interference.clearing import MOST_PAIRS, Boxes, Cleared, Ranges, clear
 from articad.interference.cover import Budget
-from articad.interference.meridian import Ends, leaning, meeting, outline
-from articad.interference.motion import Chain, Mover, Route, scattered
+from articad.interference.motion import Chain, Route, freedoms, scattered, swing_and_twist, turned
 from articad.interference.overlap import Overlap, measured, overlap
+from articad.interference.rounds import Rounds
 from articad.interference.scene import Scene
 from articad.interference.spread import Spread
-from articad.interference.surface import Core, Surface, near_by, whole_surface
+from articad.interference.surface import Core, Surface, inwards, near_by, whole_surface
 from articad.interference.verdict import UNRELATED_VOLUME_MM3
 from articad.kinematics.joints import JointType
 
@@ -33,11 +32,11 @@ FloatArray = NDArray[np.float64]
 LOOK_PAIRS = 300_000  # of pieces, after which a few poses are looked at, lest a collision be sought by proof
 LOOKS = 40  # poses
 LOOK_GROWTH = 1.6  # poses beyond the one where a proof stopped lie ever further apart, so that thin parts are not jumped over
+CONE_ROUNDING = 1e-9  # of the cosine of an angle
 CLAIM_SLACK_MM = 1e-6  # more than what is claimed is proven, so that a checker's rounding does not matter
 FIRST_STEP = 1 / 16  # of the way to a bound: of the walk to where the parts meet
 BESIDE_CONTACT_MM = 1.0  # beyond the largest radius at which two parts touch, where contact still is meant
 _TURNING = (JointType.REVOLUTE, JointType.CYLINDRICAL, JointType.SCREW)
-_STEADY = (JointType.SLIDER, JointType.REVOLUTE, JointType.CYLINDRICAL, JointType.SCREW, JointType.BALL)
 
 
 class Shrink(NamedTuple):
@@ -110,16 +109,18 @@ class Prover:
         self.scene, self.joints = scene, tuple(joints)
         self.epsilon, self.budget = epsilon, budget or Budget(float("inf"))
         self.parts = route.parts[0], route.parts[-1]
-        self.chain = Chain(route, joints)
+        self.chain = Chain(route, joints, proving=True)
         self.body_a, self.body_b = (scene.bodies[name] for name in self.parts)
         self.margin = scene.deflection_of(*self.parts)
         self.allowed = max(scene.tolerated(*self.parts), getattr(scene.relations.waiver(*self.parts), "max_depth", 0.0))
         self.speeds = self.chain.reach(self.body_a.mesh.vertices, self.body_b.mesh.vertices)
         self.bounds = np.array([(freedom.lower, freedom.upper) for freedom in self.chain.freedoms]).reshape(-1, 2)
-        self._kept: dict[Shrink, tuple[Surface, Surface]] = {}
+        self._kept: dict[Shrink, tuple[Surface, NDArray[np.float32] | None]] = {}
         single = self.chain.movers[0] if len(self.chain.movers) == 1 else None
         turns = single is not None and single.joint.type in (*_TURNING, JointType.BALL)
-        self.axis = Core(single.before, 3 if single.joint.type is JointType.BALL else 2) if single is not None and turns else None
+        about = 3 if single is not None and single.joint.type is JointType.BALL else 2
+        self.axis = Core(single.before, about) if single is not None and turns else None
+        self.axis_of_b = Core(np.asarray(np.linalg.inv(self.chain.last)), about) if self.axis is not None else None
 
     def prove(self, *, most: int = MOST_PAIRS, tentative: bool = False) -> Proof:
         """Prove the whole range, or what of a single coordinate can be; a tentative proof ends at the first contact."""
@@ -150,7 +151,7 @@ class Prover:
         if start.volume == 0:
             yield NO_SHRINK
         if self.axis is not None:
-            touching = near_by(*self._surfaces(NO_SHRINK), self.chain.matrix(self.chain.rest), self.allowed)
+            touching = near_by(whole_surface(self.body_a.mesh), whole_surface(self.body_b.mesh), self.chain.matrix(self.chain.rest), self.allowed)
             radius = float(self.axis.radii(touching.corners).max(initial=0.0)) + BESIDE_CONTACT_MM
             if radius < float(self.axis.radii(self.body_a.mesh.vertices).max()):
                 yield Shrink(self.allowed, radius)
@@ -164,6 +165,16 @@ class Prover:
     def named(self, values: Sequence[float] | FloatArray) -> dict[str, float]:
         """Return values by name."""
         return {freedom.name: float(value) for freedom, value in zip(self.chain.freedoms, values, strict=True)}
+
+    def pose(self, values: Sequence[float] | FloatArray) -> dict[str, float]:
+        """Return values by the names under which they are reported: of a ball its swing and twist."""
+        found: dict[str, float] = {}
+        for mover in self.chain.movers:
+            own = [float(values[column]) for column in mover.columns]
+            if mover.joint.type is JointType.BALL:
+                own = swing_and_twist(SE3.from_matrix(turned(own)).quaternion)
+            found.update(zip([freedom.name for freedom in freedoms(mover.joint)], own, strict=True))
+        return found
 
     def boxes(self, bounds: FloatArray) -> Boxes:
         """Return what covers a range."""
@@ -190,7 +201,8 @@ class Prover:
             contacts = () if outcome.contact is None else (self.named(outcome.contact),)
             return replace(found, contacts=contacts)
         ends = self.bounds[0].tolist() if self.is_line else (None, None)
-        return replace(found, claims=(self.claim(begun.overlap, self.vary(self.bounds), shrink),), lower=ends[0], upper=ends[1])
+        claim = self.claim(begun.overlap, self.vary(self.bounds), shrink, outcome)
+        return replace(found, claims=(claim,), lower=ends[0], upper=ends[1])
 
     def search(self, bounds: FloatArray, shrink: Shrink, most: int = MOST_PAIRS) -> Cleared:
         """Keep the surfaces apart over a range."""
@@ -198,26 +210,28 @@ class Prover:
 
     def search_over(self, boxes: Boxes, shrink: Shrink, most: int = MOST_PAIRS) -> Cleared:
         """Keep the surfaces apart over boxes."""
-        a, b = self._surfaces(shrink)
-        if a.is_empty or b.is_empty:
-            return Cleared()
+        a, b = BoxTree.of(self._surface(shrink)[0]), BoxTree.of(whole_surface(self.body_b.mesh))
+        rounds = None
+        if self.axis is not None and self.axis_of_b is not None:
+            rounds = Rounds.of(a, self.axis), Rounds.of(b, self.axis_of_b)
         needed = self.margin + CLAIM_SLACK_MM
-        outcome = clear(BoxTree.of(a), BoxTree.of(b), boxes, needed, epsilon=self.epsilon, budget=self.budget, most=most)
+        outcome = clear(a, b, boxes, needed, rounds=rounds, epsilon=self.epsilon, budget=self.budget, most=most)
+        outcome.course = boxes
         self.budget.queries += outcome.pairs
         return outcome
 
-    def _surfaces(self, shrink: Shrink) -> tuple[Surface, Surface]:
-        """Return what of the two surfaces the joint could bring together."""
+    def _surface(self, shrink: Shrink) -> tuple[Surface, NDArray[np.float32] | None]:
+        """Return the first surface, and by how much its vertices were moved."""
         if shrink not in self._kept:
             mesh, near = self.body_a.mesh, self.axis if math.isfinite(shrink.within) else None
-            a = Surface.of(mesh, shrink.depth, near, shrink.within) if shrink.depth else whole_surface(mesh)
-            self._kept[shrink] = facing(self.chain, a, whole_surface(self.body_b.mesh), self.margin + CLAIM_SLACK_MM)
+            moved = inwards(mesh, shrink.depth, near, shrink.within) if shrink.depth else None
+            self._kept[shrink] = (whole_surface(mesh) if moved is None else Surface.of(mesh, moved)), moved
         return self._kept[shrink]
 
     def seen(self, begun: Proof) -> dict[str, Any]:
         """Return where the two overlap beyond what is allowed at one of a few poses all over the range, if they do."""
         places = np.concatenate([[self.bounds[:, 0], self.bounds[:, 1]], scattered(self.chain.freedoms, LOOKS)])
-        places = places[[not self._outside_cone(place, np.zeros_like(place)) for place in places]]
+        places = places[[not self._outside_cone(place, place) for place in places]]
         deepest = max(places.tolist(), key=self.depth, default=None)
         if deepest is None or self.depth(deepest) <= max(self.allowed, begun.overlap.depth):
             return {}
@@ -236,7 +250,10 @@ class Prover:
         found = replace(begun, lower=ends[0], upper=ends[1], contacts=contacts, epsilon=begun.shrink.depth or self.epsilon)
         if ends[1] <= ends[0]:
             return found
-        return replace(found, claims=(self.claim(begun.overlap, self.vary(np.array([ends])), begun.shrink),))
+        outcome = self.search(np.array([ends]), begun.shrink)  # once more as a whole, for whoever follows it
+        if not outcome.is_complete:
+            return found
+        return replace(found, claims=(self.claim(begun.overlap, self.vary(np.array([ends])), begun.shrink, outcome),))
 
     def _walked(self, start: float, end: float, shrink: Shrink) -> float:
         at, step = start, (end - start) * FIRST_STEP
@@ -249,68 +266,45 @@ class Prover:
                 step /= 3
         return at
 
-    def _outside_cone(self, centre: FloatArray, half: FloatArray) -> bool:
-        """Return whether a box lies outside the cone of a ball: its swing is a vector no longer than the cone's angle."""
+    def _outside_cone(self, low: FloatArray, high: FloatArray) -> bool:
+        """Return whether a box lies outside the cone of a ball: turns x and y swing it by acos(cos x · cos y)."""
         for mover in self.chain.movers:
             if mover.joint.type is JointType.BALL:
                 swing = list(mover.columns[:2])
-                nearest = np.maximum(np.abs(centre[swing]) - half[swing], 0.0)
-                if np.hypot(*nearest) > self.chain.freedoms[swing[0]].upper:
+                x, y = np.maximum(np.maximum(low[swing], -high[swing]), 0.0).tolist()
+                cone = self.chain.freedoms[swing[0]].upper
+                if max(x, y) < np.pi / 2 and math.cos(x) * math.cos(y) < math.cos(cone) - CONE_ROUNDING:
                     return True
         return False
 
-    def claim(self, start: Overlap, vary: Mapping[str, tuple[float, float]], shrink: Shrink) -> Claim:
+    def claim(self, start: Overlap, vary: Mapping[str, tuple[float, float]], shrink: Shrink, outcome: Cleared) -> Claim:
         """Return what was proven."""
-        chain = self.chain
+        chain, (a, moved) = self.chain, self._surface(shrink)
+        assert outcome.trail is not None
+        assert outcome.course is not None
+        boxes = outcome.course
+        rows = outcome.trail.written(len(boxes.roots) - 1)
+        orders = BoxTree.of(a).order, BoxTree.of(whole_surface(self.body_b.mesh)).order
         return Claim(
             parts=self.parts,
             via=chain.via,
             vary=vary,
-            hold=chain.hold,
             start=self.named(chain.rest),
             overlap=start.volume,
             shrink=shrink.depth,
-            within=shrink.within if math.isfinite(shrink.within) else None,
             clear=self.margin,
+            course=Course(moved, orders, tuple(boxes.roots), cuts_of(boxes), rows),
         )
 
 
-def facing(chain: Chain, a: Surface, b: Surface, needed: float) -> tuple[Surface, Surface]:
-    """Return what of two surfaces the joint between them could bring together; where there are several joints, all of them."""
-    if len(chain.movers) != 1 or chain.movers[0].joint.type not in _STEADY:
-        return a, b
-    mover = chain.movers[0]
-    dimensions = 3 if mover.joint.type is JointType.BALL else 2
-    turns = mover.joint.type is not JointType.SLIDER
-    core_a, core_b = Core(mover.before, dimensions), Core(np.asarray(np.linalg.inv(chain.last)), dimensions)
-    of_a = outline(core_a, a.corners, turns=turns)
-    of_b = outline(core_b, b.corners, travel(chain, mover), turns=turns)
-    limit: FloatArray = np.full(of_a[0].shape[1], needed)
-    cone = chain.freedoms[mover.columns[0]].upper
-    if dimensions == 3 and cone < np.pi:
-        of_a, of_b = _joined(of_a, leaning(core_a, a.corners, 0.0, 0.0)), _joined(of_b, leaning(core_b, b.corners, cone, needed))
-        limit = np.append(limit, 0.0)
-    met = meeting(of_a, of_b, limit)
-    of_a, a = (of_a[0][met], of_a[1][met]), Surface(a.corners[met])
-    return a, Surface(b.corners[meeting(of_b, of_a, limit)])
-
-
-def _joined(one: Ends, other: Ends) -> Ends:
-    return np.concatenate([one[0], other[0]], axis=1), np.concatenate([one[1], other[1]], axis=1)
-
-
-def travel(chain: Chain, mover: Mover) -> tuple[float, float]:
-    """Return how far a joint about an axis carries b along its axis, as a sees it [mm]."""
-    first = chain.freedoms[mover.columns[0]]
-    match mover.joint.type:
-        case JointType.CYLINDRICAL | JointType.SLIDER:
-            pitch = 1.0
-        case JointType.SCREW:
-            pitch = mover.joint.lead / (2 * np.pi)
-        case _:
-            pitch = 0.0
-    ends = sorted((1.0 if mover.forward else -1.0) * pitch * end for end in (first.lower, first.upper))
-    return ends[0], ends[1]
+def cuts_of(boxes: Boxes) -> NDArray[np.int64]:
+    """Return which coordinate each box was cut across, in the order in which they came from others."""
+    numbers, found = list(range(len(boxes.roots) - 1)), []
+    for number in numbers:
+        found.append(boxes.columns[number])
+        if found[-1] >= 0:
+            numbers += boxes.halves[number]
+    return np.array(found)
 
 
 def beyond(chain: Chain, speeds: FloatArray, start: Sequence[float], depth: float) -> Iterator[tuple[float, ...]]:

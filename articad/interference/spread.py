@@ -25,39 +25,35 @@ _X, _Y, _Z, _NONE = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0), (0.0, 0.0
 
 
 class Factor(NamedTuple):
-    """A motion exp(q·(turn, slide)), or the swing of a ball.
+    """A motion exp(q·(turn, slide)).
 
     Attributes:
         turn: Axis through the origin of the frame before it, or 0.
         slide: Velocity along it [mm per unit].
-        columns: Places among the chain's values: two for a swing.
+        column: Place among the chain's values.
         sign: −1 where the chain crosses the joint backwards.
     """
 
     turn: tuple[float, float, float]
     slide: tuple[float, float, float]
-    columns: tuple[int, ...]
+    column: int
     sign: float
-
-    @property
-    def is_swing(self) -> bool:
-        """True for the swing of a ball: any turn by no more than the change of its vector."""
-        return len(self.columns) == 2
 
 
 def factors_of(mover: Mover) -> list[Factor]:
     """Return the motions of a joint in the order in which the chain passes them."""
-    c, rise = mover.columns, (0.0, 0.0, mover.joint.lead / (2 * np.pi))
-    steps: dict[JointType, list[tuple[tuple[float, float, float], tuple[float, float, float], tuple[int, ...]]]] = {
-        JointType.REVOLUTE: [(_Z, _NONE, c[:1])],
-        JointType.SLIDER: [(_NONE, _Z, c[:1])],
-        JointType.SCREW: [(_Z, rise, c[:1])],
-        JointType.CYLINDRICAL: [(_NONE, _Z, c[:1]), (_Z, _NONE, c[1:2])],
-        JointType.PLANAR: [(_NONE, _X, c[:1]), (_NONE, _Y, c[1:2]), (_Z, _NONE, c[2:3])],
-        JointType.UNIVERSAL: [(_X, _NONE, c[:1]), (_Y, _NONE, c[1:2])],
-        JointType.BALL: [(_NONE, _NONE, c[:2]), (_Z, _NONE, c[2:3])],
+    rise = (0.0, 0.0, mover.joint.lead / (2 * np.pi))
+    steps: dict[JointType, list[tuple[tuple[float, float, float], tuple[float, float, float]]]] = {
+        JointType.REVOLUTE: [(_Z, _NONE)],
+        JointType.SLIDER: [(_NONE, _Z)],
+        JointType.SCREW: [(_Z, rise)],
+        JointType.CYLINDRICAL: [(_NONE, _Z), (_Z, _NONE)],
+        JointType.PLANAR: [(_NONE, _X), (_NONE, _Y), (_Z, _NONE)],
+        JointType.UNIVERSAL: [(_X, _NONE), (_Y, _NONE)],
+        JointType.BALL: [(_X, _NONE), (_Y, _NONE), (_Z, _NONE)],
     }
-    found = [Factor(turn, slide, columns, 1.0 if mover.forward else -1.0) for turn, slide, columns in steps[mover.joint.type]]
+    sign = 1.0 if mover.forward else -1.0
+    found = [Factor(turn, slide, column, sign) for (turn, slide), column in zip(steps[mover.joint.type], mover.columns, strict=True)]
     return found if mover.forward else found[::-1]
 
 
@@ -69,7 +65,7 @@ class Spread:
         chain: From the part that stands to the one that moves.
         T: `T_a_b` at the centres, `(m, 4, 4)`.
         omega: Axes of the factors as a sees them, 0 for slides, `(m, F, 3)`.
-        moment: Their velocities at a's origin; of a swing its centre, `(m, F, 3)` [mm].
+        moment: Their velocities at a's origin, `(m, F, 3)` [mm].
         width: How far each factor's coordinate goes from the centre, `(m, F)`.
         spin: Generators of first order, `(m, G, 3)`: what happens together is one of them.
         flow: Their velocities at a's origin, `(m, G, 3)` [mm].
@@ -85,8 +81,7 @@ class Spread:
 
     def __post_init__(self) -> None:
         self.factors = [(at, factor) for at, mover in enumerate(self.chain.movers) for factor in factors_of(mover)]
-        self.swings = [f for f, (_, factor) in enumerate(self.factors) if factor.is_swing]
-        self.turns = np.array([float(any(factor.turn) or factor.is_swing) for _, factor in self.factors])
+        self.turns = np.array([float(any(factor.turn)) for _, factor in self.factors])
         F = len(self.factors)
         self.omega, self.moment, self.width = np.empty((0, F, 3)), np.empty((0, F, 3)), np.empty((0, F))
         self.spin, self.flow = np.empty((0, F, 3)), np.empty((0, F, 3))
@@ -100,14 +95,12 @@ class Spread:
 
         Args:
             centres: Values of the chain's coordinates, `(k, n)`.
-            width: Half width of each factor's coordinate, `(k, F)`; of a swing the length of its vector's change.
+            width: Half width of each factor's coordinate, `(k, F)`.
             generators: What the factors' coordinates do together, `(k, G, F)`; by default each for itself.
         """
         T, omega, moment = self._placed(centres)
         if generators is None:
             spin, flow = omega * width[..., None], moment * width[..., None]
-            if self.swings:
-                spin[:, self.swings] = flow[:, self.swings] = 0.0
         else:
             spin, flow = generators @ omega, generators @ moment
         if self.is_parallel is None:
@@ -123,7 +116,7 @@ class Spread:
 
     def _set_parallel(self, omega: FloatArray) -> None:
         axes = omega[[f for f in range(len(omega)) if self.turns[f]]]
-        self.is_parallel = not self.swings and bool((np.linalg.norm(np.cross(axes, axes[:1]), axis=1) <= _PARALLEL).all())
+        self.is_parallel = bool((np.linalg.norm(np.cross(axes, axes[:1]), axis=1) <= _PARALLEL).all())
 
     def _placed(self, centres: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Return `T_a_b`, the factors' axes and moments at values of the coordinates."""
@@ -135,18 +128,15 @@ class Spread:
             if at != last:
                 T, last = T @ self.chain.movers[at].before, at
             R, o = T[:, :3, :3], T[:, :3, 3]
-            if factor.is_swing:
-                moment[:, f] = o
-            else:
-                w, v = R @ factor.turn * factor.sign, R @ factor.slide * factor.sign
-                omega[:, f], moment[:, f] = w, v + np.cross(o, w)
-            T = T @ _moved(factor, centres[:, list(factor.columns)])
+            w, v = R @ factor.turn * factor.sign, R @ factor.slide * factor.sign
+            omega[:, f], moment[:, f] = w, v + np.cross(o, w)
+            T = T @ _moved(factor, centres[:, factor.column])
         return T @ self.chain.last, omega, moment
 
     # --- bounds, for rows of (box, point or little box)
 
     def first_order(self, box: IntArray, u: FloatArray, p: FloatArray, extent: FloatArray | None) -> FloatArray:
-        """Bound how far points move along directions to first order, `(n, D, G + swings)` [mm].
+        """Bound how far points move along directions to first order, `(n, D, G)` [mm].
 
         Args:
             box: Which box of the spread, `(n,)`.
@@ -159,25 +149,15 @@ class Spread:
         if extent is not None:
             turned = np.cross(u[:, :, None], w[:, None])  # u · (w × e) = (u × w) · e
             moved += np.abs(turned @ extent.transpose(0, 2, 1)[:, None]).sum(axis=-1)
-        if self.swings:
-            arms = p[:, None] - self.moment[box][:, self.swings]
-            swung = np.linalg.norm(np.cross(arms[:, None], u[:, :, None]), axis=-1)
-            if extent is not None:
-                swung = swung + np.linalg.norm(extent, axis=2).sum(axis=1)[:, None, None]
-            moved = np.concatenate([moved, swung * self.width[box][:, None, self.swings]], axis=-1)
         return np.asarray(moved)
 
     def second_order(self, box: IntArray, u: FloatArray, p: FloatArray, size: FloatArray) -> FloatArray:
         """Bound what is left of the motion along directions, `(n, D)` [mm]; `size (n,)`: radius of a ball about each point."""
         w, v, width = self.omega[box], self.moment[box], self.width[box]
         speed = np.linalg.norm(np.cross(w, p[:, None]) + v, axis=2)  # of the centre, by each factor
-        if self.swings:
-            speed[:, self.swings] = np.linalg.norm(p[:, None] - v[:, self.swings], axis=2)
         speed += self.turns * size[:, None]
         turned = width * self.turns
         share = np.linalg.norm(np.cross(u[:, :, None], w[:, None]), axis=-1)  # (n, D, F)
-        if self.swings:
-            share[..., self.swings] = 1.0
         if not self.is_parallel:  # an axis is turned by the factors outside it
             outside = np.cumsum(turned, axis=1) - turned
             share = np.minimum(share + outside[:, None], 1.0)
@@ -194,17 +174,11 @@ class Spread:
 
 
 def _moved(factor: Factor, values: FloatArray) -> FloatArray:
-    """Return the factor's motion at values of its columns, `(k, 4, 4)`."""
-    if factor.is_swing:
-        vector, slide = np.concatenate([values, np.zeros((len(values), 1))], axis=1) * factor.sign, np.zeros(3)
-    else:
-        vector, slide = values * factor.turn * factor.sign, np.array(factor.slide) * factor.sign
-    angle = np.linalg.norm(vector, axis=1)
-    axis = vector / np.where(angle > 0, angle, 1.0)[:, None]
-    K = np.zeros((len(values), 3, 3))
-    K[:, 0, 1], K[:, 0, 2], K[:, 1, 2] = -axis[:, 2], axis[:, 1], -axis[:, 0]
-    K -= K.transpose(0, 2, 1)
+    """Return the factor's motion at values of its coordinate `(k,)`, `(k, 4, 4)`."""
+    angle = values * factor.sign
+    x, y, z = factor.turn
+    K = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
     T = np.tile(np.eye(4), (len(values), 1, 1))
     T[:, :3, :3] += np.sin(angle)[:, None, None] * K + (1 - np.cos(angle))[:, None, None] * (K @ K)
-    T[:, :3, 3] = values[:, :1] * slide
+    T[:, :3, 3] = angle[:, None] * factor.slide
     return T

@@ -20,6 +20,8 @@ from articad.interference.body import make_bvh
 
 FloatArray = NDArray[np.float64]
 
+_SHORTER = 1 - 1e-6  # so that no vertex moves further than it says, rounded as it is
+
 _whole: WeakKeyDictionary[TriMesh, Surface] = WeakKeyDictionary()
 
 
@@ -34,12 +36,9 @@ class Surface:
     corners: FloatArray
 
     @classmethod
-    def of(cls, mesh: TriMesh, shrink: float = 0.0, near: Core | None = None, within: float = np.inf) -> Surface:
-        """Return the whole surface, its vertices moved inwards by `shrink`, those only that are `within` a radius of a core [mm]."""
-        vertices = shrunk(mesh, shrink) if shrink else mesh.vertices
-        if near is not None:
-            vertices = np.where((near.radii(mesh.vertices) <= within)[:, None], vertices, mesh.vertices)
-        return cls(vertices[mesh.triangles])
+    def of(cls, mesh: TriMesh, moved: NDArray[np.float32] | None = None) -> Surface:
+        """Return the whole surface, its vertices moved by so much, `(V, 3)` [mm]."""
+        return cls((mesh.vertices if moved is None else mesh.vertices + moved)[mesh.triangles])
 
     @property
     def is_empty(self) -> bool:
@@ -81,10 +80,11 @@ def whole_surface(mesh: TriMesh) -> Surface:
     return surface
 
 
-def shrunk(mesh: TriMesh, depth: float) -> FloatArray:
-    """Return the vertices moved inwards by `depth` [mm] along the mean of the adjacent triangles' unit normals, `(V, 3)`.
+def inwards(mesh: TriMesh, depth: float, near: Core | None = None, within: float = np.inf) -> NDArray[np.float32]:
+    """Return by how much vertices move inwards by `depth`, those only that are `within` a radius of a core, `(V, 3)` [mm].
 
-    The mean is over distinct faces, not weighted by area, so that every face at a corner recedes: by depth/√3 at a cube's.
+    They go along the mean of the adjacent triangles' unit normals. The mean is over distinct faces, not weighted by area, so that
+    every face at a corner recedes: by depth/√3 at a cube's.
     """
     normals = mesh.normals_of_twice_area
     lengths = np.linalg.norm(normals, axis=1)
@@ -96,7 +96,10 @@ def shrunk(mesh: TriMesh, depth: float) -> FloatArray:
         angle = np.arctan2(np.linalg.norm(np.cross(u, v), axis=1), np.einsum("ij,ij->i", u, v))
         np.add.at(total, mesh.triangles[:, at], unit * angle[:, None])
     size = np.linalg.norm(total, axis=1)
-    return np.asarray(mesh.vertices - depth * total / np.where(size > 0, size, 1.0)[:, None])
+    moved = -depth * total / np.where(size > 0, size, 1.0)[:, None]
+    if near is not None:
+        moved = np.where((near.radii(mesh.vertices) <= within)[:, None], moved, 0.0)
+    return np.asarray(moved * _SHORTER, dtype=np.float32)
 
 
 def split_by_radius(mesh: TriMesh, core: Core, radius: float, edge: float) -> tuple[Surface, Surface, Surface]:

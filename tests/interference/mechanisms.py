@@ -2,15 +2,22 @@
 
 from __future__ import annotations
 
+import json
 import math
+import tempfile
+from collections.abc import Mapping
 from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from articad.connectors import SE3
 from articad.geometry import TriMesh
+from articad.interference.certificate import Certificate
 from articad.kinematics.joints import Joint, JointLimits, JointType
+from articad.verify_certificate import verify_file
 
 IDENTITY = SE3.identity()
 
@@ -98,3 +105,13 @@ def without_triangle(mesh: TriMesh, which: int = 0) -> TriMesh:
 
 def placed(T: SE3, points: ArrayLike) -> np.ndarray:
     return T.apply(np.asarray(points, dtype=np.float64))
+
+
+def verified(document: Mapping[str, Any], certificate: Certificate, **changed: bytes) -> list[str]:
+    """Return why a certificate is refuted that says `document`, beside the certificate's own meshes and proof, some of them changed."""
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        for file, content in {**certificate.mesh_files(), **{f"{part}.npz": bytes for part, bytes in changed.items()}}.items():
+            (folder / file).write_bytes(content)
+        (folder / "certificate.json").write_text(json.dumps(document))
+        return verify_file(folder / "certificate.json", folder)

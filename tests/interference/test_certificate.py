@@ -25,13 +25,12 @@ from articad.interference.certificate import Certificate, certify
 from articad.interference.check import check_pose
 from articad.interference.clearing import shortest_between
 from articad.interference.cover import Budget, cover_line
-from articad.interference.meridian import leaning, meeting, outline
 from articad.interference.motion import Chain, Route, motion_matrix, swing_and_twist
 from articad.interference.spread import Spread
 from articad.interference.surface import Core, Surface, surface_distance
 from articad.kinematics.joints import Joint, JointType
 from articad.kinematics.mechanism import Mechanism
-from articad.verify_certificate import verify, verify_file
+from articad.verify_certificate import verify_file
 from tests.interference.mechanisms import (
     IDENTITY,
     Waiver,
@@ -41,6 +40,7 @@ from tests.interference.mechanisms import (
     joint,
     manifold_mesh,
     random_rotation,
+    verified,
     without_triangle,
 )
 
@@ -57,7 +57,7 @@ def refutations(certificate: Certificate, change: Callable[[dict[str, Any]], obj
     if change is not None:
         document = copy.deepcopy(document)
         change(document)
-    return verify(document, {name: (mesh.vertices, mesh.triangles) for name, mesh in certificate.meshes.items()})
+    return verified(document, certificate)
 
 
 def bar_and_post() -> tuple[dict[str, TriMesh], float]:

@@ -19,8 +19,7 @@ from articad.interference.overlap import overlap
 from articad.interference.scene import Scene
 from articad.kinematics.joints import Coupling, Joint
 from articad.kinematics.mechanism import Mechanism
-from articad.verify_certificate import verify
-from tests.interference.mechanisms import at, joint
+from tests.interference.mechanisms import at, joint, verified
 
 CRANK, COUPLER, ROCKER, SPAN = 30.0, 90.0, 70.0, 100.0
 REST = math.radians(60)
@@ -68,7 +67,7 @@ def refutations(certificate: Certificate, change: Callable[[dict[str, Any]], obj
     document = json.loads(json.dumps(certificate.to_json()))
     if change is not None:
         change(document)
-    return verify(document, {name: (mesh.vertices, mesh.triangles) for name, mesh in certificate.meshes.items()})
+    return verified(document, certificate)
 
 
 def test_a_four_bar_in_layers_is_certified_over_a_full_turn() -> None:
