@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -88,6 +88,10 @@ class BoxTree:
         final = np.empty(len(low), dtype=np.int64)
         final[start[leaf >= 0]] = leaf[leaf >= 0]
         return cls((bottom + top) / 2, (top - bottom) / 2, np.concatenate(children), leaf, corners, final, start, count)
+
+    def flat(self) -> BoxTree:
+        """Return the tree without the coordinates beyond space that it was made by."""
+        return replace(self, centre=self.centre[:, :3].copy(), half=self.half[:, :3].copy())
 
     def over_each(self, values: FloatArray, ufunc: np.ufunc) -> FloatArray:
         """Return a minimum or maximum over the triangles of each node, of values `(T,)`, `(nodes,)`."""

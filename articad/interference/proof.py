@@ -20,7 +20,7 @@ from articad.interference.clearing import MOST_PAIRS, Boxes, Cleared, Ranges, cl
 from articad.interference.cover import Budget
 from articad.interference.motion import Chain, Route, freedoms, scattered, swing_and_twist, turned
 from articad.interference.overlap import Overlap, measured, overlap
-from articad.interference.rounds import Rounds
+from articad.interference.rounds import Rounds, about
 from articad.interference.scene import Scene
 from articad.interference.spread import Spread
 from articad.interference.surface import Core, Surface, inwards, near_by, whole_surface
@@ -115,6 +115,7 @@ class Prover:
         self.allowed = max(scene.tolerated(*self.parts), getattr(scene.relations.waiver(*self.parts), "max_depth", 0.0))
         self.speeds = self.chain.reach(self.body_a.mesh.vertices, self.body_b.mesh.vertices)
         self.bounds = np.array([(freedom.lower, freedom.upper) for freedom in self.chain.freedoms]).reshape(-1, 2)
+        self._round_trees: dict[Shrink, tuple[BoxTree, BoxTree]] = {}
         self._kept: dict[Shrink, tuple[Surface, NDArray[np.float32] | None]] = {}
         single = self.chain.movers[0] if len(self.chain.movers) == 1 else None
         turns = single is not None and single.joint.type in (*_TURNING, JointType.BALL)
@@ -210,7 +211,7 @@ class Prover:
 
     def search_over(self, boxes: Boxes, shrink: Shrink, most: int = MOST_PAIRS) -> Cleared:
         """Keep the surfaces apart over boxes."""
-        a, b = BoxTree.of(self._surface(shrink)[0]), BoxTree.of(whole_surface(self.body_b.mesh))
+        a, b = self._trees(shrink)
         rounds = None
         if self.axis is not None and self.axis_of_b is not None:
             rounds = Rounds.of(a, self.axis), Rounds.of(b, self.axis_of_b)
@@ -219,6 +220,16 @@ class Prover:
         outcome.course = boxes
         self.budget.queries += outcome.pairs
         return outcome
+
+    def _trees(self, shrink: Shrink) -> tuple[BoxTree, BoxTree]:
+        """Return trees over both surfaces; where there is an axis, such that pieces are first told apart by radius and height."""
+        surfaces = self._surface(shrink)[0], whole_surface(self.body_b.mesh)
+        if self.axis is None or self.axis_of_b is None:
+            return BoxTree.of(surfaces[0]), BoxTree.of(surfaces[1])
+        if shrink not in self._round_trees:
+            found = [about(surface, core) for surface, core in zip(surfaces, (self.axis, self.axis_of_b), strict=True)]
+            self._round_trees[shrink] = found[0], found[1]
+        return self._round_trees[shrink]
 
     def _surface(self, shrink: Shrink) -> tuple[Surface, NDArray[np.float32] | None]:
         """Return the first surface, and by how much its vertices were moved."""
@@ -279,12 +290,13 @@ class Prover:
 
     def claim(self, start: Overlap, vary: Mapping[str, tuple[float, float]], shrink: Shrink, outcome: Cleared) -> Claim:
         """Return what was proven."""
-        chain, (a, moved) = self.chain, self._surface(shrink)
+        chain, (_, moved) = self.chain, self._surface(shrink)
         assert outcome.trail is not None
         assert outcome.course is not None
         boxes = outcome.course
         rows = outcome.trail.written(len(boxes.roots) - 1)
-        orders = BoxTree.of(a).order, BoxTree.of(whole_surface(self.body_b.mesh)).order
+        trees = self._trees(shrink)
+        orders = trees[0].order, trees[1].order
         return Claim(
             parts=self.parts,
             via=chain.via,

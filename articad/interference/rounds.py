@@ -12,9 +12,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from articad.interference.boxtree import BoxTree
-from articad.interference.surface import Core
+from articad.interference.surface import Core, Surface
 
 FloatArray = NDArray[np.float64]
+
+WEIGHT = 10.0  # of radius and height against the size of pieces
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,3 +74,16 @@ class Rounds:
 def unit(v: FloatArray) -> FloatArray:
     """Return vectors `(…, k)` made one long; what is none stays 0."""
     return np.asarray(v / np.maximum(np.linalg.norm(v, axis=-1, keepdims=True), 1e-300))
+
+
+def about(surface: Surface, core: Core) -> BoxTree:
+    """Return a tree over a surface whose pieces are first told apart by their radius and height about the axis of a joint."""
+    corners = surface.corners
+    radius = np.linalg.norm(core.local(corners), axis=2)
+    keys = [core.least_radii(corners), radius.max(axis=1)]
+    spans = [(corners.min(axis=1), corners.max(axis=1)), *((WEIGHT * key[:, None], WEIGHT * key[:, None]) for key in keys)]
+    if core.dimensions == 2:
+        height = (corners - core.frame[:3, 3]) @ core.frame[:3, 2]
+        spans += [(WEIGHT * key[:, None], WEIGHT * key[:, None]) for key in (height.min(axis=1), height.max(axis=1))]
+    low, high = (np.concatenate(ends, axis=1) for ends in zip(*spans, strict=True))
+    return BoxTree.over(low, high, corners).flat()
