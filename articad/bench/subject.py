@@ -74,6 +74,11 @@ class Subject:
         mesh = self.assembly.parts[part].mesh
         return np.sort(np.ptp(mesh.vertices, axis=0)) if mesh is not None else np.zeros(3)
 
+    def density(self, part: str) -> float:
+        """Return a part's mass by its volume [kg/mm³]; that of water where no mass is known."""
+        mesh, mass = self.assembly.parts[part].mesh, self.assembly.parts[part].mass
+        return 1e-6 if mesh is None or mass is None or not mesh.volume else mass.mass / abs(mesh.volume)
+
     def per_unit(self, joint: Joint) -> float:
         """Return what turns a joint's main coordinate into degrees or mm."""
         return 1.0 if joint.type in _SLIDING else math.degrees(1.0)

@@ -38,6 +38,14 @@ CHECKS: list[tuple[str, dict[str, Any]]] = [
     ("wardrobe", {"kind": "captive", "number": [1, 18]}),
     ("toggle_clamp", {"kind": "simulates"}),
     ("four_bar", {"kind": "unchanged", "number": [8, 8]}),
+    ("toggle_clamp", {"kind": "holes", "diameter": 6.6, "number": [4, 4], "axis": [0, 0, 1], "through": True, "length": [6.9, 7.1]}),
+    ("toggle_clamp", {"kind": "studs", "diameter": 12, "number": [1, 1]}),
+    ("desk_lamp", {"kind": "wall", "mm": [1.8, 2.2], "number": [1, 1]}),
+    ("wardrobe", {"kind": "volume", "cm3": [50000, 150000]}),
+    ("wardrobe", {"kind": "holds", "ml": [40000, 60000]}),
+    ("wardrobe", {"kind": "stands", "degrees": 10}),
+    ("wardrobe", {"kind": "symmetric", "axis": "x"}),
+    ("toggle_clamp", {"kind": "lead", "mm": 1.25}),
 ]
 
 
