@@ -73,11 +73,13 @@ class CompiledModel:
         """
         map_ = self._map
         q = map_.signs * Q.take(map_.columns)
+        if not q.dot(q) < np.inf:  # so that nothing below is asked for the cosine of infinity
+            self.mechanism.layout.normalized(Q)
         if map_.turned is not None:  # a planar joint's angle is a direction there
             q[map_.turned] = np.cos(q[map_.turned])
             q[map_.turned + 1] = np.sin(q[map_.turned + 1])
         unit: FloatArray = self._pin.normalize(self.model, q)
-        off = unit - q  # of a quaternion it is as long as its length is off; NaN and infinities leave NaN
+        off = unit - q  # of a quaternion it is as long as its length is off
         if not off.dot(off) < QUATERNION_TOLERANCE**2:
             self.mechanism.layout.normalized(Q)  # says what is wrong, if anything is: here the errors of all balls were added
         return unit

@@ -243,7 +243,12 @@ def test_a_compiled_model_refuses_what_is_no_configuration_and_forgives_the_digi
     rough = mechanism.rest.copy()
     rough[[3, 7]] = 1 + 9e-4  # each passes, though together they are off by more than one may be
     assert compiled.poses(rough).allclose(mechanism.poses(rough))
-    for column, value, code in ((0, np.nan, "E_NONFINITE"), (8, np.inf, "E_NONFINITE"), (10, np.nan, "E_NONFINITE"), (3, 1.01, "E_QUAT_NORM")):
+    for column, value, code in (
+        (0, np.nan, "E_NONFINITE"),
+        (8, np.inf, "E_NONFINITE"),
+        (10, np.nan, "E_NONFINITE"),
+        (3, 1.01, "E_QUAT_NORM"),
+    ):
         wrong = mechanism.rest.copy()
         wrong[column] = value
         with pytest.raises(KinematicsError, match=code):
