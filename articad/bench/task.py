@@ -16,6 +16,14 @@ The edited product must pass `edit.checks`, and all checks of the task that are 
 a kind restates all of that kind. `unchanged` counts the parts whose shape is the same to the last bit. `values` are what the reference
 makes the change by: parameters of its plan, in the unit that it gives them; `reference` is a second folder with `plan.json`, for changes
 that are more than numbers, whose scripts are its own `parts/*.py` and, where it has none of a name, those of the task's reference.
+
+A task that is asked by a picture names it, and says how it is drawn from the reference:
+
+    "images": ["drawing.png"],
+    "drawing": {"parts": ["shelf"], "notes": ["All boards are 18 mm thick."]}
+
+`articad bench draw --task NAME` draws it: measures of the whole, what each joint does and how far, the sides of the named parts, and
+the notes, so that nothing that is checked is left to guess where the prompt is empty.
 """
 
 from __future__ import annotations
@@ -36,6 +44,22 @@ TASKS: Final = Path(__file__).with_name("tasks")
 """The project's own tasks, a folder each."""
 
 Kind = Literal["articulated", "static", "industrial", "hard"]
+
+
+class Drawing(Form):
+    """How a task's picture is drawn from its reference solution, by `articad bench draw`.
+
+    Attributes:
+        views: Keys of `articad.render.VIEWS`; those straight on tell the measures of the whole.
+        legend: Whether joints get letters and are told below: what each does, how far, and what it is coupled to.
+        parts: Parts of the reference whose sides are told.
+        notes: What else is written below.
+    """
+
+    views: tuple[str, ...] = ("iso", "front", "right", "top")
+    legend: bool = True
+    parts: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()
 
 
 class Edit(Form):
@@ -63,6 +87,7 @@ class Task(Form):
         product: What it is, in a word or two: at most three tasks are of the same product.
         prompt: What is asked for; empty where pictures alone say it.
         images: Files beside the task.
+        drawing: How `drawing.png`, which is one of them, is drawn.
         checks: All must hold.
         edit: A change afterwards.
         reference: Folder of a plan with part scripts that passes, relative to the task; or "example:NAME".
@@ -74,6 +99,7 @@ class Task(Form):
     product: str
     prompt: str = ""
     images: tuple[str, ...] = ()
+    drawing: Drawing | None = None
     checks: tuple[AnyCheck, ...]
     edit: Edit | None = None
     reference: str | None = "reference"

@@ -20,8 +20,8 @@ _WORDS = 44  # characters of what failed, in a table
 
 @command(
     "bench",
-    "Run the benchmark with a model; score the files of any tool; list the tasks.",
-    argument("action", choices=["run", "score", "table", "list"], help="what to do"),
+    "Run the benchmark with a model; score the files of any tool; list the tasks, or draw their pictures.",
+    argument("action", choices=["run", "score", "table", "list", "draw"], help="what to do"),
     argument("what", nargs="?", metavar="DIR", help="score: folder of models named after tasks; table: folder of a run"),
     argument("--tasks", metavar="DIR", help="folder of tasks (the project's own)"),
     argument("--task", metavar="NAME", dest="names", action="append", default=[], help="only this one; may be repeated"),
@@ -51,6 +51,8 @@ def _bench(options: argparse.Namespace, terminal: Terminal) -> Report:
     tasks = tasks_in(options.tasks or TASKS, names=options.names, kind=options.kind)
     if options.action == "list":
         return _listed([task for _, task in tasks], terminal)
+    if options.action == "draw":
+        return _drawn(tasks, terminal)
     if options.action == "score":
         if not options.what:
             raise ReadError("`articad bench score` needs a folder of models named after tasks.", path="bench")
@@ -124,9 +126,29 @@ def _listed(tasks: list[Task], terminal: Terminal) -> Report:
     return {"schema": "articad.bench-tasks/1", "ok": True, "findings": [], "tasks": [task.model_dump(mode="json") for task in tasks]}
 
 
+def _drawn(tasks: list[tuple[Path, Task]], terminal: Terminal) -> Report:
+    from articad.bench.drawing import DRAWING, draw_task
+    from articad.bench.reference import reference
+
+    files = []
+    for folder, task in tasks:
+        if task.drawing is not None:
+            file = folder / DRAWING
+            file.write_bytes(draw_task(reference(folder, task), task.drawing))
+            terminal.say(f"{file}  {file.stat().st_size / 1000:.1f} kB")
+            files.append(str(file))
+    return {"schema": "articad.bench-drawings/1", "ok": True, "findings": [], "files": files}
+
+
 def _printed(report: Report, terminal: Terminal) -> Report:
     rows = [
-        (row["task"], "yes" if row["passed"] else "no", _short(row["error"] or row["edit_error"] or ", ".join(row["failed"])), row["iterations"], row["calls"])
+        (
+            row["task"],
+            "yes" if row["passed"] else "no",
+            _short(row["error"] or row["edit_error"] or ", ".join(row["failed"])),
+            row["iterations"],
+            row["calls"],
+        )
         for row in report["rows"]
     ]
     terminal.table(["task", "passed", "failed checks", "iterations", "calls"], rows)
