@@ -115,14 +115,20 @@ def _larger(_check: Check, subject: Subject) -> Subject:
 
     parts = [shaped_as(part, mesh.scaled(factor)) if (mesh := part.mesh) is not None else part for part in subject.assembly.parts.values()]
     joints = [
-        replace(j, T_parent_connector=scaled(j.T_parent_connector), T_child_connector=scaled(j.T_child_connector), rest=_long(j, factor))
+        replace(
+            j,
+            T_parent_connector=scaled(j.T_parent_connector),
+            T_child_connector=scaled(j.T_child_connector),
+            rest=_long(j, j.rest, factor),
+            limits=replace(j.limits, lower=_long(j, j.limits.lower, factor), upper=_long(j, j.limits.upper, factor)),
+        )
         for j in subject.assembly.joints
     ]
     return Subject(changed(subject.assembly, parts, joints, couplings=(), T_ground=scaled(subject.assembly.mechanism.T_ground)))
 
 
-def _long(joint: Joint, factor: float) -> tuple[float, ...]:
-    return tuple(value * factor if unit == "mm" else value for value, unit in zip(joint.rest, joint.type.units, strict=True))
+def _long(joint: Joint, values: Sequence[float], factor: float) -> tuple[float, ...]:
+    return tuple(value * factor if unit == "mm" else value for value, unit in zip(values, joint.type.units, strict=False))
 
 
 def _two_solids(_check: Check, subject: Subject) -> Subject:
