@@ -112,7 +112,12 @@ def offence_picture(assembly: Assembly, finding: Finding) -> Image | None:
 def assembly_mark(assembly: Assembly) -> str:
     """Return the digest of a plan and all that was built of it."""
     builds = {name: dict(realised.digests) or realised.derived_from for name, realised in assembly.realised.items()}
-    return digest({"plan": None if assembly.plan is None else assembly.plan.dumps(), "parts": builds})
+    if assembly.plan is not None:
+        return digest({"plan": assembly.plan.dumps(), "parts": builds})
+    # Read from a file: known by its shapes, where they are at rest, and its joints.
+    shapes = {name: [shape.digest for shape in part.visuals or part.collisions] for name, part in assembly.parts.items()}
+    rest = assembly.poses(assembly.mechanism.rest).data.round(6).tolist()
+    return digest({"shapes": shapes, "rest": rest, "joints": [f"{joint.name} {joint.type} {joint.limits}" for joint in assembly.joints]})
 
 
 def configuration_at(assembly: Assembly, pose: Mapping[str, float]) -> FloatArray:

@@ -12,9 +12,8 @@ from collections.abc import Callable, Iterable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, Final
+from typing import Any
 
-from articad import convert
 from articad.agents.edit import edit
 from articad.agents.llm import LLM
 from articad.agents.pipeline import Variant, generate
@@ -23,13 +22,10 @@ from articad.agents.review import trajectory
 from articad.bench.row import Row, keep_row, kept_row
 from articad.bench.subject import Subject
 from articad.bench.task import Task
-from articad.errors import ArticadError, ReadError, TransportError
+from articad.errors import ArticadError, TransportError
 from articad.kernels.kernel import BuildCache, PartKernel
 from articad.record import assembly_of
 from articad.run import Run, digest
-
-_SIMULATED: Final = frozenset({".urdf", ".xml", ".mjcf"})
-_EDITED: Final = "_edited"  # what is appended to a task's name where a tool's edited model is
 
 Ask = Callable[[Task], LLM]
 """Who answers a task's requests."""
@@ -90,18 +86,6 @@ def run_tasks(
 
     with ThreadPoolExecutor(max(jobs, 1)) as pool:
         return list(pool.map(one, tasks))
-
-
-def score_files(tasks: Iterable[tuple[Path, Task]], folder: str | Path) -> list[Row]:
-    """Judge files that any tool made: `<folder>/<task>.urdf`, or the one model in `<folder>/<task>/`.
-
-    What became of a model by the task's edit is at `<task>_edited` in place of `<task>`.
-
-    Args:
-        tasks: Folders and tasks; one without a file is a row with an error.
-        folder: Where the files are: URDF, MJCF, FreeCAD documents, plans or runs.
-    """
-    return [_scored(task, Path(folder)) for _, task in tasks]
 
 
 class _Made:
@@ -170,50 +154,3 @@ def _iterations(run: Run) -> int:
     way = trajectory(run)
     again: int = max(way["designs"] - 1, 0) + sum(max(answers - 1, 0) for answers in way["scripts"].values())
     return 1 + again
-
-
-def _scored(task: Task, folder: Path) -> Row:
-    row, started = Row.of(task), time.monotonic()
-    try:
-        before = _subject(_found(task.name, folder))
-        row = replace(row, judgements=task.judge(before))
-        if task.edit is not None:
-            row = _scored_edit(row, task, folder, before)
-    except ArticadError as error:
-        row = replace(row, error=f"{type(error).__name__}: {error}")
-    return replace(row, seconds=time.monotonic() - started)
-
-
-def _scored_edit(row: Row, task: Task, folder: Path, before: Subject) -> Row:
-    try:
-        edited = replace(_subject(_found(f"{task.name}{_EDITED}", folder)), before=before.assembly)
-        return replace(row, edited=task.judge_edit(edited))
-    except ArticadError as error:
-        return replace(row, edit_error=f"{type(error).__name__}: {error}")
-
-
-def _found(name: str, folder: Path) -> Path:
-    """Return the model of a task, or of a task edited.
-
-    Raises:
-        ReadError: If there is none.
-    """
-    for suffix in convert.READERS:
-        if (file := folder / f"{name}{suffix}").is_file():
-            return file
-    place = folder / name
-    ours, kind = (folder / name.removesuffix(_EDITED), "edit*") if name.endswith(_EDITED) else (place, "run*")
-    for run in (place, *sorted(ours.glob(kind))):
-        if (run / "request.json").is_file():
-            return run
-    files = [file for suffix in convert.READERS for file in sorted(place.rglob(f"*{suffix}"))]
-    if not files:
-        message = f"There is no model of {name} in {folder}."
-        raise ReadError.told(folder, message, f"Write {name}.urdf there, for instance.", said=message)
-    return files[0]
-
-
-def _subject(found: Path) -> Subject:
-    if found.is_dir():
-        return Subject(assembly_of(Run.view(found)))
-    return Subject(convert.read(found), file=found if found.suffix.lower() in _SIMULATED else None)

@@ -46,6 +46,10 @@ TASKS: Final = Path(__file__).with_name("tasks")
 Kind = Literal["articulated", "static", "industrial", "hard"]
 
 
+_MOVING: Final = frozenset({"freedoms", "joints", "loops", "ratio", "rise", "travel", "clear_in_motion", "certified"})
+"""Kinds of checks that say that something moves."""
+
+
 class Drawing(Form):
     """How a task's picture is drawn from its reference solution, by `articad bench draw`.
 
@@ -108,6 +112,13 @@ class Task(Form):
     def modality(self) -> Literal["text", "image", "both"]:
         """What it is asked by."""
         return "both" if self.prompt and self.images else "image" if self.images else "text"
+
+    @property
+    def moves(self) -> bool:
+        """Whether something of it is to move."""
+        if self.kind == "static":
+            return False
+        return any(check.kind in _MOVING and getattr(check, "number", 1) not in (0, (0, 0)) for check in self.checks)
 
     @property
     def edit_checks(self) -> tuple[AnyCheck, ...]:

@@ -3,26 +3,29 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from articad.commands.bench_tables import print_judged, print_table
 from articad.commands.command import argument, command
 from articad.commands.options import ASKING, FORCE, SANDBOX, amount, positive
 from articad.commands.steps import build_cache, sandbox_level
 
 if TYPE_CHECKING:
+    from articad.agents.llm import Budget
+    from articad.bench.judge import Judged
     from articad.bench.row import Row
     from articad.bench.task import Task
     from articad.terminal import Report, Terminal
 
-_WORDS = 44  # characters of what failed, in a table
-
 
 @command(
     "bench",
-    "Run the benchmark with a model; score the files of any tool; list the tasks, or draw their pictures.",
-    argument("action", choices=["run", "score", "table", "list", "draw"], help="what to do"),
-    argument("what", nargs="?", metavar="DIR", help="score: folder of models named after tasks; table: folder of a run"),
+    "Run the benchmark with a model; score the files of any tool, or have models judge them; list the tasks, or draw their pictures.",
+    argument("action", choices=["run", "score", "judge", "table", "list", "draw"], help="what to do"),
+    argument("what", nargs="?", metavar="DIR", help="score, judge: folder of models named after tasks, or of a run; table: of a run"),
+    argument("--judge", metavar="NAME", dest="judges", action="append", default=[], help="a model that scores; repeat it for several"),
     argument("--tasks", metavar="DIR", help="folder of tasks (the project's own)"),
     argument("--task", metavar="NAME", dest="names", action="append", default=[], help="only this one; may be repeated"),
     argument("--kind", choices=["articulated", "static", "industrial", "hard"], default=None, help="only tasks of this kind"),
@@ -41,23 +44,25 @@ _WORDS = 44  # characters of what failed, in a table
 )
 def _bench(options: argparse.Namespace, terminal: Terminal) -> Report:
     from articad.bench.row import rows_in
-    from articad.bench.runner import score_files
+    from articad.bench.scoring import score_files
     from articad.bench.table import table
     from articad.bench.task import TASKS, tasks_in
     from articad.errors import ReadError
 
     if options.action == "table":
-        return _printed(table(rows_in(options.what or options.out, options.names)), terminal)
+        return print_table(table(rows_in(options.what or options.out, options.names)), terminal)
     tasks = tasks_in(options.tasks or TASKS, names=options.names, kind=options.kind)
     if options.action == "list":
         return _listed([task for _, task in tasks], terminal)
     if options.action == "draw":
         return _drawn(tasks, terminal)
+    if options.action == "judge":
+        return _judged(tasks, options, terminal)
     if options.action == "score":
         if not options.what:
             raise ReadError("`articad bench score` needs a folder of models named after tasks.", path="bench")
-        return _printed(table(score_files(tasks, options.what)), terminal)
-    return _printed(table(_run(tasks, options, terminal)), terminal)
+        return print_table(table(score_files(tasks, options.what)), terminal)
+    return print_table(table(_run(tasks, options, terminal)), terminal)
 
 
 @command(
@@ -126,6 +131,30 @@ def _listed(tasks: list[Task], terminal: Terminal) -> Report:
     return {"schema": "articad.bench-tasks/1", "ok": True, "findings": [], "tasks": [task.model_dump(mode="json") for task in tasks]}
 
 
+def _judged(tasks: list[tuple[Path, Task]], options: argparse.Namespace, terminal: Terminal) -> Report:
+    from articad.bench.judge import judge_files
+    from articad.bench.judged_table import judged_table
+    from articad.commands.models import asked_model, model_name
+    from articad.errors import ReadError
+
+    if not options.what:
+        raise ReadError("`articad bench judge` needs the folder of what is to be judged.", path="bench")
+
+    def asked(name: str) -> Callable[[], Budget]:
+        own = argparse.Namespace(**vars(options) | {"model": name, "vision_model": None, "judge_model": None})
+        return lambda: asked_model(own, terminal)[0]
+
+    names = options.judges or [model_name(options)]
+    with terminal.progress("Opinions", total=len(tasks) * len(names)) as tell:
+
+        def told(one: Judged) -> None:
+            tell(f"{one.task} by {one.judge}", one.error or "scored")
+
+        report = judged_table(judge_files(tasks, options.what, {name: asked(name) for name in names}, progress=told))
+    print_judged(report, terminal)
+    return report
+
+
 def _drawn(tasks: list[tuple[Path, Task]], terminal: Terminal) -> Report:
     from articad.bench.drawing import DRAWING, draw_task
     from articad.bench.reference import reference
@@ -138,27 +167,3 @@ def _drawn(tasks: list[tuple[Path, Task]], terminal: Terminal) -> Report:
             terminal.say(f"{file}  {file.stat().st_size / 1000:.1f} kB")
             files.append(str(file))
     return {"schema": "articad.bench-drawings/1", "ok": True, "findings": [], "files": files}
-
-
-def _printed(report: Report, terminal: Terminal) -> Report:
-    rows = [
-        (
-            row["task"],
-            "yes" if row["passed"] else "no",
-            _short(row["error"] or row["edit_error"] or ", ".join(row["failed"])),
-            row["iterations"],
-            row["calls"],
-        )
-        for row in report["rows"]
-    ]
-    terminal.table(["task", "passed", "failed checks", "iterations", "calls"], rows)
-    for name, group in {"all": report["all"], **report["by_kind"]}.items():
-        passed = group["passed"]
-        low, high = (0.0 if end is None else 100 * end for end in passed["interval"])
-        share = 0.0 if passed["mean"] is None else 100 * passed["mean"]
-        terminal.say(f"{name}: {share:.1f} % of {group['tasks']} passed (95 %: {low:.1f} to {high:.1f})")
-    return report
-
-
-def _short(text: str) -> str:
-    return text if len(text) <= _WORDS else text[: _WORDS - 1] + "…"

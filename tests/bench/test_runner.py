@@ -11,7 +11,8 @@ import pytest
 from articad.agents.llm import LLM, Reply, Request, Scripted
 from articad.agents.recollection import StoredMemory, remember
 from articad.bench.row import Row, rows_in
-from articad.bench.runner import run_tasks, score_files
+from articad.bench.runner import run_tasks
+from articad.bench.scoring import score_files
 from articad.bench.table import table
 from articad.bench.task import Task, read_task, tasks_in
 from articad.cli import main
@@ -181,7 +182,7 @@ def test_the_command_lists_scores_and_prints_tables(
     assert main(["bench", "list", "--tasks", folder, "--json"]) == 0
     assert [task["name"] for task in json.loads(capsys.readouterr().out)["tasks"]] == [task.name for _, task in tasks]
     assert main(["bench", "score", str(tmp_path), "--tasks", folder, "--task", "flap_1"]) == 0
-    assert "0.0 % of 1 passed" in capsys.readouterr().out
+    assert "all: 0 % [0, 0] of 1 passed" in capsys.readouterr().out
     assert main(["bench", "list", "--tasks", folder, "--task", "flap1"]) != 0
     assert "Did you mean 'flap_1'" in capsys.readouterr().err
 
