@@ -15,11 +15,11 @@ import numpy as np
 from articad.assembly import Assembly
 from articad.bench.checks import Check, Joints, Ratio
 from articad.bench.subject import Subject
-from articad.connectors import SE3
+from articad.connectors import SE3, FloatArray
 from articad.export.urdf import write_urdf
 from articad.geometry import MassProperties, Part, TriMesh, box, merged
 from articad.geometry.part import Solid
-from articad.kinematics.joints import Joint, JointLimits, JointType
+from articad.kinematics.joints import Coordinate, Joint, JointLimits, JointType
 
 
 def wrong_for(check: Check, assembly: Assembly) -> Subject:
@@ -169,11 +169,7 @@ def _in_the_way(_check: Check, subject: Subject) -> Subject:
     """Something stands where a moving part comes by."""
     assembly = subject.assembly
     for driver in assembly.drivers:
-        reached = subject.driver_range(driver.name)
-        assert reached is not None
-        q = np.array(assembly.mechanism.rest)
-        column = [each.name for each in assembly.drivers].index(driver.name)
-        q[column] = reached[0] + 0.7 * (reached[1] - reached[0])
+        q = _on_its_way(subject, driver)
         poses = dict(zip(assembly.mechanism.parts, assembly.poses(q), strict=True))
         mover = next(joint.child for joint in assembly.joints if joint.name == driver.joint)
         mover = (
@@ -185,6 +181,21 @@ def _in_the_way(_check: Check, subject: Subject) -> Subject:
         assert mesh is not None
         return _with_mesh(subject, stands, merged([mesh, ghost.transformed(poses[stands].inverse() @ poses[mover])]))
     raise AssertionError("Nothing moves.")
+
+
+def _on_its_way(subject: Subject, driver: Coordinate) -> FloatArray:
+    """Return all drivers at rest but one, which is at seven tenths of its range; a ball joint leans by as much of its cone."""
+    q = np.array(subject.assembly.mechanism.rest)
+    column = [each.name for each in subject.assembly.drivers].index(driver.name)
+    joint = next(joint for joint in subject.assembly.joints if joint.name == driver.joint)
+    if joint.type is JointType.BALL:
+        assert joint.limits.cone is not None
+        q[column : column + 4] = SE3.rot_x(0.7 * joint.limits.cone).quaternion
+        return q
+    reached = subject.driver_range(driver.name)
+    assert reached is not None
+    q[column] = reached[0] + 0.7 * (reached[1] - reached[0])
+    return q
 
 
 def _unclosed(_check: Check, subject: Subject) -> Subject:
