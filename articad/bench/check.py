@@ -61,4 +61,4 @@ class Check(Form):
 def in_words(bounds: Bounds) -> str:
     """Return a range as one reads it."""
     low, high = bounds
-    return f"{low:g}" if low == high else f"at least {low:g}" if high >= 999 else f"{low:g} to {high:g}"
+    return f"{low:g}" if low == high else f"at least {low:g}" if high == 999 else f"{low:g} to {high:g}"

@@ -55,9 +55,11 @@ def _bare(check: Check, subject: Subject) -> Subject:
 
 
 def _welded(check: Check, subject: Subject) -> Subject:
-    """What drives, is fixed; what should not move, does."""
+    """What drives, is fixed; what should not move or go by itself, does."""
     if check.number == 0:  # type: ignore[attr-defined]
         return Subject(changed(subject.assembly, joints=[_loose(joint) for joint in subject.assembly.joints]))
+    if subject.assembly.mechanism.couplings and not subject.assembly.mechanism.loop_joints:
+        return Subject(changed(subject.assembly, couplings=()))  # what follows goes its own way
     drivers = {driver.joint for driver in subject.assembly.drivers}
     return Subject(changed(subject.assembly, joints=[_fixed(j) if j.name in drivers else j for j in subject.assembly.joints], couplings=()))
 
