@@ -118,7 +118,7 @@ class Trial:
             self.outcome.untried += len(driven) - len(taken)
             strokes_made: dict[int, Stroke] = {}
             for joint in taken:
-                strokes_made[joint] = self._stroke(joint, loop)
+                strokes_made[joint] = self._stroke(joint, loop - {joint} - set(leading))  # the other drivers are held
                 if self.outcome.exploded:
                     return
             for joint in inside if len(taken) == len(driven) else taken:
@@ -134,11 +134,12 @@ class Trial:
         blocker = made[joint].blocker if joint in made and share < 1 else ""
         return Reach(self._name(joint), lower, upper, low, high, share, unit, blocker, role, None if role == "free" else number)
 
-    def _stroke(self, joint: int, loop: frozenset[int]) -> Stroke:
+    def _stroke(self, joint: int, following: frozenset[int]) -> Stroke:
+        """Drive one joint over its range, those that follow carried along, all others held."""
         lower, upper, unit = self._range(joint)
         self.reset()
         at, target = self.model.jnt_qposadr[joint], np.array(self.start)
-        free = {int(self.model.jnt_dofadr[other]) for other in loop if other != joint}
+        free = set(np.flatnonzero(np.isin(self.model.dof_jntid, list(following))).tolist())
         held = np.array([dof for dof in self._hinged_dofs() if dof not in free], dtype=int)
         rest = float(self.start[at])
         low, high, blocker, lag = np.array(self.start), np.array(self.start), "", 0.0

@@ -164,6 +164,20 @@ def test_each_joint_of_a_loop_is_held_to_what_its_drivers_bring_it_to() -> None:
     assert all(reach.share > 0.99 for reach in reaches.values())
 
 
+@pytest.mark.slow
+def test_the_other_drivers_of_a_loop_are_held_while_one_is_driven() -> None:
+    """Six legs carry a platform on balls; whoever lets five of them go, or holds a ball by one of its axes, does not move the sixth."""
+    folder = ROOT / "examples/stewart_platform"
+    assembly = Assembly.from_plan(AssemblyPlan.load(folder), folder / "parts")
+
+    verdict = simulate_assembly(assembly, "stewart_platform", engines=("mujoco",))
+
+    assert verdict.ok, str(verdict.findings)
+    judged = verdict.outcomes[0].judged
+    assert sorted(reach.role for reach in judged) == ["driver"] * 6 + ["follower"] * 12
+    assert all(reach.share > 0.99 for reach in judged)
+
+
 def test_one_loop_does_not_answer_for_another_nor_a_follower_for_its_driver(tmp_path: Path) -> None:
     """Two geared pairs; a post is in the way of the second: joint by joint where drivers are unknown, the driver where they are known."""
     pair = '<body name="{n}" pos="{x} 0 0.5"><joint name="{n}" axis="0 0 1" range="-1 1"/>' + ARM + "</body>"
