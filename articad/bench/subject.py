@@ -103,7 +103,6 @@ class Subject:
             reached = self.assembly.feasible_range(driver)
         except ArticadError:
             return None
-        low, high = reached.lower, reached.upper
-        if math.isinf(low) or math.isinf(high):
-            low, high = 0.0, turns * 2 * math.pi
-        return low, high
+        if {"endless", "not followed further"} & {reached.lower_reason, reached.upper_reason}:
+            return 0.0, turns * 2 * math.pi
+        return reached.lower, reached.upper
