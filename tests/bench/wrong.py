@@ -43,7 +43,8 @@ def shaped_as(part: Part, mesh: TriMesh | None) -> Part:
     if mesh is None:
         return Part.without_geometry(part.name, part.connectors, part.mass)
     solid = Solid.from_mesh(mesh)
-    mass = None if part.mass is None else MassProperties.from_solid(abs(solid.volume), solid.com, solid.inertia_mm5, 1000.0)
+    dense = 1000.0 if part.mass is None or part.mesh is None else 1e9 * part.mass.mass / abs(part.mesh.volume)
+    mass = None if part.mass is None else MassProperties.from_solid(abs(solid.volume), solid.com, solid.inertia_mm5, dense)
     return replace(part, solid=solid, visuals=(), collisions=(), mass=mass)
 
 
@@ -170,7 +171,8 @@ def _adrift(_check: Check, subject: Subject) -> Subject:
 def _in_the_way(_check: Check, subject: Subject) -> Subject:
     """Something stands where a moving part comes by."""
     assembly = subject.assembly
-    for driver in assembly.drivers:
+    on_ground = {joint.name for joint in assembly.joints if joint.parent == assembly.ground}
+    for driver in sorted(assembly.drivers, key=lambda driver: driver.joint in on_ground):  # first those that what stands does not hold: no ghost in a bearing
         q = _on_its_way(subject, driver)
         poses = dict(zip(assembly.mechanism.parts, assembly.poses(q), strict=True))
         mover = next(joint.child for joint in assembly.joints if joint.name == driver.joint)
