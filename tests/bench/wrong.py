@@ -172,7 +172,7 @@ def _in_the_way(_check: Check, subject: Subject) -> Subject:
     """Something stands where a moving part comes by."""
     assembly = subject.assembly
     on_ground = {joint.name for joint in assembly.joints if joint.parent == assembly.ground}
-    for driver in sorted(assembly.drivers, key=lambda driver: driver.joint in on_ground):  # first those that what stands does not hold: no ghost in a bearing
+    for driver in sorted(assembly.drivers, key=lambda driver: driver.joint in on_ground):  # no ghost in a bearing, if there is a choice
         q = _on_its_way(subject, driver)
         poses = dict(zip(assembly.mechanism.parts, assembly.poses(q), strict=True))
         mover = next(joint.child for joint in assembly.joints if joint.name == driver.joint)
