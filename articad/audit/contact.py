@@ -18,7 +18,7 @@ from articad.connectors.se3 import SE3
 from articad.findings import Finding, Findings
 from articad.geometry.mesh import TriMesh, merged
 from articad.geometry.part import Part
-from articad.interference.body import body_of, relative
+from articad.interference.body import body_of
 from articad.interference.check import check_scene
 from articad.interference.holding import Holding
 from articad.interference.overlap import measured
@@ -132,9 +132,10 @@ def _at_rest(case: Case, poses: Mapping[str, SE3]) -> Checks:
     if not case.foreign:
         return check_scene(case.scene, poses, ground=case.assembly.ground)
     scene, findings, pairs = case.scene, list[Finding](), list[PairCheck]()
-    for a, b in scene.candidates(poses):
+    placed = scene.at(poses)
+    for a, b in placed.candidates():
         if a not in scene.broken and b not in scene.broken:
-            check, found = judge(scene, (a, b), measured(scene.bodies[a], scene.bodies[b], relative(poses[a], poses[b])))
+            check, found = judge(scene, (a, b), measured(scene.bodies[a], scene.bodies[b], placed.relative(a, b)))
             pairs.append(check)
             findings += found
     return Checks(Findings(findings), tuple(pairs), scene.deflection, "rest", tuple(scene.bodies))
@@ -157,5 +158,5 @@ def _held(case: Case, declared: Declared, poses: Mapping[str, SE3], rest: Checks
         return []
     scene = Scene.of(meshes, assembly.joints, deflection=FOREIGN_GAP_MM / 2)
     pairs = {pair.parts: pair for pair in rest.pairs if set(pair.parts) <= set(meshes)}
-    holding = Holding(scene, {name: poses[name] for name in assembly.parts}, pairs)
+    holding = Holding(scene.at(poses), pairs)
     return [*holding.fixed_apart(), *holding.floating(assembly.ground, [name for name in assembly.parts if name not in meshes])]

@@ -123,7 +123,7 @@ class Prover:
 
     def prove(self, *, most: int = MOST_PAIRS, tentative: bool = False) -> Proof:
         """Prove the whole range, or what of a single coordinate can be; a tentative proof ends at the first contact."""
-        start = measured(self.body_a, self.body_b, SE3.from_matrix(self.chain.matrix(self.chain.rest)))
+        start = measured(self.body_a, self.body_b, self.chain.matrix(self.chain.rest)[:3])
         begun = Proof(self.parts, self.joints, overlap=start, epsilon=self.epsilon)
         if start.depth > self.allowed and start.volume > UNRELATED_VOLUME_MM3:
             return replace(begun, contacts=(self.named(self.chain.rest),))
