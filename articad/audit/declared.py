@@ -125,6 +125,8 @@ class Declared:
         joints: In the file's order.
         states_inertia: False where the format leaves masses to others, as CAD does.
         states_collision: False where a part's solid is what collides.
+        states_frames: True where the file itself says where its base stands and where each joint rests, as articad's own records do:
+            then neither a base above the lowest point nor a range without zero is an oversight. False of files that were only converted.
     """
 
     format: str
@@ -133,6 +135,7 @@ class Declared:
     joints: tuple[DeclaredJoint, ...]
     states_inertia: bool = True
     states_collision: bool = True
+    states_frames: bool = False
 
     @cached_property
     def by_name(self) -> dict[str, DeclaredLink]:

@@ -38,9 +38,6 @@ CHECKS: Final[tuple[Callable[[Declared], Iterator[Finding]], ...]] = (
     *limits.CHECKS,
     *shapes.CHECKS,
 )
-_READER_NOTES: Final = {"W_IMPORT_MESH", "W_IMPORT_LIMITS", "W_IMPORT_DROPPED", "W_IMPORT_STALE"}
-"""What our own readers leave out; where it is a defect of the file, a check says so with its own words."""
-
 _CAD_NAMES: Final = {"freecad", "plan", "run"}  # names of labels are free there
 
 
@@ -193,6 +190,8 @@ def _read_and_look(found: _Found, read: Callable[[], Assembly], choices: Choices
         if not any(finding.severity == "error" for finding in found.findings):  # else the text has said why
             found.findings += error.findings or [_unreadable(path, error)]
         return
+    assert found.declared is not None
+    found.declared = replace(found.declared, states_frames=not assembly.foreign)
     _look(found, assembly, choices)
 
 

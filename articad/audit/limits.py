@@ -113,7 +113,7 @@ def endless(declared: Declared) -> Iterator[Finding]:
 
 def zero_outside(declared: Declared) -> Iterator[Finding]:
     """Ranges that do not hold zero, where every reader places the joint at first; those that turn and those that slide together."""
-    if declared.format != "urdf":
+    if declared.format != "urdf" or declared.states_frames:
         return
     for turns in (True, False):
         rows = []
