@@ -61,7 +61,8 @@ def _welded(check: Check, subject: Subject) -> Subject:
         return Subject(changed(subject.assembly, joints=[_loose(joint) for joint in subject.assembly.joints]))
     if subject.assembly.mechanism.couplings and not subject.assembly.mechanism.loop_joints:
         return Subject(changed(subject.assembly, couplings=()))  # what follows goes its own way
-    drivers = {driver.joint for driver in subject.assembly.drivers}
+    columns = [column for coupling in subject.assembly.mechanism.couplings for column in (coupling.a, coupling.b)]
+    drivers = {driver.joint for driver in subject.assembly.drivers} | {column.split(".")[0] for column in columns}
     return Subject(changed(subject.assembly, joints=[_fixed(j) if j.name in drivers else j for j in subject.assembly.joints], couplings=()))
 
 
