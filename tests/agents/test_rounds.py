@@ -129,7 +129,7 @@ def test_every_part_is_looked_at_once_then_the_whole_is_observed_and_judged(tmp_
     told = said(llm, "judge/1/1")
     assert "Exact checks: passed." in told
     assert "Mobility: 1 freedoms" in told
-    assert "- hinge: 0 degrees to 90 degrees" in told
+    assert "- hinge: 0 to 90 degrees, drives" in told
     assert "- flap: from (0, 0, 11) to (30, 10, 13)" in told
     assert "turns upwards" in told
     verdict = run.verdict()
