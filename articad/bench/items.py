@@ -130,6 +130,11 @@ def make(item: Item, out: str | Path, *, cache_root: str | Path | None = None) -
     return {**record, "made": "now"}
 
 
+def make_stored(item: Json, out: str) -> Json:
+    """Make an item as it came from another process."""
+    return make(Item.from_json(item), out)
+
+
 def _made(item: Item, folder: Path, cache_root: str | Path | None) -> Json:
     clock = _Clock()
     record: Json = {"schema": SCHEMA, "digest": item.digest, "articad": __version__, **item.to_json()}

@@ -15,6 +15,8 @@ from pathlib import Path
 from typing import Any
 
 from articad.agents.edit import edit
+from articad.agents.generation import REPAIRS
+from articad.agents.line import ROUNDS
 from articad.agents.llm import LLM
 from articad.agents.pipeline import Variant, generate
 from articad.agents.retrieval import Memory
@@ -45,6 +47,8 @@ def run_tasks(
     memory: Memory | None = None,
     look: bool = True,
     model: str = "",
+    repairs: int = REPAIRS,
+    rounds: int = ROUNDS,
     jobs: int = 1,
     finished: Finished | None = None,
     progress: Callable[[Row], object] | None = None,
@@ -61,6 +65,8 @@ def run_tasks(
         memory: Likewise.
         look: Whether models look at parts and assembly.
         model: Name of who answers: rows of another model are made again.
+        repairs: As for `generate`.
+        rounds: As for `generate`.
         jobs: How many tasks at once.
         finished: Told of each finished run.
         progress: Told of each row.
@@ -73,11 +79,12 @@ def run_tasks(
         folder, task = pair
         place = Path(out) / task.name
         way = {"variant": variant, "look": look, "model": model, "kernel": None if kernel is None else kernel.name}
-        key = digest({"task": task.model_dump(mode="json"), **way})
+        tries = {"repairs": repairs, "rounds": rounds}
+        key = digest({"task": task.model_dump(mode="json"), **way, **tries})
         row = kept_row(place, key)
         if row is None:
             made = _Made(task, folder, place, key, ask(task), finished)
-            row = made.row(variant=variant, kernel=kernel, cache=cache, memory=memory, look=look)
+            row = made.row(variant=variant, kernel=kernel, cache=cache, memory=memory, look=look, **tries)
             if not made.unreached:
                 keep_row(place, row)
         if progress is not None:

@@ -5,16 +5,17 @@ from __future__ import annotations
 import argparse
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from articad.commands.bench_tables import print_judged, print_table
 from articad.commands.command import argument, command
-from articad.commands.options import ASKING, FORCE, SANDBOX, amount, positive
+from articad.commands.options import ASKING, ENGINE, FORCE, SANDBOX, amount, positive
 from articad.commands.steps import build_cache, sandbox_level
 
 if TYPE_CHECKING:
     from articad.agents.llm import Budget
     from articad.bench.judge import Judged
+    from articad.bench.pool import Call
     from articad.bench.row import Row
     from articad.bench.task import Task
     from articad.terminal import Report, Terminal
@@ -37,14 +38,14 @@ if TYPE_CHECKING:
         help="the paper's ablations (full)",
     ),
     argument("--kernel", choices=["build123d", "freecad"], default="build123d", help="what part scripts are written for (build123d)"),
-    argument("--at-once", metavar="N", type=positive, default=1, help="tasks at the same time (1)"),
+    argument("--at-once", metavar="N", type=positive, default=1, help="tasks at the same time, each in a process of its own (1)"),
+    *ENGINE,
     *ASKING,
     SANDBOX,
     FORCE,
 )
 def _bench(options: argparse.Namespace, terminal: Terminal) -> Report:
     from articad.bench.row import rows_in
-    from articad.bench.scoring import score_files
     from articad.bench.table import table
     from articad.bench.task import TASKS, tasks_in
     from articad.errors import ReadError
@@ -61,7 +62,7 @@ def _bench(options: argparse.Namespace, terminal: Terminal) -> Report:
     if options.action == "score":
         if not options.what:
             raise ReadError("`articad bench score` needs a folder of models named after tasks.", path="bench")
-        return print_table(table(score_files(tasks, options.what)), terminal)
+        return print_table(table(_scored(tasks, options, terminal)), terminal)
     return print_table(table(_run(tasks, options, terminal)), terminal)
 
 
@@ -70,10 +71,9 @@ def _bench(options: argparse.Namespace, terminal: Terminal) -> Report:
     "Make many assemblies: plans with values for their parameters, checked, exported and kept with their provenance.",
     argument("spec", metavar="BATCH.json", help="items, or samples of plans' parameters"),
     argument("--out", metavar="DIR", default="batch", help="a folder for each item; what is there is not made again (batch)"),
-    argument("--engine", choices=["local", "dask"], default="local", help="processes of this machine, or a Dask cluster (local)"),
-    argument("--scheduler", metavar="URL", help="address of the Dask scheduler; its workers must see --out"),
+    *ENGINE,
     argument("--jobs", metavar="N", type=positive, default=None, help="workers of this machine (one a processor)"),
-    argument("--memory", metavar="GB", type=amount, default=4.0, help="of each worker of this machine (4)"),
+    argument("--memory", metavar="GB", type=amount, default=4.0, help="data of each worker process (4)"),
 )
 def _batch(options: argparse.Namespace, terminal: Terminal) -> Report:
     from articad.bench.batch import read_batch, run_dask, run_local, summary
@@ -85,7 +85,7 @@ def _batch(options: argparse.Namespace, terminal: Terminal) -> Report:
             tell(record["digest"][:12], "built" if record["ok"] else "failed")
 
         if options.engine == "dask":
-            records = run_dask(items, options.out, scheduler=options.scheduler, told=told)
+            records = run_dask(items, options.out, scheduler=options.scheduler, memory_gb=options.memory, told=told)
         else:
             records = run_local(items, options.out, workers=options.jobs, memory_gb=options.memory, told=told)
     report = summary(records)
@@ -98,7 +98,29 @@ def _batch(options: argparse.Namespace, terminal: Terminal) -> Report:
     return report
 
 
+def _scored(tasks: list[tuple[Path, Task]], options: argparse.Namespace, terminal: Terminal) -> list[Row]:
+    from articad.bench.remote import rows_of, score_calls
+    from articad.bench.scoring import score_files
+
+    if options.engine == "local" and options.at_once == 1:
+        return score_files(tasks, options.what)
+    return rows_of(tasks, _spread(score_calls(tasks, options.what), options, terminal))
+
+
 def _run(tasks: list[tuple[Path, Task]], options: argparse.Namespace, terminal: Terminal) -> list[Row]:
+    from articad.bench.remote import rows_of, run_calls
+    from articad.commands.models import asked_model, limits, model_name
+
+    _, sees = asked_model(options, terminal)  # says at once what is missing
+    if options.engine == "dask" or options.at_once > 1:
+        said: dict[str, Any] = {"model": model_name(options), "limits": limits(options), "sandbox": sandbox_level(options)}
+        said |= {name: getattr(options, name) for name in ("vision_model", "judge_model", "api_base", "kernel", "memory", "force")}
+        said |= {"variant": options.variant, "look": sees and options.look, "repairs": options.repairs, "rounds": options.rounds}
+        return rows_of(tasks, _spread(run_calls(tasks, options.out, said), options, terminal))
+    return _run_here(tasks, options, terminal, look=sees and options.look)
+
+
+def _run_here(tasks: list[tuple[Path, Task]], options: argparse.Namespace, terminal: Terminal, *, look: bool) -> list[Row]:
     from articad.agents.recollection import StoredMemory, remember
     from articad.bench.runner import run_tasks
     from articad.commands.models import asked_model, model_name
@@ -106,7 +128,6 @@ def _run(tasks: list[tuple[Path, Task]], options: argparse.Namespace, terminal: 
     from articad.record import kernel_named
 
     store = ExperienceStore(options.memory)
-    budgets = [asked_model(options, terminal)]  # says at once what is missing
     with terminal.progress("Tasks", total=len(tasks)) as tell:
         return run_tasks(
             tasks,
@@ -116,12 +137,27 @@ def _run(tasks: list[tuple[Path, Task]], options: argparse.Namespace, terminal: 
             kernel=kernel_named(options.kernel, sandbox=sandbox_level(options)),
             cache=build_cache(options),
             memory=StoredMemory(store),
-            look=budgets[0][1] and options.look,
+            look=look,
             model=",".join(name for name in (model_name(options), options.vision_model, options.judge_model) if name),
-            jobs=options.at_once,
+            repairs=options.repairs,
+            rounds=options.rounds,
             finished=lambda run: remember(run, store),
             progress=lambda row: tell(row.task, "passed" if row.ok else "failed"),
         )
+
+
+def _spread(calls: list[Call], options: argparse.Namespace, terminal: Terminal) -> list[Report]:
+    """Make calls in processes, here or on a Dask cluster."""
+    from articad.bench.pool import run_dask, run_local
+
+    with terminal.progress("Tasks", total=len(calls)) as tell:
+
+        def told(answer: Report) -> None:
+            tell(answer.get("task", "?"), "passed" if answer.get("ok") else "failed")
+
+        if options.engine == "dask":
+            return run_dask(calls, scheduler=options.scheduler, told=told)
+        return run_local(calls, workers=options.at_once, told=told)
 
 
 def _listed(tasks: list[Task], terminal: Terminal) -> Report:

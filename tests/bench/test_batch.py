@@ -7,6 +7,7 @@ import os
 import shutil
 import signal
 import subprocess
+import sys
 import threading
 import time
 from collections import Counter
@@ -158,6 +159,44 @@ def test_a_wrong_item_is_told(row: Json, words: str, tmp_path: Path) -> None:
     spec.write_text(json.dumps({"items": [row]}))
     with pytest.raises(ReadError, match=words):
         read_batch(spec)
+
+
+def test_a_worker_has_no_more_memory_than_it_was_given(plan: Path, tmp_path: Path) -> None:
+    (item,) = lifts(plan, 1.0, formats=("urdf",))
+
+    (small,) = run_local([item], tmp_path / "small", workers=1, memory_gb=0.05, retries=0)
+    (large,) = run_local([item], tmp_path / "large", workers=1)
+
+    assert not small["ok"]
+    assert large["ok"], large
+
+
+def test_a_worker_ends_with_whoever_started_it(plan: Path, tmp_path: Path) -> None:
+    code = f"""
+import os
+from articad.bench.batch import run_local
+from articad.bench.items import Item
+
+def tell(record):
+    children = os.popen(f"pgrep -P {{os.getpid()}} -f articad.bench.worker").read()
+    print(children, flush=True)
+    os.kill(os.getpid(), 9)
+
+run_local([Item({str(plan)!r}, {{"lift": 1 + i / 10}}) for i in range(9)], {str(tmp_path)!r}, workers=1, told=tell)
+"""
+    done = subprocess.run([sys.executable, "-c", code], check=False, capture_output=True, text=True)
+    workers = [int(line) for line in done.stdout.split()]
+
+    assert done.returncode == -signal.SIGKILL
+    assert workers
+    deadline = time.monotonic() + 60
+    while alive := [
+        worker
+        for worker in workers
+        if Path(f"/proc/{worker}/cmdline").exists() and b"bench.worker" in Path(f"/proc/{worker}/cmdline").read_bytes()
+    ]:
+        assert time.monotonic() < deadline, alive
+        time.sleep(0.05)
 
 
 def test_dask_makes_all_items_though_a_worker_is_killed(plan: Path, tmp_path: Path) -> None:

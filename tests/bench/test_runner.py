@@ -19,6 +19,7 @@ from articad.cli import main
 from articad.errors import ReadError, TransportError
 from articad.memory.experience import ExperienceStore
 from tests.agents import stories
+from tests.agents.openai_stub import Canned, openai_stub
 
 pytestmark = pytest.mark.slow
 
@@ -185,6 +186,35 @@ def test_the_command_lists_scores_and_prints_tables(
     assert "all: 0 % [0, 0] of 1 passed" in capsys.readouterr().out
     assert main(["bench", "list", "--tasks", folder, "--task", "flap1"]) != 0
     assert "Did you mean 'flap_1'" in capsys.readouterr().err
+
+
+def test_tasks_run_and_are_scored_in_processes_of_their_own(
+    tasks: list[tuple[Path, Task]], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    run(tasks[:1], tmp_path / "out", lambda _task: stories.flap())
+    common = ["--tasks", str(tmp_path / "tasks"), "--task", "flap_0", "--task", "flap_1", "--at-once", "2", "--json"]
+
+    assert main(["bench", "score", str(tmp_path / "out"), *common]) == 0
+    scored = json.loads(capsys.readouterr().out)["rows"]
+    with openai_stub([Canned("no")]) as stub:
+        asked = [
+            "--out",
+            str(tmp_path / "asked"),
+            "--model",
+            "stub",
+            "--api-base",
+            stub.address,
+            "--no-look",
+            "--memory",
+            str(tmp_path / "store"),
+        ]
+        assert main(["bench", "run", *asked, *common]) == 0
+    ran = json.loads(capsys.readouterr().out)["rows"]
+
+    assert [(row["task"], row["passed"]) for row in scored] == [("flap_0", True), ("flap_1", False)]
+    assert [(row["task"], row["calls"], row["tokens"]) for row in ran] == [("flap_0", 3, 30), ("flap_1", 3, 30)]
+    assert all("OutputError" in row["error"] for row in ran)
+    assert [row.task for row in rows_in(tmp_path / "asked")] == ["flap_0", "flap_1"]
 
 
 def test_a_task_of_the_wrong_form_is_refused_at_its_field(tmp_path: Path) -> None:
