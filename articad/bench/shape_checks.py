@@ -143,7 +143,7 @@ class Holds(Check):
         return f"holds {in_words(self.ml)} ml"
 
     def measured(self, subject: Subject) -> tuple[bool, str]:
-        held = held_volume(*occupied(placed(subject))) / 1000
+        held = held_volume(placed(subject)) / 1000
         return self.ml[0] <= held <= self.ml[1], f"{held:.4g} ml"
 
 

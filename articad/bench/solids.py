@@ -207,20 +207,68 @@ def wall_thickness(mesh: TriMesh, samples: int = SAMPLES) -> FloatArray:
 
 def occupied(meshes: Sequence[TriMesh], cells: int = CELLS) -> tuple[Grid, float]:
     """Return which cells of a grid hold matter, `(nx, ny, nz)`, and the side of a cell [mm]; the grid lies evenly about the box."""
+    start, pitch, shape = _grid(meshes, cells)
+    return np.asarray(np.any([_filled(_crossings(mesh, start, pitch, shape)) for mesh in meshes], axis=0)), pitch
+
+
+def held_volume(meshes: Sequence[TriMesh], cells: int = CELLS) -> float:
+    """Return how much water stays in a vessel that stands as it is, filled to the brim [mm³].
+
+    Water stays in a cell if, below that level, there is no way out from it; hollows that nothing can be poured into do not count.
+    Walls thinner than a cell are in its way all the same: the cells on both sides of them count as wall first, and those that the
+    water then touches as water.
+    """
+    start, pitch, (nx, ny, nz) = _grid(meshes, cells)
+    start, shape = start - pitch, (nx + 2, ny + 2, nz + 2)  # a way round everything
+    matter, sheets = np.zeros(shape, dtype=bool), np.zeros(shape, dtype=bool)
+    for mesh in meshes:
+        matter |= _filled(_crossings(mesh, start, pitch, shape))
+        sheets |= _sheets(mesh, start, pitch, shape)
+    empty = ~(matter | sheets)
+    reached, _ = label(empty)
+    open_above = reached == reached[0, 0, 0]
+    water = np.zeros(empty.shape, dtype=bool)
+    for level in range(1, empty.shape[2] - 1):
+        basins, _ = label(empty[:, :, : level + 1])
+        water[:, :, level] = (basins[:, :, level] > 0) & (basins[:, :, level] != basins[0, 0, 0]) & open_above[:, :, level]
+    beside = np.zeros(empty.shape, dtype=bool)
+    for axis, step in ((0, 1), (0, -1), (1, 1), (1, -1), (2, -1)):
+        beside |= np.roll(water, step, axis)
+    water |= beside & sheets & ~matter
+    return float(water.sum()) * pitch**3
+
+
+def _grid(meshes: Sequence[TriMesh], cells: int) -> tuple[FloatArray, float, tuple[int, int, int]]:
+    """Return the corner of a grid [mm], the side of its cells [mm] and how many there are along each axis."""
     low = np.min([mesh.bounds[0] for mesh in meshes], axis=0)
     high = np.max([mesh.bounds[1] for mesh in meshes], axis=0)
     pitch = float((high - low).max()) / cells
-    shape = np.maximum(1, np.ceil((high - low) / pitch - 1e-9).astype(int))
-    start = (low + high) / 2 - shape * pitch / 2
-    grid = np.zeros(tuple(shape), dtype=bool)
-    for mesh in meshes:
-        grid |= _filled(mesh, start, pitch, (int(shape[0]), int(shape[1]), int(shape[2])))
-    return grid, pitch
+    nx, ny, nz = (max(1, math.ceil(side / pitch - 1e-9)) for side in high - low)
+    return (low + high) / 2 - np.array([nx, ny, nz]) * pitch / 2, pitch, (nx, ny, nz)
 
 
-def _filled(mesh: TriMesh, start: FloatArray, pitch: float, shape: tuple[int, int, int]) -> Grid:
-    """Return the cells whose middles lie inside, by counting how often a column has met the surface below them."""
-    flips = np.zeros((*shape[:2], shape[2] + 1), dtype=np.int32)
+def _filled(crossings: NDArray[np.int32]) -> Grid:
+    """Return the cells whose middles lie inside: the column has met the surface an odd number of times below them."""
+    return np.asarray(np.cumsum(crossings, axis=2)[:, :, :-1] % 2 == 1)
+
+
+def _sheets(mesh: TriMesh, start: FloatArray, pitch: float, shape: tuple[int, int, int]) -> Grid:
+    """Return the cells between whose middle and the next one, along any axis, the surface goes in and out again."""
+    found = np.zeros(shape, dtype=bool)
+    for axis in range(3):
+        order = [(axis + 1) % 3, (axis + 2) % 3, axis]
+        turned = TriMesh(mesh.vertices[:, order], mesh.triangles)
+        counts = _crossings(turned, start[order], pitch, (shape[order[0]], shape[order[1]], shape[order[2]]))[:, :, 1:-1]
+        thin = np.zeros([shape[i] for i in order], dtype=bool)
+        thin[:, :, :-1] |= counts >= 2
+        thin[:, :, 1:] |= counts >= 2
+        found |= np.moveaxis(thin, (0, 1, 2), order)
+    return found
+
+
+def _crossings(mesh: TriMesh, start: FloatArray, pitch: float, shape: tuple[int, int, int]) -> NDArray[np.int32]:
+    """Return how often each column of middles along z meets the surface below its first middle, between any two, and above its last."""
+    counts = np.zeros((*shape[:2], shape[2] + 1), dtype=np.int32)
     corners = (mesh.vertices[mesh.triangles] - start) / pitch - 0.5  # cell i has its middle at i
     corners[..., :2] += _ASIDE
     seen_from_above = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])[:, 2]
@@ -236,23 +284,8 @@ def _filled(mesh: TriMesh, start: FloatArray, pitch: float, shape: tuple[int, in
         inside = (u >= 0) & (v >= 0) & (u + v <= 1)
         z = a[2] + u * (b[2] - a[2]) + v * (c[2] - a[2])
         cell = np.clip(np.ceil(z), 0, shape[2]).astype(int)
-        np.add.at(flips, (x[inside], y[inside], cell[inside]), 1)
-    return np.asarray(np.cumsum(flips, axis=2)[:, :, :-1] % 2 == 1)
-
-
-def held_volume(grid: Grid, pitch: float) -> float:
-    """Return how much water stays in a vessel that stands as it is, filled to the brim [mm³].
-
-    Water stays in a cell if, below that level, there is no way out from it; hollows that nothing can be poured into do not count.
-    """
-    empty = ~np.pad(grid, 1)
-    reached, _ = label(empty)
-    open_above = reached == reached[0, 0, 0]
-    cells = 0
-    for level in range(1, empty.shape[2] - 1):
-        basins, _ = label(empty[:, :, : level + 1])
-        cells += int(((basins[:, :, level] > 0) & (basins[:, :, level] != basins[0, 0, 0]) & open_above[:, :, level]).sum())
-    return cells * pitch**3
+        np.add.at(counts, (x[inside], y[inside], cell[inside]), 1)
+    return counts
 
 
 def asymmetry(grid: Grid, axis: int) -> float:
