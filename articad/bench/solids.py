@@ -272,11 +272,10 @@ def _crossings(mesh: TriMesh, start: FloatArray, pitch: float, shape: tuple[int,
     corners = (mesh.vertices[mesh.triangles] - start) / pitch - 0.5  # cell i has its middle at i
     corners[..., :2] += _ASIDE
     seen_from_above = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])[:, 2]
-    for a, b, c in corners[np.abs(seen_from_above) > 1e-12]:
-        low = np.maximum(np.ceil(np.minimum(np.minimum(a, b), c)[:2]), 0).astype(int)
-        high = np.minimum(np.floor(np.maximum(np.maximum(a, b), c)[:2]), np.array(shape[:2]) - 1).astype(int)
-        if (high < low).any():
-            continue
+    lows = np.maximum(np.ceil(corners[..., :2].min(axis=1)), 0).astype(int)
+    highs = np.minimum(np.floor(corners[..., :2].max(axis=1)), np.array(shape[:2]) - 1).astype(int)
+    met = (np.abs(seen_from_above) > 1e-12) & (highs >= lows).all(axis=1)
+    for (a, b, c), low, high in zip(corners[met], lows[met], highs[met], strict=True):
         x, y = np.meshgrid(np.arange(low[0], high[0] + 1), np.arange(low[1], high[1] + 1), indexing="ij")
         det = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
         u = ((x - a[0]) * (c[1] - a[1]) - (y - a[1]) * (c[0] - a[0])) / det
