@@ -197,7 +197,7 @@ def _range_of(subject: Subject, joint: Joint) -> str:
     spans = {name: _span(high - low, unit) for name, unit, low, high in widths}
     cone = "" if limits.cone is None else f", tilts {_number(math.degrees(limits.cone))}° to every side"
     twist = "" if limits.twist is None else f", twists {_span(limits.twist[1] - limits.twist[0], 'rad')}"
-    pitch = f"{_number(abs(joint.lead))} mm a turn"
+    pitch = f"{abs(joint.lead):.4g} mm a turn"  # of a thread, hundredths count
     return _DOES[kind].format(axis=axis, cone=cone, twist=twist, pitch=pitch, **spans)
 
 
