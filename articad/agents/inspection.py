@@ -40,11 +40,12 @@ _CODES: Final = {aspect: f"E_VERDICT_{aspect.upper()}" for aspect in _ASPECTS}
 
 
 class Compared(Form):
-    """What was seen of one aspect of a part, and what the specification says of it."""
+    """What was seen of one aspect of a part, and what the specification says of it; what no picture shows is neither right nor wrong."""
 
     aspect: Literal["shape", "proportion", "orientation"]
     agrees: bool
     seen: str
+    not_visible: str = ""
     specified: str
     fault: Literal["none", "script", "specification"]
     remedy: str
@@ -77,7 +78,7 @@ def look(specification: str, name: str, realised: RealisedPart, llm: LLM, *, ste
         pictures: The user's own of this part.
 
     Returns:
-        A warning for each aspect that does not agree, its route the model's opinion of whose fault it is.
+        A warning for each aspect that does not agree, its route the model's opinion of whose fault it is; a note for what could not be seen.
 
     Raises:
         OutputError: If no reply has the form.
@@ -87,7 +88,7 @@ def look(specification: str, name: str, realised: RealisedPart, llm: LLM, *, ste
     drawn = part_picture(realised.part, realised.digests["build"])
     opening = (system(prompt("look")), user(words, *pictures, drawn))
     seen = ask(llm, "look", step, opening, reader(Look), schema=schema_of(Look))
-    return Findings(
+    complaints = [
         Finding(
             code=f"W_LOOK_{one.aspect.upper()}",
             where=f"parts.{name}",
@@ -98,7 +99,19 @@ def look(specification: str, name: str, realised: RealisedPart, llm: LLM, *, ste
         )
         for one in seen.findings
         if not one.agrees
-    )
+    ]
+    unseen = [
+        Finding(
+            code="I_LOOK_UNSEEN",
+            where=f"parts.{name}",
+            parts=(name,),
+            message=f"No picture shows: {one.not_visible.strip().rstrip('.')}.",
+            hint="It was not judged.",
+        )
+        for one in seen.findings
+        if one.not_visible.strip()
+    ]
+    return Findings([*complaints, *unseen])
 
 
 # ---------------------------------------------------------------------- the assembly

@@ -17,7 +17,7 @@ from articad.plan.schema import AssemblyPlan
 from articad.render.pictures import RECIPE
 from articad.run import Run, differences
 from tests.agents import stories
-from tests.agents.stories import FLAP_PLAN, FLAP_SCRIPTS, fenced, flap, judged, looks, observed, watched
+from tests.agents.stories import FLAP_PLAN, FLAP_SCRIPTS, LOOKS_RIGHT, fenced, flap, judged, looks, observed, watched
 
 THINNER = FLAP_SCRIPTS["flap"].replace('d["thickness"]', '0.9 * d["thickness"]')
 
@@ -171,6 +171,18 @@ def test_a_specification_that_an_inspector_finds_at_fault_goes_to_the_designer_o
     assert [step for step in llm.steps if step.startswith("design")] == ["design/1", "design/2"]
     assert "W_LOOK_ORIENTATION parts.flap" in said(llm, "design/2")
     assert (run.round(1) or {})["kept"] == ["plate", "flap"]
+
+
+def test_what_no_picture_shows_is_told_in_the_trace_and_is_no_complaint(tmp_path: Path) -> None:
+    answer = json.loads(LOOKS_RIGHT)
+    answer["findings"][0]["not_visible"] = "the blind end of the bore."
+    llm = flap(look__flap__1=json.dumps(answer))
+    run = made(tmp_path, llm)
+
+    assert [step for step in llm.steps if "flap" in step] == ["part/flap/1", "look/flap/1"]
+    assert codes(run.verdict()) == []
+    (told,) = [event for event in run.events() if event.get("code") == "I_LOOK_UNSEEN"]
+    assert told["message"] == "No picture shows: the blind end of the bore."
 
 
 def test_a_look_without_form_is_no_complaint(tmp_path: Path) -> None:
