@@ -233,7 +233,9 @@ def _mispinned(_check: Check, subject: Subject) -> Subject:
     """A pin that closes a loop sits elsewhere on both of its parts: links are longer or shorter than they should be."""
     mechanism = subject.assembly.mechanism
     aside = SE3.from_translation(np.array([0.06, 0.04, 0.0]) * float(subject.size.max()))
-    moved = next(joint for joint in mechanism.loop_joints if joint.type is JointType.REVOLUTE)
+    moved = next((joint for joint in mechanism.loop_joints if joint.type is JointType.REVOLUTE), None)
+    if moved is None:  # couplings alone make it so
+        return _unclosed(_check, subject)
     turn = moved.motion(moved.rest)
     joints = [
         replace(j, T_parent_connector=j.T_parent_connector @ aside, T_child_connector=j.T_child_connector @ turn.inverse() @ aside @ turn)
