@@ -229,6 +229,8 @@ def held_volume(meshes: Sequence[TriMesh], cells: int = CELLS) -> float:
     open_above = reached == reached[0, 0, 0]
     water = np.zeros(empty.shape, dtype=bool)
     for level in range(1, empty.shape[2] - 1):
+        if label(empty[:, :, level])[1] == 1:  # nothing is walled in at this height
+            continue
         basins, _ = label(empty[:, :, : level + 1])
         water[:, :, level] = (basins[:, :, level] > 0) & (basins[:, :, level] != basins[0, 0, 0]) & open_above[:, :, level]
     beside = np.zeros(empty.shape, dtype=bool)
