@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Final
 
 from articad import convert
+from articad.assembly import Assembly
 from articad.bench.row import Row
 from articad.bench.subject import Subject
 from articad.bench.task import Task
@@ -76,9 +77,29 @@ def model_of(name: str, folder: Path) -> Path:
 def subject_of(found: Path) -> Subject:
     """Return what is to be judged: a run's assembly, or what a file holds.
 
+    A link of a file that collides with nothing is taken for what is drawn of it; simulators get the file as it is.
+
     Raises:
         ArticadError: If it cannot be read.
     """
     if found.is_dir():
         return Subject(assembly_of(Run.view(found)))
-    return Subject(convert.read(found), file=found if found.suffix.lower() in _SIMULATED else None)
+    return Subject(_solid(convert.read(found)), file=found if found.suffix.lower() in _SIMULATED else None)
+
+
+def _solid(assembly: Assembly) -> Assembly:
+    """Return an assembly whose parts have the shapes that are drawn of them, where they have no others."""
+    parts = [replace(part, collisions=part.visuals) if part.mesh is None and part.visuals else part for part in assembly.parts.values()]
+    if all(part is assembly.parts[part.name] for part in parts):
+        return assembly
+    mechanism = assembly.mechanism
+    return Assembly.from_parts(
+        assembly.name,
+        parts=parts,
+        joints=assembly.joints,
+        ground=assembly.ground,
+        couplings=mechanism.couplings,
+        fits=assembly.fits,
+        waivers=assembly.waivers,
+        T_ground=mechanism.T_ground,
+    )

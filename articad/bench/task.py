@@ -29,6 +29,7 @@ the notes, so that nothing that is checked is left to guess where the prompt is 
 from __future__ import annotations
 
 import json
+import shutil
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any, Final, Literal
@@ -154,6 +155,22 @@ def read_task(folder: str | Path) -> Task:
         raise ReadError.told(file, f"{where}: {first['msg']}.", "Correct the field.") from error
     except ValueError as error:
         raise ReadError.told(file, f"It is no JSON: {error}.", "Correct it there.") from error
+
+
+def write_task(task: Task, folder: Path, *, beside: Path) -> tuple[Path, Task]:
+    """Write a task that was made of other data, with its pictures; return it with its folder.
+
+    Args:
+        task: What to write.
+        folder: Where to.
+        beside: Where its pictures are.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    for image in task.images:
+        shutil.copyfile(beside / image, folder / image)
+    text = task.model_dump_json(by_alias=True, exclude_defaults=True, indent=1)
+    (folder / "task.json").write_text(f"{text}\n", encoding="utf-8")
+    return folder, task
 
 
 def tasks_in(folder: str | Path = TASKS, *, names: Sequence[str] = (), kind: Kind | None = None) -> list[tuple[Path, Task]]:

@@ -56,6 +56,21 @@ def print_judged(report: Report, terminal: Terminal) -> Report:
     return report
 
 
+def print_data(report: Report, terminal: Terminal) -> Report:
+    """Print the table of scores on public data, and return its report."""
+    names = list(report["ours"])
+    lines = [(who, how) for who in ("ours", "floor", "box") for how in ("mean", "median")]
+    rows = [(f"{who}, {how}", *(told(report[who][name][how]) for name in names)) for who, how in lines]
+    terminal.table(["", *(name.replace("_", " ") for name in names)], rows)
+    terminal.say(f"{report['samples']} samples; compile rate: {told(report['made'], percent=True)}")
+    if report["calls"]["n"]:
+        terminal.say(effort(report))
+    for row in report["rows"]:
+        if row["error"]:
+            terminal.say(f"{row['name']}: {row['error']}")
+    return report
+
+
 def effort(group: Mapping[str, Any]) -> str:
     """Return what a task took, in words."""
     cost = "of unknown price" if group["cost_usd"] is None else f"${told(group['cost_usd'])}"
@@ -76,7 +91,7 @@ def _interval(value: float | None, interval: Any, *, percent: bool = False) -> s
 
 
 def _digits(value: float) -> str:
-    return f"{value:.0f}" if abs(value) >= 1000 else f"{value:.1f}" if abs(value) >= 100 else f"{value:.3g}"
+    return f"{value:.0f}" if abs(value) >= 1000 else f"{value:.4g}" if abs(value) >= 100 else f"{value:.3g}"
 
 
 def _money(cost: float | None) -> str:
