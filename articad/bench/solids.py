@@ -29,6 +29,7 @@ PIECE_RAD: Final = math.radians(20)  # less of a circle than this has no certain
 SAME_MM: Final = 0.02  # pieces of one cylinder have the same axis and radius
 SAMPLES: Final = 200  # points of a surface at which a wall is measured
 CELLS: Final = 100  # along the longest side, where volumes are counted
+FLAT_CELLS: Final = 64  # above one another, where it matters how high water stands
 FOOT_MM: Final = 0.2  # corners so near the ground stand on it
 _LOW_DISCREPANCY: Final = (0.7548776662466927, 0.5698402909980532)
 _ASIDE: Final = (3.7e-5, 6.1e-5)  # of a cell: columns never run along an edge
@@ -208,7 +209,7 @@ def wall_thickness(mesh: TriMesh, samples: int = SAMPLES) -> FloatArray:
 def occupied(meshes: Sequence[TriMesh], cells: int = CELLS) -> tuple[Grid, float]:
     """Return which cells of a grid hold matter, `(nx, ny, nz)`, and the side of a cell [mm]; the grid lies evenly about the box."""
     start, pitch, shape = _grid(meshes, cells)
-    return np.asarray(np.any([_filled(_crossings(mesh, start, pitch, shape)) for mesh in meshes], axis=0)), pitch
+    return np.asarray(np.any([_filled(_crossings(mesh, start, np.full(3, pitch), shape)) for mesh in meshes], axis=0)), pitch
 
 
 def held_volume(meshes: Sequence[TriMesh], cells: int = CELLS) -> float:
@@ -216,28 +217,43 @@ def held_volume(meshes: Sequence[TriMesh], cells: int = CELLS) -> float:
 
     Water stays in a cell if, below that level, there is no way out from it; hollows that nothing can be poured into do not count.
     Walls thinner than a cell are in its way all the same: the cells on both sides of them count as wall first, and those that the
-    water then touches as water.
+    water then touches as water. A second look, with flat cells, is taken at the heights where the first one found water.
     """
     start, pitch, (nx, ny, nz) = _grid(meshes, cells)
-    start, shape = start - pitch, (nx + 2, ny + 2, nz + 2)  # a way round everything
+    start, sides = start - pitch, np.full(3, pitch)  # a way round everything
+    water = _water(meshes, start, sides, (nx + 2, ny + 2, nz + 2), below=False)
+    levels = np.flatnonzero(water.any(axis=(0, 1)))
+    if not levels.size:
+        return 0.0
+    low, high = levels[0] - 2, levels[-1] + 3
+    if high - low < FLAT_CELLS:
+        start[2] += low * pitch
+        sides[2] *= (high - low) / FLAT_CELLS
+        water = _water(meshes, start, sides, (nx + 2, ny + 2, FLAT_CELLS), below=True)
+    return float(water.sum()) * float(sides.prod())
+
+
+def _water(meshes: Sequence[TriMesh], start: FloatArray, pitch: FloatArray, shape: tuple[int, int, int], *, below: bool) -> Grid:
+    """Return the cells in which water stays; below tells that the grid begins above the ground, and all is open there."""
     matter, sheets = np.zeros(shape, dtype=bool), np.zeros(shape, dtype=bool)
     for mesh in meshes:
         matter |= _filled(_crossings(mesh, start, pitch, shape))
         sheets |= _sheets(mesh, start, pitch, shape)
     empty = ~(matter | sheets)
+    if below:
+        empty[:, :, 0] = True
     reached, _ = label(empty)
     open_above = reached == reached[0, 0, 0]
-    water = np.zeros(empty.shape, dtype=bool)
-    for level in range(1, empty.shape[2] - 1):
+    water = np.zeros(shape, dtype=bool)
+    for level in range(1, shape[2] - 1):
         if label(empty[:, :, level])[1] == 1:  # nothing is walled in at this height
             continue
         basins, _ = label(empty[:, :, : level + 1])
         water[:, :, level] = (basins[:, :, level] > 0) & (basins[:, :, level] != basins[0, 0, 0]) & open_above[:, :, level]
-    beside = np.zeros(empty.shape, dtype=bool)
+    beside = np.zeros(shape, dtype=bool)
     for axis, step in ((0, 1), (0, -1), (1, 1), (1, -1), (2, -1)):
         beside |= np.roll(water, step, axis)
-    water |= beside & sheets & ~matter
-    return float(water.sum()) * pitch**3
+    return water | (beside & sheets & ~matter)
 
 
 def _grid(meshes: Sequence[TriMesh], cells: int) -> tuple[FloatArray, float, tuple[int, int, int]]:
@@ -254,13 +270,13 @@ def _filled(crossings: NDArray[np.int32]) -> Grid:
     return np.asarray(np.cumsum(crossings, axis=2)[:, :, :-1] % 2 == 1)
 
 
-def _sheets(mesh: TriMesh, start: FloatArray, pitch: float, shape: tuple[int, int, int]) -> Grid:
+def _sheets(mesh: TriMesh, start: FloatArray, pitch: FloatArray, shape: tuple[int, int, int]) -> Grid:
     """Return the cells between whose middle and the next one, along any axis, the surface goes in and out again."""
     found = np.zeros(shape, dtype=bool)
     for axis in range(3):
         order = [(axis + 1) % 3, (axis + 2) % 3, axis]
         turned = TriMesh(mesh.vertices[:, order], mesh.triangles)
-        counts = _crossings(turned, start[order], pitch, (shape[order[0]], shape[order[1]], shape[order[2]]))[:, :, 1:-1]
+        counts = _crossings(turned, start[order], pitch[order], (shape[order[0]], shape[order[1]], shape[order[2]]))[:, :, 1:-1]
         thin = np.zeros([shape[i] for i in order], dtype=bool)
         thin[:, :, :-1] |= counts >= 2
         thin[:, :, 1:] |= counts >= 2
@@ -268,7 +284,7 @@ def _sheets(mesh: TriMesh, start: FloatArray, pitch: float, shape: tuple[int, in
     return found
 
 
-def _crossings(mesh: TriMesh, start: FloatArray, pitch: float, shape: tuple[int, int, int]) -> NDArray[np.int32]:
+def _crossings(mesh: TriMesh, start: FloatArray, pitch: FloatArray, shape: tuple[int, int, int]) -> NDArray[np.int32]:
     """Return how often each column of middles along z meets the surface below its first middle, between any two, and above its last."""
     counts = np.zeros((*shape[:2], shape[2] + 1), dtype=np.int32)
     corners = (mesh.vertices[mesh.triangles] - start) / pitch - 0.5  # cell i has its middle at i

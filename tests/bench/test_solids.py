@@ -94,6 +94,14 @@ def test_a_wall_far_thinner_than_a_cell_holds_water(placing: SE3) -> None:
     assert held_volume([pipe], 60) == 0
 
 
+def test_a_shallow_basin_on_a_high_foot_is_measured_as_well_and_the_hollow_of_its_foot_holds_nothing() -> None:
+    up = SE3.from_translation(np.array([0, 0, 280.0]))
+    foot = tube(15, 19, 280, 96).transformed(SE3.from_translation(np.array([0, 0, 108.0])))  # from below up to the basin's floor
+    parts = [*(part.transformed(up) for part in _apart(cup())), foot]
+
+    assert held_volume(parts) == pytest.approx(math.pi * 20**2 * 60, rel=0.02)
+
+
 def test_a_sealed_hollow_holds_nothing() -> None:
     hollow = merged([box(40, 40, 40), box(30, 30, 30).flipped()])
 
