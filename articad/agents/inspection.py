@@ -14,6 +14,7 @@ from typing import Any, Final, Literal, Self
 
 from pydantic import model_validator
 
+from articad.agents.design import ANALYSIS
 from articad.agents.evidence import Evidence, told
 from articad.agents.forms import Form, ask, reader, schema_of
 from articad.agents.llm import LLM, Image, system, user
@@ -21,7 +22,7 @@ from articad.agents.numbers import short
 from articad.agents.pictures import assembly_picture, motion_picture, part_picture
 from articad.agents.prompts import prompt
 from articad.agents.replies import unusable
-from articad.agents.requirements import Requirements
+from articad.agents.requirements import Requirements, pictures_of
 from articad.assembly import Assembly
 from articad.findings import Finding, Findings
 from articad.kernels.parts import RealisedPart
@@ -227,7 +228,7 @@ def inspect(assembly: Assembly, evidence: Evidence, request: RunRequest, require
         OutputError: If no reply has the form.
     """
     product = f"{asked_for(request, requirements)}\n\n{structure(assembly)}{_assumed(assembly)}"
-    observations = _observed(assembly, product, llm, number)
+    observations = _observed(assembly, [product, *wanted(request)], llm, number)
     seen = json.dumps(observations.model_dump(mode="json"), indent=1, ensure_ascii=False)
     words = f"{product}\n\nMeasured:\n\n{told(assembly, evidence)}\n\nThe observer saw:\n\n```json\n{seen}\n```"
     judgement = ask(
@@ -248,9 +249,9 @@ def verdict_of(evidence: Evidence, number: int) -> Verdict:
     return Verdict(Findings(evidence.findings.errors), "geometry", number)
 
 
-def _observed(assembly: Assembly, product: str, llm: LLM, number: int) -> Observations:
+def _observed(assembly: Assembly, product: Sequence[str | Image], llm: LLM, number: int) -> Observations:
     joints = list(dict.fromkeys(driver.joint for driver in assembly.drivers))[:MOTIONS]
-    parts: list[str | Image] = [product, "The assembly at rest, from four sides:", assembly_picture(assembly)]
+    parts: list[str | Image] = [*product, "The assembly at rest, from four sides:", assembly_picture(assembly)]
     for joint in joints:
         parts += [f"Keyframes of joint {joint}:", motion_picture(assembly, joint)]
 
@@ -297,11 +298,17 @@ def _weighed(problems: Iterable[Problem], evidence: Evidence) -> Iterable[Findin
         )
 
 
+def wanted(request: RunRequest) -> tuple[str | Image, ...]:
+    """Return the customer's own pictures of the whole, with a word that says so; without any, nothing."""
+    pictures = pictures_of(request)
+    return ("The customer's own pictures of what is wanted, not of what was built:", *pictures) if pictures else ()
+
+
 def asked_for(request: RunRequest, requirements: Requirements) -> str:
     """Return a request and its analysis in words."""
     analysis = json.dumps({name: value for name, value in requirements.to_json().items() if name != "schema"}, indent=1, ensure_ascii=False)
     words = request.prompt.strip() or "(no words; there were pictures)"
-    return f"The customer's request:\n\n{words}\n\nIts analysis:\n\n```json\n{analysis}\n```"
+    return f"The customer's request:\n\n{words}\n\n{ANALYSIS}\n\n```json\n{analysis}\n```"
 
 
 def structure(assembly: Assembly) -> str:

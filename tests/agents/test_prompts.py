@@ -20,9 +20,10 @@ from articad.agents.live import _TOLD
 from articad.agents.pictures import PART_VIEWS
 from articad.agents.prompts import prompt, prompt_file
 from articad.agents.replies import parse_object, parse_script
-from articad.agents.requirements import Requirements
+from articad.agents.requirements import Motion, Requirements
 from articad.agents.review import Opinion
 from articad.agents.rollback import Decisions
+from articad.kinematics.joints import JointType
 from articad.plan.check import check_plan
 from articad.plan.expressions import FUNCTIONS
 from articad.plan.fields import Form
@@ -106,6 +107,22 @@ def test_the_example_of_the_requirements_prompt_has_the_form() -> None:
     text = re.sub(r"\s+//.*", "", "{" + example + "\n}")
 
     assert Requirements.model_validate(parse_object(text, step="x")).name == "desk_lamp"
+
+
+def test_the_analysis_has_a_word_for_every_type_of_joint_that_moves() -> None:
+    kinds = {
+        "turns": JointType.REVOLUTE,
+        "slides": JointType.SLIDER,
+        "turns and slides": JointType.CYLINDRICAL,
+        "swivels": JointType.BALL,
+        "screws": JointType.SCREW,
+        "slides in a plane": JointType.PLANAR,
+        "tilts": JointType.UNIVERSAL,
+    }
+    assert set(get_args(Motion.model_fields["kind"].annotation)) == set(kinds)
+    assert set(kinds.values()) == {kind for kind in JointType if kind.freedoms}
+    told = prompt_file("requirements.md")
+    assert [kind for kind in kinds if f'"{kind}"' not in told] == []
 
 
 @pytest.mark.parametrize(

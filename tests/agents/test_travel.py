@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import pytest
 
@@ -10,7 +11,7 @@ from articad.agents.travel import travels
 from articad.assembly import Assembly
 from articad.connectors import SE3
 from articad.geometry.part import Part
-from articad.kinematics import Coupling, Joint
+from articad.kinematics import Coupling, Joint, JointLimits
 from tests.assemblies import all_joint_kinds
 from tests.kinematics.linkages import joint
 
@@ -47,6 +48,19 @@ def test_what_follows_in_a_loop_is_told_with_its_stroke_wherever_the_crank_rests
     lean = round(math.degrees(math.asin(CRANK / ROD)), 2)
     assert told[2] == f"- small_end: -{lean:g} to {lean:g} degrees, follows"
     assert told[3] == f"- slide: {ROD - CRANK:g} to {ROD + CRANK:g} mm, follows"
+
+
+@pytest.mark.parametrize("rest", [0.0, 0.8217, math.pi / 2, math.pi])
+def test_what_follows_needs_no_leeway_beyond_the_extremes_that_it_reaches(rest: float) -> None:
+    """Designers are told so: a crank turns endlessly although its followers' limits are exactly how far they go."""
+    lean = math.asin(CRANK / ROD)
+    exact = {"slide": (ROD - CRANK, ROD + CRANK), "small_end": (-lean, lean)}
+    limits = {name: JointLimits((low,), (high,)) for name, (low, high) in exact.items()}
+    joints = [replace(one, limits=limits.get(one.name, one.limits)) for one in press(rest).joints]
+
+    feasible = assembly(*joints).feasible_range("crank")
+    assert (feasible.lower, feasible.upper) == (-math.inf, math.inf)
+    assert len(feasible.findings) == 0
 
 
 def test_what_a_coupling_moves_is_told_with_its_travel() -> None:
