@@ -41,6 +41,7 @@ def run_tasks(
     out: str | Path,
     ask: Ask,
     *,
+    ask_edit: Ask | None = None,
     variant: Variant = "full",
     kernel: PartKernel | None = None,
     cache: BuildCache | None = None,
@@ -59,6 +60,7 @@ def run_tasks(
         tasks: Folders and tasks.
         out: Where rows and runs are kept; rows that are there are not made again.
         ask: Who answers each task's requests.
+        ask_edit: Who answers those of its edit; the same by default.
         variant: As for `generate`.
         kernel: Likewise.
         cache: Likewise.
@@ -83,7 +85,7 @@ def run_tasks(
         key = digest({"task": task.model_dump(mode="json"), **way, **tries})
         row = kept_row(place, key)
         if row is None:
-            made = _Made(task, folder, place, key, ask(task), finished)
+            made = _Made(task, folder, place, key, (ask, ask_edit or ask), finished)
             row = made.row(variant=variant, kernel=kernel, cache=cache, memory=memory, look=look, **tries)
             if not made.unreached:
                 keep_row(place, row)
@@ -102,8 +104,8 @@ class _Made:
         unreached: Whether it failed because the provider could not be reached.
     """
 
-    def __init__(self, task: Task, folder: Path, place: Path, key: str, llm: LLM, finished: Finished | None) -> None:
-        self._task, self._folder, self._llm, self._finished = task, folder, llm, finished
+    def __init__(self, task: Task, folder: Path, place: Path, key: str, asks: tuple[Ask, Ask], finished: Finished | None) -> None:
+        self._task, self._folder, self._asks, self._finished = task, folder, asks, finished
         self._run, self._edit = (place / f"{name}_{key[:8]}" for name in ("run", "edit"))
         self._key = key
         self.unreached = False
@@ -114,7 +116,7 @@ class _Made:
         options |= {"look": look, "inspection": look}
         try:
             images = [self._folder / image for image in task.images]
-            run = generate(task.prompt, llm=self._llm, images=images, out=self._run, ideas="never", **options)
+            run = generate(task.prompt, llm=self._asks[0](task), images=images, out=self._run, ideas="never", **options)
             assembly = assembly_of(run, cache=options["cache"])
             row = replace(row, judgements=task.judge(Subject(assembly)))
             self._tell(run)
@@ -127,7 +129,7 @@ class _Made:
     def _with_edit(self, row: Row, run: Run, before: Subject, options: dict[str, Any]) -> Row:
         assert self._task.edit is not None
         try:
-            edited = edit(run, self._task.edit.prompt, llm=self._llm, out=self._edit, **options)
+            edited = edit(run, self._task.edit.prompt, llm=self._asks[1](self._task), out=self._edit, **options)
             subject = Subject(assembly_of(edited, cache=options["cache"]), before=before.assembly)
             row = replace(row, edited=self._task.judge_edit(subject))
             self._tell(edited)

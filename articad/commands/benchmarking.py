@@ -50,6 +50,7 @@ if TYPE_CHECKING:
         help="the paper's ablations (full)",
     ),
     argument("--kernel", choices=["build123d", "freecad"], default="build123d", help="what part scripts are written for (build123d)"),
+    argument("--recorded", metavar="DIR", help="run: answer as these runs, named after tasks, were answered: no model, key or network"),
     argument("--at-once", metavar="N", type=positive, default=1, help="tasks at the same time, each in a process of its own (1)"),
     *ENGINE,
     *ASKING,
@@ -135,6 +136,8 @@ def _run(options: argparse.Namespace, terminal: Terminal) -> Report:
     if options.refine is not None:
         options.rounds, options.repairs = options.refine + 1, options.refine
     tasks = _tasks(options)
+    if options.recorded:
+        return print_table(table(_run_again(tasks, options, terminal)), terminal)
     _, sees = asked_model(options, terminal)  # says at once what is missing
     if options.engine == "dask" or options.at_once > 1:
         said: dict[str, Any] = {"model": model_name(options), "limits": limits(options), "sandbox": sandbox_level(options)}
@@ -142,6 +145,30 @@ def _run(options: argparse.Namespace, terminal: Terminal) -> Report:
         said |= {"variant": options.variant, "look": sees and options.look, "repairs": options.repairs, "rounds": options.rounds}
         return print_table(table(rows_of(tasks, _spread(run_calls(tasks, options.out, said), options, terminal))), terminal)
     return print_table(table(_run_here(tasks, options, terminal, look=sees and options.look)), terminal)
+
+
+def _run_again(tasks: list[tuple[Path, Task]], options: argparse.Namespace, terminal: Terminal) -> list[Row]:
+    from articad.bench.recorded import RecordedAnswers
+    from articad.bench.runner import run_tasks
+    from articad.record import kernel_named
+
+    answers = RecordedAnswers(options.recorded)
+    with terminal.progress("Tasks", total=len(tasks)) as tell:
+        return run_tasks(
+            tasks,
+            options.out,
+            answers.of,
+            ask_edit=answers.of_edit,
+            variant=options.variant,
+            kernel=kernel_named(options.kernel, sandbox=sandbox_level(options)),
+            cache=build_cache(options),
+            look=options.look,
+            model="recorded",
+            repairs=options.repairs,
+            rounds=options.rounds,
+            jobs=options.at_once,
+            progress=lambda row: tell(row.task, "passed" if row.ok else "failed"),
+        )
 
 
 def _run_here(tasks: list[tuple[Path, Task]], options: argparse.Namespace, terminal: Terminal, *, look: bool) -> list[Row]:
