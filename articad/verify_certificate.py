@@ -186,6 +186,10 @@ class Claim:
         claim, vary, linked = self.claim, self.vary, set(self.mechanism.linked)
         if self.tied - linked or (self.tied and not set(vary) & set(self.mechanism.drivers)):
             yield "not all that moves between the two is named"
+        if self.tied and len(set(vary) & set(self.mechanism.drivers)) > 1:
+            yield "two drivers move at once"  # what follows was followed along one
+        if any(not low - ROUNDING <= self.mechanism.rest[name] <= high + ROUNDING for name, (low, high) in vary.items()):
+            yield "it does not begin at rest"
         if linked & set(vary) and linked & set(claim["hold"]):
             yield "what follows a driver is said to stand"
         if any(abs(value - self.mechanism.rest[name]) > ROUNDING for name, value in claim["hold"].items()):

@@ -73,20 +73,22 @@ class Mechanism:
         return T, steps
 
     def closure(self, values: dict[str, float], names: list[str]) -> tuple[Any, Any, list[Any]]:
-        """Return the loops' and couplings' residuals, their Jacobian, and of each row the joints in it and its curvature."""
+        """Return the loops' and couplings' residuals, their Jacobian, and of each row what is in it, whether it is a length, and its lever."""
+        self.turned = 0.0
         r, J, rows = [], [], []
         for way in self.loops:
             T, steps = self.place(way, values, single=True)
+            self.turned = max(self.turned, float(np.abs(T[:3, :3] - np.eye(3)).max()))  # half a turn leaves no residual either
             columns = {group[0]["name"]: np.concatenate([v + hat(w) @ T[:3, 3], w]) for group, w, v, _ in steps}
             r += [*T[:3, 3], *((T[[2, 0, 1], [1, 2, 0]] - T[[1, 2, 0], [2, 0, 1]]) / 2)]
             J += np.transpose([columns.get(name, np.zeros(6)) for name in names]).tolist()
             length: Any = sum(np.linalg.norm(np.array(j[key])[:3, 3]) for j, _ in way for key in ("parent_frame", "child_frame"))
-            length += sum(abs(values[name]) for name in columns if any(self.freedoms[name]["slide"]))
-            rows += [(set(columns), length)] * 3 + [(set(columns), 1.0)] * 3
+            length += sum(math.hypot(*self.freedoms[name]["slide"]) * (1 + abs(values[name])) for name in columns)
+            rows += [(set(columns), True, length)] * 3 + [(set(columns), False, length)] * 3
         for c in self.certificate["mechanism"]["couplings"]:
             r.append(values[c["b"]] - c["ratio"] * values[c["a"]] - c["offset"])
             J.append([float(name == c["b"]) - c["ratio"] * (name == c["a"]) for name in names])
-            rows.append((set(), 0.0))
+            rows.append((set(), False, 1.0))
         return np.array(r), np.array(J), rows
 
     def solve(self, values: dict[str, float], names: list[str]) -> tuple[Any, ...]:
@@ -110,15 +112,17 @@ class Mechanism:
         """
         names = self.followers(driver)
         values, r, J, A, rows = self.solve({**guess, driver: middle}, names)
-        rate, size = np.array([1.0, *(-A @ J[:, 0])]), max([length for _, length in rows], default=0.0) + 1.0
-        weight = np.array([1.0 if any(self.freedoms[n]["turn"]) else 1.0 / size for n in names])  # slides count as turns of far points
-        member = np.array([[n in mine for n in names] for mine, _ in rows]) * weight
-        tube, curved = np.zeros(len(names)), np.array([length + 2 * half * (length > 1.0) for _, length in rows])
-        for grow in (2.0, 1.5, 1.2):
-            residual = np.abs(A @ r) + np.abs(A) @ (curved * (member @ (np.abs(rate) * half + tube)) ** 2) / 2
-            tube[1:] = grow * residual + ROUNDING
+        rate, turns = np.array([1.0, *(-A @ J[:, 0])]), np.array([any(self.freedoms[n]["turn"]) for n in names])
+        slide, tube = np.array([math.hypot(*self.freedoms[n]["slide"]) for n in names]), np.zeros(len(names))
+        mine, long, arm = np.array([[n in row for n in names] for row, *_ in rows]), *(np.array([row[k] for row in rows]) for k in (1, 2))
+        for grow in (2.0, 1.5, 1.2, 1.0):
+            lever = arm + mine @ (slide * (np.abs(rate) * half + tube))  # slides lengthen it, and count as turns of far points
+            member, curved = mine * np.where(turns, 1.0, 1.0 / np.maximum(lever, 1e-300)[:, None]), np.where(long, lever, 1.0)
+            if grow > 1.0:
+                residual = np.abs(A @ r) + np.abs(A) @ (curved * (member @ (np.abs(rate) * half + tube)) ** 2) / 2
+                tube[1:] = grow * residual + ROUNDING
         reach = member @ (np.abs(rate) * half + tube)
-        inside = np.abs(A @ r) + np.abs(A) @ (curved * reach**2) / 2 <= tube[1:]
+        inside = (self.turned < REST) & (np.abs(A @ r) + np.abs(A) @ (curved * reach**2) / 2 <= tube[1:])
         inside &= (np.abs(A) @ (curved * reach * (member @ tube)) < tube[1:]) & (np.abs(A @ J[:, 1:] - np.eye(len(A))).sum(1) < ROUNDING)
         return (middle, half, values, dict(zip(names, zip(rate, tube, strict=True), strict=True))) if inside.all() else None
 

@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 from articad.interference.surface import Surface
 
 FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
+IntArray = NDArray[np.int32]
+Bounds = NDArray[np.float32]
 
 _trees: WeakKeyDictionary[Surface, BoxTree] = WeakKeyDictionary()
 
@@ -28,8 +29,8 @@ class BoxTree:
         corners: `(T, 3, 3)` [mm].
     """
 
-    centre: FloatArray
-    half: FloatArray
+    centre: Bounds
+    half: Bounds
     children: IntArray
     triangle: IntArray
     corners: FloatArray
@@ -75,4 +76,7 @@ class BoxTree:
             size = np.stack([left, size[parents] - left], axis=1).ravel()
             starts = np.concatenate([[0], np.cumsum(size)[:-1]]) if len(size) else np.empty(0, dtype=np.int64)
         bottom, top = np.concatenate(lows), np.concatenate(highs)
-        return cls((bottom + top) / 2, (top - bottom) / 2, np.concatenate(children), np.concatenate(triangle), corners)
+        # half the room, since many trees stand at once; a box rounded outwards still bounds its triangles
+        centre = ((bottom + top) / 2).astype(np.float32)
+        half = np.nextafter(np.maximum(top - centre, centre - bottom).astype(np.float32), np.float32(np.inf))
+        return cls(centre, half, np.concatenate(children).astype(np.int32), np.concatenate(triangle).astype(np.int32), corners)

@@ -41,6 +41,7 @@ DEFAULT_EPSILON_MM = 1e-3
 DEFAULT_BUDGET_S = 600.0
 FIRST_PAIRS = 40_000  # of pieces, spent on each pair along a driver before those that need more hold up the others
 WIDE_PAIRS = 60_000  # of pieces, spent on all joints at once before they are taken one by one
+TIED_PAIRS = 8_000  # of pieces, spent on whatever a linkage does before its drivers are followed: that is cheap, and says more of near pairs
 _END_SLACK = 1e-6  # rad or mm: by which a driver may end before its limit
 _ENTRY_MM = 1e-6  # distance at which meshes are said to touch
 
@@ -231,7 +232,7 @@ class _Certifying:
             return
         if tied and drivers:
             bounded = not any(_is_endless_slide(self._joint(name)) for name in tied)
-            if bounded and self._prove(route, (*tied, *wanted), most=WIDE_PAIRS, tentative=True):
+            if bounded and self._prove(route, (*tied, *wanted), most=TIED_PAIRS, tentative=True):
                 return  # whatever the linkage does
             for driver in drivers:
                 self._follow(route, tied, wanted, driver)

@@ -3,6 +3,7 @@
 Kinematics follows the branch in steps small enough that each has exactly one solution, within a tube about its linear predictor.
 So over a step every coordinate stays within the tube of a straight line: a box with one long side, on which the bounds of
 `spread` hold. Where that does not suffice the step is halved about a solution of its own, and the tube shrinks fourfold.
+Most pairs need no step of their own: a run of many steps lies in one wider tube, which is tried first.
 """
 
 from __future__ import annotations
@@ -60,6 +61,23 @@ class Step:
     tube: FloatArray
 
 
+@dataclass(frozen=True, eq=False)
+class Run:
+    """Several steps of one side in a row, within one tube.
+
+    Attributes:
+        steps: From rest outwards.
+        middle: Coordinates in the middle of its line, `(columns,)`; of a ball those of the step in the middle.
+        line: As of a step, `(freedoms,)` [rad, mm]; of a ball 0.
+        tube: As of a step, `(freedoms,)` [rad, mm]; of a ball the largest turn from its middle.
+    """
+
+    steps: tuple[Step, ...]
+    middle: FloatArray
+    line: FloatArray
+    tube: FloatArray
+
+
 class Way:
     """What follows one driver over its range, in steps that are halved when asked for; shared by all pairs.
 
@@ -82,7 +100,8 @@ class Way:
         self.bounds = self._bound(feasible.lower, -1), self._bound(feasible.upper, 1)
         self.reasons = feasible.lower_reason, feasible.upper_reason
         self._exact = [self.layout.freedom_of(self.layout.column_of[name]) for name in tied_to(mechanism, self.coordinate.name)]
-        self._halves: dict[Step, tuple[Step, Step]] = {}
+        self._halves: dict[Step | Run, tuple[Step | Run, Step | Run]] = {}
+        self._runs: dict[int, list[Step | Run]] = {}
         self._whole: dict[int, list[Step]] = {}
 
     @property
@@ -113,14 +132,51 @@ class Way:
         last = self.values(steps[-1])[1 if sign > 0 else 0] if steps else self.track.start
         return end if abs(last - end) <= _REACHED * max(1.0, abs(end - self.track.start)) else last
 
-    def values(self, step: Step) -> tuple[float, float]:
-        """Return the driver's values at the ends of a step, in order."""
+    def run(self, sign: int) -> list[Step | Run]:
+        """Return all steps towards one end as a single run; none where there are none."""
+        if sign not in self._runs:
+            steps = self.steps(sign)
+            self._runs[sign] = [self._joined(steps)] if steps else []
+        return self._runs[sign]
+
+    def _joined(self, steps: Sequence[Step]) -> Step | Run:
+        """Return steps in a row as one; between the ends of each what follows lies on its line, within its tube."""
+        if len(steps) == 1:
+            return steps[0]
+        layout, last, at = self.layout, steps[-1], len(steps) // 2
+        stops = np.array([[step.node.s, step.node.s + step.length] for step in steps])
+        share = 2 * (stops - stops[0, 0]) / (stops[-1, 1] - stops[0, 0]) - 1  # −1 where the run begins, 1 at its end
+        middle, line, tube = steps[at].middle.copy(), np.zeros_like(last.line), np.zeros_like(last.tube)
+        for joint in layout.joints:
+            columns, place = layout.columns[joint.name], layout.freedoms[joint.name]
+            if joint.type is JointType.BALL:
+                turns = [2 * math.acos(min(abs(float(middle[columns] @ step.middle[columns])), 1.0)) for step in steps]
+                own = [float(np.linalg.norm(step.line[place])) + float(np.max(step.tube[place])) for step in steps]
+                tube[place] = max(turn + more for turn, more in zip(turns, own, strict=True)) + _LINEAR_ROUNDING
+                continue
+            centre, half, wide = (
+                np.array(rows) for rows in zip(*((p.middle[columns], p.line[place], p.tube[place]) for p in steps), strict=True)
+            )
+            ends = np.stack([centre - half, centre + half], axis=1)  # (steps, 2, coordinates)
+            middle[columns], line[place] = (ends[0, 0] + ends[-1, 1]) / 2, (ends[-1, 1] - ends[0, 0]) / 2
+            aside = np.abs(ends - middle[columns] - line[place] * share[..., None]).max(axis=1)
+            tube[place] = (aside + wide).max(axis=0) + _LINEAR_ROUNDING
+        return Run(tuple(steps), middle, line, tube)
+
+    def values(self, step: Step | Run) -> tuple[float, float]:
+        """Return the driver's values at the ends of a step or a run, in order."""
+        if isinstance(step, Run):
+            ends = [value for part in (step.steps[0], step.steps[-1]) for value in self.values(part)]
+            return min(ends), max(ends)
         ends = sorted(self.track.value(step.sign, s) for s in (step.node.s, step.node.s + step.length))
         return ends[0], ends[1]
 
-    def halves(self, step: Step) -> tuple[Step, Step]:
-        """Return the two halves of a step, the second about a solution of its own."""
-        if step not in self._halves:
+    def halves(self, step: Step | Run) -> tuple[Step | Run, Step | Run]:
+        """Return the two halves of a run, or of a step, the second about a solution of its own."""
+        if step not in self._halves and isinstance(step, Run):
+            at = len(step.steps) // 2
+            self._halves[step] = self._joined(step.steps[:at]), self._joined(step.steps[at:])
+        elif step not in self._halves and isinstance(step, Step):
             half, s = step.length / 2, step.node.s + step.length / 2
             Q, _, _ = self.track.evaluate(np.array([self.track.value(step.sign, s)]))
             middle = self.follower.node(s, Q[0], self.follower.linearized(Q[0]), self.track.direction(step.sign))
@@ -157,12 +213,12 @@ class Steps:
         steps: To be covered; by default the whole way.
     """
 
-    def __init__(self, way: Way, chain: Chain, others: FloatArray, steps: Sequence[Step] | None = None) -> None:
+    def __init__(self, way: Way, chain: Chain, others: FloatArray, steps: Sequence[Step | Run] | None = None) -> None:
         self.way, self.chain, self.spread = way, chain, Spread(chain)
         self.free = ~np.isnan(others[:, 0])
         self.others = others
-        self.whole = [step for sign in (1, -1) for step in way.steps(sign)] if steps is None else steps
-        self.rows: list[tuple[Step, FloatArray, FloatArray]] = []
+        self.whole = [*way.run(1), *way.run(-1)] if steps is None else steps
+        self.rows: list[tuple[Step | Run, FloatArray, FloatArray]] = []
 
     def root(self) -> IntArray:
         """Add the steps, each with the whole range of the other coordinates."""
@@ -170,7 +226,7 @@ class Steps:
         half = np.where(self.free, np.diff(self.others, axis=1)[:, 0] / 2, 0.0)
         return self._add([(step, middle, half) for step in self.whole])
 
-    def _add(self, rows: list[tuple[Step, FloatArray, FloatArray]]) -> IntArray:
+    def _add(self, rows: list[tuple[Step | Run, FloatArray, FloatArray]]) -> IntArray:
         if not rows:
             return np.empty(0, dtype=np.int64)
         placed = [self._placed(*row) for row in rows]
@@ -181,7 +237,7 @@ class Steps:
         self.rows += rows
         return self.spread.add(centres, np.abs(lines) + tubes, generators)
 
-    def _placed(self, step: Step, middle: FloatArray, half: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    def _placed(self, step: Step | Run, middle: FloatArray, half: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Return the chain's coordinates, and of each factor how far it goes along the line and aside of it."""
         values, layout = middle.copy(), self.way.layout
         line, aside = np.zeros(len(self.spread.factors)), np.zeros(len(self.spread.factors))
@@ -207,7 +263,7 @@ class Steps:
         numbers = self._add([half for pair in pairs for half in pair])
         return numbers[0::2], numbers[1::2]
 
-    def _cut(self, row: tuple[Step, FloatArray, FloatArray], share: FloatArray) -> list[tuple[Step, FloatArray, FloatArray]]:
+    def _cut(self, row: tuple[Step | Run, FloatArray, FloatArray], share: FloatArray) -> list[tuple[Step | Run, FloatArray, FloatArray]]:
         step, middle, half = row
         own = np.zeros(len(half))
         for f, (_, factor) in enumerate(self.spread.factors):
@@ -304,12 +360,12 @@ class LinkageProver(Prover):
         """Return how far from rest the driver may go either way."""
         ends = [self.way.track.start, self.way.track.start]
         for end, sign in enumerate((-1, 1)):
-            todo = self.way.steps(sign)[::-1]
+            todo: list[Step | Run] = [*self.way.steps(sign)[::-1]]
             while todo:
                 step = todo.pop()
                 if self.search_over(Steps(self.way, self.chain, self.others, [step]), shrink).is_complete:
                     ends[end] = self.way.values(step)[end]
-                elif step.length > SMALLEST_STEP:
+                elif isinstance(step, Step) and step.length > SMALLEST_STEP:
                     todo += self.way.halves(step)[::-1]
                 else:
                     break

@@ -291,8 +291,13 @@ def facing(chain: Chain, a: Surface, b: Surface, needed: float) -> tuple[Surface
         of_a, of_b = _joined(of_a, leaning(core_a, a.corners, 0.0, 0.0)), _joined(of_b, leaning(core_b, b.corners, cone, needed))
         limit = np.append(limit, 0.0)
     met = meeting(of_a, of_b, limit)
-    of_a, a = (of_a[0][met], of_a[1][met]), Surface(a.corners[met])
-    return a, Surface(b.corners[meeting(of_b, of_a, limit)])
+    of_a, a = (of_a[0][met], of_a[1][met]), _of(a, met)
+    return a, _of(b, meeting(of_b, of_a, limit))
+
+
+def _of(surface: Surface, rows: NDArray[np.bool_]) -> Surface:
+    """Return some triangles of a surface; all of them are the surface itself, whose tree stands already."""
+    return surface if rows.all() else Surface(surface.corners[rows])
 
 
 def _joined(one: Ends, other: Ends) -> Ends:

@@ -13,17 +13,19 @@ import pytest
 
 from articad.connectors import SE3
 from articad.geometry import TriMesh, box, cylinder, merged
-from articad.interference.certificate import Certificate, certify
-from articad.interference.linkage import Way
+from articad.interference.certificate import Certificate, certify, constrained_joints, mechanism_json
+from articad.interference.linkage import Run, Step, Way
 from articad.interference.overlap import overlap
 from articad.interference.scene import Scene
 from articad.kinematics.joints import Coupling, Joint
 from articad.kinematics.mechanism import Mechanism
 from articad.verify_certificate import verify
+from articad.verify_motion import Mechanism as Checked
 from tests.interference.mechanisms import at, joint
 
 CRANK, COUPLER, ROCKER, SPAN = 30.0, 90.0, 70.0, 100.0
 REST = math.radians(60)
+ALONG_X = SE3.from_axes([120.0, 0, 0], [1.0, 0, 0], [0.0, 1, 0])
 
 
 def link(p: np.ndarray, q: np.ndarray, z: float) -> TriMesh:
@@ -71,6 +73,35 @@ def refutations(certificate: Certificate, change: Callable[[dict[str, Any]], obj
     return verify(document, {name: (mesh.vertices, mesh.triangles) for name, mesh in certificate.meshes.items()})
 
 
+def slider_crank() -> Mechanism:
+    joints = [
+        joint("crank", "revolute", "frame", "arm", lower=(-math.inf,), upper=(math.inf,)),
+        joint("pin", "revolute", "arm", "rod", at_parent=at(30), at_child=at(30), lower=(-math.inf,), upper=(math.inf,)),
+        joint("wrist", "revolute", "rod", "piston", at_parent=at(120), at_child=at(120), lower=(-math.inf,), upper=(math.inf,)),
+        joint("slide", "slider", "frame", "piston", at_parent=ALONG_X, at_child=ALONG_X, lower=(-80.0,), upper=(20.0,)),
+    ]
+    return Mechanism(("frame", "arm", "rod", "piston"), "frame", joints)
+
+
+@pytest.mark.parametrize("half", [0.01, 0.1, 0.5])
+def test_no_loop_bends_more_than_the_lever_that_the_checker_takes(half: float) -> None:
+    mechanism = slider_crank()
+    linkage = sorted(constrained_joints(mechanism))
+    checker = Checked({"mechanism": mechanism_json(mechanism), "linkage": linkage, "drivers": ["crank"]})
+    names = checker.followers("crank")
+    rest = np.array([checker.rest[name] for name in names])
+    r, J, rows = checker.closure(checker.rest, names)
+    turns = np.array([any(checker.freedoms[name]["turn"]) for name in names])
+    rng = np.random.default_rng(4)
+    for _ in range(200):
+        change = rng.uniform(-1, 1, len(names)) * np.where(turns, half, 60 * half)
+        bent = checker.closure(dict(zip(names, (rest + change).tolist(), strict=True)), names)[0] - r - J @ change
+        for at_row, (mine, is_length, arm) in enumerate(rows):
+            lever = arm + abs(change[~turns]).sum()
+            share = sum(abs(value) * (1.0 if turn else 1 / lever) for value, turn, n in zip(change, turns, names, strict=True) if n in mine)
+            assert abs(bent[at_row]) <= (lever if is_length else 1.0) * share**2 / 2 + 1e-9
+
+
 def test_a_four_bar_in_layers_is_certified_over_a_full_turn() -> None:
     meshes, joints = four_bar((0.0, 5.0, 10.0))
     certificate = proven(meshes, joints)
@@ -106,6 +137,24 @@ def test_every_solution_lies_in_the_box_of_its_step() -> None:
     spans = sorted(way.values(step) for sign in (1, -1) for step in way.steps(sign))
     assert all(after[0] == pytest.approx(before[1], abs=1e-9) for before, after in pairwise(spans))
     assert (spans[0][0], spans[-1][1]) == pytest.approx(way.bounds)
+
+
+def test_every_solution_lies_in_the_box_of_a_run_of_steps() -> None:
+    meshes, joints = four_bar((0.0, 5.0, 0.0))
+    mechanism = Mechanism(tuple(meshes), "frame", joints)
+    way = Way(mechanism, 0)
+    rng = np.random.default_rng(1)
+    runs = [*way.run(1), *way.run(-1)]
+    assert way.values(runs[0])[1] == pytest.approx(way.bounds[1])
+    for run in runs:
+        if isinstance(run, Run):
+            runs += way.halves(run)
+        for value in rng.uniform(*way.values(run), 2):
+            Q = mechanism.configuration(np.array([value]))
+            for name, column in way.layout.column_of.items():
+                freedom = way.layout.freedom_of(column)
+                assert abs(Q.values[name][0] - run.middle[column]) <= abs(run.line[freedom]) + run.tube[freedom] + 1e-9
+    assert sum(isinstance(run, Step) for run in runs) == len(way.steps(1)) + len(way.steps(-1))
 
 
 def test_a_collision_within_a_loop_is_found_with_the_drivers_value() -> None:
@@ -214,12 +263,17 @@ def call_a_follower_a_driver(document: dict[str, Any]) -> None:
     document["drivers"].append("pin_c")
 
 
+def move_two_drivers(document: dict[str, Any]) -> None:
+    document["drivers"].append("rock")  # all that follows would be followed along one of them
+    followed(document)["vary"]["rock"] = [-math.pi, math.pi]
+
+
 def swap_mesh(document: dict[str, Any]) -> None:
     document["meshes"]["crank"]["sha256"] = document["meshes"]["rocker"]["sha256"]
 
 
 LIES = [
-    narrow, enlarge, drop, shift_a_pin, turn_the_branch, hold_what_follows, forget_the_driver, call_a_follower_a_driver, swap_mesh
+    narrow, enlarge, drop, shift_a_pin, turn_the_branch, hold_what_follows, forget_the_driver, call_a_follower_a_driver, move_two_drivers, swap_mesh
 ]  # fmt: skip
 
 
