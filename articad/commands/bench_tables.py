@@ -33,7 +33,8 @@ def print_table(report: Report, terminal: Terminal) -> Report:
         f"made: {told(whole['made'], percent=True)}; checks that hold, by task: {told(whole['checks'], percent=True)}"
         + (f"; edits: {told(whole['edited'], percent=True)} of {whole['edited']['n']}" if whole["edited"]["n"] else "")
     )
-    terminal.say(effort(whole))
+    if whole["calls"]["mean"]:
+        terminal.say(effort(whole))
     return report
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 import os
 import shutil
@@ -17,6 +18,7 @@ from typing import Any
 import mujoco
 import pytest
 
+from articad import __version__
 from articad.bench.batch import read_batch, run_dask, run_local, summary
 from articad.bench.items import ITEM, Item, Json, make
 from articad.cli import main
@@ -53,6 +55,9 @@ def test_an_item_is_checked_exported_and_not_made_twice(plan: Path, tmp_path: Pa
     mujoco.MjModel.from_xml_path(str(scene))
     assert {str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file()} == {*first["files"], ITEM}
     assert first["values"] == {"lift": 1.0}
+    assert {name: hashlib.sha256((folder / name).read_bytes()).hexdigest() for name in first["files"]} == first["files"]
+    assert (first["kernel"], first["articad"], first["plan"]) == ("build123d", __version__, str(plan))
+    assert first["kernel_version"]
 
 
 def test_what_a_gate_refuses_is_kept_without_exports(plan: Path, tmp_path: Path) -> None:
