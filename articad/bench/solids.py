@@ -166,9 +166,21 @@ def _whole(mesh: TriMesh, group: list[_Piece]) -> Round | None:
     blind = False
     if first.hollow:
         reach = (high - low) / 2 + 1.2 * first.radius
-        ahead = [float(ray_lengths(mesh, centre[None] + 1e-5 * u, way[None])[0]) for way in (first.axis, -first.axis)]
-        blind = min(ahead) < reach
+        blind = any(_has_bottom(mesh, centre + 1e-5 * u, way, reach, (u, v), first.radius) for way in (first.axis, -first.axis))
     return Round(first.radius, first.axis, centre, high - low, first.hollow, blind)
+
+
+def _has_bottom(
+    mesh: TriMesh, centre: FloatArray, way: FloatArray, reach: float, across: tuple[FloatArray, FloatArray], radius: float
+) -> bool:
+    """Return whether a hole ends that way: at a surface within reach, with wall all round it, unlike one that only faces another wall."""
+    ahead = float(ray_lengths(mesh, centre[None], way[None])[0])
+    if ahead >= reach:
+        return False
+    angles = np.arange(8) * math.pi / 4 + 0.1
+    sideways = np.cos(angles)[:, None] * across[0] + np.sin(angles)[:, None] * across[1]
+    bottom = np.repeat((centre + (ahead - ROUND * radius) * way)[None], len(angles), axis=0)
+    return bool((ray_lengths(mesh, bottom, sideways) < (1 + 2 * ROUND) * radius).all())
 
 
 def ray_lengths(mesh: TriMesh, origins: FloatArray, directions: FloatArray) -> FloatArray:

@@ -38,6 +38,14 @@ def test_a_hole_with_a_bottom_is_blind() -> None:
     assert [r.blind for r in rounds(merged([pipe, floor])) if r.hollow] == [True]
 
 
+@pytest.mark.parametrize("gap", [2.0, 5.0])
+def test_a_hole_that_faces_a_wall_has_no_bottom(gap: float) -> None:
+    pipe = tube(6, 10, 20)
+    wall = box(60, 60, 2).transformed(SE3.from_translation(np.array([0, 0, -11.0 - gap])))
+
+    assert [r.blind for r in rounds(merged([pipe, wall])) if r.hollow] == [False]
+
+
 def test_holes_in_one_line_count_each() -> None:
     lifted = tube(3, 8, 5).transformed(SE3.from_translation(np.array([0, 0, 30.0])))
 
