@@ -180,7 +180,7 @@ class Worker:
             answer = _pipe(process.stdout).readline()
         except OSError:
             answer = ""
-        if answer:
+        if answer.endswith("\n"):  # else it died in the middle of its line
             return dict(json.loads(answer))
         self._end()
         return None
