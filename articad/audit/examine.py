@@ -22,7 +22,7 @@ from articad.errors import ArticadError, ReadError
 from articad.findings import Finding, Findings
 from articad.importers.freecad import read_freecad
 from articad.importers.mjcf import read_mjcf
-from articad.importers.reading import Folder, read_xml
+from articad.importers.reading import MAX_LINKS, Folder, read_xml, unreadable
 from articad.importers.urdf import read_urdf
 from articad.interference.certificate import Certificate
 from articad.simulate.loading import ENGINES, Loading, load_in_all
@@ -138,6 +138,8 @@ def _urdf(path: Path, choices: Choices, found: _Found) -> None:
     document = read_xml(path)
     if document.tag != "robot":
         raise ReadError(f"{path}: The root element is <{document.tag}>, not <robot>.", path=str(path), findings=[_no_robot(path, document)])
+    if (count := max(len(document.findall("link")), len(document.findall("joint")))) > MAX_LINKS:
+        raise unreadable(path, "", f"It has {count} links or joints; {MAX_LINKS} are the most.")
     root = choices.root or package_of(path)
     text = UrdfText(MeshReferences(Folder.of(path, root)))
     found.declared = text.declared(document, path)
