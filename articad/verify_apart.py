@@ -17,6 +17,7 @@ from articad.verify_motion import ROUNDING, Mechanism
 
 STILL_MM = 1e-7  # motion within a box so small that what is not apart touches
 CHUNK = 4096  # pairs of pieces looked at together
+LOOKS = 8  # at pieces of a driver's range either way, before anything is proven
 MOST_PAIRS = 40_000_000  # of pieces looked at for one claim
 
 
@@ -128,8 +129,8 @@ class Search:
 
     def apart(self, corners_a: Any, corners_b: Any) -> str:
         """Return why two surfaces do not keep apart over the whole range, or nothing."""
-        roots, looked = self.roots(), 0
-        reasons = [self.refuted(root) for root in roots.tolist()]  # what is wrong by much is found at once
+        (roots, probes), looked = self.roots(), 0
+        reasons = [self.refuted(box) for box in probes.tolist()]  # what is wrong by much is found at once
         if any(reasons) or not len(corners_a) or not len(corners_b):
             return next(filter(None, reasons), "")
         self.a, self.b, self.halves = Surface(corners_a), Surface(corners_b), dict[int, Any]()
@@ -181,15 +182,19 @@ class Search:
         return [rows for rows in found if len(rows[0])], None
 
     def roots(self) -> Any:
-        """Add boxes that cover the whole range."""
+        """Add boxes that cover the whole range, and some of which the middle is looked at."""
         rest = self.mechanism.rest
         middle, half = {n: sum(ends) / 2 for n, ends in self.own.items()}, {n: (hi - lo) / 2 for n, (lo, hi) in self.own.items()}
         ends = [] if self.driver is None else self.claim["vary"][self.driver]
-        pieces = [p for end in ends for p in self.mechanism.pieces(self.driver, end)] or [None]
-        found = self.add([({**(piece[2] if piece else rest), **self.claim["hold"], **middle}, half, piece) for piece in pieces])
+        ways = [way for end in ends if (way := self.mechanism.pieces(self.driver, end))]
+        pieces = [[self.mechanism.joined(way) for way in ways], [p for way in ways for p in way[:: 1 + len(way) // LOOKS]]]
+        found, probes = (
+            self.add([({**(piece[2] if piece else rest), **self.claim["hold"], **middle}, half, piece) for piece in some or [None]])
+            for some in pieces
+        )
         axes = [w for group, w in zip(self.groups, self.rows[0][1], strict=True) if any(any(f["turn"]) for f in group)]
         self.parallel = all(len(g) == 1 for g in self.groups) and all(np.linalg.norm(np.cross(w, axes[0])) < 1e-12 for w in axes)
-        return found
+        return found, probes
 
     def cut(self, number: int, shares: Any) -> list[int]:
         """Halve a box across the coordinate that has the largest share of the motion."""

@@ -131,8 +131,24 @@ class Mechanism:
         middle, _, centre, line = piece
         return all(abs(values[n] - centre[n] - rate * (values[driver] - middle)) <= tube + ROUNDING for n, (rate, tube) in line.items())
 
+    def joined(self, pieces: list[Any]) -> Any:
+        """Return pieces in a row as one, which holds them: a line from end to end, as far from it as any of theirs."""
+        if len(pieces) == 1:
+            return pieces[0]
+        ends = sorted(m + sign * h for m, h, *_ in pieces for sign in (-1, 1))
+        middle, half = (ends[0] + ends[-1]) / 2, (ends[-1] - ends[0]) / 2
+        values, line = dict(pieces[0][2]), dict[str, Any]()
+        for name in pieces[0][3]:
+            at = np.array(sorted((m + sign * h, v[name] + sign * h * row[name][0]) for m, h, v, row in pieces for sign in (-1, 1)))
+            values[name], rate = (at[0, 1] + at[-1, 1]) / 2, (at[-1, 1] - at[0, 1]) / (2 * half)
+            aside = np.abs(at[:, 1] - values[name] - rate * (at[:, 0] - middle)).max()
+            line[name] = rate, aside + max(row[name][1] for *_, row in pieces)
+        return middle, half, values, line, pieces
+
     def halves(self, driver: str, piece: Any) -> list[Any]:
-        """Return a piece in two, each about the solution that the whole one holds."""
+        """Return a piece in two, each about the solution that the whole one holds; joined ones are parted again."""
+        if len(piece) > 4:
+            return [self.joined(piece[4][: len(piece[4]) // 2]), self.joined(piece[4][len(piece[4]) // 2 :])]
         middle, half, values, line = piece
         found = []
         for at in (middle - half / 2, middle + half / 2):

@@ -265,7 +265,8 @@ def call_a_follower_a_driver(document: dict[str, Any]) -> None:
 
 def move_two_drivers(document: dict[str, Any]) -> None:
     document["drivers"].append("rock")  # all that follows would be followed along one of them
-    followed(document)["vary"]["rock"] = [-math.pi, math.pi]
+    for claim in document["claims"]:
+        claim["vary"]["rock"] = [-math.pi, math.pi]
 
 
 def swap_mesh(document: dict[str, Any]) -> None:
@@ -280,6 +281,10 @@ LIES = [
 @pytest.mark.parametrize("lie", LIES, ids=lambda lie: lie.__name__)
 def test_a_planted_lie_on_a_loop_is_refuted(honest: Certificate, lie: Callable[[dict[str, Any]], None]) -> None:
     assert refutations(honest, lie)
+
+
+def test_two_drivers_at_once_are_refuted_whatever_they_do(honest: Certificate) -> None:
+    assert any("two drivers" in reason for reason in refutations(honest, move_two_drivers))
 
 
 def test_an_honest_certificate_of_a_loop_is_accepted(honest: Certificate) -> None:
