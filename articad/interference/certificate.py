@@ -41,7 +41,7 @@ DEFAULT_EPSILON_MM = 1e-3
 DEFAULT_BUDGET_S = 600.0
 FIRST_PAIRS = 40_000  # of pieces, spent on each pair along a driver before those that need more hold up the others
 WIDE_PAIRS = 60_000  # of pieces, spent on all joints at once before they are taken one by one
-TIED_PAIRS = 8_000  # of pieces, spent on whatever a linkage does before its drivers are followed: that is cheap, and says more of near pairs
+TIED_PAIRS = 8_000  # of pieces, spent on whatever a linkage does before its drivers are followed: that is cheap
 _END_SLACK = 1e-6  # rad or mm: by which a driver may end before its limit
 _ENTRY_MM = 1e-6  # distance at which meshes are said to touch
 

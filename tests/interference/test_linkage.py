@@ -264,9 +264,8 @@ def call_a_follower_a_driver(document: dict[str, Any]) -> None:
 
 
 def move_two_drivers(document: dict[str, Any]) -> None:
-    document["drivers"].append("rock")  # all that follows would be followed along one of them
-    for claim in document["claims"]:
-        claim["vary"]["rock"] = [-math.pi, math.pi]
+    document["drivers"].append("pin_c")  # the rocker would be followed along one of them
+    followed(document)["vary"]["pin_c"] = [-math.pi, math.pi]
 
 
 def swap_mesh(document: dict[str, Any]) -> None:
