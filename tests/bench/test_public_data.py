@@ -137,8 +137,9 @@ def fusion(folder: Path, *, own: bool) -> None:
         axes = {"x_axis": vector(1, 0, 0), "y_axis": vector(0, 1, 0), "z_axis": vector(0, 0, 1)}
         return {"transform": {"origin": vector(*origin), **axes}, "axis_line": {"origin": vector(*line), "direction": vector(0, 0, 1)}}
 
-    one = side((2, 0, -10), (0, 0, 10) if own else (2, 0, 0))  # the pin stands in the plate's hole, 20 mm to the right
-    two = side((0, 0, 0), (2, 0, 0))
+    # The pin stands in a hole of the plate, 20 mm right of its middle, and the plate's middle is at (10, 10, 0).
+    one = side((3, 1, -10), (0, 0, 10) if own else (3, 1, 0))
+    two = side((1, 1, 0), (2, 0, 0) if own else (3, 1, 0))
     joints = [
         {"name": "Rev1", "joint_motion": {"joint_type": "RevoluteJointType"}, "geometry_or_origin_one": one, "geometry_or_origin_two": two}
     ]
@@ -204,9 +205,9 @@ def test_a_joint_of_the_fusion_gallery_is_read_in_millimetres_whichever_frame_it
     (joint,) = truth.joints
 
     assert (sample.name, joint.type) == ("joint_set_00001", "revolute")
-    assert joint.origin[:2] == pytest.approx((20, 0))
-    assert joint.center == pytest.approx((20, 0, 0), abs=1e-6)
-    assert truth.mesh.bounds == pytest.approx(np.array([[-30, -30, -20], [30, 30, 20]]), abs=1e-6)
+    assert joint.origin[:2] == pytest.approx((30, 10))
+    assert joint.center == pytest.approx((30, 10, 0), abs=1e-6)
+    assert truth.mesh.bounds == pytest.approx(np.array([[-20, -20, -20], [40, 40, 20]]), abs=1e-6)
 
 
 def test_a_file_that_is_not_of_its_layout_is_told(tmp_path: Path) -> None:
