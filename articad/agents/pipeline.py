@@ -177,9 +177,8 @@ _NEEDED: Final[Mapping[str, type | tuple[type, ...]]] = {
     "repairs": int,
     "rounds": int,
     "formats": (list, tuple),
-    "kernel": str,
-    "variant": str,
 }
+_UNSAID: Final[Mapping[str, str]] = {"kernel": "build123d", "variant": "full"}  # of runs that were begun when there was no other
 
 
 def _options_of(run: Run) -> Mapping[str, Any]:
@@ -188,8 +187,8 @@ def _options_of(run: Run) -> Mapping[str, Any]:
     Raises:
         RunError: Naming what is missing.
     """
-    options = run.request.options
-    wrong = [key for key, kind in _NEEDED.items() if not isinstance(options.get(key), kind)]
+    options = {**_UNSAID, **run.request.options}
+    wrong = [key for key, kind in {**_NEEDED, **dict.fromkeys(_UNSAID, str)}.items() if not isinstance(options.get(key), kind)]
     if options.get("task") not in {"generate", "edit"}:
         raise RunError.told(run.path, "No model was asked for it: it was built.", "Repeat `articad build` with the same --out.")
     if wrong:
