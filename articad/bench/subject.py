@@ -16,6 +16,7 @@ from articad.errors import ArticadError
 from articad.interference.report import Checks
 from articad.interference.scene import Scene
 from articad.kinematics.joints import Joint, JointType
+from articad.kinematics.motion import FeasibleRange
 
 _SLIDING = frozenset({JointType.SLIDER, JointType.CYLINDRICAL, JointType.PLANAR})
 
@@ -97,11 +98,20 @@ class Subject:
         column = next(i for i, coordinate in enumerate(mechanism.coordinates) if coordinate.joint == joint)
         return np.asarray(configuration.columns[..., column])
 
+    @cached_property
+    def _feasible(self) -> dict[str, FeasibleRange | None]:
+        """How far drivers go, found when first asked for: checks of many pairs of joints ask again and again."""
+        return {}
+
     def driver_range(self, driver: str, turns: float = 1.0) -> tuple[float, float] | None:
         """Return how far a driver can go, by limits and loops [rad or mm]; for an endless one, so many turns from rest."""
-        try:
-            reached = self.assembly.feasible_range(driver)
-        except ArticadError:
+        if driver not in self._feasible:
+            try:
+                self._feasible[driver] = self.assembly.feasible_range(driver)
+            except ArticadError:
+                self._feasible[driver] = None
+        reached = self._feasible[driver]
+        if reached is None:
             return None
         if {"endless", "not followed further"} & {reached.lower_reason, reached.upper_reason}:
             return 0.0, turns * 2 * math.pi
