@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Iterator
+from itertools import combinations
 from typing import Annotated, Any, Final, Literal
 
 import numpy as np
@@ -128,7 +129,7 @@ class Size(Check):
 
 
 class PartSize(Check):
-    """So many parts with these sides, in any order; None where any side will do (it counts as the largest)."""
+    """So many parts with these sides, in any order; None where any side will do."""
 
     kind: Literal["part_size"] = "part_size"
     mm: tuple[float | None, float | None, float | None]
@@ -147,13 +148,11 @@ class PartSize(Check):
         return self.number[0] <= len(found) <= self.number[1], f"{len(found)} ({sizes})"
 
     def _fits(self, sides: list[float], extents: FloatArray) -> bool:
-        left = list(extents)
-        for side in sides:
-            near = min(left, key=lambda extent: abs(extent - side))
-            if abs(near - side) > self.tolerance * side:
-                return False
-            left.remove(near)
-        return True
+        """Return whether some of the extents are these sides; both ascend, so that each is compared with its own."""
+        return any(
+            all(abs(extent - side) <= self.tolerance * side for side, extent in zip(sides, chosen, strict=True))
+            for chosen in combinations(extents.tolist(), len(sides))
+        )
 
 
 class Mass(Check):

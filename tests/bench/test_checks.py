@@ -14,6 +14,7 @@ from articad.bench.checks import AnyCheck, Check
 from articad.bench.reference import reference
 from articad.bench.subject import Subject
 from articad.bench.task import TASKS, tasks_in
+from articad.geometry import Part, box
 from articad.plan.schema import AssemblyPlan
 from tests.bench.wrong import VARIANTS, wrong_for
 
@@ -82,3 +83,13 @@ def test_a_check_holds_of_a_sound_assembly_and_refuses_a_wrong_one(name: str, ro
 
 def test_every_kind_of_check_is_shown_red() -> None:
     assert {row["kind"] for _, row in CHECKS} == set(VARIANTS)
+
+
+@pytest.mark.parametrize(
+    ("wanted", "fits"), [((10.1, 10.2, None), True), ((10.2, None, 10.1), True), ((None, 30, 30), False), ((30, 9.95, 10.15), True)]
+)
+def test_sides_that_are_nearly_alike_are_each_compared_with_their_own(wanted: tuple[float | None, ...], fits: bool) -> None:
+    part = Part.from_mesh("block", box(9.95, 10.15, 30))
+    check = form({"kind": "part_size", "mm": list(wanted)})
+
+    assert check.judge(Subject(Assembly.from_parts("one", parts=[part], joints=[], ground="block"))).ok is fits
