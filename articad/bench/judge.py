@@ -169,8 +169,11 @@ def _of_task(place: Path, task: Task, folder: Path, judges: Judges) -> Iterable[
     key = digest([message.to_json() for message in asked])
     for judge, given in judges.items():
         file = folder / JUDGED / _slug(judge) / f"{task.name}.json"
-        kept = _kept(file, key)
-        yield kept or _asked(replace(row, judge=judge, made=made, key=key), asked, given(), file)
+        kept, now = _kept(file, key), replace(row, judge=judge, made=made, key=key)
+        if kept is None:
+            yield _asked(now, asked, given(), file)
+        else:  # what was said stays; whether it has every part is for the task's checks of today
+            yield replace(kept, kind=now.kind, made=now.made, moves=now.moves)
 
 
 def _asked(row: Judged, asked: tuple[Message, ...], llm: LLM, file: Path) -> Judged:

@@ -93,6 +93,18 @@ def test_an_answer_without_a_form_is_asked_for_again_and_one_that_never_has_it_i
 
 
 @pytest.mark.slow
+def test_a_kept_opinion_is_of_what_the_task_checks_today(tasks: list[tuple[Path, Task]], models: Path) -> None:
+    ((folder, task),) = [pair for pair in tasks if pair[1].name == "flap"]
+    more = Task.model_validate(task.model_dump(mode="json") | {"checks": [{"kind": "parts", "number": [3, 3]}]})
+
+    (before,) = judge_files([(folder, task)], models, {"k": lambda: Scripted({"bench_judge/*": said(3, 3, 3)})})
+    (after,) = judge_files([(folder, more)], models, {"k": lambda: Scripted({})})
+
+    assert (before.made, after.made) == (True, False)
+    assert after.opinion == before.opinion
+
+
+@pytest.mark.slow
 def test_a_judge_out_of_reach_is_asked_again_another_time(tasks: list[tuple[Path, Task]], models: Path) -> None:
     class Down:
         def complete(self, request: Request) -> Reply:
