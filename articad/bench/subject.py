@@ -104,7 +104,7 @@ class Subject:
         return {}
 
     def driver_range(self, driver: str, turns: float = 1.0) -> tuple[float, float] | None:
-        """Return how far a driver can go, by limits and loops [rad or mm]; for an endless one, so many turns from rest."""
+        """Return how far a driver can go, by limits and loops [rad or mm]; for an endless one, so many turns from zero."""
         if driver not in self._feasible:
             try:
                 self._feasible[driver] = self.assembly.feasible_range(driver)
