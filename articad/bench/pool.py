@@ -1,7 +1,8 @@
 """Calls side by side: in processes of this machine, or on a Dask cluster; a process that dies loses its own call alone.
 
 Every call runs in a worker process of ours, `articad.bench.worker`, whose memory is bounded: a Dask worker has one for each of its
-threads, so that what crashes in native code is that process and not the cluster's. A worker ends when whoever started it does.
+threads, so that what crashes in native code is that process and not the cluster's. A worker ends when whoever started it does, and
+when nobody has called it for minutes: a cluster keeps nothing of a batch that is done.
 """
 
 from __future__ import annotations
@@ -23,6 +24,7 @@ Json = dict[str, Any]
 Told = Callable[[Json], object]
 
 RETRIES: Final = 2  # of a call whose worker died
+IDLE_SECONDS: Final = 300.0  # after which a worker that is not called ends
 MEMORY_GB: Final = 4.0  # of a worker, its kernel's processes apart, which have bounds of their own
 
 
@@ -152,10 +154,10 @@ def _never(key: str, error: str) -> Json:
 
 
 class Worker:
-    """A process that answers one call after another; started when first needed, and again after it died."""
+    """A process that answers one call after another; started when first needed, and again after it ended."""
 
-    def __init__(self, memory_gb: float) -> None:
-        self._memory = memory_gb
+    def __init__(self, memory_gb: float, *, idle: float = IDLE_SECONDS) -> None:
+        self._memory, self._idle = memory_gb, idle
         self._process: subprocess.Popen[str] | None = None
 
     def __enter__(self) -> Self:
@@ -195,8 +197,10 @@ class Worker:
         process.wait()
 
     def _running(self) -> subprocess.Popen[str]:
+        if self._process is not None and self._process.poll() is not None:
+            self._end()
         if self._process is None:
-            words = [sys.executable, "-m", "articad.bench.worker", str(self._memory), str(os.getpid())]
+            words = [sys.executable, "-m", "articad.bench.worker", str(self._memory), str(os.getpid()), str(self._idle)]
             self._process = subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)  # noqa: S603 - this very program
         return self._process
 

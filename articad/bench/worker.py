@@ -1,6 +1,8 @@
-"""A worker: reads a call a line, does it, answers with a line; ends when there are no more lines, or when whoever started it is gone.
+"""A worker: reads a call a line, does it, answers with a line.
 
-python -m articad.bench.worker MEMORY_GB PARENT
+It ends when there are no more lines, when nobody has called it for long, or when whoever started it is gone.
+
+python -m articad.bench.worker MEMORY_GB PARENT IDLE_SECONDS
 """
 
 from __future__ import annotations
@@ -10,6 +12,7 @@ import importlib
 import json
 import os
 import resource
+import select
 import signal
 import sys
 from collections.abc import Callable, Mapping
@@ -31,13 +34,14 @@ _PR_SET_PDEATHSIG: Final = 1
 
 def main() -> int:
     """Serve; return the exit code."""
-    memory, parent = float(sys.argv[1]), int(sys.argv[2])
+    memory, parent, idle = float(sys.argv[1]), int(sys.argv[2]), float(sys.argv[3])
     answers = os.fdopen(os.dup(1), "w")
     os.dup2(2, 1)  # whatever else is printed goes to the terminal, not between the answers
     resource.setrlimit(resource.RLIMIT_DATA, (int(memory * 2**30), resource.RLIM_INFINITY))
     if not _ends_with(parent):
         return 0
-    for line in sys.stdin:
+    # A call comes when the one before is answered, so that no second line is read ahead.
+    while select.select([sys.stdin], [], [], idle)[0] and (line := sys.stdin.readline()):
         answers.write(json.dumps(_answer(json.loads(line))) + "\n")
         answers.flush()
     return 0

@@ -19,8 +19,9 @@ import mujoco
 import pytest
 
 from articad import __version__
-from articad.bench.batch import read_batch, run_dask, run_local, summary
+from articad.bench.batch import calls_of, read_batch, run_dask, run_local, summary
 from articad.bench.items import ITEM, Item, Json, make
+from articad.bench.pool import Worker
 from articad.cli import main
 from articad.errors import ReadError
 from tests.agents import stories
@@ -202,6 +203,16 @@ run_local([Item({str(plan)!r}, {{"lift": 1 + i / 10}}) for i in range(9)], {str(
     ]:
         assert time.monotonic() < deadline, alive
         time.sleep(0.05)
+
+
+def test_a_worker_that_nobody_calls_ends_and_the_next_call_starts_another(plan: Path, tmp_path: Path) -> None:
+    first, second = calls_of(lifts(plan, 1.0, 1.5, formats=("urdf",)), tmp_path)
+    with Worker(4.0, idle=0.2) as worker:
+        assert worker.tried(first, 0)["ok"]
+        (process,) = children_of(os.getpid())
+        os.waitid(os.P_PID, process, os.WEXITED | os.WNOWAIT)
+
+        assert worker.tried(second, 0)["ok"]
 
 
 def test_dask_makes_all_items_though_a_worker_is_killed(plan: Path, tmp_path: Path) -> None:
