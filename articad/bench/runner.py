@@ -24,7 +24,7 @@ from articad.agents.review import trajectory
 from articad.bench.row import Row, keep_row, kept_row
 from articad.bench.subject import Subject
 from articad.bench.task import Task
-from articad.errors import ArticadError, TransportError
+from articad.errors import TransportError
 from articad.kernels.kernel import BuildCache, PartKernel
 from articad.record import assembly_of
 from articad.run import Run, digest
@@ -122,7 +122,7 @@ class _Made:
             self._tell(run)
             if task.edit is not None:
                 row = self._with_edit(row, run, Subject(assembly), {name: value for name, value in options.items() if name != "variant"})
-        except ArticadError as error:
+        except Exception as error:  # noqa: BLE001 - a defect of ours costs one task, not the benchmark
             row = replace(row, error=self._told(error))
         return replace(row, seconds=time.monotonic() - started, **_effort(self._run, self._edit))
 
@@ -133,7 +133,7 @@ class _Made:
             subject = Subject(assembly_of(edited, cache=options["cache"]), before=before.assembly)
             row = replace(row, edited=self._task.judge_edit(subject))
             self._tell(edited)
-        except ArticadError as error:
+        except Exception as error:  # noqa: BLE001 - as above
             row = replace(row, edit_error=self._told(error))
         return row
 
@@ -141,7 +141,7 @@ class _Made:
         if self._finished is not None:
             self._finished(run)
 
-    def _told(self, error: ArticadError) -> str:
+    def _told(self, error: Exception) -> str:
         self.unreached = self.unreached or isinstance(error, TransportError)
         return f"{type(error).__name__}: {error}"
 

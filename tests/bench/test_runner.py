@@ -160,6 +160,18 @@ def test_a_task_whose_provider_was_out_of_reach_is_made_again(tasks: list[tuple[
     assert again.ok
 
 
+def test_a_defect_of_ours_costs_one_task_and_not_the_benchmark(tasks: list[tuple[Path, Task]], tmp_path: Path) -> None:
+    class Broken:
+        def complete(self, request: Request) -> Reply:
+            raise ZeroDivisionError(request.step)
+
+    rows = run(tasks[:2], tmp_path / "out", lambda task: Broken() if task.name == "flap_0" else stories.flap())
+
+    assert [row.ok for row in rows] == [False, True]
+    assert "ZeroDivisionError: requirements" in str(rows[0].error)
+    assert rows_in(tmp_path / "out") == rows
+
+
 def test_files_of_any_tool_are_scored_and_a_missing_one_is_told(tasks: list[tuple[Path, Task]], tmp_path: Path) -> None:
     run(tasks[:1], tmp_path / "out", lambda _task: stories.flap())
     models = tmp_path / "models"
