@@ -279,7 +279,7 @@ def _couplings(subject: Subject, kinds: Sequence[JointKind]) -> Iterator[str]:
     joints = {joint.name: joint for joint in subject.assembly.joints}
     for coupling in subject.assembly.mechanism.couplings:
         a, b = (column.split(".")[0] for column in (coupling.a, coupling.b))
-        lead, follow = letters[a], letters[b]
+        lead, follow = letters.get(a, a), letters.get(b, b)
         slides = [subject.per_unit(joints[name]) == 1.0 for name in (a, b)]
         ratio = abs(coupling.ratio)
         if slides == [False, True]:

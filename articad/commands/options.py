@@ -102,10 +102,10 @@ TEACHING = (
     argument("--docs", action="store_true", help="have the model name what it would look up in the kernel's documentation, and tell it"),
 )
 BUDGET = (
-    argument("--max-calls", metavar="N", type=positive, default=60, help="model calls (60)"),
-    argument("--max-tokens", metavar="N", type=positive, default=None, help="tokens of all calls (unlimited)"),
-    argument("--max-cost", metavar="USD", type=amount, default=None, help="cost of all calls (unlimited)"),
-    argument("--max-minutes", metavar="N", type=amount, default=60.0, help="wall clock (60)"),
+    argument("--max-calls", metavar="N", type=positive, default=60, help="model calls, with bench of each task (60)"),
+    argument("--max-tokens", metavar="N", type=positive, default=None, help="tokens of these calls (unlimited)"),
+    argument("--max-cost", metavar="USD", type=amount, default=None, help="cost of these calls (unlimited)"),
+    argument("--max-minutes", metavar="N", type=amount, default=60.0, help="wall clock, with bench of each task (60)"),
 )
 ASKING = (
     *MODELS,
