@@ -40,6 +40,9 @@ class Boxes(Protocol):
     def cut(self, boxes: IntArray, share: FloatArray) -> tuple[IntArray, IntArray]:
         """Cut boxes `(k,)` where `share (k, G + swings)` of the motion is largest; −1 for halves that need no cover."""
 
+    def is_reached(self, box: int) -> bool:
+        """Return whether the centre of a box is a pose of the mechanism."""
+
     def contact(self, box: int) -> tuple[float, ...] | None:
         """Return the centre of a box as coordinates to report, or None when it lies outside what joints allow."""
 
@@ -206,6 +209,7 @@ class _Search:
         share = np.max([found[left, best] for found in shares], axis=0)
         # what does not move and yet is not apart pierces the other: there the distance is none
         stuck = motion[left].max(axis=(1, 2)) < self.epsilon / 4
+        stuck[stuck] = [self.boxes.is_reached(box) for box in box[left][stuck].tolist()]
         if stuck.any():
             row = int(left[np.argmax(stuck)])
             self.outcome.box = int(box[row])
@@ -303,6 +307,10 @@ class Ranges:
             dropped = [self.left_out(self.centre[k], self.half[k]) for k in numbers]
             numbers = np.where(dropped, -1, numbers)
         return numbers[: len(boxes)], numbers[len(boxes) :]
+
+    def is_reached(self, box: int) -> bool:  # noqa: ARG002 - a chain's coordinates are free
+        """Return whether the middle of a box is a pose of the mechanism: always."""
+        return True
 
     def contact(self, box: int) -> tuple[float, ...] | None:
         """Return the centre of a box."""

@@ -277,10 +277,13 @@ class Steps:
         smaller[at] = shift[at] = half[at] / 2
         return [(step, middle - shift, smaller), (step, middle + shift, smaller)]
 
+    def is_reached(self, box: int) -> bool:
+        """Return whether the middle of a box is a pose of the mechanism: of a step; in that of a run the loops need not close."""
+        return isinstance(self.rows[box][0], Step)
+
     def contact(self, box: int) -> tuple[float, ...] | None:
-        """Return the chain's coordinates at the middle of a box."""
-        step, middle, half = self.rows[box]
-        return tuple(self._placed(step, middle, half)[0].tolist())
+        """Return the chain's coordinates at the middle of a box; none if the mechanism does not reach it."""
+        return tuple(self._placed(*self.rows[box])[0].tolist()) if self.is_reached(box) else None
 
     def value(self, box: int) -> float:
         """Return the driver's value at the middle of a box."""
