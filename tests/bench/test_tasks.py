@@ -125,3 +125,10 @@ def _stated(task: Task) -> bool:
     ranges = [span for span in spans if span is not None and span != "endless"]
     numbers = [float(word.strip(".,;:")) for word in task.prompt.replace("-", " ").split() if word.strip(".,;:").isdigit()]
     return all(any(low <= number <= high or low <= 2 * number <= high for number in numbers) or high > 720 for low, high in ranges)
+
+
+@pytest.mark.slow
+def test_a_pin_in_its_slot_is_proven_clear_although_no_pose_is_in_the_middle_of_many_steps() -> None:
+    """About the middle of a straight line through many poses pin and slot pierce each other; that is no contact."""
+    certificate = reference("scotch_yoke_pump").certify(pairs=False, budget=300)
+    assert certificate.ok, [str(finding) for finding in certificate.findings]
