@@ -130,5 +130,5 @@ def _stated(task: Task) -> bool:
 @pytest.mark.slow
 def test_a_pin_in_its_slot_is_proven_clear_although_no_pose_is_in_the_middle_of_many_steps() -> None:
     """About the middle of a straight line through many poses pin and slot pierce each other; that is no contact."""
-    certificate = reference("scotch_yoke_pump").certify(pairs=False, budget=300)
+    certificate = built("scotch_yoke_pump").certify(pairs=False, budget=300)
     assert certificate.ok, [str(finding) for finding in certificate.findings]
