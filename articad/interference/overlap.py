@@ -117,7 +117,7 @@ def may_overlap(a: Body, b: Body, T_a_b: FloatArray) -> bool:
     b.moving.setTransform(fcl.Transform(T_a_b[:, :3], T_a_b[:, 3]))
     if fcl.collide(a.standing, b.moving, fcl.CollisionRequest(), fcl.CollisionResult()) > 0:
         return True
-    return one_contains_the_other(a, b, se3_of(T_a_b))
+    return one_contains_the_other(a, b, T_a_b)
 
 
 def se3_of(T_a_b: FloatArray) -> SE3:
@@ -164,18 +164,16 @@ def nearest(a: Body, b: Body, T_a_b: SE3) -> tuple[float, FloatArray, FloatArray
     return gap, np.array(result.nearest_points[0]), np.array(result.nearest_points[1])
 
 
-def one_contains_the_other(a: Body, b: Body, T_a_b: SE3) -> bool:
-    """Return whether a shell of one lies inside the other, when their surfaces do not meet."""
-    return _has_shell_inside(a, b, T_a_b) or _has_shell_inside(b, a, T_a_b.inverse())
+def one_contains_the_other(a: Body, b: Body, T_a_b: FloatArray) -> bool:
+    """Return whether a shell of one lies inside the other, when their surfaces do not meet; `T_a_b` is `(3, 4)`."""
+    R, t = T_a_b[:, :3], T_a_b[:, 3]
+    return any(_is_inside(a, points @ R.T + t) for points in b.extremes) or any(_is_inside(b, (points - t) @ R) for points in a.extremes)
 
 
-def _has_shell_inside(outer: Body, inner: Body, T_outer_inner: SE3) -> bool:
+def _is_inside(outer: Body, points: FloatArray) -> bool:
+    """Return whether a shell that reaches as far as these points, and meets no surface of the outer body, is inside it."""
     low, high = outer.mesh.bounds
-    for extremes in inner.extremes:
-        points = T_outer_inner.apply(extremes)
-        if ((points >= low) & (points <= high)).all() and winding_numbers(points[:1], outer.corners)[0] > 0.5:
-            return True
-    return False
+    return bool((points >= low).all() and (points <= high).all()) and bool(winding_numbers(points[:1], outer.corners)[0] > 0.5)
 
 
 def _placed(b: Body, T_a_b: SE3) -> Any:
