@@ -104,15 +104,14 @@ def generate(
     pictures += [UserImage.read(image, part) for part, image in sorted((part_images or {}).items())]
     kernel = kernel or kernel_named("build123d", sandbox=sandbox)
     rolls_back = variant not in {"no-rollback", "single-loop"}
-    memory = None if variant in {"no-memory", "single-loop"} else memory
-    documentation = None if variant == "single-loop" else documentation
     options: dict[str, Any] = {"task": "generate", "designs": designs, "repairs": repairs, "rounds": rounds, "formats": list(formats)}
     options |= {"kernel": kernel.name, "variant": variant, "look": look and rolls_back, "inspection": inspection and rolls_back}
     options |= {"ideas": "always" if pick is not None else ideas, "pick": pick, "finetune": True}
     options |= {} if review == "none" else {"review": review}  # not asked for, it is not mentioned: older recordings stay what they are
     request = RunRequest(prompt=prompt, images=tuple(pictures), options=options)
     with open_or_create(request, out) as run:
-        _work(run, llm, kernel, cache, partial(_chosen_by_user, pick, choose), memory, documentation, jobs, progress)
+        taught = _taught(run, variant, memory, documentation)
+        _work(run, llm, kernel, cache, partial(_chosen_by_user, pick, choose), taught, jobs, progress)
     return run
 
 
@@ -154,21 +153,9 @@ def resume(
     """
     with Run.open(path) as run:
         options = _options_of(run)
-        if options["variant"] in {"no-memory", "single-loop"}:
-            memory = None
-        documentation = None if options["variant"] == "single-loop" else documentation
         kernel = kernel or kernel_named(options["kernel"], sandbox=sandbox)
-        _work(
-            run,
-            llm or Nobody(),
-            kernel,
-            cache,
-            partial(_chosen_by_user, options.get("pick"), choose),
-            memory,
-            documentation,
-            jobs,
-            progress,
-        )
+        chooser = partial(_chosen_by_user, options.get("pick"), choose)
+        _work(run, llm or Nobody(), kernel, cache, chooser, _taught(run, options["variant"], memory, documentation), jobs, progress)
     return run
 
 
@@ -196,21 +183,34 @@ def _options_of(run: Run) -> Mapping[str, Any]:
     return options
 
 
+_Taught = tuple[KeptMemory, KeptDocumentation]
+
+
+def recalls(variant: str) -> bool:
+    """Return whether runs of a variant are told of earlier ones, and remembered."""
+    return variant not in {"no-memory", "single-loop"}
+
+
+def _taught(run: Run, variant: str, memory: Memory | None, documentation: Documentation | None) -> _Taught:
+    """Return what a run of a variant may look up."""
+    memory = memory if recalls(variant) else None
+    return KeptMemory(run, memory), KeptDocumentation(run, None if variant == "single-loop" else documentation)
+
+
 def _work(
     run: Run,
     llm: LLM,
     kernel: PartKernel,
     cache: BuildCache | None,
     chooser: Chooser,
-    memory: Memory | None,
-    documentation: Documentation | None,
+    taught: _Taught,
     jobs: int | None,
     progress: Progress | None,
 ) -> None:
+    """Do what a run's request asks for."""
     note(run, kernel)
-    known, told = KeptMemory(run, memory), KeptDocumentation(run, documentation)
-    shop = Workshop(run, Recorded(llm, run), kernel, cache or BuildCache(), jobs, progress, known, told)
-    _line(shop, chooser, known).work()
+    shop = Workshop(run, Recorded(llm, run), kernel, cache or BuildCache(), jobs, progress, *taught)
+    _line(shop, chooser, taught[0]).work()
 
 
 def _line(shop: Workshop, chooser: Chooser, memory: Memory | None) -> Line:
@@ -295,10 +295,8 @@ def replay(
         if (base := source.base()) is not None:
             run.save_base(base)
         kernel = kernel or kernel_named(options["kernel"], sandbox=sandbox)
-        note(run, kernel)
-        known, told = KeptMemory(run, recorded=source), KeptDocumentation(run, recorded=source)
-        shop = Workshop(run, Recorded(answers, run), kernel, cache or BuildCache(), jobs, progress, known, told)
-        _line(shop, partial(_chosen_before, source), known).work()
+        taught = KeptMemory(run, recorded=source), KeptDocumentation(run, recorded=source)
+        _work(run, answers, kernel, cache, partial(_chosen_before, source), taught, jobs, progress)
         for finding in answers.findings:
             run.trace_finding(finding)
     different = tuple(differences(source, run))

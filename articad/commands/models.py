@@ -63,7 +63,7 @@ def _generate(options: argparse.Namespace, terminal: Terminal) -> Report:
             jobs=options.jobs,
             progress=tell,
         )
-    return _told(run, options, terminal, budget, remembered=options.variant not in {"no-memory", "single-loop"})
+    return _told(run, options, terminal, budget)
 
 
 @command(
@@ -106,7 +106,7 @@ def _edit(options: argparse.Namespace, terminal: Terminal) -> Report:
             jobs=options.jobs,
             progress=tell,
         )
-    return _told(run, options, terminal, budget, remembered=budget is not None)
+    return _told(run, options, terminal, budget)
 
 
 @command(
@@ -141,7 +141,7 @@ def _resume(options: argparse.Namespace, terminal: Terminal) -> Report:
             jobs=options.jobs,
             progress=tell,
         )
-    return _told(run, options, terminal, budget, remembered=asked.get("variant") not in {"no-memory", "single-loop"})
+    return _told(run, options, terminal, budget)
 
 
 def asked_model(options: argparse.Namespace, terminal: Terminal) -> tuple[Budget, bool]:
@@ -174,12 +174,14 @@ def _review(options: argparse.Namespace, *, sees: bool) -> Literal["none", "rule
     return "none" if not options.review else "model" if sees else "rules"
 
 
-def _told(run: Run, options: argparse.Namespace, terminal: Terminal, budget: Budget | None, *, remembered: bool) -> Report:
-    """Remember a finished run, draw it, print it and return its report."""
+def _told(run: Run, options: argparse.Namespace, terminal: Terminal, budget: Budget | None) -> Report:
+    """Remember a finished run that a model had a part in, draw it, print it and return its report."""
+    from articad.agents.pipeline import recalls
     from articad.agents.recollection import remember
     from articad.summaries import print_edit, print_review
 
     store = experience(options)
+    remembered = budget is not None and recalls(run.request.options.get("variant", "full"))
     if remembered and (case := remember(run, store)) is not None:
         terminal.detail(f"Remembered as {case.id[:8]}, {case.kind}, in {store.folder}.")
     if options.pictures:

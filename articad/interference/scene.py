@@ -119,6 +119,12 @@ class Scene:
         return boxes_apart((centres[i], halves[i]), (centres[j], halves[j]), T_i_j)
 
 
+def relatives(A: FloatArray, B: FloatArray) -> FloatArray:
+    """Return where bodies at `B` stand as seen from those at `A`, all `(n, 3, 4)` [mm]."""
+    back = A[..., :3].transpose(0, 2, 1)
+    return np.concatenate([back @ B[..., :3], back @ (B[..., 3:] - A[..., 3:])], axis=2)
+
+
 def boxes_apart(a: tuple[FloatArray, FloatArray], b: tuple[FloatArray, FloatArray], T_a_b: FloatArray) -> BoolArray:
     """Return at which relative poses `(n, 3, 4)` two boxes are apart, `(n,)`.
 
@@ -165,10 +171,7 @@ class Placement:
     def apart(self, pairs: Sequence[tuple[str, str]]) -> BoolArray:
         """Return of which pairs the boxes, turned with the bodies, are apart, `(n,)`."""
         i, j = np.array([[self.scene.index[name] for name in pair] for pair in pairs], dtype=np.int64).reshape(-1, 2).T
-        A, B = self.matrices[i], self.matrices[j]
-        back = A[..., :3].transpose(0, 2, 1)
-        B = np.concatenate([B[..., :3], B[..., 3:] - A[..., 3:]], axis=2)
-        return self.scene.apart(i, j, back @ B)
+        return self.scene.apart(i, j, relatives(self.matrices[i], self.matrices[j]))
 
     def candidates(self, margin: float = _BOX_MARGIN_MM) -> list[tuple[str, str]]:
         """Return the pairs whose boxes, along the axes of the ground, are closer than `margin` [mm]."""

@@ -22,7 +22,7 @@ from articad.interference.motion import ENDLESS_SLIDE_MM, Freedom, driver_values
 from articad.interference.overlap import VOLUME_NOISE_MM3, Overlap, common, may_overlap, overlap_of, se3_of
 from articad.interference.relations import FitLike, WaiverLike
 from articad.interference.report import Checks, PairCheck, Strength
-from articad.interference.scene import Scene
+from articad.interference.scene import Scene, relatives
 from articad.interference.turning import Turning
 from articad.interference.verdict import UNRELATED_VOLUME_MM3, judge
 from articad.kinematics.joints import Joint
@@ -169,8 +169,7 @@ class Sweep:
             if not len(near):
                 continue
             track = tracks[a, b] = _Track(seen=len(matrices))
-            back, t = matrices[near, i, :, :3].transpose(0, 2, 1), matrices[near, j, :, 3] - matrices[near, i, :, 3]
-            relative = np.concatenate([back @ matrices[near, j, :, :3], back @ t[:, :, None]], axis=2)
+            relative = relatives(matrices[near, i], matrices[near, j])
             asked = np.flatnonzero(~self.scene.apart(i, j, relative))
             keys = [key.tobytes() for key in np.round(relative, _KEY_DIGITS) + 0.0]
             if turning is not None and len({keys[at] for at in asked}) >= _WORTH_OUTLINES:
