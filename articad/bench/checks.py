@@ -16,10 +16,9 @@ import numpy as np
 from pydantic import Field
 
 from articad.assembly import Assembly
-from articad.bench.check import Bounds, Vector
+from articad.bench.check import Bounds, Vector, in_words
 from articad.bench.check import Check as Check  # noqa: PLC0414  (others take them from here)
 from articad.bench.check import Judgement as Judgement  # noqa: PLC0414
-from articad.bench.check import in_words as _range
 from articad.bench.path_checks import PATH, Level, Straight, Turns
 from articad.bench.shape_checks import Holds, Holes, Stands, Studs, Symmetric, Volume, Wall
 from articad.bench.subject import Subject
@@ -60,7 +59,7 @@ class JointWanted(Form):
     def __str__(self) -> str:
         axis = "" if self.axis is None else f" about or along {_numbers(self.axis)}"
         unit = "mm" if self.type in {JointType.SLIDER, JointType.CYLINDRICAL} else "°"
-        span = "" if self.span is None else ", endless" if self.span == "endless" else f", range {_range(self.span)} {unit}"
+        span = "" if self.span is None else ", endless" if self.span == "endless" else f", range {in_words(self.span)} {unit}"
         return f"{self.type}{axis}{span}"
 
 
@@ -72,7 +71,7 @@ class Parts(Check):
 
     @property
     def wanted(self) -> str:
-        return f"{_range(self.number)} parts"
+        return f"{in_words(self.number)} parts"
 
     def measured(self, subject: Subject) -> tuple[bool, str]:
         count = len(subject.shaped)
@@ -103,7 +102,7 @@ class Joints(Check):
 
     @property
     def wanted(self) -> str:
-        return f"{_range(self.number)} joints: {self.joint}"
+        return f"{in_words(self.number)} joints: {self.joint}"
 
     def measured(self, subject: Subject) -> tuple[bool, str]:
         found = self.joint.found(subject)
@@ -139,7 +138,7 @@ class PartSize(Check):
     @property
     def wanted(self) -> str:
         sides = " x ".join("any" if side is None else f"{side:g}" for side in self.mm)
-        return f"{_range(self.number)} parts of {sides} mm within {100 * self.tolerance:g} %"
+        return f"{in_words(self.number)} parts of {sides} mm within {100 * self.tolerance:g} %"
 
     def measured(self, subject: Subject) -> tuple[bool, str]:
         sides = sorted(side for side in self.mm if side is not None)
@@ -163,7 +162,7 @@ class Mass(Check):
 
     @property
     def wanted(self) -> str:
-        return f"{_range(self.kg)} kg"
+        return f"{in_words(self.kg)} kg"
 
     def measured(self, subject: Subject) -> tuple[bool, str]:
         mass = subject.assembly.mass().mass
@@ -256,7 +255,7 @@ class Loops(Check):
 
     @property
     def wanted(self) -> str:
-        return f"{_range(self.number)} closed loops"
+        return f"{in_words(self.number)} closed loops"
 
     def measured(self, subject: Subject) -> tuple[bool, str]:
         mechanism = subject.assembly.mechanism
@@ -300,7 +299,7 @@ class Rise(Check):
 
     @property
     def wanted(self) -> str:
-        return f"the end along {self.axis} moves by {_range(self.mm)} mm"
+        return f"the end along {self.axis} moves by {in_words(self.mm)} mm"
 
     def measured(self, subject: Subject) -> tuple[bool, str]:
         column = "xyz".index(self.axis)
@@ -321,7 +320,7 @@ class Travel(Check):
 
     @property
     def wanted(self) -> str:
-        return f"{_range(self.number)} joints ({self.joint}) that move by {_range(self.by)} in all"
+        return f"{in_words(self.number)} joints ({self.joint}) that move by {in_words(self.by)} in all"
 
     def measured(self, subject: Subject) -> tuple[bool, str]:
         moved = [_travel(subject, joint) for joint in self.joint.found(subject)]
@@ -340,7 +339,7 @@ class Gap(Check):
 
     @property
     def wanted(self) -> str:
-        return f"{_range(self.number)} joints ({self.joint}) with a gap of {_range(self.mm)} mm"
+        return f"{in_words(self.number)} joints ({self.joint}) with a gap of {in_words(self.mm)} mm"
 
     def measured(self, subject: Subject) -> tuple[bool, str]:
         near = Fit(within=self.within)
@@ -361,7 +360,7 @@ class Lead(Check):
 
     @property
     def wanted(self) -> str:
-        return f"{_range(self.number)} screws of {self.mm:g} mm a turn"
+        return f"{in_words(self.number)} screws of {self.mm:g} mm a turn"
 
     def measured(self, subject: Subject) -> tuple[bool, str]:
         leads = [joint.lead for joint in self.joint.found(subject)]
@@ -377,7 +376,7 @@ class Captive(Check):
 
     @property
     def wanted(self) -> str:
-        return f"{_range(self.number)} moving parts are held by shape"
+        return f"{in_words(self.number)} moving parts are held by shape"
 
     def measured(self, subject: Subject) -> tuple[bool, str]:
         scene = subject.scene
@@ -412,7 +411,7 @@ class Unchanged(Check):
 
     @property
     def wanted(self) -> str:
-        return f"{_range(self.number)} parts are unchanged"
+        return f"{in_words(self.number)} parts are unchanged"
 
     def measured(self, subject: Subject) -> tuple[bool, str]:
         if subject.before is None:
