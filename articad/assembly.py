@@ -78,6 +78,9 @@ class Assembly:
         resolved: The plan with its numbers; None when made in Python or imported.
         realised: How each part was built; empty when made in Python or imported.
         findings: What the plan's check and the builds had to say, warnings and notes.
+        deflection: Largest distance of meshes from their solids [mm].
+        foreign: True when it was read from a file that articad did not write: where its base stands and its joints rest is what that
+            file happened to have.
     """
 
     name: str
@@ -90,6 +93,7 @@ class Assembly:
     realised: Mapping[str, RealisedPart] = field(default_factory=dict)
     findings: Findings = field(default_factory=Findings)
     deflection: float = DEFLECTION_MM
+    foreign: bool = False
     _kernel: PartKernel | None = None
     _cache: BuildCache | None = None  # a temporary one, and the B-rep files in it, go with whoever holds it last
 

@@ -406,6 +406,9 @@ CODES: dict[str, Code] = {
         "A model that looked at a part's pictures finds it turned or mirrored against its specification.",
         "Compare the pictures with the plan.",
     ),
+    "I_LOOK_UNSEEN": Code(
+        "model", None, "A model that looked at a part's pictures says what none of them shows.", "Nothing: it was not judged."
+    ),
     "E_VERDICT_PLACEMENT": Code("model", None, "The judge finds parts missing, misplaced or of the wrong look.", "See what was expected."),
     "E_VERDICT_INTERFERENCE": Code(
         "model", None, "The judge finds parts in each other's way where no exact check has looked.", "See what was expected."

@@ -186,6 +186,12 @@ class RunError(ArticadError):
         self.path = path
         super().__init__(message, findings=findings)
 
+    @classmethod
+    def told(cls, path: object, message: str, hint: str) -> Self:
+        """Return the error E_RUN about a directory."""
+        finding = Finding(code="E_RUN", where=str(path), message=message, hint=hint)
+        return cls(f"{message} {hint}", path=str(path), findings=[finding])
+
 
 class ExportError(ArticadError):
     """An assembly that cannot be written."""

@@ -153,6 +153,7 @@ def _hurried(run: Run) -> list[Report]:
 _CHOICES: Final[Mapping[str, tuple[str, ...]]] = {
     "urdf": ("loops", "collision", "package", "srdf", "ros2_control"),
     "mjcf": ("collision", "actuators"),
+    "3mf": ("process",),
 }
 
 
@@ -163,7 +164,7 @@ def written(assembly: Assembly, format_name: str, *, strict: bool = False, **cho
         assembly: What to write.
         format_name: Key of `WRITERS`.
         strict: Refuse losses of motion, mass or shape.
-        choices: Arguments of `write_urdf` and `write_mjcf`, such as `loops` or `collision`; each format takes those that it knows.
+        choices: Arguments of `write_urdf`, `write_mjcf` and `write_3mf`, such as `loops` or `collision`; each format takes those that it knows.
 
     Raises:
         UnrepresentableError: If `strict` and the format cannot hold it.

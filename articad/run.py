@@ -182,7 +182,9 @@ class Run:
             path.mkdir(parents=True, exist_ok=True)
             strangers = sorted(entry.name for entry in path.iterdir() if entry.name != _IMAGES and not _TEMPORARY.fullmatch(entry.name))
         if strangers:
-            raise _refused(path, f"{path} is not empty: it holds {strangers[0]}.", "Name a new directory, or resume the run that is there.")
+            raise RunError.told(
+                path, f"{path} is not empty: it holds {strangers[0]}.", "Name a new directory, or resume the run that is there."
+            )
         run = cls(path, request, _locked(path))
         run._sweep()
         described = request.to_json(_version() if version is None else version)
@@ -450,7 +452,7 @@ class Run:
         folder = Path(_EXPORT) / kind
         for name, content in sorted(files.items()):
             if not (self.path / folder / name).resolve().is_relative_to((self.path / folder).resolve()):
-                raise _refused(self.path, f"{name} is outside {folder}.", "Export into the folder itself.")
+                raise RunError.told(self.path, f"{name} is outside {folder}.", "Export into the folder itself.")
             self._write(str(folder / name), content)
         self._write_json(str(folder / "losses.json"), report)
         return self.path / folder
@@ -557,7 +559,7 @@ class Run:
 
     def _require_lock(self) -> None:
         if self._lock is None:
-            raise _refused(self.path, f"{self.path} is open for reading only.", "Open it with Run.open.")
+            raise RunError.told(self.path, f"{self.path} is open for reading only.", "Open it with Run.open.")
 
 
 def write_atomically(path: Path, content: bytes) -> None:
@@ -599,7 +601,9 @@ def open_or_create(request: RunRequest, out: str | Path | None) -> Run:
     if run.request.same_as(request):
         return run
     run.close()
-    raise _refused(Path(out), f"{out} is a run of another request.", "Name another directory, or repeat the run's own prompt and options.")
+    raise RunError.told(
+        Path(out), f"{out} is a run of another request.", "Name another directory, or repeat the run's own prompt and options."
+    )
 
 
 def differences(first: Run, second: Run) -> Sequence[str]:
@@ -620,24 +624,26 @@ def _new_directory(prompt: str) -> Path:
         path = DEFAULT_ROOT / f"{day}-{slug}-{secrets.token_hex(2)}"
         if not path.exists():
             return path
-    raise _refused(DEFAULT_ROOT, f"No free name for a run in {DEFAULT_ROOT}.", "Name a directory with --out.")
+    raise RunError.told(DEFAULT_ROOT, f"No free name for a run in {DEFAULT_ROOT}.", "Name a directory with --out.")
 
 
 def _read_request(path: Path) -> RunRequest:
     run = Run(path, RunRequest(prompt=""), None)
     stored = run._read_json(_REQUEST)  # noqa: SLF001 - the same class, before it is whole
     if stored is None or stored.get("schema") != REQUEST_SCHEMA:
-        raise _refused(path, f"{path} is not a run: it has no {_REQUEST} of the form {REQUEST_SCHEMA}.", "Name a run directory.")
+        raise RunError.told(path, f"{path} is not a run: it has no {_REQUEST} of the form {REQUEST_SCHEMA}.", "Name a run directory.")
     try:
         prompt, options, named = stored["prompt"], stored["options"], [(image["file"], image.get("part")) for image in stored["images"]]
         whole = isinstance(prompt, str) and isinstance(options, dict) and all(isinstance(name, str) for name, _ in named)
     except (KeyError, TypeError, AttributeError):
         whole = False
     if not whole:
-        raise _refused(path, f"{path / _REQUEST} is incomplete.", "Name another run directory.")
+        raise RunError.told(path, f"{path / _REQUEST} is incomplete.", "Name another run directory.")
     for name, _ in named:  # a run may be a stranger's, and its pictures are sent to a model
         if not _IMAGE_FILE.fullmatch(name) or (path / name).is_symlink() or (path / _IMAGES).is_symlink():
-            raise _refused(path, f"{path / _REQUEST} names the picture {name[:100]!r}, which is none of the run.", "Do not use this run.")
+            raise RunError.told(
+                path, f"{path / _REQUEST} names the picture {name[:100]!r}, which is none of the run.", "Do not use this run."
+            )
     images = tuple(UserImage.read(path / name, None if part is None else str(part)) for name, part in named)
     return RunRequest(prompt=prompt, images=images, options=options)
 
@@ -650,7 +656,7 @@ def _locked(path: Path) -> int:
             fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError as error:
             os.close(handle)
-            raise _refused(path, f"Another process works in {path}.", "Wait for it to end, or name another directory.") from error
+            raise RunError.told(path, f"Another process works in {path}.", "Wait for it to end, or name another directory.") from error
         except OSError:  # pragma: no cover - a file system without locks: better unguarded than unusable
             pass
     return handle
@@ -667,10 +673,6 @@ def _writing(path: Path) -> Iterator[None]:
         message = f"Cannot write {path}: {why}."
         finding = Finding(code="E_WRITE", where=str(path), message=message, hint="Mend this and resume: finished work is kept.")
         raise WriteError(message, path=str(path), findings=[finding]) from error
-
-
-def _refused(path: Path, message: str, hint: str) -> RunError:
-    return RunError(f"{message} {hint}", path=str(path), findings=[Finding(code="E_RUN", where=str(path), message=message, hint=hint)])
 
 
 def _no_number(constant: str) -> None:

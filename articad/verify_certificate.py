@@ -3,6 +3,9 @@
 Written apart from the prover, with NumPy alone. A certificate claims that parts keep apart while joints move within ranges. Beside it
 lies how that is seen: how to cut surfaces and ranges, and for each two pieces a direction that separates them. Nothing of that is
 believed and nothing is sought here: every inequality is computed anew from meshes and joints, and no piece, range or pair may be missing.
+
+Of each claim rows are visited in the order of a queue, which begins with both whole surfaces over the whole range: each row's code is the
+number of a direction that separates the two, or says what to halve; both halves, one after the other, join the queue at its end.
 """
 
 from __future__ import annotations
@@ -92,6 +95,15 @@ def pieces(corners: Any, order: Any, radii: Any) -> tuple[Any, Any, Any]:
     points = np.where(SIDES, high[:, None], low[:, None])
     points[single] = leaves[ends[::2][single]][:, [0, 1, 2, 2, 2, 2, 2, 2]]
     return points, np.array(halves), far
+
+
+def joined(ends: Any, rows: list[Any]) -> tuple[Any, Any, Any]:
+    """Return pieces of a driver's range in a row as one: value and rate of a line from end to end, and how far from it they are."""
+    (value, rate, near), half = (np.array(column) for column in zip(*rows, strict=True)), np.diff(ends)[:, None] / 2
+    at = np.stack([value - rate * half, value + rate * half])
+    middle, slope = (at[0, 0] + at[1, -1]) / 2, (at[1, -1] - at[0, 0]) / (ends[-1] - ends[0])
+    places = np.stack([ends[:-1], ends[1:]]) - (ends[0] + ends[-1]) / 2
+    return middle, slope, (np.abs(at - middle - slope * places[..., None]) + near).max((0, 1))
 
 
 class Checker:
@@ -203,17 +215,29 @@ class Checker:
     def begin(self, names: list[str]) -> list[Any]:
         """Return the rest pose as a piece, about which a solution is no further than `REST`."""
         still, at = np.zeros(len(names)), self.rest[names[0]]
-        return [(np.array([at, at]), np.array([self.rest[name] for name in names]), still, still + REST, still)]
+        return [(np.array([at, at]), np.array([self.rest[name] for name in names]), still, np.append(0.0, still[1:] + REST), still)]
 
-    def line(self, driver: str) -> dict[Any, Any]:
-        """Return pieces of a driver's range by their ends: values, rates and distances by coordinate; all on the branch of the rest pose."""
+    def line(self, driver: str) -> dict[float, dict[float, Any]]:
+        """Return pieces of a driver's range, by where they begin and end: values, rates, distances; all on the branch of the rest pose."""
         if driver not in self.lines:
             names = self.followers(driver)
             found = self.begin(names)
             for row in zip(*(self.proof[f"{driver}.{key}"] for key in ("ends", "values", "wide", "other")), strict=True):
                 self.join(found, names, *row)
-            self.lines[driver] = {tuple(ends): dict(zip(names, zip(*row, strict=True), strict=True)) for ends, *row, _ in found[1:]}
+            self.lines[driver] = {}
+            for (low, high), *row, _ in found[1:]:
+                self.lines[driver].setdefault(low, {})[high] = row
         return self.lines[driver]
+
+    def stretch(self, driver: str, low: float, high: float) -> dict[str, Any]:
+        """Return values, rates and distances by coordinate, over a stretch of a driver's range: of all pieces from one end to the other."""
+        stops, rows = [low], []
+        while stops[-1] < high:
+            ends = [end for end in self.line(driver).get(stops[-1], {}) if end <= high]
+            need(ends, f"{driver} is not followed from {stops[-1]:.9g} to {high:.9g}")
+            rows.append(self.line(driver)[stops[-1]][max(ends)])
+            stops.append(max(ends))
+        return dict(zip(self.followers(driver), zip(*joined(np.array(stops), rows), strict=True), strict=True))
 
 
 class Claim:
@@ -222,12 +246,12 @@ class Claim:
     def __init__(self, checker: Checker, claim: dict[str, Any], number: int) -> None:
         self.checker, self.claim, self.vary = checker, claim, claim["vary"]
         self.label = f"{'/'.join(claim['parts'])} over {', '.join(sorted(self.vary))}"
-        self.proof = {key: checker.proof[f"{number}.{key}"] for key in ("uses", "roots", "cuts", "codes", "along", "kinds")}
+        self.proof = {key: checker.proof[f"{number}.{key}"] for key in ("uses", "cuts", "at", "codes", "along", "kinds")}
         self.way = checker.way(claim["parts"][0], claim["parts"][1], claim["via"])
         tied = {f["name"] for joint, _ in self.way for f in joint["freedoms"]} & set(checker.linked) - set(self.vary)
         drivers = [name for name in self.vary if tied and name in checker.certificate["drivers"]]
         need(len(drivers) <= 1, f"{self.label}: two drivers at once")
-        self.driver, self.line = drivers[0] if drivers else None, checker.line(drivers[0]) if drivers else {}
+        self.driver = drivers[0] if drivers else None
 
     def check(self) -> None:
         """Prove it."""
@@ -253,16 +277,15 @@ class Claim:
     def cut(self) -> None:
         """Cut the range into boxes; of each keep the pose in its middle, and what may move, how far, and together with what."""
         names, checker, cuts = list(self.vary), self.checker, self.proof["cuts"]
-        first, roots, rows = self.driver or names[0], self.proof["roots"].tolist(), []
-        need([roots[0], roots[-1]] == list(self.vary[first]), f"{self.label}: a part of the range is left out")
-        boxes, self.halves = [{**self.vary, first: ends} for ends in itertools.pairwise(roots)], np.full((len(cuts), 2), len(cuts))
-        for number, (box, cut) in enumerate(zip(boxes, cuts, strict=True)):  # the boxes become more
+        first, rows, boxes, self.halves = self.driver or names[0], [], [dict(self.vary)], np.full((len(cuts), 2), len(cuts))
+        for number, (box, cut, at) in enumerate(zip(boxes, cuts, self.proof["at"].tolist(), strict=True)):  # the boxes become more
             middle, half = ({name: (high + sign * low) / 2 for name, (low, high) in box.items()} for sign in (1, -1))
             if cut >= 0:
                 (low, high), name = box[names[cut]], names[cut]
+                need(low < at < high, f"{self.label}: a part of the range is left out")
                 self.halves[number] = len(boxes), len(boxes) + 1
-                boxes += [{**box, name: (low, middle[name])}, {**box, name: (middle[name], high)}]
-            line = self.line[tuple(box[self.driver])] if self.driver else {}
+                boxes += [{**box, name: (low, at)}, {**box, name: (at, high)}]
+            line = checker.stretch(self.driver, *box[self.driver]) if self.driver else {}
             line = {name: row for name, row in line.items() if name == self.driver or name not in self.vary}
             moves = {name: (0.0, size) for name, size in half.items()} | {n: (rate * half[first], near) for n, (_, rate, near) in line.items()}
             T, steps = checker.place(self.way, {**checker.rest, **middle, **{name: value for name, (value, *_) in line.items()}})
@@ -301,7 +324,7 @@ class Claim:
     def separate(self, a: tuple[Any, ...], b: tuple[Any, ...]) -> None:
         """Follow how pieces of both and boxes were cut, until a direction separates each two of them."""
         (A, halves_a, far_a), (B, halves_b, far_b), (R, t, *_, outside) = a, b, self.arrays
-        codes, rows = self.proof["codes"], np.array([(0, 0, box) for box in range(len(self.proof["roots"]) - 1)])
+        codes, rows = self.proof["codes"], np.zeros((1, 3), int)
         while len(rows):
             code, codes = codes[: len(rows)], codes[len(rows) :]
             need(len(code) == len(rows) and code.min() >= OUTSIDE and outside[rows[code == OUTSIDE, 2]].all(), f"{self.label}: it ends too early")
@@ -316,9 +339,8 @@ class Claim:
                 outer = np.where(kind[..., None] == 3, q, p) - self.centre
                 beyond = (outer @ (u @ self.across)[..., None])[..., 0].min(1) - np.where(kind[:, 0] == 3, far_a[x], far_b[y])
                 need((np.where(kind[:, 0] < 2, gap, beyond) > self.claim["clear_mm"]).all(), f"{self.label}: pieces come too near")
-            cut = []
+            cut = (code < 0) & (code > OUTSIDE)
+            which, rows = np.repeat(code[cut] + 3, 2), np.repeat(rows[cut], 2, axis=0)
             for column, numbers in enumerate((halves_a, halves_b, self.halves)):
-                for side in (0, 1):
-                    cut.append(rows[code == column - 3])
-                    cut[-1][:, column] = numbers[cut[-1][:, column], side]
-            rows = np.concatenate(cut)
+                mine = which == column
+                rows[mine, column] = numbers[rows[mine, column][::2]].ravel()

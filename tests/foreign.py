@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from lxml import etree
 from numpy.typing import NDArray
 
 from articad.assembly import Assembly
@@ -64,7 +65,10 @@ def pinocchio_poses(assembly: Assembly, path: Path, q: FloatArray) -> dict[str, 
     """Poses of a URDF's links as Pinocchio has them [m]."""
     import pinocchio as pin
 
-    model = pin.buildModelFromUrdf(str(path))
+    try:
+        model = pin.buildModelFromUrdf(str(path))
+    except ValueError:
+        model = pin.buildModelFromXML(_bare(path))
     data = model.createData()
     configuration = assembly.mechanism.configuration(q)
     types = {joint.name: joint.type for joint in assembly.joints}
@@ -86,6 +90,18 @@ def pinocchio_poses(assembly: Assembly, path: Path, q: FloatArray) -> dict[str, 
         for name in assembly.parts
         if model.existFrame(name, pin.FrameType.BODY)
     }
+
+
+def _bare(path: Path) -> str:
+    """Return what of a URDF places its links, for a reader that takes no part of what is left out: no mass, no effort, no shape of its own."""
+    root = etree.parse(str(path)).getroot()
+    for link in root.iterfind("link"):
+        for element in list(link):
+            link.remove(element)
+    for limit in root.iterfind("joint/limit"):
+        for name, usual in (("lower", "-1"), ("upper", "1"), ("effort", "1"), ("velocity", "1")):
+            limit.set(name, limit.get(name, usual))
+    return str(etree.tostring(root, encoding="unicode"))
 
 
 def mujoco_poses(assembly: Assembly, path: Path, q: FloatArray) -> dict[str, FloatArray]:

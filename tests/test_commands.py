@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shutil
 import signal
 import subprocess
 import sys
@@ -13,7 +14,7 @@ from typing import Any
 
 import pytest
 
-from articad import cli
+from articad import cli, examples
 from articad.commands import models
 from articad.record import kernel_named
 from articad.run import Run
@@ -357,6 +358,23 @@ def test_export_takes_collision_servos_and_a_ros_package(chest: Path, tmp_path: 
     assert "<ros2_control" in (out / "urdf/urdf/chest.urdf").read_text()
     assert list((out / "urdf").rglob("*.srdf"))
     assert "<position" in (out / "mjcf/chest.xml").read_text()
+
+
+def test_a_print_pack_is_held_to_the_process_it_is_meant_for(tmp_path: Path, report: Any) -> None:
+    folder = examples.folder("four_bar")
+    plan = json.loads((folder / "plan.json").read_text())
+    for joint in plan["joints"]:
+        joint.pop("fit", None)
+    next(joint for joint in plan["joints"] if joint["type"] == "revolute")["fit"] = {"gap_mm": [0.15, 0.3]}
+    (tmp_path / "plan").mkdir()
+    (tmp_path / "plan/plan.json").write_text(json.dumps(plan))
+    shutil.copytree(folder / "parts", tmp_path / "plan/parts")
+    run = tmp_path / "run"
+    report("build", tmp_path / "plan", "--out", run)
+    for process, codes in (("fdm", ["W_PRINT_CLEARANCE"]), ("sla", [])):
+        _, told = report("export", run, "--to", "3mf", "--process", process, "--out", tmp_path / process)
+        assert [finding["code"] for finding in told["exports"]["3mf"]["findings"]] == codes
+        assert len(list((tmp_path / process / "3mf").glob("*.3mf"))) == len(plan["parts"])
 
 
 @pytest.mark.parametrize(("flags", "asked"), [([], True), (["--json"], False), (["-q"], False)])

@@ -20,6 +20,14 @@ from articad.run import RunRequest
 TRIES: Final = 5  # answers until a plan validates; the findings of each go back
 SHOWN_FINDINGS: Final = 40  # more at once is not read; the next answer brings the rest
 ROLE: Final = "design"
+ANALYSIS: Final = "Its analysis, made before there was a plan (where numbers differ, what the request states binds, then the plan):"
+_DIALECTS: Final = {
+    "build123d": "The parts will be scripted in build123d.",
+    "freecad": "The parts will be scripted in FreeCAD, as PartDesign features: boxes, cylinders, balls, and outlines of straight lines, circles and "
+    "slots in planes across X, Y or Z that are padded, pocketed, revolved or lofted; patterns, fillets, chamfers. There is no ready "
+    "function for a sweep, a helix or thread, an arc or spline in an outline, or a tilted plane: order shapes that do without.",
+}
+"""What a designer is told of the language of the part scripts, by kernel."""
 
 Judged = tuple[AssemblyPlan | None, Findings, OutputError | None]
 """The plan of a reply, if it could be read; what is to be said of it; and the problem if it is not even JSON."""
@@ -83,7 +91,7 @@ class Designer:
         self._tell = tell or (lambda _plan, _findings: None)
         self._answered = 0
         self._said = ""
-        words = task(request, requirements) + _recalled(memory or NoMemory(), request, requirements)
+        words = task(request, requirements) + _dialect(request) + _recalled(memory or NoMemory(), request, requirements)
         self._opening = (system(instructions or _instructions()), user(words, *pictures_of(request)))
 
     def first(self) -> AssemblyPlan:
@@ -174,7 +182,13 @@ def task(request: RunRequest, requirements: Requirements) -> str:
     """Return a request and its analysis in words."""
     analysis = json.dumps({name: value for name, value in requirements.to_json().items() if name != "schema"}, indent=1, ensure_ascii=False)
     words = request.prompt.strip() or "(no words; see the pictures)"
-    return f"The customer's request:\n\n{words}\n\nIts analysis:\n\n```json\n{analysis}\n```"
+    return f"The customer's request:\n\n{words}\n\n{ANALYSIS}\n\n```json\n{analysis}\n```"
+
+
+def _dialect(request: RunRequest) -> str:
+    """Return in what language the parts will be written, and what it lacks."""
+    told = _DIALECTS.get(str(request.options.get("kernel")))
+    return "" if told is None else f"\n\n{told}"
 
 
 def _recalled(memory: Memory, request: RunRequest, requirements: Requirements) -> str:

@@ -113,7 +113,7 @@ def edit(
         edited.save_base(base.stored)
         note(edited, kernel)
         known, told = KeptMemory(edited, memory), KeptDocumentation(edited, documentation)
-        shop = Workshop(edited, Recorded(llm or _Nobody(), edited), kernel, cache or BuildCache(), jobs, progress, known, told)
+        shop = Workshop(edited, Recorded(llm or Nobody(), edited), kernel, cache or BuildCache(), jobs, progress, known, told)
         EditLine(shop, _nothing_to_choose, known).work()
     return edited
 
@@ -305,7 +305,7 @@ class Editor:
             yield Finding(code="E_EDIT_REACH", where=f"parts.{name}", parts=(name,), message=message, hint=hint)
 
 
-class _Nobody:
+class Nobody:
     """Who answers where no model was named."""
 
     def complete(self, request: Request) -> Reply:

@@ -11,9 +11,8 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Final
 
-import numpy as np
-
 from articad.agents.numbers import placed, short
+from articad.agents.travel import reached, travels
 from articad.assembly import Assembly, FloatArray, Poses
 from articad.findings import Finding, Findings
 from articad.interference.check import check_scene
@@ -25,7 +24,6 @@ from articad.interference.scene import Scene
 from articad.kinematics.joints import Joint, JointType
 from articad.render.pictures import motion_frames
 
-FOLLOWED: Final = 61  # poses at which it is seen how far joints of a linkage go
 POSES: Final = 9  # of each joint's range: enough for a flap that digs in, quick enough for every round
 
 
@@ -80,7 +78,7 @@ def examine(assembly: Assembly, known: Known | None = None) -> Evidence:
     checks = assembly.check() if known is None else check_scene(scene, assembly.at(), ground=assembly.ground, known=known.rest)
     fits = None
     if checks.ok:  # what overlaps at rest overlaps in motion too: one thing at a time
-        fits = check_fits(scene, _reached(assembly))
+        fits = check_fits(scene, reached(assembly))
         for joint in dict.fromkeys(driver.joint for driver in assembly.drivers):
             checks = _with_motion(checks, assembly, joint, scene, {} if known is None else known.motion.get(joint, {}))
         checks = replace(checks, findings=checks.findings + fits.findings)
@@ -98,8 +96,11 @@ def told(assembly: Assembly, evidence: Evidence) -> str:
     lines += ["- Two joints were not moved together."] if len(assembly.drivers) > 1 else []
     whole = assembly.mass()
     lines += ["", f"Mass {short(whole.mass)} kg; centre of mass at rest {placed(whole.com)} mm."]
-    lines += ["", f"Mobility: {mechanism.mobility} freedoms. What drives, and its range:"]
-    lines += [f"- {driver.name}: {_range(driver.lower, driver.upper, driver.unit)}" for driver in assembly.drivers]
+    lines += [
+        "",
+        f"Mobility: {mechanism.mobility} freedoms. How far each joint goes, with one driver moved at a time (an endless one by a turn):",
+    ]
+    lines += travels(assembly)
     lines += ["", "Bounding boxes at rest, in the assembly's frame (mm):"]
     lines += [f"- {name}: from {placed(low)} to {placed(high)}" for name, (low, high) in evidence.sizes.items()]
     if evidence.fits is not None and evidence.fits.rows:
@@ -115,18 +116,6 @@ def told(assembly: Assembly, evidence: Evidence) -> str:
             )
             lines.append(f"- {row.joint}: {declared}{gaps}: {row.verdict}")
     return "\n".join(lines)
-
-
-def _reached(assembly: Assembly) -> dict[str, tuple[float, float]]:
-    """Return how far each coordinate of a linkage goes while its drivers move, one joint at a time [rad, mm]; of a tree nothing."""
-    mechanism = assembly.mechanism
-    if mechanism.is_tree:
-        return {}
-    driving = dict.fromkeys(driver.joint for driver in assembly.drivers)
-    rows = np.concatenate([mechanism.configuration(motion_frames(assembly, joint, FOLLOWED)[1]).columns for joint in driving])
-    return {
-        c.name: (float(low), float(high)) for c, low, high in zip(mechanism.coordinates, rows.min(axis=0), rows.max(axis=0), strict=True)
-    }
 
 
 def _with_motion(checks: Checks, assembly: Assembly, joint: str, scene: Scene, carried: Mapping[tuple[str, str], PairCheck]) -> Checks:
@@ -204,15 +193,3 @@ def _sizes(assembly: Assembly) -> dict[str, tuple[FloatArray, FloatArray]]:
     rest = assembly.at()
     placed = {name: rest[name].apply(mesh.vertices) for name, part in assembly.parts.items() if (mesh := part.mesh) is not None}
     return {name: (points.min(axis=0), points.max(axis=0)) for name, points in placed.items()}
-
-
-def _range(lower: float, upper: float, unit: str) -> str:
-    if math.isinf(lower) and math.isinf(upper):
-        return "endless"
-    return f"{_bound(lower, unit)} to {_bound(upper, unit)}"
-
-
-def _bound(value: float, unit: str) -> str:
-    if math.isinf(value):
-        return "no end"
-    return f"{short(math.degrees(value))} degrees" if unit == "rad" else f"{short(value)} {unit}"

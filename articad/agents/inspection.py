@@ -14,6 +14,7 @@ from typing import Any, Final, Literal, Self
 
 from pydantic import model_validator
 
+from articad.agents.design import ANALYSIS
 from articad.agents.evidence import Evidence, told
 from articad.agents.forms import Form, ask, reader, schema_of
 from articad.agents.llm import LLM, Image, system, user
@@ -21,7 +22,7 @@ from articad.agents.numbers import short
 from articad.agents.pictures import assembly_picture, motion_picture, part_picture
 from articad.agents.prompts import prompt
 from articad.agents.replies import unusable
-from articad.agents.requirements import Requirements
+from articad.agents.requirements import Requirements, pictures_of
 from articad.assembly import Assembly
 from articad.findings import Finding, Findings
 from articad.kernels.parts import RealisedPart
@@ -40,11 +41,12 @@ _CODES: Final = {aspect: f"E_VERDICT_{aspect.upper()}" for aspect in _ASPECTS}
 
 
 class Compared(Form):
-    """What was seen of one aspect of a part, and what the specification says of it."""
+    """What was seen of one aspect of a part, and what the specification says of it; what no picture shows is neither right nor wrong."""
 
     aspect: Literal["shape", "proportion", "orientation"]
     agrees: bool
     seen: str
+    not_visible: str = ""
     specified: str
     fault: Literal["none", "script", "specification"]
     remedy: str
@@ -77,7 +79,7 @@ def look(specification: str, name: str, realised: RealisedPart, llm: LLM, *, ste
         pictures: The user's own of this part.
 
     Returns:
-        A warning for each aspect that does not agree, its route the model's opinion of whose fault it is.
+        A warning for each aspect that does not agree, its route the model's opinion of whose fault it is; a note for what could not be seen.
 
     Raises:
         OutputError: If no reply has the form.
@@ -87,7 +89,7 @@ def look(specification: str, name: str, realised: RealisedPart, llm: LLM, *, ste
     drawn = part_picture(realised.part, realised.digests["build"])
     opening = (system(prompt("look")), user(words, *pictures, drawn))
     seen = ask(llm, "look", step, opening, reader(Look), schema=schema_of(Look))
-    return Findings(
+    complaints = [
         Finding(
             code=f"W_LOOK_{one.aspect.upper()}",
             where=f"parts.{name}",
@@ -98,7 +100,19 @@ def look(specification: str, name: str, realised: RealisedPart, llm: LLM, *, ste
         )
         for one in seen.findings
         if not one.agrees
-    )
+    ]
+    unseen = [
+        Finding(
+            code="I_LOOK_UNSEEN",
+            where=f"parts.{name}",
+            parts=(name,),
+            message=f"No picture shows: {one.not_visible.strip().rstrip('.')}.",
+            hint="It was not judged.",
+        )
+        for one in seen.findings
+        if one.not_visible.strip()
+    ]
+    return Findings([*complaints, *unseen])
 
 
 # ---------------------------------------------------------------------- the assembly
@@ -214,7 +228,7 @@ def inspect(assembly: Assembly, evidence: Evidence, request: RunRequest, require
         OutputError: If no reply has the form.
     """
     product = f"{asked_for(request, requirements)}\n\n{structure(assembly)}{_assumed(assembly)}"
-    observations = _observed(assembly, product, llm, number)
+    observations = _observed(assembly, [product, *wanted(request)], llm, number)
     seen = json.dumps(observations.model_dump(mode="json"), indent=1, ensure_ascii=False)
     words = f"{product}\n\nMeasured:\n\n{told(assembly, evidence)}\n\nThe observer saw:\n\n```json\n{seen}\n```"
     judgement = ask(
@@ -235,9 +249,9 @@ def verdict_of(evidence: Evidence, number: int) -> Verdict:
     return Verdict(Findings(evidence.findings.errors), "geometry", number)
 
 
-def _observed(assembly: Assembly, product: str, llm: LLM, number: int) -> Observations:
+def _observed(assembly: Assembly, product: Sequence[str | Image], llm: LLM, number: int) -> Observations:
     joints = list(dict.fromkeys(driver.joint for driver in assembly.drivers))[:MOTIONS]
-    parts: list[str | Image] = [product, "The assembly at rest, from four sides:", assembly_picture(assembly)]
+    parts: list[str | Image] = [*product, "The assembly at rest, from four sides:", assembly_picture(assembly)]
     for joint in joints:
         parts += [f"Keyframes of joint {joint}:", motion_picture(assembly, joint)]
 
@@ -284,11 +298,17 @@ def _weighed(problems: Iterable[Problem], evidence: Evidence) -> Iterable[Findin
         )
 
 
+def wanted(request: RunRequest) -> tuple[str | Image, ...]:
+    """Return the customer's own pictures of the whole, with a word that says so; without any, nothing."""
+    pictures = pictures_of(request)
+    return ("The customer's own pictures of what is wanted, not of what was built:", *pictures) if pictures else ()
+
+
 def asked_for(request: RunRequest, requirements: Requirements) -> str:
     """Return a request and its analysis in words."""
     analysis = json.dumps({name: value for name, value in requirements.to_json().items() if name != "schema"}, indent=1, ensure_ascii=False)
     words = request.prompt.strip() or "(no words; there were pictures)"
-    return f"The customer's request:\n\n{words}\n\nIts analysis:\n\n```json\n{analysis}\n```"
+    return f"The customer's request:\n\n{words}\n\n{ANALYSIS}\n\n```json\n{analysis}\n```"
 
 
 def structure(assembly: Assembly) -> str:

@@ -26,13 +26,13 @@ if TYPE_CHECKING:
     from PIL.Image import Image as Picture
 
 VIEWS: Final = ("iso", "front", "right", "top")
-PART_VIEWS: Final = (*VIEWS, "iso_back", "iso_below")  # hollows, bores and lugs may be on any side
+PART_VIEWS: Final = (*VIEWS, "iso_back_left", "iso_below_left")  # hollows, bores and lugs may be on any side
 SIZE: Final = 320  # pixels of each view: a feature of a hundredth of the part is still seen
 ASSEMBLY_SIZE: Final = 448  # pixels of each view of the whole: its parts' names must be legible
 KEYFRAMES: Final = 6  # of each coordinate of a joint
 _COLOR = "#c8a46e"
 _MESH = "part.npz"
-_RECIPE = "articad.picture/3"  # of `articad.render`, which is loaded only where something is drawn; a test compares the two
+_RECIPE = "articad.picture/4"  # of `articad.render`, which is loaded only where something is drawn; a test compares the two
 _drawing = threading.Lock()  # pictures for several parts at once would only take each other's processor
 
 
@@ -78,7 +78,7 @@ def assembly_picture(assembly: Assembly) -> Image:
     """Draw an assembly at rest from four sides, with the names of its parts and the axes of its joints."""
 
     def draw() -> list[Picture]:
-        return list(assembly.render(VIEWS, size=ASSEMBLY_SIZE).values())
+        return list(assembly.render(VIEWS, size=ASSEMBLY_SIZE, labels="aside").values())  # names on the parts would hide what they name
 
     return _sheet(draw, 2, {"of": "assembly", "assembly": assembly_mark(assembly), "views": list(VIEWS), "size": ASSEMBLY_SIZE})
 
@@ -112,7 +112,12 @@ def offence_picture(assembly: Assembly, finding: Finding) -> Image | None:
 def assembly_mark(assembly: Assembly) -> str:
     """Return the digest of a plan and all that was built of it."""
     builds = {name: dict(realised.digests) or realised.derived_from for name, realised in assembly.realised.items()}
-    return digest({"plan": None if assembly.plan is None else assembly.plan.dumps(), "parts": builds})
+    if assembly.plan is not None:
+        return digest({"plan": assembly.plan.dumps(), "parts": builds})
+    # Read from a file: known by its shapes, where they are at rest, and its joints.
+    shapes = {name: [shape.digest for shape in part.visuals or part.collisions] for name, part in assembly.parts.items()}
+    rest = assembly.poses(assembly.mechanism.rest).data.round(6).tolist()
+    return digest({"shapes": shapes, "rest": rest, "joints": [f"{joint.name} {joint.type} {joint.limits}" for joint in assembly.joints]})
 
 
 def configuration_at(assembly: Assembly, pose: Mapping[str, float]) -> FloatArray:

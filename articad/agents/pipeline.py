@@ -16,7 +16,7 @@ from typing import Any, Final, Literal
 from articad.agents.brainstorm import Alternative, Choose
 from articad.agents.design import TRIES
 from articad.agents.drift import drift, note
-from articad.agents.edit import EditLine
+from articad.agents.edit import EditLine, Nobody
 from articad.agents.generation import REPAIRS
 from articad.agents.late import LateLine
 from articad.agents.line import FORMATS, ROUNDS, Chooser, Line
@@ -25,7 +25,7 @@ from articad.agents.recollection import KeptDocumentation, KeptMemory
 from articad.agents.retrieval import Documentation, Memory
 from articad.agents.single import SingleLine
 from articad.agents.workshop import Progress, Workshop
-from articad.errors import AgentError
+from articad.errors import AgentError, RunError
 from articad.findings import Findings
 from articad.kernels.kernel import BuildCache, PartKernel
 from articad.record import kernel_named
@@ -104,19 +104,113 @@ def generate(
     pictures += [UserImage.read(image, part) for part, image in sorted((part_images or {}).items())]
     kernel = kernel or kernel_named("build123d", sandbox=sandbox)
     rolls_back = variant not in {"no-rollback", "single-loop"}
-    memory = None if variant in {"no-memory", "single-loop"} else memory
-    documentation = None if variant == "single-loop" else documentation
     options: dict[str, Any] = {"task": "generate", "designs": designs, "repairs": repairs, "rounds": rounds, "formats": list(formats)}
     options |= {"kernel": kernel.name, "variant": variant, "look": look and rolls_back, "inspection": inspection and rolls_back}
     options |= {"ideas": "always" if pick is not None else ideas, "pick": pick, "finetune": True}
     options |= {} if review == "none" else {"review": review}  # not asked for, it is not mentioned: older recordings stay what they are
     request = RunRequest(prompt=prompt, images=tuple(pictures), options=options)
     with open_or_create(request, out) as run:
-        note(run, kernel)
-        known, told = KeptMemory(run, memory), KeptDocumentation(run, documentation)
-        shop = Workshop(run, Recorded(llm, run), kernel, cache or BuildCache(), jobs, progress, known, told)
-        _line(shop, partial(_chosen_by_user, pick, choose), known).work()
+        taught = _taught(run, variant, memory, documentation)
+        _work(run, llm, kernel, cache, partial(_chosen_by_user, pick, choose), taught, jobs, progress)
     return run
+
+
+def resume(
+    path: str | Path,
+    *,
+    llm: LLM | None = None,
+    sandbox: Literal["strict", "weak"] = "strict",
+    kernel: PartKernel | None = None,
+    cache: BuildCache | None = None,
+    choose: Choose | None = None,
+    memory: Memory | None = None,
+    documentation: Documentation | None = None,
+    jobs: int | None = None,
+    progress: Progress | None = None,
+) -> Run:
+    """Go on with a run of `generate` or `edit` where it was interrupted; no call is repeated, no part built twice.
+
+    What was asked for, and how, stands in the run; who answers and what may be spent is said anew.
+
+    Args:
+        path: The run directory.
+        llm: As for `generate`; not needed where all answers are there.
+        sandbox: As for `generate`.
+        kernel: As for `generate`; the one that the run asked for by default.
+        cache: As for `generate`.
+        choose: As for `generate`.
+        memory: As for `generate`.
+        documentation: As for `generate`.
+        jobs: As for `generate`.
+        progress: As for `generate`.
+
+    Returns:
+        The run, closed; a finished one as it was.
+
+    Raises:
+        RunError: If there is no run of a model's, its request lacks options, or another process works in it.
+        PlanError, ContractError, AgentError: As `generate`.
+    """
+    with Run.open(path) as run:
+        options = _options_of(run)
+        kernel = kernel or kernel_named(options["kernel"], sandbox=sandbox)
+        chooser = partial(_chosen_by_user, options.get("pick"), choose)
+        _work(run, llm or Nobody(), kernel, cache, chooser, _taught(run, options["variant"], memory, documentation), jobs, progress)
+    return run
+
+
+_NEEDED: Final[Mapping[str, type | tuple[type, ...]]] = {
+    "designs": int,
+    "repairs": int,
+    "rounds": int,
+    "formats": (list, tuple),
+}
+_UNSAID: Final[Mapping[str, str]] = {"kernel": "build123d", "variant": "full"}  # of runs that were begun when there was no other
+
+
+def _options_of(run: Run) -> Mapping[str, Any]:
+    """Return the options of a model's run, which somebody else may have written.
+
+    Raises:
+        RunError: Naming what is missing.
+    """
+    options = {**_UNSAID, **run.request.options}
+    wrong = [key for key, kind in {**_NEEDED, **dict.fromkeys(_UNSAID, str)}.items() if not isinstance(options.get(key), kind)]
+    if options.get("task") not in {"generate", "edit"}:
+        raise RunError.told(run.path, "No model was asked for it: it was built.", "Repeat `articad build` with the same --out.")
+    if wrong:
+        raise RunError.told(run.path, f"Its request lacks options: {', '.join(wrong)}.", "Repeat the command that began it.")
+    return options
+
+
+_Taught = tuple[KeptMemory, KeptDocumentation]
+
+
+def recalls(variant: str) -> bool:
+    """Return whether runs of a variant are told of earlier ones, and remembered."""
+    return variant not in {"no-memory", "single-loop"}
+
+
+def _taught(run: Run, variant: str, memory: Memory | None, documentation: Documentation | None) -> _Taught:
+    """Return what a run of a variant may look up."""
+    memory = memory if recalls(variant) else None
+    return KeptMemory(run, memory), KeptDocumentation(run, None if variant == "single-loop" else documentation)
+
+
+def _work(
+    run: Run,
+    llm: LLM,
+    kernel: PartKernel,
+    cache: BuildCache | None,
+    chooser: Chooser,
+    taught: _Taught,
+    jobs: int | None,
+    progress: Progress | None,
+) -> None:
+    """Do what a run's request asks for."""
+    note(run, kernel)
+    shop = Workshop(run, Recorded(llm, run), kernel, cache or BuildCache(), jobs, progress, *taught)
+    _line(shop, chooser, taught[0]).work()
 
 
 def _line(shop: Workshop, chooser: Chooser, memory: Memory | None) -> Line:
@@ -195,15 +289,14 @@ def replay(
         ArticadError: As `generate`.
     """
     source = Run.view(recording)
+    options = _options_of(source)
     answers = Replay(source, strict=strict)
     with Run.create(source.request, out=out, version=source.version) as run:
         if (base := source.base()) is not None:
             run.save_base(base)
-        kernel = kernel or kernel_named(str(source.request.options.get("kernel", "build123d")), sandbox=sandbox)
-        note(run, kernel)
-        known, told = KeptMemory(run, recorded=source), KeptDocumentation(run, recorded=source)
-        shop = Workshop(run, Recorded(answers, run), kernel, cache or BuildCache(), jobs, progress, known, told)
-        _line(shop, partial(_chosen_before, source), known).work()
+        kernel = kernel or kernel_named(options["kernel"], sandbox=sandbox)
+        taught = KeptMemory(run, recorded=source), KeptDocumentation(run, recorded=source)
+        _work(run, answers, kernel, cache, partial(_chosen_before, source), taught, jobs, progress)
         for finding in answers.findings:
             run.trace_finding(finding)
     different = tuple(differences(source, run))

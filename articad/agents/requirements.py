@@ -36,7 +36,7 @@ class Motion(Form):
 
     component: str
     relative_to: str
-    kind: Literal["turns", "slides", "turns and slides", "swivels", "screws"]
+    kind: Literal["turns", "slides", "turns and slides", "swivels", "screws", "slides in a plane", "tilts"]
     axis: str
     range: str
 

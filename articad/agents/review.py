@@ -13,7 +13,7 @@ from pydantic import Field
 
 from articad.agents.evidence import Evidence, told
 from articad.agents.forms import Form, ask, reader, schema_of
-from articad.agents.inspection import MOTIONS, asked_for, structure
+from articad.agents.inspection import MOTIONS, asked_for, structure, wanted
 from articad.agents.llm import LLM, Image, system, user
 from articad.agents.pictures import assembly_picture, motion_picture, part_picture
 from articad.agents.prompts import prompt
@@ -115,10 +115,10 @@ def _share(count: int, total: int) -> float:
 def _opinion(
     run: Run, assembly: Assembly, evidence: Evidence, request: RunRequest, requirements: Requirements | None, llm: LLM
 ) -> Opinion | None:
-    wanted = asked_for(request, requirements) if requirements is not None else f"The customer's request:\n\n{request.prompt}"
+    asked = asked_for(request, requirements) if requirements is not None else f"The customer's request:\n\n{request.prompt}"
     way = json.dumps(trajectory(run))
-    words = f"{wanted}\n\n{structure(assembly)}\n\nMeasured:\n\n{told(assembly, evidence)}\n\nHow it was made: {way}"
-    shown: list[str | Image] = [words, "The assembly at rest, from four sides:", assembly_picture(assembly)]
+    words = f"{asked}\n\n{structure(assembly)}\n\nMeasured:\n\n{told(assembly, evidence)}\n\nHow it was made: {way}"
+    shown: list[str | Image] = [words, *wanted(request), "The assembly at rest, from four sides:", assembly_picture(assembly)]
     for name, realised in list(assembly.realised.items())[:PARTS]:
         if realised.derived_from is None:
             shown += [f"Part {name}:", part_picture(realised.part, realised.digests["build"])]

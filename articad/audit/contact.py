@@ -12,13 +12,14 @@ import numpy as np
 
 from articad.assembly import Assembly
 from articad.audit.contact_case import Case, Contacts, explained, shared_note
-from articad.audit.contact_motion import prove_motion, sample_motion
+from articad.audit.contact_motion import Clock, prove_motion, sample_motion
 from articad.audit.declared import Declared
+from articad.audit.wording import counted
 from articad.connectors.se3 import SE3
 from articad.findings import Finding, Findings
 from articad.geometry.mesh import TriMesh, merged
 from articad.geometry.part import Part
-from articad.interference.body import body_of, relative
+from articad.interference.body import body_of
 from articad.interference.check import check_scene
 from articad.interference.holding import Holding
 from articad.interference.overlap import measured
@@ -30,6 +31,8 @@ from articad.kinematics.joints import JointType
 
 FOREIGN = ("urdf", "mjcf")  # formats whose shapes stand for bodies without being them
 FOREIGN_GAP_MM = 1.0  # by which shapes of foreign files may miss each other where they are fixed: they are drawn, not made
+MOST_BODIES = 1000  # parts with shapes whose pairs are looked at
+REST_S = 30.0  # of the processor, for overlap at rest of what simulators are given: robots take a second
 MOST_UNION = 24  # shapes of one link that are united; more are taken as they are
 ROUND = ("sphere", "capsule")
 SIMPLE = ("box", "cylinder", "sphere", "capsule", "geom")
@@ -56,11 +59,13 @@ def contacts(
     """
     foreign = declared.format in FOREIGN and all(part.solid is None for part in assembly.parts.values())  # ours come back whole
     meshes = {name: mesh for name, part in assembly.parts.items() if (mesh := colliding(part)) is not None}
+    if len(meshes) > MOST_BODIES:
+        return Contacts(Checks(Findings(), (), 0.0, "rest", ()), findings=[_too_many(len(meshes))], strength="none")
     deflections = {name: part.deflection for name, part in assembly.parts.items()}
     scene = Scene.of(meshes, assembly.joints, waivers=assembly.waivers, deflection=deflections, fits=assembly.fits)
     case = Case(assembly, foreign, simple | _simple_parts(declared), filtered, scene, _neighbours(assembly, meshes))
     poses = dict(zip(assembly.mechanism.parts, assembly.poses(assembly.mechanism.rest), strict=True))
-    found = Contacts(pairs=_at_rest(case, poses))
+    found = Contacts(pairs=_at_rest(case, poses, Clock(REST_S)))
     found.findings += explained(case, found.pairs.findings)
     found.findings += _held(case, declared, poses, found.pairs)
     found.undone += [f"overlap with {name}: {reason}" for name, reason in scene.broken.items()]
@@ -127,17 +132,45 @@ def _neighbours(assembly: Assembly, meshes: Mapping[str, TriMesh]) -> frozenset[
 # ---------------------------------------------------------------------- at rest
 
 
-def _at_rest(case: Case, poses: Mapping[str, SE3]) -> Checks:
+def _at_rest(case: Case, poses: Mapping[str, SE3], clock: Clock) -> Checks:
     """Check the rest pose. In simulators' formats holding is judged by what is drawn, elsewhere: see `_held`."""
     if not case.foreign:
         return check_scene(case.scene, poses, ground=case.assembly.ground)
     scene, findings, pairs = case.scene, list[Finding](), list[PairCheck]()
-    for a, b in scene.candidates(poses):
+    placed = scene.at(poses)
+    near = placed.candidates()
+    for at, (a, b) in enumerate(near):
+        if clock.left <= 0:
+            findings.append(_unfinished(near[at:], len(near)))
+            break
         if a not in scene.broken and b not in scene.broken:
-            check, found = judge(scene, (a, b), measured(scene.bodies[a], scene.bodies[b], relative(poses[a], poses[b])))
+            check, found = judge(scene, (a, b), measured(scene.bodies[a], scene.bodies[b], placed.relative(a, b)))
             pairs.append(check)
             findings += found
     return Checks(Findings(findings), tuple(pairs), scene.deflection, "rest", tuple(scene.bodies))
+
+
+def _too_many(count: int) -> Finding:
+    return Finding(
+        code="W_AUDIT_NOT_CHECKED",
+        where="parts",
+        message=f"Contact and motion were not looked at: {count} parts have shapes; {MOST_BODIES} are the most.",
+        hint="Audit the file in pieces.",
+        value=count,
+        limit=MOST_BODIES,
+    )
+
+
+def _unfinished(left: list[tuple[str, str]], count: int) -> Finding:
+    return Finding(
+        code="W_AUDIT_NOT_CHECKED",
+        where=f"parts.{left[0][0]}",
+        message=f"Overlap at rest of {len(left)} of {counted(count, 'pair')} of parts that are near each other was not looked at, "
+        f"for {REST_S:g} s were spent.",
+        hint="Spread the parts: so many of them are hardly meant to stand in one place.",
+        value=len(left),
+        limit=0,
+    )
 
 
 def _held(case: Case, declared: Declared, poses: Mapping[str, SE3], rest: Checks) -> list[Finding]:
@@ -157,5 +190,5 @@ def _held(case: Case, declared: Declared, poses: Mapping[str, SE3], rest: Checks
         return []
     scene = Scene.of(meshes, assembly.joints, deflection=FOREIGN_GAP_MM / 2)
     pairs = {pair.parts: pair for pair in rest.pairs if set(pair.parts) <= set(meshes)}
-    holding = Holding(scene, {name: poses[name] for name in assembly.parts}, pairs)
+    holding = Holding(scene.at(poses), pairs)
     return [*holding.fixed_apart(), *holding.floating(assembly.ground, [name for name in assembly.parts if name not in meshes])]

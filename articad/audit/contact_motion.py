@@ -54,7 +54,7 @@ class _Together(Groups):
         return self._rigid.together(a, b) or self._case.by_design((a, b))
 
 
-class _Clock:
+class Clock:
     """Time for the motion, of the processor, so that a busy machine looks at as much; within reason of the wall's.
 
     Args:
@@ -72,7 +72,7 @@ class _Clock:
 
 def sample_motion(case: Case, found: Contacts, budget: float) -> None:
     """Move each joint over its range, then two at a time, until the time is spent."""
-    clock = _Clock(budget)
+    clock = Clock(budget)
     sweep = Sweep(replace(case.scene, relations=_Quiet(case)), case.assembly.mechanism)
     ranges = [freedom for joint in sweep.driving for freedom in freedoms(joint)]
     guilty = {frozenset(finding.parts) for finding in found.findings}
@@ -111,7 +111,7 @@ def _is_news(finding: Finding, resting: Mapping[frozenset[str], float], guilty: 
 
 
 def _collisions(
-    case: Case, sweep: Sweep, freedom: Freedom, findings: list[Finding], resting: Mapping[frozenset[str], float], clock: _Clock
+    case: Case, sweep: Sweep, freedom: Freedom, findings: list[Finding], resting: Mapping[frozenset[str], float], clock: Clock
 ) -> list[Finding]:
     """Say where each collision begins. In simulators' formats the first one of each joint stands for the others."""
     met = [
@@ -129,7 +129,7 @@ def _collisions(
     ]
 
 
-def _pairs(case: Case, found: Contacts, sweep: Sweep, ranges: list[Freedom], guilty: set[frozenset[str]], clock: _Clock) -> int:
+def _pairs(case: Case, found: Contacts, sweep: Sweep, ranges: list[Freedom], guilty: set[frozenset[str]], clock: Clock) -> int:
     """Move two joints at a time on a grid; return how many pairs there was no time for."""
     undone, together = 0, list[Finding]()
     for first, second in combinations(ranges, 2):

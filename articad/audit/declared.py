@@ -125,6 +125,8 @@ class Declared:
         joints: In the file's order.
         states_inertia: False where the format leaves masses to others, as CAD does.
         states_collision: False where a part's solid is what collides.
+        states_frames: True where the file itself says where its base stands and where each joint rests, as articad's own records do:
+            then neither a base above the lowest point nor a range without zero is an oversight. False of files that were only converted.
     """
 
     format: str
@@ -133,6 +135,7 @@ class Declared:
     joints: tuple[DeclaredJoint, ...]
     states_inertia: bool = True
     states_collision: bool = True
+    states_frames: bool = False
 
     @cached_property
     def by_name(self) -> dict[str, DeclaredLink]:
@@ -170,30 +173,39 @@ class Declared:
 
     def fixed_poses(self, name: str) -> dict[str, SE3]:
         """Return where the links that are fixed to one stand, as seen from it; itself is one of them."""
-        found = {name: SE3.identity()}
-        fixed = [joint for joint in self.joints if joint.type == "fixed" and joint.frame is not None]
-        for _ in fixed:
-            before = len(found)
-            for joint in fixed:
-                assert joint.frame is not None
-                if joint.parent in found and joint.child in self.by_name and joint.child not in found:
-                    found[joint.child] = found[joint.parent] @ joint.frame
-                elif joint.child in found and joint.parent in self.by_name and joint.parent not in found:
-                    found[joint.parent] = found[joint.child] @ joint.frame.inverse()
-            if len(found) == before:
-                break
-        return found
+        return self._placed(name, self._fixed_ways)
 
     def poses(self) -> dict[str, SE3]:
         """Return where each link stands when every joint is at zero, as seen from the first root; links that cannot be reached are left out."""
-        found = {self.roots[0]: SE3.identity()} if self.roots else {}
-        for _ in self.joints:
-            before = len(found)
-            for joint in self.joints:
-                if joint.parent in found and joint.child not in found and joint.frame is not None:
-                    found[joint.child] = found[joint.parent] @ joint.frame
-            if len(found) == before:
-                break
+        return self._placed(self.roots[0], self._ways) if self.roots else {}
+
+    @cached_property
+    def _ways(self) -> dict[str, list[tuple[str, SE3]]]:
+        """From each link to those that its joints carry, and where these stand."""
+        ways: dict[str, list[tuple[str, SE3]]] = {}
+        for joint in self.joints:
+            if joint.frame is not None:
+                ways.setdefault(joint.parent, []).append((joint.child, joint.frame))
+        return ways
+
+    @cached_property
+    def _fixed_ways(self) -> dict[str, list[tuple[str, SE3]]]:
+        """From each link to those that it is fixed to, both ways, and where these stand."""
+        ways: dict[str, list[tuple[str, SE3]]] = {}
+        for joint in self.joints:
+            if joint.type == "fixed" and joint.frame is not None and {joint.parent, joint.child} <= self.by_name.keys():
+                ways.setdefault(joint.parent, []).append((joint.child, joint.frame))
+                ways.setdefault(joint.child, []).append((joint.parent, joint.frame.inverse()))
+        return ways
+
+    @staticmethod
+    def _placed(start: str, ways: dict[str, list[tuple[str, SE3]]]) -> dict[str, SE3]:
+        found, queue = {start: SE3.identity()}, [start]
+        for near in queue:
+            for far, T_near_far in ways.get(near, ()):
+                if far not in found:
+                    found[far] = found[near] @ T_near_far
+                    queue.append(far)
         return found
 
 

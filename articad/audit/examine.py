@@ -22,7 +22,7 @@ from articad.errors import ArticadError, ReadError
 from articad.findings import Finding, Findings
 from articad.importers.freecad import read_freecad
 from articad.importers.mjcf import read_mjcf
-from articad.importers.reading import Folder, read_xml
+from articad.importers.reading import MAX_LINKS, Folder, read_xml, unreadable
 from articad.importers.urdf import read_urdf
 from articad.interference.certificate import Certificate
 from articad.simulate.loading import ENGINES, Loading, load_in_all
@@ -38,9 +38,6 @@ CHECKS: Final[tuple[Callable[[Declared], Iterator[Finding]], ...]] = (
     *limits.CHECKS,
     *shapes.CHECKS,
 )
-_READER_NOTES: Final = {"W_IMPORT_MESH", "W_IMPORT_LIMITS", "W_IMPORT_DROPPED", "W_IMPORT_STALE"}
-"""What our own readers leave out; where it is a defect of the file, a check says so with its own words."""
-
 _CAD_NAMES: Final = {"freecad", "plan", "run"}  # names of labels are free there
 
 
@@ -141,6 +138,8 @@ def _urdf(path: Path, choices: Choices, found: _Found) -> None:
     document = read_xml(path)
     if document.tag != "robot":
         raise ReadError(f"{path}: The root element is <{document.tag}>, not <robot>.", path=str(path), findings=[_no_robot(path, document)])
+    if (count := max(len(document.findall("link")), len(document.findall("joint")))) > MAX_LINKS:
+        raise unreadable(path, "", f"It has {count} links or joints; {MAX_LINKS} are the most.")
     root = choices.root or package_of(path)
     text = UrdfText(MeshReferences(Folder.of(path, root)))
     found.declared = text.declared(document, path)
@@ -193,6 +192,8 @@ def _read_and_look(found: _Found, read: Callable[[], Assembly], choices: Choices
         if not any(finding.severity == "error" for finding in found.findings):  # else the text has said why
             found.findings += error.findings or [_unreadable(path, error)]
         return
+    assert found.declared is not None
+    found.declared = replace(found.declared, states_frames=not assembly.foreign)
     _look(found, assembly, choices)
 
 

@@ -113,7 +113,7 @@ def endless(declared: Declared) -> Iterator[Finding]:
 
 def zero_outside(declared: Declared) -> Iterator[Finding]:
     """Ranges that do not hold zero, where every reader places the joint at first; those that turn and those that slide together."""
-    if declared.format != "urdf":
+    if declared.format != "urdf" or declared.states_frames:
         return
     for turns in (True, False):
         rows = []
@@ -141,8 +141,8 @@ def no_effort(declared: Declared) -> Iterator[Finding]:
         return
     moving = [joint for joint in declared.joints if joint.type in {"revolute", "continuous", "prismatic"} and joint.mimics is None]
     for what in ("effort", "velocity"):
-        bad = [joint.name for joint in moving if joint.type != "continuous" or getattr(joint, what) is not None]
-        bad = [name for name in bad if (getattr(next(j for j in moving if j.name == name), what) or 0.0) <= 0]
+        told = [joint for joint in moving if joint.type != "continuous" or getattr(joint, what) is not None]
+        bad = [joint.name for joint in told if (getattr(joint, what) or 0.0) <= 0]
         if bad:
             yield Finding(
                 code="W_AUDIT_NO_EFFORT",

@@ -269,7 +269,7 @@ def visual_against_collision(declared: Declared) -> Iterator[Finding]:
 
 def base_below(declared: Declared) -> Iterator[Finding]:
     """A robot that reaches below the origin of its base: placed at z = 0 it stands in the floor."""
-    if declared.format != "urdf" or len(declared.roots) != 1 or len(declared.by_name) < 2:
+    if declared.format != "urdf" or declared.states_frames or len(declared.roots) != 1 or len(declared.by_name) < 2:
         return
     lowest = (0.0, "")
     for name, T in declared.poses().items():

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Iterator
 
 from articad.audit.declared import MOVING, Declared
@@ -10,18 +9,22 @@ from articad.audit.wording import counted, listed
 from articad.errors import did_you_mean
 from articad.findings import Finding
 
+MOST_GUESSES = 20  # of what a wrong name may have meant: each looks at all that there are
+
 
 def repeated_names(declared: Declared) -> Iterator[Finding]:
     """Two links or two joints of one name."""
     for kind, items in (("links", declared.links), ("joints", declared.joints)):
-        for name, count in Counter(item.name for item in items).items():
-            if count > 1:
-                places = [item.where for item in items if item.name == name]
+        places: dict[str, list[str]] = {}
+        for item in items:
+            places.setdefault(item.name, []).append(item.where)
+        for name, found in places.items():
+            if (count := len(found)) > 1:
                 yield Finding(
                     code="E_AUDIT_NAME_TWICE",
                     where=f"{kind}.{name}",
                     parts=(name,),
-                    message=f"{count} {kind} have the name {name!r}: {', '.join(places)}.",
+                    message=f"{count} {kind} have the name {name!r}: {', '.join(found)}.",
                     hint="Rename all but one, and what refers to them.",
                     value=count,
                     limit=1,
@@ -30,14 +33,17 @@ def repeated_names(declared: Declared) -> Iterator[Finding]:
 
 def unknown_links(declared: Declared) -> Iterator[Finding]:
     """A joint that names a link that is not there."""
+    asked = 0
     for joint in declared.joints:
         for side, link in (("parent", joint.parent), ("child", joint.child)):
             if link not in declared.by_name:
+                asked += 1
+                meant = did_you_mean(link, declared.by_name) if asked <= MOST_GUESSES else ""
                 yield Finding(
                     code="E_AUDIT_LINK_UNKNOWN",
                     where=joint.where,
                     parts=(link,),
-                    message=f"The {side} of joint {joint.name!r} is {link!r}, but no link has this name.{did_you_mean(link, declared.by_name)}",
+                    message=f"The {side} of joint {joint.name!r} is {link!r}, but no link has this name.{meant}",
                     hint=f"Name one of the {len(declared.by_name)} links, or declare {link!r}.",
                 )
 
@@ -56,9 +62,11 @@ def unknown_kinds(declared: Declared) -> Iterator[Finding]:
 
 def carried_twice(declared: Declared) -> Iterator[Finding]:
     """A link that two joints carry: a closed loop, which URDF cannot hold."""
-    for link, count in Counter(joint.child for joint in declared.joints).items():
-        if count > 1 and link in declared.by_name:
-            carriers = [joint.name for joint in declared.joints if joint.child == link]
+    carried: dict[str, list[str]] = {}
+    for joint in declared.joints:
+        carried.setdefault(joint.child, []).append(joint.name)
+    for link, carriers in carried.items():
+        if (count := len(carriers)) > 1 and link in declared.by_name:
             yield Finding(
                 code="E_AUDIT_TWO_PARENTS",
                 where=f"links.{link}",
@@ -121,13 +129,16 @@ def circles(declared: Declared) -> Iterator[Finding]:
 def unknown_leaders(declared: Declared) -> Iterator[Finding]:
     """A mimic of a joint that is not there, or does not move."""
     moving = {joint.name for joint in declared.joints if joint.moves}
+    asked = 0
     for joint in declared.joints:
         if joint.mimics is not None and (joint.mimics not in moving or joint.mimics == joint.name):
+            asked += 1
+            meant = did_you_mean(joint.mimics, moving - {joint.name}) if asked <= MOST_GUESSES else ""
             what = "itself" if joint.mimics == joint.name else f"{joint.mimics!r}, which is no joint that moves"
             yield Finding(
                 code="E_AUDIT_MIMIC",
                 where=joint.where,
-                message=f"Joint {joint.name!r} mimics {what}.{did_you_mean(joint.mimics, moving - {joint.name})}",
+                message=f"Joint {joint.name!r} mimics {what}.{meant}",
                 hint="Name a joint that moves, or remove the mimic.",
             )
 

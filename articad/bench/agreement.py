@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from collections.abc import Callable
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -77,14 +78,29 @@ def icc_2k(ratings: ArrayLike) -> float:
     return float((between - rest) / below) if below > 0 else float("nan")
 
 
-def bootstrap_interval(values: ArrayLike, *, confidence: float = 0.95, resamples: int = 10_000, seed: int = 0) -> tuple[float, float]:
-    """Return the percentile interval of a mean; both ends NaN without values, both the mean with one."""
+def bootstrap_interval(
+    values: ArrayLike, statistic: Callable[..., Any] = np.mean, *, confidence: float = 0.95, resamples: int = 10_000, seed: int = 0
+) -> tuple[float, float]:
+    """Return the percentile interval of a mean or median; both ends NaN without values, both the value with one."""
     sample = np.asarray(values, dtype=float)
     sample = sample[~np.isnan(sample)]
     if len(sample) < 2:
         only = float(sample[0]) if len(sample) else float("nan")
         return only, only
     found = stats.bootstrap(
-        (sample,), np.mean, confidence_level=confidence, n_resamples=resamples, method="percentile", rng=np.random.default_rng(seed)
+        (sample,), statistic, confidence_level=confidence, n_resamples=resamples, method="percentile", rng=np.random.default_rng(seed)
     )
     return float(found.confidence_interval.low), float(found.confidence_interval.high)
+
+
+def bootstrap_items(
+    ratings: FloatArray, measure: Callable[[FloatArray], float], *, confidence: float = 0.95, resamples: int = 1000, seed: int = 0
+) -> tuple[float, float]:
+    """Return the percentile interval of a measure of agreement, items drawn with replacement; draws that have no value are left out."""
+    rng, items = np.random.default_rng(seed), ratings.shape[1]
+    draws = [measure(ratings[:, rng.integers(items, size=items)]) for _ in range(resamples)] if items > 1 else []
+    told = np.array([draw for draw in draws if not np.isnan(draw)])
+    if not len(told):
+        return float("nan"), float("nan")
+    low, high = np.quantile(told, [(1 - confidence) / 2, (1 + confidence) / 2])
+    return float(low), float(high)

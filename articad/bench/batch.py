@@ -2,28 +2,20 @@
 
 from __future__ import annotations
 
-import contextlib
 import itertools
 import json
-import os
-import queue
-import subprocess
-import sys
-import threading
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import IO, Any, Final, Self
+from typing import Any
 
 import numpy as np
 from scipy.stats import qmc
 
-from articad.bench.items import Item, Json, make
+from articad.bench import pool
+from articad.bench.items import Item, Json
+from articad.bench.pool import MEMORY_GB, RETRIES, Told
 from articad.errors import ReadError
 from articad.plan.schema import AssemblyPlan
-
-RETRIES: Final = 2  # of an item whose worker died
-MEMORY_GB: Final = 4.0  # of a worker, its kernel's processes apart, which have bounds of their own
-Told = Callable[[Json], object]
 
 
 def read_batch(path: str | Path) -> list[Item]:
@@ -77,41 +69,21 @@ def run_local(
     memory_gb: float = MEMORY_GB,
     told: Told | None = None,
 ) -> list[Json]:
-    """Make items in processes of this machine.
+    """Make items in processes of this machine; see `articad.bench.pool.run_local`.
 
     Args:
         items: What to make.
         out: Folder of the batch.
-        workers: How many at once; as many as there are processors by default.
+        workers: How many at once.
         retries: How often an item is tried again whose worker died.
-        memory_gb: Address space of a worker beyond which its allocations fail.
+        memory_gb: Data of a worker beyond which its allocations fail.
         told: Called with each record, from several threads.
 
     Returns:
         The items' records, in order.
     """
-    todo: queue.SimpleQueue[int] = queue.SimpleQueue()
-    for index in range(len(items)):
-        todo.put(index)
-    records: list[Json] = [{} for _ in items]
-
-    def serve() -> None:
-        with _Worker(Path(out), memory_gb) as worker:
-            while True:
-                try:
-                    index = todo.get_nowait()
-                except queue.Empty:
-                    return
-                records[index] = _tried(worker, items[index], retries)
-                if told is not None:
-                    told(records[index])
-
-    threads = [threading.Thread(target=serve) for _ in range(min(workers or os.cpu_count() or 1, max(len(items), 1)))]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join()
-    return records
+    calls = calls_of(items, out)
+    return _with_items(items, pool.run_local(calls, workers=workers, retries=retries, memory_gb=memory_gb, told=told))
 
 
 def run_dask(
@@ -120,6 +92,7 @@ def run_dask(
     *,
     scheduler: str | None = None,
     retries: int = RETRIES,
+    memory_gb: float = MEMORY_GB,
     told: Told | None = None,
     client: Any = None,
 ) -> list[Json]:
@@ -129,97 +102,28 @@ def run_dask(
         items: What to make.
         out: Folder of the batch.
         scheduler: Its address.
-        retries: How often an item is tried again; items of a worker that died go to another one by themselves.
+        retries: How often an item is tried again; items of a Dask worker that died go to another one by themselves.
+        memory_gb: Data of a worker process beyond which its allocations fail.
         told: Called with each record as it comes.
         client: A client to use instead of a new one.
 
     Raises:
         ReadError: If Dask is not installed.
     """
-    try:
-        from distributed import Client, as_completed  # noqa: PLC0415 - an extra
-    except ImportError as error:
-        raise _refused(Path("batch"), "Dask is not installed: pip install 'articad[batch]'.") from error
-    own = client is None
-    client = client or Client(scheduler)
-    try:
-        futures = [client.submit(_remote, item.to_json(), str(out), key=item.digest, retries=retries, pure=True) for item in items]
-        for done in as_completed(dict.fromkeys(futures)):
-            if told is not None:
-                told(_result(done))
-        return [_result(future) for future in futures]
-    finally:
-        if own:
-            client.close()
+    calls = calls_of(items, out)
+    found = pool.run_dask(calls, scheduler=scheduler, retries=retries, memory_gb=memory_gb, told=told, client=client)
+    return _with_items(items, found)
 
 
-def _remote(stored: Json, out: str) -> Json:
-    return make(Item.from_json(stored), out)
+def calls_of(items: Sequence[Item], out: str | Path) -> list[pool.Call]:
+    """Return what workers are told of items."""
+    rows = [item.to_json() | {"plan": str(Path(item.plan).resolve())} for item in items]
+    return [pool.Call("item", {"item": row, "out": str(Path(out).resolve())}, item.digest) for row, item in zip(rows, items, strict=True)]
 
 
-def _result(future: Any) -> Json:
-    """Return an item's record, or why there is none: a worker that dies again and again, for instance."""
-    error = future.exception()
-    if error is not None:
-        return {"ok": False, "digest": future.key, "made": "never", "error": f"{type(error).__name__}: {error}"}
-    return dict(future.result())
-
-
-class _Worker:
-    """A process that makes one item after another; started when first needed, and again after it died."""
-
-    def __init__(self, out: Path, memory_gb: float) -> None:
-        self._out, self._memory = out, memory_gb
-        self._process: subprocess.Popen[str] | None = None
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self._end()
-
-    def make(self, item: Item) -> Json | None:
-        """Return the item's record; None if the process died over it."""
-        process = self._running()
-        try:
-            _pipe(process.stdin).write(json.dumps(item.to_json()) + "\n")
-            _pipe(process.stdin).flush()
-            answer = _pipe(process.stdout).readline()
-        except OSError:
-            answer = ""
-        if answer:
-            return dict(json.loads(answer))
-        self._end()
-        return None
-
-    def _end(self) -> None:
-        process, self._process = self._process, None
-        if process is None:
-            return
-        for pipe in (process.stdin, process.stdout):
-            with contextlib.suppress(OSError):  # a line that a dead worker never read
-                _pipe(pipe).close()
-        process.wait()
-
-    def _running(self) -> subprocess.Popen[str]:
-        if self._process is None:
-            words = [sys.executable, "-m", "articad.bench.worker", str(self._out), str(self._memory)]
-            self._process = subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)  # noqa: S603 - this very program
-        return self._process
-
-
-def _pipe(stream: IO[str] | None) -> IO[str]:
-    if stream is None:
-        raise OSError("The worker has no pipe.")
-    return stream
-
-
-def _tried(worker: _Worker, item: Item, retries: int) -> Json:
-    for _ in range(1 + retries):
-        record = worker.make(item)
-        if record is not None:
-            return record
-    return {"ok": False, "digest": item.digest, "made": "never", "error": f"Its worker died {1 + retries} times.", **item.to_json()}
+def _with_items(items: Sequence[Item], records: Sequence[Json]) -> list[Json]:
+    """Return records with what each was to be, also where none was made."""
+    return [item.to_json() | record for item, record in zip(items, records, strict=True)]
 
 
 def summary(records: Iterable[Json]) -> Json:

@@ -7,19 +7,22 @@ a part by its size. Each judgement says what was wanted and what was measured.
 from __future__ import annotations
 
 import math
-from abc import abstractmethod
 from collections import Counter
 from collections.abc import Iterator
-from dataclasses import dataclass
+from itertools import combinations
 from typing import Annotated, Any, Final, Literal
 
 import numpy as np
 from pydantic import Field
 
 from articad.assembly import Assembly
+from articad.bench.check import Bounds, Vector, in_words
+from articad.bench.check import Check as Check  # noqa: PLC0414  (others take them from here)
+from articad.bench.check import Judgement as Judgement  # noqa: PLC0414
+from articad.bench.path_checks import PATH, Level, Straight, Turns
+from articad.bench.shape_checks import Holds, Holes, Stands, Studs, Symmetric, Volume, Wall
 from articad.bench.subject import Subject
 from articad.connectors import FloatArray
-from articad.errors import ArticadError
 from articad.interference.captivity import escapes
 from articad.interference.fits import Gauge
 from articad.kinematics.joints import Joint, JointType
@@ -30,53 +33,6 @@ from articad.simulate.examine import simulate_assembly, simulate_file
 AXIS_RAD: Final = math.radians(5)  # by which an axis may lean from the one asked for
 STROKE: Final = 9  # values of a driver at which what follows it is measured
 CLOSED_MM: Final = 1e-6
-
-Bounds = tuple[float, float]
-Vector = tuple[float, float, float]
-
-
-@dataclass(frozen=True)
-class Judgement:
-    """Whether a check holds, and the numbers that say so.
-
-    Attributes:
-        kind: Of the check.
-        ok: Whether it holds.
-        wanted: In words.
-        measured: In words.
-    """
-
-    kind: str
-    ok: bool
-    wanted: str
-    measured: str
-
-    def to_json(self) -> dict[str, Any]:
-        """Return the row of a report."""
-        return {"kind": self.kind, "ok": self.ok, "wanted": self.wanted, "measured": self.measured}
-
-
-class Check(Form):
-    """Base of all checks."""
-
-    kind: str
-
-    def judge(self, subject: Subject) -> Judgement:
-        """Measure and judge; what cannot be measured does not hold."""
-        try:
-            ok, measured = self.measured(subject)
-        except ArticadError as error:
-            ok, measured = False, str(error)
-        return Judgement(self.kind, ok, self.wanted, measured)
-
-    @property
-    @abstractmethod
-    def wanted(self) -> str:
-        """What must hold, in words."""
-
-    @abstractmethod
-    def measured(self, subject: Subject) -> tuple[bool, str]:
-        """Return whether it holds, and the measured numbers in words."""
 
 
 class JointWanted(Form):
@@ -103,7 +59,7 @@ class JointWanted(Form):
     def __str__(self) -> str:
         axis = "" if self.axis is None else f" about or along {_numbers(self.axis)}"
         unit = "mm" if self.type in {JointType.SLIDER, JointType.CYLINDRICAL} else "°"
-        span = "" if self.span is None else ", endless" if self.span == "endless" else f", range {_range(self.span)} {unit}"
+        span = "" if self.span is None else ", endless" if self.span == "endless" else f", range {in_words(self.span)} {unit}"
         return f"{self.type}{axis}{span}"
 
 
@@ -115,7 +71,7 @@ class Parts(Check):
 
     @property
     def wanted(self) -> str:
-        return f"{_range(self.number)} parts"
+        return f"{in_words(self.number)} parts"
 
     def measured(self, subject: Subject) -> tuple[bool, str]:
         count = len(subject.shaped)
@@ -146,7 +102,7 @@ class Joints(Check):
 
     @property
     def wanted(self) -> str:
-        return f"{_range(self.number)} joints: {self.joint}"
+        return f"{in_words(self.number)} joints: {self.joint}"
 
     def measured(self, subject: Subject) -> tuple[bool, str]:
         found = self.joint.found(subject)
@@ -172,7 +128,7 @@ class Size(Check):
 
 
 class PartSize(Check):
-    """So many parts with these sides, in any order; None where any side will do (it counts as the largest)."""
+    """So many parts with these sides, in any order; None where any side will do."""
 
     kind: Literal["part_size"] = "part_size"
     mm: tuple[float | None, float | None, float | None]
@@ -182,7 +138,7 @@ class PartSize(Check):
     @property
     def wanted(self) -> str:
         sides = " x ".join("any" if side is None else f"{side:g}" for side in self.mm)
-        return f"{_range(self.number)} parts of {sides} mm within {100 * self.tolerance:g} %"
+        return f"{in_words(self.number)} parts of {sides} mm within {100 * self.tolerance:g} %"
 
     def measured(self, subject: Subject) -> tuple[bool, str]:
         sides = sorted(side for side in self.mm if side is not None)
@@ -191,13 +147,11 @@ class PartSize(Check):
         return self.number[0] <= len(found) <= self.number[1], f"{len(found)} ({sizes})"
 
     def _fits(self, sides: list[float], extents: FloatArray) -> bool:
-        left = list(extents)
-        for side in sides:
-            near = min(left, key=lambda extent: abs(extent - side))
-            if abs(near - side) > self.tolerance * side:
-                return False
-            left.remove(near)
-        return True
+        """Return whether some of the extents are these sides; both ascend, so that each is compared with its own."""
+        return any(
+            all(abs(extent - side) <= self.tolerance * side for side, extent in zip(sides, chosen, strict=True))
+            for chosen in combinations(extents.tolist(), len(sides))
+        )
 
 
 class Mass(Check):
@@ -208,7 +162,7 @@ class Mass(Check):
 
     @property
     def wanted(self) -> str:
-        return f"{_range(self.kg)} kg"
+        return f"{in_words(self.kg)} kg"
 
     def measured(self, subject: Subject) -> tuple[bool, str]:
         mass = subject.assembly.mass().mass
@@ -301,7 +255,7 @@ class Loops(Check):
 
     @property
     def wanted(self) -> str:
-        return f"{_range(self.number)} closed loops"
+        return f"{in_words(self.number)} closed loops"
 
     def measured(self, subject: Subject) -> tuple[bool, str]:
         mechanism = subject.assembly.mechanism
@@ -345,7 +299,7 @@ class Rise(Check):
 
     @property
     def wanted(self) -> str:
-        return f"the end along {self.axis} moves by {_range(self.mm)} mm"
+        return f"the end along {self.axis} moves by {in_words(self.mm)} mm"
 
     def measured(self, subject: Subject) -> tuple[bool, str]:
         column = "xyz".index(self.axis)
@@ -354,6 +308,24 @@ class Rise(Check):
             ends = [subject.corners(poses)[:, column] for poses in _stroke_poses(subject, driver.name)]
             best = max(best, float(np.ptp([end[1] for end in ends])), float(np.ptp([end[0] for end in ends]))) if ends else best
         return self.mm[0] <= best <= self.mm[1], f"{best:.4g} mm"
+
+
+class Travel(Check):
+    """So many joints really move by so much while the drivers go over their ranges, one by one [deg or mm]; an endless driver, one turn."""
+
+    kind: Literal["travel"] = "travel"
+    joint: JointWanted
+    by: Bounds
+    number: Bounds = (1, 999)
+
+    @property
+    def wanted(self) -> str:
+        return f"{in_words(self.number)} joints ({self.joint}) that move by {in_words(self.by)} in all"
+
+    def measured(self, subject: Subject) -> tuple[bool, str]:
+        moved = [_travel(subject, joint) for joint in self.joint.found(subject)]
+        count = sum(self.by[0] <= travel <= self.by[1] for travel in moved)
+        return self.number[0] <= count <= self.number[1], f"{count} ({', '.join(f'{travel:.4g}' for travel in moved) or 'no such joint'})"
 
 
 class Gap(Check):
@@ -367,7 +339,7 @@ class Gap(Check):
 
     @property
     def wanted(self) -> str:
-        return f"{_range(self.number)} joints ({self.joint}) with a gap of {_range(self.mm)} mm"
+        return f"{in_words(self.number)} joints ({self.joint}) with a gap of {in_words(self.mm)} mm"
 
     def measured(self, subject: Subject) -> tuple[bool, str]:
         near = Fit(within=self.within)
@@ -375,6 +347,25 @@ class Gap(Check):
         count = sum(self.mm[0] <= gap <= self.mm[1] for gap in gaps)
         told = ", ".join(f"{gap:.3g}" for gap in gaps)
         return self.number[0] <= count <= self.number[1], f"{count} ({told} mm)"
+
+
+class Lead(Check):
+    """So many screws with this lead, right-handed or left-handed [mm/turn]."""
+
+    kind: Literal["lead"] = "lead"
+    joint: JointWanted = JointWanted(type=JointType.SCREW)
+    mm: float
+    number: Bounds = (1, 999)
+    tolerance: float = 0.01
+
+    @property
+    def wanted(self) -> str:
+        return f"{in_words(self.number)} screws of {self.mm:g} mm a turn"
+
+    def measured(self, subject: Subject) -> tuple[bool, str]:
+        leads = [joint.lead for joint in self.joint.found(subject)]
+        count = sum(abs(abs(lead) - self.mm) <= self.tolerance * self.mm for lead in leads)
+        return self.number[0] <= count <= self.number[1], f"{count} ({', '.join(f'{lead:.4g}' for lead in leads[:8]) or 'no screw'})"
 
 
 class Captive(Check):
@@ -385,7 +376,7 @@ class Captive(Check):
 
     @property
     def wanted(self) -> str:
-        return f"{_range(self.number)} moving parts are held by shape"
+        return f"{in_words(self.number)} moving parts are held by shape"
 
     def measured(self, subject: Subject) -> tuple[bool, str]:
         scene = subject.scene
@@ -420,7 +411,7 @@ class Unchanged(Check):
 
     @property
     def wanted(self) -> str:
-        return f"{_range(self.number)} parts are unchanged"
+        return f"{in_words(self.number)} parts are unchanged"
 
     def measured(self, subject: Subject) -> tuple[bool, str]:
         if subject.before is None:
@@ -444,10 +435,22 @@ AnyCheck = Annotated[
     | Loops
     | Ratio
     | Rise
+    | Travel
+    | Straight
+    | Level
+    | Turns
     | Gap
     | Captive
     | Simulates
-    | Unchanged,
+    | Unchanged
+    | Holes
+    | Studs
+    | Wall
+    | Volume
+    | Holds
+    | Stands
+    | Symmetric
+    | Lead,
     Field(discriminator="kind"),
 ]
 
@@ -464,12 +467,19 @@ def _parallel(a: FloatArray, b: FloatArray) -> bool:
     return abs(float(a @ b)) >= math.cos(AXIS_RAD) * float(np.linalg.norm(a) * np.linalg.norm(b))
 
 
-def _stroke(subject: Subject, driver: str) -> FloatArray:
+def _stroke(subject: Subject, driver: str, steps: int = STROKE) -> FloatArray:
     reached = subject.driver_range(driver)
     if reached is None:
         return np.empty(0)
     inset = 1e-3 * (reached[1] - reached[0])  # the very ends may be dead points
-    return np.linspace(reached[0] + inset, reached[1] - inset, STROKE)
+    return np.linspace(reached[0] + inset, reached[1] - inset, steps)
+
+
+def _travel(subject: Subject, joint: Joint) -> float:
+    """Return how far a joint goes while one driver moves, the most that any of them makes it [deg or mm]."""
+    strokes = [(driver.name, _stroke(subject, driver.name, PATH)) for driver in subject.assembly.drivers]
+    ranges = [float(np.ptp(subject.values(joint.name, driver, points))) for driver, points in strokes if len(points)]
+    return max(ranges, default=0.0) * subject.per_unit(joint)
 
 
 def _stroke_poses(subject: Subject, driver: str) -> Iterator[Any]:
@@ -521,8 +531,3 @@ def _numbers(vector: Any) -> str:
 
 def _by(sides: FloatArray) -> str:
     return " x ".join(f"{float(side):.4g}" for side in sides)
-
-
-def _range(bounds: Bounds) -> str:
-    low, high = bounds
-    return f"{low:g}" if low == high else f"at least {low:g}" if high >= 999 else f"{low:g} to {high:g}"

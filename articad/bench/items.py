@@ -7,6 +7,7 @@ any number of processes may work on the same batch, a killed one leaves nothing 
 from __future__ import annotations
 
 import contextlib
+import hashlib
 import json
 import shutil
 import tempfile
@@ -111,8 +112,8 @@ def make(item: Item, out: str | Path, *, cache_root: str | Path | None = None) -
         cache_root: Keeps built parts; the user's own by default.
 
     Returns:
-        Its record `articad.item/1`: provenance, whether it passed, findings, files, how long each stage took, and
-        `made`, which is "now" or "before".
+        Its record `articad.item/1`: provenance, whether it passed, findings, files with the sha256 of each, how long each stage took,
+        and `made`, which is "now" or "before".
     """
     folder = Path(out) / item.digest[:2] / item.digest
     with contextlib.suppress(OSError, ValueError):
@@ -130,6 +131,11 @@ def make(item: Item, out: str | Path, *, cache_root: str | Path | None = None) -
     return {**record, "made": "now"}
 
 
+def make_stored(item: Json, out: str) -> Json:
+    """Make an item as it came from another process."""
+    return make(Item.from_json(item), out)
+
+
 def _made(item: Item, folder: Path, cache_root: str | Path | None) -> Json:
     clock = _Clock()
     record: Json = {"schema": SCHEMA, "digest": item.digest, "articad": __version__, **item.to_json()}
@@ -143,13 +149,15 @@ def _made(item: Item, folder: Path, cache_root: str | Path | None) -> Json:
             scripts = find_scripts(Path(item.plan) / "parts", resolved, kernel.name)
             store = BuildCache() if cache_root is None else BuildCache(Path(cache_root))
             assembly = Assembly.from_plan(plan, scripts, kernel=kernel, cache=store, jobs=1, parameters=item.values)
+        record |= {"kernel": kernel.name, "kernel_version": kernel.version}
         sources = [part for part in assembly.realised.values() if part.derived_from is None]
         built = {"parts_built": sum(not part.cached for part in sources), "parts_kept": sum(part.cached for part in sources)}
         with clock.on("checks"):
             findings = _gated(item, assembly)
         if findings.ok:
             with clock.on("exports"):
-                files = [str(path.relative_to(folder)) for name in item.formats for path in WRITERS[name](assembly).write(folder / name)]
+                written = [path for name in item.formats for path in WRITERS[name](assembly).write(folder / name)]
+            files = {str(path.relative_to(folder)): hashlib.sha256(path.read_bytes()).hexdigest() for path in written}
             record |= {"files": files, "mass_kg": assembly.mass().mass, "freedoms": assembly.mechanism.mobility}
         record |= {"ok": findings.ok, "findings": [finding.to_json() for finding in findings]}
     except ArticadError as error:

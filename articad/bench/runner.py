@@ -12,10 +12,11 @@ from collections.abc import Callable, Iterable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, Final
+from typing import Any
 
-from articad import convert
 from articad.agents.edit import edit
+from articad.agents.generation import REPAIRS
+from articad.agents.line import ROUNDS
 from articad.agents.llm import LLM
 from articad.agents.pipeline import Variant, generate
 from articad.agents.retrieval import Memory
@@ -23,13 +24,10 @@ from articad.agents.review import trajectory
 from articad.bench.row import Row, keep_row, kept_row
 from articad.bench.subject import Subject
 from articad.bench.task import Task
-from articad.errors import ArticadError, ReadError, TransportError
+from articad.errors import TransportError
 from articad.kernels.kernel import BuildCache, PartKernel
 from articad.record import assembly_of
 from articad.run import Run, digest
-
-_SIMULATED: Final = frozenset({".urdf", ".xml", ".mjcf"})
-_EDITED: Final = "_edited"  # what is appended to a task's name where a tool's edited model is
 
 Ask = Callable[[Task], LLM]
 """Who answers a task's requests."""
@@ -43,12 +41,15 @@ def run_tasks(
     out: str | Path,
     ask: Ask,
     *,
+    ask_edit: Ask | None = None,
     variant: Variant = "full",
     kernel: PartKernel | None = None,
     cache: BuildCache | None = None,
     memory: Memory | None = None,
     look: bool = True,
     model: str = "",
+    repairs: int = REPAIRS,
+    rounds: int = ROUNDS,
     jobs: int = 1,
     finished: Finished | None = None,
     progress: Callable[[Row], object] | None = None,
@@ -59,12 +60,15 @@ def run_tasks(
         tasks: Folders and tasks.
         out: Where rows and runs are kept; rows that are there are not made again.
         ask: Who answers each task's requests.
+        ask_edit: Who answers those of its edit; the same by default.
         variant: As for `generate`.
         kernel: Likewise.
         cache: Likewise.
         memory: Likewise.
         look: Whether models look at parts and assembly.
         model: Name of who answers: rows of another model are made again.
+        repairs: As for `generate`.
+        rounds: As for `generate`.
         jobs: How many tasks at once.
         finished: Told of each finished run.
         progress: Told of each row.
@@ -77,11 +81,12 @@ def run_tasks(
         folder, task = pair
         place = Path(out) / task.name
         way = {"variant": variant, "look": look, "model": model, "kernel": None if kernel is None else kernel.name}
-        key = digest({"task": task.model_dump(mode="json"), **way})
+        tries = {"repairs": repairs, "rounds": rounds}
+        key = digest({"task": task.model_dump(mode="json"), **way, **tries})
         row = kept_row(place, key)
         if row is None:
-            made = _Made(task, folder, place, key, ask(task), finished)
-            row = made.row(variant=variant, kernel=kernel, cache=cache, memory=memory, look=look)
+            made = _Made(task, folder, place, key, (ask, ask_edit or ask), finished)
+            row = made.row(variant=variant, kernel=kernel, cache=cache, memory=memory, look=look, **tries)
             if not made.unreached:
                 keep_row(place, row)
         if progress is not None:
@@ -92,18 +97,6 @@ def run_tasks(
         return list(pool.map(one, tasks))
 
 
-def score_files(tasks: Iterable[tuple[Path, Task]], folder: str | Path) -> list[Row]:
-    """Judge files that any tool made: `<folder>/<task>.urdf`, or the one model in `<folder>/<task>/`.
-
-    What became of a model by the task's edit is at `<task>_edited` in place of `<task>`.
-
-    Args:
-        tasks: Folders and tasks; one without a file is a row with an error.
-        folder: Where the files are: URDF, MJCF, FreeCAD documents, plans or runs.
-    """
-    return [_scored(task, Path(folder)) for _, task in tasks]
-
-
 class _Made:
     """One task at work.
 
@@ -111,8 +104,8 @@ class _Made:
         unreached: Whether it failed because the provider could not be reached.
     """
 
-    def __init__(self, task: Task, folder: Path, place: Path, key: str, llm: LLM, finished: Finished | None) -> None:
-        self._task, self._folder, self._llm, self._finished = task, folder, llm, finished
+    def __init__(self, task: Task, folder: Path, place: Path, key: str, asks: tuple[Ask, Ask], finished: Finished | None) -> None:
+        self._task, self._folder, self._asks, self._finished = task, folder, asks, finished
         self._run, self._edit = (place / f"{name}_{key[:8]}" for name in ("run", "edit"))
         self._key = key
         self.unreached = False
@@ -123,24 +116,24 @@ class _Made:
         options |= {"look": look, "inspection": look}
         try:
             images = [self._folder / image for image in task.images]
-            run = generate(task.prompt, llm=self._llm, images=images, out=self._run, ideas="never", **options)
+            run = generate(task.prompt, llm=self._asks[0](task), images=images, out=self._run, ideas="never", **options)
             assembly = assembly_of(run, cache=options["cache"])
             row = replace(row, judgements=task.judge(Subject(assembly)))
             self._tell(run)
             if task.edit is not None:
                 row = self._with_edit(row, run, Subject(assembly), {name: value for name, value in options.items() if name != "variant"})
-        except ArticadError as error:
+        except Exception as error:  # noqa: BLE001 - a defect of ours costs one task, not the benchmark
             row = replace(row, error=self._told(error))
         return replace(row, seconds=time.monotonic() - started, **_effort(self._run, self._edit))
 
     def _with_edit(self, row: Row, run: Run, before: Subject, options: dict[str, Any]) -> Row:
         assert self._task.edit is not None
         try:
-            edited = edit(run, self._task.edit.prompt, llm=self._llm, out=self._edit, **options)
+            edited = edit(run, self._task.edit.prompt, llm=self._asks[1](self._task), out=self._edit, **options)
             subject = Subject(assembly_of(edited, cache=options["cache"]), before=before.assembly)
             row = replace(row, edited=self._task.judge_edit(subject))
             self._tell(edited)
-        except ArticadError as error:
+        except Exception as error:  # noqa: BLE001 - as above
             row = replace(row, edit_error=self._told(error))
         return row
 
@@ -148,7 +141,7 @@ class _Made:
         if self._finished is not None:
             self._finished(run)
 
-    def _told(self, error: ArticadError) -> str:
+    def _told(self, error: Exception) -> str:
         self.unreached = self.unreached or isinstance(error, TransportError)
         return f"{type(error).__name__}: {error}"
 
@@ -170,50 +163,3 @@ def _iterations(run: Run) -> int:
     way = trajectory(run)
     again: int = max(way["designs"] - 1, 0) + sum(max(answers - 1, 0) for answers in way["scripts"].values())
     return 1 + again
-
-
-def _scored(task: Task, folder: Path) -> Row:
-    row, started = Row.of(task), time.monotonic()
-    try:
-        before = _subject(_found(task.name, folder))
-        row = replace(row, judgements=task.judge(before))
-        if task.edit is not None:
-            row = _scored_edit(row, task, folder, before)
-    except ArticadError as error:
-        row = replace(row, error=f"{type(error).__name__}: {error}")
-    return replace(row, seconds=time.monotonic() - started)
-
-
-def _scored_edit(row: Row, task: Task, folder: Path, before: Subject) -> Row:
-    try:
-        edited = replace(_subject(_found(f"{task.name}{_EDITED}", folder)), before=before.assembly)
-        return replace(row, edited=task.judge_edit(edited))
-    except ArticadError as error:
-        return replace(row, edit_error=f"{type(error).__name__}: {error}")
-
-
-def _found(name: str, folder: Path) -> Path:
-    """Return the model of a task, or of a task edited.
-
-    Raises:
-        ReadError: If there is none.
-    """
-    for suffix in convert.READERS:
-        if (file := folder / f"{name}{suffix}").is_file():
-            return file
-    place = folder / name
-    ours, kind = (folder / name.removesuffix(_EDITED), "edit*") if name.endswith(_EDITED) else (place, "run*")
-    for run in (place, *sorted(ours.glob(kind))):
-        if (run / "request.json").is_file():
-            return run
-    files = [file for suffix in convert.READERS for file in sorted(place.rglob(f"*{suffix}"))]
-    if not files:
-        message = f"There is no model of {name} in {folder}."
-        raise ReadError.told(folder, message, f"Write {name}.urdf there, for instance.", said=message)
-    return files[0]
-
-
-def _subject(found: Path) -> Subject:
-    if found.is_dir():
-        return Subject(assembly_of(Run.view(found)))
-    return Subject(convert.read(found), file=found if found.suffix.lower() in _SIMULATED else None)

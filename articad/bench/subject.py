@@ -16,6 +16,7 @@ from articad.errors import ArticadError
 from articad.interference.report import Checks
 from articad.interference.scene import Scene
 from articad.kinematics.joints import Joint, JointType
+from articad.kinematics.motion import FeasibleRange
 
 _SLIDING = frozenset({JointType.SLIDER, JointType.CYLINDRICAL, JointType.PLANAR})
 
@@ -74,6 +75,11 @@ class Subject:
         mesh = self.assembly.parts[part].mesh
         return np.sort(np.ptp(mesh.vertices, axis=0)) if mesh is not None else np.zeros(3)
 
+    def density(self, part: str) -> float:
+        """Return a part's mass by its volume [kg/mm³]; that of water where no mass is known."""
+        mesh, mass = self.assembly.parts[part].mesh, self.assembly.parts[part].mass
+        return 1e-6 if mesh is None or mass is None or not mesh.volume else mass.mass / abs(mesh.volume)
+
     def per_unit(self, joint: Joint) -> float:
         """Return what turns a joint's main coordinate into degrees or mm."""
         return 1.0 if joint.type in _SLIDING else math.degrees(1.0)
@@ -92,13 +98,21 @@ class Subject:
         column = next(i for i, coordinate in enumerate(mechanism.coordinates) if coordinate.joint == joint)
         return np.asarray(configuration.columns[..., column])
 
+    @cached_property
+    def _feasible(self) -> dict[str, FeasibleRange | None]:
+        """How far drivers go, found when first asked for: checks of many pairs of joints ask again and again."""
+        return {}
+
     def driver_range(self, driver: str, turns: float = 1.0) -> tuple[float, float] | None:
-        """Return how far a driver can go, by limits and loops [rad or mm]; for an endless one, so many turns from rest."""
-        try:
-            reached = self.assembly.feasible_range(driver)
-        except ArticadError:
+        """Return how far a driver can go, by limits and loops [rad or mm]; for an endless one, so many turns from zero."""
+        if driver not in self._feasible:
+            try:
+                self._feasible[driver] = self.assembly.feasible_range(driver)
+            except ArticadError:
+                self._feasible[driver] = None
+        reached = self._feasible[driver]
+        if reached is None:
             return None
-        low, high = reached.lower, reached.upper
-        if math.isinf(low) or math.isinf(high):
-            low, high = 0.0, turns * 2 * math.pi
-        return low, high
+        if {"endless", "not followed further"} & {reached.lower_reason, reached.upper_reason}:
+            return 0.0, turns * 2 * math.pi
+        return reached.lower, reached.upper

@@ -2,20 +2,18 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Any, Final
 
-import numpy as np
-
-from articad.bench.agreement import bootstrap_interval
+from articad.bench.check import Judgement
+from articad.bench.numbers import mean_of, share_of
 from articad.bench.row import Row
 
 SCHEMA: Final = "articad.bench/1"
 
 
 def table(rows: Sequence[Row]) -> dict[str, Any]:
-    """Return the report `articad.bench/1` of a benchmark's rows: the whole, by kind of task, and by kind of check."""
+    """Return the report `articad.bench/1` of a benchmark's rows: the whole, by kind of task, by what they were asked, by kind of check."""
     kinds = sorted({row.kind for row in rows})
     checks = sorted({judgement.kind for row in rows for judgement in row.judgements})
     return {
@@ -25,7 +23,8 @@ def table(rows: Sequence[Row]) -> dict[str, Any]:
         "tasks": len(rows),
         "all": summary(rows),
         "by_kind": {kind: summary([row for row in rows if row.kind == kind]) for kind in kinds},
-        "by_check": {kind: _share([j.ok for row in rows for j in row.judgements if j.kind == kind]) for kind in checks},
+        "by_modality": {way: summary([row for row in rows if row.modality == way]) for way in sorted({row.modality for row in rows})},
+        "by_check": {kind: share_of([j.ok for row in rows for j in row.judgements if j.kind == kind]) for kind in checks},
         "rows": [_line(row) for row in rows],
     }
 
@@ -34,16 +33,21 @@ def summary(rows: Sequence[Row]) -> dict[str, Any]:
     """Return shares and means over some rows, each with the ends of its 95 % interval."""
     return {
         "tasks": len(rows),
-        "passed": _share([row.ok for row in rows]),
-        "made": _share([row.made for row in rows]),
-        "checks": _share([judgement.ok for row in rows for judgement in row.judgements]),
-        "edited": _share([row.edit_ok for row in rows if row.edit_ok is not None]),
-        "edit_checks": _share([judgement.ok for row in rows for judgement in row.edited]),
-        "iterations": _mean(rows, lambda row: row.iterations),
-        "calls": _mean(rows, lambda row: row.calls),
-        "tokens": _mean(rows, lambda row: row.tokens),
-        "cost_usd": None if any(row.cost is None for row in rows) else _mean(rows, lambda row: row.cost or 0.0),
+        "passed": share_of([row.ok for row in rows]),
+        "made": share_of([row.made for row in rows]),
+        "checks": mean_of([_held(row.judgements) for row in rows]),
+        "edited": share_of([row.edit_ok for row in rows if row.edit_ok is not None]),
+        "edit_checks": mean_of([_held(row.edited) for row in rows if row.edit]),
+        "iterations": mean_of([row.iterations for row in rows]),
+        "calls": mean_of([row.calls for row in rows]),
+        "tokens": mean_of([row.tokens for row in rows]),
+        "cost_usd": None if any(row.cost is None for row in rows) else mean_of([row.cost or 0.0 for row in rows]),
     }
+
+
+def _held(judgements: Sequence[Judgement]) -> float:
+    """Return the share of a task's checks that hold; none where nothing was made."""
+    return sum(judgement.ok for judgement in judgements) / len(judgements) if judgements else 0.0
 
 
 def _line(row: Row) -> dict[str, Any]:
@@ -62,18 +66,3 @@ def _line(row: Row) -> dict[str, Any]:
         "tokens": row.tokens,
         "cost_usd": row.cost,
     }
-
-
-def _share(values: Sequence[bool]) -> dict[str, Any]:
-    low, high = bootstrap_interval([float(value) for value in values])
-    return {"mean": _rounded(float(np.mean(values)) if values else math.nan), "interval": [_rounded(low), _rounded(high)], "n": len(values)}
-
-
-def _mean(rows: Sequence[Row], of: Callable[[Row], float]) -> dict[str, Any]:
-    values = [of(row) for row in rows]
-    low, high = bootstrap_interval(values)
-    return {"mean": _rounded(float(np.mean(values)) if values else math.nan), "interval": [_rounded(low), _rounded(high)], "n": len(values)}
-
-
-def _rounded(value: float) -> float | None:
-    return None if math.isnan(value) else round(value, 4)

@@ -16,11 +16,20 @@ The edited product must pass `edit.checks`, and all checks of the task that are 
 a kind restates all of that kind. `unchanged` counts the parts whose shape is the same to the last bit. `values` are what the reference
 makes the change by: parameters of its plan, in the unit that it gives them; `reference` is a second folder with `plan.json`, for changes
 that are more than numbers, whose scripts are its own `parts/*.py` and, where it has none of a name, those of the task's reference.
+
+A task that is asked by a picture names it, and says how it is drawn from the reference:
+
+    "images": ["drawing.png"],
+    "drawing": {"parts": ["shelf"], "notes": ["All boards are 18 mm thick."]}
+
+`articad bench draw --task NAME` draws it: measures of the whole, what each joint does and how far, the sides of the named parts, and
+the notes, so that nothing that is checked is left to guess where the prompt is empty.
 """
 
 from __future__ import annotations
 
 import json
+import shutil
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any, Final, Literal
@@ -36,6 +45,26 @@ TASKS: Final = Path(__file__).with_name("tasks")
 """The project's own tasks, a folder each."""
 
 Kind = Literal["articulated", "static", "industrial", "hard"]
+
+
+_MOVING: Final = frozenset({"freedoms", "joints", "loops", "ratio", "rise", "travel", "clear_in_motion", "certified"})
+"""Kinds of checks that say that something moves."""
+
+
+class Drawing(Form):
+    """How a task's picture is drawn from its reference solution, by `articad bench draw`.
+
+    Attributes:
+        views: Keys of `articad.render.VIEWS`; those straight on tell the measures of the whole.
+        legend: Whether joints get letters and are told below: what each does, how far, and what it is coupled to.
+        parts: Parts of the reference whose sides are told.
+        notes: What else is written below.
+    """
+
+    views: tuple[str, ...] = ("iso", "front", "right", "top")
+    legend: bool = True
+    parts: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()
 
 
 class Edit(Form):
@@ -63,6 +92,7 @@ class Task(Form):
         product: What it is, in a word or two: at most three tasks are of the same product.
         prompt: What is asked for; empty where pictures alone say it.
         images: Files beside the task.
+        drawing: How `drawing.png`, which is one of them, is drawn.
         checks: All must hold.
         edit: A change afterwards.
         reference: Folder of a plan with part scripts that passes, relative to the task; or "example:NAME".
@@ -74,6 +104,7 @@ class Task(Form):
     product: str
     prompt: str = ""
     images: tuple[str, ...] = ()
+    drawing: Drawing | None = None
     checks: tuple[AnyCheck, ...]
     edit: Edit | None = None
     reference: str | None = "reference"
@@ -82,6 +113,13 @@ class Task(Form):
     def modality(self) -> Literal["text", "image", "both"]:
         """What it is asked by."""
         return "both" if self.prompt and self.images else "image" if self.images else "text"
+
+    @property
+    def moves(self) -> bool:
+        """Whether something of it is to move."""
+        if self.kind == "static":
+            return False
+        return any(check.kind in _MOVING and getattr(check, "number", 1) not in (0, (0, 0)) for check in self.checks)
 
     @property
     def edit_checks(self) -> tuple[AnyCheck, ...]:
@@ -117,6 +155,22 @@ def read_task(folder: str | Path) -> Task:
         raise ReadError.told(file, f"{where}: {first['msg']}.", "Correct the field.") from error
     except ValueError as error:
         raise ReadError.told(file, f"It is no JSON: {error}.", "Correct it there.") from error
+
+
+def write_task(task: Task, folder: Path, *, beside: Path) -> tuple[Path, Task]:
+    """Write a task that was made of other data, with its pictures; return it with its folder.
+
+    Args:
+        task: What to write.
+        folder: Where to.
+        beside: Where its pictures are.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    for image in task.images:
+        shutil.copyfile(beside / image, folder / image)
+    text = task.model_dump_json(by_alias=True, exclude_defaults=True, indent=1)
+    (folder / "task.json").write_text(f"{text}\n", encoding="utf-8")
+    return folder, task
 
 
 def tasks_in(folder: str | Path = TASKS, *, names: Sequence[str] = (), kind: Kind | None = None) -> list[tuple[Path, Task]]:

@@ -81,13 +81,18 @@ def _sim(options: argparse.Namespace, terminal: Terminal) -> Report:
             outcome.engine,
             {True: "yes", False: "no", None: "not installed"}[outcome.loads],
             f"{outcome.speed_at_rest:.3g}",
-            f"{100 * min((reach.share for reach in outcome.reaches), default=1.0):.3g} % of {len(outcome.reaches)}",
+            f"{100 * min((reach.share for reach in outcome.judged), default=1.0):.3g} % of {len(outcome.judged)}",
             f"{1000 * outcome.residual:.3g}",
             "" if outcome.energy_growth is None else f"{100 * outcome.energy_growth:.3g} %",
         )
         for outcome in verdict.outcomes
     ]
     terminal.table(["engine", "loads", "speed at rest", "joints reach", "residual mm", "energy gain"], rows)
+    for outcome in verdict.outcomes:
+        if outcome.loads and outcome.open_loops:
+            terminal.say(
+                f"{outcome.engine}: a URDF holds no closed loop; {outcome.open_loops} of the assembly are open there, their joints free."
+            )
     terminal.findings(verdict.findings)
     if options.film and assembly is not None and (strip := _film(assembly, verdict.outcomes)):
         Path(options.film).parent.mkdir(parents=True, exist_ok=True)

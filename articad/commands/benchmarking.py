@@ -3,26 +3,42 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, Final
 
+from articad.commands.bench_tables import print_data, print_judged, print_table
 from articad.commands.command import argument, command
-from articad.commands.options import ASKING, FORCE, SANDBOX, amount, positive
+from articad.commands.options import ASKING, ENGINE, FORCE, SANDBOX, amount, positive
 from articad.commands.steps import build_cache, sandbox_level
 
 if TYPE_CHECKING:
+    from articad.agents.llm import Budget
+    from articad.bench.judge import Judged
+    from articad.bench.pool import Call
+    from articad.bench.public_scores import Sampled
     from articad.bench.row import Row
     from articad.bench.task import Task
     from articad.terminal import Report, Terminal
 
-_WORDS = 44  # characters of what failed, in a table
-
 
 @command(
     "bench",
-    "Run the benchmark with a model; score the files of any tool; list the tasks.",
-    argument("action", choices=["run", "score", "table", "list"], help="what to do"),
-    argument("what", nargs="?", metavar="DIR", help="score: folder of models named after tasks; table: folder of a run"),
+    "Run the benchmark with a model; score the files of any tool, or have models judge them; list the tasks, or draw their pictures.",
+    argument("action", choices=["run", "score", "judge", "table", "list", "draw", "shapes", "objects"], help="what to do"),
+    argument(
+        "what",
+        nargs="?",
+        metavar="DIR",
+        help="score, judge: folder of models named after tasks, or of a run; shapes, objects: after samples; table: of a run",
+    ),
+    argument(
+        "--data",
+        metavar="DIR",
+        help="your copy of CADPrompt (shapes), or of ACD, PartNet-Mobility or Fusion 360 joints (objects), for tasks",
+    ),
+    argument("--refine", metavar="N", type=positive, default=None, help="as --rounds N+1 --repairs N: how often an answer may be mended"),
+    argument("--judge", metavar="NAME", dest="judges", action="append", default=[], help="a model that scores; repeat it for several"),
     argument("--tasks", metavar="DIR", help="folder of tasks (the project's own)"),
     argument("--task", metavar="NAME", dest="names", action="append", default=[], help="only this one; may be repeated"),
     argument("--kind", choices=["articulated", "static", "industrial", "hard"], default=None, help="only tasks of this kind"),
@@ -34,28 +50,45 @@ _WORDS = 44  # characters of what failed, in a table
         help="the paper's ablations (full)",
     ),
     argument("--kernel", choices=["build123d", "freecad"], default="build123d", help="what part scripts are written for (build123d)"),
-    argument("--at-once", metavar="N", type=positive, default=1, help="tasks at the same time (1)"),
+    argument("--recorded", metavar="DIR", help="run: answer as these runs, named after tasks, were answered: no model, key or network"),
+    argument(
+        "--at-once",
+        metavar="N",
+        type=positive,
+        default=1,
+        help="tasks at the same time, each in a process of its own; one alone stays in this one (1)",
+    ),
+    *ENGINE,
     *ASKING,
     SANDBOX,
     FORCE,
 )
 def _bench(options: argparse.Namespace, terminal: Terminal) -> Report:
-    from articad.bench.row import rows_in
-    from articad.bench.runner import score_files
-    from articad.bench.table import table
+    return _ACTIONS[options.action](options, terminal)
+
+
+def _tasks(options: argparse.Namespace) -> list[tuple[Path, Task]]:
+    """Return the tasks that are meant: the project's own, a folder's, or public data's."""
     from articad.bench.task import TASKS, tasks_in
+
+    return _asked_by_data(options) if options.data else tasks_in(options.tasks or TASKS, names=options.names, kind=options.kind)
+
+
+def _needed(options: argparse.Namespace, *, data: bool = False) -> str:
+    """Return the folder that an action is about."""
     from articad.errors import ReadError
 
-    if options.action == "table":
-        return _printed(table(rows_in(options.what or options.out, options.names)), terminal)
-    tasks = tasks_in(options.tasks or TASKS, names=options.names, kind=options.kind)
-    if options.action == "list":
-        return _listed([task for _, task in tasks], terminal)
-    if options.action == "score":
-        if not options.what:
-            raise ReadError("`articad bench score` needs a folder of models named after tasks.", path="bench")
-        return _printed(table(score_files(tasks, options.what)), terminal)
-    return _printed(table(_run(tasks, options, terminal)), terminal)
+    if not options.what or (data and not options.data):
+        what = "the folder of what is to be scored" + (", and --data" if data else "")
+        raise ReadError(f"`articad bench {options.action}` needs {what}.", path="bench")
+    return str(options.what)
+
+
+def _table(options: argparse.Namespace, terminal: Terminal) -> Report:
+    from articad.bench.row import rows_in
+    from articad.bench.table import table
+
+    return print_table(table(rows_in(options.what or options.out, options.names)), terminal)
 
 
 @command(
@@ -63,10 +96,9 @@ def _bench(options: argparse.Namespace, terminal: Terminal) -> Report:
     "Make many assemblies: plans with values for their parameters, checked, exported and kept with their provenance.",
     argument("spec", metavar="BATCH.json", help="items, or samples of plans' parameters"),
     argument("--out", metavar="DIR", default="batch", help="a folder for each item; what is there is not made again (batch)"),
-    argument("--engine", choices=["local", "dask"], default="local", help="processes of this machine, or a Dask cluster (local)"),
-    argument("--scheduler", metavar="URL", help="address of the Dask scheduler; its workers must see --out"),
+    *ENGINE,
     argument("--jobs", metavar="N", type=positive, default=None, help="workers of this machine (one a processor)"),
-    argument("--memory", metavar="GB", type=amount, default=4.0, help="of each worker of this machine (4)"),
+    argument("--memory", metavar="GB", type=amount, default=4.0, help="data of each worker process (4)"),
 )
 def _batch(options: argparse.Namespace, terminal: Terminal) -> Report:
     from articad.bench.batch import read_batch, run_dask, run_local, summary
@@ -78,7 +110,7 @@ def _batch(options: argparse.Namespace, terminal: Terminal) -> Report:
             tell(record["digest"][:12], "built" if record["ok"] else "failed")
 
         if options.engine == "dask":
-            records = run_dask(items, options.out, scheduler=options.scheduler, told=told)
+            records = run_dask(items, options.out, scheduler=options.scheduler, memory_gb=options.memory, told=told)
         else:
             records = run_local(items, options.out, workers=options.jobs, memory_gb=options.memory, told=told)
     report = summary(records)
@@ -91,7 +123,61 @@ def _batch(options: argparse.Namespace, terminal: Terminal) -> Report:
     return report
 
 
-def _run(tasks: list[tuple[Path, Task]], options: argparse.Namespace, terminal: Terminal) -> list[Row]:
+def _score(options: argparse.Namespace, terminal: Terminal) -> Report:
+    from articad.bench.remote import rows_of, score_calls
+    from articad.bench.scoring import score_files
+    from articad.bench.table import table
+
+    models, tasks = _needed(options), _tasks(options)
+    if options.engine == "local" and options.at_once == 1:
+        return print_table(table(score_files(tasks, models)), terminal)
+    return print_table(table(rows_of(tasks, _spread(score_calls(tasks, models), options, terminal))), terminal)
+
+
+def _run(options: argparse.Namespace, terminal: Terminal) -> Report:
+    from articad.bench.remote import rows_of, run_calls
+    from articad.bench.table import table
+    from articad.commands.models import asked_model, limits, model_name
+
+    if options.refine is not None:
+        options.rounds, options.repairs = options.refine + 1, options.refine
+    tasks = _tasks(options)
+    if options.recorded:
+        return print_table(table(_run_again(tasks, options, terminal)), terminal)
+    _, sees = asked_model(options, terminal)  # says at once what is missing
+    if options.engine == "dask" or options.at_once > 1:
+        said: dict[str, Any] = {"model": model_name(options), "limits": limits(options), "sandbox": sandbox_level(options)}
+        said |= {name: getattr(options, name) for name in ("vision_model", "judge_model", "api_base", "kernel", "memory", "force")}
+        said |= {"variant": options.variant, "look": sees and options.look, "repairs": options.repairs, "rounds": options.rounds}
+        return print_table(table(rows_of(tasks, _spread(run_calls(tasks, options.out, said), options, terminal))), terminal)
+    return print_table(table(_run_here(tasks, options, terminal, look=sees and options.look)), terminal)
+
+
+def _run_again(tasks: list[tuple[Path, Task]], options: argparse.Namespace, terminal: Terminal) -> list[Row]:
+    from articad.bench.recorded import RecordedAnswers
+    from articad.bench.runner import run_tasks
+    from articad.record import kernel_named
+
+    answers = RecordedAnswers(options.recorded)
+    with terminal.progress("Tasks", total=len(tasks)) as tell:
+        return run_tasks(
+            tasks,
+            options.out,
+            answers.of,
+            ask_edit=answers.of_edit,
+            variant=options.variant,
+            kernel=kernel_named(options.kernel, sandbox=sandbox_level(options)),
+            cache=build_cache(options),
+            look=options.look,
+            model="recorded",
+            repairs=options.repairs,
+            rounds=options.rounds,
+            jobs=options.at_once,
+            progress=lambda row: tell(row.task, "passed" if row.ok else "failed"),
+        )
+
+
+def _run_here(tasks: list[tuple[Path, Task]], options: argparse.Namespace, terminal: Terminal, *, look: bool) -> list[Row]:
     from articad.agents.recollection import StoredMemory, remember
     from articad.bench.runner import run_tasks
     from articad.commands.models import asked_model, model_name
@@ -99,7 +185,6 @@ def _run(tasks: list[tuple[Path, Task]], options: argparse.Namespace, terminal: 
     from articad.record import kernel_named
 
     store = ExperienceStore(options.memory)
-    budgets = [asked_model(options, terminal)]  # says at once what is missing
     with terminal.progress("Tasks", total=len(tasks)) as tell:
         return run_tasks(
             tasks,
@@ -109,34 +194,116 @@ def _run(tasks: list[tuple[Path, Task]], options: argparse.Namespace, terminal: 
             kernel=kernel_named(options.kernel, sandbox=sandbox_level(options)),
             cache=build_cache(options),
             memory=StoredMemory(store),
-            look=budgets[0][1] and options.look,
+            look=look,
             model=",".join(name for name in (model_name(options), options.vision_model, options.judge_model) if name),
-            jobs=options.at_once,
+            repairs=options.repairs,
+            rounds=options.rounds,
             finished=lambda run: remember(run, store),
             progress=lambda row: tell(row.task, "passed" if row.ok else "failed"),
         )
 
 
-def _listed(tasks: list[Task], terminal: Terminal) -> Report:
+def _spread(calls: list[Call], options: argparse.Namespace, terminal: Terminal) -> list[Report]:
+    """Make calls in processes, here or on a Dask cluster."""
+    from articad.bench.pool import run_dask, run_local
+
+    with terminal.progress("Tasks", total=len(calls)) as tell:
+
+        def told(answer: Report) -> None:
+            tell(answer.get("task", "?"), "passed" if answer.get("ok") else "failed")
+
+        if options.engine == "dask":
+            return run_dask(calls, scheduler=options.scheduler, told=told)
+        return run_local(calls, workers=options.at_once, told=told)
+
+
+def _list(options: argparse.Namespace, terminal: Terminal) -> Report:
+    tasks = [task for _, task in _tasks(options)]
     rows = [(task.name, task.kind, task.modality, task.product, len(task.checks)) for task in tasks]
     terminal.table(["task", "kind", "asked by", "product", "checks"], rows)
     terminal.say(f"{len(tasks)} tasks.")
     return {"schema": "articad.bench-tasks/1", "ok": True, "findings": [], "tasks": [task.model_dump(mode="json") for task in tasks]}
 
 
-def _printed(report: Report, terminal: Terminal) -> Report:
-    rows = [
-        (row["task"], "yes" if row["passed"] else "no", _short(row["error"] or row["edit_error"] or ", ".join(row["failed"])), row["iterations"], row["calls"])
-        for row in report["rows"]
-    ]
-    terminal.table(["task", "passed", "failed checks", "iterations", "calls"], rows)
-    for name, group in {"all": report["all"], **report["by_kind"]}.items():
-        passed = group["passed"]
-        low, high = (0.0 if end is None else 100 * end for end in passed["interval"])
-        share = 0.0 if passed["mean"] is None else 100 * passed["mean"]
-        terminal.say(f"{name}: {share:.1f} % of {group['tasks']} passed (95 %: {low:.1f} to {high:.1f})")
+def _on_data(options: argparse.Namespace, terminal: Terminal) -> Report:
+    from articad.bench.public_data import objects_in, shapes_in
+    from articad.bench.public_scores import score_objects, score_shapes
+
+    models = _needed(options, data=True)
+
+    def chosen(samples: Sequence[Any]) -> list[Any]:
+        return [sample for sample in samples if not options.names or sample.name in options.names]
+
+    with terminal.progress("Samples") as tell:
+
+        def told(row: Sampled) -> None:
+            tell(row.name, row.error or "scored")
+
+        if options.action == "shapes":
+            report = score_shapes(chosen(shapes_in(options.data)), models, told=told)
+        else:
+            report = score_objects(chosen(objects_in(options.data)), models, told=told)
+    return print_data(report, terminal)
+
+
+def _asked_by_data(options: argparse.Namespace) -> list[tuple[Path, Task]]:
+    """Return public data as tasks, each in a folder of its own, so that workers can read them."""
+    from articad.bench.public_data import objects_in, shapes_in
+    from articad.bench.task import write_task
+    from articad.errors import ReadError
+
+    samples: list[Any]
+    try:
+        samples = list(shapes_in(options.data))
+    except ReadError:
+        samples = list(objects_in(options.data))
+    chosen = [sample for sample in samples if not options.names or sample.name in options.names]
+    return [write_task(sample.task(), Path(options.out) / "tasks" / sample.name, beside=sample.folder) for sample in chosen]
+
+
+def _judge(options: argparse.Namespace, terminal: Terminal) -> Report:
+    from articad.bench.judge import judge_files
+    from articad.bench.judged_table import judged_table
+    from articad.commands.models import asked_model, model_name
+
+    models, tasks = _needed(options), _tasks(options)
+
+    def asked(name: str) -> Callable[[], Budget]:
+        own = argparse.Namespace(**vars(options) | {"model": name, "vision_model": None, "judge_model": None})
+        return lambda: asked_model(own, terminal)[0]
+
+    names = options.judges or [model_name(options)]
+    with terminal.progress("Opinions", total=len(tasks) * len(names)) as tell:
+
+        def told(one: Judged) -> None:
+            tell(f"{one.task} by {one.judge}", one.error or "scored")
+
+        report = judged_table(judge_files(tasks, models, {name: asked(name) for name in names}, progress=told))
+    print_judged(report, terminal)
     return report
 
 
-def _short(text: str) -> str:
-    return text if len(text) <= _WORDS else text[: _WORDS - 1] + "…"
+def _draw(options: argparse.Namespace, terminal: Terminal) -> Report:
+    from articad.bench.drawing import DRAWING, draw_task
+    from articad.bench.reference import reference
+
+    files = []
+    for folder, task in _tasks(options):
+        if task.drawing is not None:
+            file = folder / DRAWING
+            file.write_bytes(draw_task(reference(folder, task), task.drawing))
+            terminal.say(f"{file}  {file.stat().st_size / 1000:.1f} kB")
+            files.append(str(file))
+    return {"schema": "articad.bench-drawings/1", "ok": True, "findings": [], "files": files}
+
+
+_ACTIONS: Final[Mapping[str, Callable[[argparse.Namespace, Terminal], Report]]] = {
+    "run": _run,
+    "score": _score,
+    "judge": _judge,
+    "table": _table,
+    "list": _list,
+    "draw": _draw,
+    "shapes": _on_data,
+    "objects": _on_data,
+}

@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     ),
     argument("--actuators", action="store_true", help="give every driver of an MJCF a servo"),
     argument("--ros", metavar="PACKAGE", default=None, help="lay URDF out as a ROS 2 package, with SRDF and ros2_control"),
+    argument("--process", choices=["fdm", "sla", "sls"], default="fdm", help="how 3MF will be printed: gaps are held to it (fdm)"),
 )
 def _export(options: argparse.Namespace, terminal: Terminal) -> Report:
     from articad import summaries
@@ -45,6 +46,7 @@ def _export(options: argparse.Namespace, terminal: Terminal) -> Report:
         "package": options.ros,
         "srdf": ros,
         "ros2_control": ros,
+        "process": options.process,
     }
     exports: dict[str, Report] = {}
     if options.out is None:

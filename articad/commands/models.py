@@ -6,10 +6,10 @@ import argparse
 import os
 import sys
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 from articad.commands.command import argument, command
-from articad.commands.options import ANSWERING, EXPORT, FORCE, GENERATING, JOBS, OUT, PICTURES, SANDBOX, SET
+from articad.commands.options import ANSWERING, BUDGET, EXPORT, FORCE, GENERATING, JOBS, MODELS, OUT, PICTURES, SANDBOX, SET, TEACHING
 from articad.commands.steps import build_cache, draw, experience, reported, sandbox_level
 
 if TYPE_CHECKING:
@@ -63,7 +63,7 @@ def _generate(options: argparse.Namespace, terminal: Terminal) -> Report:
             jobs=options.jobs,
             progress=tell,
         )
-    return _told(run, options, terminal, budget, remembered=options.variant not in {"no-memory", "single-loop"})
+    return _told(run, options, terminal, budget)
 
 
 @command(
@@ -106,7 +106,42 @@ def _edit(options: argparse.Namespace, terminal: Terminal) -> Report:
             jobs=options.jobs,
             progress=tell,
         )
-    return _told(run, options, terminal, budget, remembered=budget is not None)
+    return _told(run, options, terminal, budget)
+
+
+@command(
+    "resume",
+    "Go on with a run of generate or edit that was interrupted: no call is repeated, no part built twice.",
+    argument("run", metavar="RUN"),
+    *MODELS,
+    *TEACHING,
+    *BUDGET,
+    SANDBOX,
+    JOBS,
+    FORCE,
+    PICTURES,
+)
+def _resume(options: argparse.Namespace, terminal: Terminal) -> Report:
+    from articad.agents.pipeline import resume
+    from articad.agents.recollection import StoredDocumentation, StoredMemory
+    from articad.run import Run
+
+    asked = Run.view(options.run).request.options
+    options.look, options.inspection = bool(asked.get("look")), bool(asked.get("inspection"))
+    budget, _ = asked_model(options, terminal)
+    with terminal.progress("Going on", note=lambda: _spent(budget)) as tell:
+        run = resume(
+            options.run,
+            llm=budget,
+            sandbox=sandbox_level(options),
+            cache=build_cache(options),
+            choose=_asking(terminal) if _is_asked(options) else None,
+            memory=StoredMemory(experience(options)),
+            documentation=StoredDocumentation() if options.docs else None,
+            jobs=options.jobs,
+            progress=tell,
+        )
+    return _told(run, options, terminal, budget)
 
 
 def asked_model(options: argparse.Namespace, terminal: Terminal) -> tuple[Budget, bool]:
@@ -119,8 +154,12 @@ def asked_model(options: argparse.Namespace, terminal: Terminal) -> tuple[Budget
     sees = bool(getattr(model, "sees", True))
     if not sees and (options.look or options.inspection or getattr(options, "review", False)):
         terminal.say(f"{options.vision_model or name} does not see: parts and assembly are held to exact checks alone.")
-    limits = {"calls": options.max_calls, "tokens": options.max_tokens, "cost": options.max_cost, "minutes": options.max_minutes}
-    return Budget(model, **limits), sees
+    return Budget(model, **limits(options)), sees
+
+
+def limits(options: argparse.Namespace) -> dict[str, Any]:
+    """Return the limits of a budget."""
+    return {"calls": options.max_calls, "tokens": options.max_tokens, "cost": options.max_cost, "minutes": options.max_minutes}
 
 
 def model_name(options: argparse.Namespace) -> str:
@@ -135,12 +174,14 @@ def _review(options: argparse.Namespace, *, sees: bool) -> Literal["none", "rule
     return "none" if not options.review else "model" if sees else "rules"
 
 
-def _told(run: Run, options: argparse.Namespace, terminal: Terminal, budget: Budget | None, *, remembered: bool) -> Report:
-    """Remember a finished run, draw it, print it and return its report."""
+def _told(run: Run, options: argparse.Namespace, terminal: Terminal, budget: Budget | None) -> Report:
+    """Remember a finished run that a model had a part in, draw it, print it and return its report."""
+    from articad.agents.pipeline import recalls
     from articad.agents.recollection import remember
     from articad.summaries import print_edit, print_review
 
     store = experience(options)
+    remembered = budget is not None and recalls(run.request.options.get("variant", "full"))
     if remembered and (case := remember(run, store)) is not None:
         terminal.detail(f"Remembered as {case.id[:8]}, {case.kind}, in {store.folder}.")
     if options.pictures:

@@ -81,27 +81,40 @@ BUILD_ARGUMENTS = (
     FORCE,
     PICTURES,
 )
+ENGINE = (
+    argument("--engine", choices=["local", "dask"], default="local", help="processes of this machine, or a Dask cluster (local)"),
+    argument("--scheduler", metavar="URL", help="address of the Dask scheduler; its workers must see the folders"),
+)
 MEMORY = argument("--memory", metavar="DIR", help="the store of earlier runs ($ARTICAD_MEMORY, or the user's own)")
 EMBEDDINGS = argument("--embeddings", metavar="NAME", help="a provider's model that says which cases are alike (offline word vectors)")
 API_BASE = argument("--api-base", metavar="URL", help="an OpenAI-compatible endpoint")
-ASKING = (
+MODELS = (
     argument(
         "--model", metavar="NAME", default=None, help="the model, as LiteLLM names it ($ARTICAD_MODEL, else gemini/gemini-3-flash-preview)"
     ),
     argument("--vision-model", metavar="NAME", help="the model that gets pictures (the same)"),
     argument("--judge-model", metavar="NAME", help="the model that judges the assembly (the same)"),
     API_BASE,
-    argument("--no-look", dest="look", action="store_false", help="compare no pictures of parts with their specification"),
-    argument("--no-inspection", dest="inspection", action="store_false", help="have the assembly neither observed nor judged by models"),
+)
+TEACHING = (
     MEMORY,
     EMBEDDINGS,
     argument("--docs", action="store_true", help="have the model name what it would look up in the kernel's documentation, and tell it"),
+)
+BUDGET = (
+    argument("--max-calls", metavar="N", type=positive, default=60, help="model calls, with bench of each task (60)"),
+    argument("--max-tokens", metavar="N", type=positive, default=None, help="tokens of these calls (unlimited)"),
+    argument("--max-cost", metavar="USD", type=amount, default=None, help="cost of these calls (unlimited)"),
+    argument("--max-minutes", metavar="N", type=amount, default=60.0, help="wall clock, with bench of each task (60)"),
+)
+ASKING = (
+    *MODELS,
+    argument("--no-look", dest="look", action="store_false", help="compare no pictures of parts with their specification"),
+    argument("--no-inspection", dest="inspection", action="store_false", help="have the assembly neither observed nor judged by models"),
+    *TEACHING,
     argument("--rounds", metavar="N", type=positive, default=3, help="designs that are built and checked (3)"),
     argument("--repairs", metavar="N", type=positive, default=3, help="attempts to mend one part (3)"),
-    argument("--max-calls", metavar="N", type=positive, default=60, help="model calls (60)"),
-    argument("--max-tokens", metavar="N", type=positive, default=None, help="tokens of all calls (unlimited)"),
-    argument("--max-cost", metavar="USD", type=amount, default=None, help="cost of all calls (unlimited)"),
-    argument("--max-minutes", metavar="N", type=amount, default=60.0, help="wall clock (60)"),
+    *BUDGET,
 )
 ANSWERING = (
     argument("--image", metavar="FILE", dest="images", action="append", default=[], help="a picture that belongs to the request"),

@@ -10,6 +10,7 @@ from articad.export.contacts import ContactSearch, poses_in_motion
 from articad.export.convex import THRESHOLDS, Pieces, is_convex, pieces_of, whole_hull
 from articad.export.hulls import HullOverlap, Pair
 from articad.export.losses import Feature
+from articad.export.once import once
 from articad.geometry.part import Shape
 from articad.kernels.cache import BuildCache
 
@@ -51,12 +52,20 @@ def collide(assembly: Assembly, model: LoweredModel, collision: Collision, skip:
     shaped = {link.part.name: _Shaped(link, collision, cache) for link in model.links}
     own = {name: tuple(placed.shape for placed in one.link.collisions) for name, one in shaped.items()}
     asked = any(own[a] and own[b] and (a, b) not in skip and (b, a) not in skip for a, b in combinations(assembly.mechanism.parts, 2))
-    poses = poses_in_motion(assembly.mechanism) if asked else assembly.poses(assembly.mechanism.rest)[None].matrix
-    search = ContactSearch(assembly.mechanism.parts, poses, own, skip)
-    for name, one in shaped.items():
-        search.update(name, one.shapes)
+    at_rest = assembly.poses(assembly.mechanism.rest)[None].matrix
+
+    def begun() -> ContactSearch:
+        poses = once(assembly, "poses in motion", lambda: poses_in_motion(assembly.mechanism)) if asked else at_rest
+        search = ContactSearch(assembly.mechanism.parts, poses, own)
+        for name, one in shaped.items():
+            search.update(name, one.shapes)
+        return search
+
+    # The solids never change, so that what one format has found is known to the next.
+    shapes = tuple((name, tuple((id(shape.mesh), shape.frame.data.tobytes()) for shape in solids)) for name, solids in own.items())
+    search = once(assembly, ("contacts", asked, shapes), begun) if collision == "solid" else begun()
     while True:
-        contacts = search.contacts()
+        contacts = search.contacts(skip)
         added = dict.fromkeys(part for contact in contacts if not contact.solids for part in contact.parts)
         finer = [name for name in added if shaped[name].refine()]
         if not finer:

@@ -82,13 +82,11 @@ class ContactSearch:
         order: Names of the parts, as the poses have them.
         poses: `(n, N, 4, 4)` [mm]; the first is the rest pose.
         solids: Collision shapes of each part.
-        skip: Pairs that engines do not check.
     """
 
     order: tuple[str, ...]
     poses: FloatArray
     solids: Mapping[str, tuple[Shape, ...]]
-    skip: set[Pair]
     _bodies: dict[tuple[str, bool], manifold3d.Manifold] = field(default_factory=dict)
     _pieces: dict[str, list[_Placed]] = field(default_factory=dict)
     _found: dict[Pair, HullOverlap | None] = field(default_factory=dict)
@@ -99,18 +97,22 @@ class ContactSearch:
         self._pieces[part] = self._placed(pieces, convex=True)
         self._found = {pair: found for pair, found in self._found.items() if part not in pair}
 
-    def contacts(self) -> list[HullOverlap]:
-        """Return the pairs whose pieces meet at rest, or in some pose where the solids do not, in order of declaration."""
+    def contacts(self, skip: set[Pair]) -> list[HullOverlap]:
+        """Return the pairs whose pieces meet at rest, or in some pose where the solids do not, in order of declaration.
+
+        Args:
+            skip: Pairs that engines do not check.
+        """
         boxes = {part: self._boxes(part) for part, pieces in self._pieces.items() if pieces}
         for a, b in combinations([part for part in self.order if part in boxes], 2):
-            if (a, b) in self.skip or (b, a) in self.skip or (a, b) in self._found:
+            if (a, b) in skip or (b, a) in skip or (a, b) in self._found:
                 continue
             low, high = (np.maximum(boxes[a][0], boxes[b][0]), np.minimum(boxes[a][1], boxes[b][1]))
             near = np.flatnonzero((low < high).all(axis=1))
             if self._is_convex(a) and self._is_convex(b):
                 near = near[near == 0]  # in motion, where such pieces meet the solids do
             self._found[a, b] = self._first_contact(a, b, near)
-        found = (self._found.get(pair) for pair in combinations(self.order, 2))
+        found = (self._found.get((a, b)) for a, b in combinations(self.order, 2) if (a, b) not in skip and (b, a) not in skip)
         return [contact for contact in found if contact is not None]
 
     def _boxes(self, part: str) -> tuple[FloatArray, FloatArray]:

@@ -24,6 +24,7 @@ from articad.export.inertia import MM_PER_M, Inertial
 from articad.export.loads import Load, joint_loads
 from articad.export.losses import Feature
 from articad.export.names import Names, valid_name
+from articad.export.once import once
 from articad.geometry.part import Part, Shape
 from articad.kinematics.joints import Joint, JointType
 
@@ -209,7 +210,7 @@ def lower(assembly: Assembly, reserved: Iterable[str] = ()) -> LoweredModel:
     """
     mechanism = assembly.mechanism
     names = _ValidNames(assembly, reserved)
-    loads = joint_loads(mechanism, assembly.parts)
+    loads = once(assembly, "loads", lambda: joint_loads(mechanism, assembly.parts))
     T_link_part = {mechanism.ground: mechanism.T_ground}
     joints = []
     for edge in mechanism.tree.edges:

@@ -49,6 +49,7 @@ def records(assembly: Assembly, model: LoweredModel, files: Mapping[str, str], w
             "frame": _frame(mechanism.T_ground),
             "deflection": assembly.deflection,
             "fingerprint": fingerprint(elements) if (elements := list(written)) else None,
+            **({"foreign": True} if assembly.foreign else {}),
         },
         *({"kind": "material", **asdict(material)} for material in assembly.materials.values()),
         *(_part(links[name], files) for name in mechanism.parts),

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import json
 import math
+import re
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
@@ -28,6 +30,7 @@ if TYPE_CHECKING:
 FloatArray = NDArray[np.float64]
 
 MM_PER_M = 1000.0
+_WHOLE = re.compile(r"\.0(?=[,\]])")  # of numbers in JSON
 CARRIER_MASS_KG = 1e-4  # of a moving part whose mass is not known
 _PRIMS = {
     JointType.FIXED: "PhysicsFixedJoint",
@@ -108,10 +111,12 @@ def _body(part: Part, name: str, T: SE3) -> list[str]:
         '    uniform token[] xformOpOrder = ["xformOp:translate", "xformOp:orient"]',
     ]
     visuals, collisions = part.visuals or part.collisions, solid_enough(part)
+    surfaces = {id(shape): shape for shape in (*visuals, *collisions)}
+    written = {key: _surface(shape.placed) for key, shape in surfaces.items()}  # what is drawn mostly collides too
     for index, shape in enumerate(visuals):
-        lines += _indented(_mesh(f"visual_{index}", shape.placed, shape.color or part.color))
+        lines += _indented(_mesh(f"visual_{index}", written[id(shape)], shape.color or part.color))
     for index, shape in enumerate(collisions):
-        lines += _indented(_mesh(f"collision_{index}", shape.placed, None))
+        lines += _indented(_mesh(f"collision_{index}", written[id(shape)], None))
     return [*lines, "}"]
 
 
@@ -132,21 +137,23 @@ def _mass(mass: MassProperties | None) -> list[str]:
     ]
 
 
-def _mesh(name: str, mesh: TriMesh, color: str | None) -> list[str]:
+def _surface(mesh: TriMesh) -> list[str]:
+    """Return the triangles of a mesh."""
+    return [
+        f"    int[] faceVertexCounts = [{', '.join('3' * len(mesh.triangles))}]",
+        f"    int[] faceVertexIndices = [{', '.join(map(str, mesh.triangles.ravel().tolist()))}]",
+        f"    point3f[] points = {_points(mesh.vertices / MM_PER_M)}",
+    ]
+
+
+def _mesh(name: str, surface: list[str], color: str | None) -> list[str]:
     """Return a mesh: drawn in a colour, or collided with as its convex hull."""
-    points = ", ".join(_tuple(point) for point in (mesh.vertices / MM_PER_M).tolist())
     lines = [f'def Mesh "{name}"'] if color is not None else [
         f'def Mesh "{name}" (',
         '    prepend apiSchemas = ["PhysicsCollisionAPI", "PhysicsMeshCollisionAPI"]',
         ")",
     ]  # fmt: skip
-    lines += [
-        "{",
-        f"    int[] faceVertexCounts = [{', '.join('3' * len(mesh.triangles))}]",
-        f"    int[] faceVertexIndices = [{', '.join(map(str, mesh.triangles.ravel().tolist()))}]",
-        f"    point3f[] points = [{points}]",
-        '    uniform token subdivisionScheme = "none"',
-    ]
+    lines += ["{", *surface, '    uniform token subdivisionScheme = "none"']
     if color is None:
         lines += ['    uniform token physics:approximation = "convexHull"', '    uniform token purpose = "guide"']
     else:
@@ -210,6 +217,12 @@ def _in_usd(bound: float, unit: str) -> str:
     if math.isinf(bound):
         return "inf" if bound > 0 else "-inf"
     return number(math.degrees(bound) if unit == "rad" else bound / MM_PER_M)
+
+
+def _points(points: FloatArray) -> str:
+    """Return rows of numbers, each as `number` writes it; a hundred thousand of them in a moment."""
+    text = json.dumps((points + 0.0).tolist())
+    return "[" + _WHOLE.sub("", text[1:-1]).replace("[", "(").replace("]", ")") + "]"
 
 
 def _tuple(values: Iterable[float]) -> str:

@@ -369,7 +369,7 @@ class _Model:
             made = Assembly.from_parts(_plain(title), parts=parts, joints=joints, ground=self.ground, T_ground=self.poses[self.ground])
         except ArticadError as error:
             raise unreadable(self.document.path, self.assembly, f"It is no mechanism: {error.message}") from error
-        return replace(made, findings=Findings(self.findings))
+        return replace(made, findings=Findings(self.findings), foreign=True)
 
 
 def _updated(model: _Model, recorded: Assembly) -> Assembly:

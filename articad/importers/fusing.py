@@ -34,13 +34,14 @@ def fused(model: RawModel) -> RawModel:
     """Return the model with every chain over bare links that is one of our joints made that joint."""
     bare = _bare_links(model)
     before: dict[str, RawJoint] = {joint.child: joint for joint in model.joints}
+    beyond: dict[str, RawJoint] = {joint.parent: joint for joint in reversed(model.joints)}
     found: dict[str, tuple[RawJoint, tuple[RawJoint, ...]]] = {}  # by the name of the chain's last joint
     used: set[str] = set()
     for last in model.joints:
         chain = [last]
         while len(chain) < 3 and chain[0].parent in bare and chain[0].parent in before:
             chain.insert(0, before[chain[0].parent])
-        if last.child in bare and _continues(model, last, bare):
+        if last.child in bare and _continue(last, beyond[last.child]):
             continue  # a longer chain ends further out
         for start in range(len(chain) - 1):
             joints = tuple(chain[start:])
@@ -72,10 +73,9 @@ def _bare_links(model: RawModel) -> set[str]:
     }
 
 
-def _continues(model: RawModel, last: RawJoint, bare: set[str]) -> bool:
-    """True when the joint beyond `last` belongs to the same chain."""
-    beyond = next(joint for joint in model.joints if joint.parent == last.child)
-    return beyond.type in {_SLIDE, _TURN} and last.type in {_SLIDE, _TURN} and last.child in bare
+def _continue(last: RawJoint, beyond: RawJoint) -> bool:
+    """True when the joint beyond a bare link belongs to the same chain as the last one before it."""
+    return beyond.type in {_SLIDE, _TURN} and last.type in {_SLIDE, _TURN}
 
 
 def _meet(joints: tuple[RawJoint, ...]) -> bool:

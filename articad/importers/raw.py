@@ -180,7 +180,7 @@ def assemble(model: RawModel, path: Path) -> Assembly:
         mechanism.rest  # noqa: B018 - loops must close before anything is promised
     except (ArticadError, np.linalg.LinAlgError) as error:
         raise unreadable(path, "", f"It makes no mechanism: {error}") from error
-    return Assembly(model.name, mechanism, parts, findings=Findings(model.findings))
+    return Assembly(model.name, mechanism, parts, findings=Findings(model.findings), foreign=True)
 
 
 def _consistent_ties(model: RawModel) -> list[RawTie]:

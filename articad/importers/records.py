@@ -101,6 +101,7 @@ def _assembly(records: list[Record], folder: Folder) -> Assembly:
         fits={record["joint"]: Fit(**_without_kind(record, "joint")) for record in by_kind.get("fit", [])},
         waivers=tuple(Waiver(**_without_kind(record) | {"parts": tuple(record["parts"])}) for record in by_kind.get("waiver", [])),
         deflection=head["deflection"],
+        foreign=head.get("foreign", False) is True,
     )
 
 

@@ -46,7 +46,7 @@ def read_step(path: str | Path, *, root: str | Path | None = None, deflection: f
     ]
     ground = max(parts, key=lambda name: _size(parts[name]))
     joints = [_fixed(ground, name) for name in parts if name != ground]
-    return Assembly(path.stem, Mechanism(tuple(parts), ground, joints), parts, findings=Findings(findings))
+    return Assembly(path.stem, Mechanism(tuple(parts), ground, joints), parts, findings=Findings(findings), foreign=True)
 
 
 def _part(part: StepPart, deflection: float) -> Part:

@@ -148,6 +148,11 @@ _LARGEST = 1e12  # m, kg, N: beyond it arithmetic on poses means nothing
 
 
 def _root(robot: Any, path: Path) -> str:
+    links = {link.name for link in robot.links}
+    for joint in robot.joints:
+        for link in (joint.parent, joint.child):
+            if link not in links:
+                raise unreadable(path, f"joint {joint.name!r}", f"Its link {link!r} is not in the file.")
     children = {joint.child for joint in robot.joints}
     roots = [link.name for link in robot.links if link.name not in children]
     if len(roots) != 1:

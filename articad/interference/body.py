@@ -17,6 +17,7 @@ from articad.geometry.mesh import TriMesh
 FloatArray = NDArray[np.float64]
 
 _EXTREME_DIRECTIONS = np.array([[x, y, z] for x in (-1, 0, 1) for y in (-1, 0, 1) for z in (-1, 0, 1) if x or y or z], dtype=np.float64)
+_SCATTERED = 600
 _bodies: WeakKeyDictionary[TriMesh, Body] = WeakKeyDictionary()
 
 
@@ -59,6 +60,11 @@ class Body:
         """The mesh as a `manifold3d.Manifold` in double precision; look at `fault` before trusting it."""
         return self._new_manifold()
 
+    @cached_property
+    def manifold_id(self) -> int:
+        """By which solids that were cut from `manifold` tell where their triangles come from."""
+        return int(self.manifold.to_mesh64().run_original_id[0])
+
     def _new_manifold(self) -> Any:
         # copies: manifold3d takes only arrays that it could write
         return manifold3d.Manifold(manifold3d.Mesh64(self.mesh.vertices.copy(), self.mesh.triangles.astype(np.uint64)))
@@ -97,6 +103,11 @@ class Body:
     def extremes(self) -> tuple[FloatArray, ...]:
         """For each shell the vertices that reach furthest in 26 directions, `(26, 3)`: all inside a box iff nearly the shell is."""
         return tuple(shell.vertices[np.argmax(shell.vertices @ _EXTREME_DIRECTIONS.T, axis=0)] for shell in self.components)
+
+    @cached_property
+    def scattered(self) -> FloatArray:
+        """Some of the vertices, `(V, 3)`: what is near one of them is near the body."""
+        return self.mesh.vertices[:: 1 + len(self.mesh.vertices) // _SCATTERED]
 
     @cached_property
     def corners(self) -> FloatArray:

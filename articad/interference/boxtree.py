@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 from articad.interference.surface import Surface
 
 FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
+IntArray = NDArray[np.int32]
+Bounds = NDArray[np.float32]
 
 _trees: WeakKeyDictionary[Surface, BoxTree] = WeakKeyDictionary()
 
@@ -31,8 +32,8 @@ class BoxTree:
         size: How many triangles it holds, `(nodes,)`.
     """
 
-    centre: FloatArray
-    half: FloatArray
+    centre: Bounds
+    half: Bounds
     children: IntArray
     triangle: IntArray
     corners: FloatArray
@@ -85,9 +86,12 @@ class BoxTree:
             starts = np.concatenate([[0], np.cumsum(size)[:-1]]) if len(size) else np.empty(0, dtype=np.int64)
         bottom, top = np.concatenate(lows), np.concatenate(highs)
         start, count, leaf = (np.concatenate(column) for column in (*zip(*stretches, strict=True), triangle))
-        final = np.empty(len(low), dtype=np.int64)
+        final = np.empty(len(low), dtype=np.int32)
         final[start[leaf >= 0]] = leaf[leaf >= 0]
-        return cls((bottom + top) / 2, (top - bottom) / 2, np.concatenate(children), leaf, corners, final, start, count)
+        # half the room, since many trees stand at once; a box rounded outwards still bounds its triangles
+        centre = ((bottom + top) / 2).astype(np.float32)
+        half = np.nextafter(np.maximum(top - centre, centre - bottom).astype(np.float32), np.float32(np.inf))
+        return cls(centre, half, *(found.astype(np.int32) for found in (np.concatenate(children), leaf)), corners, final, start, count)
 
     def flat(self) -> BoxTree:
         """Return the tree without the coordinates beyond space that it was made by."""

@@ -42,6 +42,7 @@ DEFAULT_EPSILON_MM = 1e-3
 DEFAULT_BUDGET_S = 600.0
 FIRST_PAIRS = 40_000  # of pieces, spent on each pair along a driver before those that need more hold up the others
 WIDE_PAIRS = 60_000  # of pieces, spent on all joints at once before they are taken one by one
+TIED_PAIRS = 8_000  # of pieces, spent on whatever a linkage does before its drivers are followed: that is cheap
 _END_SLACK = 1e-6  # rad or mm: by which a driver may end before its limit
 _ENTRY_MM = 1e-6  # distance at which meshes are said to touch
 
@@ -153,8 +154,8 @@ class Certificate:
             assert course is not None
             moved = -1 if course.moved is None else number("moved", course.moved)
             found[f"{at}.uses"] = np.array([moved, *(number("order", order.astype(np.int32)) for order in course.orders)])
-            found[f"{at}.roots"] = np.array(course.roots)
-            found[f"{at}.cuts"], found[f"{at}.codes"] = course.cuts, course.rows.codes
+            found[f"{at}.cuts"], found[f"{at}.at"] = _short(course.cuts), course.places
+            found[f"{at}.codes"] = _short(course.rows.codes)
             found[f"{at}.along"], found[f"{at}.kinds"] = course.rows.along, course.rows.kinds
         return found
 
@@ -263,7 +264,7 @@ class _Certifying:
         if tied and drivers:
             bounded = not any(_is_endless_slide(self._joint(name)) for name in tied)
             names = driver_names(self.mechanism, self._constrained)
-            if bounded and self._prove(route, (*tied, *wanted), most=WIDE_PAIRS, tentative=True, also=names):
+            if bounded and self._prove(route, (*tied, *wanted), most=TIED_PAIRS, tentative=True, also=names):
                 return  # whatever the linkage does
             for driver in drivers:
                 self._follow(route, tied, wanted, driver)
@@ -663,3 +664,8 @@ def _npz(*, compress: bool = False, **arrays: Any) -> bytes:
     buffer = io.BytesIO()
     (np.savez_compressed if compress else np.savez)(buffer, **arrays)
     return buffer.getvalue()
+
+
+def _short(numbers: Any) -> Any:
+    """Return whole numbers in the least room."""
+    return numbers.astype(np.min_scalar_type(min(int(numbers.min()), -int(numbers.max()) - 1)))  # signed, since cuts are negative

@@ -11,9 +11,8 @@ from collections.abc import Mapping, Sequence
 from articad.connectors.se3 import SE3
 from articad.findings import Finding, Findings
 from articad.geometry.mesh import TriMesh
-from articad.interference.body import relative
 from articad.interference.holding import Holding
-from articad.interference.overlap import distance, measured
+from articad.interference.overlap import NOTHING, distance, measured, se3_of
 from articad.interference.relations import FitLike, WaiverLike
 from articad.interference.report import Checks, PairCheck, Strength
 from articad.interference.scene import Scene
@@ -65,10 +64,11 @@ def check_scene(
     known: Mapping[tuple[str, str], PairCheck] | None = None,
 ) -> Checks:
     """Check one pose of a scene; see `check_pose`. What is `known` of a pair of parts is taken as it is, without findings."""
-    placed = {name: poses[name] for name in scene.bodies}
+    placed = scene.at(poses)
     findings = [broken_finding(name, reason) for name, reason in scene.broken.items()]
     pairs: dict[tuple[str, str], PairCheck] = {}
-    for a, b in scene.candidates(placed):
+    near = placed.candidates()
+    for (a, b), apart in zip(near, placed.apart(near).tolist(), strict=True):
         if over != "rest" and scene.relations.rigid.together(a, b):
             continue
         if a in scene.broken or b in scene.broken:
@@ -76,13 +76,14 @@ def check_scene(
         if known is not None and (a, b) in known:
             pairs[a, b] = known[a, b]
             continue
-        found = measured(scene.bodies[a], scene.bodies[b], relative(placed[a], placed[b]))
-        gap = distance(scene.bodies[a], scene.bodies[b], relative(placed[a], placed[b])) if gaps and not found.volume else None
+        T_a_b = placed.relative(a, b)
+        found = NOTHING if apart else measured(scene.bodies[a], scene.bodies[b], T_a_b)
+        gap = distance(scene.bodies[a], scene.bodies[b], se3_of(T_a_b)) if gaps and not found.volume else None
         pairs[a, b], finding = judge(scene, (a, b), found, over=over, pose=pose, gap=gap)
         findings += finding
     pairs.update(unknown_pairs(scene, over))
     if over == "rest":
-        holding = Holding(scene, placed, pairs)
+        holding = Holding(placed, pairs)
         findings += holding.fixed_apart()
         findings += holding.floating(ground or next(iter(poses), ""), [name for name in poses if name not in scene.bodies])
     bare = tuple(name for name in poses if name not in scene.bodies)

@@ -24,15 +24,15 @@ class Course:
     Attributes:
         moved: By how much vertices of the first part were moved, `(V, 3)` float32 [mm], None for not at all.
         orders: Of the triangles of both parts, in the trees that were cut.
-        roots: Values at which the first coordinate was divided to begin with.
         cuts: Which coordinate each box was cut across, −1 for none; boxes in the order in which they came from others.
+        places: Where.
         rows: What became of each two pieces in a box.
     """
 
     moved: NDArray[np.float32] | None
     orders: tuple[NDArray[np.int64], NDArray[np.int64]]
-    roots: tuple[float, ...]
     cuts: NDArray[np.int64]
+    places: NDArray[np.float64]
     rows: Written
 
 

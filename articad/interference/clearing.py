@@ -7,7 +7,8 @@ not charged with the speed of what is far out, and what is far apart is settled 
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import math
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -43,21 +44,24 @@ class Boxes(Protocol):
         spread: What moves in each.
         outside: Whether no joint goes there, for each.
         columns: Which of the claim's coordinates each was cut across, −1 for those that were not.
+        places: Where.
         halves: Numbers of what it was cut into.
-        roots: Values at which the first coordinate of the claim is divided to begin with.
     """
 
     spread: Spread
     outside: list[bool]
     columns: list[int]
+    places: list[float]
     halves: list[tuple[int, int]]
-    roots: list[float]
 
     def root(self) -> IntArray:
-        """Add what covers the whole range, and return its numbers."""
+        """Add the whole range, and return its number."""
 
     def cut(self, boxes: IntArray, share: FloatArray) -> IntArray:
         """Cut boxes `(k,)` where `share (k, G)` of the motion is largest; return their halves `(k, 2)`."""
+
+    def is_reached(self, box: int) -> bool:
+        """Return whether the centre of a box is a pose of the mechanism."""
 
     def contact(self, box: int) -> tuple[float, ...] | None:
         """Return the centre of a box as coordinates to report, or None when it lies outside what joints allow."""
@@ -103,6 +107,10 @@ class _Pairs:
     def __len__(self) -> int:
         return len(self.a)
 
+    @classmethod
+    def of_all(cls, some: Sequence[_Pairs]) -> _Pairs:
+        return cls(*(np.concatenate(column) for column in zip(*((p.a, p.b, p.box, p.number) for p in some), strict=True)))
+
     def of(self, rows: NDArray[np.bool_] | IntArray) -> _Pairs:
         return _Pairs(self.a[rows], self.b[rows], self.box[rows], self.number[rows])
 
@@ -140,6 +148,8 @@ def clear(
             outcome.out_of_budget = True
             break
         rows = stack.pop()
+        while stack and len(rows) < CHUNK:
+            rows = _Pairs.of_all([stack.pop(), rows])
         if len(rows) > CHUNK:
             stack.append(rows.of(np.arange(len(rows)) < len(rows) - CHUNK))
             rows = rows.of(np.arange(len(rows)) >= len(rows) - CHUNK)
@@ -292,6 +302,7 @@ class _Search:
         share = np.max([found[left, best] for found in shares], axis=0)
         # what does not move and yet is not apart pierces the other: there the distance is none
         stuck = motion[left].max(axis=(1, 2)) < self.epsilon / 4
+        stuck[stuck] = [self.boxes.is_reached(box) for box in box[left][stuck].tolist()]
         if stuck.any():
             row = int(left[np.argmax(stuck)])
             self.outcome.box = int(box[row])
@@ -358,8 +369,7 @@ class Ranges:
     def __init__(self, spread: Spread, bounds: FloatArray, left_out: Callable[[FloatArray, FloatArray], bool] | None = None) -> None:
         self.spread, self.bounds, self.left_out = spread, bounds, left_out
         self.ends = np.empty((0, len(bounds), 2))
-        self.outside, self.columns, self.halves = list[bool](), list[int](), list[tuple[int, int]]()
-        self.roots: list[float] = bounds[0].tolist()
+        self.outside, self.columns, self.places, self.halves = list[bool](), list[int](), list[float](), list[tuple[int, int]]()
 
     def root(self) -> IntArray:
         """Add the whole range."""
@@ -369,6 +379,7 @@ class Ranges:
         self.ends = np.concatenate([self.ends, ends])
         self.outside += [self.left_out is not None and self.left_out(*box.T) for box in ends]
         self.columns += [-1] * len(ends)
+        self.places += [math.nan] * len(ends)
         self.halves += [(-1, -1)] * len(ends)
         columns = [factor.column for _, factor in self.spread.factors]
         return self.spread.add((ends[..., 0] + ends[..., 1]) / 2, np.diff(ends, axis=2)[:, columns, 0] / 2)
@@ -384,9 +395,13 @@ class Ranges:
         low, high = self.ends[boxes].copy(), self.ends[boxes].copy()
         low[rows, at, 1] = high[rows, at, 0] = (low[rows, at, 0] + low[rows, at, 1]) / 2
         numbers = self._add(np.stack([low, high], axis=1).reshape(-1, *low.shape[1:])).reshape(-1, 2)
-        for box, column, halves in zip(boxes.tolist(), at.tolist(), numbers.tolist(), strict=True):
-            self.columns[box], self.halves[box] = column, (halves[0], halves[1])
+        for box, column, place, halves in zip(boxes.tolist(), at.tolist(), low[rows, at, 1].tolist(), numbers.tolist(), strict=True):
+            self.columns[box], self.places[box], self.halves[box] = column, place, (halves[0], halves[1])
         return numbers
+
+    def is_reached(self, box: int) -> bool:  # noqa: ARG002 - a chain's coordinates are free
+        """Return whether the middle of a box is a pose of the mechanism: always."""
+        return True
 
     def contact(self, box: int) -> tuple[float, ...] | None:
         """Return the centre of a box."""

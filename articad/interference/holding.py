@@ -2,32 +2,30 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
 from articad.connectors.se3 import SE3
 from articad.findings import Finding
-from articad.interference.body import relative
-from articad.interference.overlap import distance, surfaces_touch
+from articad.interference.overlap import distance, se3_of, surfaces_touch
 from articad.interference.relations import Groups
 from articad.interference.report import PairCheck
-from articad.interference.scene import Scene
+from articad.interference.scene import Placement
 from articad.kinematics.joints import Joint, JointType
 
 TOUCH_MM = 0.1  # surfaces that are fixed to each other may be this far apart: glue, or a bolt in its hole
 NEAR_MM = 5.0  # a part within this distance of another is held by it: runners, shadow gaps
 NEAR_LEAST_MM = 0.5  # … but for small parts the limit is a tenth of their size, and at least this
 NEAR_SHARE = 0.1
-_NEAR_VERTICES = 600  # of each part, among which near ones are looked for
 _NEAR_SAMPLES = 48  # vertices compared before FCL is asked whether two parts are near
 
 
 class Holding:
     """What holds what at rest: contact within rigid groups, nearness of everything else."""
 
-    def __init__(self, scene: Scene, poses: Mapping[str, SE3], pairs: dict[tuple[str, str], PairCheck]) -> None:
-        self.scene, self.poses, self.pairs = scene, poses, pairs
+    def __init__(self, placed: Placement, pairs: dict[tuple[str, str], PairCheck]) -> None:
+        self.scene, self.placed, self.pairs = placed.scene, placed, pairs
 
     def fixed_apart(self) -> list[Finding]:
         """Find parts that are fixed to each other without touching, and that no third part of their group connects."""
@@ -53,7 +51,7 @@ class Holding:
 
     def _join_touching_neighbours(self, touching: Groups) -> None:
         """Let the other pairs of rigid groups touch too, now that it matters."""
-        for a, b in self.scene.candidates(self.poses, TOUCH_MM):
+        for a, b in self.placed.candidates(TOUCH_MM):
             apart = self.scene.relations.rigid.together(a, b) and not touching.together(a, b)
             if apart and self._gap(a, b) <= TOUCH_MM + self.scene.deflection_of(a, b):
                 touching.join(a, b)
@@ -65,7 +63,7 @@ class Holding:
         for joint in scene.relations.joints:  # a part without geometry may hold anything joined to it; fixed parts are judged by themselves
             if joint.parent in bare or joint.child in bare or joint.type is JointType.FIXED:
                 near.join(joint.parent, joint.child)
-        candidates = scene.candidates(self.poses, max([NEAR_MM, *(fit.gap_max or 0.0 for fit in scene.fits.values())]))
+        candidates = self.placed.candidates(max([NEAR_MM, *(fit.gap_max or 0.0 for fit in scene.fits.values())]))
         candidates.sort(key=lambda pair: not scene.relations.between(*pair))  # parts that a joint connects are near, mostly
         for a, b in candidates:
             if not near.together(a, b) and self._is_near(a, b):
@@ -90,12 +88,16 @@ class Holding:
 
     def _vertices_within(self, a: str, b: str, limit: float) -> bool:
         """Return whether two vertices are that near: often true, and cheaper than a search of all triangles."""
-        p, q = (self.scene.bodies[name].mesh.vertices for name in (a, b))
-        p, q = p[:: 1 + len(p) // _NEAR_VERTICES], self._relative(a, b).apply(q[:: 1 + len(q) // _NEAR_VERTICES])
-        low, high = np.maximum(p.min(axis=0), q.min(axis=0)) - limit, np.minimum(p.max(axis=0), q.max(axis=0)) + limit
-        p, q = (v[((v >= low) & (v <= high)).all(axis=1)] for v in (p, q))
+        T, bodies = self.placed.relative(a, b), self.scene.bodies
+        p, q = bodies[a].scattered, bodies[b].scattered @ T[:, :3].T + T[:, 3]
+        low, high = bodies[a].mesh.bounds
+        q = q[((q >= low - limit) & (q <= high + limit)).all(axis=1)]
+        if not len(q):
+            return False
+        p = p[((p >= q.min(axis=0) - limit) & (p <= q.max(axis=0) + limit)).all(axis=1)]
         p, q = (v[:: max(1, len(v) // _NEAR_SAMPLES)] for v in (p, q))
-        return bool(len(p) and len(q)) and bool((((p[:, None] - q[None]) ** 2).sum(axis=2) <= limit**2).any())
+        away = p[:, None] - q
+        return bool(len(p)) and bool((np.einsum("pqi,pqi->pq", away, away) <= limit**2).any())
 
     def _gap(self, a: str, b: str) -> float:
         bodies, T_a_b = self.scene.bodies, self._relative(a, b)
@@ -115,7 +117,7 @@ class Holding:
         return max(TOUCH_MM, declared) + self.scene.deflection_of(joint.parent, joint.child)
 
     def _relative(self, a: str, b: str) -> SE3:
-        return relative(self.poses[a], self.poses[b])
+        return se3_of(self.placed.relative(a, b))
 
     def _apart_finding(self, joint: Joint, gap: float) -> Finding:
         return Finding(

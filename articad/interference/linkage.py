@@ -3,6 +3,7 @@
 Over a short piece of the driver's range every coordinate is the only solution near its linear predictor (Brouwer, Banach), so that a
 box with one long side holds it, on which the bounds of `spread` hold. Where that does not suffice the piece is halved about a solution
 of its own, and its tube shrinks fourfold. The inequalities are the checker's own: what it would not believe is not built upon.
+Most pairs need no piece of their own: all pieces in a row lie in one wider tube, which is tried first and then parted.
 """
 
 from __future__ import annotations
@@ -10,6 +11,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -28,7 +30,7 @@ from articad.kinematics.joints import Coordinate, JointType
 from articad.kinematics.layout import Layout
 from articad.kinematics.mechanism import Mechanism
 from articad.kinematics.motion import track_of
-from articad.verify_certificate import PROOF, REST, Checker, Refuted
+from articad.verify_certificate import PROOF, REST, Checker, Refuted, joined
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -42,16 +44,16 @@ LOOKS = 24  # poses looked at beyond contact
 
 @dataclass(frozen=True, eq=False)
 class Piece:
-    """A piece of the driver's range.
+    """A piece of the driver's range, or several in a row.
 
     Attributes:
         ends: Of the driver [rad or mm].
-        number: Among all pieces.
+        numbers: Among all pieces, of those it consists of, in the order of the driver.
         line: Of each coordinate that follows, and of the driver: its value in the middle, its rate, and how far it is from that line.
     """
 
     ends: tuple[float, float]
-    number: int
+    numbers: tuple[int, ...]
     line: Mapping[str, tuple[float, float, float]]
 
 
@@ -87,8 +89,8 @@ class Way:
             if joint.type is JointType.BALL
             for at, freedom in enumerate(proven_freedoms(joint))
         }
-        self._halves: dict[int, tuple[Piece, Piece]] = {}
-        self._whole: dict[int, list[Piece]] = {}
+        self._halves: dict[tuple[int, ...], tuple[Piece, Piece]] = {}
+        self._steps: dict[int, list[Piece]] = {}
 
     @property
     def layout(self) -> Layout:
@@ -103,7 +105,7 @@ class Way:
 
     def steps(self, sign: int) -> list[Piece]:
         """Return the pieces from rest towards one end, as far as it can be followed."""
-        if sign not in self._whole:
+        if sign not in self._steps:
             at, end = self.track.start, self.bounds[1 if sign > 0 else 0]
             step, last, found = (end - at) * FIRST_STEP, 0, list[Piece]()
             least = abs(end - at) * SMALLEST_STEP
@@ -114,25 +116,42 @@ class Way:
                     step /= 2
                     continue
                 found.append(piece)
-                at, last, step = there, piece.number, step * 1.5
-            self._whole[sign] = found
-        return self._whole[sign]
+                at, last, step = there, piece.numbers[0], step * 1.5
+            self._steps[sign] = found
+        return self._steps[sign]
 
     def reached(self, sign: int) -> float:
         """Return how far the pieces go towards one end."""
         steps = self.steps(sign)
         return steps[-1].ends[1 if sign > 0 else 0] if steps else self.track.start
 
+    @cached_property
+    def whole(self) -> Piece:
+        """All that can be followed, as one."""
+        steps = [*self.steps(-1)[::-1], *self.steps(1)]
+        return self._joined(tuple(step.numbers[0] for step in steps))
+
     def halves(self, piece: Piece) -> tuple[Piece, Piece] | None:
-        """Return the two halves of a piece, each about a solution of its own; None where that is not to be had."""
-        if piece.number not in self._halves:
+        """Return the two halves of a piece, each about a solution of its own; None where that is not to be had. Several are parted."""
+        if piece.numbers not in self._halves:
             low, high = piece.ends
-            middle = (high + low) / 2
-            halves = self._piece((low, middle), piece.number), self._piece((middle, high), piece.number)
+            middle, at = (high + low) / 2, (len(piece.numbers) + 1) // 2
+            if len(piece.numbers) > 1:
+                self._halves[piece.numbers] = self._joined(piece.numbers[:at]), self._joined(piece.numbers[at:])
+                return self._halves[piece.numbers]
+            halves = self._piece((low, middle), piece.numbers[0]), self._piece((middle, high), piece.numbers[0])
             if halves[0] is None or halves[1] is None:
                 return None
-            self._halves[piece.number] = halves[0], halves[1]
-        return self._halves[piece.number]
+            self._halves[piece.numbers] = halves[0], halves[1]
+        return self._halves[piece.numbers]
+
+    def _joined(self, numbers: tuple[int, ...]) -> Piece:
+        """Return pieces in a row as one."""
+        rows = [self._found[number] for number in numbers]
+        ends = np.array([*(row[0][0] for row in rows), rows[-1][0][1]])
+        line = joined(ends, [row[1:4] for row in rows])
+        named = dict(zip(self.names, zip(*(part.tolist() for part in line), strict=True), strict=True))
+        return Piece((float(ends[0]), float(ends[-1])), numbers, named)
 
     def _piece(self, ends: tuple[float, float], beside: int) -> Piece | None:
         """Return a piece on the branch of another one if the checker would believe it."""
@@ -145,9 +164,7 @@ class Way:
         except Refuted:
             return None
         self.others.append(beside)
-        _, values, rates, near, _ = self._found[-1]
-        line = dict(zip(self.names, zip(values.tolist(), rates.tolist(), near.tolist(), strict=True), strict=True))
-        return Piece((float(span[0]), float(span[1])), len(self._found) - 1, line)
+        return self._joined((len(self._found) - 1,))
 
     def _tube(self, ends: FloatArray, guess: FloatArray) -> FloatArray:
         """Return distances within which there should be no other solution."""
@@ -194,30 +211,28 @@ class Steps:
         way: Of the driver.
         chain: Between two parts.
         others: Bounds of the chain's coordinates that do not follow; NaN for those that do.
-        steps: To be covered, in the order of the driver; by default the whole way.
+        step: To be covered; by default the whole way.
     """
 
-    def __init__(self, way: Way, chain: Chain, others: FloatArray, steps: Sequence[Piece] | None = None) -> None:
+    def __init__(self, way: Way, chain: Chain, others: FloatArray, step: Piece | None = None) -> None:
         self.way, self.chain, self.spread = way, chain, Spread(chain)
         self.free = np.flatnonzero(~np.isnan(others[:, 0]))
         self.others = others
-        self.whole = [*way.steps(-1)[::-1], *way.steps(1)] if steps is None else steps
+        self.step = way.whole if step is None else step
         self.rows: list[tuple[Piece, FloatArray]] = []
-        self.outside, self.columns, self.halves = list[bool](), list[int](), list[tuple[int, int]]()
-        self.roots = [step.ends[0] for step in self.whole] + [self.whole[-1].ends[1]] * bool(self.whole)
+        self.outside, self.columns, self.places, self.halves = list[bool](), list[int](), list[float](), list[tuple[int, int]]()
 
     def root(self) -> IntArray:
-        """Add the pieces, each with the whole range of the other coordinates."""
-        return self._add([(step, self.others) for step in self.whole])
+        """Add all of it, with the whole range of the other coordinates."""
+        return self._add([(self.step, self.others)])
 
     def _add(self, rows: list[tuple[Piece, FloatArray]]) -> IntArray:
-        if not rows:
-            return np.empty(0, dtype=np.int64)
         centres, lines, tubes = (np.array(part) for part in zip(*(self._placed(*row) for row in rows), strict=True))
         generators = np.concatenate([lines[:, None], tubes[:, :, None] * np.eye(tubes.shape[1])], axis=1)
         self.rows += rows
         self.outside += [False] * len(rows)
         self.columns += [-1] * len(rows)
+        self.places += [math.nan] * len(rows)
         self.halves += [(-1, -1)] * len(rows)
         return self.spread.add(centres, np.abs(lines) + tubes, generators)
 
@@ -254,16 +269,21 @@ class Steps:
             self.columns[box] = 0
             if halves is None:
                 raise CannotCut
+            self.places[box] = halves[0].ends[1]
             return [(part, ends) for part in halves]
         at = int(np.argmax(own))
         self.columns[box] = 1 + int(np.searchsorted(self.free, at))
         low, high = ends.copy(), ends.copy()
-        low[at, 1] = high[at, 0] = (ends[at, 0] + ends[at, 1]) / 2
+        low[at, 1] = high[at, 0] = self.places[box] = (ends[at, 0] + ends[at, 1]) / 2
         return [(step, low), (step, high)]
 
+    def is_reached(self, box: int) -> bool:
+        """Return whether the middle of a box is a pose of the mechanism: of a piece; in that of several the loops need not close."""
+        return len(self.rows[box][0].numbers) == 1
+
     def contact(self, box: int) -> tuple[float, ...] | None:
-        """Return the chain's coordinates at the middle of a box."""
-        return tuple(self._placed(*self.rows[box])[0].tolist())
+        """Return the chain's coordinates at the middle of a box; none if the mechanism does not reach it."""
+        return tuple(self._placed(*self.rows[box])[0].tolist()) if self.is_reached(box) else None
 
     def value(self, box: int) -> float:
         """Return the driver's value at the middle of a box."""
@@ -346,7 +366,7 @@ class LinkageProver(Prover):
             todo = list(self.way.steps(sign)[::-1])
             while todo:
                 step = todo.pop()
-                if self.search_over(Steps(self.way, self.chain, self.others, [step]), shrink).is_complete:
+                if self.search_over(Steps(self.way, self.chain, self.others, step), shrink).is_complete:
                     ends[end] = step.ends[end]
                     continue
                 halves = self.way.halves(step) if step.ends[1] - step.ends[0] > SMALLEST_PIECE else None

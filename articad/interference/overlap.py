@@ -53,7 +53,11 @@ def overlap(a: Body, b: Body, T_a_b: SE3) -> Overlap:
     Raises:
         InvalidSolidError: If one of the meshes is not a solid.
     """
-    common = intersection(a, b, T_a_b)
+    return overlap_of(intersection(a, b, T_a_b), a, b, T_a_b)
+
+
+def overlap_of(common: Any, a: Body, b: Body, T_a_b: SE3) -> Overlap:
+    """Measure the common solid of two bodies, a manifold in the frame of the first."""
     if float(common.volume()) <= VOLUME_NOISE_MM3:
         return NOTHING
     pieces = [(float(piece.volume()), piece) for piece in common.decompose()]
@@ -73,15 +77,31 @@ def intersection(a: Body, b: Body, T_a_b: SE3) -> Any:
     Raises:
         InvalidSolidError: If one of the meshes is not a solid.
     """
+    return _intersection(a, b, T_a_b.matrix[:3])
+
+
+def _intersection(a: Body, b: Body, T_a_b: FloatArray) -> Any:
     for body in (a, b):
         if body.fault is not None:
             raise InvalidSolidError(f"Overlap cannot be measured: {body.fault}.", status="fault")
-    return a.manifold ^ b.manifold.transform(T_a_b.matrix[:3])
+    return common(a, b, T_a_b)
 
 
-def measured(a: Body, b: Body, T_a_b: SE3) -> Overlap:
-    """Measure the overlap, asking the cheaper library first: large meshes that do not touch cost one FCL search."""
-    return overlap(a, b, T_a_b) if may_overlap(a, b, T_a_b.matrix[:3]) else NOTHING
+def measured(a: Body, b: Body, T_a_b: FloatArray) -> Overlap:
+    """Measure the overlap, asking the cheaper library first: large meshes that do not touch cost one FCL search.
+
+    Args:
+        a: A body.
+        b: Another.
+        T_a_b: Where it stands as seen from a, `(3, 4)`.
+
+    Raises:
+        InvalidSolidError: If one of the meshes is not a solid.
+    """
+    if not may_overlap(a, b, T_a_b):
+        return NOTHING
+    both = _intersection(a, b, T_a_b)
+    return NOTHING if float(both.volume()) <= VOLUME_NOISE_MM3 else overlap_of(both, a, b, se3_of(T_a_b))
 
 
 def may_overlap(a: Body, b: Body, T_a_b: FloatArray) -> bool:
@@ -97,9 +117,14 @@ def may_overlap(a: Body, b: Body, T_a_b: FloatArray) -> bool:
     b.moving.setTransform(fcl.Transform(T_a_b[:, :3], T_a_b[:, 3]))
     if fcl.collide(a.standing, b.moving, fcl.CollisionRequest(), fcl.CollisionResult()) > 0:
         return True
-    T = np.eye(4)
+    return one_contains_the_other(a, b, T_a_b)
+
+
+def se3_of(T_a_b: FloatArray) -> SE3:
+    """Return a pose `(3, 4)` as it is taken by what is asked rarely."""
+    T: Any = np.eye(4)
     T[:3] = T_a_b
-    return one_contains_the_other(a, b, SE3.from_matrix(T))
+    return SE3.from_matrix(T)
 
 
 def volume(a: Body, b: Body, T_a_b: FloatArray) -> float:
@@ -110,7 +135,12 @@ def volume(a: Body, b: Body, T_a_b: FloatArray) -> float:
         b: Another.
         T_a_b: Where it stands as seen from a, `(3, 4)`.
     """
-    return float((a.manifold ^ b.manifold.transform(T_a_b)).volume())
+    return float(common(a, b, T_a_b).volume())
+
+
+def common(a: Body, b: Body, T_a_b: FloatArray) -> Any:
+    """Return the common solid of bodies without fault as a manifold in a's frame; see `volume`."""
+    return a.manifold ^ b.manifold.transform(T_a_b)
 
 
 def surfaces_touch(a: Body, b: Body, T_a_b: SE3) -> bool:
@@ -134,18 +164,16 @@ def nearest(a: Body, b: Body, T_a_b: SE3) -> tuple[float, FloatArray, FloatArray
     return gap, np.array(result.nearest_points[0]), np.array(result.nearest_points[1])
 
 
-def one_contains_the_other(a: Body, b: Body, T_a_b: SE3) -> bool:
-    """Return whether a shell of one lies inside the other, when their surfaces do not meet."""
-    return _has_shell_inside(a, b, T_a_b) or _has_shell_inside(b, a, T_a_b.inverse())
+def one_contains_the_other(a: Body, b: Body, T_a_b: FloatArray) -> bool:
+    """Return whether a shell of one lies inside the other, when their surfaces do not meet; `T_a_b` is `(3, 4)`."""
+    R, t = T_a_b[:, :3], T_a_b[:, 3]
+    return any(_is_inside(a, points @ R.T + t) for points in b.extremes) or any(_is_inside(b, (points - t) @ R) for points in a.extremes)
 
 
-def _has_shell_inside(outer: Body, inner: Body, T_outer_inner: SE3) -> bool:
+def _is_inside(outer: Body, points: FloatArray) -> bool:
+    """Return whether a shell that reaches as far as these points, and meets no surface of the outer body, is inside it."""
     low, high = outer.mesh.bounds
-    for extremes in inner.extremes:
-        points = T_outer_inner.apply(extremes)
-        if ((points >= low) & (points <= high)).all() and winding_numbers(points[:1], outer.corners)[0] > 0.5:
-            return True
-    return False
+    return bool((points >= low).all() and (points <= high).all()) and bool(winding_numbers(points[:1], outer.corners)[0] > 0.5)
 
 
 def _placed(b: Body, T_a_b: SE3) -> Any:
@@ -166,8 +194,21 @@ def _sampled_depth(piece: Any, a: Body, b: Body, T_a_b: SE3) -> float:
     largest = np.argsort(-areas, kind="stable")[:_DEPTH_SAMPLES]
     stride = max(1, len(vertices) // _DEPTH_SAMPLES)
     points = np.concatenate([vertices[::stride], corners[largest].mean(axis=1)])
+    asked = _other_surfaces(mesh, triangles, a, b)
+    at = np.empty(len(vertices), dtype=np.int64)
+    at[triangles] = np.arange(len(triangles))[:, None]
+    asked = asked[np.concatenate([at[::stride], largest])]
     inverse = T_a_b.inverse().apply(points)
-    return max(max(point_distance(a, here), point_distance(b, there)) for here, there in zip(points, inverse, strict=True))
+    depths = [point_distance(a, point) for point in points[asked[:, 0]]] + [point_distance(b, point) for point in inverse[asked[:, 1]]]
+    return max(depths)
+
+
+def _other_surfaces(mesh: Any, triangles: NDArray[np.int64], a: Body, b: Body) -> NDArray[np.bool_]:
+    """Return of each triangle of a common solid whether its distance from a, and from b, is to be asked, `(T, 2)`: not from its own."""
+    if a.manifold_id == b.manifold_id:  # the same mesh twice
+        return np.ones((len(triangles), 2), dtype=bool)
+    of = np.repeat(np.asarray(mesh.run_original_id), np.diff(np.asarray(mesh.run_index)) // 3)
+    return np.stack([of != a.manifold_id, of != b.manifold_id], axis=1)
 
 
 def point_distance(body: Body, point: FloatArray) -> float:

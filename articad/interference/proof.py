@@ -125,7 +125,7 @@ class Prover:
 
     def prove(self, *, most: int = MOST_PAIRS, tentative: bool = False) -> Proof:
         """Prove the whole range, or what of a single coordinate can be; a tentative proof ends at the first contact."""
-        start = measured(self.body_a, self.body_b, SE3.from_matrix(self.chain.matrix(self.chain.rest)))
+        start = measured(self.body_a, self.body_b, self.chain.matrix(self.chain.rest)[:3])
         begun = Proof(self.parts, self.joints, overlap=start, epsilon=self.epsilon)
         if start.depth > self.allowed and start.volume > UNRELATED_VOLUME_MM3:
             return replace(begun, contacts=(self.named(self.chain.rest),))
@@ -294,7 +294,7 @@ class Prover:
         assert outcome.trail is not None
         assert outcome.course is not None
         boxes = outcome.course
-        rows = outcome.trail.written(len(boxes.roots) - 1)
+        rows = outcome.trail.written()
         trees = self._trees(shrink)
         orders = trees[0].order, trees[1].order
         return Claim(
@@ -305,18 +305,17 @@ class Prover:
             overlap=start.volume,
             shrink=shrink.depth,
             clear=self.margin,
-            course=Course(moved, orders, tuple(boxes.roots), cuts_of(boxes), rows),
+            course=Course(moved, orders, *cuts_of(boxes), rows),
         )
 
 
-def cuts_of(boxes: Boxes) -> NDArray[np.int64]:
-    """Return which coordinate each box was cut across, in the order in which they came from others."""
-    numbers, found = list(range(len(boxes.roots) - 1)), []
+def cuts_of(boxes: Boxes) -> tuple[NDArray[np.int64], FloatArray]:
+    """Return which coordinate each box was cut across, and where, in the order in which they came from others."""
+    numbers = [0]
     for number in numbers:
-        found.append(boxes.columns[number])
-        if found[-1] >= 0:
+        if boxes.columns[number] >= 0:
             numbers += boxes.halves[number]
-    return np.array(found)
+    return np.array(boxes.columns)[numbers], np.array(boxes.places)[numbers]
 
 
 def beyond(chain: Chain, speeds: FloatArray, start: Sequence[float], depth: float) -> Iterator[tuple[float, ...]]:

@@ -17,6 +17,11 @@ from articad.kinematics.joints import Joint
 
 FloatArray = NDArray[np.float64]
 
+BoolArray = NDArray[np.bool_]
+IntArray = NDArray[np.int64]
+
+_PARALLEL = 1e-12  # added to the cosines between edges
+_NEXT, _LAST = [1, 2, 0], [2, 0, 1]
 _BOX_MARGIN_MM = 1e-6  # boxes of touching faces must meet, however they round
 
 
@@ -56,6 +61,11 @@ class Scene:
         return {name: body_of(mesh) for name, mesh in self.meshes.items()}
 
     @cached_property
+    def index(self) -> dict[str, int]:
+        """Place of each part among the bodies."""
+        return {name: at for at, name in enumerate(self.bodies)}
+
+    @cached_property
     def broken(self) -> dict[str, str]:
         """Parts whose meshes are no solids, with the reason."""
         return {name: body.fault for name, body in self.bodies.items() if body.fault is not None}
@@ -80,19 +90,93 @@ class Scene:
         bounds = bounds.reshape(-1, 2, 3)
         return (bounds[:, 0] + bounds[:, 1]) / 2, (bounds[:, 1] - bounds[:, 0]) / 2
 
-    def boxes_at(self, poses: Mapping[str, SE3]) -> tuple[FloatArray, FloatArray]:
-        """Return lower and upper corners of the parts' boxes in the ground frame, `(N, 3)` each [mm]."""
-        centres, halves = self.local_boxes
-        R = np.array([poses[name].rotation for name in self.bodies]).reshape(-1, 3, 3)
-        t = np.array([poses[name].translation for name in self.bodies]).reshape(-1, 3)
-        middle = np.einsum("nij,nj->ni", R, centres) + t
-        reach = np.einsum("nij,nj->ni", np.abs(R), halves)
-        return middle - reach, middle + reach
+    def at(self, poses: Mapping[str, SE3]) -> Placement:
+        """Return the bodies where these poses of parts put them."""
+        data = np.array([poses[name].data for name in self.bodies]).reshape(-1, 7)
+        return Placement(self, np.asarray(SE3.from_unit_array(data).matrix)[:, :3])
 
     def candidates(self, poses: Mapping[str, SE3], margin: float = _BOX_MARGIN_MM) -> list[tuple[str, str]]:
         """Return the pairs whose boxes are closer than `margin` [mm]."""
-        low, high = self.boxes_at(poses)
-        names = list(self.bodies)
+        return self.at(poses).candidates(margin)
+
+    def boxes(self, matrices: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return lower and upper corners of the bodies' boxes, `(*batch, N, 3)` each [mm], where matrices `(*batch, N, 3, 4)` put them."""
+        centres, halves = self.local_boxes
+        R = matrices[..., :3]
+        middle = np.einsum("...nij,nj->...ni", R, centres) + matrices[..., 3]
+        reach = np.einsum("...nij,nj->...ni", np.abs(R), halves)
+        return middle - reach, middle + reach
+
+    def apart(self, i: int | IntArray, j: int | IntArray, T_i_j: FloatArray) -> BoolArray:
+        """Return at which relative poses the boxes of two bodies, turned with them, are apart, `(n,)`.
+
+        Args:
+            i: Place of a body, or of one for each pose.
+            j: Of another.
+            T_i_j: Where that stands as seen from the first, `(n, 3, 4)` [mm].
+        """
+        centres, halves = self.local_boxes
+        return boxes_apart((centres[i], halves[i]), (centres[j], halves[j]), T_i_j)
+
+
+def relatives(A: FloatArray, B: FloatArray) -> FloatArray:
+    """Return where bodies at `B` stand as seen from those at `A`, all `(n, 3, 4)` [mm]."""
+    back = A[..., :3].transpose(0, 2, 1)
+    return np.concatenate([back @ B[..., :3], back @ (B[..., 3:] - A[..., 3:])], axis=2)
+
+
+def boxes_apart(a: tuple[FloatArray, FloatArray], b: tuple[FloatArray, FloatArray], T_a_b: FloatArray) -> BoolArray:
+    """Return at which relative poses `(n, 3, 4)` two boxes are apart, `(n,)`.
+
+    Fifteen directions decide: three of each box, and those across an edge of each (Gottschalk, Lin and Manocha 1996).
+
+    Args:
+        a: Centre and half sides in its own frame, `(3,)` each [mm], or `(n, 3)`.
+        b: Of the other box.
+        T_a_b: Where that stands as seen from the first [mm].
+    """
+    R, h, g = T_a_b[..., :3], np.atleast_2d(a[1]), np.atleast_2d(b[1])
+    d = np.einsum("nij,nj->ni", R, np.broadcast_to(b[0], (len(R), 3))) + T_a_b[..., 3] - a[0]
+    size = np.abs(R) + _PARALLEL  # of two edges that are parallel nothing lies across
+    beyond = np.abs(d) - h - (size * g[:, None]).sum(axis=2)
+    beyond = np.concatenate([beyond, np.abs((R * d[:, :, None]).sum(axis=1)) - g - (size * h[:, :, None]).sum(axis=1)], axis=1)
+    found = (beyond > _BOX_MARGIN_MM).any(axis=1)
+    for k, after, last in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):  # along edge k of a times each edge of b
+        across = np.abs(d[:, last, None] * R[:, after] - d[:, after, None] * R[:, last])
+        reach = h[:, after, None] * size[:, last] + h[:, last, None] * size[:, after]
+        reach = reach + g[:, _NEXT] * size[:, k][:, _LAST] + g[:, _LAST] * size[:, k][:, _NEXT]
+        found |= (across > reach + _BOX_MARGIN_MM).any(axis=1)
+    return np.asarray(found)
+
+
+@dataclass(frozen=True, eq=False)
+class Placement:
+    """The bodies of a scene at one pose.
+
+    Attributes:
+        scene: Whose bodies.
+        matrices: `T_ground_part` of each, `(N, 3, 4)` [mm].
+    """
+
+    scene: Scene
+    matrices: FloatArray
+
+    def relative(self, a: str, b: str) -> FloatArray:
+        """Return where b stands as seen from a, `(3, 4)` [mm]."""
+        A, B = self.matrices[self.scene.index[a]], self.matrices[self.scene.index[b]]
+        T = A[:, :3].T @ B
+        T[:, 3] -= A[:, :3].T @ A[:, 3]
+        return np.asarray(T)
+
+    def apart(self, pairs: Sequence[tuple[str, str]]) -> BoolArray:
+        """Return of which pairs the boxes, turned with the bodies, are apart, `(n,)`."""
+        i, j = np.array([[self.scene.index[name] for name in pair] for pair in pairs], dtype=np.int64).reshape(-1, 2).T
+        return self.scene.apart(i, j, relatives(self.matrices[i], self.matrices[j]))
+
+    def candidates(self, margin: float = _BOX_MARGIN_MM) -> list[tuple[str, str]]:
+        """Return the pairs whose boxes, along the axes of the ground, are closer than `margin` [mm]."""
+        low, high = self.scene.boxes(self.matrices)
+        names = list(self.scene.bodies)
         order = np.argsort(low[:, 0], kind="stable")
         pairs: list[tuple[int, int]] = []
         # along x the boxes are sorted, so that each is compared with those that begin before it ends: no N x N table

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from articad.geometry.mesh import TriMesh
-from articad.interference.body import make_bvh
+from articad.interference.body import body_of, make_bvh
 
 FloatArray = NDArray[np.float64]
 
@@ -76,7 +76,7 @@ def whole_surface(mesh: TriMesh) -> Surface:
     """Return the whole surface of a mesh; made once, since every pair that the part belongs to asks for it."""
     surface = _whole.get(mesh)
     if surface is None:
-        surface = _whole[mesh] = Surface.of(mesh)
+        surface = _whole[mesh] = Surface(body_of(mesh).corners)
     return surface
 
 

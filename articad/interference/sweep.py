@@ -7,22 +7,23 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from itertools import combinations, product
+from functools import cached_property
+from itertools import combinations, compress, product
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from articad.connectors.se3 import SE3
 from articad.errors import KinematicsError
 from articad.findings import Finding, Findings
 from articad.geometry.mesh import TriMesh
 from articad.interference.check import broken_finding, unknown_pairs
 from articad.interference.motion import ENDLESS_SLIDE_MM, Freedom, driver_values, freedoms, scattered
-from articad.interference.overlap import VOLUME_NOISE_MM3, Overlap, may_overlap, overlap, volume
+from articad.interference.overlap import VOLUME_NOISE_MM3, Overlap, common, may_overlap, overlap_of, se3_of
 from articad.interference.relations import FitLike, WaiverLike
 from articad.interference.report import Checks, PairCheck, Strength
-from articad.interference.scene import Scene
+from articad.interference.scene import Scene, relatives
+from articad.interference.turning import Turning
 from articad.interference.verdict import UNRELATED_VOLUME_MM3, judge
 from articad.kinematics.joints import Joint
 from articad.kinematics.mechanism import Mechanism
@@ -32,16 +33,24 @@ FloatArray = NDArray[np.float64]
 DEFAULT_STEPS = 60
 ENDLESS_SAMPLED_MM = 100.0  # either way of rest, of what slides without limits
 _KEY_DIGITS = 9  # of millimetres and of rotation entries: relative poses that agree so far are one
+_WORTH_OUTLINES = 8  # poses to ask for from which comparing outlines first is cheaper
 _DEEPEST = 2  # poses of largest volume at which the depth of a pair is measured
 
 
 @dataclass
 class _Track:
-    """What was seen of one pair: volume by relative pose, and where."""
+    """What was seen of one pair: volume by relative pose, and where; of the largest the solid that both have in common."""
 
     volumes: dict[bytes, float] = field(default_factory=dict)
     poses: dict[bytes, tuple[FloatArray, int]] = field(default_factory=dict)
+    solids: dict[bytes, Any] = field(default_factory=dict)
     seen: int = 0
+
+    def keep(self, key: bytes, solid: Any) -> None:
+        """Keep a solid while it is among the largest."""
+        self.solids[key] = solid
+        if len(self.solids) > _DEEPEST:
+            del self.solids[min(self.solids, key=self.volumes.__getitem__)]
 
 
 def sweep(
@@ -117,11 +126,12 @@ class Sweep:
     def sampled(self, points: Sequence[Mapping[str, float]], over: tuple[str, ...], step: float | None) -> Checks:
         """Check poses given by values of freedoms, the others at rest."""
         try:
-            poses = self.mechanism.poses(np.array([self.columns(point) for point in points])).data
+            poses = self.mechanism.poses(np.array([self.columns(point) for point in points])).matrix
         except KinematicsError as error:
             return self._unreached(error, over)
-        matrices = _matrices(poses[:, [self.mechanism.part_index(name) for name in self.scene.bodies]])
-        tracks = self._tracks(matrices)
+        matrices = poses[:, [self.mechanism.part_index(name) for name in self.scene.bodies], :3]
+        turning = Turning.of(self.scene, self.mechanism, over[0], poses[0], matrices[0]) if len(over) == 1 else None
+        tracks = self._tracks(matrices, turning)
         findings: list[Finding] = []
         pairs: list[PairCheck] = []
         strength = Strength.sampled(len(points), step)
@@ -135,16 +145,21 @@ class Sweep:
     def columns(self, point: Mapping[str, float]) -> list[float]:
         """Return the drivers' values `(nq,)` for values of some freedoms, the others at rest."""
         row: list[float] = []
-        for joint in self.driving:
-            values = driver_values(joint, [point.get(freedom.name, freedom.rest) for freedom in freedoms(joint)])
-            driven = {coordinate.name for coordinate in self.mechanism.drivers if coordinate.joint == joint.name}
-            row += [value for name, value in zip(joint.column_names, values, strict=True) if name in driven]
+        for joint, moves, is_driven in self._driving:
+            values = driver_values(joint, [point.get(freedom.name, freedom.rest) for freedom in moves])
+            row += compress(values, is_driven)
         return row
 
-    def _tracks(self, matrices: FloatArray) -> dict[tuple[str, str], _Track]:
-        """Measure the overlap volume of every candidate pair at every pose, each relative pose once."""
+    @cached_property
+    def _driving(self) -> list[tuple[Joint, tuple[Freedom, ...], list[bool]]]:
+        """Each joint that drives, along what it moves, and which of its coordinates are drivers."""
+        names = {coordinate.name for coordinate in self.mechanism.drivers}
+        return [(joint, freedoms(joint), [name in names for name in joint.column_names]) for joint in self.driving]
+
+    def _tracks(self, matrices: FloatArray, turning: Turning | None) -> dict[tuple[str, str], _Track]:
+        """Measure the overlap volume of every candidate pair at every pose, each relative pose once, and none that cannot be."""
         names = list(self.scene.bodies)
-        low, high = _boxes(self.scene, matrices)
+        low, high = self.scene.boxes(matrices)
         tracks: dict[tuple[str, str], _Track] = {}
         for i, j in combinations(range(len(names)), 2):
             a, b = names[i], names[j]
@@ -153,26 +168,31 @@ class Sweep:
             near = np.flatnonzero(((low[:, i] <= high[:, j]) & (low[:, j] <= high[:, i])).all(axis=1))
             if not len(near):
                 continue
-            R, t = matrices[near, i, :3, :3].transpose(0, 2, 1), matrices[near, j, :3, 3] - matrices[near, i, :3, 3]
-            relative = np.concatenate([R @ matrices[near, j, :3, :3], (R @ t[:, :, None])], axis=2)
-            keys = np.round(relative, _KEY_DIGITS) + 0.0
             track = tracks[a, b] = _Track(seen=len(matrices))
-            for at, key_row, pose in zip(near.tolist(), keys, relative, strict=True):
-                key = key_row.tobytes()
-                if key not in track.volumes:
-                    track.volumes[key] = self._volume(a, b, key, pose)
-                    track.poses[key] = (pose, at)
-            if len(near) < len(matrices):
+            relative = relatives(matrices[near, i], matrices[near, j])
+            asked = np.flatnonzero(~self.scene.apart(i, j, relative))
+            keys = [key.tobytes() for key in np.round(relative, _KEY_DIGITS) + 0.0]
+            if turning is not None and len({keys[at] for at in asked}) >= _WORTH_OUTLINES:
+                asked = asked[~turning.apart(i, j, relative[asked])]
+            for at in asked.tolist():
+                if keys[at] not in track.volumes:
+                    track.poses[keys[at]] = (relative[at], int(near[at]))
+                    self._ask(track, (a, b), keys[at], relative[at])
+            if len(track.volumes) == 0 or len(asked) < len(matrices):
                 track.volumes.setdefault(b"", 0.0)  # where the boxes are apart there is nothing
         return tracks
 
-    def _volume(self, a: str, b: str, key: bytes, pose: FloatArray) -> float:
-        known = self._known.setdefault((a, b), {})
+    def _ask(self, track: _Track, pair: tuple[str, str], key: bytes, pose: FloatArray) -> None:
+        known = self._known.setdefault(pair, {})
         if key not in known:
             self.queries += 1
-            body_a, body_b = self.scene.bodies[a], self.scene.bodies[b]
-            known[key] = volume(body_a, body_b, pose) if may_overlap(body_a, body_b, pose) else 0.0
-        return known[key]
+            a, b = (self.scene.bodies[name] for name in pair)
+            solid = common(a, b, pose) if may_overlap(a, b, pose) else None
+            known[key] = 0.0 if solid is None else float(solid.volume())
+            if known[key] > VOLUME_NOISE_MM3:
+                track.volumes[key] = known[key]
+                track.keep(key, solid)
+        track.volumes[key] = known[key]
 
     def _judged(
         self, parts: tuple[str, str], track: _Track, points: Sequence[Mapping[str, float]], over: tuple[str, ...], strength: Strength
@@ -182,7 +202,8 @@ class Sweep:
         for key in largest:
             if track.volumes[key] > max(UNRELATED_VOLUME_MM3, VOLUME_NOISE_MM3):
                 pose, at = track.poses[key]
-                found = overlap(self.scene.bodies[parts[0]], self.scene.bodies[parts[1]], _as_se3(pose))
+                a, b = (self.scene.bodies[name] for name in parts)
+                found = overlap_of(track.solids.get(key) or common(a, b, pose), a, b, se3_of(pose))
                 if found.depth > worst.depth:
                     worst, where = found, points[at]
         if where is None and largest and track.volumes[largest[0]] > VOLUME_NOISE_MM3:
@@ -208,21 +229,3 @@ def _sampled(freedom: Freedom) -> Freedom:
     return freedom._replace(
         lower=max(freedom.lower, freedom.rest - ENDLESS_SAMPLED_MM), upper=min(freedom.upper, freedom.rest + ENDLESS_SAMPLED_MM)
     )
-
-
-def _matrices(poses: FloatArray) -> FloatArray:
-    """Turn poses `(n, N, 7)` into matrices `(n, N, 3, 4)`."""
-    return np.asarray(SE3(np.ascontiguousarray(poses)).matrix)[..., :3, :]
-
-
-def _boxes(scene: Scene, matrices: FloatArray) -> tuple[FloatArray, FloatArray]:
-    centres, halves = scene.local_boxes
-    middle = np.einsum("snij,nj->sni", matrices[..., :3], centres) + matrices[..., 3]
-    reach = np.einsum("snij,nj->sni", np.abs(matrices[..., :3]), halves)
-    return middle - reach, middle + reach
-
-
-def _as_se3(pose: FloatArray) -> SE3:
-    T: Any = np.eye(4)
-    T[:3] = pose
-    return SE3.from_matrix(T)

@@ -1,8 +1,8 @@
 """What a search did with each two pieces in a box, kept so that somebody else can follow it without searching.
 
-Rows are numbered as they come; each is settled by a direction, cut into two further rows, or left out. Written down they stand level
-by level, the rows that were cut first before the others, which is the order in which a checker meets them again. Rows of which nothing is
-noted lie outside what the joints allow.
+Rows are numbered as they come; each is settled by a direction, cut into two further rows, or left out. Written down they stand in the
+order of a queue: the two halves of what is cut, one after the other, come behind all that waits already. Rows of which nothing is noted lie
+outside what the joints allow.
 """
 
 from __future__ import annotations
@@ -58,7 +58,7 @@ class Trail:
             self._cuts.append((rows, code, int(found[0])))
         return found
 
-    def written(self, roots: int) -> Written:
+    def written(self) -> Written:
         """Return the trail as a checker reads it."""
         codes, first = np.full(self.count, OUTSIDE, dtype=np.int64), np.zeros(self.count, dtype=np.int64)
         for rows, code, begin in self._cuts:
@@ -69,10 +69,9 @@ class Trail:
         )
         unique, where = np.unique(keys, axis=0, return_inverse=True)
         codes[settled] = where.ravel()
-        level: IntArray = np.arange(roots)
-        out = []
+        level, out = np.array([0]), []
         while len(level):
-            found = codes[level]
-            out.append(found)
-            level = np.concatenate([first[level[found == cut]] + side for cut in (CUT_A, CUT_B, CUT_RANGE) for side in (0, 1)])
+            out.append(codes[level])
+            parted = level[(CUT_A <= out[-1]) & (out[-1] <= CUT_RANGE)]
+            level = np.stack([first[parted], first[parted] + 1], axis=1).ravel()
         return Written(np.concatenate(out), unique[:, 1:], np.searchsorted(unique[:, 0], [OF_B, ROUND_A, ROUND_B]))

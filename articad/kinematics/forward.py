@@ -12,7 +12,7 @@ from articad.connectors import SE3, FloatArray
 from articad.errors import KinematicsError
 from articad.kinematics.crossings import Crossing
 from articad.kinematics.joints import Joint, JointType
-from articad.kinematics.layout import IndexArray
+from articad.kinematics.layout import QUATERNION_TOLERANCE, IndexArray
 
 if TYPE_CHECKING:
     from articad.kinematics.mechanism import Mechanism
@@ -20,24 +20,21 @@ if TYPE_CHECKING:
 # pinocchio.Data allocates about this many bytes times nv³ (68 MiB at nv = 100, 4.0 GiB at nv = 400, measured with 4.1.0)
 _DATA_BYTES_PER_CUBE = 64
 _DATA_LIMIT_BYTES = 1 << 30
+_ONE = np.ones(())  # an array: making one of a number takes longer than the signs of ten parts
 
 
 class _Map(NamedTuple):
     """From the coordinates of all joints to Pinocchio's configuration.
 
     Attributes:
-        places: In Pinocchio's q, of coordinates that it has as they are.
-        columns: Of these coordinates here.
-        signs: −1 where it measures the other way.
-        directions: Places of the cosine and, next to it, the sine of each planar joint's angle.
-        turned: Columns of these angles.
+        columns: For each place in Pinocchio's q, the column of the coordinate that it comes from.
+        signs: −1 where Pinocchio measures the other way.
+        turned: Places of the cosine, before the sine, of each planar joint's angle; None without any.
     """
 
-    places: IndexArray
     columns: IndexArray
     signs: FloatArray
-    directions: IndexArray
-    turned: IndexArray
+    turned: IndexArray | None
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,51 +66,59 @@ class CompiledModel:
         return self.model.createData()
 
     def q(self, Q: FloatArray) -> FloatArray:
-        """Return Pinocchio's configuration `(nq,)` for the coordinates `(n_columns,)` of all joints of the mechanism."""
+        """Return Pinocchio's configuration `(nq,)` for the coordinates `(n_columns,)` of all joints of the mechanism.
+
+        Raises:
+            KinematicsError: E_NONFINITE; E_QUAT_NORM if a ball's quaternion is off by more than 1e-3.
+        """
         map_ = self._map
-        Q = self.mechanism.layout.normalized(Q)
-        q = np.empty(self.model.nq)
-        q[map_.places] = Q[map_.columns] * map_.signs
-        if map_.turned.size:  # a planar joint's angle is a direction there
-            angle = Q[map_.turned]
-            q[map_.directions], q[map_.directions + 1] = np.cos(angle), np.sin(angle)
-        return q
+        q = map_.signs * Q.take(map_.columns)
+        if not q.dot(q) < np.inf:  # so that nothing below is asked for the cosine of infinity
+            self.mechanism.layout.normalized(Q)
+        if map_.turned is not None:  # a planar joint's angle is a direction there
+            q[map_.turned] = np.cos(q[map_.turned])
+            q[map_.turned + 1] = np.sin(q[map_.turned + 1])
+        unit: FloatArray = self._pin.normalize(self.model, q)
+        off = unit - q  # of a quaternion it is as long as its length is off
+        if not off.dot(off) < QUATERNION_TOLERANCE**2:
+            self.mechanism.layout.normalized(Q)  # says what is wrong, if anything is: here the errors of all balls were added
+        return unit
 
     @cached_property
     def _map(self) -> _Map:
-        places: list[int] = []
-        columns: list[int] = []
-        signs: list[float] = []
-        directions: list[int] = []
+        columns, signs = np.zeros(self.model.nq, dtype=np.intp), np.ones(self.model.nq)
         turned: list[int] = []
         for c, joint_id in zip(self.crossings, self.joint_ids, strict=True):
             if not c.joint.type.freedoms:
                 continue
             first, start = self.mechanism.layout.columns[c.joint.name].start, self.model.joints[joint_id].idx_q
             n = len(c.signs)
+            columns[start : start + n] = range(first, first + n)
+            signs[start : start + n] = c.signs
             if c.joint.type is JointType.PLANAR:
-                n -= 1
-                directions.append(start + n)
-                turned.append(first + n)
-            places += range(start, start + n)
-            columns += range(first, first + n)
-            signs += c.signs[:n].tolist()
-        index = [np.array(values, dtype=np.intp) for values in (places, columns, directions, turned)]
-        return _Map(index[0], index[1], np.array(signs), index[2], index[3])
+                turned.append(start + n - 1)
+                columns[start + n], signs[start + n] = columns[start + n - 1], signs[start + n - 1]
+        return _Map(columns, signs, np.array(turned, dtype=np.intp) if turned else None)
 
     @cached_property
-    def _frame_order(self) -> IndexArray:
-        return np.array([self.frame_ids[part] for part in self.mechanism.parts], dtype=np.intp)
+    def _placed(self) -> list[Any]:
+        """Pinocchio's poses of the parts, in their order: the objects in `data`, which each call moves."""
+        placed = self.data.oMf.tolist()
+        return [placed[self.frame_ids[part]] for part in self.mechanism.parts]
 
     def poses(self, Q: FloatArray) -> SE3:
         """Return the poses `(N,)` of all parts for the coordinates `(n_columns,)` of all joints.
 
         For one configuration this is several times faster than `Mechanism.poses`; Pinocchio's `Data` has to fit.
+
+        Raises:
+            KinematicsError: As `q`, and if `data` would take more than 1 GiB.
         """
-        pin, data = self._pin, self.data
-        pin.framesForwardKinematics(self.model, data, self.q(Q))
-        placed = np.array([pin.SE3ToXYZQUAT(M) for M in data.oMf.tolist()])[self._frame_order]
-        placed[:, 3:] *= np.copysign(1.0, placed[:, 6:])
+        pin = self._pin
+        pin.framesForwardKinematics(self.model, self.data, self.q(Q))
+        placed = np.concatenate(list(map(pin.SE3ToXYZQUAT, self._placed))).reshape(-1, 7)
+        rotations = placed[:, 3:]
+        np.multiply(rotations, np.copysign(_ONE, placed[:, 6:]), out=rotations)
         return SE3.from_unit_array(placed)
 
     @cached_property

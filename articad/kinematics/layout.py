@@ -15,7 +15,7 @@ from articad.kinematics.joints import Coordinate, Joint, JointType
 
 IndexArray = npt.NDArray[np.intp]
 
-_QUATERNION_TOLERANCE = 1e-3  # | ‖q‖ − 1 | of given coordinates: rounding passes, other quantities do not
+QUATERNION_TOLERANCE = 1e-3  # | ‖q‖ − 1 | of given coordinates: rounding passes, other quantities do not
 _N_COLUMNS = {joint_type: len(joint_type.coordinates) for joint_type in JointType}
 _N_FREEDOMS = {joint_type: joint_type.freedoms for joint_type in JointType}
 
@@ -113,7 +113,7 @@ class Layout:
             q = Q[..., self._ball_columns]
             norm = np.sqrt((q * q).sum(axis=-1, keepdims=True))
             off = np.abs(norm - 1)
-            if off.max(initial=0.0) > _QUATERNION_TOLERANCE:
+            if off.max(initial=0.0) > QUATERNION_TOLERANCE:
                 worst = np.unravel_index(np.argmax(off), off.shape)
                 name, length = self.coordinates[self._ball_columns[worst[-2], 0]].joint, float(norm[worst])
                 raise KinematicsError(f"E_QUAT_NORM: ball {name!r} was given a quaternion of length {length:.6g}; its length must be 1.")

@@ -124,11 +124,14 @@ class Track:
             return None
         angles = np.array([c.unit == "rad" for c in layout.coordinates])
         for turns in range(1, _MOST_TURNS + 1):
-            trace = self.side(self.start + sign * 2 * math.pi * turns)
+            value = self.start + sign * 2 * math.pi * turns
+            trace = self.side(value)
             if trace.stop is not Stop.ARRIVED:
                 return None
-            node = next(node for node in trace.nodes if node.s >= 2 * math.pi * turns - ROUNDING)
-            change = node.Q - self.Q
+            Q, reached, _ = self._on_side(trace, np.array([value]))  # a trace that went farther before need not have a node here
+            if not reached[0]:
+                return None
+            change = Q[0] - self.Q
             advance = np.where(angles, 2 * math.pi * np.round(change / (2 * math.pi)), 0.0)
             if np.abs(change - advance).max() < _SAME:
                 return Period(2 * math.pi * turns, advance)

@@ -144,7 +144,7 @@ class Tools:
         explode: float = 0.0,
         overlaps: bool = False,
     ) -> list[Any]:
-        """Pictures: views (iso, iso_left, iso_back, iso_below, front, back, left, right, top, below), or a joint's motion."""
+        """Pictures: views (iso, iso_left, iso_back, iso_below, front, back, left, right, top, bottom), or a joint's motion."""
         folder = tempfile.mkdtemp(prefix=".pictures-", dir=self.bench.root)
         try:
             words = ["--motion", motion] if motion else ["--views", ",".join(views[:_PICTURES]), "--explode", repr(explode)]

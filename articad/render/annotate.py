@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +15,10 @@ from articad.render.scene import Axis, Scene
 
 FloatArray = NDArray[np.float64]
 Color = tuple[int, int, int]
+Labels = bool | Literal["aside"]
+"""Whether parts bear their names, or have them beside the picture, each with a line to its part."""
+
+_Name = tuple[tuple[float, float], str, Color]  # where what it names is, the name, its colour
 
 INK: Color = (30, 34, 40)
 QUIET: Color = (110, 116, 124)
@@ -29,24 +34,33 @@ _SMALLEST_RING = 13.0  # pixels: radius round a highlight however small it is
 _LARGEST_RING = 0.16  # of the picture's width: a larger highlight is seen without a ring
 _MOST_RINGS = 12
 _LOWERED = 4  # how often a name gives way to others before it is left out
+_MOST_ASIDE = 40  # names beside a picture, joints' among them: more do not stand under each other
+_LINE = 15  # pixels from one name in a column to the next
+_WIDEST_NAME = 190  # pixels
+_ABOVE, _BELOW = 26, 92  # pixels of a column that the title takes, and the arrows of the axes with the last name's own height
 _TRIAD_PIXELS = 26
 _AXIS_SHARE = 0.13  # of the picture's width, to each side of the joint
 
 
 def annotate(
-    image: Image.Image, scene: Scene, camera: Camera, buffers: Buffers, *, labels: bool, axes: bool, title: str | None
+    image: Image.Image, scene: Scene, camera: Camera, buffers: Buffers, *, labels: Labels, axes: bool, title: str | None
 ) -> Image.Image:
     """Return the picture with its annotations; `buffers` may have more pixels than the picture."""
     draw = ImageDraw.Draw(image)
     taken: list[tuple[float, float, float, float]] = []
+    names: list[_Name] = []
     _rings(draw, camera, buffers, taken)
     if axes:
         shown = scene.axes if len(scene.axes) <= _MOST_AXES else ()
-        anchors = [_joint_axis(draw, axis, camera, taken) for axis in shown]
-        for axis, anchor in zip(shown, anchors, strict=True):  # all marks first: none lies on a name
-            _place(draw, anchor, axis.name, JOINT, camera, taken)
+        marks = [_joint_axis(draw, axis, camera, taken) for axis in shown]
+        names += [(mark[labels == "aside"], axis.name, JOINT) for axis, mark in zip(shown, marks, strict=True)]
     if labels:
-        _part_names(draw, scene, camera, buffers, taken)
+        names += _part_names(scene, camera, buffers, _MOST_ASIDE if labels == "aside" else _MOST_NAMES)
+    if labels == "aside":
+        _columns(draw, names[:_MOST_ASIDE], camera)
+    else:
+        for at, text, color in names:  # all marks first: none lies on a name
+            _place(draw, at, text, color, camera, taken)
     _triad(draw, camera)
     _scale_bar(draw, camera)
     if title:
@@ -89,24 +103,57 @@ def _place(
     _text(draw, (left, top), text, color)
 
 
-def _part_names(
-    draw: ImageDraw.ImageDraw, scene: Scene, camera: Camera, buffers: Buffers, taken: list[tuple[float, float, float, float]]
-) -> None:
-    """Name the parts of which most is seen; small ones are left out where names would hide the picture."""
+def room_beside(scene: Scene) -> int:
+    """Return the width of the column on each side of a picture whose names stand aside [pixels]."""
+    names = {item.name for item in scene.items} | {axis.name for axis in scene.axes}
+    return min(max((math.ceil(_measured(name)) for name in names), default=0), _WIDEST_NAME) + 10
+
+
+def _measured(text: str) -> float:
+    return float(font(11).getlength(text))
+
+
+def _columns(draw: ImageDraw.ImageDraw, names: list[_Name], camera: Camera) -> None:
+    """Write names beside the picture, left and right, each with a line to what it names."""
+    across = sorted(names, key=lambda name: (name[0][0], name[0][1]))
+    half = len(across) // 2
+    for left, column in ((True, across[:half]), (False, across[half:])):
+        tops, lowest = [], _ABOVE - _LINE
+        down = sorted(column, key=lambda name: name[0][1])
+        for (_, y), _, _ in down:
+            lowest = max(lowest + _LINE, round(y) - _LINE // 2)
+            tops.append(lowest)
+        highest = camera.height - _BELOW + _LINE
+        for index in reversed(range(len(tops))):  # what does not fit below moves up, and pushes those above it
+            tops[index] = highest = min(tops[index], highest - _LINE)
+        for (at, text, color), top in zip(down, tops, strict=True):
+            width = _measured(text)
+            x = 4.0 if left else camera.width - 4 - width
+            end = x + width + 3 if left else x - 3
+            for fill, thick in ((HALO, 3), (color if color == JOINT else QUIET, 1)):
+                draw.line([(end, top + _LINE // 2), at], fill=fill, width=thick)
+            draw.ellipse((at[0] - 2.5, at[1] - 2.5, at[0] + 2.5, at[1] + 2.5), fill=color, outline=HALO)
+            _text(draw, (x, top), text, color)
+
+
+def _part_names(scene: Scene, camera: Camera, buffers: Buffers, most: int) -> list[_Name]:
+    """Return the names of the parts of which most is seen, and where; small ones are left out where names would hide the picture."""
     ratio = buffers.item.shape[1] / camera.width
     by_name: dict[str, list[int]] = {}
     for index, item in enumerate(scene.items):
         if item.manner == "solid":
             by_name.setdefault(item.name, []).append(index)
     seen = {name: np.nonzero(np.isin(buffers.item, indices)) for name, indices in by_name.items()}
-    largest = sorted(seen, key=lambda name: -len(seen[name][0]))[:_MOST_NAMES]
+    largest = sorted(seen, key=lambda name: -len(seen[name][0]))[:most]
+    names: list[_Name] = []
     for name in largest:
         rows, columns = seen[name]
         if len(rows) < _SMALLEST_LABELLED * ratio**2:
             continue
         # The pixel nearest to the mean lies on the part, even where the part has a hole in its middle.
         nearest = np.argmin((rows - rows.mean()) ** 2 + (columns - columns.mean()) ** 2)
-        _place(draw, (float(columns[nearest] / ratio), float(rows[nearest] / ratio)), name, INK, camera, taken)
+        names.append(((float(columns[nearest] / ratio), float(rows[nearest] / ratio)), name, INK))
+    return names
 
 
 def _rings(draw: ImageDraw.ImageDraw, camera: Camera, buffers: Buffers, taken: list[tuple[float, float, float, float]]) -> None:
@@ -128,8 +175,8 @@ def _rings(draw: ImageDraw.ImageDraw, camera: Camera, buffers: Buffers, taken: l
 
 def _joint_axis(
     draw: ImageDraw.ImageDraw, axis: Axis, camera: Camera, taken: list[tuple[float, float, float, float]]
-) -> tuple[float, float]:
-    """Draw a joint's axis and its positive motion; return where its name belongs."""
+) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Draw a joint's axis and its positive motion; return where its name belongs, and a point of the axis."""
     direction = np.array(axis.direction)
     along = camera.project(camera.centre + direction * camera.mm_per_pixel) - camera.project(camera.centre[None])
     seen = float(np.linalg.norm(along))
@@ -138,7 +185,7 @@ def _joint_axis(
     if seen < 0.08:
         _end_on(draw, at, towards=towards > 0, turns=axis.turns)
         taken.append((at[0] - _END_ON, at[1] - _END_ON, at[0] + _END_ON, at[1] + _END_ON))
-        return float(at[0]), float(at[1]) - 24
+        return (float(at[0]), float(at[1]) - 24), (float(at[0]), float(at[1]))
     unit = along.reshape(2) / seen
     length = _AXIS_SHARE * camera.width * max(seen, 0.35)
     tail, tip = at - unit * length, at + unit * length
@@ -146,7 +193,8 @@ def _joint_axis(
     _arrow_head(draw, tip, unit)
     if axis.turns:
         _turn_arrow(draw, at + unit * length * 0.72, unit, towards)
-    return float(tip[0] + unit[0] * 14), float(tip[1] + unit[1] * 12)
+    seen_tip = tip if (tip > 0).all() and (tip < (camera.width, camera.height)).all() else at
+    return (float(tip[0] + unit[0] * 14), float(tip[1] + unit[1] * 12)), (float(seen_tip[0]), float(seen_tip[1]))
 
 
 def _dashed(draw: ImageDraw.ImageDraw, start: FloatArray, end: FloatArray) -> None:

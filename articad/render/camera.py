@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -14,7 +14,9 @@ VIEWS: dict[str, tuple[tuple[float, float, float], tuple[float, float, float]]] 
     "iso": ((1.0, -1.4, 0.9), (0.0, 0.0, 1.0)),
     "iso_left": ((-1.0, -1.4, 0.9), (0.0, 0.0, 1.0)),
     "iso_back": ((1.0, 1.4, 0.9), (0.0, 0.0, 1.0)),
+    "iso_back_left": ((-1.0, 1.4, 0.9), (0.0, 0.0, 1.0)),
     "iso_below": ((1.0, -1.4, -0.9), (0.0, 0.0, 1.0)),
+    "iso_below_left": ((-1.0, -1.4, -0.9), (0.0, 0.0, 1.0)),
     "front": ((0.0, -1.0, 0.0), (0.0, 0.0, 1.0)),
     "back": ((0.0, 1.0, 0.0), (0.0, 0.0, 1.0)),
     "left": ((-1.0, 0.0, 0.0), (0.0, 0.0, 1.0)),
@@ -77,6 +79,10 @@ class Camera:
     def scaled(self, factor: int) -> Camera:
         """Return the same picture with `factor` times as many pixels each way."""
         return Camera(self.eye, self.right, self.up, self.centre, self.mm_per_pixel / factor, self.width * factor, self.height * factor)
+
+    def widened(self, columns: int) -> Camera:
+        """Return the same picture with room for `columns` more on either side [pixels]."""
+        return replace(self, width=self.width + 2 * columns)
 
     def project(self, points: ArrayLike) -> FloatArray:
         """Return column and row [pixels, from the upper left corner] of points `(n, 3)`, as `(n, 2)`."""

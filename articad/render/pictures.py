@@ -18,7 +18,7 @@ from articad.geometry.mesh import TriMesh
 from articad.geometry.part import Part
 from articad.kinematics.joints import Coordinate, Joint, JointType
 from articad.render import vtk
-from articad.render.annotate import annotate
+from articad.render.annotate import Labels, annotate, room_beside
 from articad.render.camera import Camera
 from articad.render.overlaps import overlap_meshes
 from articad.render.raycast import cast
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 FloatArray = NDArray[np.float64]
 Renderer = Literal["embree", "pyvista"]
 
-RECIPE = "articad.picture/3"  # changes when the same scene would be drawn differently; part of a model request's key
+RECIPE = "articad.picture/4"  # changes when the same scene would be drawn differently; part of a model request's key
 DEFAULT_VIEWS = ("iso", "front", "right", "top")
 DEFAULT_SIZE = 512
 MOTION_VIEWS = ("iso", "iso_left", "front", "right", "top", "iso_back", "iso_below")
@@ -53,7 +53,7 @@ def picture(
     camera: Camera,
     *,
     supersample: int = 2,
-    labels: bool = True,
+    labels: Labels = True,
     axes: bool = True,
     title: str | None = None,
     renderer: Renderer = "embree",
@@ -64,7 +64,7 @@ def picture(
         scene: What to draw.
         camera: From where.
         supersample: Rays per pixel in each direction; 1 is fastest.
-        labels: Write the parts' names.
+        labels: Write the parts' names; "aside": in columns beside what is drawn.
         axes: Draw the joints' axes with the direction of positive motion.
         title: Written in the upper left corner.
         renderer: "embree" works everywhere and always gives the same pixels; "pyvista" is smoother, where it can be had.
@@ -95,7 +95,7 @@ def render_views(
     highlights: Sequence[TriMesh] = (),
     show_overlaps: bool = False,
     supersample: int = 2,
-    labels: bool = True,
+    labels: Labels = True,
     axes: bool = True,
     renderer: Renderer = "embree",
 ) -> dict[str, Image.Image]:
@@ -112,7 +112,7 @@ def render_views(
         highlights: Meshes in the ground frame drawn over everything.
         show_overlaps: Draw what parts have in common in red, over everything.
         supersample: Rays per pixel in each direction.
-        labels: Write the parts' names.
+        labels: Write the parts' names; "aside": in columns beside what is drawn.
         axes: Draw the joints' axes.
         renderer: As in `picture`.
     """
@@ -123,10 +123,11 @@ def render_views(
         scene = scene.exploded(explode)
     cut = Section.parse(section, scene.bounds) if isinstance(section, str) else section
     scene = Scene(scene.items, scene.axes, cut)
+    beside = room_beside(scene) if labels == "aside" else 0
     return {
         view: picture(
             scene,
-            Camera.fit(view, scene.bounds, width=size, height=size),
+            Camera.fit(view, scene.bounds, width=size, height=size).widened(beside),
             supersample=supersample,
             labels=labels,
             axes=axes,

@@ -17,6 +17,7 @@ Picture = NDArray[np.uint8]
 PAPER = np.array([250.0, 250.0, 248.0])
 INK = np.array([38.0, 42.0, 48.0])
 _AMBIENT, _KEY, _FILL = 0.42, 0.50, 0.16
+_DARKEST = 104.0  # brightness, of 255: edges and hollows of a darker part would not be seen
 _FADE = 0.78  # towards paper, for parts that are only context
 _CREASE = 0.86  # cosine of 30 degrees: a sharper bend between neighbours is an edge
 _STEP_PIXELS = 4.0  # a jump in depth of more pixels than this is an outline
@@ -26,7 +27,7 @@ _OVER_OPACITY = 0.82
 
 def shade(scene: Scene, camera: Camera, buffers: Buffers) -> Picture:
     """Return the picture, `(height, width, 3)`."""
-    colors = np.array([_rgb(item.color) for item in scene.items] or [[0.0, 0.0, 0.0]])
+    colors = _legible(np.array([_rgb(item.color) for item in scene.items] or [[0.0, 0.0, 0.0]]))
     faded = np.array([item.manner == "faded" for item in scene.items] or [False])
     seen = buffers.item != BACKGROUND
     index = np.where(seen, buffers.item, 0)
@@ -65,6 +66,14 @@ def reduced(picture: Picture, factor: int) -> Picture:
 
 def _rgb(color: str) -> list[float]:
     return [float(int(color[start : start + 2], 16)) for start in (1, 3, 5)]
+
+
+def _legible(colors: FloatArray) -> FloatArray:
+    """Return colours `(n, 3)` with the dark ones mixed with white until they are as bright as `_DARKEST`."""
+    brightness = colors @ np.array([0.2126, 0.7152, 0.0722])
+    share = np.clip((_DARKEST - brightness) / (255.0 - np.minimum(brightness, _DARKEST)), 0.0, 1.0)
+    lighter: FloatArray = colors + share[:, None] * (255.0 - colors)
+    return lighter
 
 
 def _light(camera: Camera, normal: NDArray[np.float32]) -> FloatArray:

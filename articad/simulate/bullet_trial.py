@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from articad.simulate.strokes import FREE_SLIDE_M, MOST_JOINTS, MOST_SPEED, PACE_M_S, PACE_RAD_S, STROKE_S, strokes
-from articad.simulate.verdict import Outcome, Reach
+from articad.simulate.verdict import Outcome, Reach, covered
 
 STEPS_PER_S = 240
 HOLD_S = 1.0
@@ -77,9 +77,7 @@ class _Trial:
                 break
             here = self._value(joint)
             low, high = min(low, here), max(high, here)
-        span = joint.upper - joint.lower
-        share = (min(high, joint.upper) - max(low, joint.lower)) / span if span > 0 else 1.0
-        return Reach(joint.name, joint.lower, joint.upper, low, high, max(share, 0.0), joint.unit)
+        return Reach(joint.name, joint.lower, joint.upper, low, high, covered(low, high, joint.lower, joint.upper), joint.unit)
 
     def _joints(self) -> Iterator[_Joint]:
         """Yield hinges and slides; what is unlimited is driven through one turn or a little travel."""

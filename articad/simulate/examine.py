@@ -7,15 +7,16 @@ from pathlib import Path
 
 from articad.assembly import Assembly
 from articad.errors import ArticadError, ReadError
+from articad.export.lowering import lower
 from articad.export.mjcf import write_mjcf
 from articad.export.urdf import write_urdf
+from articad.simulate.expected import held_to_kinematics
 from articad.simulate.loading import Engine
 from articad.simulate.trial import SECONDS, try_out
 from articad.simulate.verdict import Verdict
 
 ENGINES: tuple[Engine, ...] = ("mujoco", "pybullet")
 SUFFIXES = (".urdf", ".xml", ".mjcf")
-_ENDINGS = ("", "__t", "__r", "__x", "__y", "__rx", "__ry", "__rz")
 
 
 def simulate_file(path: str | Path, *, engines: tuple[Engine, ...] = ENGINES, seconds: float = SECONDS) -> Verdict:
@@ -38,16 +39,27 @@ def simulate_file(path: str | Path, *, engines: tuple[Engine, ...] = ENGINES, se
 
 
 def simulate_assembly(assembly: Assembly, file: str, *, engines: tuple[Engine, ...] = ENGINES, seconds: float = SECONDS) -> Verdict:
-    """Export an assembly and hold, drive and let go what was exported: MJCF in MuJoCo, URDF in PyBullet."""
-    drivers = tuple(dict.fromkeys(driver.joint + ending for driver in assembly.drivers for ending in _ENDINGS))
+    """Export an assembly and hold, drive and let go what was exported: MJCF in MuJoCo, URDF in PyBullet, which leaves loops open."""
+    drivers = driving(assembly)
     outcomes = []
     with tempfile.TemporaryDirectory(prefix="articad-simulate-") as folder:
         for engine in engines:
             bundle = (write_mjcf if engine == "mujoco" else write_urdf)(assembly)
             target = Path(folder) / engine
             bundle.write(target)
-            outcomes.append(try_out(engine, target / bundle.main, drivers=drivers, seconds=seconds))
+            outcome = try_out(engine, target / bundle.main, drivers=drivers, seconds=seconds)
+            if engine == "mujoco":
+                outcome = held_to_kinematics(assembly, outcome)
+            else:
+                outcome.open_loops = len(assembly.mechanism.loop_joints)
+            outcomes.append(outcome)
     return Verdict(file, tuple(outcomes))
+
+
+def driving(assembly: Assembly) -> tuple[str, ...]:
+    """Return the names that formats have for the drivers."""
+    model, columns = lower(assembly), {driver.name for driver in assembly.drivers}
+    return tuple(freedom.name for joint in (*model.joints, *model.loops) for freedom in joint.freedoms if freedom.column in columns)
 
 
 def readable(path: str | Path) -> Assembly | None:

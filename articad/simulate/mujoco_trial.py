@@ -11,14 +11,14 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
 from articad.simulate.strokes import FREE_SLIDE_M, MOST_JOINTS, MOST_SPEED, PACE_M_S, PACE_RAD_S, STROKE_S, strokes
-from articad.simulate.verdict import Frame, Outcome, Reach
+from articad.simulate.verdict import Frame, Outcome, Reach, Role, covered
 
 FloatArray = NDArray[np.float64]
 
@@ -28,6 +28,14 @@ HOLD_S = 1.0
 FREE_S = 1.0
 PUSH = 0.2  # rad/s or m/s at which a model is let go
 FRAMES_OF_JOINT = 3
+
+
+class Stroke(NamedTuple):
+    """Least and greatest `qpos` while a joint was driven, and who was in its way."""
+
+    low: FloatArray
+    high: FloatArray
+    blocker: str
 
 
 @dataclass
@@ -59,11 +67,11 @@ class Trial:
         trial.start = np.array(trial.data.qpos)
         return trial
 
-    def run(self, drivers: tuple[str, ...] = ()) -> Outcome:
+    def run(self, drivers: tuple[str, ...] | None = None) -> Outcome:
         """Hold, drive and let go; return what was measured.
 
         Args:
-            drivers: Joints that drive a closed loop; without them the one that comes farthest counts.
+            drivers: Joints that drive closed loops; None where nobody knows, so that each joint is driven.
         """
         self._hold()
         if not self.outcome.exploded:
@@ -98,31 +106,43 @@ class Trial:
         rows = self.data.efc_type[: self.data.nefc] == int(mujoco.mjtConstraint.mjCNSTR_EQUALITY)
         self.outcome.residual = float(np.abs(self.data.efc_pos[: self.data.nefc][rows]).max(initial=0.0)) if self.model.neq else 0.0
 
-    def _drive(self, drivers: tuple[str, ...]) -> None:
-        """Drive each hinge and slide over its range, joints of a loop with the loop free to follow."""
-        tied = self._tied()
-        count = 0
-        for joint in self._single_joints():
-            name = self.model.joint(joint).name or f"joint_{joint}"
-            loop = next((group for group in tied if joint in group), frozenset({joint}))
-            if len(loop) > 1 and drivers and name not in drivers:
-                continue
-            count += 1
-            if count > MOST_JOINTS:
-                self.outcome.untried += 1
-                continue
-            self.outcome.reaches.append(self._stroke(joint, name, loop))
-            if self.outcome.exploded:
-                return
+    def _drive(self, drivers: tuple[str, ...] | None) -> None:
+        """Drive each hinge and slide over its range, of a loop its drivers, with the rest of the loop free to follow."""
+        single, count = list(self._single_joints()), 0
+        for number, loop in enumerate(self._loops(single)):
+            inside = [joint for joint in single if joint in loop]
+            leading = [joint for joint in inside if drivers is not None and self._name(joint) in drivers]
+            driven = leading or inside
+            taken = driven[: max(0, MOST_JOINTS - count)]
+            count += len(taken)
+            self.outcome.untried += len(driven) - len(taken)
+            strokes_made: dict[int, Stroke] = {}
+            for joint in taken:
+                strokes_made[joint] = self._stroke(joint, loop - {joint} - set(leading))  # the other drivers are held
+                if self.outcome.exploded:
+                    return
+            for joint in inside if len(taken) == len(driven) else taken:
+                role: Role = "free" if len(loop) == 1 else "tied" if not leading else "driver" if joint in taken else "follower"
+                self.outcome.reaches.append(self._reach(joint, number, role, strokes_made))
 
-    def _stroke(self, joint: int, name: str, loop: frozenset[int]) -> Reach:
+    def _reach(self, joint: int, number: int, role: Role, made: dict[int, Stroke]) -> Reach:
+        """Return how far a joint came in any stroke of its loop."""
+        lower, upper, unit = self._range(joint)
+        at = self.model.jnt_qposadr[joint]
+        low, high = min(float(stroke.low[at]) for stroke in made.values()), max(float(stroke.high[at]) for stroke in made.values())
+        share = covered(low, high, lower, upper)
+        blocker = made[joint].blocker if joint in made and share < 1 else ""
+        return Reach(self._name(joint), lower, upper, low, high, share, unit, blocker, role, None if role == "free" else number)
+
+    def _stroke(self, joint: int, following: frozenset[int]) -> Stroke:
+        """Drive one joint over its range, those that follow carried along, all others held."""
         lower, upper, unit = self._range(joint)
         self.reset()
         at, target = self.model.jnt_qposadr[joint], np.array(self.start)
-        free = {int(self.model.jnt_dofadr[other]) for other in loop if other != joint}
+        free = set(np.flatnonzero(np.isin(self.model.dof_jntid, list(following))).tolist())
         held = np.array([dof for dof in self._hinged_dofs() if dof not in free], dtype=int)
         rest = float(self.start[at])
-        low, high, blocker, lag = rest, rest, "", 0.0
+        low, high, blocker, lag = np.array(self.start), np.array(self.start), "", 0.0
         steps = self._steps(max(STROKE_S, (upper - lower) / (PACE_RAD_S if unit == "rad" else PACE_M_S)))
         shown = {steps, 2 * steps, 3 * steps - 1}
         before = rest
@@ -133,14 +153,14 @@ class Trial:
             before = value
             if not self._step(target, held, free, pace):
                 break
+            np.minimum(low, self.data.qpos, out=low)
+            np.maximum(high, self.data.qpos, out=high)
             here = float(self.data.qpos[at])
-            low, high = min(low, here), max(high, here)
             if abs(value - here) > lag:
                 lag, blocker = abs(value - here), self._contact(joint)
             if step in shown:
-                self.outcome.frames.append(Frame(name, self._values()))
-        share = (min(high, upper) - max(low, lower)) / (upper - lower) if upper > lower else 1.0
-        return Reach(name, lower, upper, low, high, max(share, 0.0), unit, blocker if share < 1 else "", len(loop) > 1)
+                self.outcome.frames.append(Frame(self._name(joint), self._values()))
+        return Stroke(low, high, blocker)
 
     def _let_go(self) -> None:
         """Let the model go with a push, without contact or limits; its energy may only fall."""
@@ -226,6 +246,11 @@ class Trial:
             lower, upper = max(lower, rest - math.tau), min(upper, rest + math.tau)
         return lower, upper, unit
 
+    def _loops(self, single: list[int]) -> list[frozenset[int]]:
+        """Return the sets of joints that move together, in the order of their first; a joint outside of loops is one of its own."""
+        tied = self._tied()
+        return list(dict.fromkeys(next((group for group in tied if joint in group), frozenset({joint})) for joint in single))
+
     def _tied(self) -> list[frozenset[int]]:
         """Return the sets of joints that equality constraints make move together."""
         sets: list[set[int]] = []
@@ -269,7 +294,7 @@ class Trial:
 
     def _values(self) -> dict[str, float]:
         """Return the values of hinges and slides by name [rad, m]."""
-        return {
-            self.model.joint(joint).name or f"joint_{joint}": float(self.data.qpos[self.model.jnt_qposadr[joint]])
-            for joint in self._single_joints()
-        }
+        return {self._name(joint): float(self.data.qpos[self.model.jnt_qposadr[joint]]) for joint in self._single_joints()}
+
+    def _name(self, joint: int) -> str:
+        return self.model.joint(joint).name or f"joint_{joint}"

@@ -17,13 +17,13 @@ from articad.simulate.verdict import Outcome
 SECONDS = 300.0
 
 
-def try_out(engine: Engine, path: Path, *, drivers: tuple[str, ...] = (), seconds: float = SECONDS) -> Outcome:
+def try_out(engine: Engine, path: Path, *, drivers: tuple[str, ...] | None = None, seconds: float = SECONDS) -> Outcome:
     """Have an engine load a model and move it, in a process of its own with bounded time and memory.
 
     Args:
         engine: "mujoco" or "pybullet".
         path: A URDF or MJCF file.
-        drivers: Joints that drive closed loops.
+        drivers: Joints that drive closed loops; None where nobody knows.
         seconds: After which it is ended.
     """
     loading = load(engine, path)
@@ -31,7 +31,7 @@ def try_out(engine: Engine, path: Path, *, drivers: tuple[str, ...] = (), second
         return Outcome(engine, loading.version, loads=loading.loads, message=loading.message)
     package = Path(__file__).resolve().parents[2]
     environment = os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, [str(package), os.environ.get("PYTHONPATH")]))}
-    command = [sys.executable, "-m", "articad.simulate.trial", engine, str(path.resolve()), ",".join(drivers)]
+    command = [sys.executable, "-m", "articad.simulate.trial", engine, str(path.resolve()), json.dumps(drivers)]
     with tempfile.TemporaryDirectory(prefix="articad-trial-") as scratch:
         try:
             done = subprocess.run(  # noqa: S603 - ourselves
@@ -49,11 +49,11 @@ def main(arguments: list[str]) -> int:
     """Try a model out and print what was measured."""
     engine, path, drivers = arguments
     resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
-    names = tuple(name for name in drivers.split(",") if name)
+    names = json.loads(drivers)
     if engine == "mujoco":
         from articad.simulate.mujoco_trial import Trial  # noqa: PLC0415 - each process loads one engine
 
-        outcome = Trial.of(Path(path)).run(names)
+        outcome = Trial.of(Path(path)).run(None if names is None else tuple(names))
     else:
         from articad.simulate.bullet_trial import run  # noqa: PLC0415
 

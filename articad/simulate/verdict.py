@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass, field
-from typing import Any
+from typing import Any, Literal
 
 from articad.findings import Finding, Findings
 
@@ -15,6 +15,8 @@ DRIFT = 0.05  # rad or m by which a held joint may be pushed away
 RESIDUAL = 1e-3  # m or rad by which a closed loop may be open
 GROWTH = 0.05  # of the largest kinetic energy: integration errors, no more
 
+Role = Literal["free", "driver", "follower", "tied"]
+
 
 @dataclass(frozen=True)
 class Reach:
@@ -22,14 +24,16 @@ class Reach:
 
     Attributes:
         joint: Its name.
-        lower: What it was to reach [rad or m].
+        lower: What it was to reach [rad or m]: its own bound; of a follower what its drivers bring it to.
         upper: Likewise.
-        low: What it reached.
+        low: What it reached, whichever joint of its loop was driven.
         high: Likewise.
         share: Of the range.
         unit: "rad" or "m".
         blocker: Bodies that touched where it lagged most.
-        tied: True for a joint of a closed loop.
+        role: "free" outside of loops; "driver" and "follower" of a loop whose drivers are known; "tied" of one whose drivers are not.
+        loop: Joints of the same number move together.
+        allowed: What kinematics lets a driver reach [rad or m], where that is less than its own bounds.
     """
 
     joint: str
@@ -40,7 +44,14 @@ class Reach:
     share: float
     unit: str
     blocker: str = ""
-    tied: bool = False
+    role: Role = "free"
+    loop: int | None = None
+    allowed: tuple[float, float] | None = None
+
+
+def covered(low: float, high: float, lower: float, upper: float) -> float:
+    """Return the share of a range that was reached."""
+    return max((min(high, upper) - max(low, lower)) / (upper - lower), 0.0) if upper > lower else 1.0
 
 
 @dataclass(frozen=True)
@@ -69,6 +80,7 @@ class Outcome:
         reaches: By joint.
         untried: Joints that there were too many of.
         frames: For a filmstrip.
+        open_loops: Closed loops of the assembly that the model leaves open.
     """
 
     engine: str
@@ -84,6 +96,23 @@ class Outcome:
     reaches: list[Reach] = field(default_factory=list)
     untried: int = 0
     frames: list[Frame] = field(default_factory=list)
+    open_loops: int = 0
+
+    @property
+    def judged(self) -> list[Reach]:
+        """Joints that have to reach their range.
+
+        Of a loop whose drivers nobody has named, any joint may be one that only follows: the joint that comes farthest stands for all.
+        Where a driver falls short, that is told of the driver, not of all that follow it.
+        """
+        short = {reach.loop for reach in self.reaches if reach.role == "driver" and reach.share < SHARE}
+        best: dict[int | None, Reach] = {}
+        for reach in self.reaches:
+            if reach.role == "tied" and (reach.loop not in best or reach.share > best[reach.loop].share):
+                best[reach.loop] = reach
+        passed_over = [reach for reach in self.reaches if reach.role == "tied" and reach is not best[reach.loop]]
+        passed_over += [reach for reach in self.reaches if reach.role == "follower" and reach.loop in short]
+        return [reach for reach in self.reaches if reach not in passed_over]
 
     def to_json(self) -> dict[str, Any]:
         """Return the row of a report; frames are left out."""
@@ -94,7 +123,7 @@ class Outcome:
     @classmethod
     def from_json(cls, row: dict[str, Any]) -> Outcome:
         """Return what another process measured."""
-        reaches = [Reach(**reach) for reach in row.pop("reaches", [])]
+        reaches = [Reach(**reach | {"allowed": reach.get("allowed") and tuple(reach["allowed"])}) for reach in row.pop("reaches", [])]
         frames = [Frame(**frame) for frame in row.pop("frames", [])]
         return cls(**row, reaches=reaches, frames=frames)
 
@@ -188,25 +217,34 @@ def _findings(outcome: Outcome) -> Iterator[Finding]:
 
 
 def _short_reaches(outcome: Outcome, engine: str) -> Iterator[Finding]:
-    """Joints that do not reach their range; of a loop without known drivers the best joint counts."""
-    free = [reach for reach in outcome.reaches if not reach.tied]
-    tied = [reach for reach in outcome.reaches if reach.tied]
-    best = max(tied, key=lambda reach: reach.share, default=None)
-    for reach in (*free, *([best] if best is not None else [])):
+    """Joints that do not reach their range."""
+    for reach in outcome.judged:
         if reach.share >= SHARE:
             continue
         scale, unit = (180 / math.pi, "deg") if reach.unit == "rad" else (1000.0, "mm")
+        low, high, lower, upper = (value * scale for value in (reach.low, reach.high, reach.lower, reach.upper))
+        of = f"of {lower:.4g} to {upper:.4g} {unit}"
+        if reach.role == "follower":
+            of += ", to which its drivers would bring it"
+        message = f"In {engine} {reach.joint} reaches {100 * reach.share:.3g} % of its range: {low:.4g} to {high:.4g} {of}"
+        if reach.allowed is not None:
+            message += f", of which its loop allows {reach.allowed[0] * scale:.4g} to {reach.allowed[1] * scale:.4g}"
         yield Finding(
             code="E_SIM_RANGE",
             where=f"joints.{reach.joint}",
             parts=tuple(reach.blocker.split(" and ")) if reach.blocker else (),
-            message=f"In {engine} {reach.joint} reaches {100 * reach.share:.3g} % of its range: {reach.low * scale:.4g} to {reach.high * scale:.4g} "
-            f"of {reach.lower * scale:.4g} to {reach.upper * scale:.4g} {unit}" + (f"; {reach.blocker} touch." if reach.blocker else "."),
-            hint="Make room or narrow the range; MuJoCo collides with the convex hulls of meshes, which fill holes and slots."
-            if reach.blocker
-            else "Look for a limit, spring or constraint that stops it.",
+            message=f"{message}; {reach.blocker} touch." if reach.blocker else f"{message}.",
+            hint=_advice(reach),
             value=100 * reach.share,
             limit=100 * SHARE,
             unit="%",
             cause="collision" if reach.blocker else None,
         )
+
+
+def _advice(reach: Reach) -> str:
+    if reach.allowed is not None and covered(reach.low, reach.high, *reach.allowed) >= SHARE:
+        return "Declare the range that the loop allows; `articad check` says what ends it."
+    if reach.blocker:
+        return "Make room or narrow the range; MuJoCo collides with the convex hulls of meshes, which fill holes and slots."
+    return "Look for a limit, spring or constraint that stops it."

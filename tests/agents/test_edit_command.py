@@ -66,6 +66,21 @@ def test_words_ask_a_model_and_are_remembered_with_what_was_edited(
     assert case["prompt"] == f"{stories.FLAP_PROMPT}\n\nChanged since: a thicker flap"
 
 
+def test_a_run_that_was_interrupted_is_resumed_by_its_name(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("articad.agents.pipeline.kernel_named", lambda *_, **__: stories.kernel())
+    model = stories.flap()
+    monkeypatch.setattr("articad.agents.live.LiteLLM", lambda *_, **__: model)
+    run = str(tmp_path / "run")
+    asked = ["generate", stories.FLAP_PROMPT, "--out", run, "--no-look", "--no-inspection", "--no-pictures", "--max-calls", "2"]
+    assert cli.main(asked) == 3
+    assert "resume" in capsys.readouterr().err
+    assert cli.main(["resume", run, "--no-pictures", "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["model"]["calls"] == 2
+    assert len(model.requests) == 4
+
+
 def test_an_edit_of_nothing_and_of_no_run_is_refused(plate: Run, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert cli.main(["edit", str(plate.path)]) == 3
     assert "Nothing is to be changed" in capsys.readouterr().err

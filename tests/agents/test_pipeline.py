@@ -15,7 +15,7 @@ import pytest
 
 from articad.agents import design as design_module
 from articad.agents.llm import Budget, Replay, Reply, Request, Scripted, transport_error
-from articad.agents.pipeline import generate, replay
+from articad.agents.pipeline import generate, replay, resume
 from articad.errors import BudgetError, ContractError, OutputError, PlanError, ReplayMissError, RunError, TransportError
 from articad.run import Run, differences
 from tests.agents import stories
@@ -179,7 +179,7 @@ def test_a_repair_shows_what_the_script_had_made_and_the_run_keeps_the_picture(t
     recipe = asked.to_json()["messages"][-1]["content"][-1]["recipe"]
 
     assert "E_NOT_ONE_SOLID" in said(asked)
-    assert recipe["views"] == ["iso", "front", "right", "top", "iso_back", "iso_below"]
+    assert recipe["views"] == ["iso", "front", "right", "top", "iso_back_left", "iso_below_left"]
     assert len(recipe["build"]) == 64
     assert (run.path / "attempts/flap-1/partial.png").read_bytes() == asked.messages[-1].parts[-1].content  # type: ignore[union-attr]
 
@@ -304,6 +304,40 @@ generate(FLAP_PROMPT, llm=llm, out=folder / "run", kernel=kernel(), cache=cache(
     assert "part/flap/2" in llm.steps
     assert done.isdisjoint(llm.steps)
     assert list(differences(run, made(tmp_path, flap(**answers), "undisturbed"))) == []
+
+
+def test_a_run_is_gone_on_with_by_its_folder_alone(tmp_path: Path) -> None:
+    with pytest.raises(BudgetError):
+        made(tmp_path, Budget(flap(), calls=3))
+    llm = flap()
+    run = resume(tmp_path / "run", llm=llm, kernel=stories.kernel(), cache=stories.shared_cache())
+
+    assert len(llm.steps) == 1
+    assert list(differences(run, made(tmp_path, flap(), "undisturbed"))) == []
+    finished = resume(tmp_path / "run", kernel=stories.kernel(), cache=stories.shared_cache())
+    assert finished.hashes() == run.hashes()
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ({"repairs": None}, "lacks options: repairs"),
+        ({"formats": "urdf", "rounds": "3"}, "rounds, formats"),
+        ({"task": "build"}, "articad build"),
+        ({"kernel": 3}, "lacks options: kernel"),
+    ],
+)
+def test_a_request_that_somebody_else_wrote_is_not_trusted(tmp_path: Path, change: dict[str, Any], said: str) -> None:
+    run = made(tmp_path, flap())
+    file = run.path / "request.json"
+    request = json.loads(file.read_text())
+    request["options"] = {key: value for key, value in (request["options"] | change).items() if value is not None}
+    file.write_text(json.dumps(request))
+    with pytest.raises(RunError, match=said) as caught:
+        resume(run.path, llm=flap())
+    assert caught.value.findings.codes == ("E_RUN",)
+    with pytest.raises(RunError, match=said):
+        replay(run.path, out=tmp_path / "again")
 
 
 def test_a_finished_run_asks_nothing_when_called_again_and_another_request_is_refused(tmp_path: Path) -> None:

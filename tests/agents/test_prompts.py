@@ -7,6 +7,7 @@ import re
 from pathlib import Path
 from typing import get_args
 
+import numpy as np
 import pytest
 from pydantic import BaseModel
 
@@ -16,17 +17,20 @@ from articad.agents.edit import Change
 from articad.agents.inspection import Judgement, Look, Observations
 from articad.agents.late import Connections
 from articad.agents.live import _TOLD
+from articad.agents.pictures import PART_VIEWS
 from articad.agents.prompts import prompt, prompt_file
 from articad.agents.replies import parse_object, parse_script
-from articad.agents.requirements import Requirements
+from articad.agents.requirements import Motion, Requirements
 from articad.agents.review import Opinion
 from articad.agents.rollback import Decisions
+from articad.kinematics.joints import JointType
 from articad.plan.check import check_plan
 from articad.plan.expressions import FUNCTIONS
 from articad.plan.fields import Form
 from articad.plan.joint_forms import COUPLING_TYPES, JOINT_TYPES
 from articad.plan.schema import AssemblyPlan, ConnectorKind, ConnectorSpec, PartSpec
-from tests.agents.stories import PROMPTS
+from articad.render import VIEWS
+from tests.agents.stories import LOOKS_RIGHT, PROMPTS
 
 DESIGN = prompt("design", example=prompt_file("sewing_box.json"))
 PART = prompt("part_build123d", example=prompt_file("lid_left.txt"))
@@ -105,6 +109,22 @@ def test_the_example_of_the_requirements_prompt_has_the_form() -> None:
     assert Requirements.model_validate(parse_object(text, step="x")).name == "desk_lamp"
 
 
+def test_the_analysis_has_a_word_for_every_type_of_joint_that_moves() -> None:
+    kinds = {
+        "turns": JointType.REVOLUTE,
+        "slides": JointType.SLIDER,
+        "turns and slides": JointType.CYLINDRICAL,
+        "swivels": JointType.BALL,
+        "screws": JointType.SCREW,
+        "slides in a plane": JointType.PLANAR,
+        "tilts": JointType.UNIVERSAL,
+    }
+    assert set(get_args(Motion.model_fields["kind"].annotation)) == set(kinds)
+    assert set(kinds.values()) == {kind for kind in JointType if kind.freedoms}
+    told = prompt_file("requirements.md")
+    assert [kind for kind in kinds if f'"{kind}"' not in told] == []
+
+
 @pytest.mark.parametrize(
     ("name", "form"),
     [
@@ -126,6 +146,22 @@ def test_the_answer_that_a_prompt_shows_has_the_form_that_is_read(name: str, for
     form.model_validate(shown)
     fields = {field for model in (form, *_inner(form)) for field in model.model_fields}
     assert {field for field in fields if f'"{field}"' not in told} == set()
+
+
+def test_the_look_is_told_every_view_that_it_gets_and_every_side_is_seen_at_a_slant_in_one() -> None:
+    told = prompt("look")
+    assert [view for view in PART_VIEWS if f"{view}: " not in told] == []
+    eyes = np.array([VIEWS[view][0] for view in PART_VIEWS])
+    eyes /= np.linalg.norm(eyes, axis=1, keepdims=True)
+    for side in (*np.eye(3), *-np.eye(3)):
+        towards = eyes @ side
+        assert ((towards > 0.3) & (towards < 0.95)).any(), side
+
+
+def test_an_older_answer_of_a_look_still_has_its_form() -> None:
+    answer = json.loads(LOOKS_RIGHT)
+    assert all("not_visible" not in one for one in answer["findings"])
+    assert [one.not_visible for one in Look.model_validate(answer).findings] == ["", "", ""]
 
 
 def _inner(form: type[BaseModel]) -> set[type[BaseModel]]:

@@ -49,6 +49,16 @@ def test_a_model_that_sees_everything_scores_it_and_the_rules_do(tmp_path: Path)
     assert again.differences == ()
 
 
+def test_a_reviewer_sees_first_what_the_customer_drew(tmp_path: Path) -> None:
+    sketch = b"\x89PNG\r\n\x1a\n" + bytes(16)
+    llm = stories.flap(review=OPINION)
+    made(tmp_path / "run", llm, review="model", images=[sketch])
+    request = next(request for request in llm.requests if request.step == "review")
+    shown = [part for message in request.messages for part in message.parts if isinstance(part, Image)]
+    assert shown[0].content == sketch
+    assert [one.recipe is None for one in shown].count(True) == 1
+
+
 def test_rules_alone_need_no_model(tmp_path: Path) -> None:
     llm = stories.flap()
     run = made(tmp_path / "run", llm, review="rules")

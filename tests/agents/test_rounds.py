@@ -5,19 +5,23 @@ from __future__ import annotations
 import contextlib
 import copy
 import json
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import pytest
 
+from articad.agents.design import _DIALECTS, Designer
+from articad.agents.generation import _EXAMPLES
 from articad.agents.llm import Image, Replay, Request, Scripted, closed_port, require_open_port
 from articad.agents.pipeline import generate, replay
+from articad.agents.requirements import Requirements
 from articad.errors import ContractError, TransportError
 from articad.plan.schema import AssemblyPlan
 from articad.render.pictures import RECIPE
 from articad.run import Run, differences
 from tests.agents import stories
-from tests.agents.stories import FLAP_PLAN, FLAP_SCRIPTS, fenced, flap, judged, looks, observed, watched
+from tests.agents.stories import FLAP_PLAN, FLAP_SCRIPTS, LOOKS_RIGHT, fenced, flap, judged, looks, observed, watched
 
 THINNER = FLAP_SCRIPTS["flap"].replace('d["thickness"]', '0.9 * d["thickness"]')
 
@@ -129,12 +133,40 @@ def test_every_part_is_looked_at_once_then_the_whole_is_observed_and_judged(tmp_
     told = said(llm, "judge/1/1")
     assert "Exact checks: passed." in told
     assert "Mobility: 1 freedoms" in told
-    assert "- hinge: 0 degrees to 90 degrees" in told
+    assert "- hinge: 0 to 90 degrees, drives" in told
     assert "- flap: from (0, 0, 11) to (30, 10, 13)" in told
     assert "turns upwards" in told
     verdict = run.verdict()
     assert verdict is not None
     assert (verdict["ok"], verdict["by"], verdict["round"]) == (True, "judge", 1)
+
+
+def test_an_observer_compares_with_the_customers_pictures_and_a_judge_reads_what_it_saw(tmp_path: Path) -> None:
+    sketch = b"\x89PNG\r\n\x1a\n" + bytes(16)
+    llm = flap()
+    made(tmp_path, llm, images=[sketch], part_images={"flap": sketch + b"2"})
+
+    assert [recipe.get("of") for recipe in recipes(llm, "observe/1")] == [None, "assembly", "motion"]
+    request = next(request for request in llm.requests if request.step == "observe/1")
+    first = next(part for message in request.messages for part in message.parts if isinstance(part, Image))
+    assert first.content == sketch
+    assert "The customer's own pictures of what is wanted, not of what was built:" in said(llm, "observe/1")
+    assert recipes(llm, "judge/1/1") == []  # it may be a model that does not see
+    for step in ("design/1", "observe/1", "judge/1/1"):
+        assert "where numbers differ, what the request states binds, then the plan" in said(llm, step)
+
+
+def test_a_designer_is_told_in_which_language_the_parts_are_written(tmp_path: Path) -> None:
+    llm = flap()
+    run = made(tmp_path, llm)
+    assert "The parts will be scripted in build123d." in said(llm, "design/1")
+
+    request = replace(run.request, options={**run.request.options, "kernel": "freecad"})
+    again = flap()
+    Designer(request, Requirements.model_validate_json(stories.requirements()), again).first()
+    assert "scripted in FreeCAD" in said(again, "design/1")
+    assert "no ready function for a sweep, a helix or thread" in said(again, "design/1")
+    assert set(_DIALECTS) == set(_EXAMPLES)
 
 
 def test_the_recipe_of_pictures_is_that_of_the_renderer() -> None:
@@ -171,6 +203,18 @@ def test_a_specification_that_an_inspector_finds_at_fault_goes_to_the_designer_o
     assert [step for step in llm.steps if step.startswith("design")] == ["design/1", "design/2"]
     assert "W_LOOK_ORIENTATION parts.flap" in said(llm, "design/2")
     assert (run.round(1) or {})["kept"] == ["plate", "flap"]
+
+
+def test_what_no_picture_shows_is_told_in_the_trace_and_is_no_complaint(tmp_path: Path) -> None:
+    answer = json.loads(LOOKS_RIGHT)
+    answer["findings"][0]["not_visible"] = "the blind end of the bore."
+    llm = flap(look__flap__1=json.dumps(answer))
+    run = made(tmp_path, llm)
+
+    assert [step for step in llm.steps if "flap" in step] == ["part/flap/1", "look/flap/1"]
+    assert codes(run.verdict()) == []
+    (told,) = [event for event in run.events() if event.get("code") == "I_LOOK_UNSEEN"]
+    assert told["message"] == "No picture shows: the blind end of the bore."
 
 
 def test_a_look_without_form_is_no_complaint(tmp_path: Path) -> None:

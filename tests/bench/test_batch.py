@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 import os
 import shutil
 import signal
 import subprocess
+import sys
 import threading
 import time
 from collections import Counter
@@ -16,8 +18,10 @@ from typing import Any
 import mujoco
 import pytest
 
-from articad.bench.batch import read_batch, run_dask, run_local, summary
+from articad import __version__
+from articad.bench.batch import calls_of, read_batch, run_dask, run_local, summary
 from articad.bench.items import ITEM, Item, Json, make
+from articad.bench.pool import Worker
 from articad.cli import main
 from articad.errors import ReadError
 from tests.agents import stories
@@ -52,6 +56,9 @@ def test_an_item_is_checked_exported_and_not_made_twice(plan: Path, tmp_path: Pa
     mujoco.MjModel.from_xml_path(str(scene))
     assert {str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file()} == {*first["files"], ITEM}
     assert first["values"] == {"lift": 1.0}
+    assert {name: hashlib.sha256((folder / name).read_bytes()).hexdigest() for name in first["files"]} == first["files"]
+    assert (first["kernel"], first["articad"], first["plan"]) == ("build123d", __version__, str(plan))
+    assert first["kernel_version"]
 
 
 def test_what_a_gate_refuses_is_kept_without_exports(plan: Path, tmp_path: Path) -> None:
@@ -158,6 +165,54 @@ def test_a_wrong_item_is_told(row: Json, words: str, tmp_path: Path) -> None:
     spec.write_text(json.dumps({"items": [row]}))
     with pytest.raises(ReadError, match=words):
         read_batch(spec)
+
+
+def test_a_worker_has_no_more_memory_than_it_was_given(plan: Path, tmp_path: Path) -> None:
+    (item,) = lifts(plan, 1.0, formats=("urdf",))
+
+    (small,) = run_local([item], tmp_path / "small", workers=1, memory_gb=0.05, retries=0)
+    (large,) = run_local([item], tmp_path / "large", workers=1)
+
+    assert not small["ok"]
+    assert large["ok"], large
+
+
+def test_a_worker_ends_with_whoever_started_it(plan: Path, tmp_path: Path) -> None:
+    code = f"""
+import os
+from articad.bench.batch import run_local
+from articad.bench.items import Item
+
+def tell(record):
+    children = os.popen(f"pgrep -P {{os.getpid()}} -f articad.bench.worker").read()
+    print(children, flush=True)
+    os.kill(os.getpid(), 9)
+
+run_local([Item({str(plan)!r}, {{"lift": 1 + i / 10}}) for i in range(9)], {str(tmp_path)!r}, workers=1, told=tell)
+"""
+    done = subprocess.run([sys.executable, "-c", code], check=False, capture_output=True, text=True)
+    workers = [int(line) for line in done.stdout.split()]
+
+    assert done.returncode == -signal.SIGKILL
+    assert workers
+    deadline = time.monotonic() + 60
+    while alive := [
+        worker
+        for worker in workers
+        if Path(f"/proc/{worker}/cmdline").exists() and b"bench.worker" in Path(f"/proc/{worker}/cmdline").read_bytes()
+    ]:
+        assert time.monotonic() < deadline, alive
+        time.sleep(0.05)
+
+
+def test_a_worker_that_nobody_calls_ends_and_the_next_call_starts_another(plan: Path, tmp_path: Path) -> None:
+    first, second = calls_of(lifts(plan, 1.0, 1.5, formats=("urdf",)), tmp_path)
+    with Worker(4.0, idle=0.2) as worker:
+        assert worker.tried(first, 0)["ok"]
+        (process,) = children_of(os.getpid())
+        os.waitid(os.P_PID, process, os.WEXITED | os.WNOWAIT)
+
+        assert worker.tried(second, 0)["ok"]
 
 
 def test_dask_makes_all_items_though_a_worker_is_killed(plan: Path, tmp_path: Path) -> None:

@@ -11,7 +11,10 @@ from pydantic import TypeAdapter
 from articad import examples
 from articad.assembly import Assembly
 from articad.bench.checks import AnyCheck, Check
+from articad.bench.reference import reference
 from articad.bench.subject import Subject
+from articad.bench.task import TASKS, tasks_in
+from articad.geometry import Part, box
 from articad.plan.schema import AssemblyPlan
 from tests.bench.wrong import VARIANTS, wrong_for
 
@@ -38,13 +41,28 @@ CHECKS: list[tuple[str, dict[str, Any]]] = [
     ("wardrobe", {"kind": "captive", "number": [1, 18]}),
     ("toggle_clamp", {"kind": "simulates"}),
     ("four_bar", {"kind": "unchanged", "number": [8, 8]}),
+    ("toggle_clamp", {"kind": "holes", "diameter": 6.6, "number": [4, 4], "axis": [0, 0, 1], "through": True, "length": [6.9, 7.1]}),
+    ("toggle_clamp", {"kind": "studs", "diameter": 12, "number": [1, 1]}),
+    ("desk_lamp", {"kind": "wall", "mm": [1.8, 2.2], "number": [1, 1]}),
+    ("wardrobe", {"kind": "volume", "cm3": [50000, 150000]}),
+    ("mug_straight", {"kind": "holds", "ml": [320, 340]}),
+    ("wardrobe", {"kind": "stands", "degrees": 10}),
+    ("wardrobe", {"kind": "symmetric", "axis": "x"}),
+    ("toggle_clamp", {"kind": "lead", "mm": 1.25}),
+    ("slider_crank", {"kind": "travel", "joint": {"type": "slider"}, "by": [59.9, 60.1]}),
+    ("peaucellier_board", {"kind": "straight", "mm": [90, 125], "off": 0.05}),
+    ("wiper_tandem", {"kind": "level", "mm": [56, 68], "number": [1, 999]}),
+    ("planetary_hoist", {"kind": "turns", "ratio": 4.5, "number": [1, 3]}),
 ]
 
 
 @cache
-def example(name: str) -> Assembly:
-    folder = examples.folder(name)
-    return Assembly.from_plan(AssemblyPlan.load(folder), folder / "parts")
+def product(name: str) -> Assembly:
+    """Return an example, or the reference of a task."""
+    if name in examples.names():
+        return Assembly.from_plan(AssemblyPlan.load(examples.folder(name)), examples.folder(name) / "parts")
+    ((folder, task),) = tasks_in(TASKS, names=[name])
+    return reference(folder, task)
 
 
 def form(row: dict[str, Any]) -> Check:
@@ -54,7 +72,7 @@ def form(row: dict[str, Any]) -> Check:
 
 @pytest.mark.parametrize(("name", "row"), CHECKS, ids=[f"{row['kind']}-{name}" for name, row in CHECKS])
 def test_a_check_holds_of_a_sound_assembly_and_refuses_a_wrong_one(name: str, row: dict[str, Any]) -> None:
-    check, assembly = form(row), example(name)
+    check, assembly = form(row), product(name)
 
     sound = check.judge(Subject(assembly, before=assembly))
     wrong = check.judge(wrong_for(check, assembly))
@@ -65,3 +83,13 @@ def test_a_check_holds_of_a_sound_assembly_and_refuses_a_wrong_one(name: str, ro
 
 def test_every_kind_of_check_is_shown_red() -> None:
     assert {row["kind"] for _, row in CHECKS} == set(VARIANTS)
+
+
+@pytest.mark.parametrize(
+    ("wanted", "fits"), [((10.1, 10.2, None), True), ((10.2, None, 10.1), True), ((None, 30, 30), False), ((30, 9.95, 10.15), True)]
+)
+def test_sides_that_are_nearly_alike_are_each_compared_with_their_own(wanted: tuple[float | None, ...], fits: bool) -> None:
+    part = Part.from_mesh("block", box(9.95, 10.15, 30))
+    check = form({"kind": "part_size", "mm": list(wanted)})
+
+    assert check.judge(Subject(Assembly.from_parts("one", parts=[part], joints=[], ground="block"))).ok is fits

@@ -11,13 +11,15 @@ import pytest
 from articad.agents.llm import LLM, Reply, Request, Scripted
 from articad.agents.recollection import StoredMemory, remember
 from articad.bench.row import Row, rows_in
-from articad.bench.runner import run_tasks, score_files
+from articad.bench.runner import run_tasks
+from articad.bench.scoring import score_files
 from articad.bench.table import table
 from articad.bench.task import Task, read_task, tasks_in
 from articad.cli import main
 from articad.errors import ReadError, TransportError
 from articad.memory.experience import ExperienceStore
 from tests.agents import stories
+from tests.agents.openai_stub import Canned, openai_stub
 
 pytestmark = pytest.mark.slow
 
@@ -88,6 +90,7 @@ def test_a_benchmark_goes_on_where_it_was_and_a_failed_task_is_a_row(tasks: list
     assert rows_in(tmp_path / "out") == rows
     report = table(rows)
     assert report["all"]["passed"] == {"mean": 0.6667, "interval": [0.0, 1.0], "n": 3}
+    assert report["all"]["checks"]["mean"] == pytest.approx(2 / 3, abs=1e-4)  # none hold of what was not made
     assert report["by_check"]["freedoms"]["n"] == 2
     again = run(tasks, tmp_path / "out", lambda _task: stories.flap(), variant="no-rollback")
     assert [row.ok for row in again] == [True, True, True]  # another way of running is another row
@@ -157,6 +160,18 @@ def test_a_task_whose_provider_was_out_of_reach_is_made_again(tasks: list[tuple[
     assert again.ok
 
 
+def test_a_defect_of_ours_costs_one_task_and_not_the_benchmark(tasks: list[tuple[Path, Task]], tmp_path: Path) -> None:
+    class Broken:
+        def complete(self, request: Request) -> Reply:
+            raise ZeroDivisionError(request.step)
+
+    rows = run(tasks[:2], tmp_path / "out", lambda task: Broken() if task.name == "flap_0" else stories.flap())
+
+    assert [row.ok for row in rows] == [False, True]
+    assert "ZeroDivisionError: requirements" in str(rows[0].error)
+    assert rows_in(tmp_path / "out") == rows
+
+
 def test_files_of_any_tool_are_scored_and_a_missing_one_is_told(tasks: list[tuple[Path, Task]], tmp_path: Path) -> None:
     run(tasks[:1], tmp_path / "out", lambda _task: stories.flap())
     models = tmp_path / "models"
@@ -181,9 +196,38 @@ def test_the_command_lists_scores_and_prints_tables(
     assert main(["bench", "list", "--tasks", folder, "--json"]) == 0
     assert [task["name"] for task in json.loads(capsys.readouterr().out)["tasks"]] == [task.name for _, task in tasks]
     assert main(["bench", "score", str(tmp_path), "--tasks", folder, "--task", "flap_1"]) == 0
-    assert "0.0 % of 1 passed" in capsys.readouterr().out
+    assert "all: 0 % [0, 0] of 1 passed" in capsys.readouterr().out
     assert main(["bench", "list", "--tasks", folder, "--task", "flap1"]) != 0
     assert "Did you mean 'flap_1'" in capsys.readouterr().err
+
+
+def test_tasks_run_and_are_scored_in_processes_of_their_own(
+    tasks: list[tuple[Path, Task]], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    run(tasks[:1], tmp_path / "out", lambda _task: stories.flap())
+    common = ["--tasks", str(tmp_path / "tasks"), "--task", "flap_0", "--task", "flap_1", "--at-once", "2", "--json"]
+
+    assert main(["bench", "score", str(tmp_path / "out"), *common]) == 0
+    scored = json.loads(capsys.readouterr().out)["rows"]
+    with openai_stub([Canned("no")]) as stub:
+        asked = [
+            "--out",
+            str(tmp_path / "asked"),
+            "--model",
+            "stub",
+            "--api-base",
+            stub.address,
+            "--no-look",
+            "--memory",
+            str(tmp_path / "store"),
+        ]
+        assert main(["bench", "run", *asked, *common]) == 0
+    ran = json.loads(capsys.readouterr().out)["rows"]
+
+    assert [(row["task"], row["passed"]) for row in scored] == [("flap_0", True), ("flap_1", False)]
+    assert [(row["task"], row["calls"], row["tokens"]) for row in ran] == [("flap_0", 3, 30), ("flap_1", 3, 30)]
+    assert all("OutputError" in row["error"] for row in ran)
+    assert [row.task for row in rows_in(tmp_path / "asked")] == ["flap_0", "flap_1"]
 
 
 def test_a_task_of_the_wrong_form_is_refused_at_its_field(tmp_path: Path) -> None:

@@ -15,11 +15,11 @@ import numpy as np
 from articad.assembly import Assembly
 from articad.bench.checks import Check, Joints, Ratio
 from articad.bench.subject import Subject
-from articad.connectors import SE3
+from articad.connectors import SE3, FloatArray
 from articad.export.urdf import write_urdf
 from articad.geometry import MassProperties, Part, TriMesh, box, merged
 from articad.geometry.part import Solid
-from articad.kinematics.joints import Joint, JointLimits, JointType
+from articad.kinematics.joints import Coordinate, Joint, JointLimits, JointType
 
 
 def wrong_for(check: Check, assembly: Assembly) -> Subject:
@@ -43,7 +43,8 @@ def shaped_as(part: Part, mesh: TriMesh | None) -> Part:
     if mesh is None:
         return Part.without_geometry(part.name, part.connectors, part.mass)
     solid = Solid.from_mesh(mesh)
-    mass = None if part.mass is None else MassProperties.from_solid(abs(solid.volume), solid.com, solid.inertia_mm5, 1000.0)
+    dense = 1000.0 if part.mass is None or part.mesh is None else 1e9 * part.mass.mass / abs(part.mesh.volume)
+    mass = None if part.mass is None else MassProperties.from_solid(abs(solid.volume), solid.com, solid.inertia_mm5, dense)
     return replace(part, solid=solid, visuals=(), collisions=(), mass=mass)
 
 
@@ -55,10 +56,13 @@ def _bare(check: Check, subject: Subject) -> Subject:
 
 
 def _welded(check: Check, subject: Subject) -> Subject:
-    """What drives, is fixed; what should not move, does."""
+    """What drives, is fixed; what should not move or go by itself, does."""
     if check.number == 0:  # type: ignore[attr-defined]
         return Subject(changed(subject.assembly, joints=[_loose(joint) for joint in subject.assembly.joints]))
-    drivers = {driver.joint for driver in subject.assembly.drivers}
+    if subject.assembly.mechanism.couplings and not subject.assembly.mechanism.loop_joints:
+        return Subject(changed(subject.assembly, couplings=()))  # what follows goes its own way
+    columns = [column for coupling in subject.assembly.mechanism.couplings for column in (coupling.a, coupling.b)]
+    drivers = {driver.joint for driver in subject.assembly.drivers} | {column.split(".")[0] for column in columns}
     return Subject(changed(subject.assembly, joints=[_fixed(j) if j.name in drivers else j for j in subject.assembly.joints], couplings=()))
 
 
@@ -115,14 +119,20 @@ def _larger(_check: Check, subject: Subject) -> Subject:
 
     parts = [shaped_as(part, mesh.scaled(factor)) if (mesh := part.mesh) is not None else part for part in subject.assembly.parts.values()]
     joints = [
-        replace(j, T_parent_connector=scaled(j.T_parent_connector), T_child_connector=scaled(j.T_child_connector), rest=_long(j, factor))
+        replace(
+            j,
+            T_parent_connector=scaled(j.T_parent_connector),
+            T_child_connector=scaled(j.T_child_connector),
+            rest=_long(j, j.rest, factor),
+            limits=replace(j.limits, lower=_long(j, j.limits.lower, factor), upper=_long(j, j.limits.upper, factor)),
+        )
         for j in subject.assembly.joints
     ]
     return Subject(changed(subject.assembly, parts, joints, couplings=(), T_ground=scaled(subject.assembly.mechanism.T_ground)))
 
 
-def _long(joint: Joint, factor: float) -> tuple[float, ...]:
-    return tuple(value * factor if unit == "mm" else value for value, unit in zip(joint.rest, joint.type.units, strict=True))
+def _long(joint: Joint, values: Sequence[float], factor: float) -> tuple[float, ...]:
+    return tuple(value * factor if unit == "mm" else value for value, unit in zip(values, joint.type.units, strict=False))
 
 
 def _two_solids(_check: Check, subject: Subject) -> Subject:
@@ -162,12 +172,9 @@ def _adrift(_check: Check, subject: Subject) -> Subject:
 def _in_the_way(_check: Check, subject: Subject) -> Subject:
     """Something stands where a moving part comes by."""
     assembly = subject.assembly
-    for driver in assembly.drivers:
-        reached = subject.driver_range(driver.name)
-        assert reached is not None
-        q = np.array(assembly.mechanism.rest)
-        column = [each.name for each in assembly.drivers].index(driver.name)
-        q[column] = reached[0] + 0.7 * (reached[1] - reached[0])
+    on_ground = {joint.name for joint in assembly.joints if joint.parent == assembly.ground}
+    for driver in sorted(assembly.drivers, key=lambda driver: driver.joint in on_ground):  # no ghost in a bearing, if there is a choice
+        q = _on_its_way(subject, driver)
         poses = dict(zip(assembly.mechanism.parts, assembly.poses(q), strict=True))
         mover = next(joint.child for joint in assembly.joints if joint.name == driver.joint)
         mover = (
@@ -179,6 +186,21 @@ def _in_the_way(_check: Check, subject: Subject) -> Subject:
         assert mesh is not None
         return _with_mesh(subject, stands, merged([mesh, ghost.transformed(poses[stands].inverse() @ poses[mover])]))
     raise AssertionError("Nothing moves.")
+
+
+def _on_its_way(subject: Subject, driver: Coordinate) -> FloatArray:
+    """Return all drivers at rest but one, which is at seven tenths of its range; a ball joint leans by as much of its cone."""
+    q = np.array(subject.assembly.mechanism.rest)
+    column = [each.name for each in subject.assembly.drivers].index(driver.name)
+    joint = next(joint for joint in subject.assembly.joints if joint.name == driver.joint)
+    if joint.type is JointType.BALL:
+        assert joint.limits.cone is not None
+        q[column : column + 4] = SE3.rot_x(0.7 * joint.limits.cone).quaternion
+        return q
+    reached = subject.driver_range(driver.name)
+    assert reached is not None
+    q[column] = reached[0] + 0.7 * (reached[1] - reached[0])
+    return q
 
 
 def _unclosed(_check: Check, subject: Subject) -> Subject:
@@ -211,7 +233,9 @@ def _mispinned(_check: Check, subject: Subject) -> Subject:
     """A pin that closes a loop sits elsewhere on both of its parts: links are longer or shorter than they should be."""
     mechanism = subject.assembly.mechanism
     aside = SE3.from_translation(np.array([0.06, 0.04, 0.0]) * float(subject.size.max()))
-    moved = next(joint for joint in mechanism.loop_joints if joint.type is JointType.REVOLUTE)
+    moved = next((joint for joint in mechanism.loop_joints if joint.type is JointType.REVOLUTE), None)
+    if moved is None:  # couplings alone make it so
+        return _unclosed(_check, subject)
     turn = moved.motion(moved.rest)
     joints = [
         replace(j, T_parent_connector=j.T_parent_connector @ aside, T_child_connector=j.T_child_connector @ turn.inverse() @ aside @ turn)

@@ -21,6 +21,9 @@ REFUSED_SHARE = 0.15
 REFUSED = {  # besides MJCF that MuJoCo itself refuses, because it is a piece of another file or its meshes are not there
     "romeo_laas_small.urdf": "leads out of",  # names meshes by an absolute path of somebody's machine
     "ur3.urdf": "has no name",
+    "finger_macro.urdf": "has no name",  # nothing is in it
+    "trifinger_stage.urdf": "Its link 'base_link' is not in the file",
+    "trifingeredu_stage.urdf": "Its link 'base_link' is not in the file",
 }
 
 
@@ -29,7 +32,8 @@ def models() -> list[Path]:
     found = [*ROOT.rglob("*.urdf")]
     for path in ROOT.rglob("*.xml"):
         text = path.read_text(errors="replace")
-        if re.search(r"<mujoco[\s>]", text) and "<worldbody" in text:
+        root = re.search(r"<(\w+)[\s>]", re.sub(r"<!--.*?-->", "", text, flags=re.DOTALL))
+        if root is not None and root[1] == "mujoco" and "<worldbody" in text:
             found.append(path)
     return sorted(found)
 

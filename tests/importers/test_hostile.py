@@ -43,7 +43,7 @@ URDFS = {
         "no mechanism",
     ),
     "a link twice": (robot('<link name="a"/><link name="a"/>'), "Two links|root links"),
-    "an unknown link": (joint("", ends='<parent link="a"/><child link="nowhere"/>'), "root links|not in the file"),
+    "an unknown link": (joint("", ends='<parent link="a"/><child link="nowhere"/>'), "Its link 'nowhere' is not in the file"),
     "an unknown type": (joint("", "helical"), "not one of"),
     "no axis": (joint('<axis xyz="0 0 0"/><limit lower="0" upper="1"/>'), "no direction"),
     "NaN": (joint('<origin xyz="nan 0 0"/><limit lower="0" upper="1"/>'), "beyond reason"),

@@ -456,7 +456,7 @@ def test_every_triangle_is_in_one_leaf_and_in_all_boxes_above_it() -> None:
     assert sorted(leaves.tolist()) == list(range(len(tree.corners)))
     for node, (left, right) in enumerate(tree.children.tolist()):
         for child in (left, right) if left >= 0 else ():
-            assert (np.abs(tree.centre[child] - tree.centre[node]) + tree.half[child] <= tree.half[node] + 1e-12).all()
+            assert (np.abs(tree.centre[child] - tree.centre[node]) + tree.half[child] <= tree.half[node] + 1e-5).all()  # rounded
         if left < 0:
             corners = tree.corners[tree.triangle[node]]
             assert (np.abs(corners - tree.centre[node]) <= tree.half[node] + 1e-12).all()
@@ -471,23 +471,6 @@ def test_the_distance_of_two_triangles_is_that_of_fcl() -> None:
         if exact > 0:  # triangles that pierce one another are no business of it
             assert distance == pytest.approx(exact, abs=1e-6)
             assert (other @ u).min() - (one @ u).max() == pytest.approx(exact, abs=1e-6)
-
-
-@pytest.mark.parametrize("cone", [0.3, 1.0])
-def test_what_lean_and_radius_keep_apart_is_apart_wherever_a_ball_swings(cone: float) -> None:
-    rng = np.random.default_rng(5)
-    knuckle = joint("s", "ball", "a", "b", cone=cone)
-    a, b = (rng.normal(size=(150, 1, 3)) * 12 + rng.uniform(-1.5, 1.5, (150, 3, 3)) for _ in range(2))
-    core, needed = Core(np.eye(4), 3), 0.4
-    of_a = [np.concatenate(ends, axis=1) for ends in zip(outline(core, a), leaning(core, a, 0.0, 0.0), strict=True)]
-    of_b = [np.concatenate(ends, axis=1) for ends in zip(outline(core, b), leaning(core, b, cone, needed), strict=True)]
-    met = meeting((of_a[0], of_a[1]), (of_b[0], of_b[1]), np.array([needed, 0.0]))
-    assert met.any()
-    for row in np.flatnonzero(~met):
-        for _ in range(6):
-            angle, swing = rng.uniform(-math.pi, math.pi), cone * math.sqrt(rng.random())
-            T = motion_matrix(knuckle, [swing * math.cos(angle), swing * math.sin(angle), rng.uniform(-3, 3)])
-            assert surface_distance(Surface(a[row][None]), Surface(b), T) > needed
 
 
 def test_swing_and_twist_are_found_again_from_a_quaternion() -> None:
@@ -547,6 +530,11 @@ def claim_less(document: dict[str, Any]) -> None:
     of_hinge(document)["clear_mm"] -= 0.01
 
 
+def begin_elsewhere(document: dict[str, Any]) -> None:
+    document["ok"] = False  # a part of the range may then be claimed, but what is inside another is looked for at rest only
+    of_hinge(document)["vary"]["hinge"] = [0.5, 1.0]
+
+
 def allow_more(document: dict[str, Any]) -> None:
     for claim in document["claims"]:
         claim["shrink_mm"] *= 3
@@ -582,7 +570,7 @@ def widen_limits(document: dict[str, Any]) -> None:
 
 
 LIES = [
-    widen_interval, enlarge_distance, drop_pair, swap_mesh, narrow_range, claim_less, allow_more, allow_nothing, forget_deflection,
+    widen_interval, enlarge_distance, drop_pair, swap_mesh, narrow_range, begin_elsewhere, claim_less, allow_more, allow_nothing, forget_deflection,
     move_frame, hold_instead, leave_out_a_joint, widen_limits,
 ]  # fmt: skip
 

@@ -11,18 +11,21 @@ from typing import Any
 import numpy as np
 import pytest
 
+from articad import verify_certificate
 from articad.connectors import SE3
 from articad.geometry import TriMesh, box, cylinder, merged
-from articad.interference.certificate import Certificate, certify
-from articad.interference.linkage import Way
+from articad.interference.certificate import Certificate, certify, constrained_joints, driver_names, mechanism_json
+from articad.interference.linkage import Piece, Way
 from articad.interference.overlap import overlap
 from articad.interference.scene import Scene
 from articad.kinematics.joints import Coupling, Joint
 from articad.kinematics.mechanism import Mechanism
+from articad.verify_certificate import PROOF, Checker
 from tests.interference.mechanisms import at, joint, verified
 
 CRANK, COUPLER, ROCKER, SPAN = 30.0, 90.0, 70.0, 100.0
 REST = math.radians(60)
+ALONG_X = SE3.from_axes([120.0, 0, 0], [1.0, 0, 0], [0.0, 1, 0])
 
 
 def link(p: np.ndarray, q: np.ndarray, z: float) -> TriMesh:
@@ -70,6 +73,38 @@ def refutations(certificate: Certificate, change: Callable[[dict[str, Any]], obj
     return verified(document, certificate)
 
 
+def way_of(mechanism: Mechanism) -> Way:
+    linkage = sorted(constrained_joints(mechanism))
+    return Way(mechanism, 0, {"mechanism": mechanism_json(mechanism), "linkage": linkage, "drivers": driver_names(mechanism, frozenset(linkage))})
+
+
+def slider_crank() -> Mechanism:
+    joints = [
+        joint("crank", "revolute", "frame", "arm", lower=(-math.inf,), upper=(math.inf,)),
+        joint("pin", "revolute", "arm", "rod", at_parent=at(30), at_child=at(30), lower=(-math.inf,), upper=(math.inf,)),
+        joint("wrist", "revolute", "rod", "piston", at_parent=at(120), at_child=at(120), lower=(-math.inf,), upper=(math.inf,)),
+        joint("slide", "slider", "frame", "piston", at_parent=ALONG_X, at_child=ALONG_X, lower=(-80.0,), upper=(20.0,)),
+    ]
+    return Mechanism(("frame", "arm", "rod", "piston"), "frame", joints)
+
+
+@pytest.mark.parametrize("half", [0.01, 0.1, 0.5])
+def test_no_loop_bends_more_than_the_lever_that_the_checker_takes(half: float, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(verify_certificate, "ROUNDING", math.inf)  # by which a loop may be open
+    mechanism = slider_crank()
+    linkage = sorted(constrained_joints(mechanism))
+    checker = Checker({"mechanism": mechanism_json(mechanism), "linkage": linkage, "drivers": ["crank"]}, {PROOF: {}})
+    names = checker.followers("crank")
+    rest = np.array([checker.rest[name] for name in names])
+    r, J, share = checker.closure(checker.rest, names)
+    turns = np.array([any(checker.freedoms[name]["turn"]) for name in names])
+    rng = np.random.default_rng(4)
+    for _ in range(200):
+        change = rng.uniform(-1, 1, len(names)) * np.where(turns, half, (1 + np.abs(rest)) * 2 * half)  # as far as slides may go
+        bent = checker.closure(dict(zip(names, (rest + change).tolist(), strict=True)), names)[0] - r - J @ change
+        assert (np.abs(bent) <= (share @ np.abs(change)) ** 2 / 2 + 1e-9).all()
+
+
 def test_a_four_bar_in_layers_is_certified_over_a_full_turn() -> None:
     meshes, joints = four_bar((0.0, 5.0, 10.0))
     certificate = proven(meshes, joints)
@@ -89,22 +124,39 @@ def test_links_of_one_layer_that_pass_each_other_are_certified_by_tubes() -> Non
     assert list(claim.vary) == ["crank"]  # whatever follows it
 
 
-def test_every_solution_lies_in_the_box_of_its_step() -> None:
+def assert_on_its_line(way: Way, mechanism: Mechanism, piece: Piece, value: float) -> None:
+    found = mechanism.configuration(np.array([value])).values
+    for name, (middle, rate, near) in piece.line.items():
+        assert abs(found[name][0] - middle - rate * (value - sum(piece.ends) / 2)) <= near + 1e-9
+
+
+def test_every_solution_lies_near_the_line_of_its_piece() -> None:
     meshes, joints = four_bar((0.0, 5.0, 0.0))
     mechanism = Mechanism(tuple(meshes), "frame", joints)
-    way = Way(mechanism, 0)
+    way = way_of(mechanism)
     rng = np.random.default_rng(0)
-    steps = [step for sign in (1, -1) for step in way.steps(sign)]
-    steps += [half for step in steps[::5] for half in way.halves(step)]
-    for step in steps:
-        for value in rng.uniform(*way.values(step), 3):
-            Q = mechanism.configuration(np.array([value]))
-            for name, column in way.layout.column_of.items():
-                freedom = way.layout.freedom_of(column)
-                assert abs(Q.values[name][0] - step.middle[column]) <= abs(step.line[freedom]) + step.tube[freedom] + 1e-9
-    spans = sorted(way.values(step) for sign in (1, -1) for step in way.steps(sign))
-    assert all(after[0] == pytest.approx(before[1], abs=1e-9) for before, after in pairwise(spans))
+    pieces = [piece for sign in (1, -1) for piece in way.steps(sign)]
+    spans = sorted(piece.ends for piece in pieces)
+    for piece in [*pieces, *(half for piece in pieces[::5] for half in way.halves(piece) or ())]:
+        for value in rng.uniform(*piece.ends, 3):
+            assert_on_its_line(way, mechanism, piece, value)
+    assert all(after[0] == before[1] for before, after in pairwise(spans))
     assert (spans[0][0], spans[-1][1]) == pytest.approx(way.bounds)
+
+
+def test_every_solution_lies_near_the_line_of_pieces_in_a_row() -> None:
+    meshes, joints = four_bar((0.0, 5.0, 0.0))
+    mechanism = Mechanism(tuple(meshes), "frame", joints)
+    way = way_of(mechanism)
+    rng = np.random.default_rng(1)
+    found = [way.whole]
+    assert found[0].ends == pytest.approx(way.bounds)
+    for piece in found:
+        if len(piece.numbers) > 1:
+            found += way.halves(piece) or ()
+        for value in rng.uniform(*piece.ends, 2):
+            assert_on_its_line(way, mechanism, piece, value)
+    assert sum(len(piece.numbers) == 1 for piece in found) == len(way.steps(1)) + len(way.steps(-1))
 
 
 def test_a_collision_within_a_loop_is_found_with_the_drivers_value() -> None:
@@ -213,18 +265,27 @@ def call_a_follower_a_driver(document: dict[str, Any]) -> None:
     document["drivers"].append("pin_c")
 
 
+def move_two_drivers(document: dict[str, Any]) -> None:
+    document["drivers"].append("pin_c")  # the rocker would be followed along one of them
+    followed(document)["vary"]["pin_c"] = [-math.pi, math.pi]
+
+
 def swap_mesh(document: dict[str, Any]) -> None:
     document["meshes"]["crank"]["sha256"] = document["meshes"]["rocker"]["sha256"]
 
 
 LIES = [
-    narrow, enlarge, drop, shift_a_pin, turn_the_branch, hold_what_follows, forget_the_driver, call_a_follower_a_driver, swap_mesh
+    narrow, enlarge, drop, shift_a_pin, turn_the_branch, hold_what_follows, forget_the_driver, call_a_follower_a_driver, move_two_drivers, swap_mesh
 ]  # fmt: skip
 
 
 @pytest.mark.parametrize("lie", LIES, ids=lambda lie: lie.__name__)
 def test_a_planted_lie_on_a_loop_is_refuted(honest: Certificate, lie: Callable[[dict[str, Any]], None]) -> None:
     assert refutations(honest, lie)
+
+
+def test_two_drivers_at_once_are_refuted_whatever_they_do(honest: Certificate) -> None:
+    assert any("two drivers" in reason for reason in refutations(honest, move_two_drivers))
 
 
 def test_an_honest_certificate_of_a_loop_is_accepted(honest: Certificate) -> None:

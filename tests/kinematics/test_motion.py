@@ -127,6 +127,18 @@ def test_many_turns_repeat_the_first_and_angles_go_on_counting() -> None:
     assert four_bar(60, 50, 50, 100, crank=0.3).branch.track(0).period(1) is None
 
 
+def test_a_driver_traced_over_many_turns_first_follows_the_same_ratio_as_one_traced_turn_by_turn() -> None:
+    limits = [(-10 * math.pi, 10 * math.pi)]
+    one = joint("one", "screw", ("frame", at(0)), ("nut", at(0)), limits=limits, driver=True, lead=2)
+    other = joint("other", "screw", ("nut", at(0)), ("eye", at(0)), limits=limits, lead=-2)
+    mechanism = Mechanism(["frame", "nut", "eye"], "frame", [one, other], [Coupling("still", "linear", "one", "other", -1.0, 0.0)])
+
+    reached = mechanism.feasible_range("one")
+
+    assert (reached.lower, reached.upper) == limits[0]
+    assert mechanism.configuration([20.0])["other"][0] == pytest.approx(-20.0, abs=1e-9)
+
+
 def test_a_sweep_ends_at_a_dead_point_and_says_where() -> None:
     mechanism = four_bar(60, 50, 50, 100, crank=0.3)
     sweep = mechanism.sweep("crank", -math.pi / 2, math.pi / 2, 181)

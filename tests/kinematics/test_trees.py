@@ -234,6 +234,27 @@ def test_pinocchio_data_is_refused_before_it_fills_the_memory() -> None:
         compiled.data  # noqa: B018
 
 
+def test_a_compiled_model_refuses_what_is_no_configuration_and_forgives_the_digits_of_a_file() -> None:
+    rng = np.random.default_rng(0)
+    kinds = (JointType.BALL, JointType.BALL, JointType.PLANAR)
+    joints = [random_joint(rng, f"j{i}", kind, f"p{i}", f"p{i + 1}", Mate.ALIGNED) for i, kind in enumerate(kinds)]
+    mechanism = Mechanism(("p0", "p1", "p2", "p3"), "p0", joints)
+    compiled = forward.compile(mechanism)
+    rough = mechanism.rest.copy()
+    rough[[3, 7]] = 1 + 9e-4  # each passes, though together they are off by more than one may be
+    assert compiled.poses(rough).allclose(mechanism.poses(rough))
+    for column, value, code in (
+        (0, np.nan, "E_NONFINITE"),
+        (8, np.inf, "E_NONFINITE"),
+        (10, np.nan, "E_NONFINITE"),
+        (3, 1.01, "E_QUAT_NORM"),
+    ):
+        wrong = mechanism.rest.copy()
+        wrong[column] = value
+        with pytest.raises(KinematicsError, match=code):
+            compiled.poses(wrong)
+
+
 def test_the_mass_matrix_is_right_because_joints_are_numbered_depth_first() -> None:
     # a Y declared breadth-first: Pinocchio's crba would be silently wrong if the joints were added in that order
     rng = np.random.default_rng(0)

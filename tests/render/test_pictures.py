@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from PIL import Image
+from PIL import Image, ImageDraw
 
 from articad.assembly import Assembly
 from articad.connectors.connector import Connector
@@ -213,6 +213,58 @@ def test_a_highlight_that_could_be_missed_gets_a_ring_and_a_large_one_none(rail:
 
     assert ringed(0.3) > 100
     assert ringed(30.0) == 0
+
+
+def test_names_that_stand_aside_leave_what_is_drawn_free_and_none_is_left_out() -> None:
+    assembly = all_joint_kinds()
+    written: list[tuple[str, tuple[float, float]]] = []
+    text = annotate._text
+
+    def noted(draw: object, at: tuple[float, float], words: str, color: object, **options: object) -> None:
+        written.append((words, at))
+        text(draw, at, words, color, **options)  # type: ignore[arg-type]
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(annotate, "_text", noted)
+        drawn = render_views(assembly, ["iso"], size=400, labels="aside", axes=False)["iso"]
+
+    scene = scene_of(assembly.parts, dict(assembly.at()))
+    room = annotate.room_beside(scene)
+    assert drawn.size == (400 + 2 * room, 400)
+    item = cast(scene, Camera.fit("iso", scene.bounds, width=400, height=400)).item
+    seen = [scene.items[index].name for index in np.unique(item[item != BACKGROUND]) if (item == index).sum() >= 40]
+    names = {words: at for words, at in written if words in assembly.parts}
+    assert len(seen) > 10
+    assert set(names) == set(seen)
+    for name, (x, _) in names.items():
+        assert x + annotate._measured(name) <= room or x >= 400 + room, name
+    for side in (True, False):
+        rows = sorted(y for x, y in names.values() if (x < room) == side)
+        assert min(np.diff(rows)) >= annotate._LINE
+        assert rows[-1] <= 400 - annotate._BELOW
+
+
+def test_names_that_do_not_fit_below_move_up_and_stay_in_their_order(rail: Assembly) -> None:
+    scene = scene_of(rail.parts, dict(rail.at()))
+    shot = Camera.fit("front", scene.bounds, width=300, height=200).widened(40)
+    names = [((150.0, 190.0 - index), f"n{index}", annotate.INK) for index in range(6)]
+    image = Image.new("RGB", (shot.width, shot.height))
+    rows: dict[str, float] = {}
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(annotate, "_text", lambda _draw, at, words, _color: rows.update({words: at[1]}))
+        annotate._columns(ImageDraw.Draw(image), names, shot)
+
+    for column in (["n2", "n1", "n0"], ["n5", "n4", "n3"]):  # by where they are from top to bottom
+        assert [rows[name] for name in column] == [200 - annotate._BELOW - annotate._LINE * step for step in (2, 1, 0)]
+
+
+def test_a_black_part_is_drawn_so_bright_that_its_edges_are_seen(rail: Assembly) -> None:
+    black = replace(rail.parts["base"], color="#101214", visuals=())
+    front = np.asarray(render_part(black, ["front"], size=100, supersample=1)["front"]).astype(int)
+    pale = np.asarray(render_part(replace(black, color="#c8a46e"), ["front"], size=100, supersample=1)["front"]).astype(int)
+
+    assert front[50, 50].mean() > annotate.INK[1] + 40
+    assert pale[50, 50].tolist() == pytest.approx([200 * 0.9, 164 * 0.9, 110 * 0.9], rel=0.15), "others keep their colour"
 
 
 def test_an_exploded_view_moves_parts_apart(rail: Assembly) -> None:

@@ -9,7 +9,9 @@ from pathlib import Path
 import pytest
 from PIL import Image
 
+from articad.assembly import Assembly
 from articad.importers.mjcf import read_mjcf
+from articad.plan.schema import AssemblyPlan
 from articad.simulate.examine import simulate_assembly, simulate_file
 from articad.simulate.film import film
 from articad.simulate.trial import try_out
@@ -18,6 +20,7 @@ from tests.assemblies import all_joint_kinds, four_bar
 
 pytestmark = pytest.mark.engines
 
+ROOT = Path(__file__).resolve().parents[2]
 ARM = '<geom type="box" size="0.05 0.005 0.005" pos="0.06 0 0"/>'
 MODEL = """<mujoco><compiler angle="radian" autolimits="true"/><option timestep="0.002"/>
 <worldbody>{world}<body name="arm" pos="0 0 0.5"><joint name="turn" axis="0 0 1" range="-1 1" {joint}/>{arm}{more}</body>{bodies}</worldbody>{rest}</mujoco>"""
@@ -125,14 +128,81 @@ def test_our_own_exports_are_driven_and_filmed_and_a_crank_that_cannot_turn_roun
     verdict = simulate_assembly(assembly, "four_bar", engines=("mujoco",))
 
     (outcome,) = verdict.outcomes
-    (reach,) = outcome.reaches
+    (reach,) = outcome.judged
     assert outcome.residual < 1e-6
     assert verdict.findings.codes == ("E_SIM_RANGE",)
-    assert (reach.joint, reach.tied) == ("a", True)
+    assert (reach.joint, reach.role) == ("a", "driver")
     assert reach.high == pytest.approx(free.upper, abs=0.02)
+    assert reach.allowed == pytest.approx((assembly.mechanism.rest[0], free.upper))
+    assert "Declare the range that the loop allows" in verdict.findings[0].hint
     strip = film(assembly, outcome)
     assert strip is not None
     assert Image.open(io.BytesIO(strip)).width > 240
+
+
+@pytest.mark.slow
+def test_each_joint_of_a_loop_is_held_to_what_its_drivers_bring_it_to() -> None:
+    """A clamp has two: its handle moves arm and link, its spindle turns and travels by its lead; both are driven, the others follow."""
+    folder = ROOT / "examples/toggle_clamp"
+    assembly = Assembly.from_plan(AssemblyPlan.load(folder), folder / "parts")
+    arm = assembly.motion("handle", *(getattr(assembly.feasible_range("handle"), side) for side in ("lower", "upper")))
+
+    verdict = simulate_assembly(assembly, "toggle_clamp", engines=("mujoco",))
+
+    assert verdict.ok, str(verdict.findings)
+    reaches = {reach.joint: reach for reach in verdict.outcomes[0].judged}
+    assert {name: reach.role for name, reach in reaches.items()} == {
+        "handle": "driver",
+        "rear_pin": "follower",
+        "arm": "follower",
+        "spindle__t": "follower",
+        "spindle__r": "driver",
+    }
+    angles = arm.configuration["arm"][:, 0]
+    assert (reaches["arm"].lower, reaches["arm"].upper) == pytest.approx((angles.min(), angles.max()), abs=1e-3)
+    assert reaches["spindle__t"].upper == pytest.approx(1.25e-3)  # one turn of its lead
+    assert all(reach.share > 0.99 for reach in reaches.values())
+
+
+@pytest.mark.slow
+def test_the_other_drivers_of_a_loop_are_held_while_one_is_driven() -> None:
+    """Six legs carry a platform on balls; whoever lets five of them go, or holds a ball by one of its axes, does not move the sixth."""
+    folder = ROOT / "examples/stewart_platform"
+    assembly = Assembly.from_plan(AssemblyPlan.load(folder), folder / "parts")
+
+    verdict = simulate_assembly(assembly, "stewart_platform", engines=("mujoco",))
+
+    assert verdict.ok, str(verdict.findings)
+    judged = verdict.outcomes[0].judged
+    assert sorted(reach.role for reach in judged) == ["driver"] * 6 + ["follower"] * 12
+    assert all(reach.share > 0.99 for reach in judged)
+
+
+def test_one_loop_does_not_answer_for_another_nor_a_follower_for_its_driver(tmp_path: Path) -> None:
+    """Two geared pairs; a post is in the way of the second: joint by joint where drivers are unknown, the driver where they are known."""
+    pair = '<body name="{n}" pos="{x} 0 0.5"><joint name="{n}" axis="0 0 1" range="-1 1"/>' + ARM + "</body>"
+    names = {"b": 0.3, "c": 0.6, "d": 0.9}
+    bodies = "".join(pair.format(n=name, x=x) for name, x in names.items())
+    bodies += f'<body name="post" pos="{0.6 + 0.06 * math.cos(0.8)} {0.06 * math.sin(0.8)} 0.5"><geom type="sphere" size="0.005"/></body>'
+    tie = '<joint joint1="{0}" joint2="{1}" polycoef="0 1 0 0 0" solref="0.004 1"/>'
+    rest = f"<equality>{tie.format('b', 'turn')}{tie.format('d', 'c')}</equality>"
+
+    verdict = verdict_on(tmp_path, bodies=bodies, rest=rest)
+    known = Verdict("known", (try_out("mujoco", tmp_path / "model.xml", drivers=("turn", "c")),))
+
+    assert [reach.role for reach in verdict.outcomes[0].reaches] == ["tied"] * 4
+    assert [reach.joint in {"c", "d"} for reach in verdict.outcomes[0].judged] == [False, True]
+    for one in (verdict, known):
+        (finding,) = one.findings
+        assert finding.code == "E_SIM_RANGE"
+    assert {reach.joint: reach.role for reach in known.outcomes[0].reaches} == {
+        "turn": "driver",
+        "b": "follower",
+        "c": "driver",
+        "d": "follower",
+    }
+    assert {reach.joint for reach in known.outcomes[0].judged} == {"turn", "b", "c"}
+    assert known.findings[0].where == "joints.c"
 
 
 def test_every_kind_of_joint_is_held_and_driven() -> None:

@@ -1,0 +1,38 @@
+"""Answers that were recorded: the benchmark run again without model, key or network, with the same table."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from articad.agents.llm import LLM, Replay
+from articad.bench.scoring import EDITED, model_of
+from articad.bench.task import Task
+from articad.errors import ReadError
+
+
+class RecordedAnswers:
+    """Who answers as was recorded: `<folder>/<task>` is a run, or holds `run_…` and `edit_…` as a benchmark's own folder does.
+
+    A prompt that is not the recorded one is answered all the same; a step that was not recorded is not.
+    """
+
+    def __init__(self, folder: str | Path) -> None:
+        self._folder = Path(folder)
+
+    def of(self, task: Task) -> LLM:
+        """Return who answers a task's requests.
+
+        Raises:
+            ReadError: If it was not recorded.
+        """
+        return self._replay(task.name)
+
+    def of_edit(self, task: Task) -> LLM:
+        """Return who answers those of its edit."""
+        return self._replay(f"{task.name}{EDITED}")
+
+    def _replay(self, name: str) -> Replay:
+        found = model_of(name, self._folder)
+        if not found.is_dir():
+            raise ReadError.told(found, f"{found} is no recorded run.", "Name the folder of a benchmark's runs.")
+        return Replay(found)

@@ -1,0 +1,105 @@
+"""Scores of files: what any tool has made, judged as our own runs are; and where such files are looked for."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterable
+from dataclasses import replace
+from pathlib import Path
+from typing import Final
+
+from articad import convert
+from articad.assembly import Assembly
+from articad.bench.row import Row
+from articad.bench.subject import Subject
+from articad.bench.task import Task
+from articad.errors import ArticadError, ReadError
+from articad.record import assembly_of
+from articad.run import Run
+
+EDITED: Final = "_edited"  # what is appended to a task's name where a tool's edited model is
+_SIMULATED: Final = frozenset({".urdf", ".xml", ".mjcf"})
+
+
+def score_files(tasks: Iterable[tuple[Path, Task]], folder: str | Path) -> list[Row]:
+    """Judge files that any tool made: `<folder>/<task>.urdf`, or the one model in `<folder>/<task>/`.
+
+    What became of a model by the task's edit is at `<task>_edited` in place of `<task>`.
+
+    Args:
+        tasks: Folders and tasks; one without a file is a row with an error.
+        folder: Where the files are: URDF, MJCF, FreeCAD documents, plans or runs.
+    """
+    return [_scored(task, Path(folder)) for _, task in tasks]
+
+
+def _scored(task: Task, folder: Path) -> Row:
+    row, started = Row.of(task), time.monotonic()
+    try:
+        before = subject_of(model_of(task.name, folder))
+        row = replace(row, judgements=task.judge(before))
+        if task.edit is not None:
+            row = _scored_edit(row, task, folder, before)
+    except ArticadError as error:
+        row = replace(row, error=f"{type(error).__name__}: {error}")
+    return replace(row, seconds=time.monotonic() - started)
+
+
+def _scored_edit(row: Row, task: Task, folder: Path, before: Subject) -> Row:
+    try:
+        edited = replace(subject_of(model_of(f"{task.name}{EDITED}", folder)), before=before.assembly)
+        return replace(row, edited=task.judge_edit(edited))
+    except ArticadError as error:
+        return replace(row, edit_error=f"{type(error).__name__}: {error}")
+
+
+def model_of(name: str, folder: Path) -> Path:
+    """Return the model of a task, or of a task edited.
+
+    Raises:
+        ReadError: If there is none.
+    """
+    for suffix in convert.READERS:
+        if (file := folder / f"{name}{suffix}").is_file():
+            return file
+    place = folder / name
+    ours, kind = (folder / name.removesuffix(EDITED), "edit*") if name.endswith(EDITED) else (place, "run*")
+    for run in (place, *sorted(ours.glob(kind))):
+        if (run / "request.json").is_file():
+            return run
+    files = [file for suffix in convert.READERS for file in sorted(place.rglob(f"*{suffix}"))]
+    if not files:
+        message = f"There is no model of {name} in {folder}."
+        raise ReadError.told(folder, message, f"Write {name}.urdf there, for instance.", said=message)
+    return files[0]
+
+
+def subject_of(found: Path) -> Subject:
+    """Return what is to be judged: a run's assembly, or what a file holds.
+
+    A link of a file that collides with nothing is taken for what is drawn of it; simulators get the file as it is.
+
+    Raises:
+        ArticadError: If it cannot be read.
+    """
+    if found.is_dir():
+        return Subject(assembly_of(Run.view(found)))
+    return Subject(_solid(convert.read(found)), file=found if found.suffix.lower() in _SIMULATED else None)
+
+
+def _solid(assembly: Assembly) -> Assembly:
+    """Return an assembly whose parts have the shapes that are drawn of them, where they have no others."""
+    parts = [replace(part, collisions=part.visuals) if part.mesh is None and part.visuals else part for part in assembly.parts.values()]
+    if all(part is assembly.parts[part.name] for part in parts):
+        return assembly
+    mechanism = assembly.mechanism
+    return Assembly.from_parts(
+        assembly.name,
+        parts=parts,
+        joints=assembly.joints,
+        ground=assembly.ground,
+        couplings=mechanism.couplings,
+        fits=assembly.fits,
+        waivers=assembly.waivers,
+        T_ground=mechanism.T_ground,
+    )

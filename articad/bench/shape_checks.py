@@ -1,0 +1,196 @@
+"""Checks of what parts are like, measured on their surfaces: holes, studs, walls, volumes, stability, symmetry."""
+
+from __future__ import annotations
+
+from typing import Final, Literal
+
+import numpy as np
+
+from articad.bench.check import Bounds, Check, Vector, in_words
+from articad.bench.solids import Round, asymmetry, held_volume, occupied, rounds, tipping_angle, wall_thickness
+from articad.bench.subject import Subject
+from articad.connectors import FloatArray
+from articad.geometry import TriMesh
+
+LEAN: Final = 0.996  # cosine of the 5° by which an axis may lean from the one asked for
+
+
+class _Rounds(Check):
+    """So many cylindrical faces of a diameter, in all parts together, at rest.
+
+    `length` is along the axis, `axis` in the frame of the whole, `pitch` the distance of each axis from the nearest parallel one of them,
+    `circle` the diameter of the circle on which all axes lie.
+    """
+
+    diameter: float
+    number: Bounds
+    length: Bounds | None = None
+    axis: Vector | None = None
+    pitch: float | None = None
+    circle: float | None = None
+    tolerance: float = 0.02
+
+    @property
+    def wanted(self) -> str:
+        also = [f"{in_words(self.length)} mm long" if self.length else "", f"along {self.axis}" if self.axis else ""]
+        also += [f"{self.pitch:g} mm apart" if self.pitch else "", f"on a circle of {self.circle:g} mm" if self.circle else ""]
+        return f"{in_words(self.number)} {self._name} of {self.diameter:g} mm within {100 * self.tolerance:g} %" + "".join(
+            f", {a}" for a in also if a
+        )
+
+    @property
+    def _name(self) -> str:
+        raise NotImplementedError
+
+    def _is(self, found: Round) -> bool:
+        raise NotImplementedError
+
+    def measured(self, subject: Subject) -> tuple[bool, str]:
+        every = [found for mesh in placed(subject) for found in rounds(mesh) if self._is(found)]
+        meant = [found for found in every if self._meant(found)]
+        ok = self.number[0] <= len(meant) <= self.number[1]
+        told = f"{len(meant)} (all: {', '.join(f'{2 * r.radius:.4g} x {r.length:.4g}' for r in every[:16])})"
+        if self.pitch is not None:
+            apart = [_nearest(found, meant) for found in meant]
+            ok &= bool(apart) and all(abs(mm - self.pitch) <= self.tolerance * self.pitch for mm in apart)
+            told += f", {', '.join(f'{mm:.4g}' for mm in sorted(set(apart))[:4])} mm apart"
+        if self.circle is not None and meant:
+            middle = np.mean([found.centre for found in meant], axis=0)
+            circles = [2 * _beside(found, middle) for found in meant]
+            ok &= all(abs(mm - self.circle) <= self.tolerance * self.circle for mm in circles)
+            told += f", on circles of {', '.join(f'{mm:.4g}' for mm in circles[:4])} mm"
+        return ok, told
+
+    def _meant(self, found: Round) -> bool:
+        if abs(2 * found.radius - self.diameter) > self.tolerance * self.diameter:
+            return False
+        if self.axis is not None and abs(float(found.axis @ np.array(self.axis))) < LEAN * float(np.linalg.norm(self.axis)):
+            return False
+        return self.length is None or self.length[0] <= found.length <= self.length[1]
+
+
+class Holes(_Rounds):
+    """So many round holes; `through` says whether they have no bottom."""
+
+    kind: Literal["holes"] = "holes"
+    through: bool | None = None
+
+    @property
+    def _name(self) -> str:
+        return "holes" if self.through is None else "through holes" if self.through else "blind holes"
+
+    def _is(self, found: Round) -> bool:
+        return found.hollow and self.through in {None, not found.blind}
+
+
+class Studs(_Rounds):
+    """So many faces that are round outside: pegs, legs, shafts, discs."""
+
+    kind: Literal["studs"] = "studs"
+
+    @property
+    def _name(self) -> str:
+        return "round outsides"
+
+    def _is(self, found: Round) -> bool:
+        return not found.hollow
+
+
+class Wall(Check):
+    """So many parts with a wall so thick under at least this share of their surface, measured straight inwards."""
+
+    kind: Literal["wall"] = "wall"
+    mm: Bounds
+    share: float = 0.5
+    number: Bounds = (1, 999)
+
+    @property
+    def wanted(self) -> str:
+        return f"{in_words(self.number)} parts {in_words(self.mm)} mm thick under {100 * self.share:g} % of their surface"
+
+    def measured(self, subject: Subject) -> tuple[bool, str]:
+        shares = {}
+        for name, mesh in zip(subject.shaped, placed(subject), strict=True):
+            thick = wall_thickness(mesh)
+            shares[name] = float(((thick >= self.mm[0]) & (thick <= self.mm[1])).mean())
+        count = sum(share >= self.share for share in shares.values())
+        return self.number[0] <= count <= self.number[1], f"{count} ({', '.join(f'{n} {100 * s:.0f} %' for n, s in shares.items())})"
+
+
+class Volume(Check):
+    """Volume of matter of the whole."""
+
+    kind: Literal["volume"] = "volume"
+    cm3: Bounds
+
+    @property
+    def wanted(self) -> str:
+        return f"{in_words(self.cm3)} cm³ of material"
+
+    def measured(self, subject: Subject) -> tuple[bool, str]:
+        volume = sum(abs(mesh.volume) for mesh in placed(subject)) / 1000
+        return self.cm3[0] <= volume <= self.cm3[1], f"{volume:.4g} cm³"
+
+
+class Holds(Check):
+    """What it holds, filled to the brim, standing as it is."""
+
+    kind: Literal["holds"] = "holds"
+    ml: Bounds
+
+    @property
+    def wanted(self) -> str:
+        return f"holds {in_words(self.ml)} ml"
+
+    def measured(self, subject: Subject) -> tuple[bool, str]:
+        held = held_volume(placed(subject)) / 1000
+        return self.ml[0] <= held <= self.ml[1], f"{held:.4g} ml"
+
+
+class Stands(Check):
+    """It stands by itself, and tips over only when the ground leans by more than this, whichever way."""
+
+    kind: Literal["stands"] = "stands"
+    degrees: float = 5.0
+
+    @property
+    def wanted(self) -> str:
+        return f"stands on ground that leans by {self.degrees:g}°"
+
+    def measured(self, subject: Subject) -> tuple[bool, str]:
+        meshes = placed(subject)
+        weights = [abs(mesh.volume) * subject.density(name) for name, mesh in zip(subject.shaped, meshes, strict=True)]
+        com = np.average([mesh.solid_integrals()[1] for mesh in meshes], axis=0, weights=weights)
+        tips = tipping_angle(np.concatenate([mesh.vertices for mesh in meshes]), np.asarray(com))
+        return tips >= self.degrees, f"tips at {tips:.1f}°"
+
+
+class Symmetric(Check):
+    """The whole at rest is its own mirror image across an axis, up to this share of it."""
+
+    kind: Literal["symmetric"] = "symmetric"
+    axis: Literal["x", "y", "z"]
+    tolerance: float = 0.02
+
+    @property
+    def wanted(self) -> str:
+        return f"symmetric across {self.axis} within {100 * self.tolerance:g} %"
+
+    def measured(self, subject: Subject) -> tuple[bool, str]:
+        share = asymmetry(occupied(placed(subject))[0], "xyz".index(self.axis))
+        return share <= self.tolerance, f"{100 * share:.2g} % has nothing opposite"
+
+
+def placed(subject: Subject) -> list[TriMesh]:
+    """Return the meshes of the parts that have one, as they are at rest."""
+    return [mesh.transformed(subject.rest[name]) for name in subject.shaped if (mesh := subject.assembly.parts[name].mesh) is not None]
+
+
+def _beside(found: Round, point: FloatArray) -> float:
+    """Return the distance of a point from an axis [mm]."""
+    return float(np.linalg.norm(np.cross(point - found.centre, found.axis)))
+
+
+def _nearest(found: Round, others: list[Round]) -> float:
+    beside = [_beside(found, other.centre) for other in others if other is not found and abs(float(found.axis @ other.axis)) > LEAN]
+    return min((mm for mm in beside if mm > 0.1), default=float("inf"))

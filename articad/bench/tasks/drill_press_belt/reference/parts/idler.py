@@ -1,0 +1,13 @@
+from build123d import Align, Cylinder, Pos
+
+LOW = (Align.CENTER, Align.CENTER, Align.MIN)
+
+
+def build(part):
+    d = part.dimensions
+    shape = Cylinder(d["lower_r"], d["thickness"], align=LOW) + Pos(0, 0, d["thickness"]) * Cylinder(d["upper_r"], d["thickness"], align=LOW)
+    shape -= Pos(d["lower_r"], 0, 0) * Cylinder(d["mark"], 1000)
+    shape -= Pos(0, 0, 0) * Cylinder(d["bore_r"], 1000)
+    return shape, {
+        "i": {"o": (0, 0, 0), "z": (0, 0, 1), "x": (1, 0, 0)},
+    }

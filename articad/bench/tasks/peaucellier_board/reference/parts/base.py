@@ -1,0 +1,16 @@
+from build123d import Align, Box, Cylinder, Pos, Rot
+
+LOW = (Align.CENTER, Align.CENTER, Align.MIN)
+FRONT = Rot(X=90)  # drawn in x and y as seen from the front, layers upwards; then stood up
+
+
+def build(part):
+    d = part.dimensions
+    shape = Pos(d["left"], d["bottom"], -d["play"]) * Box(d["right"] - d["left"], d["top"] - d["bottom"], d["board"], align=(Align.MIN, Align.MIN, Align.MAX))
+    shape += Pos(d["left"], d["bottom"] - d["foot_height"], d["foot_depth"] / 2 - d["play"] - d["board"] / 2) * Box(d["right"] - d["left"], d["foot_height"], d["foot_depth"], align=(Align.MIN, Align.MIN, Align.MAX))
+    shape += Pos(d["a_u"], 0, -d["play"] - d["board"] / 2) * Cylinder(d["pin_r"], d["a_high"] - (-d["play"] - d["board"] / 2), align=LOW)
+    shape += Pos(0, 0, -d["play"] - d["board"] / 2) * Cylinder(d["pin_r"], d["o_high"] - (-d["play"] - d["board"] / 2), align=LOW)
+    return FRONT * shape, {
+        "a": {"o": (d["a_u"], 0, 0), "z": (0, -1, 0), "x": (1, 0, 0)},
+        "o": {"o": (0, 0, 0), "z": (0, -1, 0), "x": (1, 0, 0)},
+    }

@@ -1,0 +1,13 @@
+from build123d import Align, Cylinder, Pos
+
+LOW = (Align.CENTER, Align.CENTER, Align.MIN)
+
+
+def build(part):
+    d = part.dimensions
+    shape = Pos(0, 0, 0) * Cylinder(d["radius"], d["thickness"], align=LOW)
+    shape += Pos(0, 0, -d["shaft"]) * Cylinder(d["shaft_r"], d["shaft"], align=LOW)
+    shape -= Pos(d["radius"] - 2 * d["mark"], 0, 0) * Cylinder(d["mark"], 1000)
+    return shape, {
+        "o": {"o": (0, 0, 0), "z": (0, 0, 1), "x": (1, 0, 0)},
+    }

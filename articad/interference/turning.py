@@ -1,0 +1,91 @@
+"""Pairs that one turning joint cannot bring together, so that a sweep of it need not ask at every step."""
+
+from __future__ import annotations
+
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from articad.interference.body import Body
+from articad.interference.meridian import Ends, meeting, outline
+from articad.interference.scene import Scene, boxes_apart
+from articad.interference.surface import Core
+from articad.kinematics.joints import Joint, JointType
+from articad.kinematics.mechanism import Mechanism
+
+FloatArray = NDArray[np.float64]
+BoolArray = NDArray[np.bool_]
+
+
+class Turning:
+    """What a joint keeps apart however it turns, all others at rest.
+
+    Args:
+        scene: The bodies.
+        joint: Of a tree.
+        T_ground_axis: Its parent connector at one of the poses, `(4, 4)` [mm].
+        matrices: The bodies at that pose, `(N, 3, 4)` [mm].
+    """
+
+    def __init__(self, scene: Scene, joint: Joint, T_ground_axis: FloatArray, matrices: FloatArray) -> None:
+        self.scene, self.joint, self.matrices = scene, joint, matrices
+        self._axis = Core(T_ground_axis)
+        self._outlines: dict[int, Ends] = {}
+
+    @classmethod
+    def of(cls, scene: Scene, mechanism: Mechanism, name: str, poses: FloatArray, matrices: FloatArray) -> Turning | None:
+        """Return it for the coordinate that alone moves; None where that does not turn about an axis that stands.
+
+        Args:
+            scene: The bodies.
+            mechanism: What moves.
+            name: Of the coordinate.
+            poses: All parts at one of its values, matrices `(parts, 4, 4)` [mm].
+            matrices: The bodies there, `(N, 3, 4)` [mm].
+        """
+        for joint in mechanism.joints if mechanism.is_tree else ():
+            if joint.type in (JointType.REVOLUTE, JointType.CYLINDRICAL) and name == joint.column_names[-1]:
+                at = poses[mechanism.part_index(joint.parent)] @ joint.T_parent_connector.matrix
+                return cls(scene, joint, at, matrices)
+        return None
+
+    def apart(self, i: int, j: int, T_i_j: FloatArray) -> BoolArray:
+        """Return at which relative poses `(n, 3, 4)` two bodies, places among the scene's, have nothing in common, `(n,)`.
+
+        Only triangles whose outlines meet can meet, and where boxes about these are apart they do not. No shell of the one is
+        inside the other then if it reaches out of the other's box.
+        """
+        mine, theirs = self._outline(i), self._outline(j)
+        met_i = meeting(mine, theirs, 0.0)
+        found = np.ones(len(T_i_j), dtype=bool)
+        if met_i.any():
+            met_j = meeting(theirs, (mine[0][met_i], mine[1][met_i]), 0.0)
+            found = boxes_apart(_box(self._bodies[i].corners[met_i]), _box(self._bodies[j].corners[met_j]), T_i_j)
+        back = T_i_j[..., :3].transpose(0, 2, 1)
+        T_j_i = np.concatenate([back, -back @ T_i_j[..., 3:]], axis=2)
+        return np.asarray(found & ~self._may_hold(i, j, T_i_j) & ~self._may_hold(j, i, T_j_i))
+
+    def _may_hold(self, outer: int, inner: int, T: FloatArray) -> BoolArray:
+        """Return at which poses of the inner body a shell of it is within the outer's box, but for its rounding off, `(n,)`."""
+        low, high = self._bodies[outer].mesh.bounds
+        found = np.zeros(len(T), dtype=bool)
+        for extremes in self._bodies[inner].extremes:
+            points = extremes @ T[..., :3].transpose(0, 2, 1) + T[:, None, :, 3]
+            found |= ((points >= low) & (points <= high)).all(axis=(1, 2))
+        return found
+
+    def _outline(self, i: int) -> Ends:
+        if i not in self._outlines:
+            T = self.matrices[i]
+            self._outlines[i] = outline(self._axis, self._bodies[i].corners @ T[:, :3].T + T[:, 3])
+        return self._outlines[i]
+
+    @cached_property
+    def _bodies(self) -> list[Body]:
+        return list(self.scene.bodies.values())
+
+
+def _box(corners: FloatArray) -> tuple[FloatArray, FloatArray]:
+    low, high = corners.min(axis=(0, 1)), corners.max(axis=(0, 1))
+    return (low + high) / 2, (high - low) / 2

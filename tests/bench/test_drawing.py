@@ -1,0 +1,89 @@
+"""Drawings of tasks: small, the same each time, and with every number that a picture alone must tell."""
+
+from __future__ import annotations
+
+import io
+from functools import cache
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from articad import examples
+from articad.assembly import Assembly
+from articad.bench import drawing
+from articad.bench.drawing import COLORS, PANE, draw_task
+from articad.bench.reference import reference
+from articad.bench.subject import Subject
+from articad.bench.task import TASKS, Drawing, tasks_in
+from articad.plan.schema import AssemblyPlan
+
+pytestmark = pytest.mark.slow
+
+LARGEST = 40_000  # bytes
+
+
+@cache
+def example(name: str) -> Assembly:
+    folder = examples.folder(name)
+    return Assembly.from_plan(AssemblyPlan.load(folder), folder / "parts")
+
+
+def test_a_drawing_is_small_and_the_same_each_time() -> None:
+    first, second = (draw_task(example("wardrobe"), Drawing()) for _ in range(2))
+
+    image = Image.open(io.BytesIO(first))
+    assert first == second
+    assert len(first) < LARGEST
+    assert image.width == 2 * PANE
+    assert len(image.getcolors() or ()) <= COLORS
+
+
+def test_the_legend_tells_measures_ranges_couplings_sides_and_notes() -> None:
+    def told(name: str, form: Drawing) -> str:
+        subject = Subject(example(name))
+        return "\n".join(drawing.legend(subject, drawing.kinds_of(subject), form))
+
+    wardrobe = told("wardrobe", Drawing(parts=("cabinet",), notes=("Doors shut flush.",)))
+    assert "900 x 535 x 1922 mm (x, y, z), 18 parts." in wardrobe
+    assert "A: 2 x turns 105° about z" in wardrobe
+    assert "B: 2 x slides 363 mm along y" in wardrobe
+    assert "cabinet: 500 x 900 x 1800 mm" in wardrobe
+    assert wardrobe.endswith("Doors shut flush.")
+
+    lamp = told("desk_lamp", Drawing())
+    assert "ball joint, tilts 26° to every side, twists 300°" in lamp
+
+    gears = told("geared_four_bar", Drawing())
+    assert "is coupled" in gears
+    assert "0.5 times as far as A" in gears
+    assert "slides 125.7 mm for each turn of A" in gears
+
+
+def test_what_is_drawn_has_its_measures_beside_it() -> None:
+    with_lines, plain = (
+        np.asarray(Image.open(io.BytesIO(draw_task(example("wardrobe"), Drawing(views=views, legend=False)))).convert("RGB")).astype(int)
+        for views in (("front",), ("iso",))
+    )
+
+    def blue(picture: np.ndarray) -> int:
+        return int((picture[:PANE, :PANE, 2] - picture[:PANE, :PANE, 0] > 40).sum())
+
+    assert blue(with_lines) > 300
+    assert blue(plain) == 0
+
+
+@pytest.mark.soak
+@pytest.mark.parametrize("name", [task.name for _, task in tasks_in(TASKS) if task.drawing is not None])
+def test_a_kept_drawing_is_that_of_the_reference(name: str) -> None:
+    ((folder, task),) = tasks_in(TASKS, names=[name])
+    assert task.drawing is not None
+    assert (folder / drawing.DRAWING).read_bytes() == draw_task(reference(folder, task), task.drawing)
+
+
+def test_every_task_that_is_asked_by_pictures_has_them() -> None:
+    for folder, task in tasks_in(TASKS):
+        assert task.prompt or task.images, task.name
+        assert (task.drawing is None) or drawing.DRAWING in task.images, task.name
+        for image in task.images:
+            assert 0 < (folder / image).stat().st_size <= LARGEST, task.name

@@ -1,0 +1,27 @@
+"""Workers that die at the worst moment."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+
+import pytest
+
+from articad.bench.pool import Call, Worker
+
+CALL = Call("score", {}, "k")
+
+
+@pytest.mark.parametrize("said", ["", "{", '{"ok": true'])
+def test_a_worker_that_dies_within_its_answer_has_not_answered(said: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    def dying(worker: Worker) -> subprocess.Popen[str]:
+        words = [sys.executable, "-c", f"import sys; sys.stdin.readline(); sys.stdout.write({said!r})"]
+        process = subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+        worker._process = process  # as the real one keeps it, so that it is waited for
+        return process
+
+    monkeypatch.setattr(Worker, "_running", dying)
+    with Worker(1.0) as worker:
+        answer = worker.tried(CALL, 1)
+
+    assert answer == {"ok": False, "digest": "k", "made": "never", "error": "Its worker died 2 times."}
