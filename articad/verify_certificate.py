@@ -81,8 +81,8 @@ def is_inside(V: Any, F: Any, corners: Any) -> bool:
     return False
 
 
-def pieces(corners: Any, order: Any, radii: Any) -> tuple[Any, Any, Any]:
-    """Return points whose hulls hold the pieces of a surface `(n, 8, 3)`, the two that each is cut into, and their largest radii."""
+def pieces(corners: Any, order: Any, most: Any) -> tuple[Any, Any, Any]:
+    """Return points whose hulls hold the pieces of a surface `(n, 8, 3)`, the two that each is cut into, and the most `(n, k)` of their triangles."""
     need(np.array_equal(np.unique(order), np.arange(len(corners))), "a triangle is left out")
     spans, halves = [(0, len(order))], []
     for start, end in spans:  # they become more
@@ -91,7 +91,7 @@ def pieces(corners: Any, order: Any, radii: Any) -> tuple[Any, Any, Any]:
     leaves, ends, single = corners[order], np.array(spans).ravel(), np.array(halves)[:, 0] == NOTHING
     low, high, far = (
         ufunc.reduceat(np.append(each, each[-1:], axis=0), ends)[::2]
-        for ufunc, each in ((np.minimum, leaves.min(1)), (np.maximum, leaves.max(1)), (np.maximum, radii[order]))
+        for ufunc, each in ((np.minimum, leaves.min(1)), (np.maximum, leaves.max(1)), (np.maximum, most[order]))
     )
     points = np.where(SIDES, high[:, None], low[:, None])
     points[single] = leaves[ends[::2][single]][:, [0, 1, 2, 2, 2, 2, 2, 2]]
@@ -286,7 +286,10 @@ class Claim:
         self.cut()
         of, (R, t) = checker.proof, (array[0] for array in self.arrays[:2])
         radii = [np.linalg.norm((points - self.centre) @ self.across, axis=2).max(1) for points in (here[F], there[G] @ R.T + t)]
-        self.separate(pieces(here[F], of[f"order.{of_a}"], radii[0]), pieces(there[G], of[f"order.{of_b}"], radii[1]))
+        height = (there[G] - self.hub) @ self.axle
+        spun = np.linalg.norm(there[G] - self.hub - height[..., None] * self.axle, axis=2)
+        most = np.stack([radii[1], -height.min(1), height.max(1), spun.max(1)], axis=1)
+        self.separate(pieces(here[F], of[f"order.{of_a}"], radii[0][:, None]), pieces(there[G], of[f"order.{of_b}"], most))
 
     def cut(self) -> None:
         """Cut the range into boxes; of each keep the pose in its middle, and what may move, how far, and together with what."""
@@ -310,22 +313,28 @@ class Claim:
             outside = any(max(x, y) < math.pi / 2 and math.cos(x) * math.cos(y) < math.cos(cone) - ROUNDING for cone, x, y in tilts)
             rows.append((T[:3, :3], T[:3, 3], w, v, np.abs(along) + aside, spin, flow, outside))
         self.arrays = [np.array(column) for column in zip(*rows, strict=True)]
-        w, v = (array[0] for array in self.arrays[2:4])
+        R, t, w, v = (array[0] for array in self.arrays[:4])
         axes, along = w[w.any(1)], np.where(w.any(1, keepdims=True), w * (w * v).sum(1, keepdims=True), v)
         self.loose = 0.0 if (np.linalg.norm(np.cross(axes, axes[:1]), axis=1) < 1e-12).all() else 1.0  # axes that turn each other
         M, moment = np.concatenate([np.zeros((0, 3)), *(np.cross(np.eye(3), axis).T for axis in axes)]), (v - along)[w.any(1)].ravel()
         self.centre, self.across = np.linalg.lstsq(M, moment)[0], np.eye(3) - sum(axis[:, None] * axis for axis in axes[: 1 - int(self.loose)])
         steady = len(axes) and np.abs(M @ self.centre - moment).max() < ROUNDING and np.abs(along @ self.across).max() < ROUNDING
+        turn, flow = w[-1], v[-1]  # what is innermost turns b, which sees its axis stand
+        self.axle = turn @ R if turn.any() and abs(turn @ flow) < ROUNDING and not self.driver else np.full(3, np.nan)
+        self.hub = (np.cross(turn, flow) - t) @ R
         self.across = self.across if steady else np.full((3, 3), np.nan)  # radii about the one axis or point of all turns
 
-    def motion(self, box: Any, u: Any, p: Any) -> Any:
-        """Bound how far points `(n, k, 3)` go along directions `(n, 3)` in boxes, `(n, k)`.
+    def motion(self, box: Any, u: Any, p: Any, spun: Any, size: Any) -> Any:
+        """Bound how far what is within `size` of points `(n, k, 3)` goes along directions `(n, 3)` in boxes, `(n, k)`.
 
-        That is their speed, and half the second derivative: along u the factor i outside j turns what j moves by |u x axis i|.
+        That is their speed, and half the second derivative: along u the factor i outside j turns what j moves by |u x axis i|. To what is
+        `spun` the innermost turn does nothing.
         """
         w, v, width, spin, flow = (array[box] for array in self.arrays[2:7])
+        width[spun, -1], spin[spun, -1], flow[spun, -1] = 0.0, 0.0, 0.0
         moved = np.abs(p @ np.cross(u[:, None], spin).transpose(0, 2, 1) + (flow @ u[..., None])[:, None, :, 0]).sum(2)
-        speed = np.linalg.norm(np.cross(w[:, None], p[:, :, None]) + v[:, None], axis=3)
+        moved += (size * np.linalg.norm(np.cross(u[:, None], spin), axis=2).sum(1))[:, None]
+        speed = np.linalg.norm(np.cross(w[:, None], p[:, :, None]) + v[:, None], axis=3) + size[:, None, None]
         turns = w.any(2) * 1.0
         tilt = np.linalg.norm(np.cross(u[:, None], w), axis=2) + self.loose * (np.cumsum(turns * width, axis=1) - turns * width)
         tilt = np.minimum(tilt, 1.0) * turns * width
@@ -337,7 +346,8 @@ class Claim:
 
     def separate(self, a: tuple[Any, ...], b: tuple[Any, ...]) -> None:
         """Follow how pieces of both and boxes were cut, until a direction separates each two of them."""
-        (A, halves_a, far_a), (B, halves_b, far_b), (R, t, *_, outside) = a, b, self.arrays
+        (A, halves_a, far_a), (B, halves_b, most), (R, t, w, *_, outside) = a, b, self.arrays
+        S = self.hub + (most[:, [1, 2] * 4] * ([-1, 1] * 4))[..., None] * self.axle  # ends of the axis beside a piece of b
         codes, rows = self.proof["codes"], np.zeros((1, 3), int)
         while len(rows):
             code, codes = codes[: len(rows)], codes[len(rows) :]
@@ -345,14 +355,16 @@ class Claim:
             settled = np.flatnonzero(code >= 0)
             for some in np.array_split(settled, len(settled) // ROWS + 1):
                 (x, y, box), u = rows[some].T, self.proof["along"][code[some]]
-                kind = np.searchsorted(self.proof["kinds"], code[some], side="right")[:, None]  # of a, of b, round with a outside, with b
+                kind = np.searchsorted(self.proof["kinds"], code[some], side="right")[:, None]  # of a, of b, round with a outside, with b, spun
                 u = np.where(kind % 2, (R[box] @ u[..., None])[..., 0], u)
                 u = u / np.linalg.norm(u, axis=1, keepdims=True)
-                p, q = A[x], B[y] @ R[box].transpose(0, 2, 1) + t[box][:, None]
-                gap = ((q @ u[..., None])[..., 0] - self.motion(box, u, q)).min(1) - (p @ u[..., None])[..., 0].max(1)
+                spun, size = kind[:, 0] == 4, np.where(kind[:, 0] == 4, most[y, 3], 0.0)
+                p, q = A[x], np.where(spun[:, None, None], S[y], B[y]) @ R[box].transpose(0, 2, 1) + t[box][:, None]
+                gap = ((q @ u[..., None])[..., 0] - self.motion(box, u, q, spun, size)).min(1) - (p @ u[..., None])[..., 0].max(1)
+                gap -= size * np.linalg.norm(np.cross(u, w[box, -1]), axis=1)
                 outer = np.where(kind[..., None] == 3, q, p) - self.centre
-                beyond = (outer @ (u @ self.across)[..., None])[..., 0].min(1) - np.where(kind[:, 0] == 3, far_a[x], far_b[y])
-                need((np.where(kind[:, 0] < 2, gap, beyond) > self.claim["clear_mm"]).all(), f"{self.label}: pieces come too near")
+                beyond = (outer @ (u @ self.across)[..., None])[..., 0].min(1) - np.where(kind[:, 0] == 3, far_a[x, 0], most[y, 0])
+                need((np.where(kind[:, 0] % 4 < 2, gap, beyond) > self.claim["clear_mm"]).all(), f"{self.label}: pieces come too near")
             cut = (code < 0) & (code > OUTSIDE)
             which, rows = np.repeat(code[cut] + 3, 2), np.repeat(rows[cut], 2, axis=0)
             for column, numbers in enumerate((halves_a, halves_b, self.halves)):

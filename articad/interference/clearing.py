@@ -17,9 +17,10 @@ from numpy.typing import NDArray
 
 from articad.interference.boxtree import BoxTree
 from articad.interference.cover import Budget
+from articad.interference.revolving import LEAST_TURN, Revolved
 from articad.interference.rounds import Rounds, unit
 from articad.interference.spread import Spread
-from articad.interference.trail import CUT_A, CUT_B, CUT_RANGE, OF_A, OF_B, ROUND_A, ROUND_B, Trail
+from articad.interference.trail import CUT_A, CUT_B, CUT_RANGE, OF_A, OF_B, REVOLVED, ROUND_A, ROUND_B, Trail
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -29,6 +30,7 @@ CHUNK = 4096  # pairs of pieces looked at together
 MOTION_SHARE = 1.0  # of the pieces' size: when the motion is larger, the range is cut before the pieces
 LEAST_SHARE = 1e-3  # of the motion in any direction: along the normal of faces in one plane there is nothing to cut
 MOST_PAIRS = 4_000_000  # of pieces, after which a search is given up
+SLIM = 1.5  # of a piece's size: what keeps so near the innermost axis is cut for what it is when it turns about it
 _EYE = np.eye(3)
 _COARSE = 64.0  # directions between boxes are rounded to so many parts: any direction is a proof, and few of them take less room
 
@@ -172,6 +174,7 @@ class _Search:
         self.a, self.b, self.boxes, self.needed, self.epsilon, self.rounds = a, b, boxes, needed, epsilon, rounds
         self.spread, self.trail = boxes.spread, Trail()
         self.outcome = Cleared()
+        self.revolved = Revolved.of(b, self.spread) if isinstance(boxes, Ranges) else None
         self.size_a, self.size_b = np.linalg.norm(a.half, axis=1), np.linalg.norm(b.half, axis=1)
 
     def step(self, rows: _Pairs) -> list[_Pairs]:
@@ -182,6 +185,8 @@ class _Search:
         out: list[_Pairs] = []
         if self.rounds is not None:
             rows = self._rounds(rows, *self.rounds, out)
+        if self.revolved is not None:
+            rows = self._revolved(rows, self.revolved, out)
         single = (self.a.triangle[rows.a] >= 0) & (self.b.triangle[rows.b] >= 0)
         if not single.all():
             out += self._nodes(rows.of(~single))
@@ -199,6 +204,22 @@ class _Search:
             out.append(cut(rows.of(certain)))
             rows = rows.of(~beyond & ~certain)
         return rows
+
+    def _revolved(self, rows: _Pairs, b: Revolved, out: list[_Pairs]) -> _Pairs:
+        """Settle what is apart whatever the angle of the innermost turn, and cut the rest of the range where that helps; return the others."""
+        turning = self.spread.width[rows.box, -1] > LEAST_TURN
+        others, rows = rows.of(~turning), rows.of(turning)
+        u, still, motion = b.gaps(self.spread, self.a, rows.a, rows.b, rows.box)
+        gap = still - motion.sum(axis=2)
+        at, best = np.arange(len(rows)), np.argmax(gap, axis=1)
+        clear = gap[at, best] > self.needed
+        self.trail.settle(rows.number[clear], REVOLVED, u[at, best][clear])
+        apart = ~clear & (still[at, best] > self.needed)
+        out += self._cut_range(rows.of(apart), motion[at, best, :-1][apart])
+        left = ~clear & ~apart
+        slim = left & (b.radius[rows.b] <= SLIM * self.size_b[rows.b]) & ~((self.a.triangle[rows.a] >= 0) & (self.b.triangle[rows.b] >= 0))
+        out += self._cut_pieces(rows.of(slim))
+        return _Pairs.of_all([others, rows.of(left & ~slim)])
 
     def _nodes(self, rows: _Pairs) -> list[_Pairs]:
         T, box = self.spread.T[rows.box], rows.box

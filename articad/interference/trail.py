@@ -16,7 +16,7 @@ FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
 OUTSIDE, CUT_A, CUT_B, CUT_RANGE = -4, -3, -2, -1
-OF_A, OF_B, ROUND_A, ROUND_B = 0, 1, 2, 3  # how a direction is meant: of a, of b; across the axis, with a or b further out
+OF_A, OF_B, ROUND_A, ROUND_B, REVOLVED = 0, 1, 2, 3, 4  # how a direction is meant: of a, of b; across the axis, with a or b further out
 
 
 class Written(NamedTuple):
@@ -74,4 +74,4 @@ class Trail:
             out.append(codes[level])
             parted = level[(CUT_A <= out[-1]) & (out[-1] <= CUT_RANGE)]
             level = np.stack([first[parted], first[parted] + 1], axis=1).ravel()
-        return Written(np.concatenate(out), unique[:, 1:], np.searchsorted(unique[:, 0], [OF_B, ROUND_A, ROUND_B]))
+        return Written(np.concatenate(out), unique[:, 1:], np.searchsorted(unique[:, 0], [OF_B, ROUND_A, ROUND_B, REVOLVED]))

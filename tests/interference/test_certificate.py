@@ -20,12 +20,15 @@ import pytest
 from articad import verify_certificate
 from articad.connectors import SE3
 from articad.geometry import TriMesh, box, cylinder, merged, sphere, tube
+from articad.interference.body import body_of
 from articad.interference.boxtree import BoxTree
 from articad.interference.certificate import Certificate, certify
 from articad.interference.check import check_pose
 from articad.interference.clearing import shortest_between
 from articad.interference.cover import Budget, cover_line
 from articad.interference.motion import Chain, Route, motion_matrix, swing_and_twist
+from articad.interference.overlap import overlap
+from articad.interference.revolving import Revolved
 from articad.interference.spread import Spread
 from articad.interference.surface import Core, Surface, surface_distance
 from articad.kinematics.joints import Joint, JointType
@@ -268,16 +271,33 @@ def test_a_drawer_that_slides_on_its_rails_without_clearance_is_certified() -> N
     assert -0.2 < (finding.value or 0.0) < 0.0
 
 
+def ball_and_socket() -> dict[str, TriMesh]:
+    stud = m3.Manifold.sphere(8, 32) + m3.Manifold.cylinder(60, 3, 3, 24).translate([0, 0, 4])
+    socket = m3.Manifold.cylinder(16, 14, 14, 48, center=True).translate([0, 0, -4]) - m3.Manifold.sphere(8.4, 32)
+    return {"socket": manifold_mesh(socket), "stud": manifold_mesh(stud)}
+
+
 def test_a_ball_in_its_socket_is_certified_over_its_cone_and_a_full_twist() -> None:
-    ball = m3.Manifold.sphere(8, 32)
-    socket = manifold_mesh(m3.Manifold.cylinder(16, 14, 14, 48, center=True).translate([0, 0, -4]) - m3.Manifold.sphere(8.4, 32))
-    stud = manifold_mesh(ball + m3.Manifold.cylinder(60, 3, 3, 24).translate([0, 0, 4]))
-    knuckle = joint("knuckle", "ball", "socket", "stud", cone=0.25)
-    certificate = proven({"socket": socket, "stud": stud}, [knuckle], deflection=0.02)
+    meshes = ball_and_socket()
+    certificate = proven(meshes, [joint("knuckle", "ball", "socket", "stud", cone=0.25)], deflection=0.02)
     assert certificate.ok
+    assert certificate.queries < 50_000  # the twist is not cut
     assert refutations(certificate) == []
     wide = joint("knuckle", "ball", "socket", "stud", cone=1.4)
-    assert "E_MOTION_COLLISION" in proven({"socket": socket, "stud": stud}, [wide], deflection=0.02).findings.codes
+    assert "E_MOTION_COLLISION" in proven(meshes, [wide], deflection=0.02).findings.codes
+
+
+def test_a_disc_on_the_stud_that_meets_the_socket_as_it_swings_is_refuted() -> None:
+    meshes = ball_and_socket()
+    certificate = proven(meshes, [joint("knuckle", "ball", "socket", "stud", cone=0.3)], deflection=0.02)
+    V = meshes["stud"].vertices
+    disc = TriMesh(np.where((V[:, 2] > 8.1)[:, None], V * [8, 8, 7.5 / 64], V), meshes["stud"].triangles)  # the end of the rod becomes its rim
+    bodies = body_of(meshes["socket"]), body_of(disc)
+    assert overlap(*bodies, IDENTITY).volume == 0
+    assert overlap(*bodies, SE3.rot_x(0.29)).depth > 0.02
+    document = certificate.to_json()
+    document["meshes"]["stud"]["sha256"] = disc.digest
+    assert any("too near" in reason for reason in verified(document, certificate, stud=saved(**arrays_of(disc))))
 
 
 def test_a_rod_slides_and_turns_in_its_bush() -> None:
@@ -441,6 +461,34 @@ def test_no_point_strays_further_along_a_direction_than_its_bound(first: JointTy
                 T = chain.matrix(q + half * (rng.uniform(-1, 1, len(q)) if rng.random() < 0.5 else rng.choice([-1.0, 1.0], len(q))))
                 moved = np.einsum("nk,ndk->nd", local @ T[:3, :3].T + T[:3, 3] - p, u)
                 assert (np.abs(moved) <= bound + 1e-9).all()
+
+
+@pytest.mark.parametrize("kind", [JointType.REVOLUTE, JointType.BALL, JointType.CYLINDRICAL, JointType.PLANAR, JointType.UNIVERSAL])
+def test_what_a_gap_leaves_stays_apart_however_the_innermost_turns(kind: JointType) -> None:
+    rng = np.random.default_rng(30 + list(JointType).index(kind))
+    one, two = random_joint(rng, "j", JointType.REVOLUTE, "a", "m"), random_joint(rng, "k", kind, "m", "b")
+    chain = Chain(Route(("a", "m", "b"), (one, two)), ["j", "k"], proving=True)
+    mine, theirs = (Surface(rng.normal(size=(40, 1, 3)) * 15 + rng.uniform(-3, 3, (40, 3, 3))) for _ in range(2))
+    low, high = (np.array([getattr(f, key) for f in chain.freedoms]) for key in ("lower", "upper"))
+    a, b, least = BoxTree.of(mine), BoxTree.of(theirs), math.inf
+    for scale in (1e-3, 0.1, 0.5):
+        spread, q, half = Spread(chain), rng.uniform(low, high), rng.uniform(0, scale, len(low))
+        half[-1] = 3.0
+        spread.add(q[None], half[[factor.column for _, factor in spread.factors]][None])
+        revolved = Revolved.of(b, spread)
+        assert revolved is not None
+        of_a, of_b = rng.integers(0, len(a.centre), 60), rng.integers(0, len(b.centre), 60)
+        u, still, motion = revolved.gaps(spread, a, of_a, of_b, np.zeros(60, dtype=np.int64))
+        bound = still - motion.sum(axis=2)
+        for _ in range(20):
+            T = chain.matrix(q + half * rng.uniform(-1, 1, len(q)))
+            for row in range(60):
+                p, o = (tree.corners[tree.order[tree.start[n] :][: tree.size[n]]].reshape(-1, 3) for tree, n in ((a, of_a[row]), (b, of_b[row])))
+                gap = (o @ T[:3, :3].T + T[:3, 3]) @ u[row].T
+                found = gap.min(axis=0) - (p @ u[row].T).max(axis=0)
+                assert (found >= bound[row] - 1e-9).all()
+                least = min(least, (found - still[row]).min())
+    assert least < -0.1  # it does move
 
 
 def random_joint(rng: np.random.Generator, name: str, kind: JointType, parent: str, child: str) -> Joint:
@@ -637,6 +685,10 @@ def move_vertices_further(proof: dict[str, Any], at: int) -> None:
     proof[f"moved.{proof[f'{at}.uses'][0]}"][0] += 1.0
 
 
+def say_that_it_only_turns(proof: dict[str, Any], at: int) -> None:
+    proof[f"{at}.kinds"][:] = 0  # all pieces as they turn about the innermost axis
+
+
 def cut_beyond_the_range(proof: dict[str, Any], at: int) -> None:
     proof[f"{at}.at"] = proof[f"{at}.at"] + 10.0
 
@@ -647,7 +699,7 @@ def halve_fewer_boxes(proof: dict[str, Any], at: int) -> None:
 
 TAMPERED = [
     end_early, settle_at_once, leave_rows_out, cut_what_is_whole, turn_the_directions, forget_the_directions, undefine_the_directions,
-    leave_out_a_triangle, forget_a_triangle, move_vertices_further, cut_beyond_the_range, halve_fewer_boxes,
+    leave_out_a_triangle, forget_a_triangle, move_vertices_further, say_that_it_only_turns, cut_beyond_the_range, halve_fewer_boxes,
 ]  # fmt: skip
 
 
