@@ -19,6 +19,7 @@ import numpy as np
 
 PROOF = "_proof"  # no part bears such a name
 ROUNDING = 1e-9  # of ranges, distances, and what a driver moves
+HALF = 0.5  # of entries of a rotation, by which a loop may be open: with a turn of less than 1 rad more it is not half a turn
 REST = 1e-4  # rad or mm: by which what follows a driver may be off at rest
 ROUND, OUTSIDE = -5, -4  # two pieces differ in radius; a box lies outside the cone of a ball; -3, -2, -1 cut a piece of a, of b, the box
 
@@ -171,20 +172,28 @@ class Checker:
             T = T @ (after if forward else np.linalg.inv(before))
         return T, steps
 
-    def closure(self, values: dict[str, float], names: list[str]) -> tuple[Any, Any, Any]:
-        """Return residuals of loops and couplings, their Jacobian, and shares: |r''| <= (share · change)², lengths in levers."""
-        r, J, shares = [], [], []
+    def closure(self, names: list[str], values: Any, about: Any) -> tuple[Any, Any, Any]:
+        """Return residuals of loops and couplings, their Jacobian, and shares s: |r''| <= (s · change)², and the third is below its cube.
+
+        Lengths are in levers: no turn carries what is round a loop by more than one while no slide is further from 0 than 1 more
+        than twice what it is `about`.
+        """
+        known, r, J, shares = {**self.rest, **dict(zip(names, values.tolist(), strict=True))}, [], [], []
+        size = {**self.rest, **dict(zip(names, about.tolist(), strict=True))}
         for way in self.loops:
-            T, steps = self.place(way, values)
-            need(np.abs(T[:3, :3] - np.eye(3)).max() < ROUNDING, "a loop is not closed")
-            lever = sum(math.hypot(*np.array(j[key])[:3, 3]) for j, _ in way for key in ("parent_frame", "child_frame"))
-            lever += sum(2 * math.hypot(*self.freedoms[name]["slide"]) * (1 + abs(values[name])) for name in steps) or 1.0
-            columns = {name: np.concatenate([(v + np.cross(w, T[:3, 3])) / lever, w]) for name, (w, v) in steps.items()}
-            r += [*T[:3, 3] / lever, *((T[[2, 0, 1], [1, 2, 0]] - T[[1, 2, 0], [2, 0, 1]]) / 2)]
+            (T, steps), ends = self.place(way, known), []
+            need(np.abs(T[:3, :3] - np.eye(3)).max() < HALF, "a loop is not closed")  # half a turn leaves no residual either
+            for joint, forward in way:
+                ends += [np.array(joint[f"{side}_frame"])[:3, 3] for side in (("parent", "child") if forward else ("child", "parent"))]
+            lever: Any = sum(math.dist(far, near) for far, near in zip(ends[1::2], [*ends[2::2], ends[0]], strict=True))
+            lever += sum(2 * math.hypot(*self.freedoms[name]["slide"]) * (1 + abs(size[name])) for name in steps)
+            lever, there = lever or 1.0, T[:3, :3] @ ends[0] + T[:3, 3]
+            columns = {name: np.concatenate([(v + np.cross(w, there)) / lever, w]) for name, (w, v) in steps.items()}
+            r += [*(there - ends[0]) / lever, *((T[[2, 0, 1], [1, 2, 0]] - T[[1, 2, 0], [2, 0, 1]]) / 2)]
             J += np.transpose([columns.get(name, np.zeros(6)) for name in names]).tolist()
             shares += [[(name in steps) * (1.0 if any(self.freedoms[name]["turn"]) else 1 / lever) for name in names]] * 6
         for c in self.certificate["mechanism"]["couplings"]:
-            r.append(values[c["b"]] - c["ratio"] * values[c["a"]] - c["offset"])
+            r.append(known[c["b"]] - c["ratio"] * known[c["a"]] - c["offset"])
             J.append([float(name == c["b"]) - c["ratio"] * (name == c["a"]) for name in names])
             shares.append([0.0] * len(names))
         return np.array(r), np.array(J), np.array(shares)
@@ -192,16 +201,21 @@ class Checker:
     def piece(self, names: list[str], ends: Any, guess: Any, wide: Any) -> tuple[Any, Any]:
         """Return rates, and distances from the line that they draw within which is a solution; within `wide` there is no other one.
 
-        If x - A r(x) takes what is within `wide` to what is near and shrinks distances, then Brouwer and Banach say so.
+        As soon as x - A r(x) takes what is within `wide` to what is nearer, it also shrinks distances: Brouwer and Banach. On the line
+        A r is near the parabola through three of its points, which is within 5/4 of them.
         """
-        r, J, share = self.closure({**self.rest, **dict(zip(names, guess.tolist(), strict=True))}, names)
+        _, J, share = self.closure(names, guess, guess)
         A, half = np.linalg.pinv(J[:, 1:], rcond=1e-7), (ends[1] - ends[0]) / 2
-        rate = np.array([1.0, *(-A @ J[:, 0])])
-        far = np.abs(rate) * half + wide
-        near = np.array([0.0, *(np.abs(A @ r) + np.abs(A) @ (share @ far) ** 2 / 2 + ROUNDING)])
-        holds = (np.abs(A) @ ((share @ far) * (share @ wide)) < wide[1:]).all() and (near <= wide).all() and (far < 1 + np.abs(guess)).all()
+        rate, B = np.array([1.0, *(-A @ J[:, 0])]), np.abs(A)
+        far, near = np.abs(rate) * half, wide
+        off = np.max([np.abs(A @ self.closure(names, guess + sign * half * rate, guess)[0]) for sign in (-1, 0, 1)], axis=0)
+        off = 1.25 * off + B @ (share @ far) ** 3 / 15 + ROUNDING
         exact = (np.abs(A @ J[:, 1:] - np.eye(len(names) - 1)).sum(1) < ROUNDING).all()
-        need(holds and exact, f"{names[0]} cannot be followed from {ends[0]:.9g} to {ends[1]:.9g}")
+        holds = exact and (far + wide <= 1 + np.abs(guess)).all() and (share @ (far + wide) < 1).all()
+        for _ in range(4):
+            closer = np.append(0.0, off + B @ ((share @ (far + near)) * (share @ near)))
+            need(holds and (closer <= near).all(), f"{names[0]} cannot be followed from {ends[0]:.9g} to {ends[1]:.9g}")
+            near = closer
         return rate, near
 
     def followers(self, driver: str) -> list[str]:

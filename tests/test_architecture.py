@@ -168,7 +168,7 @@ def test_every_import_is_declared() -> None:
     ("module", "owner"),
     [
         ("pinocchio", ("kinematics/forward.py", "simulate/loading.py")),  # the latter only asks whether it loads a file
-        ("fcl", ("interference/", "verify_apart.py")),  # the checker of certificates shares nothing with the prover
+        ("fcl", ("interference/",)),
         ("litellm", ("agents/live.py",)),
         ("mujoco", ("simulate/", "importers/mjcf.py")),  # its MjSpec is the reader of MJCF
     ],

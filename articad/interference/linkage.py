@@ -37,7 +37,7 @@ IntArray = NDArray[np.int64]
 
 SMALLEST_STEP = 1e-6  # of the driver's range, below which it is not followed further
 FIRST_STEP = 1 / 32  # of the way to a bound
-WIDER = 4.0  # than the distance within which there is a solution: that within which there is no other one
+WIDER = 1.2  # than the distance within which there is a solution: that within which there is no other one
 SMALLEST_PIECE = 1e-4  # rad or mm: to which the end of what is free along a driver is found
 LOOKS = 24  # poses looked at beyond contact
 
@@ -168,13 +168,14 @@ class Way:
 
     def _tube(self, ends: FloatArray, guess: FloatArray) -> FloatArray:
         """Return distances within which there should be no other solution."""
-        values = {**self._checker.rest, **dict(zip(self.names, guess.tolist(), strict=True))}
-        r, J, share = self._checker.closure(values, self.names)
+        _, J, share = self._checker.closure(self.names, guess, guess)
         A, wide = np.linalg.pinv(J[:, 1:], rcond=1e-7), np.zeros(len(self.names))
-        rate = np.abs(np.array([1.0, *(-A @ J[:, 0])])) * (ends[1] - ends[0]) / 2
-        for _ in range(4):
-            near = np.abs(A @ r) + np.abs(A) @ (share @ (rate + wide)) ** 2 / 2
-            wide[1:] = WIDER * near + 2 * REST
+        rate = np.array([1.0, *(-A @ J[:, 0])])
+        half = (ends[1] - ends[0]) / 2
+        far = np.abs(rate) * half
+        off = np.abs(A @ self._checker.closure(self.names, guess + half * rate, guess)[0])
+        for _ in range(6):
+            wide[1:] = WIDER * (off + 2 * REST + np.abs(A) @ (np.minimum(share @ (far + wide), 1.0) * (share @ wide)))
         return wide
 
     def _solution(self, value: float) -> FloatArray | None:

@@ -90,18 +90,18 @@ def slider_crank() -> Mechanism:
 
 @pytest.mark.parametrize("half", [0.01, 0.1, 0.5])
 def test_no_loop_bends_more_than_the_lever_that_the_checker_takes(half: float, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(verify_certificate, "ROUNDING", math.inf)  # by which a loop may be open
+    monkeypatch.setattr(verify_certificate, "HALF", math.inf)  # by which a loop may be open
     mechanism = slider_crank()
     linkage = sorted(constrained_joints(mechanism))
     checker = Checker({"mechanism": mechanism_json(mechanism), "linkage": linkage, "drivers": ["crank"]}, {PROOF: {}})
     names = checker.followers("crank")
     rest = np.array([checker.rest[name] for name in names])
-    r, J, share = checker.closure(checker.rest, names)
+    r, J, share = checker.closure(names, rest, rest)
     turns = np.array([any(checker.freedoms[name]["turn"]) for name in names])
     rng = np.random.default_rng(4)
     for _ in range(200):
         change = rng.uniform(-1, 1, len(names)) * np.where(turns, half, (1 + np.abs(rest)) * 2 * half)  # as far as slides may go
-        bent = checker.closure(dict(zip(names, (rest + change).tolist(), strict=True)), names)[0] - r - J @ change
+        bent = checker.closure(names, rest + change, rest)[0] - r - J @ change
         assert (np.abs(bent) <= (share @ np.abs(change)) ** 2 / 2 + 1e-9).all()
 
 
@@ -252,9 +252,8 @@ def free_the_loop(document: dict[str, Any]) -> None:
 
 def hold_what_follows(document: dict[str, Any]) -> None:
     claim = followed(document)
-    names = [name for name in claim["via"] if name not in claim["vary"]]
     rest = {f["name"]: f["rest"] for j in document["mechanism"]["joints"] for f in j["freedoms"]}
-    claim["hold"] = {name: rest[name] for name in names}
+    claim["vary"].update({name: [rest[name], rest[name]] for name in claim["via"] if name not in claim["vary"]})
 
 
 def forget_the_driver(document: dict[str, Any]) -> None:
