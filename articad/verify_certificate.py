@@ -136,7 +136,9 @@ class Checker:
         for a, b in itertools.combinations(whole["meshes"] if whole["ok"] else (), 2):
             joints = [joint["name"] for joint, _ in self.way(a, b)]
             free = [{f["name"] for f in self.joints[n]["freedoms"]} for n in joints if n in whole["asked"] and n not in whole["linkage"]]
-            drivers = [{name} for name in whole["drivers"] if any(f["name"] in self.linked for n in joints for f in self.joints[n]["freedoms"])]
+            drivers = [
+                {name} for name in whole["drivers"] if any(f["name"] in self.linked for n in joints for f in self.joints[n]["freedoms"])
+            ]
             both = [one | other for one in free for other in [*free, *drivers] if whole["together"]]
             for names in filter(None, [] if {a, b} in waived else [*free, *drivers, *both]):
                 found = any(set(claim["parts"]) == {a, b} and names <= set(claim["vary"]) for claim in claims)
@@ -163,7 +165,12 @@ class Checker:
             before, after, sign = np.array(joint["parent_frame"]), np.linalg.inv(joint["child_frame"]), 1 if forward else -1
             T = T @ (before if forward else np.linalg.inv(after))
             for f in joint["freedoms"][::sign]:
-                axis, speed, angle, motion = sign * T[:3, :3] @ f["turn"], sign * T[:3, :3] @ f["slide"], sign * values[f["name"]], np.eye(4)
+                axis, speed, angle, motion = (
+                    sign * T[:3, :3] @ f["turn"],
+                    sign * T[:3, :3] @ f["slide"],
+                    sign * values[f["name"]],
+                    np.eye(4),
+                )
                 steps[f["name"]] = axis, speed + np.cross(T[:3, 3], axis)
                 K = np.cross(f["turn"], np.eye(3)).T
                 motion[:3, :3] += math.sin(angle) * K + (1 - math.cos(angle)) * K @ K  # Rodrigues
@@ -262,7 +269,9 @@ class Checker:
     def prove(self, claim: dict[str, Any], number: int) -> None:
         """Prove a claim: cut pieces of both surfaces and of the range as written, until what is written keeps each two apart."""
         (a, b), vary, whole = claim["parts"], claim["vary"], self.certificate
-        proof = {key: self.proof[f"{number}.{key}"] for key in ("uses", "sizes_a", "sizes_b", "about", "cuts", "at", "codes", "along", "of_a")}
+        proof = {
+            key: self.proof[f"{number}.{key}"] for key in ("uses", "sizes_a", "sizes_b", "about", "cuts", "at", "codes", "along", "of_a")
+        }
         label, way, (moved, *orders) = f"{a}/{b} over {', '.join(sorted(vary))}", self.way(a, b, claim["via"]), proof["uses"].tolist()
         (V, F), (W, G) = ((self.meshes[name]["vertices"], self.meshes[name]["triangles"]) for name in (a, b))
         here, (T, _) = V if moved < 0 else V + self.proof[f"moved.{moved}"], self.place(way, self.rest)
@@ -278,9 +287,17 @@ class Checker:
         beside = W @ T[:3, :3].T + T[:3, 3]  # if none is inside the other here, surfaces that never meet keep it so
         need(not is_inside(here, F, beside[G]) and not is_inside(beside, G, here[F]), f"{label}: one is inside the other at rest")
         orders = [self.proof[f"order.{order}"] for order in orders]
-        need(all(np.array_equal(np.sort(order), np.arange(n)) for order, n in zip(orders, (len(F), len(G)), strict=True)), f"{label}: a triangle is left out")
+        need(
+            all(np.array_equal(np.sort(order), np.arange(n)) for order, n in zip(orders, (len(F), len(G)), strict=True)),
+            f"{label}: a triangle is left out",
+        )
         boxes, halves = self.boxes(way, vary, proof["cuts"].tolist(), proof["at"].tolist(), label)
-        A, B, (centre, axis), across = here[F][orders[0]], W[G][orders[1]], proof["about"], np.eye(3) - np.outer(proof["about"][1], proof["about"][1])
+        A, B, (centre, axis), across = (
+            here[F][orders[0]],
+            W[G][orders[1]],
+            proof["about"],
+            np.eye(3) - np.outer(proof["about"][1], proof["about"][1]),
+        )
         near, far = zip(*(radii((corners - centre) @ across) for corners in (A, B @ T[:3, :3].T + T[:3, 3])), strict=True)
         spans = [list(itertools.pairwise([0, *np.cumsum(proof[key]).tolist()])) for key in ("sizes_a", "sizes_b")]
         need([own[-1][1] for own in spans] == [len(A), len(B)], f"{label}: a triangle is left out")
@@ -296,7 +313,11 @@ class Checker:
             if code == OUTSIDE:
                 gap = math.inf if any(is_outside(joint, box) for joint, _ in way if joint["cone"] is not None) else 0.0
             elif code == ROUND:
-                keeps = np.abs((v + np.cross(w, centre)) @ across).max() + np.abs(np.cross(w, axis)).max() + np.abs(across @ across - across).max()
+                keeps = (
+                    np.abs((v + np.cross(w, centre)) @ across).max()
+                    + np.abs(np.cross(w, axis)).max()
+                    + np.abs(across @ across - across).max()
+                )
                 gap = max(near[0][x].min() - far[1][y].max(), near[1][y].min() - far[0][x].max()) if keeps < ROUNDING else 0.0
             else:
                 u = proof["along"][code] if code < proof["of_a"] else R @ proof["along"][code]

@@ -17,9 +17,9 @@ from articad.connectors.se3 import SE3
 from articad.interference.claims import Claim, Course
 from articad.interference.clearing import MOST_PAIRS, Boxes, Cleared, Ranges, clear
 from articad.interference.cover import Budget
+from articad.interference.meridian import outline
 from articad.interference.motion import Chain, Mover, Route, freedoms, scattered, swing_and_twist, turned
 from articad.interference.overlap import Overlap, measured, overlap
-from articad.interference.meridian import outline
 from articad.interference.profile import Forest
 from articad.interference.scene import Scene
 from articad.interference.spread import Spread
@@ -151,7 +151,9 @@ class Prover:
         if start.volume == 0:
             yield NO_SHRINK
         if self.axis is not None:
-            touching = near_by(whole_surface(self.body_a.mesh), whole_surface(self.body_b.mesh), self.chain.matrix(self.chain.rest), self.allowed)
+            touching = near_by(
+                whole_surface(self.body_a.mesh), whole_surface(self.body_b.mesh), self.chain.matrix(self.chain.rest), self.allowed
+            )
             radius = float(self.axis.radii(touching.corners).max(initial=0.0)) + BESIDE_CONTACT_MM
             if radius < float(self.axis.radii(self.body_a.mesh.vertices).max()):
                 yield Shrink(self.allowed, radius)
