@@ -20,6 +20,7 @@ import numpy as np
 PROOF = "_proof"  # no part bears such a name
 ROUNDING = 1e-9  # of ranges, distances, and what a driver moves
 HALF = 0.5  # of entries of a rotation, by which a loop may be open: with a turn of less than 1 rad more it is not half a turn
+ALIGNED = 1e-12  # sine of axes that are parallel
 REST = 1e-4  # rad or mm: by which what follows a driver may be off at rest
 ROUND, OUTSIDE = -5, -4  # two pieces differ in radius; a box lies outside the cone of a ball; -3, -2, -1 cut a piece of a, of b, the box
 
@@ -97,19 +98,17 @@ def is_outside(ball: dict[str, Any], box: dict[str, tuple[float, float]]) -> boo
     return max(x, y) < math.pi / 2 and math.cos(x) * math.cos(y) < math.cos(ball["cone"]) - ROUNDING
 
 
-def motion(u: Any, p: Any, w: Any, v: Any, along: Any, aside: Any) -> Any:
-    """Bound how far points `(n, 3)` go along a direction while what moves about axes w goes `along` together and `aside` each, `(n,)`.
+def motion(u: Any, p: Any, spins: Any, v: Any, along: Any, aside: Any, turned: Any, outer: Any) -> Any:
+    """Bound how far points `(n, 3)` go along a direction while what moves goes `along` together and `aside` each, `(n,)`.
 
     That is their speed, and half the second derivative: along u the factor i outside j turns what j moves by |u x axis i|.
     """
-    speeds, width, turns = p @ np.cross(u, w).T + v @ u, np.abs(along) + aside, w.any(1)
-    moved, speed, inside = np.abs(speeds @ along) + np.abs(speeds) @ aside, np.linalg.norm(np.cross(w, p[:, None]) + v, axis=2), 0.0
-    turned = turns * width
-    loose = np.abs(np.cross(w, w[turns][:1])).max(initial=0.0) > 1e-12  # axes that turn each other
-    tilt = np.minimum(np.linalg.norm(np.cross(u, w), axis=1) + loose * (np.cumsum(turned) - turned), 1.0) * turned
-    for f in reversed(range(len(width))):
-        carried = width[f] * (speed[:, f] + inside * turns[f])
-        moved, inside = moved + carried * (np.cumsum(tilt)[f] - tilt[f] / 2), inside + carried
+    across, width, turns = spins @ u, np.abs(along) + aside, turned > 0  # spins: p @ spin is axis x p
+    speeds, reach, inside = p @ across.T + v @ u, np.linalg.norm(p @ spins + v[:, None], axis=2), 0.0
+    moved, tilt = np.abs(speeds @ along) + np.abs(speeds) @ aside, np.minimum(np.linalg.norm(across, axis=1) + outer, 1.0) * turned
+    for f, share in reversed(list(enumerate(np.cumsum(tilt) - tilt / 2))):
+        carried = width[f] * (reach[f] + inside * turns[f])
+        moved, inside = moved + carried * share, inside + carried
     return moved
 
 
@@ -291,7 +290,7 @@ class Checker:
             all(np.array_equal(np.sort(order), np.arange(n)) for order, n in zip(orders, (len(F), len(G)), strict=True)),
             f"{label}: a triangle is left out",
         )
-        boxes, halves = self.boxes(way, vary, proof["cuts"].tolist(), proof["at"].tolist(), label)
+        boxes, halves = self.boxes(way, vary, proof, label)
         A, B, (centre, axis), across = (
             here[F][orders[0]],
             W[G][orders[1]],
@@ -309,29 +308,24 @@ class Checker:
                 parts = [(row[column][0], middle := sum(row[column]) // 2), (middle, row[column][1])] if column < 2 else halves[row[2]]
                 rows.extend((*row[:column], part, *row[column + 1 :]) for part in parts)
                 continue
-            (x, y), (box, R, t, w, v, along, aside) = (slice(*span) for span in row[:2]), boxes[row[2]]
+            (x, y), (box, R, t, is_steady, *moving) = (slice(*span) for span in row[:2]), boxes[row[2]]
             if code == OUTSIDE:
                 gap = math.inf if any(is_outside(joint, box) for joint, _ in way if joint["cone"] is not None) else 0.0
             elif code == ROUND:
-                keeps = (
-                    np.abs((v + np.cross(w, centre)) @ across).max()
-                    + np.abs(np.cross(w, axis)).max()
-                    + np.abs(across @ across - across).max()
-                )
-                gap = max(near[0][x].min() - far[1][y].max(), near[1][y].min() - far[0][x].max()) if keeps < ROUNDING else 0.0
+                gap = max(near[0][x].min() - far[1][y].max(), near[1][y].min() - far[0][x].max()) if is_steady else 0.0
             else:
                 u = proof["along"][code] if code < proof["of_a"] else R @ proof["along"][code]
-                u, p, q = u / np.linalg.norm(u), A[x].reshape(-1, 3), B[y].reshape(-1, 3) @ R.T + t
-                gap = (q @ u - motion(u, q, w, v, along, aside)).min() - (p @ u).max()
+                u, p, q = u / math.hypot(*u), A[x].reshape(-1, 3), B[y].reshape(-1, 3) @ R.T + t
+                gap = (q @ u - motion(u, q, *moving)).min() - (p @ u).max()
             need(gap > claim["clear_mm"], f"{label}: pieces come too near")
 
-    def boxes(self, way: list[Any], vary: dict[str, Any], cuts: list[int], at: list[float], label: str) -> tuple[list[Any], dict[int, Any]]:
+    def boxes(self, way: list[Any], vary: dict[str, Any], proof: dict[str, Any], label: str) -> tuple[list[Any], dict[int, Any]]:
         """Cut a range into boxes; of each return the pose in its middle, and what may move, how far, and together with what."""
         tied = {f["name"] for joint, _ in way for f in joint["freedoms"]} & set(self.linked) - set(vary)
-        drivers, names, found, halves = [n for n in vary if tied and n in self.certificate["drivers"]], list(vary), [], {}
+        drivers, names, todo = [n for n in vary if tied and n in self.certificate["drivers"]], list(vary), [vary]
+        found, halves, (centre, axis), across = [], {}, proof["about"], np.eye(3) - np.outer(proof["about"][1], proof["about"][1])
         need(len(drivers) <= 1, f"{label}: two drivers at once")
-        todo = [vary]
-        for number, (box, cut, place) in enumerate(zip(todo, cuts, at, strict=True)):  # the boxes become more
+        for number, (box, cut, place) in enumerate(zip(todo, proof["cuts"].tolist(), proof["at"].tolist(), strict=True)):  # they become more
             if cut >= 0:
                 (low, high), name = box[names[cut]], names[cut]
                 need(low < place < high, f"{label}: a part of the range is left out")
@@ -342,6 +336,10 @@ class Checker:
                 line, half = self.stretch(driver, *box[driver]), values[driver][2]
                 values |= {n: (value, rate * half, near) for n, (value, rate, near) in line.items() if n == driver or n not in vary}
             T, steps = self.place(way, {**self.rest, **{name: value for name, (value, *_) in values.items()}})
-            moves = [(*steps[name], *values[name][1:]) for name in steps if name in values]
-            found.append((box, T[:3, :3], T[:3, 3], *map(np.array, zip(*moves, strict=True))))
+            w, v, along, aside = map(np.array, zip(*((*steps[name], *values[name][1:]) for name in steps if name in values), strict=True))
+            turned = (np.abs(along) + aside) * w.any(1)
+            loose = np.abs(np.cross(w, w[w.any(1)][:1])).max(initial=0.0) > ALIGNED  # axes that turn each other
+            off = [(v + np.cross(w, centre)) @ across, np.cross(w, axis), across @ across - across]  # from turns and slides about one axis or point
+            is_steady = max(np.abs(part).max() for part in off) < ROUNDING
+            found.append((box, T[:3, :3], T[:3, 3], is_steady, np.cross(w[:, None], np.eye(3)), v, along, aside, turned, loose * (np.cumsum(turned) - turned)))
         return found, halves
