@@ -1,11 +1,8 @@
 """Check a motion certificate without trusting it: what `articad verify-certificate` asks.
 
 Written apart from the prover, with NumPy alone. A certificate claims that parts keep apart while joints move within ranges. Beside it
-lies how that is seen: how to cut surfaces and ranges, and for each two pieces a direction that separates them. Nothing of that is
-believed and nothing is sought here: every inequality is computed anew from meshes and joints, and no piece, range or pair may be missing.
-
-Of each claim rows are visited in the order of a queue, which begins with both whole surfaces over the whole range: each row's code is the
-number of a direction that separates the two, or says what to halve; both halves, one after the other, join the queue at its end.
+lies how that is seen: how to cut surfaces and ranges, and for each two pieces what keeps them apart. Nothing of that is believed and
+nothing is sought here: every inequality is computed anew from meshes and joints, and no piece, range or pair may be missing.
 """
 
 from __future__ import annotations
@@ -14,6 +11,7 @@ import hashlib
 import itertools
 import json
 import math
+from collections import deque
 from pathlib import Path
 from typing import Any
 
@@ -22,11 +20,10 @@ import numpy as np
 PROOF = "_proof"  # no part bears such a name
 ROUNDING = 1e-9  # of ranges, distances, and what a driver moves
 HALF = 0.5  # of entries of a rotation, by which a loop may be open: with a turn of less than 1 rad more it is not half a turn
+ALIGNED = 1e-12  # sine of axes that are parallel
+OF_B, SPUN = 1, 2  # kinds of directions: as b sees them, and those as a sees them whatever the innermost turn
 REST = 1e-4  # rad or mm: by which what follows a driver may be off at rest
-OUTSIDE = -4  # code of two pieces in a box outside the cone of a ball; -3, -2, -1 cut the first piece, the second, the box
-NOTHING = 2**40  # number of a half of what is not to be cut
-ROWS = 4096  # looked at together
-SIDES = np.array(list(itertools.product((False, True), repeat=3)))
+ROUND, OUTSIDE = -5, -4  # two pieces differ in radius; a box lies outside the cone of a ball; -3, -2, -1 cut a piece of a, of b, the box
 
 
 class Refuted(Exception):  # noqa: N818 - it is no error of the program
@@ -42,23 +39,19 @@ def need(condition: Any, reason: str) -> None:
 def verify_file(file: Path, folder: Path) -> list[str]:
     """Return why a certificate file is refuted, nothing if it is accepted; `folder` holds `<part>.npz` of every part, and the proof."""
     try:
-        certificate = json.loads(file.read_bytes())
-        names = [*certificate["meshes"], PROOF]
-        need(all(Path(name).name == name for name in names), "a mesh bears the name of no file")
-        left = sorted({found.stem for found in folder.glob("*.npz")} - set(names))
+        certificate, arrays = json.loads(file.read_bytes()), dict[str, Any]()
+        for name in [*certificate["meshes"], PROOF]:
+            need(Path(name).name == name, "a mesh bears the name of no file")
+            with (folder / f"{name}.npz").open("rb") as stream, np.load(stream, allow_pickle=False) as found:
+                arrays[name] = dict(found)
+        left = sorted({found.stem for found in folder.glob("*.npz")} - set(arrays))
         need(not left, f"it says nothing of {', '.join(left)}")
-        Checker(certificate, {name: read(folder / f"{name}.npz") for name in names}).check()
+        Checker(certificate, arrays).check()
     except Refuted as reason:
         return [str(reason)]
     except Exception as error:  # noqa: BLE001 - what breaks its checker, in whatever way, proves nothing
         return [f"it cannot be read: {error!r}"[:500]]
     return []
-
-
-def read(file: Path) -> dict[str, Any]:
-    """Return the arrays of a file."""
-    with file.open("rb") as stream, np.load(stream, allow_pickle=False) as arrays:
-        return dict(arrays)
 
 
 def digest(vertices: Any, triangles: Any) -> str:
@@ -81,21 +74,14 @@ def is_inside(V: Any, F: Any, corners: Any) -> bool:
     return False
 
 
-def pieces(corners: Any, order: Any, most: Any) -> tuple[Any, Any, Any]:
-    """Return points whose hulls hold the pieces of a surface `(n, 8, 3)`, the two that each is cut into, and the most `(n, k)` of their triangles."""
-    need(np.array_equal(np.unique(order), np.arange(len(corners))), "a triangle is left out")
-    spans, halves = [(0, len(order))], []
-    for start, end in spans:  # they become more
-        halves.append((len(spans), len(spans) + 1) if end - start > 1 else (NOTHING, NOTHING))
-        spans += [(start, (start + end) // 2), ((start + end) // 2, end)] if end - start > 1 else []
-    leaves, ends, single = corners[order], np.array(spans).ravel(), np.array(halves)[:, 0] == NOTHING
-    low, high, far = (
-        ufunc.reduceat(np.append(each, each[-1:], axis=0), ends)[::2]
-        for ufunc, each in ((np.minimum, leaves.min(1)), (np.maximum, leaves.max(1)), (np.maximum, most[order]))
-    )
-    points = np.where(SIDES, high[:, None], low[:, None])
-    points[single] = leaves[ends[::2][single]][:, [0, 1, 2, 2, 2, 2, 2, 2]]
-    return points, np.array(halves), far
+def radii(flat: Any) -> tuple[Any, Any]:
+    """Return the least and largest distance of triangles `(n, 3, 3)` from 0."""
+    edge = np.roll(flat, -1, 1) - flat
+    n, along = np.cross(edge[:, 0], edge[:, 1]), -(flat * edge).sum(2) / np.maximum((edge**2).sum(2), 1e-300)
+    least = np.linalg.norm(flat + np.clip(along, 0, 1)[..., None] * edge, axis=2).min(1)
+    over = (np.cross(n[:, None], edge) * -flat).sum(2).min(1) > 0  # 0 lies above the triangle, or below it
+    height = np.abs((n * flat[:, 0]).sum(1)) / np.maximum(np.linalg.norm(n, axis=1), 1e-300)
+    return np.where(over, np.minimum(least, height), least), np.linalg.norm(flat, axis=2).max(1)
 
 
 def joined(ends: Any, rows: list[Any]) -> tuple[Any, Any, Any]:
@@ -107,8 +93,29 @@ def joined(ends: Any, rows: list[Any]) -> tuple[Any, Any, Any]:
     return middle, slope, (np.abs(at - middle - slope * places[..., None]) + near).max((0, 1))
 
 
+def is_outside(ball: dict[str, Any], box: dict[str, tuple[float, float]]) -> bool:
+    """Return whether a box lies outside the cone of a ball: turns x and y swing it by acos(cos x · cos y)."""
+    x, y = (max(box[f["name"]][0], -box[f["name"]][1], 0.0) for f in ball["freedoms"][:2])
+    return max(x, y) < math.pi / 2 and math.cos(x) * math.cos(y) < math.cos(ball["cone"]) - ROUNDING
+
+
+def motion(u: Any, p: Any, size: float, spins: Any, v: Any, along: Any, aside: Any, turned: Any, outer: Any) -> Any:
+    """Bound how far what is within `size` of points `(n, 3)` goes along a direction while what moves goes `along` together and `aside` each, `(n,)`.
+
+    That is their speed, and half the second derivative: along u the factor i outside j turns what j moves by |u x axis i|.
+    """
+    across, width, turns = spins @ u, np.abs(along) + aside, turned > 0  # spins: p @ spin is axis x p
+    speeds, reach, inside = p @ across.T + v @ u, np.linalg.norm(p @ spins + v[:, None], axis=2) + size, 0.0
+    moved, tilt = np.abs(speeds @ along) + np.abs(speeds) @ aside, np.minimum(np.linalg.norm(across, axis=1) + outer, 1.0) * turned
+    moved += size * (np.linalg.norm(along @ across) + aside @ np.linalg.norm(across, axis=1))
+    for f, share in reversed(list(enumerate(np.cumsum(tilt) - tilt / 2))):
+        carried = width[f] * (reach[f] + inside * turns[f])
+        moved, inside = moved + carried * share, inside + carried
+    return moved
+
+
 class Checker:
-    """A certificate, its meshes and its proof: where parts are, and what follows a driver of loops."""
+    """A certificate, its meshes and its proof."""
 
     def __init__(self, certificate: dict[str, Any], arrays: dict[str, dict[str, Any]]) -> None:
         self.certificate, self.meshes, self.proof = certificate, arrays, arrays[PROOF]
@@ -125,12 +132,14 @@ class Checker:
         for name, entry in whole["meshes"].items():
             need(digest(**self.meshes[name]) == entry["sha256"], f"mesh of {name} is missing or another")
         for number, claim in enumerate(claims):
-            Claim(self, claim, number).check()
+            self.prove(claim, number)
         waived = [set(pair["parts"]) for pair in whole["pairs"] if pair["strength"]["kind"] == "waived"]
         for a, b in itertools.combinations(whole["meshes"] if whole["ok"] else (), 2):
             joints = [joint["name"] for joint, _ in self.way(a, b)]
             free = [{f["name"] for f in self.joints[n]["freedoms"]} for n in joints if n in whole["asked"] and n not in whole["linkage"]]
-            drivers = [{name} for name in whole["drivers"] if set(joints) & set(whole["linkage"])]
+            drivers = [
+                {name} for name in whole["drivers"] if any(f["name"] in self.linked for n in joints for f in self.joints[n]["freedoms"])
+            ]
             both = [one | other for one in free for other in [*free, *drivers] if whole["together"]]
             for names in filter(None, [] if {a, b} in waived else [*free, *drivers, *both]):
                 found = any(set(claim["parts"]) == {a, b} and names <= set(claim["vary"]) for claim in claims)
@@ -157,7 +166,12 @@ class Checker:
             before, after, sign = np.array(joint["parent_frame"]), np.linalg.inv(joint["child_frame"]), 1 if forward else -1
             T = T @ (before if forward else np.linalg.inv(after))
             for f in joint["freedoms"][::sign]:
-                axis, speed, angle, motion = sign * T[:3, :3] @ f["turn"], sign * T[:3, :3] @ f["slide"], sign * values[f["name"]], np.eye(4)
+                axis, speed, angle, motion = (
+                    sign * T[:3, :3] @ f["turn"],
+                    sign * T[:3, :3] @ f["slide"],
+                    sign * values[f["name"]],
+                    np.eye(4),
+                )
                 steps[f["name"]] = axis, speed + np.cross(T[:3, 3], axis)
                 K = np.cross(f["turn"], np.eye(3)).T
                 motion[:3, :3] += math.sin(angle) * K + (1 - math.cos(angle)) * K @ K  # Rodrigues
@@ -229,7 +243,7 @@ class Checker:
     def begin(self, names: list[str]) -> list[Any]:
         """Return the rest pose as a piece, about which a solution is no further than `REST`."""
         still, at = np.zeros(len(names)), self.rest[names[0]]
-        return [(np.array([at, at]), np.array([self.rest[name] for name in names]), still, np.append(0.0, still[1:] + REST), still)]
+        return [(np.array([at, at]), np.array([self.rest[n] for n in names]), still, REST * (np.arange(len(names)) > 0), still)]
 
     def line(self, driver: str) -> dict[float, dict[float, Any]]:
         """Return pieces of a driver's range, by where they begin and end: values, rates, distances; all on the branch of the rest pose."""
@@ -253,120 +267,86 @@ class Checker:
             stops.append(max(ends))
         return dict(zip(self.followers(driver), zip(*joined(np.array(stops), rows), strict=True), strict=True))
 
-
-class Claim:
-    """A statement and its proof."""
-
-    def __init__(self, checker: Checker, claim: dict[str, Any], number: int) -> None:
-        self.checker, self.claim, self.vary = checker, claim, claim["vary"]
-        self.label = f"{'/'.join(claim['parts'])} over {', '.join(sorted(self.vary))}"
-        self.proof = {key: checker.proof[f"{number}.{key}"] for key in ("uses", "cuts", "at", "codes", "along", "kinds")}
-        self.way = checker.way(claim["parts"][0], claim["parts"][1], claim["via"])
-        tied = {f["name"] for joint, _ in self.way for f in joint["freedoms"]} & set(checker.linked) - set(self.vary)
-        drivers = [name for name in self.vary if tied and name in checker.certificate["drivers"]]
-        need(len(drivers) <= 1, f"{self.label}: two drivers at once")
-        self.driver = drivers[0] if drivers else None
-
-    def check(self) -> None:
-        """Prove it."""
-        checker, (a, b), (moved, of_a, of_b) = self.checker, self.claim["parts"], self.proof["uses"].tolist()
-        whole, (V, F), (there, G) = checker.certificate, *((checker.meshes[n]["vertices"], checker.meshes[n]["triangles"]) for n in (a, b))
-        here, (T, _) = V if moved < 0 else V + checker.proof[f"moved.{moved}"], checker.place(self.way, checker.rest)
-        least = sum(whole["meshes"][name]["deflection_mm"] for name in (a, b))
+    def prove(self, claim: dict[str, Any], number: int) -> None:
+        """Prove a claim: cut pieces of both surfaces and of the range as written, until what is written keeps each two apart."""
+        (a, b), vary, whole = claim["parts"], claim["vary"], self.certificate
+        proof = {
+            key: self.proof[f"{number}.{key}"] for key in ("uses", "sizes_a", "sizes_b", "about", "cuts", "at", "codes", "along", "kinds")
+        }
+        label, way, (moved, *orders) = f"{a}/{b} over {', '.join(sorted(vary))}", self.way(a, b, claim["via"]), proof["uses"].tolist()
+        (V, F), (W, G) = ((self.meshes[name]["vertices"], self.meshes[name]["triangles"]) for name in (a, b))
+        here, (T, _) = V if moved < 0 else V + self.proof[f"moved.{moved}"], self.place(way, self.rest)
         said = [pair["strength"].get("epsilon_mm", 0.0) for pair in whole["pairs"] if {*pair["parts"]} == {a, b}]
-        need(self.claim["clear_mm"] >= least - ROUNDING, f"{self.label}: it keeps less than the deflection of the meshes")
-        need(self.claim["shrink_mm"] <= max(said) + ROUNDING or not whole["ok"], f"{self.label}: it allows more overlap than it says")
-        need(np.linalg.norm(here - V, axis=1).max() <= self.claim["shrink_mm"] + ROUNDING, f"{self.label}: it moves vertices further than it says")
-        for name, (low, high) in self.vary.items():
-            lower, upper = checker.freedoms[name]["range"]
-            need((low < lower + 1e-6 and high > upper - 1e-6) or not whole["ok"], f"{self.label}: not over the whole range of {name}")
-            need(low <= checker.rest[name] + ROUNDING and checker.rest[name] <= high + ROUNDING, f"{self.label}: not about the rest pose")
-        beside = there @ T[:3, :3].T + T[:3, 3]  # if none is inside the other here, surfaces that never meet keep it so
-        need(not is_inside(here, F, beside[G]) and not is_inside(beside, G, here[F]), f"{self.label}: one is inside the other at rest")
-        self.cut()
-        of, (R, t) = checker.proof, (array[0] for array in self.arrays[:2])
-        radii = [np.linalg.norm((points - self.centre) @ self.across, axis=2).max(1) for points in (here[F], there[G] @ R.T + t)]
-        height = (there[G] - self.hub) @ self.axle
-        spun = np.linalg.norm(there[G] - self.hub - height[..., None] * self.axle, axis=2)
-        most = np.stack([radii[1], -height.min(1), height.max(1), spun.max(1)], axis=1)
-        self.separate(pieces(here[F], of[f"order.{of_a}"], radii[0][:, None]), pieces(there[G], of[f"order.{of_b}"], most))
+        least = sum(whole["meshes"][name]["deflection_mm"] for name in (a, b))
+        need(claim["clear_mm"] >= least - ROUNDING, f"{label}: it keeps less than the deflection of the meshes")
+        need(claim["shrink_mm"] <= max(said) + ROUNDING or not whole["ok"], f"{label}: it allows more overlap than it says")
+        need(np.linalg.norm(here - V, axis=1).max() <= claim["shrink_mm"] + ROUNDING, f"{label}: it moves vertices further than it says")
+        for name, (low, high) in vary.items():
+            lower, upper = self.freedoms[name]["range"]
+            need((low < lower + 1e-6 and high > upper - 1e-6) or not whole["ok"], f"{label}: not over the whole range of {name}")
+            need(low <= self.rest[name] + ROUNDING and self.rest[name] <= high + ROUNDING, f"{label}: not about the rest pose")
+        beside = W @ T[:3, :3].T + T[:3, 3]  # if none is inside the other here, surfaces that never meet keep it so
+        need(not is_inside(here, F, beside[G]) and not is_inside(beside, G, here[F]), f"{label}: one is inside the other at rest")
+        orders = [self.proof[f"order.{order}"] for order in orders]
+        need(
+            all(np.array_equal(np.sort(order), np.arange(n)) for order, n in zip(orders, (len(F), len(G)), strict=True)),
+            f"{label}: a triangle is left out",
+        )
+        boxes, halves, (hub, axle) = self.boxes(way, vary, proof, label)
+        A, B, (centre, axis) = here[F][orders[0]], W[G][orders[1]], proof["about"]
+        across = np.eye(3) - np.outer(axis, axis)
+        near, far = zip(*(radii((corners - centre) @ across) for corners in (A, B @ T[:3, :3].T + T[:3, 3])), strict=True)
+        height = (B - hub) @ axle
+        round_it = np.linalg.norm(B - hub - height[..., None] * axle, axis=2)
+        spans = [list(itertools.pairwise([0, *np.cumsum(proof[key]).tolist()])) for key in ("sizes_a", "sizes_b")]
+        need([own[-1][1] for own in spans] == [len(A), len(B)], f"{label}: a triangle is left out")
+        rows, codes = deque((x, y, 0) for x, y in itertools.product(*spans)), iter(proof["codes"].tolist())
+        while rows:
+            row, code = rows.popleft(), next(codes)
+            if OUTSIDE < code < 0:
+                column = code + 3
+                parts = [(row[column][0], middle := sum(row[column]) // 2), (middle, row[column][1])] if column < 2 else halves[row[2]]
+                rows.extend((*row[:column], part, *row[column + 1 :]) for part in parts)
+                continue
+            (x, y), (box, R, t, is_steady, *moving) = (slice(*span) for span in row[:2]), boxes[row[2]]
+            if code == OUTSIDE:
+                gap = math.inf if any(is_outside(joint, box) for joint, _ in way if joint["cone"] is not None) else 0.0
+            elif code == ROUND:
+                gap = max(near[0][x].min() - far[1][y].max(), near[1][y].min() - far[0][x].max()) if is_steady else 0.0
+            else:
+                kind, u, q, size = sum(code >= proof["kinds"]), proof["along"][code], B[y].reshape(-1, 3), 0.0
+                u, thick = (R @ u if kind == OF_B else u) / math.hypot(*u), 0.0
+                if kind == SPUN:  # whatever the innermost turn, b stays about a stretch of its axis
+                    size, q = round_it[y].max(), hub + np.outer([height[y].min(), height[y].max()], axle)
+                    moving = [*moving[:2], *(part * (np.arange(len(part)) < len(part) - 1) for part in moving[2:])]
+                    thick = size * math.hypot(*np.cross(u, R @ axle))
+                p, q = A[x].reshape(-1, 3), q @ R.T + t
+                gap = (q @ u - motion(u, q, size, *moving)).min() - thick - (p @ u).max()
+            need(gap > claim["clear_mm"], f"{label}: pieces come too near")
 
-    def cut(self) -> None:
-        """Cut the range into boxes; of each keep the pose in its middle, and what may move, how far, and together with what."""
-        names, checker, cuts = list(self.vary), self.checker, self.proof["cuts"]
-        first, rows, boxes, self.halves = self.driver or names[0], [], [dict(self.vary)], np.full((len(cuts), 2), len(cuts))
-        for number, (box, cut, at) in enumerate(zip(boxes, cuts, self.proof["at"].tolist(), strict=True)):  # the boxes become more
-            middle, half = ({name: (high + sign * low) / 2 for name, (low, high) in box.items()} for sign in (1, -1))
+    def boxes(self, way: list[Any], vary: dict[str, Any], proof: dict[str, Any], label: str) -> tuple[list[Any], dict[int, Any], Any]:
+        """Cut a range into boxes; of each return the pose in its middle, and what may move, how far, together with what; and the innermost axis."""
+        tied = {f["name"] for joint, _ in way for f in joint["freedoms"]} & set(self.linked) - set(vary)
+        drivers, names, todo = [n for n in vary if tied and n in self.certificate["drivers"]], list(vary), [vary]
+        found, halves, (centre, axis), across = [], {}, proof["about"], np.eye(3) - np.outer(proof["about"][1], proof["about"][1])
+        need(len(drivers) <= 1, f"{label}: two drivers at once")
+        for number, (box, cut, place) in enumerate(zip(todo, proof["cuts"].tolist(), proof["at"].tolist(), strict=True)):  # they become more
             if cut >= 0:
                 (low, high), name = box[names[cut]], names[cut]
-                need(low < at < high, f"{self.label}: a part of the range is left out")
-                self.halves[number] = len(boxes), len(boxes) + 1
-                boxes += [{**box, name: (low, at)}, {**box, name: (at, high)}]
-            line = checker.stretch(self.driver, *box[self.driver]) if self.driver else {}
-            line = {name: row for name, row in line.items() if name == self.driver or name not in self.vary}
-            moves = {name: (0.0, size) for name, size in half.items()} | {n: (rate * half[first], near) for n, (_, rate, near) in line.items()}
-            T, steps = checker.place(self.way, {**checker.rest, **middle, **{name: value for name, (value, *_) in line.items()}})
-            w, v, along, aside = (np.array(x) for x in zip(*((*steps[n], *moves[n]) for n in steps if n in moves), strict=True))
-            spin, flow = (np.concatenate([along[None] @ x, aside[:, None] * x]) for x in (w, v))
-            swings = [(joint["cone"], *joint["freedoms"][:2]) for joint, _ in self.way if joint["cone"] is not None]
-            tilts = [(cone, *(max(box[f["name"]][0], -box[f["name"]][1], 0.0) for f in fs)) for cone, *fs in swings if fs[0]["name"] in box]
-            outside = any(max(x, y) < math.pi / 2 and math.cos(x) * math.cos(y) < math.cos(cone) - ROUNDING for cone, x, y in tilts)
-            rows.append((T[:3, :3], T[:3, 3], w, v, np.abs(along) + aside, spin, flow, outside))
-        self.arrays = [np.array(column) for column in zip(*rows, strict=True)]
-        R, t, w, v = (array[0] for array in self.arrays[:4])
-        axes, along = w[w.any(1)], np.where(w.any(1, keepdims=True), w * (w * v).sum(1, keepdims=True), v)
-        self.loose = 0.0 if (np.linalg.norm(np.cross(axes, axes[:1]), axis=1) < 1e-12).all() else 1.0  # axes that turn each other
-        M, moment = np.concatenate([np.zeros((0, 3)), *(np.cross(np.eye(3), axis).T for axis in axes)]), (v - along)[w.any(1)].ravel()
-        self.centre, self.across = np.linalg.lstsq(M, moment)[0], np.eye(3) - sum(axis[:, None] * axis for axis in axes[: 1 - int(self.loose)])
-        steady = len(axes) and np.abs(M @ self.centre - moment).max() < ROUNDING and np.abs(along @ self.across).max() < ROUNDING
-        turn, flow = w[-1], v[-1]  # what is innermost turns b, which sees its axis stand
-        self.axle = turn @ R if turn.any() and abs(turn @ flow) < ROUNDING and not self.driver else np.full(3, np.nan)
-        self.hub = (np.cross(turn, flow) - t) @ R
-        self.across = self.across if steady else np.full((3, 3), np.nan)  # radii about the one axis or point of all turns
-
-    def motion(self, box: Any, u: Any, p: Any, spun: Any, size: Any) -> Any:
-        """Bound how far what is within `size` of points `(n, k, 3)` goes along directions `(n, 3)` in boxes, `(n, k)`.
-
-        That is their speed, and half the second derivative: along u the factor i outside j turns what j moves by |u x axis i|. To what is
-        `spun` the innermost turn does nothing.
-        """
-        w, v, width, spin, flow = (array[box] for array in self.arrays[2:7])
-        width[spun, -1], spin[spun, -1], flow[spun, -1] = 0.0, 0.0, 0.0
-        moved = np.abs(p @ np.cross(u[:, None], spin).transpose(0, 2, 1) + (flow @ u[..., None])[:, None, :, 0]).sum(2)
-        moved += (size * np.linalg.norm(np.cross(u[:, None], spin), axis=2).sum(1))[:, None]
-        speed = np.linalg.norm(np.cross(w[:, None], p[:, :, None]) + v[:, None], axis=3) + size[:, None, None]
-        turns = w.any(2) * 1.0
-        tilt = np.linalg.norm(np.cross(u[:, None], w), axis=2) + self.loose * (np.cumsum(turns * width, axis=1) - turns * width)
-        tilt = np.minimum(tilt, 1.0) * turns * width
-        outside, inside = np.cumsum(tilt, axis=1) - tilt, 0.0
-        for f in range(width.shape[1] - 1, -1, -1):
-            carried = width[:, f, None] * (speed[..., f] + inside * turns[:, f, None])
-            moved, inside = moved + carried * (tilt / 2 + outside)[:, f, None], inside + carried
-        return moved
-
-    def separate(self, a: tuple[Any, ...], b: tuple[Any, ...]) -> None:
-        """Follow how pieces of both and boxes were cut, until a direction separates each two of them."""
-        (A, halves_a, far_a), (B, halves_b, most), (R, t, w, *_, outside) = a, b, self.arrays
-        S = self.hub + (most[:, [1, 2] * 4] * ([-1, 1] * 4))[..., None] * self.axle  # ends of the axis beside a piece of b
-        codes, rows = self.proof["codes"], np.zeros((1, 3), int)
-        while len(rows):
-            code, codes = codes[: len(rows)], codes[len(rows) :]
-            need(len(code) == len(rows) and code.min() >= OUTSIDE and outside[rows[code == OUTSIDE, 2]].all(), f"{self.label}: it ends too early")
-            settled = np.flatnonzero(code >= 0)
-            for some in np.array_split(settled, len(settled) // ROWS + 1):
-                (x, y, box), u = rows[some].T, self.proof["along"][code[some]]
-                kind = np.searchsorted(self.proof["kinds"], code[some], side="right")[:, None]  # of a, of b, round with a outside, with b, spun
-                u = np.where(kind % 2, (R[box] @ u[..., None])[..., 0], u)
-                u = u / np.linalg.norm(u, axis=1, keepdims=True)
-                spun, size = kind[:, 0] == 4, np.where(kind[:, 0] == 4, most[y, 3], 0.0)
-                p, q = A[x], np.where(spun[:, None, None], S[y], B[y]) @ R[box].transpose(0, 2, 1) + t[box][:, None]
-                gap = ((q @ u[..., None])[..., 0] - self.motion(box, u, q, spun, size)).min(1) - (p @ u[..., None])[..., 0].max(1)
-                gap -= size * np.linalg.norm(np.cross(u, w[box, -1]), axis=1)
-                outer = np.where(kind[..., None] == 3, q, p) - self.centre
-                beyond = (outer @ (u @ self.across)[..., None])[..., 0].min(1) - np.where(kind[:, 0] == 3, far_a[x, 0], most[y, 0])
-                need((np.where(kind[:, 0] % 4 < 2, gap, beyond) > self.claim["clear_mm"]).all(), f"{self.label}: pieces come too near")
-            cut = (code < 0) & (code > OUTSIDE)
-            which, rows = np.repeat(code[cut] + 3, 2), np.repeat(rows[cut], 2, axis=0)
-            for column, numbers in enumerate((halves_a, halves_b, self.halves)):
-                mine = which == column
-                rows[mine, column] = numbers[rows[mine, column][::2]].ravel()
+                need(low < place < high, f"{label}: a part of the range is left out")
+                halves[number] = len(todo), len(todo) + 1
+                todo += [{**box, name: (low, place)}, {**box, name: (place, high)}]
+            values = {name: (sum(ends) / 2, 0.0, (ends[1] - ends[0]) / 2) for name, ends in box.items()}
+            for driver in drivers:
+                line, half = self.stretch(driver, *box[driver]), values[driver][2]
+                values |= {n: (value, rate * half, near) for n, (value, rate, near) in line.items() if n == driver or n not in vary}
+            T, steps = self.place(way, {**self.rest, **{name: value for name, (value, *_) in values.items()}})
+            w, v, along, aside = map(np.array, zip(*((*steps[name], *values[name][1:]) for name in steps if name in values), strict=True))
+            turned = (np.abs(along) + aside) * w.any(1)
+            loose = np.abs(np.cross(w, w[w.any(1)][:1])).max(initial=0.0) > ALIGNED  # axes that turn each other
+            off = [(v + np.cross(w, centre)) @ across, np.cross(w, axis), across @ across - across]  # from turns and slides about one axis or point
+            is_steady = max(np.abs(part).max() for part in off) < ROUNDING
+            found.append((box, T[:3, :3], T[:3, 3], is_steady, np.cross(w[:, None], np.eye(3)), v, along, aside, turned, loose * (np.cumsum(turned) - turned)))
+        R, (turn, flow) = T[:3, :3], (w[-1], v[-1])  # the innermost turn: b sees its axis stand
+        axle = turn @ R if turn.any() and abs(turn @ flow) < ROUNDING else np.full(3, np.nan)
+        return found, halves, ((np.cross(turn, flow) - T[:3, 3]) @ R, axle)

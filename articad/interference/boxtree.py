@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from weakref import WeakKeyDictionary
 
@@ -92,6 +93,30 @@ class BoxTree:
         centre = ((bottom + top) / 2).astype(np.float32)
         half = np.nextafter(np.maximum(top - centre, centre - bottom).astype(np.float32), np.float32(np.inf))
         return cls(centre, half, *(found.astype(np.int32) for found in (np.concatenate(children), leaf)), corners, final, start, count)
+
+    @classmethod
+    def joined(cls, trees: Sequence[BoxTree], rows: Sequence[IntArray], corners: FloatArray) -> tuple[BoxTree, tuple[int, ...]]:
+        """Return trees over parts of a surface as one, and the root of each.
+
+        Args:
+            trees: Of the parts.
+            rows: Places of their triangles among all, `(t,)` each.
+            corners: Of all triangles, `(T, 3, 3)`.
+        """
+        nodes = np.cumsum([0, *(len(tree.centre) for tree in trees)])
+        begins = np.cumsum([0, *(len(tree.order) for tree in trees)])
+        parts = list(zip(trees, rows, nodes, begins, strict=False))
+        tree = cls(
+            np.concatenate([tree.centre for tree in trees]),
+            np.concatenate([tree.half for tree in trees]),
+            np.concatenate([np.where(tree.children < 0, -1, tree.children + first) for tree, _, first, _ in parts]),
+            np.concatenate([np.where(tree.triangle < 0, -1, which[tree.triangle]) for tree, which, _, _ in parts]),
+            corners,
+            np.concatenate([which[tree.order] for tree, which, _, _ in parts]),
+            np.concatenate([tree.start + begin for tree, _, _, begin in parts]),
+            np.concatenate([tree.size for tree in trees]),
+        )
+        return tree, tuple(int(first) for first in nodes[:-1])
 
     def flat(self) -> BoxTree:
         """Return the tree without the coordinates beyond space that it was made by."""

@@ -154,9 +154,10 @@ class Certificate:
             assert course is not None
             moved = -1 if course.moved is None else number("moved", course.moved)
             found[f"{at}.uses"] = np.array([moved, *(number("order", order.astype(np.int32)) for order in course.orders)])
+            found[f"{at}.sizes_a"], found[f"{at}.sizes_b"] = (np.array(sizes) for sizes in course.sizes)
+            found[f"{at}.about"], found[f"{at}.kinds"] = course.about, course.rows.kinds
             found[f"{at}.cuts"], found[f"{at}.at"] = _short(course.cuts), course.places
-            found[f"{at}.codes"] = _short(course.rows.codes)
-            found[f"{at}.along"], found[f"{at}.kinds"] = course.rows.along, course.rows.kinds
+            found[f"{at}.codes"], found[f"{at}.along"] = _short(course.rows.codes), course.rows.along
         return found
 
 

@@ -24,13 +24,17 @@ class Course:
     Attributes:
         moved: By how much vertices of the first part were moved, `(V, 3)` float32 [mm], None for not at all.
         orders: Of the triangles of both parts, in the trees that were cut.
-        cuts: Which coordinate each box was cut across, −1 for none; boxes in the order in which they came from others.
-        places: Where.
+        sizes: How many triangles each of the trees holds, of both parts.
+        about: A point and the unit axis about which radii are, as the first part sees them, `(2, 3)` [mm]; the axis of a ball is 0, NaN: none.
+        cuts: Across which coordinate each box was cut, −1 for none; boxes in the order in which they came from others.
+        places: Where each was cut [rad or mm].
         rows: What became of each two pieces in a box.
     """
 
     moved: NDArray[np.float32] | None
     orders: tuple[NDArray[np.int64], NDArray[np.int64]]
+    sizes: tuple[tuple[int, ...], tuple[int, ...]]
+    about: NDArray[np.float64]
     cuts: NDArray[np.int64]
     places: NDArray[np.float64]
     rows: Written

@@ -7,6 +7,7 @@ not charged with the speed of what is far out, and what is far apart is settled 
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -15,12 +16,12 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from articad.interference.boxtree import BoxTree
 from articad.interference.cover import Budget
+from articad.interference.profile import Forest
 from articad.interference.revolving import LEAST_TURN, Revolved
-from articad.interference.rounds import Rounds, unit
 from articad.interference.spread import Spread
-from articad.interference.trail import CUT_A, CUT_B, CUT_RANGE, OF_A, OF_B, REVOLVED, ROUND_A, ROUND_B, Trail
+from articad.interference.surface import Core
+from articad.interference.trail import CUT_A, CUT_B, CUT_RANGE, OF_A, OF_B, SPUN, Trail
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -118,12 +119,12 @@ class _Pairs:
 
 
 def clear(
-    a: BoxTree,
-    b: BoxTree,
+    a: Forest,
+    b: Forest,
     boxes: Boxes,
     needed: float,
     *,
-    rounds: tuple[Rounds, Rounds] | None = None,
+    axis: Core | None = None,
     epsilon: float,
     budget: Budget,
     most: int = MOST_PAIRS,
@@ -135,16 +136,13 @@ def clear(
         b: Of the part that moves.
         boxes: Of the motion.
         needed: Distance that proves nothing, such as the deflection of both meshes [mm].
-        rounds: Radii of both about the only axis or point about which the one turns against the other.
+        axis: The axis or point about which the outlines are, in the frame of a; None if there are none.
         epsilon: What is closer by no more is contact [mm].
         budget: Time.
         most: Pairs of pieces.
     """
-    search = _Search(a, b, boxes, needed + ROUNDING_MM, epsilon, rounds)
-    root = boxes.root()
-    none = np.zeros(len(root), dtype=np.int64)
-    stack = [_Pairs(none, none, root, search.trail.numbers(len(root)))]
-    outcome = search.outcome
+    search = _Search(a, b, boxes, needed + ROUNDING_MM, epsilon, axis)
+    stack, outcome = [search.roots()], search.outcome
     while stack and outcome.contact is None:
         if budget.is_spent or outcome.pairs > most:
             outcome.out_of_budget = True
@@ -168,14 +166,18 @@ def clear(
 
 
 class _Search:
-    def __init__(
-        self, a: BoxTree, b: BoxTree, boxes: Boxes, needed: float, epsilon: float, rounds: tuple[Rounds, Rounds] | None
-    ) -> None:
-        self.a, self.b, self.boxes, self.needed, self.epsilon, self.rounds = a, b, boxes, needed, epsilon, rounds
+    def __init__(self, a: Forest, b: Forest, boxes: Boxes, needed: float, epsilon: float, axis: Core | None) -> None:
+        self.forests, self.a, self.b = (a, b), a.tree, b.tree
+        self.boxes, self.needed, self.epsilon, self.axis = boxes, needed, epsilon, axis
         self.spread, self.trail = boxes.spread, Trail()
         self.outcome = Cleared()
-        self.revolved = Revolved.of(b, self.spread) if isinstance(boxes, Ranges) else None
-        self.size_a, self.size_b = np.linalg.norm(a.half, axis=1), np.linalg.norm(b.half, axis=1)
+        self.revolved = Revolved.of(self.b, self.spread) if isinstance(boxes, Ranges) else None
+        self.size_a, self.size_b = np.linalg.norm(self.a.half, axis=1), np.linalg.norm(self.b.half, axis=1)
+
+    def roots(self) -> _Pairs:
+        """Return each two trees over the whole range."""
+        both = np.array(list(itertools.product(self.forests[0].roots, self.forests[1].roots)))
+        return _Pairs(both[:, 0], both[:, 1], np.full(len(both), self.boxes.root()[0]), self.trail.begin(len(both)))
 
     def step(self, rows: _Pairs) -> list[_Pairs]:
         """Settle what is settled and cut the rest."""
@@ -183,8 +185,8 @@ class _Search:
         if outside.any():
             rows = rows.of(~outside)
         out: list[_Pairs] = []
-        if self.rounds is not None:
-            rows = self._rounds(rows, *self.rounds, out)
+        if self.axis is not None:
+            rows = self._outlines(rows, out)
         if self.revolved is not None:
             rows = self._revolved(rows, self.revolved, out)
         single = (self.a.triangle[rows.a] >= 0) & (self.b.triangle[rows.b] >= 0)
@@ -194,16 +196,26 @@ class _Search:
             out += self._triangles(rows.of(single))
         return out
 
-    def _rounds(self, rows: _Pairs, a: Rounds, b: Rounds, out: list[_Pairs]) -> _Pairs:
-        """Settle what is further from the axis than the other however it turns; return the rest."""
-        for kind, cut in ((ROUND_A, self._cut_a), (ROUND_B, self._cut_b)):
-            one, other, mine, theirs = (a, b, rows.a, rows.b) if kind == ROUND_A else (b, a, rows.b, rows.a)
-            beyond = one.least[mine] - other.most[theirs] > self.needed
-            self.trail.settle(rows.number[beyond], kind, one.direction[mine[beyond]])
-            certain = ~beyond & (one.certain[mine] - other.most[theirs] > self.needed)  # cutting this piece alone settles it
-            out.append(cut(rows.of(certain)))
-            rows = rows.of(~beyond & ~certain)
-        return rows
+    def _outlines(self, rows: _Pairs, out: list[_Pairs]) -> _Pairs:
+        """Settle what is apart in coordinates that the joint keeps, cut what is made of such pieces; return the rest."""
+        assert self.axis is not None
+        a, b = self.forests
+        ahead, behind = b.low[rows.b] - a.high[rows.a], a.low[rows.a] - b.high[rows.b]
+        gap = np.maximum(ahead, behind)
+        best = np.argmax(gap, axis=1)
+        apart = gap[np.arange(len(rows)), best] > self.needed
+        self.trail.round(rows.number[apart & (best == 0)])
+        axes = self.axis.frame[:3, 3 - gap.shape[1] + 1 : 3].T
+        for k in range(1, gap.shape[1]):
+            for side, sign in ((ahead, 1.0), (behind, -1.0)):
+                which = rows.number[apart & (best == k) & (side[:, k] > self.needed)]
+                self.trail.settle(which, OF_A, np.tile(sign * axes[k - 1], (len(which), 1)))
+        rows = rows.of(~apart)
+        whole_a, whole_b = self.a.children[rows.a, 0] < 0, self.b.children[rows.b, 0] < 0
+        never = ~(a.meets[rows.a] & b.meets[rows.b]) & ~(whole_a & whole_b)
+        first = ((a.high - a.low)[rows.a].max(axis=1) >= (b.high - b.low)[rows.b].max(axis=1)) & ~whole_a | whole_b
+        out += [self._cut_a(rows.of(never & first)), self._cut_b(rows.of(never & ~first))]
+        return rows.of(~never)
 
     def _revolved(self, rows: _Pairs, b: Revolved, out: list[_Pairs]) -> _Pairs:
         """Settle what is apart whatever the angle of the innermost turn, and cut the rest of the range where that helps; return the others."""
@@ -213,7 +225,7 @@ class _Search:
         gap = still - motion.sum(axis=2)
         at, best = np.arange(len(rows)), np.argmax(gap, axis=1)
         clear = gap[at, best] > self.needed
-        self.trail.settle(rows.number[clear], REVOLVED, u[at, best][clear])
+        self.trail.settle(rows.number[clear], SPUN, u[at, best][clear])
         apart = ~clear & (still[at, best] > self.needed)
         out += self._cut_range(rows.of(apart), motion[at, best, :-1][apart])
         left = ~clear & ~apart
@@ -228,7 +240,7 @@ class _Search:
         extent = R.transpose(0, 2, 1) * self.b.half[rows.b][..., None]  # rows: half axes of b's box in a's frame
         apart = centre - self.a.centre[rows.a]
         coarse = _coarse(apart)[:, None]
-        if self.rounds is not None:
+        if self.axis is not None:
             coarse = np.concatenate([coarse, self._turning(self.a.centre[rows.a], centre)[:, None]], axis=1)
         u = np.concatenate([np.broadcast_to(_EYE, (len(rows), 3, 3)), R.transpose(0, 2, 1), unit(coarse)], axis=1)
         thick = (np.abs(u) @ self.a.half[rows.a][..., None])[..., 0] + np.abs(u @ extent.transpose(0, 2, 1)).sum(axis=2)
@@ -257,8 +269,8 @@ class _Search:
 
     def _turning(self, p: FloatArray, q: FloatArray) -> FloatArray:
         """Return the directions in which places of a and b lie apart as seen from the axis, `(n, 3)`: that in which a turn brings them."""
-        assert self.rounds is not None
-        core = self.rounds[0].core
+        assert self.axis is not None
+        core = self.axis
         return _coarse((unit(core.local(q)) - unit(core.local(p))) @ core.frame[:3, : core.dimensions].T)
 
     def _cut_pieces(self, rows: _Pairs) -> list[_Pairs]:
@@ -294,7 +306,7 @@ class _Search:
         q = self.b.corners[self.b.triangle[rows.b]] @ T[:, :3, :3].transpose(0, 2, 1) + T[:, None, :3, 3]
         nearest, towards = shortest_between(p, q)
         u = np.stack([_normals(p), _normals(q), towards], axis=1)
-        if self.rounds is not None:
+        if self.axis is not None:
             u = np.concatenate([u, unit(self._turning(p.mean(axis=1), q.mean(axis=1)))[:, None]], axis=1)
         mine, theirs = u @ p.transpose(0, 2, 1), u @ q.transpose(0, 2, 1)  # (n, D, 3 corners)
         ahead = theirs.min(axis=2) - mine.max(axis=2) > mine.min(axis=2) - theirs.max(axis=2)
@@ -330,6 +342,11 @@ class _Search:
             self.outcome.contact = self.boxes.contact(self.outcome.box) or ()
             return []
         return self._cut_range(rows.of(left), share + 1e-300)
+
+
+def unit(v: FloatArray) -> FloatArray:
+    """Return vectors `(…, k)` made one long; what is none stays 0."""
+    return np.asarray(v / np.maximum(np.linalg.norm(v, axis=-1, keepdims=True), 1e-300))
 
 
 def _coarse(u: FloatArray) -> FloatArray:

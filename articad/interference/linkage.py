@@ -318,6 +318,15 @@ class LinkageProver(Prover):
         """False: what is found of a range is found along the driver."""
         return False
 
+    def ends(self, column: int) -> tuple[float, float]:
+        """Return between which values a coordinate of the chain stays: those that follow stay near the line over the whole way."""
+        name, (low, high) = self.chain.freedoms[column].name, self.way.whole.ends
+        if name not in self.way.whole.line:
+            return super().ends(column)
+        value, rate, near = self.way.whole.line[name]
+        far = abs(rate) * (high - low) / 2 + near
+        return value - far, value + far
+
     def boxes(self, bounds: FloatArray) -> Boxes:  # noqa: ARG002  the way knows its range
         """Return the steps along the driver."""
         self._last = Steps(self.way, self.chain, self.others)

@@ -217,9 +217,7 @@ class Chain:
         proving: Whether balls move along their proven freedoms.
     """
 
-    def __init__(
-        self, route: Route, moving: Sequence[str], values: Mapping[str, float] | None = None, *, proving: bool = False
-    ) -> None:
+    def __init__(self, route: Route, moving: Sequence[str], values: Mapping[str, float] | None = None, *, proving: bool = False) -> None:
         self.proving = proving
         self.a, self.b = route.parts[0], route.parts[-1]
         self.via = tuple(joint.name for joint in route.joints)

@@ -14,13 +14,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from articad.connectors.se3 import SE3
-from articad.interference.boxtree import BoxTree
 from articad.interference.claims import Claim, Course
 from articad.interference.clearing import MOST_PAIRS, Boxes, Cleared, Ranges, clear
 from articad.interference.cover import Budget
-from articad.interference.motion import Chain, Route, freedoms, scattered, swing_and_twist, turned
+from articad.interference.meridian import outline
+from articad.interference.motion import Chain, Mover, Route, freedoms, scattered, swing_and_twist, turned
 from articad.interference.overlap import Overlap, measured, overlap
-from articad.interference.rounds import Rounds, about
+from articad.interference.profile import Forest
 from articad.interference.scene import Scene
 from articad.interference.spread import Spread
 from articad.interference.surface import Core, Surface, inwards, near_by, whole_surface
@@ -36,7 +36,7 @@ CONE_ROUNDING = 1e-9  # of the cosine of an angle
 CLAIM_SLACK_MM = 1e-6  # more than what is claimed is proven, so that a checker's rounding does not matter
 FIRST_STEP = 1 / 16  # of the way to a bound: of the walk to where the parts meet
 BESIDE_CONTACT_MM = 1.0  # beyond the largest radius at which two parts touch, where contact still is meant
-_TURNING = (JointType.REVOLUTE, JointType.CYLINDRICAL, JointType.SCREW)
+_STEADY = (JointType.REVOLUTE, JointType.CYLINDRICAL, JointType.SCREW, JointType.SLIDER, JointType.BALL)  # about one axis or point
 
 
 class Shrink(NamedTuple):
@@ -115,13 +115,12 @@ class Prover:
         self.allowed = max(scene.tolerated(*self.parts), getattr(scene.relations.waiver(*self.parts), "max_depth", 0.0))
         self.speeds = self.chain.reach(self.body_a.mesh.vertices, self.body_b.mesh.vertices)
         self.bounds = np.array([(freedom.lower, freedom.upper) for freedom in self.chain.freedoms]).reshape(-1, 2)
-        self._round_trees: dict[Shrink, tuple[BoxTree, BoxTree]] = {}
+        self._forests: dict[Shrink, tuple[Forest, Forest]] = {}
         self._kept: dict[Shrink, tuple[Surface, NDArray[np.float32] | None]] = {}
         single = self.chain.movers[0] if len(self.chain.movers) == 1 else None
-        turns = single is not None and single.joint.type in (*_TURNING, JointType.BALL)
+        steady = single is not None and single.joint.type in _STEADY
         about = 3 if single is not None and single.joint.type is JointType.BALL else 2
-        self.axis = Core(single.before, about) if single is not None and turns else None
-        self.axis_of_b = Core(np.asarray(np.linalg.inv(self.chain.last)), about) if self.axis is not None else None
+        self.axis = Core(single.before, about) if single is not None and steady else None
 
     def prove(self, *, most: int = MOST_PAIRS, tentative: bool = False) -> Proof:
         """Prove the whole range, or what of a single coordinate can be; a tentative proof ends at the first contact."""
@@ -152,7 +151,9 @@ class Prover:
         if start.volume == 0:
             yield NO_SHRINK
         if self.axis is not None:
-            touching = near_by(whole_surface(self.body_a.mesh), whole_surface(self.body_b.mesh), self.chain.matrix(self.chain.rest), self.allowed)
+            touching = near_by(
+                whole_surface(self.body_a.mesh), whole_surface(self.body_b.mesh), self.chain.matrix(self.chain.rest), self.allowed
+            )
             radius = float(self.axis.radii(touching.corners).max(initial=0.0)) + BESIDE_CONTACT_MM
             if radius < float(self.axis.radii(self.body_a.mesh.vertices).max()):
                 yield Shrink(self.allowed, radius)
@@ -211,25 +212,43 @@ class Prover:
 
     def search_over(self, boxes: Boxes, shrink: Shrink, most: int = MOST_PAIRS) -> Cleared:
         """Keep the surfaces apart over boxes."""
-        a, b = self._trees(shrink)
-        rounds = None
-        if self.axis is not None and self.axis_of_b is not None:
-            rounds = Rounds.of(a, self.axis), Rounds.of(b, self.axis_of_b)
+        a, b = self._surfaces(shrink)
         needed = self.margin + CLAIM_SLACK_MM
-        outcome = clear(a, b, boxes, needed, rounds=rounds, epsilon=self.epsilon, budget=self.budget, most=most)
+        outcome = clear(a, b, boxes, needed, axis=self.axis, epsilon=self.epsilon, budget=self.budget, most=most)
         outcome.course = boxes
         self.budget.queries += outcome.pairs
         return outcome
 
-    def _trees(self, shrink: Shrink) -> tuple[BoxTree, BoxTree]:
-        """Return trees over both surfaces; where there is an axis, such that pieces are first told apart by radius and height."""
-        surfaces = self._surface(shrink)[0], whole_surface(self.body_b.mesh)
-        if self.axis is None or self.axis_of_b is None:
-            return BoxTree.of(surfaces[0]), BoxTree.of(surfaces[1])
-        if shrink not in self._round_trees:
-            found = [about(surface, core) for surface, core in zip(surfaces, (self.axis, self.axis_of_b), strict=True)]
-            self._round_trees[shrink] = found[0], found[1]
-        return self._round_trees[shrink]
+    def _surfaces(self, shrink: Shrink) -> tuple[Forest, Forest]:
+        """Return trees over both surfaces, with their outlines where a single joint lies between the two."""
+        if shrink not in self._forests:
+            a, b = self._surface(shrink)[0], whole_surface(self.body_b.mesh)
+            if self.axis is None:
+                self._forests[shrink] = Forest.plain(a), Forest.plain(b)
+            else:
+                mover, dimensions = self.chain.movers[0], self.axis.dimensions
+                turns, core_b = mover.joint.type is not JointType.SLIDER, Core(np.asarray(np.linalg.inv(self.chain.last)), dimensions)
+                of_a = outline(self.axis, a.corners, turns=turns)
+                of_b = outline(core_b, b.corners, self.travel(mover), turns=turns)
+                self._forests[shrink] = Forest.pair(a, b, of_a, of_b, self.margin + 2 * CLAIM_SLACK_MM)
+        return self._forests[shrink]
+
+    def travel(self, mover: Mover) -> tuple[float, float]:
+        """Return how far a joint about an axis carries b along its axis, as a sees it [mm]."""
+        match mover.joint.type:
+            case JointType.CYLINDRICAL | JointType.SLIDER:
+                pitch = 1.0
+            case JointType.SCREW:
+                pitch = mover.joint.lead / (2 * np.pi)
+            case _:
+                pitch = 0.0
+        ends = sorted((1.0 if mover.forward else -1.0) * pitch * end for end in self.ends(mover.columns[0]))
+        return ends[0], ends[1]
+
+    def ends(self, column: int) -> tuple[float, float]:
+        """Return between which values a coordinate of the chain stays."""
+        freedom = self.chain.freedoms[column]
+        return freedom.lower, freedom.upper
 
     def _surface(self, shrink: Shrink) -> tuple[Surface, NDArray[np.float32] | None]:
         """Return the first surface, and by how much its vertices were moved."""
@@ -293,10 +312,12 @@ class Prover:
         chain, (_, moved) = self.chain, self._surface(shrink)
         assert outcome.trail is not None
         assert outcome.course is not None
-        boxes = outcome.course
-        rows = outcome.trail.written()
-        trees = self._trees(shrink)
-        orders = trees[0].order, trees[1].order
+        boxes, forests = outcome.course, self._surfaces(shrink)
+        about = np.full((2, 3), np.nan)
+        if self.axis is not None:
+            about = np.stack([self.axis.frame[:3, 3], self.axis.frame[:3, 2] * (self.axis.dimensions == 2)])
+        orders, sizes = (tuple(forest.tree.order for forest in forests), tuple(forest.sizes for forest in forests))
+        course = Course(moved, orders, sizes, about, *cuts_of(boxes), outcome.trail.written())
         return Claim(
             parts=self.parts,
             via=chain.via,
@@ -305,7 +326,7 @@ class Prover:
             overlap=start.volume,
             shrink=shrink.depth,
             clear=self.margin,
-            course=Course(moved, orders, *cuts_of(boxes), rows),
+            course=course,
         )
 
 

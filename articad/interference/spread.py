@@ -136,7 +136,14 @@ class Spread:
     # --- bounds, for rows of (box, point or little box)
 
     def first_order(
-        self, box: IntArray, u: FloatArray, p: FloatArray, extent: FloatArray | None, radius: FloatArray | None = None, *, still: bool = False
+        self,
+        box: IntArray,
+        u: FloatArray,
+        p: FloatArray,
+        extent: FloatArray | None,
+        radius: FloatArray | None = None,
+        *,
+        still: bool = False,
     ) -> FloatArray:
         """Bound how far points move along directions to first order, `(n, D, G)` [mm].
 

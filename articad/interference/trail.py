@@ -1,8 +1,8 @@
 """What a search did with each two pieces in a box, kept so that somebody else can follow it without searching.
 
-Rows are numbered as they come; each is settled by a direction, cut into two further rows, or left out. Written down they stand in the
-order of a queue: the two halves of what is cut, one after the other, come behind all that waits already. Rows of which nothing is noted lie
-outside what the joints allow.
+Rows are numbered as they come; each is settled by a direction or by its radii, cut into two further rows, or left out. Written down they
+stand in the order in which they are met who takes the oldest row first and puts the halves of what is cut behind all others. Rows of
+which nothing is noted lie outside what the joints allow.
 """
 
 from __future__ import annotations
@@ -15,17 +15,17 @@ from numpy.typing import NDArray
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
-OUTSIDE, CUT_A, CUT_B, CUT_RANGE = -4, -3, -2, -1
-OF_A, OF_B, ROUND_A, ROUND_B, REVOLVED = 0, 1, 2, 3, 4  # how a direction is meant: of a, of b; across the axis, with a or b further out
+ROUND, OUTSIDE, CUT_A, CUT_B, CUT_RANGE = -5, -4, -3, -2, -1
+OF_A, OF_B, SPUN = 0, 1, 2  # how a direction is meant: as a sees it, as b sees it, as a sees it whatever the innermost turn
 
 
 class Written(NamedTuple):
     """A trail as a checker reads it.
 
     Attributes:
-        codes: Of each row a cut, or the number of a direction.
+        codes: Of each row a cut, `ROUND`, `OUTSIDE`, or the number of a direction.
         along: Directions `(n, 3)`, in the order of their kinds.
-        kinds: Where the directions of each kind but the first begin, `(3,)`.
+        kinds: Where those that b sees begin, and those that hold whatever the innermost turn.
     """
 
     codes: IntArray
@@ -37,14 +37,24 @@ class Trail:
     """What was done, row by row."""
 
     def __init__(self) -> None:
-        self.count = 0
+        self.count = self.roots = 0
         self._cuts: list[tuple[IntArray, int, int]] = []
         self._settled: list[tuple[IntArray, int, FloatArray]] = []
+        self._round: list[IntArray] = []
+
+    def begin(self, count: int) -> IntArray:
+        """Return numbers of the first rows."""
+        self.roots = count
+        return self.numbers(count)
 
     def numbers(self, count: int) -> IntArray:
         """Return numbers of new rows."""
         self.count += count
         return np.arange(self.count - count, self.count)
+
+    def round(self, rows: IntArray) -> None:
+        """Note that rows are apart by their radii."""
+        self._round.append(rows)
 
     def settle(self, rows: IntArray, kind: int, along: FloatArray) -> None:
         """Note the directions that settled rows."""
@@ -61,6 +71,8 @@ class Trail:
     def written(self) -> Written:
         """Return the trail as a checker reads it."""
         codes, first = np.full(self.count, OUTSIDE, dtype=np.int64), np.zeros(self.count, dtype=np.int64)
+        for rows in self._round:
+            codes[rows] = ROUND
         for rows, code, begin in self._cuts:
             codes[rows], first[rows] = code, begin + 2 * np.arange(len(rows))
         settled = np.concatenate([rows for rows, _, _ in self._settled] or [np.empty(0, dtype=np.int64)])
@@ -69,9 +81,9 @@ class Trail:
         )
         unique, where = np.unique(keys, axis=0, return_inverse=True)
         codes[settled] = where.ravel()
-        level, out = np.array([0]), []
+        level, out = np.arange(self.roots), []
         while len(level):
             out.append(codes[level])
-            parted = level[(CUT_A <= out[-1]) & (out[-1] <= CUT_RANGE)]
+            parted = level[(out[-1] >= CUT_A) & (out[-1] <= CUT_RANGE)]
             level = np.stack([first[parted], first[parted] + 1], axis=1).ravel()
-        return Written(np.concatenate(out), unique[:, 1:], np.searchsorted(unique[:, 0], [OF_B, ROUND_A, ROUND_B, REVOLVED]))
+        return Written(np.concatenate(out), unique[:, 1:], np.searchsorted(unique[:, 0], [OF_B, SPUN]))

@@ -111,7 +111,7 @@ def verified(document: Mapping[str, Any], certificate: Certificate, **changed: b
     """Return why a certificate is refuted that says `document`, beside the certificate's own meshes and proof, some of them changed."""
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        for file, content in {**certificate.mesh_files(), **{f"{part}.npz": bytes for part, bytes in changed.items()}}.items():
+        for file, content in {**certificate.mesh_files(), **{f"{part}.npz": other for part, other in changed.items()}}.items():
             (folder / file).write_bytes(content)
         (folder / "certificate.json").write_text(json.dumps(document))
         return verify_file(folder / "certificate.json", folder)

@@ -75,7 +75,9 @@ def refutations(certificate: Certificate, change: Callable[[dict[str, Any]], obj
 
 def way_of(mechanism: Mechanism) -> Way:
     linkage = sorted(constrained_joints(mechanism))
-    return Way(mechanism, 0, {"mechanism": mechanism_json(mechanism), "linkage": linkage, "drivers": driver_names(mechanism, frozenset(linkage))})
+    return Way(
+        mechanism, 0, {"mechanism": mechanism_json(mechanism), "linkage": linkage, "drivers": driver_names(mechanism, frozenset(linkage))}
+    )
 
 
 def slider_crank() -> Mechanism:
@@ -124,7 +126,7 @@ def test_links_of_one_layer_that_pass_each_other_are_certified_by_tubes() -> Non
     assert list(claim.vary) == ["crank"]  # whatever follows it
 
 
-def assert_on_its_line(way: Way, mechanism: Mechanism, piece: Piece, value: float) -> None:
+def assert_on_its_line(mechanism: Mechanism, piece: Piece, value: float) -> None:
     found = mechanism.configuration(np.array([value])).values
     for name, (middle, rate, near) in piece.line.items():
         assert abs(found[name][0] - middle - rate * (value - sum(piece.ends) / 2)) <= near + 1e-9
@@ -137,9 +139,9 @@ def test_every_solution_lies_near_the_line_of_its_piece() -> None:
     rng = np.random.default_rng(0)
     pieces = [piece for sign in (1, -1) for piece in way.steps(sign)]
     spans = sorted(piece.ends for piece in pieces)
-    for piece in [*pieces, *(half for piece in pieces[::5] for half in way.halves(piece) or ())]:
-        for value in rng.uniform(*piece.ends, 3):
-            assert_on_its_line(way, mechanism, piece, value)
+    for each in [*pieces, *(half for piece in pieces[::5] for half in way.halves(piece) or ())]:
+        for value in rng.uniform(*each.ends, 3):
+            assert_on_its_line(mechanism, each, value)
     assert all(after[0] == before[1] for before, after in pairwise(spans))
     assert (spans[0][0], spans[-1][1]) == pytest.approx(way.bounds)
 
@@ -155,7 +157,7 @@ def test_every_solution_lies_near_the_line_of_pieces_in_a_row() -> None:
         if len(piece.numbers) > 1:
             found += way.halves(piece) or ()
         for value in rng.uniform(*piece.ends, 2):
-            assert_on_its_line(way, mechanism, piece, value)
+            assert_on_its_line(mechanism, piece, value)
     assert sum(len(piece.numbers) == 1 for piece in found) == len(way.steps(1)) + len(way.steps(-1))
 
 

@@ -1,0 +1,75 @@
+"""Outlines of the pieces of a surface in coordinates that a joint about one axis or point does not change.
+
+A shaft in its bore and a washer on its shoulder never come nearer than their outlines in the plane through the axis, whatever the
+angle. Triangles whose outlines meet none of the other's stand in a tree of their own: no range needs to be cut for them.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from articad.interference.boxtree import BoxTree
+from articad.interference.meridian import Ends, meeting
+from articad.interference.surface import Surface
+
+FloatArray = NDArray[np.float64]
+BoolArray = NDArray[np.bool_]
+
+WEIGHT = 10.0  # of outlines against the size of pieces: what they tell apart is cut by them first
+
+
+@dataclass(frozen=True, eq=False)
+class Forest:
+    """A surface as the trees over its parts, with what each node is in coordinates that the joint keeps.
+
+    Attributes:
+        tree: The nodes of all trees.
+        roots: The root of each tree.
+        low: Lower ends of the nodes' outlines, `(nodes, k)` [mm], k = 0 where there are none; the first is the radius.
+        high: Upper ends.
+        meets: Whether a node's triangles have outlines that meet some of the other surface's, `(nodes,)`.
+    """
+
+    tree: BoxTree
+    roots: tuple[int, ...]
+    low: FloatArray
+    high: FloatArray
+    meets: BoolArray
+
+    @classmethod
+    def plain(cls, surface: Surface) -> Forest:
+        """Return a surface about no axis."""
+        tree = BoxTree.of(surface)
+        none = np.empty((len(tree.centre), 0))
+        return cls(tree, (0,), none, none, np.ones(len(none), dtype=bool))
+
+    @classmethod
+    def pair(cls, a: Surface, b: Surface, of_a: Ends, of_b: Ends, limit: float | FloatArray) -> tuple[Forest, Forest]:
+        """Return two surfaces with their outlines; outlines meet that are within `limit` of each other [mm]."""
+        met_a = meeting(of_a, of_b, limit)
+        met_b = meeting(of_b, (of_a[0][met_a], of_a[1][met_a]), limit)
+        return cls._of(a, of_a, met_a), cls._of(b, of_b, met_b)
+
+    @classmethod
+    def _of(cls, surface: Surface, ends: Ends, met: BoolArray) -> Forest:
+        trees, rows, corners = list[BoxTree](), list[FloatArray](), surface.corners
+        for which in (~met, met):
+            if not which.any():
+                continue
+            own = corners[which]
+            spans = [(own.min(axis=1), own.max(axis=1)), (WEIGHT * ends[0][which], WEIGHT * ends[1][which])]
+            low, high = (np.concatenate(side, axis=1) for side in zip(*spans, strict=True))
+            trees.append(BoxTree.over(low, high, own).flat())
+            rows.append(np.flatnonzero(which))
+        tree, roots = BoxTree.joined(trees, rows, corners)
+        low = np.stack([tree.over_each(column, np.minimum) for column in ends[0].T], axis=1)
+        high = np.stack([tree.over_each(column, np.maximum) for column in ends[1].T], axis=1)
+        return cls(tree, roots, low, high, tree.over_each(met, np.logical_or))
+
+    @property
+    def sizes(self) -> tuple[int, ...]:
+        """How many triangles each tree holds."""
+        return tuple(int(self.tree.size[root]) for root in self.roots)
