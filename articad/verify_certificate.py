@@ -300,7 +300,7 @@ class Checker:
         round_it = np.linalg.norm(B - hub - height[..., None] * axle, axis=2)
         spans = [list(itertools.pairwise([0, *np.cumsum(proof[key]).tolist()])) for key in ("sizes_a", "sizes_b")]
         need([own[-1][1] for own in spans] == [len(A), len(B)], f"{label}: a triangle is left out")
-        rows, codes = deque((x, y, 0) for x, y in itertools.product(*spans)), iter(proof["codes"].tolist())
+        rows, codes = deque[Any]((x, y, 0) for x, y in itertools.product(*spans)), iter(proof["codes"].tolist())
         while rows:
             row, code = rows.popleft(), next(codes)
             if OUTSIDE < code < 0:

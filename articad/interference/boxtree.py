@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -12,7 +13,7 @@ from numpy.typing import NDArray
 from articad.interference.surface import Surface
 
 FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int32]
+IntArray = NDArray[np.signedinteger[Any]]
 Bounds = NDArray[np.float32]
 
 _trees: WeakKeyDictionary[Surface, BoxTree] = WeakKeyDictionary()
@@ -92,7 +93,7 @@ class BoxTree:
         # half the room, since many trees stand at once; a box rounded outwards still bounds its triangles
         centre = ((bottom + top) / 2).astype(np.float32)
         half = np.nextafter(np.maximum(top - centre, centre - bottom).astype(np.float32), np.float32(np.inf))
-        return cls(centre, half, *(found.astype(np.int32) for found in (np.concatenate(children), leaf)), corners, final, start, count)
+        return cls(centre, half, np.concatenate(children).astype(np.int32), leaf.astype(np.int32), corners, final, start, count)
 
     @classmethod
     def joined(cls, trees: Sequence[BoxTree], rows: Sequence[IntArray], corners: FloatArray) -> tuple[BoxTree, tuple[int, ...]]:
@@ -122,7 +123,7 @@ class BoxTree:
         """Return the tree without the coordinates beyond space that it was made by."""
         return replace(self, centre=self.centre[:, :3].copy(), half=self.half[:, :3].copy())
 
-    def over_each(self, values: FloatArray, ufunc: np.ufunc) -> FloatArray:
+    def over_each(self, values: NDArray[Any], ufunc: np.ufunc) -> NDArray[Any]:
         """Return a minimum or maximum over the triangles of each node, of values `(T,)`, `(nodes,)`."""
         ends = np.stack([self.start, np.minimum(self.start + self.size, len(values) - 1)], axis=1)
         ordered = values[self.order]

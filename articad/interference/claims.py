@@ -32,7 +32,7 @@ class Course:
     """
 
     moved: NDArray[np.float32] | None
-    orders: tuple[NDArray[np.int64], NDArray[np.int64]]
+    orders: tuple[NDArray[np.signedinteger[Any]], NDArray[np.signedinteger[Any]]]
     sizes: tuple[tuple[int, ...], tuple[int, ...]]
     about: NDArray[np.float64]
     cuts: NDArray[np.int64]

@@ -11,7 +11,7 @@ import itertools
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,7 +24,7 @@ from articad.interference.surface import Core
 from articad.interference.trail import CUT_A, CUT_B, CUT_RANGE, OF_A, OF_B, SPUN, Trail
 
 FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
+IntArray = NDArray[np.signedinteger[Any]]
 
 ROUNDING_MM = 1e-9  # what a distance must be above what it needs, for the arithmetic of poses
 CHUNK = 4096  # pairs of pieces looked at together
@@ -267,11 +267,11 @@ class _Search:
         between = best >= 6
         self.trail.settle(rows.number[between], OF_A, coarse[between, best[between] - 6] * sign[between, best[between]][:, None])
 
-    def _turning(self, p: FloatArray, q: FloatArray) -> FloatArray:
+    def _turning(self, p: FloatArray | NDArray[np.float32], q: FloatArray) -> FloatArray:
         """Return the directions in which places of a and b lie apart as seen from the axis, `(n, 3)`: that in which a turn brings them."""
         assert self.axis is not None
         core = self.axis
-        return _coarse((unit(core.local(q)) - unit(core.local(p))) @ core.frame[:3, : core.dimensions].T)
+        return _coarse((unit(core.local(q)) - unit(core.local(np.asarray(p, dtype=np.float64)))) @ core.frame[:3, : core.dimensions].T)
 
     def _cut_pieces(self, rows: _Pairs) -> list[_Pairs]:
         """Cut the larger piece of each pair that has any to cut."""

@@ -55,7 +55,7 @@ class Forest:
 
     @classmethod
     def _of(cls, surface: Surface, ends: Ends, met: BoolArray) -> Forest:
-        trees, rows, corners = list[BoxTree](), list[FloatArray](), surface.corners
+        trees, rows, corners = list[BoxTree](), list[NDArray[np.intp]](), surface.corners
         for which in (~met, met):
             if not which.any():
                 continue

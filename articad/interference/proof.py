@@ -316,7 +316,7 @@ class Prover:
         about = np.full((2, 3), np.nan)
         if self.axis is not None:
             about = np.stack([self.axis.frame[:3, 3], self.axis.frame[:3, 2] * (self.axis.dimensions == 2)])
-        orders, sizes = (tuple(forest.tree.order for forest in forests), tuple(forest.sizes for forest in forests))
+        orders, sizes = (forests[0].tree.order, forests[1].tree.order), (forests[0].sizes, forests[1].sizes)
         course = Course(moved, orders, sizes, about, *cuts_of(boxes), outcome.trail.written())
         return Claim(
             parts=self.parts,
