@@ -22,6 +22,7 @@ ROUNDING = 1e-9  # of ranges, distances, and what a driver moves
 HALF = 0.5  # of entries of a rotation, by which a loop may be open: with a turn of less than 1 rad more it is not half a turn
 ALIGNED = 1e-12  # sine of axes that are parallel
 OF_B, SPUN = 1, 2  # kinds of directions: as b sees them, and those as a sees them whatever the innermost turn
+COURSE = ("uses", "parts_a", "parts_b", "about", "cuts", "at", "codes", "along", "kinds")  # arrays of every claim
 REST = 1e-4  # rad or mm: by which what follows a driver may be off at rest
 ROUND, OUTSIDE = -5, -4  # two pieces differ in radius; a box lies outside the cone of a ball; -3, -2, -1 cut a piece of a, of b, the box
 
@@ -72,6 +73,17 @@ def is_inside(V: Any, F: Any, corners: Any) -> bool:
         if np.arctan2((a * np.cross(b, c)).sum(1), below).sum() > np.pi:  # half of what a surface winds round a point inside
             return True
     return False
+
+
+def ordered(corners: Any, order: Any) -> Any:
+    """Return all triangles in another order."""
+    need(np.array_equal(np.sort(order), np.arange(len(corners))), "a triangle is left out")
+    return corners[order]
+
+
+def plane(axis: Any) -> Any:
+    """Return the projection across a unit axis."""
+    return np.eye(3) - np.outer(axis, axis)
 
 
 def radii(flat: Any) -> tuple[Any, Any]:
@@ -132,14 +144,15 @@ class Checker:
         for name, entry in whole["meshes"].items():
             need(digest(**self.meshes[name]) == entry["sha256"], f"mesh of {name} is missing or another")
         for number, claim in enumerate(claims):
-            self.prove(claim, number)
+            try:
+                self.prove(claim, {key: self.proof[f"{number}.{key}"] for key in COURSE})
+            except Refuted as reason:
+                raise Refuted(f"{'/'.join(claim['parts'])} over {', '.join(sorted(claim['vary']))}: {reason}") from None
         waived = [set(pair["parts"]) for pair in whole["pairs"] if pair["strength"]["kind"] == "waived"]
         for a, b in itertools.combinations(whole["meshes"] if whole["ok"] else (), 2):
-            joints = [joint["name"] for joint, _ in self.way(a, b)]
-            free = [{f["name"] for f in self.joints[n]["freedoms"]} for n in joints if n in whole["asked"] and n not in whole["linkage"]]
-            drivers = [
-                {name} for name in whole["drivers"] if any(f["name"] in self.linked for n in joints for f in self.joints[n]["freedoms"])
-            ]
+            moving = {joint["name"]: {f["name"] for f in joint["freedoms"]} for joint, _ in self.way(a, b)}
+            free = [names for joint, names in moving.items() if joint in whole["asked"] and joint not in whole["linkage"]]
+            drivers = [{name} for name in whole["drivers"] if any(names & set(self.linked) for names in moving.values())]
             both = [one | other for one in free for other in [*free, *drivers] if whole["together"]]
             for names in filter(None, [] if {a, b} in waived else [*free, *drivers, *both]):
                 found = any(set(claim["parts"]) == {a, b} and names <= set(claim["vary"]) for claim in claims)
@@ -267,73 +280,65 @@ class Checker:
             stops.append(max(ends))
         return dict(zip(self.followers(driver), zip(*joined(np.array(stops), rows), strict=True), strict=True))
 
-    def prove(self, claim: dict[str, Any], number: int) -> None:
+    def prove(self, claim: dict[str, Any], proof: dict[str, Any]) -> None:
         """Prove a claim: cut pieces of both surfaces and of the range as written, until what is written keeps each two apart."""
-        (a, b), vary, whole = claim["parts"], claim["vary"], self.certificate
-        proof = {
-            key: self.proof[f"{number}.{key}"] for key in ("uses", "sizes_a", "sizes_b", "about", "cuts", "at", "codes", "along", "kinds")
-        }
-        label, way, (moved, *orders) = f"{a}/{b} over {', '.join(sorted(vary))}", self.way(a, b, claim["via"]), proof["uses"].tolist()
+        (a, b), vary, whole, way = claim["parts"], claim["vary"], self.certificate, self.way(*claim["parts"], claim["via"])
         (V, F), (W, G) = ((self.meshes[name]["vertices"], self.meshes[name]["triangles"]) for name in (a, b))
-        here, (T, _) = V if moved < 0 else V + self.proof[f"moved.{moved}"], self.place(way, self.rest)
+        moved, order_a, order_b = (self.proof.get(name, 0.0) for name in proof["uses"].tolist())
+        here, (T, _) = V + moved, self.place(way, self.rest)
         said = [pair["strength"].get("epsilon_mm", 0.0) for pair in whole["pairs"] if {*pair["parts"]} == {a, b}]
         least = sum(whole["meshes"][name]["deflection_mm"] for name in (a, b))
-        need(claim["clear_mm"] >= least - ROUNDING, f"{label}: it keeps less than the deflection of the meshes")
-        need(claim["shrink_mm"] <= max(said) + ROUNDING or not whole["ok"], f"{label}: it allows more overlap than it says")
-        need(np.linalg.norm(here - V, axis=1).max() <= claim["shrink_mm"] + ROUNDING, f"{label}: it moves vertices further than it says")
+        need(claim["clear_mm"] >= least - ROUNDING, "it keeps less than the deflection of the meshes")
+        need(claim["shrink_mm"] <= max(said) + ROUNDING or not whole["ok"], "it allows more overlap than it says")
+        need(np.linalg.norm(here - V, axis=1).max() <= claim["shrink_mm"] + ROUNDING, "it moves vertices further than it says")
         for name, (low, high) in vary.items():
             lower, upper = self.freedoms[name]["range"]
-            need((low < lower + 1e-6 and high > upper - 1e-6) or not whole["ok"], f"{label}: not over the whole range of {name}")
-            need(low <= self.rest[name] + ROUNDING and self.rest[name] <= high + ROUNDING, f"{label}: not about the rest pose")
+            need((low < lower + 1e-6 and high > upper - 1e-6) or not whole["ok"], f"not over the whole range of {name}")
+            need(low <= self.rest[name] + ROUNDING and self.rest[name] <= high + ROUNDING, "not about the rest pose")
         beside = W @ T[:3, :3].T + T[:3, 3]  # if none is inside the other here, surfaces that never meet keep it so
-        need(not is_inside(here, F, beside[G]) and not is_inside(beside, G, here[F]), f"{label}: one is inside the other at rest")
-        orders = [self.proof[f"order.{order}"] for order in orders]
-        need(
-            all(np.array_equal(np.sort(order), np.arange(n)) for order, n in zip(orders, (len(F), len(G)), strict=True)),
-            f"{label}: a triangle is left out",
-        )
-        boxes, halves, (hub, axle) = self.boxes(way, vary, proof, label)
-        A, B, (centre, axis) = here[F][orders[0]], W[G][orders[1]], proof["about"]
-        across = np.eye(3) - np.outer(axis, axis)
-        near, far = zip(*(radii((corners - centre) @ across) for corners in (A, B @ T[:3, :3].T + T[:3, 3])), strict=True)
-        height = (B - hub) @ axle
-        round_it = np.linalg.norm(B - hub - height[..., None] * axle, axis=2)
-        spans = [list(itertools.pairwise([0, *np.cumsum(proof[key]).tolist()])) for key in ("sizes_a", "sizes_b")]
-        need([own[-1][1] for own in spans] == [len(A), len(B)], f"{label}: a triangle is left out")
-        rows, codes = deque[Any]((x, y, 0) for x, y in itertools.product(*spans)), iter(proof["codes"].tolist())
+        need(not is_inside(here, F, beside[G]) and not is_inside(beside, G, here[F]), "one is inside the other at rest")
+        boxes, halves, (hub, axle) = self.boxes(way, vary, proof)
+        A, B, (centre, axis) = ordered(here[F], order_a), ordered(W[G], order_b), proof["about"]
+        near, far = zip(*(radii((corners - centre) @ plane(axis)) for corners in (A, B @ T[:3, :3].T + T[:3, 3])), strict=True)
+        height, width = (B - hub) @ axle, np.linalg.norm((B - hub) @ plane(axle), axis=2)
+        spans = [list(itertools.pairwise(proof[key].tolist())) for key in ("parts_a", "parts_b")]
+        need([(own[0][0], own[-1][1]) for own in spans] == [(0, len(A)), (0, len(B))], "a triangle is left out")
+        rows, codes = deque[Any](itertools.product(*spans, [0])), iter(proof["codes"].tolist())
         while rows:
             row, code = rows.popleft(), next(codes)
             if OUTSIDE < code < 0:
-                column = code + 3
-                parts = [(row[column][0], middle := sum(row[column]) // 2), (middle, row[column][1])] if column < 2 else halves[row[2]]
-                rows.extend((*row[:column], part, *row[column + 1 :]) for part in parts)
+                k, (start, end) = code + 3, row[min(code + 3, 1)]
+                parts = halves[row[2]] if k == 2 else [(start, (start + end) // 2), ((start + end) // 2, end)]
+                rows.extend((*row[:k], part, *row[k + 1 :]) for part in parts)
                 continue
-            (x, y), (box, R, t, is_steady, *moving) = (slice(*span) for span in row[:2]), boxes[row[2]]
+            x, y, (box, R, t, is_steady, *moving) = slice(*row[0]), slice(*row[1]), boxes[row[2]]
             if code == OUTSIDE:
                 gap = math.inf if any(is_outside(joint, box) for joint, _ in way if joint["cone"] is not None) else 0.0
             elif code == ROUND:
                 gap = max(near[0][x].min() - far[1][y].max(), near[1][y].min() - far[0][x].max()) if is_steady else 0.0
             else:
-                kind, u, q, size = sum(code >= proof["kinds"]), proof["along"][code], B[y].reshape(-1, 3), 0.0
+                kind, u, p, q, size = sum(code >= proof["kinds"]), proof["along"][code], A[x].reshape(-1, 3), B[y].reshape(-1, 3), 0.0
                 u, thick = (R @ u if kind == OF_B else u) / math.hypot(*u), 0.0
                 if kind == SPUN:  # whatever the innermost turn, b stays about a stretch of its axis
-                    size, q = round_it[y].max(), hub + np.outer([height[y].min(), height[y].max()], axle)
+                    size, q = width[y].max(), hub + np.outer([height[y].min(), height[y].max()], axle)
                     moving = [*moving[:2], *(part * (np.arange(len(part)) < len(part) - 1) for part in moving[2:])]
-                    thick = size * math.hypot(*np.cross(u, R @ axle))
-                p, q = A[x].reshape(-1, 3), q @ R.T + t
+                    thick = size * math.hypot(*(plane(axle) @ (u @ R)))
+                q = q @ R.T + t
                 gap = (q @ u - motion(u, q, size, *moving)).min() - thick - (p @ u).max()
-            need(gap > claim["clear_mm"], f"{label}: pieces come too near")
+            need(gap > claim["clear_mm"], "pieces come too near")
 
-    def boxes(self, way: list[Any], vary: dict[str, Any], proof: dict[str, Any], label: str) -> tuple[list[Any], dict[int, Any], Any]:
-        """Cut a range into boxes; of each return the pose in its middle, and what may move, how far, together with what; and the innermost axis."""
+    def boxes(self, way: list[Any], vary: dict[str, Any], proof: dict[str, Any]) -> tuple[list[Any], dict[int, Any], Any]:
+        """Cut a range into boxes; of each return the pose in its middle, and how far what goes together; and the innermost axis."""
         tied = {f["name"] for joint, _ in way for f in joint["freedoms"]} & set(self.linked) - set(vary)
-        drivers, names, todo = [n for n in vary if tied and n in self.certificate["drivers"]], list(vary), [vary]
-        found, halves, (centre, axis), across = [], {}, proof["about"], np.eye(3) - np.outer(proof["about"][1], proof["about"][1])
-        need(len(drivers) <= 1, f"{label}: two drivers at once")
-        for number, (box, cut, place) in enumerate(zip(todo, proof["cuts"].tolist(), proof["at"].tolist(), strict=True)):  # they become more
+        drivers, names, todo, found, halves = [n for n in vary if tied and n in self.certificate["drivers"]], list(vary), [vary], [], {}
+        (centre, axis), across = proof["about"], plane(proof["about"][1])
+        need(len(drivers) <= 1, "two drivers at once")
+        for number, (box, cut, place) in enumerate(
+            zip(todo, proof["cuts"].tolist(), proof["at"].tolist(), strict=True)
+        ):  # they become more
             if cut >= 0:
                 (low, high), name = box[names[cut]], names[cut]
-                need(low < place < high, f"{label}: a part of the range is left out")
+                need(low < place < high, "a part of the range is left out")
                 halves[number] = len(todo), len(todo) + 1
                 todo += [{**box, name: (low, place)}, {**box, name: (place, high)}]
             values = {name: (sum(ends) / 2, 0.0, (ends[1] - ends[0]) / 2) for name, ends in box.items()}
@@ -342,11 +347,13 @@ class Checker:
                 values |= {n: (value, rate * half, near) for n, (value, rate, near) in line.items() if n == driver or n not in vary}
             T, steps = self.place(way, {**self.rest, **{name: value for name, (value, *_) in values.items()}})
             w, v, along, aside = map(np.array, zip(*((*steps[name], *values[name][1:]) for name in steps if name in values), strict=True))
-            turned = (np.abs(along) + aside) * w.any(1)
-            loose = np.abs(np.cross(w, w[w.any(1)][:1])).max(initial=0.0) > ALIGNED  # axes that turn each other
-            off = [(v + np.cross(w, centre)) @ across, np.cross(w, axis), across @ across - across]  # from turns and slides about one axis or point
-            is_steady = max(np.abs(part).max() for part in off) < ROUNDING
-            found.append((box, T[:3, :3], T[:3, 3], is_steady, np.cross(w[:, None], np.eye(3)), v, along, aside, turned, loose * (np.cumsum(turned) - turned)))
-        R, (turn, flow) = T[:3, :3], (w[-1], v[-1])  # the innermost turn: b sees its axis stand
-        axle = turn @ R if turn.any() and abs(turn @ flow) < ROUNDING else np.full(3, np.nan)
-        return found, halves, ((np.cross(turn, flow) - T[:3, 3]) @ R, axle)
+            turned, loose = (np.abs(along) + aside) * w.any(1), np.abs(np.cross(w, w[w.any(1)][:1])).max(initial=0.0) > ALIGNED
+            off = [
+                (v + np.cross(w, centre)) @ across,
+                np.cross(w, axis),
+                across @ across - across,
+            ]  # turns and slides about one axis or point
+            is_steady, outer = max(np.abs(part).max() for part in off) < ROUNDING, loose * (np.cumsum(turned) - turned)
+            found.append((box, T[:3, :3], T[:3, 3], is_steady, np.cross(w[:, None], np.eye(3)), v, along, aside, turned, outer))
+        axle = w[-1] @ T[:3, :3] if w[-1].any() and abs(w[-1] @ v[-1]) < ROUNDING else np.full(3, np.nan)
+        return found, halves, ((np.cross(w[-1], v[-1]) - T[:3, 3]) @ T[:3, :3], axle)  # b sees its innermost axis stand

@@ -140,21 +140,21 @@ class Certificate:
     def proof(self) -> dict[str, Any]:
         """How the claims were found, as arrays that a checker reads."""
         found: dict[str, Any] = dict(self.followed)
-        known: dict[bytes, int] = {}
+        known: dict[bytes, str] = {}
 
-        def number(kind: str, array: Any) -> int:
+        def shared(kind: str, array: Any) -> str:
             key = kind.encode() + array.tobytes()
             if key not in known:
-                known[key] = len(known)
-                found[f"{kind}.{known[key]}"] = array
+                known[key] = f"{kind}.{len(known)}"
+                found[known[key]] = array
             return known[key]
 
         for at, claim in enumerate(self.claims):
             course = claim.course
             assert course is not None
-            moved = -1 if course.moved is None else number("moved", course.moved)
-            found[f"{at}.uses"] = np.array([moved, *(number("order", order.astype(np.int32)) for order in course.orders)])
-            found[f"{at}.sizes_a"], found[f"{at}.sizes_b"] = (np.array(sizes) for sizes in course.sizes)
+            moved = "" if course.moved is None else shared("moved", course.moved)
+            found[f"{at}.uses"] = np.array([moved, *(shared("order", order.astype(np.int32)) for order in course.orders)])
+            found[f"{at}.parts_a"], found[f"{at}.parts_b"] = (np.cumsum([0, *sizes]) for sizes in course.sizes)
             found[f"{at}.about"], found[f"{at}.kinds"] = course.about, course.rows.kinds
             found[f"{at}.cuts"], found[f"{at}.at"] = _short(course.cuts), course.places
             found[f"{at}.codes"], found[f"{at}.along"] = _short(course.rows.codes), course.rows.along
