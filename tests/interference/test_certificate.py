@@ -42,7 +42,9 @@ from tests.interference.mechanisms import (
     fixed,
     joint,
     manifold_mesh,
+    proof_of,
     random_rotation,
+    saved,
     verified,
     without_triangle,
 )
@@ -552,17 +554,6 @@ def honest() -> Certificate:
 
 def arrays_of(mesh: TriMesh) -> dict[str, Any]:
     return {"vertices": mesh.vertices, "triangles": mesh.triangles}
-
-
-def saved(**arrays: Any) -> bytes:
-    stream = io.BytesIO()
-    np.savez(stream, **arrays)
-    return stream.getvalue()
-
-
-def proof_of(certificate: Certificate) -> dict[str, Any]:
-    with np.load(io.BytesIO(certificate.mesh_files()[f"{PROOF}.npz"])) as arrays:
-        return dict(arrays)
 
 
 def of_hinge(document: dict[str, Any]) -> dict[str, Any]:
