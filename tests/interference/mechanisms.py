@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import json
 import math
 import tempfile
@@ -17,7 +18,7 @@ from articad.connectors import SE3
 from articad.geometry import TriMesh
 from articad.interference.certificate import Certificate
 from articad.kinematics.joints import Joint, JointLimits, JointType
-from articad.verify_certificate import verify_file
+from articad.verify_certificate import PROOF, verify_file
 
 IDENTITY = SE3.identity()
 
@@ -115,3 +116,16 @@ def verified(document: Mapping[str, Any], certificate: Certificate, **changed: b
             (folder / file).write_bytes(content)
         (folder / "certificate.json").write_text(json.dumps(document))
         return verify_file(folder / "certificate.json", folder)
+
+
+def saved(**arrays: Any) -> bytes:
+    """Return a file of arrays."""
+    stream = io.BytesIO()
+    np.savez(stream, **arrays)
+    return stream.getvalue()
+
+
+def proof_of(certificate: Certificate) -> dict[str, Any]:
+    """Return the arrays of a certificate's proof."""
+    with np.load(io.BytesIO(certificate.mesh_files()[f"{PROOF}.npz"])) as arrays:
+        return dict(arrays)

@@ -42,7 +42,9 @@ from tests.interference.mechanisms import (
     fixed,
     joint,
     manifold_mesh,
+    proof_of,
     random_rotation,
+    saved,
     verified,
     without_triangle,
 )
@@ -554,17 +556,6 @@ def arrays_of(mesh: TriMesh) -> dict[str, Any]:
     return {"vertices": mesh.vertices, "triangles": mesh.triangles}
 
 
-def saved(**arrays: Any) -> bytes:
-    stream = io.BytesIO()
-    np.savez(stream, **arrays)
-    return stream.getvalue()
-
-
-def proof_of(certificate: Certificate) -> dict[str, Any]:
-    with np.load(io.BytesIO(certificate.mesh_files()[f"{PROOF}.npz"])) as arrays:
-        return dict(arrays)
-
-
 def of_hinge(document: dict[str, Any]) -> dict[str, Any]:
     """Return the claim on the arm and its base, which the hinge connects."""
     claim: dict[str, Any] = next(claim for claim in document["claims"] if set(claim["parts"]) == {"base", "arm"})
@@ -701,9 +692,31 @@ def halve_fewer_boxes(proof: dict[str, Any], at: int) -> None:
     proof[f"{at}.cuts"][0] = -1
 
 
+def measure_from_elsewhere(proof: dict[str, Any], at: int) -> None:
+    proof[f"{at}.about"][0] += [100.0, 0.0, 0.0]  # radii about an axis that does not stand
+
+
+def measure_along_the_axis(proof: dict[str, Any], at: int) -> None:
+    proof[f"{at}.about"][1] = 0.0  # radii about a point on the axis, which a turn keeps: not all are apart by them
+
+
+def stretch_the_axis(proof: dict[str, Any], at: int) -> None:
+    proof[f"{at}.about"][1] *= 2.0  # what is across it would count three times
+
+
+def leave_a_tree_out(proof: dict[str, Any], at: int) -> None:
+    proof[f"{at}.sizes_a"] = proof[f"{at}.sizes_a"][:-1]
+
+
+def call_everything_round(proof: dict[str, Any], at: int) -> None:
+    codes = proof[f"{at}.codes"]
+    codes[codes >= 0] = -5
+
+
 TAMPERED = [
     end_early, settle_at_once, leave_rows_out, cut_what_is_whole, turn_the_directions, forget_the_directions, undefine_the_directions,
-    leave_out_a_triangle, forget_a_triangle, move_vertices_further, say_that_it_only_turns,
+    leave_out_a_triangle, forget_a_triangle, move_vertices_further, say_that_it_only_turns, measure_from_elsewhere, measure_along_the_axis,
+    stretch_the_axis, leave_a_tree_out, call_everything_round,
 ]  # fmt: skip
 
 

@@ -21,7 +21,7 @@ from articad.interference.scene import Scene
 from articad.kinematics.joints import Coupling, Joint
 from articad.kinematics.mechanism import Mechanism
 from articad.verify_certificate import PROOF, Checker
-from tests.interference.mechanisms import at, joint, verified
+from tests.interference.mechanisms import at, joint, proof_of, saved, verified
 
 CRANK, COUPLER, ROCKER, SPAN = 30.0, 90.0, 70.0, 100.0
 REST = math.radians(60)
@@ -287,6 +287,78 @@ def test_a_planted_lie_on_a_loop_is_refuted(honest: Certificate, lie: Callable[[
 
 def test_two_drivers_at_once_are_refuted_whatever_they_do(honest: Certificate) -> None:
     assert any("two drivers" in reason for reason in refutations(honest, move_two_drivers))
+
+
+def turn_half_round(document: dict[str, Any]) -> None:
+    loop = next(j for j in document["mechanism"]["joints"] if j["loop"])
+    loop["child_frame"] = (np.array(loop["child_frame"]) @ np.diag([-1.0, -1.0, 1.0, 1.0])).tolist()
+
+
+def test_a_loop_that_closes_but_for_half_a_turn_is_refuted(honest: Certificate) -> None:
+    # no residual tells it from a closed one: of half a turn the antisymmetric part is none
+    assert refutations(honest, turn_half_round) == ["a loop is not closed"]
+
+
+def tampered(certificate: Certificate, change: Callable[[dict[str, Any]], object]) -> list[str]:
+    proof = proof_of(certificate)
+    change(proof)
+    return verified(certificate.to_json(), certificate, **{PROOF: saved(**proof)})
+
+
+def follow_another_branch(proof: dict[str, Any]) -> None:
+    ends, values = proof["crank.ends"], proof["crank.values"]
+    mechanism = Mechanism(tuple(four_bar((0.0, 5.0, 0.0))[0]), "frame", four_bar((0.0, 5.0, 0.0))[1])
+    for row, (low, high) in enumerate(
+        ends
+    ):  # the coupler and the rocker mirrored about the line from the crank's pin to the rocker's pivot
+        found = mechanism.configuration(np.array([(low + high) / 2])).values
+        across, opened = crossing((low + high) / 2)
+        values[row][1:] = [found["pin_b"][0] + across, found["pin_c"][0] + opened, found["rock"][0] + across + opened]
+
+
+def crossing(crank: float) -> tuple[float, float]:
+    """Return by how much the coupler's and the rocker's turns differ on the other branch of the four-bar."""
+    pin = CRANK * np.array([math.cos(REST + crank), math.sin(REST + crank)])
+    e = float(np.linalg.norm(np.array([SPAN, 0.0]) - pin))
+    at_pin = math.acos((COUPLER**2 + e * e - ROCKER**2) / (2 * COUPLER * e))
+    at_joint = math.acos((COUPLER**2 + ROCKER**2 - e * e) / (2 * COUPLER * ROCKER))
+    return -2 * at_pin, 2 * (math.pi - at_joint)
+
+
+def leave_out_a_piece(proof: dict[str, Any]) -> None:
+    for key in ("ends", "values", "wide", "other"):
+        proof[f"crank.{key}"] = np.delete(proof[f"crank.{key}"], 3, axis=0)
+
+
+def narrow_the_tube(proof: dict[str, Any]) -> None:
+    proof["crank.wide"] *= 1e-3
+
+
+def widen_the_tube(proof: dict[str, Any]) -> None:
+    proof["crank.wide"] *= 1e3
+
+
+def lengthen_a_piece(proof: dict[str, Any]) -> None:
+    proof["crank.ends"][3] += [-0.3, 0.3]
+
+
+def move_a_piece(proof: dict[str, Any]) -> None:
+    proof["crank.values"][3, 1] += 0.05
+
+
+@pytest.mark.parametrize(
+    "change",
+    [follow_another_branch, leave_out_a_piece, narrow_the_tube, widen_the_tube, lengthen_a_piece, move_a_piece],
+    ids=lambda change: change.__name__,
+)
+def test_a_tampered_tube_is_refuted(honest: Certificate, change: Callable[[dict[str, Any]], object]) -> None:
+    assert tampered(honest, dict) == []  # that changes nothing
+    assert tampered(honest, change)
+
+
+def test_another_branch_is_refuted_for_that_reason(honest: Certificate) -> None:
+    # it closes as well as the one of the rest pose, and keeps to itself
+    assert any("leaves its branch" in reason for reason in tampered(honest, follow_another_branch))
 
 
 def test_an_honest_certificate_of_a_loop_is_accepted(honest: Certificate) -> None:
