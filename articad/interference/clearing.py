@@ -171,7 +171,7 @@ class _Search:
         self.boxes, self.needed, self.epsilon, self.axis = boxes, needed, epsilon, axis
         self.spread, self.trail = boxes.spread, Trail()
         self.outcome = Cleared()
-        self.revolved = Revolved.of(self.b, self.spread) if isinstance(boxes, Ranges) else None
+        self.revolved = Revolved.of(self.b, self.spread) if isinstance(boxes, Ranges) and len(self.spread.chain.movers) == 1 else None
         self.size_a, self.size_b = np.linalg.norm(self.a.half, axis=1), np.linalg.norm(self.b.half, axis=1)
 
     def roots(self) -> _Pairs:
