@@ -22,7 +22,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 from articad.connectors import SE3
 from articad.geometry import TriMesh, write_glb, write_obj, write_stl
-from articad.interference.body import body_of
+from articad.interference.body import make_bvh
 from articad.interference.check import check_scene
 from articad.interference.scene import Scene
 from articad.interference.sweep import Sweep
@@ -82,11 +82,12 @@ def raw_fcl(scene: Scene, mechanism: Mechanism) -> list[list[tuple[object, objec
     """Return for each step the pairs of FCL objects whose boxes meet, placed beforehand."""
     q = np.tile(mechanism.rest, (STEPS, 1))
     q[:, 0] = np.linspace(0, 2 * math.pi * (STEPS - 1) / STEPS, STEPS)
+    models = {mesh: make_bvh(mesh.vertices, mesh.triangles) for mesh in scene.meshes.values()}
     steps = []
     for at in range(STEPS):
         poses = dict(zip(mechanism.parts, mechanism.poses(q[at]), strict=True))
         placed = {
-            name: fcl.CollisionObject(body_of(mesh).bvh, fcl.Transform(poses[name].rotation, poses[name].translation))
+            name: fcl.CollisionObject(models[mesh], fcl.Transform(poses[name].rotation, poses[name].translation))
             for name, mesh in scene.meshes.items()
         }
         steps.append([(placed[a], placed[b]) for a, b in scene.candidates(poses)])

@@ -86,8 +86,22 @@ def write_stl(mesh: TriMesh) -> bytes:
 def write_obj(mesh: TriMesh) -> bytes:
     """Return the mesh as OBJ text with nine significant digits: a micrometre at a kilometre."""
     vertices = ("v %.9g %.9g %.9g\n" * len(mesh.vertices)) % tuple((mesh.vertices + 0.0).ravel().tolist())
-    triangles = ("f %d %d %d\n" * len(mesh.triangles)) % tuple((mesh.triangles.ravel() + 1).tolist())
-    return f"# articad, mm\n{vertices}{triangles}".encode("ascii")
+    return b"".join((b"# articad, mm\n", vertices.encode("ascii"), _obj_triangles(mesh)))
+
+
+def _obj_triangles(mesh: TriMesh) -> bytes:
+    """Return the lines "f a b c". Each vertex's word is made once, filled up to one length with zero bytes that go in the end."""
+    number = np.arange(1, len(mesh.vertices) + 1)
+    digits = len(str(len(mesh.vertices)))
+    words = np.zeros((len(number), 1 + digits), dtype=np.uint8)
+    words[:, 0] = ord(" ")
+    for column in range(1, 1 + digits):
+        place = 10 ** (digits - column)
+        words[place - 1 :, column] = number[place - 1 :] // place % 10 + ord("0")
+    lines = np.empty(len(mesh.triangles), dtype=[("f", "S1"), ("words", np.dtype((np.void, 1 + digits)), 3), ("end", "S1")])
+    lines["f"], lines["end"] = b"f", b"\n"
+    lines["words"] = words.view(lines.dtype["words"].base)[:, 0][mesh.triangles]
+    return lines.tobytes().translate(None, b"\0")
 
 
 def write_ply(mesh: TriMesh) -> bytes:

@@ -18,6 +18,10 @@ FloatArray = NDArray[np.float64]
 
 _EXTREME_DIRECTIONS = np.array([[x, y, z] for x in (-1, 0, 1) for y in (-1, 0, 1) for z in (-1, 0, 1) if x or y or z], dtype=np.float64)
 _SCATTERED = 600
+_FEW_TRIANGLES = 200  # of a mesh that is asked as it is
+_WORTH_THINNING = 0.75  # of the triangles may be left, or the mesh is asked as it is
+_AREA_SLACK = 1e-9  # relative: a face that is moved by the tolerance may lean
+_ROUNDING = 1e-12  # of a sum over thousands of triangles, relative
 _bodies: WeakKeyDictionary[TriMesh, Body] = WeakKeyDictionary()
 
 
@@ -57,8 +61,26 @@ class Body:
 
     @cached_property
     def manifold(self) -> Any:
-        """The mesh as a `manifold3d.Manifold` in double precision; look at `fault` before trusting it."""
-        return self._new_manifold()
+        """The solid as a `manifold3d.Manifold` in double precision; look at `fault` before trusting it.
+
+        Its flat faces are cut into no more triangles than their outlines need, where the mesh has far more: the same solid to
+        rounding, and the cost of a boolean is that of its triangles.
+        """
+        whole = self._new_manifold()
+        if whole.num_tri() <= _FEW_TRIANGLES or whole.status() != manifold3d.Error.NoError:
+            return whole
+        plain = whole.simplify(0.0)  # by no more than the manifold's own tolerance, 1e-12 of its size
+        return plain if plain.num_tri() <= _WORTH_THINNING * whole.num_tri() and _same_solid(whole, plain) else whole
+
+    @cached_property
+    def manifold_triangles(self) -> int:
+        """How many triangles `manifold` has: those of the mesh, or fewer where it cuts flat faces up needlessly."""
+        return int(self.manifold.num_tri()) or len(self.mesh.triangles)  # a broken mesh has none there
+
+    @property
+    def is_thinned(self) -> bool:
+        """Whether `manifold` has fewer triangles than the mesh."""
+        return self.manifold_triangles < len(self.mesh.triangles)
 
     @cached_property
     def manifold_id(self) -> int:
@@ -71,8 +93,11 @@ class Body:
 
     @cached_property
     def bvh(self) -> Any:
-        """The mesh as an `fcl.BVHModel`."""
-        return make_bvh(self.mesh.vertices, self.mesh.triangles)
+        """The surface as an `fcl.BVHModel`, in as few triangles as `manifold`."""
+        if not self.is_thinned:
+            return make_bvh(self.mesh.vertices, self.mesh.triangles)
+        content = self.manifold.to_mesh64()
+        return make_bvh(np.array(content.vert_properties)[:, :3], np.array(content.tri_verts).astype(np.int32))
 
     @cached_property
     def standing(self) -> Any:
@@ -110,6 +135,16 @@ class Body:
         return self.mesh.vertices[:: 1 + len(self.mesh.vertices) // _SCATTERED]
 
     @cached_property
+    def reach(self) -> float:
+        """Largest coordinate [mm]."""
+        return float(np.abs(self.mesh.bounds).max())
+
+    @cached_property
+    def scattered_squares(self) -> FloatArray:
+        """Squares of their distances from the origin, `(V,)` [mm²]."""
+        return np.asarray(np.einsum("vi,vi->v", self.scattered, self.scattered))
+
+    @cached_property
     def corners(self) -> FloatArray:
         """Corners of all triangles, `(T, 3, 3)`."""
         return self.mesh.vertices[self.mesh.triangles]
@@ -133,6 +168,18 @@ def body_of(mesh: TriMesh) -> Body:
     if body is None:
         body = _bodies[mesh] = Body(mesh)
     return body
+
+
+def _same_solid(whole: Any, plain: Any) -> bool:
+    """Return whether two solids have the same size, volume and surface, up to what moving a surface by the tolerance may change."""
+    off = float(whole.get_tolerance())
+    area, size = float(whole.surface_area()), np.array(whole.bounding_box())
+    return (
+        plain.status() == manifold3d.Error.NoError
+        and abs(plain.volume() - whole.volume()) <= off * area + _ROUNDING * abs(whole.volume())
+        and abs(plain.surface_area() - area) <= _AREA_SLACK * area
+        and bool(np.abs(np.array(plain.bounding_box()) - size).max() <= off)
+    )
 
 
 def make_bvh(vertices: FloatArray, triangles: NDArray[Any]) -> Any:

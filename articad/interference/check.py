@@ -67,8 +67,7 @@ def check_scene(
     placed = scene.at(poses)
     findings = [broken_finding(name, reason) for name, reason in scene.broken.items()]
     pairs: dict[tuple[str, str], PairCheck] = {}
-    near = placed.candidates()
-    for (a, b), apart in zip(near, placed.apart(near).tolist(), strict=True):
+    for (a, b), T_a_b, apart in placed.near():
         if over != "rest" and scene.relations.rigid.together(a, b):
             continue
         if a in scene.broken or b in scene.broken:
@@ -76,7 +75,6 @@ def check_scene(
         if known is not None and (a, b) in known:
             pairs[a, b] = known[a, b]
             continue
-        T_a_b = placed.relative(a, b)
         found = NOTHING if apart else measured(scene.bodies[a], scene.bodies[b], T_a_b)
         gap = distance(scene.bodies[a], scene.bodies[b], se3_of(T_a_b)) if gaps and not found.volume else None
         pairs[a, b], finding = judge(scene, (a, b), found, over=over, pose=pose, gap=gap)
@@ -105,6 +103,8 @@ def broken_finding(name: str, reason: str) -> Finding:
 
 def unknown_pairs(scene: Scene, over: str | tuple[str, ...]) -> dict[tuple[str, str], PairCheck]:
     """Return a verdict "unknown" for every pair with a broken mesh: it is never taken for no interference."""
+    if not scene.broken:
+        return {}
     names = list(scene.bodies)
     unknown = {}
     for at, a in enumerate(names):

@@ -5,19 +5,24 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
 from articad.connectors.se3 import SE3
 from articad.findings import Finding
+from articad.interference.body import Body
 from articad.interference.overlap import distance, se3_of, surfaces_touch
 from articad.interference.relations import Groups
 from articad.interference.report import PairCheck
 from articad.interference.scene import Placement
 from articad.kinematics.joints import Joint, JointType
 
+FloatArray = NDArray[np.float64]
+
 TOUCH_MM = 0.1  # surfaces that are fixed to each other may be this far apart: glue, or a bolt in its hole
 NEAR_MM = 5.0  # a part within this distance of another is held by it: runners, shadow gaps
 NEAR_LEAST_MM = 0.5  # … but for small parts the limit is a tenth of their size, and at least this
 NEAR_SHARE = 0.1
+_STEPS = 3  # from one body to the other and back: mostly enough to find two vertices that are near
 _NEAR_SAMPLES = 48  # vertices compared before FCL is asked whether two parts are near
 
 
@@ -89,15 +94,7 @@ class Holding:
     def _vertices_within(self, a: str, b: str, limit: float) -> bool:
         """Return whether two vertices are that near: often true, and cheaper than a search of all triangles."""
         T, bodies = self.placed.relative(a, b), self.scene.bodies
-        p, q = bodies[a].scattered, bodies[b].scattered @ T[:, :3].T + T[:, 3]
-        low, high = bodies[a].mesh.bounds
-        q = q[((q >= low - limit) & (q <= high + limit)).all(axis=1)]
-        if not len(q):
-            return False
-        p = p[((p >= q.min(axis=0) - limit) & (p <= q.max(axis=0) + limit)).all(axis=1)]
-        p, q = (v[:: max(1, len(v) // _NEAR_SAMPLES)] for v in (p, q))
-        away = p[:, None] - q
-        return bool(len(p)) and bool((np.einsum("pqi,pqi->pq", away, away) <= limit**2).any())
+        return _stepping_within(bodies[a], bodies[b], T, limit) or _sampled_within(bodies[a], bodies[b], T, limit)
 
     def _gap(self, a: str, b: str) -> float:
         bodies, T_a_b = self.scene.bodies, self._relative(a, b)
@@ -155,3 +152,35 @@ class Holding:
             unit="mm",
             cause="floating",
         )
+
+
+def _stepping_within(a: Body, b: Body, T_a_b: FloatArray, limit: float) -> bool:
+    """Return whether two vertices are found within the limit by going from each to the nearest of the other body, a few times."""
+    p, q = a.scattered, b.scattered
+    R, t = T_a_b[:, :3], T_a_b[:, 3]
+    low_b, high_b = b.mesh.bounds
+    low, high = a.mesh.bounds
+    middle, reach = R @ ((low_b + high_b) / 2) + t, np.abs(R) @ ((high_b - low_b) / 2)
+    at = (np.maximum(low, middle - reach) + np.minimum(high, middle + reach)) / 2  # the middle of where both boxes are
+    for _ in range(_STEPS):
+        back = (at - t) @ R
+        near = q[np.argmin(b.scattered_squares - 2.0 * (q @ back))]
+        there = R @ near + t
+        at = p[np.argmin(a.scattered_squares - 2.0 * (p @ there))]
+        away = at - there
+        if away @ away <= limit * limit:
+            return True
+    return False
+
+
+def _sampled_within(a: Body, b: Body, T_a_b: FloatArray, limit: float) -> bool:
+    """Return whether two of the vertices where the boxes of two bodies meet are within the limit."""
+    p, q = a.scattered, b.scattered @ T_a_b[:, :3].T + T_a_b[:, 3]
+    low, high = a.mesh.bounds
+    q = q[((q >= low - limit) & (q <= high + limit)).all(axis=1)]
+    if not len(q):
+        return False
+    p = p[((p >= q.min(axis=0) - limit) & (p <= q.max(axis=0) + limit)).all(axis=1)]
+    p, q = (v[:: max(1, len(v) // _NEAR_SAMPLES)] for v in (p, q))
+    away = p[:, None] - q
+    return bool(len(p)) and bool((np.einsum("pqi,pqi->pq", away, away) <= limit**2).any())

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -22,6 +22,7 @@ IntArray = NDArray[np.int64]
 
 _PARALLEL = 1e-12  # added to the cosines between edges
 _NEXT, _LAST = [1, 2, 0], [2, 0, 1]
+_PAIRS_AT_ONCE = 1 << 16  # of boxes that are compared: 10 MB
 _BOX_MARGIN_MM = 1e-6  # boxes of touching faces must meet, however they round
 
 
@@ -168,22 +169,35 @@ class Placement:
         T[:, 3] -= A[:, :3].T @ A[:, 3]
         return np.asarray(T)
 
-    def apart(self, pairs: Sequence[tuple[str, str]]) -> BoolArray:
-        """Return of which pairs the boxes, turned with the bodies, are apart, `(n,)`."""
+    def near(self) -> Iterator[tuple[tuple[str, str], FloatArray, bool]]:
+        """Yield the pairs whose boxes meet, where the second stands as seen from the first, and whether the turned boxes are apart."""
+        pairs = self.candidates()
         i, j = np.array([[self.scene.index[name] for name in pair] for pair in pairs], dtype=np.int64).reshape(-1, 2).T
-        return self.scene.apart(i, j, relatives(self.matrices[i], self.matrices[j]))
+        relative = relatives(self.matrices[i], self.matrices[j])
+        return zip(pairs, relative, self.scene.apart(i, j, relative).tolist(), strict=True)
 
     def candidates(self, margin: float = _BOX_MARGIN_MM) -> list[tuple[str, str]]:
         """Return the pairs whose boxes, along the axes of the ground, are closer than `margin` [mm]."""
         low, high = self.scene.boxes(self.matrices)
         names = list(self.scene.bodies)
         order = np.argsort(low[:, 0], kind="stable")
-        pairs: list[tuple[int, int]] = []
         # along x the boxes are sorted, so that each is compared with those that begin before it ends: no N x N table
-        starts = low[order, 0]
-        ends = np.searchsorted(starts, high[order, 0] + margin, side="right")
-        for at, (i, end) in enumerate(zip(order.tolist(), ends.tolist(), strict=True)):
-            others = order[at + 1 : end]
-            meet = ((low[others] <= high[i] + margin) & (low[i] <= high[others] + margin)).all(axis=1)
-            pairs += [(min(i, j), max(i, j)) for j in others[meet].tolist()]
-        return [(names[i], names[j]) for i, j in sorted(pairs)]
+        ends = np.searchsorted(low[order, 0], high[order, 0] + margin, side="right")
+        least, most = low[order] - margin, high[order]
+        pairs: list[tuple[int, int]] = []
+        for rows, others in _runs(ends):
+            meet = ((least[others] <= most[rows]) & (least[rows] <= most[others])).all(axis=1)
+            pairs += zip(order[rows[meet]].tolist(), order[others[meet]].tolist(), strict=True)
+        return [(names[i], names[j]) for i, j in sorted((min(pair), max(pair)) for pair in pairs)]
+
+
+def _runs(ends: IntArray) -> Iterator[tuple[IntArray, IntArray]]:
+    """Yield each row with each of the rows after it that come before its end, so many at a time that they take little room."""
+    counts = np.maximum(ends - np.arange(len(ends)) - 1, 0)
+    before = np.concatenate([[0], np.cumsum(counts)])
+    start = 0
+    while start < len(ends):
+        stop = max(start + 1, int(np.searchsorted(before, before[start] + _PAIRS_AT_ONCE, side="right")) - 1)
+        rows = np.repeat(np.arange(start, stop), counts[start:stop])
+        yield rows, rows + 1 + np.arange(len(rows)) - (before[rows] - before[start])
+        start = stop

@@ -19,7 +19,7 @@ from articad.findings import Finding, Findings
 from articad.geometry.mesh import TriMesh
 from articad.interference.check import broken_finding, unknown_pairs
 from articad.interference.motion import ENDLESS_SLIDE_MM, Freedom, driver_values, freedoms, scattered
-from articad.interference.overlap import VOLUME_NOISE_MM3, Overlap, common, may_overlap, overlap_of, se3_of
+from articad.interference.overlap import VOLUME_NOISE_MM3, Overlap, common, may_overlap, overlap_of
 from articad.interference.relations import FitLike, WaiverLike
 from articad.interference.report import Checks, PairCheck, Strength
 from articad.interference.scene import Scene, relatives
@@ -203,7 +203,7 @@ class Sweep:
             if track.volumes[key] > max(UNRELATED_VOLUME_MM3, VOLUME_NOISE_MM3):
                 pose, at = track.poses[key]
                 a, b = (self.scene.bodies[name] for name in parts)
-                found = overlap_of(track.solids.get(key) or common(a, b, pose), a, b, se3_of(pose))
+                found = overlap_of(track.solids.get(key) or common(a, b, pose), a, b, pose)
                 if found.depth > worst.depth:
                     worst, where = found, points[at]
         if where is None and largest and track.volumes[largest[0]] > VOLUME_NOISE_MM3:

@@ -42,17 +42,16 @@ class TreeArrays:
         self.n_parts = len(parts)
         self.ground = index[tree.ground]
         self.T_ground = T_ground
-        edges = tree.edges
-        near = [index[edge.parent] for edge in edges]
-        far = [index[edge.part] for edge in edges]
+        near = [index[part] for part in tree.parents]
+        far = [index[part] for part in tree.parts[1:]]
         self.compiled = Crossings(
-            [*(edge.joint for edge in edges), *closing],
+            [*tree.joints, *closing],
             near + [index[joint.parent] for joint in closing],
             [*far, *range(self.n_parts, self.n_parts + len(closing))],
-            [edge.joint.parent != edge.parent for edge in edges] + [False] * len(closing),
+            [joint.parent != part for joint, part in zip(tree.joints, tree.parents, strict=True)] + [False] * len(closing),
             layout,
         )
-        self._n_edges = len(edges)
+        self._n_edges = len(tree.joints)
         self._steps = tuple(zip(self.compiled.near, self.compiled.far, strict=True))
 
     @cached_property

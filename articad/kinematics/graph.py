@@ -8,10 +8,10 @@ from collections import Counter
 from collections.abc import Sequence
 from functools import cached_property
 
-from articad.errors import PlanError, did_you_mean
+from articad.errors import KinematicsError, PlanError, did_you_mean
 from articad.findings import Finding, Findings
 from articad.kinematics.joints import Joint, JointType
-from articad.kinematics.tree import Edge, KinematicTree
+from articad.kinematics.tree import KinematicTree
 
 # Light joints carry parts first, so that the joints that are left to close loops are passive hinges and balls.
 _WEIGHTS = {
@@ -69,9 +69,11 @@ class JointGraph:
         findings = self.findings()
         if not findings.ok:
             raise PlanError("\n".join(map(str, findings.errors)), findings=findings)
+        if self._outward is not None:
+            return self._outward, ()
         crossed, _ = self._prim
         carrying = {index for index, _, _ in crossed}
-        edges = [Edge(self.joints[index], self.parts[near], self.parts[far]) for index, near, far in sorted(crossed)]
+        edges = [(self.joints[index], self.parts[near], self.parts[far]) for index, near, far in sorted(crossed)]
         return KinematicTree(self.ground, edges), tuple(joint for i, joint in enumerate(self.joints) if i not in carrying)
 
     @cached_property
@@ -85,6 +87,19 @@ class JointGraph:
     @cached_property
     def _place(self) -> dict[str, int]:
         return {part: i for i, part in enumerate(self.parts)}
+
+    @cached_property
+    def _outward(self) -> KinematicTree | None:
+        """The tree where all joints are declared from the ground outwards, each to a part of its own: there is but this one."""
+        children = set(self._children)
+        if len(children) != len(self.joints) or len(self.parts) != len(children) + 1 or self.ground in children:
+            return None
+        if self._place.keys() != children | {self.ground}:
+            return None
+        try:
+            return KinematicTree(self.ground, zip(self.joints, self._parents, self._children, strict=True))
+        except KinematicsError:  # some go round in a ring
+            return None
 
     @cached_property
     def _prim(self) -> tuple[list[tuple[int, int, int]], list[bool]]:
@@ -154,7 +169,7 @@ class JointGraph:
         return len(pairs) == len(self.joints) and pairs.isdisjoint(zip(self._children, self._parents, strict=True))
 
     def _joint_findings(self) -> list[Finding]:
-        if self._clear():
+        if self._outward is not None or self._clear():
             return []
         found = []
         first_of: dict[frozenset[tuple[str, str]], str] = {}
@@ -178,6 +193,8 @@ class JointGraph:
         return found
 
     def _reach_findings(self) -> list[Finding]:
+        if self._outward is not None:
+            return []
         _, is_reached = self._prim
         if all(is_reached):
             return []

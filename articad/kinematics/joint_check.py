@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-
-import numpy as np
+from itertools import chain
+from operator import le
 
 from articad.findings import Finding
 from articad.kinematics.joints import Joint, JointType
@@ -45,13 +45,10 @@ def _unclear(joints: Sequence[Joint]) -> Sequence[Joint]:
     lowers, uppers = [one.lower for one in limits], [one.upper for one in limits]
     if not sizes == list(map(len, rests)) == list(map(len, lowers)) == list(map(len, uppers)):
         return joints
-    rest, lower, upper = (np.array([value for one in values for value in one]) for values in (rests, lowers, uppers))
-    good = (lower <= rest) & (rest <= upper) & np.isfinite(rest)
+    rest, lower, upper = (list(chain.from_iterable(values)) for values in (rests, lowers, uppers))
+    good = all(map(le, lower, rest)) and all(map(le, rest, upper)) and all(map(math.isfinite, rest))
     unclear = [joint for joint, one in zip(joints, limits, strict=True) if one.cone is not None or one.twist is not None]
-    if not good.all():
-        bad = set(np.repeat(np.arange(len(joints)), sizes)[~good].tolist())
-        unclear += [joint for i, joint in enumerate(joints) if i in bad]
-    return unclear
+    return unclear if good else joints
 
 
 _SPECIAL = frozenset({JointType.BALL, JointType.SCREW})

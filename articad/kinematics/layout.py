@@ -28,23 +28,41 @@ class Layout:
 
     Args:
         joints: In order of declaration.
-
-    Attributes:
-        columns: Of each joint, by name.
-        freedoms: Of each joint, by name.
     """
 
     def __init__(self, joints: Sequence[Joint]) -> None:
         self.joints = tuple(joints)
-        names, types = [joint.name for joint in joints], [joint.type for joint in joints]
-        columns = list(accumulate(map(_N_COLUMNS.__getitem__, types), initial=0))
-        freedoms = list(accumulate(map(_N_FREEDOMS.__getitem__, types), initial=0))
-        self.n_columns, self.n_freedoms = columns[-1], freedoms[-1]
-        self.columns: dict[str, slice] = dict(zip(names, map(slice, columns, columns[1:]), strict=False))
-        self.freedoms: dict[str, slice] = dict(zip(names, map(slice, freedoms, freedoms[1:]), strict=False))
-        balls = [i for i, joint_type in enumerate(types) if joint_type is JointType.BALL]
-        self._ball_columns = _runs([columns[i] for i in balls], 4)
-        self._ball_freedoms = _runs([freedoms[i] for i in balls], 3)
+        self._types = [joint.type for joint in joints]
+        self._starts = list(accumulate(map(_N_COLUMNS.__getitem__, self._types), initial=0))
+        self._own = list(accumulate(map(_N_FREEDOMS.__getitem__, self._types), initial=0))
+        self.n_columns, self.n_freedoms = self._starts[-1], self._own[-1]
+
+    @cached_property
+    def first(self) -> dict[str, int]:
+        """First column of each joint, by name."""
+        return dict(zip(self._names, self._starts, strict=False))
+
+    @cached_property
+    def columns(self) -> dict[str, slice]:
+        """Of each joint, by name."""
+        return dict(zip(self._names, map(slice, self._starts, self._starts[1:]), strict=False))
+
+    @cached_property
+    def freedoms(self) -> dict[str, slice]:
+        """Of each joint, by name."""
+        return dict(zip(self._names, map(slice, self._own, self._own[1:]), strict=False))
+
+    @cached_property
+    def _names(self) -> list[str]:
+        return [joint.name for joint in self.joints]
+
+    @cached_property
+    def _ball_columns(self) -> IndexArray:
+        return _runs([start for start, kind in zip(self._starts, self._types, strict=False) if kind is JointType.BALL], 4)
+
+    @cached_property
+    def _ball_freedoms(self) -> IndexArray:
+        return _runs([start for start, kind in zip(self._own, self._types, strict=False) if kind is JointType.BALL], 3)
 
     @cached_property
     def rest(self) -> FloatArray:

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import itertools
 from collections import defaultdict
-from collections.abc import Sequence
+from collections.abc import Iterable
 from functools import cached_property
-from types import MappingProxyType
 from typing import NamedTuple
 
 from articad.errors import KinematicsError
@@ -37,33 +36,49 @@ class KinematicTree:
 
     Args:
         ground: The root.
-        edges: One per other part, in any order.
+        edges: One per other part, in any order: a joint, the part nearer the ground, the part farther from it.
+
+    Attributes:
+        parts: In an order in which every part follows its parent, the ground first.
+        joints: That carry the parts but the ground, in this order.
+        parents: Of these parts, in this order.
 
     Raises:
         KinematicsError: If the edges are not a tree rooted at the ground.
     """
 
-    def __init__(self, ground: str, edges: Sequence[Edge]) -> None:
+    def __init__(self, ground: str, edges: Iterable[tuple[Joint, str, str]]) -> None:
         self.ground = ground
-        children: defaultdict[str, list[Edge]] = defaultdict(list)
-        for edge in edges:
-            children[edge.parent].append(edge)
-        edge_of: dict[str, Edge] = {}
-        stack = children[ground][::-1]
+        joints, parents, parts = zip(*edges, strict=True) if (edges := list(edges)) else ((), (), ())
+        carried: defaultdict[str, list[int]] = defaultdict(list)
+        for at, parent in enumerate(parents):
+            carried[parent].append(at)
+        reached, order = {ground}, list[int]()
+        stack = carried[ground][::-1]
         while stack:  # depth first: Pinocchio's mass matrix is silently wrong in any other order
-            edge = stack.pop()
-            part = edge.part
-            if part in edge_of or part == ground:
+            at = stack.pop()
+            part = parts[at]
+            if part in reached:
                 raise KinematicsError(f"The joints are not a tree: {part!r} is reached twice.")
-            edge_of[part] = edge
-            if part in children:
-                stack += children[part][::-1]
-        if len(edge_of) != len(edges):
-            lost = sorted({edge.part for edge in edges} - edge_of.keys())
+            reached.add(part)
+            order.append(at)
+            if part in carried:
+                stack += carried[part][::-1]
+        if len(order) != len(parts):
+            lost = sorted({*parts} - reached)
             raise KinematicsError(f"The joints are not a tree: {', '.join(lost)} do not hang from the ground {ground!r}.")
-        self.edges = tuple(edge_of.values())
-        self.parts = (ground, *edge_of)
-        self._edge_of = MappingProxyType(edge_of)
+        self.joints = tuple([joints[at] for at in order])
+        self.parents = tuple([parents[at] for at in order])
+        self.parts = (ground, *[parts[at] for at in order])
+
+    @cached_property
+    def edges(self) -> tuple[Edge, ...]:
+        """The joints as the tree crosses them, in the order of `parts`."""
+        return tuple(map(Edge, self.joints, self.parents, self.parts[1:]))
+
+    @cached_property
+    def _edge_of(self) -> dict[str, Edge]:
+        return {edge.part: edge for edge in self.edges}
 
     @cached_property
     def _depths(self) -> dict[str, int]:

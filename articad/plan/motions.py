@@ -106,7 +106,8 @@ def _limits(form: JointForm, joint_type: JointType, where: str, evaluation: Eval
             low = high = math.nan
         elif given != "endless":
             low, high = (evaluation.number(bound, where, f"{axis.range}[{i}]") for i, bound in enumerate(given))
-            _check_range((low, high), rest, axis, where, evaluation, many_turns=many_turns)
+            if not math.isnan(low) and not math.isnan(high):  # what is no number was reported already
+                _check_range((low, high), rest, axis, where, evaluation, many_turns=many_turns)
         lower.append(low * scale)
         upper.append(high * scale)
         rests.append(rest * scale)

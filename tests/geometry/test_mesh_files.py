@@ -218,3 +218,10 @@ def test_no_truncation_or_flipped_byte_gets_past_as_another_error(kind: str, tmp
 def test_reading_stl_and_obj_does_not_load_trimesh() -> None:
     code = "import sys, articad.geometry; sys.exit('trimesh' in sys.modules or 'scipy' in sys.modules or 'pydantic' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], check=False, env={"PYTHONPATH": "."}).returncode == 0
+
+
+def test_an_obj_writes_every_number_in_as_many_digits_as_it_has() -> None:
+    sides = 1 + np.arange(120)
+    mesh = TriMesh(np.random.default_rng(0).normal(size=(121, 3)), np.stack([0 * sides[:-1], sides[:-1], sides[1:]], axis=1))
+    lines = write_obj(mesh).decode("ascii").splitlines()
+    assert [line for line in lines if line.startswith("f")] == [f"f 1 {k} {k + 1}" for k in range(2, 121)]

@@ -136,3 +136,25 @@ def test_the_tree_is_deterministic_and_linear_in_size() -> None:
     mechanism = Mechanism([f"p{i}" for i in range(n + 1)], "p0", joints)
     assert mechanism.tree.parts == mechanism.parts
     assert mechanism.tree.depth(f"p{n}") == n
+
+
+def test_a_tree_declared_outwards_is_the_one_that_a_search_finds() -> None:
+    rng = np.random.default_rng(2)
+    for n in (2, 5, 30):
+        parts = [f"p{i}" for i in range(n)]
+        joints = [joint(f"j{i}", parts[rng.integers(i)], parts[i]) for i in range(1, n)]
+        joints = [joints[i] for i in rng.permutation(n - 1)]
+        tree, loops = JointGraph(parts, "p0", joints).spanning_tree()
+        searching = JointGraph(parts, "p0", joints)
+        searching.__dict__["_outward"] = None
+        searched, none = searching.spanning_tree()
+        assert not loops
+        assert not none
+        assert tree.edges == searched.edges
+        assert tree.parts == searched.parts
+
+
+def test_parts_in_a_ring_of_their_own_are_not_connected_though_a_joint_leads_to_each() -> None:
+    joints = [joint("a", "g", "x"), joint("b", "y", "z"), joint("c", "z", "y")]
+    (found,) = [f for f in JointGraph(("g", "x", "y", "z"), "g", joints).findings() if f.code != "E_JOINT_DUP"]
+    assert found.code == "E_DISCONNECTED"

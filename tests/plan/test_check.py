@@ -708,6 +708,12 @@ def test_limits_repeated_on_a_mirrored_part_are_reported_where_the_mirror_change
     assert bool(found) == (needed is not None)
 
 
+@pytest.mark.parametrize("angle_deg", [["turn", 1.5], [1.5, "turn"], ["turn", "turn"]])
+def test_a_limit_that_names_nothing_is_reported_beside_one_that_looks_like_radians(angle_deg: list[object]) -> None:
+    found = check(pair({"type": "revolute", "angle_deg": angle_deg}, 1))
+    assert {finding.code for finding in found} == {"E_EXPRESSION"}
+
+
 def test_screws_may_turn_many_times() -> None:
     assert not check(pair({"type": "screw", "lead_mm": 2, "angle_deg": [0, 7200]}, 1))
 
