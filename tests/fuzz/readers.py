@@ -213,12 +213,13 @@ def case(content: bytes) -> None:
 
 
 def certificate(content: bytes) -> None:
-    """A certificate of motion beside its meshes, or one of the meshes; whatever it says, it is accepted or refuted."""
+    """A certificate of motion, one of its meshes, or its proof; whatever they say, it is accepted or refuted."""
     folder = _folder(os.getpid()) / "certificate"
     folder.mkdir(exist_ok=True)
     for file in (CORPUS / "certificate").iterdir():
         (folder / file.name).write_bytes(file.read_bytes())
-    (folder / ("lid.npz" if content.startswith(b"PK") else "certificate.json")).write_bytes(content)
+    name = "certificate.json" if not content.startswith(b"PK") else "_proof.npz" if b".codes" in content else "lid.npz"
+    (folder / name).write_bytes(content)
     assert all(isinstance(fault, str) for fault in verify_file(folder / "certificate.json", folder))
 
 
