@@ -1,6 +1,6 @@
 """All measurements beside the peers, one after another; what became slower than the stored baseline is named.
 
-    python -m benchmarks [--only kinematics,loops] [--out FILE] [--keep]
+    python -m benchmarks [--only kinematics,loops] [--out FILE] [--keep] [--baseline FILE]
 
 Within a table everything is measured in turn in one process, so a ratio means something on any machine; absolute times are
 never compared. `--keep` writes the ratios as the new baseline. Exit code 1 on a missed goal or a regression.
@@ -22,6 +22,7 @@ RUNS = {
     "kinematics": ["kinematics.py"],
     "loops": ["loops.py"],
     "interference 10 x 2k": ["interference.py", "--parts", "10", "--triangles", "2000"],
+    "interference 10 x 2k curved": ["interference.py", "--parts", "10", "--triangles", "2000", "--curved"],
     "interference 10 x 20k": ["interference.py", "--parts", "10", "--triangles", "20000"],
     "interference 50 x 2k": ["interference.py", "--parts", "50", "--triangles", "2000"],
     "whole": ["whole.py"],
@@ -34,6 +35,7 @@ def main() -> int:
     parser.add_argument("--only", help="names of measurements, or their beginnings, with commas between")
     parser.add_argument("--out", help="write everything as JSON")
     parser.add_argument("--keep", action="store_true", help="write the ratios as the baseline")
+    parser.add_argument("--baseline", type=Path, default=BASELINE, help="compare with, and keep in, another file")
     options = parser.parse_args()
     wanted = tuple(options.only.split(",")) if options.only else ("",)
     measured = {name: run(words) for name, words in RUNS.items() if name.startswith(wanted)}
@@ -44,15 +46,15 @@ def main() -> int:
         for goal in table["goals"]
     }
     missed = sum(not goal["met"] for document in measured.values() for table in document["tables"] for goal in table["goals"])
-    slower = compared(ratios)
+    slower = compared(ratios, options.baseline)
     print(f"\n{len(ratios)} ratios: {missed} goals missed, {len(slower)} slower than the baseline")
     for line in slower:
         print(f"  {line}")
     if options.out:
         Path(options.out).write_text(json.dumps(measured | {"ratios": ratios}, indent=1))
     if options.keep:
-        kept = json.loads(BASELINE.read_text()) if BASELINE.exists() else {}
-        BASELINE.write_text(
+        kept = known(options.baseline)
+        options.baseline.write_text(
             json.dumps(dict(sorted((kept | {key: round(value, 4) for key, value in ratios.items()}).items())), indent=1) + "\n"
         )
     return 1 if missed or slower else 0
@@ -66,12 +68,15 @@ def run(words: list[str]) -> dict:
         return json.loads(out.read_text())
 
 
-def compared(ratios: dict[str, float]) -> list[str]:
+def known(baseline: Path) -> dict[str, float]:
+    """Return the ratios that were kept."""
+    return json.loads(baseline.read_text()) if baseline.exists() else {}
+
+
+def compared(ratios: dict[str, float], baseline: Path) -> list[str]:
     """Return what is slower than the baseline."""
-    known = json.loads(BASELINE.read_text()) if BASELINE.exists() else {}
-    return [
-        f"{name}: {ratio:.3g}, was {known[name]:.3g}" for name, ratio in ratios.items() if name in known and ratio > SLACK * known[name]
-    ]
+    kept = known(baseline)
+    return [f"{name}: {ratio:.3g}, was {kept[name]:.3g}" for name, ratio in ratios.items() if name in kept and ratio > SLACK * kept[name]]
 
 
 if __name__ == "__main__":

@@ -94,10 +94,20 @@ class Body:
     @cached_property
     def bvh(self) -> Any:
         """The surface as an `fcl.BVHModel`, in as few triangles as `manifold`."""
+        return make_bvh(*self._plain)
+
+    @cached_property
+    def plain_corners(self) -> FloatArray:
+        """Corners of the triangles of `manifold`, `(T, 3, 3)`."""
+        vertices, triangles = self._plain
+        return np.asarray(vertices[triangles])
+
+    @property
+    def _plain(self) -> tuple[FloatArray, NDArray[Any]]:
         if not self.is_thinned:
-            return make_bvh(self.mesh.vertices, self.mesh.triangles)
+            return self.mesh.vertices, self.mesh.triangles
         content = self.manifold.to_mesh64()
-        return make_bvh(np.array(content.vert_properties)[:, :3], np.array(content.tri_verts).astype(np.int32))
+        return np.array(content.vert_properties)[:, :3], np.array(content.tri_verts).astype(np.int32)
 
     @cached_property
     def standing(self) -> Any:

@@ -11,6 +11,7 @@ from collections.abc import Mapping, Sequence
 from articad.connectors.se3 import SE3
 from articad.findings import Finding, Findings
 from articad.geometry.mesh import TriMesh
+from articad.interference.coaxial import Coaxial
 from articad.interference.holding import Holding
 from articad.interference.overlap import NOTHING, distance, measured, se3_of
 from articad.interference.relations import FitLike, WaiverLike
@@ -64,7 +65,7 @@ def check_scene(
     known: Mapping[tuple[str, str], PairCheck] | None = None,
 ) -> Checks:
     """Check one pose of a scene; see `check_pose`. What is `known` of a pair of parts is taken as it is, without findings."""
-    placed = scene.at(poses)
+    placed, coaxial = scene.at(poses), Coaxial.of(scene)
     findings = [broken_finding(name, reason) for name, reason in scene.broken.items()]
     pairs: dict[tuple[str, str], PairCheck] = {}
     for (a, b), T_a_b, apart in placed.near():
@@ -75,7 +76,7 @@ def check_scene(
         if known is not None and (a, b) in known:
             pairs[a, b] = known[a, b]
             continue
-        found = NOTHING if apart else measured(scene.bodies[a], scene.bodies[b], T_a_b)
+        found = NOTHING if apart or coaxial.apart(scene, a, b, T_a_b) else measured(scene.bodies[a], scene.bodies[b], T_a_b)
         gap = distance(scene.bodies[a], scene.bodies[b], se3_of(T_a_b)) if gaps and not found.volume else None
         pairs[a, b], finding = judge(scene, (a, b), found, over=over, pose=pose, gap=gap)
         findings += finding
