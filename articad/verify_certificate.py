@@ -282,10 +282,11 @@ class Checker:
 
     def prove(self, claim: dict[str, Any], proof: dict[str, Any]) -> None:
         """Prove a claim: cut pieces of both surfaces and of the range as written, until what is written keeps each two apart."""
-        (a, b), vary, whole, way = claim["parts"], claim["vary"], self.certificate, self.way(*claim["parts"], claim["via"])
+        (a, b), vary, whole = claim["parts"], claim["vary"], self.certificate
         (V, F), (W, G) = ((self.meshes[name]["vertices"], self.meshes[name]["triangles"]) for name in (a, b))
         moved, order_a, order_b = (self.proof.get(name, 0.0) for name in proof["uses"].tolist())
-        here, (T, _) = V + moved, self.place(way, self.rest)
+        here, way = V + moved, self.way(a, b, claim["via"])
+        T = self.place(way, self.rest)[0]
         said = [pair["strength"].get("epsilon_mm", 0.0) for pair in whole["pairs"] if {*pair["parts"]} == {a, b}]
         least = sum(whole["meshes"][name]["deflection_mm"] for name in (a, b))
         need(claim["clear_mm"] >= least - ROUNDING, "it keeps less than the deflection of the meshes")
