@@ -21,10 +21,9 @@ PROOF = "_proof"  # no part bears such a name
 ROUNDING = 1e-9  # of ranges, distances, and what a driver moves
 HALF = 0.5  # of entries of a rotation, by which a loop may be open: with a turn of less than 1 rad more it is not half a turn
 ALIGNED = 1e-12  # sine of axes that are parallel
-OF_B, SPUN = 1, 2  # kinds of directions: as b sees them, and those as a sees them whatever the innermost turn
-COURSE = ("uses", "parts_a", "parts_b", "about", "cuts", "at", "codes", "along", "kinds")  # arrays of every claim
+COURSE = ("uses", "parts_a", "parts_b", "about", "cuts", "at", "codes", "along", "of_a")  # arrays of every claim
 REST = 1e-4  # rad or mm: by which what follows a driver may be off at rest
-ROUND, OUTSIDE = -5, -4  # two pieces differ in radius; a box lies outside the cone of a ball; -3, -2, -1 cut a piece of a, of b, the box
+LEAN, ROUND, OUTSIDE = -6, -5, -4  # two pieces differ in angle from a ball's axis; in radius; a box lies outside the cone of a ball; -3, -2, -1 cut a piece of a, of b, the box
 
 
 class Refuted(Exception):  # noqa: N818 - it is no error of the program
@@ -96,6 +95,13 @@ def radii(flat: Any) -> tuple[Any, Any]:
     return np.where(over, np.minimum(least, height), least), np.linalg.norm(flat, axis=2).max(1)
 
 
+def leans(local: Any, axis: Any) -> tuple[Any, Any]:
+    """Return between which angles from an axis through 0 triangles `(n, 3, 3)` are."""
+    height, wide = local @ axis, radii(local @ plane(axis))
+    ends = np.arctan2(wide, height.max(1)), np.arctan2(wide, height.min(1))
+    return ends[0].min(0), ends[1].max(0)
+
+
 def joined(ends: Any, rows: list[Any]) -> tuple[Any, Any, Any]:
     """Return pieces of a driver's range in a row as one: value and rate of a line from end to end, and how far from it they are."""
     (value, rate, near), half = (np.array(column) for column in zip(*rows, strict=True)), np.diff(ends)[:, None] / 2
@@ -111,15 +117,14 @@ def is_outside(ball: dict[str, Any], box: dict[str, tuple[float, float]]) -> boo
     return max(x, y) < math.pi / 2 and math.cos(x) * math.cos(y) < math.cos(ball["cone"]) - ROUNDING
 
 
-def motion(u: Any, p: Any, size: float, spins: Any, v: Any, along: Any, aside: Any, turned: Any, outer: Any) -> Any:
-    """Bound how far what is within `size` of points `(n, 3)` goes along a direction while what moves goes `along` together and `aside` each, `(n,)`.
+def motion(u: Any, p: Any, spins: Any, v: Any, along: Any, aside: Any, turned: Any, outer: Any) -> Any:
+    """Bound how far points `(n, 3)` go along a direction while what moves goes `along` together and `aside` each, `(n,)`.
 
     That is their speed, and half the second derivative: along u the factor i outside j turns what j moves by |u x axis i|.
     """
     across, width, turns = spins @ u, np.abs(along) + aside, turned > 0  # spins: p @ spin is axis x p
-    speeds, reach, inside = p @ across.T + v @ u, np.linalg.norm(p @ spins + v[:, None], axis=2) + size, 0.0
+    speeds, reach, inside = p @ across.T + v @ u, np.linalg.norm(p @ spins + v[:, None], axis=2), 0.0
     moved, tilt = np.abs(speeds @ along) + np.abs(speeds) @ aside, np.minimum(np.linalg.norm(across, axis=1) + outer, 1.0) * turned
-    moved += size * (np.linalg.norm(along @ across) + aside @ np.linalg.norm(across, axis=1))
     for f, share in reversed(list(enumerate(np.cumsum(tilt) - tilt / 2))):
         carried = width[f] * (reach[f] + inside * turns[f])
         moved, inside = moved + carried * share, inside + carried
@@ -286,7 +291,7 @@ class Checker:
         (V, F), (W, G) = ((self.meshes[name]["vertices"], self.meshes[name]["triangles"]) for name in (a, b))
         moved, order_a, order_b = (self.proof.get(name, 0.0) for name in proof["uses"].tolist())
         here, way = V + moved, self.way(a, b, claim["via"])
-        T = self.place(way, self.rest)[0]
+        T, steps = self.place(way, self.rest)
         said = [pair["strength"].get("epsilon_mm", 0.0) for pair in whole["pairs"] if {*pair["parts"]} == {a, b}]
         least = sum(whole["meshes"][name]["deflection_mm"] for name in (a, b))
         need(claim["clear_mm"] >= least - ROUNDING, "it keeps less than the deflection of the meshes")
@@ -298,10 +303,13 @@ class Checker:
             need(low <= self.rest[name] + ROUNDING and self.rest[name] <= high + ROUNDING, "not about the rest pose")
         beside = W @ T[:3, :3].T + T[:3, 3]  # if none is inside the other here, surfaces that never meet keep it so
         need(not is_inside(here, F, beside[G]) and not is_inside(beside, G, here[F]), "one is inside the other at rest")
-        boxes, halves, (hub, axle) = self.boxes(way, vary, proof)
+        boxes, halves = self.boxes(way, vary, proof)
         A, B, (centre, axis) = ordered(here[F], order_a), ordered(W[G], order_b), proof["about"]
-        near, far = zip(*(radii((corners - centre) @ plane(axis)) for corners in (A, B @ T[:3, :3].T + T[:3, 3])), strict=True)
-        height, width = (B - hub) @ axle, np.linalg.norm((B - hub) @ plane(axle), axis=2)
+        both = A - centre, B @ T[:3, :3].T + T[:3, 3] - centre
+        near, far = zip(*(radii(local @ plane(axis)) for local in both), strict=True)
+        turns = [joint for joint, _ in way if {f["name"] for f in joint["freedoms"]} & {*vary, *self.linked}]
+        cone = turns[0]["cone"] if len(turns) == 1 and all(f["name"] in vary and not f["rest"] for f in turns[0]["freedoms"]) else None
+        mine, theirs = (leans(local, steps[turns[0]["freedoms"][-1]["name"]][0]) for local in both)
         spans = [list(itertools.pairwise(proof[key].tolist())) for key in ("parts_a", "parts_b")]
         need([(own[0][0], own[-1][1]) for own in spans] == [(0, len(A)), (0, len(B))], "a triangle is left out")
         rows, codes = deque[Any](itertools.product(*spans, [0])), iter(proof["codes"].tolist())
@@ -317,19 +325,17 @@ class Checker:
                 gap = math.inf if any(is_outside(joint, box) for joint, _ in way if joint["cone"] is not None) else 0.0
             elif code == ROUND:
                 gap = max(near[0][x].min() - far[1][y].max(), near[1][y].min() - far[0][x].max()) if is_steady else 0.0
+            elif code == LEAN:  # a swing changes angles by no more than its own, the twist by none
+                over = mine[0][x].min() - theirs[1][y], theirs[0][y] - mine[1][x].max()
+                gap = max((near[1][y] * np.sin(np.clip(side - cone, 0, np.pi / 2))).min() for side in over) if is_steady and cone else 0.0
             else:
-                kind, u, p, q, size = sum(code >= proof["kinds"]), proof["along"][code], A[x].reshape(-1, 3), B[y].reshape(-1, 3), 0.0
-                u, thick = (R @ u if kind == OF_B else u) / math.hypot(*u), 0.0
-                if kind == SPUN:  # whatever the innermost turn, b stays about a stretch of its axis
-                    size, q = width[y].max(), hub + np.outer([height[y].min(), height[y].max()], axle)
-                    moving = [*moving[:2], *(part * (np.arange(len(part)) < len(part) - 1) for part in moving[2:])]
-                    thick = size * math.hypot(*(plane(axle) @ (u @ R)))
-                q = q @ R.T + t
-                gap = (q @ u - motion(u, q, size, *moving)).min() - thick - (p @ u).max()
+                u, p, q = proof["along"][code], A[x].reshape(-1, 3), B[y].reshape(-1, 3) @ R.T + t
+                u = (u if code < proof["of_a"] else R @ u) / math.hypot(*u)
+                gap = (q @ u - motion(u, q, *moving)).min() - (p @ u).max()
             need(gap > claim["clear_mm"], "pieces come too near")
 
-    def boxes(self, way: list[Any], vary: dict[str, Any], proof: dict[str, Any]) -> tuple[list[Any], dict[int, Any], Any]:
-        """Cut a range into boxes; of each return the pose in its middle, and how far what goes together; and the innermost axis."""
+    def boxes(self, way: list[Any], vary: dict[str, Any], proof: dict[str, Any]) -> tuple[list[Any], dict[int, Any]]:
+        """Cut a range into boxes; of each return the pose in its middle, and how far what goes together."""
         tied = {f["name"] for joint, _ in way for f in joint["freedoms"]} & set(self.linked) - set(vary)
         drivers, names, todo, found, halves = [n for n in vary if tied and n in self.certificate["drivers"]], list(vary), [vary], [], {}
         (centre, axis), across = proof["about"], plane(proof["about"][1])
@@ -356,5 +362,4 @@ class Checker:
             ]  # turns and slides about one axis or point
             is_steady, outer = max(np.abs(part).max() for part in off) < ROUNDING, loose * (np.cumsum(turned) - turned)
             found.append((box, T[:3, :3], T[:3, 3], is_steady, np.cross(w[:, None], np.eye(3)), v, along, aside, turned, outer))
-        axle = w[-1] @ T[:3, :3] if w[-1].any() and abs(w[-1] @ v[-1]) < ROUNDING else np.full(3, np.nan)
-        return found, halves, ((np.cross(w[-1], v[-1]) - T[:3, 3]) @ T[:3, :3], axle)  # b sees its innermost axis stand
+        return found, halves

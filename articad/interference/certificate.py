@@ -155,7 +155,7 @@ class Certificate:
             moved = "" if course.moved is None else shared("moved", course.moved)
             found[f"{at}.uses"] = np.array([moved, *(shared("order", order.astype(np.int32)) for order in course.orders)])
             found[f"{at}.parts_a"], found[f"{at}.parts_b"] = (np.cumsum([0, *sizes]) for sizes in course.sizes)
-            found[f"{at}.about"], found[f"{at}.kinds"] = course.about, course.rows.kinds
+            found[f"{at}.about"], found[f"{at}.of_a"] = course.about, np.array(course.rows.of_a)
             found[f"{at}.cuts"], found[f"{at}.at"] = _short(course.cuts), course.places
             found[f"{at}.codes"], found[f"{at}.along"] = _short(course.rows.codes), course.rows.along
         return found

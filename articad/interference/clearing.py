@@ -18,10 +18,9 @@ from numpy.typing import NDArray
 
 from articad.interference.cover import Budget
 from articad.interference.profile import Forest
-from articad.interference.revolving import LEAST_TURN, Revolved
 from articad.interference.spread import Spread
 from articad.interference.surface import Core
-from articad.interference.trail import CUT_A, CUT_B, CUT_RANGE, OF_A, OF_B, SPUN, Trail
+from articad.interference.trail import CUT_A, CUT_B, CUT_RANGE, LEAN, OF_A, OF_B, ROUND, Trail
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.signedinteger[Any]]
@@ -31,7 +30,6 @@ CHUNK = 4096  # pairs of pieces looked at together
 MOTION_SHARE = 1.0  # of the pieces' size: when the motion is larger, the range is cut before the pieces
 LEAST_SHARE = 1e-3  # of the motion in any direction: along the normal of faces in one plane there is nothing to cut
 MOST_PAIRS = 4_000_000  # of pieces, after which a search is given up
-SLIM = 1.5  # of a piece's size: what keeps so near the innermost axis is cut for what it is when it turns about it
 _EYE = np.eye(3)
 _COARSE = 64.0  # directions between boxes are rounded to so many parts: any direction is a proof, and few of them take less room
 
@@ -171,7 +169,6 @@ class _Search:
         self.boxes, self.needed, self.epsilon, self.axis = boxes, needed, epsilon, axis
         self.spread, self.trail = boxes.spread, Trail()
         self.outcome = Cleared()
-        self.revolved = Revolved.of(self.b, self.spread) if isinstance(boxes, Ranges) and len(self.spread.chain.movers) == 1 else None
         self.size_a, self.size_b = np.linalg.norm(self.a.half, axis=1), np.linalg.norm(self.b.half, axis=1)
 
     def roots(self) -> _Pairs:
@@ -187,8 +184,6 @@ class _Search:
         out: list[_Pairs] = []
         if self.axis is not None:
             rows = self._outlines(rows, out)
-        if self.revolved is not None:
-            rows = self._revolved(rows, self.revolved, out)
         single = (self.a.triangle[rows.a] >= 0) & (self.b.triangle[rows.b] >= 0)
         if not single.all():
             out += self._nodes(rows.of(~single))
@@ -202,11 +197,13 @@ class _Search:
         a, b = self.forests
         ahead, behind = b.low[rows.b] - a.high[rows.a], a.low[rows.a] - b.high[rows.b]
         gap = np.maximum(ahead, behind)
-        best = np.argmax(gap, axis=1)
-        apart = gap[np.arange(len(rows)), best] > self.needed
-        self.trail.round(rows.number[apart & (best == 0)])
+        ball = self.axis.dimensions == 3
+        far = gap > np.array([self.needed, 0.0 if ball else self.needed, self.needed, self.needed])[: gap.shape[1]]  # angles tell of that
+        apart, best = np.asarray(far.any(axis=1)), np.argmax(far, axis=1)
+        for k, code in enumerate((ROUND, LEAN) if ball else (ROUND,)):
+            self.trail.keep(rows.number[apart & (best == k)], code)
         axes = self.axis.frame[:3, 3 - gap.shape[1] + 1 : 3].T
-        for k in range(1, gap.shape[1]):
+        for k in () if ball else range(1, gap.shape[1]):
             for side, sign in ((ahead, 1.0), (behind, -1.0)):
                 which = rows.number[apart & (best == k) & (side[:, k] > self.needed)]
                 self.trail.settle(which, OF_A, np.tile(sign * axes[k - 1], (len(which), 1)))
@@ -216,22 +213,6 @@ class _Search:
         first = ((a.high - a.low)[rows.a].max(axis=1) >= (b.high - b.low)[rows.b].max(axis=1)) & ~whole_a | whole_b
         out += [self._cut_a(rows.of(never & first)), self._cut_b(rows.of(never & ~first))]
         return rows.of(~never)
-
-    def _revolved(self, rows: _Pairs, b: Revolved, out: list[_Pairs]) -> _Pairs:
-        """Settle what is apart whatever the angle of the innermost turn, and cut the rest of the range where that helps; return the others."""
-        turning = self.spread.width[rows.box, -1] > LEAST_TURN
-        others, rows = rows.of(~turning), rows.of(turning)
-        u, still, motion = b.gaps(self.spread, self.a, rows.a, rows.b, rows.box)
-        gap = still - motion.sum(axis=2)
-        at, best = np.arange(len(rows)), np.argmax(gap, axis=1)
-        clear = gap[at, best] > self.needed
-        self.trail.settle(rows.number[clear], SPUN, u[at, best][clear])
-        apart = ~clear & (still[at, best] > self.needed)
-        out += self._cut_range(rows.of(apart), motion[at, best, :-1][apart])
-        left = ~clear & ~apart
-        slim = left & (b.radius[rows.b] <= SLIM * self.size_b[rows.b]) & ~((self.a.triangle[rows.a] >= 0) & (self.b.triangle[rows.b] >= 0))
-        out += self._cut_pieces(rows.of(slim))
-        return _Pairs.of_all([others, rows.of(left & ~slim)])
 
     def _nodes(self, rows: _Pairs) -> list[_Pairs]:
         T, box = self.spread.T[rows.box], rows.box

@@ -16,6 +16,7 @@ FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
 Ends = tuple[FloatArray, FloatArray]
 
+_ROUNDING = 1e-9  # rad: of angles
 CHUNK = 65_536  # rows looked at together
 
 
@@ -38,6 +39,22 @@ def outline(core: Core, corners: FloatArray, travel: tuple[float, float] = (0.0,
             low.append(local[..., axis].min(axis=1) + way[0])
             high.append(local[..., axis].max(axis=1) + way[1])
     return np.stack(low, axis=1), np.stack(high, axis=1)
+
+
+def leaning(core: Core, corners: FloatArray, cone: float, needed: float) -> Ends:
+    """Return between which angles from the axis each triangle is while it swings within a cone about it, `(T, 1)` each [rad].
+
+    The twist of a ball keeps this angle, and the swing changes it by no more than its own. What is apart by ψ more at radius r is
+    r sin ψ away.
+    """
+    height = (corners - core.frame[:3, 3]) @ core.frame[:3, 2]
+    axis = Core(core.frame)
+    wide = np.stack([axis.least_radii(corners), axis.radii(corners).max(axis=1)])
+    low, high = np.arctan2(wide, height.max(axis=1)).min(axis=0), np.arctan2(wide, height.min(axis=1)).max(axis=0)
+    least = core.least_radii(corners)
+    more = cone + np.arcsin(np.clip(needed / np.maximum(least, 1e-300), 0.0, 1.0)) + _ROUNDING
+    more = np.where(least > needed, more, np.pi)
+    return (low - more)[:, None], (high + more)[:, None]
 
 
 def meeting(a: Ends, b: Ends, needed: float | FloatArray) -> BoolArray:

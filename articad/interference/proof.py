@@ -17,7 +17,7 @@ from articad.connectors.se3 import SE3
 from articad.interference.claims import Claim, Course
 from articad.interference.clearing import MOST_PAIRS, Boxes, Cleared, Ranges, clear
 from articad.interference.cover import Budget
-from articad.interference.meridian import outline
+from articad.interference.meridian import Ends, leaning, outline
 from articad.interference.motion import Chain, Mover, Route, freedoms, scattered, swing_and_twist, turned
 from articad.interference.overlap import Overlap, measured, overlap
 from articad.interference.profile import Forest
@@ -230,7 +230,14 @@ class Prover:
                 turns, core_b = mover.joint.type is not JointType.SLIDER, Core(np.asarray(np.linalg.inv(self.chain.last)), dimensions)
                 of_a = outline(self.axis, a.corners, turns=turns)
                 of_b = outline(core_b, b.corners, self.travel(mover), turns=turns)
-                self._forests[shrink] = Forest.pair(a, b, of_a, of_b, self.margin + 2 * CLAIM_SLACK_MM)
+                needed = self.margin + 2 * CLAIM_SLACK_MM
+                limit = np.full(of_a[0].shape[1], needed)
+                if dimensions == 3:
+                    cone = self.chain.freedoms[mover.columns[0]].upper
+                    leans = leaning(self.axis, a.corners, 0.0, 0.0), leaning(core_b, b.corners, cone, needed)
+                    of_a, of_b = (_beside(own, lean) for own, lean in zip((of_a, of_b), leans, strict=True))
+                    limit = np.append(limit, 0.0)
+                self._forests[shrink] = Forest.pair(a, b, of_a, of_b, limit)
         return self._forests[shrink]
 
     def travel(self, mover: Mover) -> tuple[float, float]:
@@ -328,6 +335,10 @@ class Prover:
             clear=self.margin,
             course=course,
         )
+
+
+def _beside(one: Ends, other: Ends) -> Ends:
+    return np.concatenate([one[0], other[0]], axis=1), np.concatenate([one[1], other[1]], axis=1)
 
 
 def cuts_of(boxes: Boxes) -> tuple[NDArray[np.int64], FloatArray]:

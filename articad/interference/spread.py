@@ -135,16 +135,7 @@ class Spread:
 
     # --- bounds, for rows of (box, point or little box)
 
-    def first_order(
-        self,
-        box: IntArray,
-        u: FloatArray,
-        p: FloatArray,
-        extent: FloatArray | None,
-        radius: FloatArray | None = None,
-        *,
-        still: bool = False,
-    ) -> FloatArray:
+    def first_order(self, box: IntArray, u: FloatArray, p: FloatArray, extent: FloatArray | None) -> FloatArray:
         """Bound how far points move along directions to first order, `(n, D, G)` [mm].
 
         Args:
@@ -152,24 +143,17 @@ class Spread:
             u: Unit directions in a's frame, `(n, D, 3)`.
             p: Points of b at the box's centre, in a's frame, `(n, 3)`.
             extent: Half axes of a little box about each point, `(n, 3, 3)`, or None for the points alone.
-            radius: Of a ball about each point of that box, `(n,)`, or None.
-            still: Whether the innermost freedom stands.
         """
         w, v = self.spin[box], self.flow[box]
-        if still:
-            w[:, -1] = v[:, -1] = 0.0
         moved = np.abs((np.cross(w, p[:, None]) + v) @ u.transpose(0, 2, 1)).transpose(0, 2, 1)
         if extent is not None:
             turned = np.cross(u[:, :, None], w[:, None])  # u · (w × e) = (u × w) · e
             moved += np.abs(turned @ extent.transpose(0, 2, 1)[:, None]).sum(axis=-1)
-            moved += 0.0 if radius is None else np.linalg.norm(turned, axis=-1) * radius[:, None, None]
         return np.asarray(moved)
 
-    def second_order(self, box: IntArray, u: FloatArray, p: FloatArray, size: FloatArray, *, still: bool = False) -> FloatArray:
+    def second_order(self, box: IntArray, u: FloatArray, p: FloatArray, size: FloatArray) -> FloatArray:
         """Bound what is left of the motion along directions, `(n, D)` [mm]; `size (n,)`: radius of a ball about each point."""
         w, v, width = self.omega[box], self.moment[box], self.width[box]
-        if still:
-            width[:, -1] = 0.0
         speed = np.linalg.norm(np.cross(w, p[:, None]) + v, axis=2)  # of the centre, by each factor
         speed += self.turns * size[:, None]
         turned = width * self.turns

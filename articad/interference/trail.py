@@ -15,22 +15,22 @@ from numpy.typing import NDArray
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
-ROUND, OUTSIDE, CUT_A, CUT_B, CUT_RANGE = -5, -4, -3, -2, -1
-OF_A, OF_B, SPUN = 0, 1, 2  # how a direction is meant: as a sees it, as b sees it, as a sees it whatever the innermost turn
+LEAN, ROUND, OUTSIDE, CUT_A, CUT_B, CUT_RANGE = -6, -5, -4, -3, -2, -1
+OF_A, OF_B = 0, 1  # who sees a direction as it is written
 
 
 class Written(NamedTuple):
     """A trail as a checker reads it.
 
     Attributes:
-        codes: Of each row a cut, `ROUND`, `OUTSIDE`, or the number of a direction.
-        along: Directions `(n, 3)`, in the order of their kinds.
-        kinds: Where those that b sees begin, and those that hold whatever the innermost turn.
+        codes: Of each row a cut, `LEAN`, `ROUND`, `OUTSIDE`, or the number of a direction.
+        along: Directions `(n, 3)`, those of a first.
+        of_a: How many of them are of a.
     """
 
     codes: IntArray
     along: FloatArray
-    kinds: IntArray
+    of_a: int
 
 
 class Trail:
@@ -40,7 +40,7 @@ class Trail:
         self.count = self.roots = 0
         self._cuts: list[tuple[IntArray, int, int]] = []
         self._settled: list[tuple[IntArray, int, FloatArray]] = []
-        self._round: list[IntArray] = []
+        self._kept: list[tuple[IntArray, int]] = []
 
     def begin(self, count: int) -> IntArray:
         """Return numbers of the first rows."""
@@ -52,9 +52,9 @@ class Trail:
         self.count += count
         return np.arange(self.count - count, self.count)
 
-    def round(self, rows: IntArray) -> None:
-        """Note that rows are apart by their radii."""
-        self._round.append(rows)
+    def keep(self, rows: IntArray, code: int) -> None:
+        """Note that rows are apart by their radii or angles, which the joint keeps."""
+        self._kept.append((rows, code))
 
     def settle(self, rows: IntArray, kind: int, along: FloatArray) -> None:
         """Note the directions that settled rows."""
@@ -71,8 +71,8 @@ class Trail:
     def written(self) -> Written:
         """Return the trail as a checker reads it."""
         codes, first = np.full(self.count, OUTSIDE, dtype=np.int64), np.zeros(self.count, dtype=np.int64)
-        for rows in self._round:
-            codes[rows] = ROUND
+        for rows, code in self._kept:
+            codes[rows] = code
         for rows, code, begin in self._cuts:
             codes[rows], first[rows] = code, begin + 2 * np.arange(len(rows))
         settled = np.concatenate([rows for rows, _, _ in self._settled] or [np.empty(0, dtype=np.int64)])
@@ -86,4 +86,4 @@ class Trail:
             out.append(codes[level])
             parted = level[(out[-1] >= CUT_A) & (out[-1] <= CUT_RANGE)]
             level = np.stack([first[parted], first[parted] + 1], axis=1).ravel()
-        return Written(np.concatenate(out), unique[:, 1:], np.searchsorted(unique[:, 0], [OF_B, SPUN]))
+        return Written(np.concatenate(out), unique[:, 1:], int(np.searchsorted(unique[:, 0], OF_B)))
