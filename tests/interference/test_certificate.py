@@ -304,6 +304,18 @@ def test_a_disc_on_the_stud_that_meets_the_socket_as_it_swings_is_refuted() -> N
     assert any("too near" in reason for reason in verified(document, certificate, stud=saved(**arrays_of(disc))))
 
 
+def test_from_angles_about_a_ball_its_swing_is_taken_off() -> None:
+    meshes = ball_and_socket()
+    certificate = proven(meshes, [joint("knuckle", "ball", "socket", "stud", cone=0.3)], deflection=0.02)
+    V = meshes["stud"].vertices
+    funnel = TriMesh(np.where((V[:, 2] > 8.1)[:, None], V * [2.9, 2.9, 1], V), meshes["stud"].triangles)
+    widest, opening = math.atan2(3 * 2.9, 7.34), math.atan2(7.39, 4)  # of the rod: its largest radius at its least height
+    assert widest < opening < widest + 0.3
+    document = certificate.to_json()
+    document["meshes"]["stud"]["sha256"] = funnel.digest
+    assert any("too near" in reason for reason in verified(document, certificate, stud=saved(**arrays_of(funnel))))
+
+
 def test_a_rod_slides_and_turns_in_its_bush() -> None:
     bush = tube(8.2, 20, 10, 48)
     rod = manifold_mesh(m3.Manifold.cylinder(200, 8, 8, 48, center=True) + m3.Manifold.cube([6, 60, 12], center=True).translate([0, 0, 40]))
