@@ -21,9 +21,14 @@ PROOF = "_proof"  # no part bears such a name
 ROUNDING = 1e-9  # of ranges, distances, and what a driver moves
 HALF = 0.5  # of entries of a rotation, by which a loop may be open: with a turn of less than 1 rad more it is not half a turn
 ALIGNED = 1e-12  # sine of axes that are parallel
+SIDES = np.array(list(itertools.product((0, 1), repeat=3)))
 COURSE = ("uses", "parts_a", "parts_b", "about", "cuts", "at", "codes", "along", "of_a")  # arrays of every claim
 REST = 1e-4  # rad or mm: by which what follows a driver may be off at rest
-LEAN, ROUND, OUTSIDE = -6, -5, -4  # two pieces differ in angle from a ball's axis; in radius; a box lies outside the cone of a ball; -3, -2, -1 cut a piece of a, of b, the box
+LEAN, ROUND, OUTSIDE = (
+    -6,
+    -5,
+    -4,
+)  # two pieces differ in angle from a ball's axis; in radius; a box lies outside the cone of a ball; -3, -2, -1 cut a piece of a, of b, the box
 
 
 class Refuted(Exception):  # noqa: N818 - it is no error of the program
@@ -60,12 +65,18 @@ def digest(vertices: Any, triangles: Any) -> str:
     return hashlib.sha256(b"articad.mesh/1" + np.array([len(v), len(f)], "<i8").tobytes() + v.tobytes() + f.tobytes()).hexdigest()
 
 
-def is_inside(V: Any, F: Any, corners: Any) -> bool:
-    """Return whether a connected piece of a mesh lies inside a closed surface that it does not meet (van Oosterom and Strackee)."""
-    label = np.arange(len(V))
+def shells(count: int, F: Any) -> Any:
+    """Return a vertex of each connected piece of a mesh."""
+    label = np.arange(count)
     while (label[F] != (least := label[F].min(1, keepdims=True))).any():
         np.minimum.at(label, F, least)
-    for point in V[np.unique(label[F])]:
+        label = label[label]
+    return np.unique(label[F])
+
+
+def is_inside(points: Any, corners: Any) -> bool:
+    """Return whether a closed surface winds round one of some points (van Oosterom and Strackee)."""
+    for point in points:
         a, b, c = np.moveaxis(corners - point, 1, 0)
         la, lb, lc = (np.linalg.norm(v, axis=1) for v in (a, b, c))
         below = la * lb * lc + (a * b).sum(1) * lc + (b * c).sum(1) * la + (c * a).sum(1) * lb
@@ -83,6 +94,14 @@ def ordered(corners: Any, order: Any) -> Any:
 def plane(axis: Any) -> Any:
     """Return the projection across a unit axis."""
     return np.eye(3) - np.outer(axis, axis)
+
+
+def hull(corners: Any, span: tuple[int, int], known: dict[tuple[int, int], Any]) -> Any:
+    """Return points whose hull holds a piece: the corners of a triangle or two, else of a box."""
+    if span not in known:
+        points = corners[slice(*span)].reshape(-1, 3)
+        known[span] = points if len(points) < len(SIDES) else np.stack([points.min(0), points.max(0)])[SIDES, [0, 1, 2]]
+    return known[span]
 
 
 def radii(flat: Any) -> tuple[Any, Any]:
@@ -139,7 +158,7 @@ class Checker:
         self.joints = {joint["name"]: joint for joint in certificate["mechanism"]["joints"]}
         self.freedoms = {f["name"]: f for joint in self.joints.values() for f in joint["freedoms"]}
         self.rest: dict[str, float] = {name: f["rest"] for name, f in self.freedoms.items()}
-        self.lines = dict[str, dict[Any, Any]]()
+        self.lines, self.shells = dict[str, dict[Any, Any]](), dict[str, Any]()
         self.linked = [f["name"] for name in certificate["linkage"] for f in self.joints[name]["freedoms"]]
         self.loops = [[*self.way(j["parent"], j["child"]), (j, False)] for j in self.joints.values() if j["loop"]]
 
@@ -148,6 +167,7 @@ class Checker:
         whole, claims = self.certificate, self.certificate["claims"]
         for name, entry in whole["meshes"].items():
             need(digest(**self.meshes[name]) == entry["sha256"], f"mesh of {name} is missing or another")
+            self.shells[name] = shells(len(self.meshes[name]["vertices"]), self.meshes[name]["triangles"])
         for number, claim in enumerate(claims):
             try:
                 self.prove(claim, {key: self.proof[f"{number}.{key}"] for key in COURSE})
@@ -302,7 +322,8 @@ class Checker:
             need((low < lower + 1e-6 and high > upper - 1e-6) or not whole["ok"], f"not over the whole range of {name}")
             need(low <= self.rest[name] + ROUNDING and self.rest[name] <= high + ROUNDING, "not about the rest pose")
         beside = W @ T[:3, :3].T + T[:3, 3]  # if none is inside the other here, surfaces that never meet keep it so
-        need(not is_inside(here, F, beside[G]) and not is_inside(beside, G, here[F]), "one is inside the other at rest")
+        inside = is_inside(here[self.shells[a]], beside[G]) or is_inside(beside[self.shells[b]], here[F])
+        need(not inside, "one is inside the other at rest")
         boxes, halves = self.boxes(way, vary, proof)
         A, B, (centre, axis) = ordered(here[F], order_a), ordered(W[G], order_b), proof["about"]
         both = A - centre, B @ T[:3, :3].T + T[:3, 3] - centre
@@ -312,6 +333,7 @@ class Checker:
         mine, theirs = (leans(local, steps[turns[0]["freedoms"][-1]["name"]][0]) for local in both)
         spans = [list(itertools.pairwise(proof[key].tolist())) for key in ("parts_a", "parts_b")]
         need([(own[0][0], own[-1][1]) for own in spans] == [(0, len(A)), (0, len(B))], "a triangle is left out")
+        known: tuple[dict[Any, Any], dict[Any, Any]] = ({}, {})
         rows, codes = deque[Any](itertools.product(*spans, [0])), iter(proof["codes"].tolist())
         while rows:
             row, code = rows.popleft(), next(codes)
@@ -329,7 +351,7 @@ class Checker:
                 over = mine[0][x].min() - theirs[1][y], theirs[0][y] - mine[1][x].max()
                 gap = max((near[1][y] * np.sin(np.clip(side - cone, 0, np.pi / 2))).min() for side in over) if is_steady and cone else 0.0
             else:
-                u, p, q = proof["along"][code], A[x].reshape(-1, 3), B[y].reshape(-1, 3) @ R.T + t
+                u, p, q = proof["along"][code], hull(A, row[0], known[0]), hull(B, row[1], known[1]) @ R.T + t
                 u = (u if code < proof["of_a"] else R @ u) / math.hypot(*u)
                 gap = (q @ u - motion(u, q, *moving)).min() - (p @ u).max()
             need(gap > claim["clear_mm"], "pieces come too near")
