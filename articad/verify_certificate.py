@@ -24,11 +24,8 @@ ALIGNED = 1e-12  # sine of axes that are parallel
 SIDES = np.array(list(itertools.product((0, 1), repeat=3)))
 COURSE = ("uses", "parts_a", "parts_b", "about", "cuts", "at", "codes", "along", "of_a")  # arrays of every claim
 REST = 1e-4  # rad or mm: by which what follows a driver may be off at rest
-LEAN, ROUND, OUTSIDE = (
-    -6,
-    -5,
-    -4,
-)  # two pieces differ in angle from a ball's axis; in radius; a box lies outside the cone of a ball; -3, -2, -1 cut a piece of a, of b, the box
+LEAN, ROUND, OUTSIDE = -6, -5, -4  # pieces differ in angle from a ball's axis, or in radius; a box lies outside the cone of a ball
+CUT = -3  # and -2, -1: the piece of a, of b, or the box is cut
 
 
 class Refuted(Exception):  # noqa: N818 - it is no error of the program
@@ -204,13 +201,8 @@ class Checker:
             before, after, sign = np.array(joint["parent_frame"]), np.linalg.inv(joint["child_frame"]), 1 if forward else -1
             T = T @ (before if forward else np.linalg.inv(after))
             for f in joint["freedoms"][::sign]:
-                axis, speed, angle, motion = (
-                    sign * T[:3, :3] @ f["turn"],
-                    sign * T[:3, :3] @ f["slide"],
-                    sign * values[f["name"]],
-                    np.eye(4),
-                )
-                steps[f["name"]] = axis, speed + np.cross(T[:3, 3], axis)
+                axis, angle, motion = sign * T[:3, :3] @ f["turn"], sign * values[f["name"]], np.eye(4)
+                steps[f["name"]] = axis, sign * T[:3, :3] @ f["slide"] + np.cross(T[:3, 3], axis)
                 K = np.cross(f["turn"], np.eye(3)).T
                 motion[:3, :3] += math.sin(angle) * K + (1 - math.cos(angle)) * K @ K  # Rodrigues
                 motion[:3, 3] = np.multiply(f["slide"], angle)
@@ -337,8 +329,8 @@ class Checker:
         rows, codes = deque[Any](itertools.product(*spans, [0])), iter(proof["codes"].tolist())
         while rows:
             row, code = rows.popleft(), next(codes)
-            if OUTSIDE < code < 0:
-                k, (start, end) = code + 3, row[min(code + 3, 1)]
+            if CUT <= code < 0:
+                k, (start, end) = code - CUT, row[min(code - CUT, 1)]
                 parts = halves[row[2]] if k == 2 else [(start, (start + end) // 2), ((start + end) // 2, end)]
                 rows.extend((*row[:k], part, *row[k + 1 :]) for part in parts)
                 continue
@@ -362,14 +354,12 @@ class Checker:
         drivers, names, todo, found, halves = [n for n in vary if tied and n in self.certificate["drivers"]], list(vary), [vary], [], {}
         (centre, axis), across = proof["about"], plane(proof["about"][1])
         need(len(drivers) <= 1, "two drivers at once")
-        for number, (box, cut, place) in enumerate(
-            zip(todo, proof["cuts"].tolist(), proof["at"].tolist(), strict=True)
-        ):  # they become more
+        for number, (box, cut, place) in enumerate(zip(todo, proof["cuts"].tolist(), proof["at"].tolist(), strict=True)):
             if cut >= 0:
                 (low, high), name = box[names[cut]], names[cut]
                 need(low < place < high, "a part of the range is left out")
                 halves[number] = len(todo), len(todo) + 1
-                todo += [{**box, name: (low, place)}, {**box, name: (place, high)}]
+                todo += [{**box, name: (low, place)}, {**box, name: (place, high)}]  # they become more
             values = {name: (sum(ends) / 2, 0.0, (ends[1] - ends[0]) / 2) for name, ends in box.items()}
             for driver in drivers:
                 line, half = self.stretch(driver, *box[driver]), values[driver][2]
@@ -377,11 +367,7 @@ class Checker:
             T, steps = self.place(way, {**self.rest, **{name: value for name, (value, *_) in values.items()}})
             w, v, along, aside = map(np.array, zip(*((*steps[name], *values[name][1:]) for name in steps if name in values), strict=True))
             turned, loose = (np.abs(along) + aside) * w.any(1), np.abs(np.cross(w, w[w.any(1)][:1])).max(initial=0.0) > ALIGNED
-            off = [
-                (v + np.cross(w, centre)) @ across,
-                np.cross(w, axis),
-                across @ across - across,
-            ]  # turns and slides about one axis or point
+            off = [(v + np.cross(w, centre)) @ across, np.cross(w, axis), across @ across - across]  # none about one axis or point
             is_steady, outer = max(np.abs(part).max() for part in off) < ROUNDING, loose * (np.cumsum(turned) - turned)
             found.append((box, T[:3, :3], T[:3, 3], is_steady, np.cross(w[:, None], np.eye(3)), v, along, aside, turned, outer))
         return found, halves
