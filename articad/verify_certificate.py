@@ -23,7 +23,7 @@ HALF = 0.5  # of entries of a rotation, by which a loop may be open: with a turn
 ALIGNED = 1e-12  # sine of axes that are parallel
 SIDES = np.array(list(itertools.product((0, 1), repeat=3)))
 COURSE = ("uses", "parts_a", "parts_b", "about", "cuts", "at", "codes", "along", "of_a")  # arrays of every claim
-REST = 1e-4  # rad or mm: by which what follows a driver may be off at rest
+REST = 1e-6  # rad or mm: by which what follows a driver may be off at rest
 LEAN, ROUND, OUTSIDE = -6, -5, -4  # pieces differ in angle from a ball's axis, or in radius; a box lies outside the cone of a ball
 CUT = -3  # and -2, -1: the piece of a, of b, or the box is cut
 
@@ -366,7 +366,7 @@ class Checker:
                 values |= {n: (value, rate * half, near) for n, (value, rate, near) in line.items() if n == driver or n not in vary}
             T, steps = self.place(way, {**self.rest, **{name: value for name, (value, *_) in values.items()}})
             w, v, along, aside = map(np.array, zip(*((*steps[name], *values[name][1:]) for name in steps if name in values), strict=True))
-            turned, loose = (np.abs(along) + aside) * w.any(1), np.abs(np.cross(w, w[w.any(1)][:1])).max(initial=0.0) > ALIGNED
+            turned, loose = (np.abs(along) + aside) * w.any(1), np.abs(np.cross(w, w[w.any(1).argmax()])).max() > ALIGNED
             off = [(v + np.cross(w, centre)) @ across, np.cross(w, axis), across @ across - across]  # none about one axis or point
             is_steady, outer = max(np.abs(part).max() for part in off) < ROUNDING, loose * (np.cumsum(turned) - turned)
             found.append((box, T[:3, :3], T[:3, 3], is_steady, np.cross(w[:, None], np.eye(3)), v, along, aside, turned, outer))

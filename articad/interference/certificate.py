@@ -345,7 +345,8 @@ class _Certifying:
             try:
                 names = driver_names(self.mechanism, self._constrained)
                 document = {"mechanism": mechanism_json(self.mechanism), "linkage": sorted(self._constrained), "drivers": names}
-                self._ways[driver] = Way(self.mechanism, driver, document)
+                way = Way(self.mechanism, driver, document)
+                self._ways[driver] = way if way.steps(-1) or way.steps(1) else "near rest nothing encloses what follows the driver"
             except (KinematicsError, ValueError) as error:
                 self._ways[driver] = str(error)
         return self._ways[driver]

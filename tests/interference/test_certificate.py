@@ -350,6 +350,17 @@ def test_two_joints_that_collide_only_together_are_found() -> None:
     assert not together.ok
 
 
+def test_two_slides_in_a_row_are_certified_and_accepted() -> None:
+    joints = [
+        joint("first", "slider", "base", "table", lower=(0.0,), upper=(20.0,)),
+        joint("second", "slider", "table", "tool", at_parent=Z_DOWN_Y, at_child=Z_DOWN_Y, lower=(0.0,), upper=(20.0,)),
+    ]
+    meshes = {"base": box(10, 10, 10), "table": box(10, 10, 10).transformed(at(z=15)), "tool": box(5, 5, 5).transformed(at(x=30))}
+    certificate = proven(meshes, joints)
+    assert certificate.ok
+    assert refutations(certificate) == []
+
+
 def test_parts_that_no_joint_can_bring_together_are_certified_over_all_joints_at_once() -> None:
     links, joints = arm(260.0)
     certificate = proven(links, joints)
@@ -632,7 +643,7 @@ LIES = [
 
 
 def number_of_hinge(certificate: Certificate) -> int:
-    return certificate.to_json()["claims"].index(of_hinge(certificate.to_json()))
+    return int(certificate.to_json()["claims"].index(of_hinge(certificate.to_json())))
 
 
 def end_early(proof: dict[str, Any], at: int) -> None:

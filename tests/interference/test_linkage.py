@@ -14,6 +14,7 @@ import pytest
 from articad import verify_certificate
 from articad.connectors import SE3
 from articad.geometry import TriMesh, box, cylinder, merged
+from articad.interference import linkage
 from articad.interference.certificate import Certificate, certify, constrained_joints, driver_names, mechanism_json
 from articad.interference.linkage import Piece, Way
 from articad.interference.overlap import overlap
@@ -203,6 +204,14 @@ def test_a_spent_budget_leaves_loops_unchecked_and_says_so() -> None:
     assert set(certificate.findings.codes) == {"E_NOT_CHECKED"}
 
 
+def test_a_driver_that_cannot_be_followed_at_all_leaves_loops_unchecked_and_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(linkage, "SMALLEST_STEP", 1.0)
+    meshes, joints = four_bar((0.0, 5.0, 0.0))
+    certificate = certify(meshes, Mechanism(tuple(meshes), "frame", joints))
+    assert not certificate.ok
+    assert "nothing encloses what follows" in str(certificate.findings.of("E_NOT_CHECKED"))
+
+
 def test_a_joint_beside_the_loop_is_proven_together_with_its_driver() -> None:
     meshes, joints = four_bar((0.0, 5.0, 0.0))
     meshes["slide"] = box(4, 4, 4).transformed(at(50, 80, 0))
@@ -309,9 +318,8 @@ def tampered(certificate: Certificate, change: Callable[[dict[str, Any]], object
 def follow_another_branch(proof: dict[str, Any]) -> None:
     ends, values = proof["crank.ends"], proof["crank.values"]
     mechanism = Mechanism(tuple(four_bar((0.0, 5.0, 0.0))[0]), "frame", four_bar((0.0, 5.0, 0.0))[1])
-    for row, (low, high) in enumerate(
-        ends
-    ):  # the coupler and the rocker mirrored about the line from the crank's pin to the rocker's pivot
+    proof["crank.wide"][:, 1:] *= 4.0  # the other branch bends more
+    for row, (low, high) in enumerate(ends):  # coupler and rocker mirrored about the line from the crank's pin to the rocker's pivot
         found = mechanism.configuration(np.array([(low + high) / 2])).values
         across, opened = crossing((low + high) / 2)
         values[row][1:] = [found["pin_b"][0] + across, found["pin_c"][0] + opened, found["rock"][0] + across + opened]
