@@ -314,8 +314,8 @@ class Checker:
             need((low < lower + 1e-6 and high > upper - 1e-6) or not whole["ok"], f"not over the whole range of {name}")
             need(low <= self.rest[name] + ROUNDING and self.rest[name] <= high + ROUNDING, "not about the rest pose")
         beside = W @ T[:3, :3].T + T[:3, 3]  # if none is inside the other here, surfaces that never meet keep it so
-        inside = is_inside(here[self.shells[a]], beside[G]) or is_inside(beside[self.shells[b]], here[F])
-        need(not inside, "one is inside the other at rest")
+        for points, corners in ((here[self.shells[a]], beside[G]), (beside[self.shells[b]], here[F])):
+            need(not is_inside(points, corners), "one is inside the other at rest")
         boxes, halves = self.boxes(way, vary, proof)
         A, B, (centre, axis) = ordered(here[F], order_a), ordered(W[G], order_b), proof["about"]
         both = A - centre, B @ T[:3, :3].T + T[:3, 3] - centre
@@ -343,9 +343,12 @@ class Checker:
                 over = mine[0][x].min() - theirs[1][y], theirs[0][y] - mine[1][x].max()
                 gap = max((near[1][y] * np.sin(np.clip(side - cone, 0, np.pi / 2))).min() for side in over) if is_steady and cone else 0.0
             else:
-                u, p, q = proof["along"][code], hull(A, row[0], known[0]), hull(B, row[1], known[1]) @ R.T + t
-                u = (u if code < proof["of_a"] else R @ u) / math.hypot(*u)
-                gap = (q @ u - motion(u, q, *moving)).min() - (p @ u).max()
+                u = (proof["along"][code] if code < proof["of_a"] else R @ proof["along"][code]) / math.hypot(*proof["along"][code])
+                for p, q in ((hull(A, row[0], known[0]), hull(B, row[1], known[1])), (A[x].reshape(-1, 3), B[y].reshape(-1, 3))):
+                    there = q @ R.T + t
+                    gap = (there @ u - motion(u, there, *moving)).min() - (p @ u).max()
+                    if gap > claim["clear_mm"]:  # else all corners tell more than those of the box
+                        break
             need(gap > claim["clear_mm"], "pieces come too near")
 
     def boxes(self, way: list[Any], vary: dict[str, Any], proof: dict[str, Any]) -> tuple[list[Any], dict[int, Any]]:

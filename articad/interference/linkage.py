@@ -8,6 +8,7 @@ Most pairs need no piece of their own: all pieces in a row lie in one wider tube
 
 from __future__ import annotations
 
+import contextlib
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -30,7 +31,7 @@ from articad.kinematics.joints import Coordinate, JointType
 from articad.kinematics.layout import Layout
 from articad.kinematics.mechanism import Mechanism
 from articad.kinematics.motion import track_of
-from articad.verify_certificate import PROOF, REST, Checker, Refuted, joined
+from articad.verify_certificate import PROOF, Checker, Refuted, joined
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -38,6 +39,7 @@ IntArray = NDArray[np.int64]
 SMALLEST_STEP = 1e-6  # of the driver's range, below which it is not followed further
 FIRST_STEP = 1 / 32  # of the way to a bound
 WIDER = 1.2  # than the distance within which there is a solution: that within which there is no other one
+ROOM = (2e-4, 2e-6)  # rad or mm: of a tube beside what it must hold; much of it lets pieces be long, where many joints follow little holds
 SMALLEST_PIECE = 1e-4  # rad or mm: to which the end of what is free along a driver is found
 LOOKS = 24  # poses looked at beyond contact
 
@@ -159,14 +161,14 @@ class Way:
         guess = self._solution(float(span.mean()))
         if guess is None:
             return None
-        try:
-            self._checker.join(self._found, self.names, span, guess, self._tube(span, guess), beside)
-        except Refuted:
-            return None
-        self.others.append(beside)
-        return self._joined((len(self._found) - 1,))
+        for room in ROOM:
+            with contextlib.suppress(Refuted):
+                self._checker.join(self._found, self.names, span, guess, self._tube(span, guess, room), beside)
+                self.others.append(beside)
+                return self._joined((len(self._found) - 1,))
+        return None
 
-    def _tube(self, ends: FloatArray, guess: FloatArray) -> FloatArray:
+    def _tube(self, ends: FloatArray, guess: FloatArray, room: float) -> FloatArray:
         """Return distances within which there should be no other solution."""
         _, J, share = self._checker.closure(self.names, guess, guess)
         A, wide = np.linalg.pinv(J[:, 1:], rcond=1e-7), np.zeros(len(self.names))
@@ -175,7 +177,7 @@ class Way:
         far = np.abs(rate) * half
         off = np.abs(A @ self._checker.closure(self.names, guess + half * rate, guess)[0])
         for _ in range(6):
-            wide[1:] = WIDER * (off + 2 * REST + np.abs(A) @ (np.minimum(share @ (far + wide), 1.0) * (share @ wide)))
+            wide[1:] = WIDER * (off + room + np.abs(A) @ (np.minimum(share @ (far + wide), 1.0) * (share @ wide)))
         return wide
 
     def _solution(self, value: float) -> FloatArray | None:
