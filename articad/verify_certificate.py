@@ -322,10 +322,10 @@ class Checker:
         near, far = zip(*(radii(local @ plane(axis)) for local in both), strict=True)
         turns = [joint for joint, _ in way if {f["name"] for f in joint["freedoms"]} & {*vary, *self.linked}]
         cone = turns[0]["cone"] if len(turns) == 1 and all(f["name"] in vary and not f["rest"] for f in turns[0]["freedoms"]) else None
-        mine, theirs = (leans(local, steps[turns[0]["freedoms"][-1]["name"]][0]) for local in both)
+        angles = [leans(local, steps[turns[0]["freedoms"][-1]["name"]][0]) for local in both if cone]
         spans = [list(itertools.pairwise(proof[key].tolist())) for key in ("parts_a", "parts_b")]
         need([(own[0][0], own[-1][1]) for own in spans] == [(0, len(A)), (0, len(B))], "a triangle is left out")
-        known: tuple[dict[Any, Any], dict[Any, Any]] = ({}, {})
+        known = dict[Any, Any](), dict[Any, Any]()
         rows, codes = deque[Any](itertools.product(*spans, [0])), iter(proof["codes"].tolist())
         while rows:
             row, code = rows.popleft(), next(codes)
@@ -340,8 +340,9 @@ class Checker:
             elif code == ROUND:
                 gap = max(near[0][x].min() - far[1][y].max(), near[1][y].min() - far[0][x].max()) if is_steady else 0.0
             elif code == LEAN:  # a swing changes angles by no more than its own, the twist by none
-                over = mine[0][x].min() - theirs[1][y], theirs[0][y] - mine[1][x].max()
-                gap = max((near[1][y] * np.sin(np.clip(side - cone, 0, np.pi / 2))).min() for side in over) if is_steady and cone else 0.0
+                need(is_steady and angles, "only a ball keeps angles")
+                over = angles[0][0][x].min() - angles[1][1][y], angles[1][0][y] - angles[0][1][x].max()
+                gap = max((near[1][y] * np.sin(np.clip(side - cone, 0, np.pi / 2))).min() for side in over)
             else:
                 u = (proof["along"][code] if code < proof["of_a"] else R @ proof["along"][code]) / math.hypot(*proof["along"][code])
                 for p, q in ((hull(A, row[0], known[0]), hull(B, row[1], known[1])), (A[x].reshape(-1, 3), B[y].reshape(-1, 3))):

@@ -178,7 +178,7 @@ class _Search:
 
     def step(self, rows: _Pairs) -> list[_Pairs]:
         """Settle what is settled and cut the rest."""
-        outside = np.array(self.boxes.outside)[rows.box]
+        outside = np.array([self.boxes.outside[box] for box in rows.box.tolist()])
         if outside.any():
             rows = rows.of(~outside)
         out: list[_Pairs] = []

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from articad.interference.body import Body
 from articad.interference.meridian import Ends, meeting, outline
 from articad.interference.overlap import one_contains_the_other
-from articad.interference.scene import Scene, boxes_apart
+from articad.interference.scene import Scene, box_about, boxes_apart
 from articad.interference.surface import Core
 from articad.kinematics.joints import JointType
 
@@ -131,7 +131,7 @@ def _meeting(axis: Axis, a: Body, b: Body, height: float, sign: float) -> tuple[
     if not met_a.any():
         return None
     met_b = meeting(theirs, (mine[0][met_a], mine[1][met_a]), _APART_MM)
-    return _box(a.plain_corners[met_a]), _box(b.plain_corners[met_b])
+    return box_about(a.plain_corners[met_a]), box_about(b.plain_corners[met_b])
 
 
 def _raised(ends: Ends, height: float, sign: float) -> Ends:
@@ -139,8 +139,3 @@ def _raised(ends: Ends, height: float, sign: float) -> Ends:
     low, high = ends
     heights = np.sort(np.stack([sign * low[:, 1], sign * high[:, 1]]) + height, axis=0)
     return np.stack([low[:, 0], heights[0]], axis=1), np.stack([high[:, 0], heights[1]], axis=1)
-
-
-def _box(corners: FloatArray) -> Box:
-    low, high = corners.min(axis=(0, 1)), corners.max(axis=(0, 1))
-    return (low + high) / 2, (high - low) / 2

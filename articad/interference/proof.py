@@ -226,19 +226,20 @@ class Prover:
             if self.axis is None:
                 self._forests[shrink] = Forest.plain(a), Forest.plain(b)
             else:
-                mover, dimensions = self.chain.movers[0], self.axis.dimensions
-                turns, core_b = mover.joint.type is not JointType.SLIDER, Core(np.asarray(np.linalg.inv(self.chain.last)), dimensions)
-                of_a = outline(self.axis, a.corners, turns=turns)
-                of_b = outline(core_b, b.corners, self.travel(mover), turns=turns)
-                needed = self.margin + 2 * CLAIM_SLACK_MM
-                limit = np.full(of_a[0].shape[1], needed)
-                if dimensions == 3:
-                    cone = self.chain.freedoms[mover.columns[0]].upper
-                    leans = leaning(self.axis, a.corners, 0.0, 0.0), leaning(core_b, b.corners, cone, needed)
-                    of_a, of_b = (_beside(own, lean) for own, lean in zip((of_a, of_b), leans, strict=True))
-                    limit = np.append(limit, 0.0)
-                self._forests[shrink] = Forest.pair(a, b, of_a, of_b, limit)
+                self._forests[shrink] = Forest.pair(a, b, *self._outlines(self.axis, a, b))
         return self._forests[shrink]
+
+    def _outlines(self, axis: Core, a: Surface, b: Surface) -> tuple[Ends, Ends, FloatArray]:
+        """Return what of two surfaces the joint between them keeps, and by how much it is to be apart."""
+        mover, needed = self.chain.movers[0], self.margin + 2 * CLAIM_SLACK_MM
+        turns, core_b = mover.joint.type is not JointType.SLIDER, Core(np.asarray(np.linalg.inv(self.chain.last)), axis.dimensions)
+        of_a, of_b = outline(axis, a.corners, turns=turns), outline(core_b, b.corners, self.travel(mover), turns=turns)
+        limit = np.full(of_a[0].shape[1], needed)
+        if axis.dimensions == 2:
+            return of_a, of_b, limit
+        cone = self.chain.freedoms[mover.columns[0]].upper
+        of_a, of_b = _beside(of_a, leaning(axis, a.corners, 0.0, 0.0)), _beside(of_b, leaning(core_b, b.corners, cone, needed))
+        return of_a, of_b, np.append(limit, 0.0)
 
     def travel(self, mover: Mover) -> tuple[float, float]:
         """Return how far a joint about an axis carries b along its axis, as a sees it [mm]."""

@@ -150,6 +150,12 @@ def boxes_apart(a: tuple[FloatArray, FloatArray], b: tuple[FloatArray, FloatArra
     return np.asarray(found)
 
 
+def box_about(corners: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return centre and half sides of the box about triangles `(T, 3, 3)`, `(3,)` each [mm]: what `boxes_apart` asks for."""
+    low, high = corners.min(axis=(0, 1)), corners.max(axis=(0, 1))
+    return (low + high) / 2, (high - low) / 2
+
+
 @dataclass(frozen=True, eq=False)
 class Placement:
     """The bodies of a scene at one pose.

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from articad.interference.body import Body
 from articad.interference.meridian import Ends, meeting, outline
-from articad.interference.scene import Scene, boxes_apart
+from articad.interference.scene import Scene, box_about, boxes_apart
 from articad.interference.surface import Core
 from articad.kinematics.joints import Joint, JointType
 from articad.kinematics.mechanism import Mechanism
@@ -61,7 +61,7 @@ class Turning:
         found = np.ones(len(T_i_j), dtype=bool)
         if met_i.any():
             met_j = meeting(theirs, (mine[0][met_i], mine[1][met_i]), 0.0)
-            found = boxes_apart(_box(self._bodies[i].corners[met_i]), _box(self._bodies[j].corners[met_j]), T_i_j)
+            found = boxes_apart(box_about(self._bodies[i].corners[met_i]), box_about(self._bodies[j].corners[met_j]), T_i_j)
         back = T_i_j[..., :3].transpose(0, 2, 1)
         T_j_i = np.concatenate([back, -back @ T_i_j[..., 3:]], axis=2)
         return np.asarray(found & ~self._may_hold(i, j, T_i_j) & ~self._may_hold(j, i, T_j_i))
@@ -84,8 +84,3 @@ class Turning:
     @cached_property
     def _bodies(self) -> list[Body]:
         return list(self.scene.bodies.values())
-
-
-def _box(corners: FloatArray) -> tuple[FloatArray, FloatArray]:
-    low, high = corners.min(axis=(0, 1)), corners.max(axis=(0, 1))
-    return (low + high) / 2, (high - low) / 2

@@ -350,6 +350,15 @@ def test_two_joints_that_collide_only_together_are_found() -> None:
     assert not together.ok
 
 
+def test_plates_on_an_axis_askew_to_both_are_certified_and_accepted() -> None:
+    askew = SE3.from_axis_angle([1.0, 1.0, 0.0], 0.6)  # boxes about the plates overlap, the plates do not
+    hinge = joint("hinge", "revolute", "base", "arm", at_parent=askew, at_child=askew, lower=(-math.pi,), upper=(math.pi,))
+    meshes = {"base": box(40, 40, 2).transformed(askew), "arm": box(40, 20, 2).transformed(askew @ at(z=2.5))}
+    certificate = proven(meshes, [hinge])
+    assert certificate.ok
+    assert refutations(certificate) == []
+
+
 def test_two_slides_in_a_row_are_certified_and_accepted() -> None:
     joints = [
         joint("first", "slider", "base", "table", lower=(0.0,), upper=(20.0,)),
