@@ -286,6 +286,22 @@ def test_everything_can_be_done_from_the_keyboard(open_page: Open) -> None:
     assert_silent(opened)
 
 
+# Parts of which a corner of the box about them is seen outside the canvas.
+BEYOND = """() => articad.view.groups.filter(group => {
+    const V = articad.view.middle.constructor, { clientWidth: width, clientHeight: height } = articad.view.canvas;
+    group.updateMatrixWorld(true);
+    return group.children.some(({ geometry, matrixWorld }) => {
+        geometry.computeBoundingBox();
+        const { min, max } = geometry.boundingBox;
+        return [0, 1, 2, 3, 4, 5, 6, 7].some(k => {
+            const corner = new V(k & 1 ? min.x : max.x, k & 2 ? min.y : max.y, k & 4 ? min.z : max.z).applyMatrix4(matrixWorld);
+            const [x, y] = articad.view.screen(corner);
+            return x < 0 || y < 0 || x > width || y > height;
+        });
+    });
+}).map(group => group.name)"""
+
+
 def test_explode_section_and_measure(open_page: Open) -> None:
     assembly = hinged()
     opened = open_page(report_page(assembly))
@@ -295,6 +311,8 @@ def test_explode_section_and_measure(open_page: Open) -> None:
     before = opened(apart)
     page.locator("#explode").evaluate("s => { s.value = 1; s.dispatchEvent(new Event('input')) }")
     assert opened(apart) > before + 10
+    page.locator("#explode").evaluate("s => { s.value = s.max; s.dispatchEvent(new Event('input')) }")
+    assert opened(BEYOND) == [], "the camera steps back from what moves apart"
     page.locator("#explode").evaluate("s => { s.value = 0; s.dispatchEvent(new Event('input')) }")
     page.select_option("#section-axis", "x")
     assert opened("articad.view.groups[0].userData.materials[0].clippingPlanes.length") == 1

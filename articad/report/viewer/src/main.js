@@ -249,8 +249,7 @@ function buildTools() {
     if (measuring.on) say("Click two points; corners are caught.");
   });
   $("explode").addEventListener("input", () => {
-    view.explosion = $("explode").valueAsNumber;
-    view.place(view.poses);
+    view.explode($("explode").valueAsNumber);
     refreshMeasure();
   });
   const cut = () => view.section("xyz".indexOf($("section-axis").value || "-"), $("section-at").valueAsNumber, $("section-flip").checked);

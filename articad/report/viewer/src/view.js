@@ -188,14 +188,28 @@ export class View {
       const own = new Box3().expandByObject(group);
       return (own.isEmpty() ? this.middle : own.getCenter(new Vector3())).toArray();
     });
+    this.farthest = Math.max(0, ...this.outward.map((way) => this.middle.distanceTo(new Vector3(...way))));
     this.place(poses);
+  }
+
+  // Move parts away from the middle by so many times their distance from it; the camera steps back to keep them in sight.
+  explode(amount) {
+    const before = this.#reach();
+    this.explosion = amount;
+    this.zoom(this.#reach() / before);
+    this.place(this.poses);
+  }
+
+  // How far from the middle anything may lie while the model rests.
+  #reach() {
+    return this.sphere.radius + this.explosion * this.farthest;
   }
 
   look(name) {
     const way = new Vector3(...DIRECTIONS[name]).normalize();
     this.controls.target.copy(this.sphere.center);
     const narrow = Math.min(1, this.camera.aspect);
-    const distance = (this.sphere.radius * 1.08) / Math.sin((FIELD * Math.PI) / 360) / narrow;
+    const distance = (this.#reach() * 1.08) / Math.sin((FIELD * Math.PI) / 360) / narrow;
     this.camera.position.copy(this.sphere.center).addScaledVector(way, distance);
     this.camera.near = distance / 200;
     this.camera.far = distance * 20;
