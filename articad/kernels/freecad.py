@@ -47,8 +47,20 @@ MAX_DOCUMENT_BYTES, MAX_UNPACKED_BYTES, MAX_ENTRIES = 64 * 2**20, 512 * 2**20, 1
 _PROGRAMS = Path(__file__).parent / "inside_freecad"
 _FAMILIES = ("PartDesign::", "Sketcher::", "Part::", "Spreadsheet::")  # of objects that a part may be made of
 _READING = re.compile(r"Python|Part::(Import|CurveNet)")  # objects that run Python, or read files by their names
+_MODULE = r"(App|Materials|Part|PartDesign|Sketcher|Spreadsheet)"
+# Types that elements beside objects may be of, by their tags: FreeCAD imports the module that a type's name begins with, and
+# takes whatever is made of it for what the tag says.
+_TYPES = {
+    "Property": re.compile(rf"{_MODULE}::Property\w*"),
+    "_Property": re.compile(rf"{_MODULE}::Property\w*"),
+    "Extension": re.compile(rf"{_MODULE}::\w+Extension"),
+    "Geometry": re.compile(r"Part::Geom\w+"),
+    "GeoExtension": re.compile(rf"{_MODULE}::\w+Extension"),
+}
 _SHAPE_FILE = re.compile(r"[\w][\w.+-]{0,199}\.(brp|bin|txt)")  # entries beside Document.xml: shapes and their names
-_PSEUDO = re.compile(r"(?<![A-Za-z0-9])_+(app|builtins|coll|cq|math|part|py|re|self)\b|#|href")  # of expressions: modules, other documents
+_PSEUDO = re.compile(
+    r"(?<![A-Za-z0-9])_+(app|builtins|coll|cq|gui|math|part|py|re|self)\b|#|href"
+)  # of expressions: modules, other documents
 _DOCUMENT_XML = "Document.xml"
 _KINDS = {"App::VarSet", "App::Origin", "App::Line", "App::Plane", "App::Point", "App::LocalCoordinateSystem"}
 _START_SECONDS = 20.0  # for FreeCAD to start, on a cold and busy disk
@@ -287,25 +299,43 @@ def harmless(content: bytes) -> bytes:
 
 def _harms(root: Any) -> Iterator[str]:
     """Yield what in a document is more than features."""
-    if root.getroottree().docinfo.doctype:
+    about = root.getroottree().docinfo
+    if about.doctype:
         yield "definitions of its own"
+    if about.xml_version != "1.0" or (about.encoding or "utf-8").lower() != "utf-8":
+        yield "another spelling of XML than FreeCAD's own"
     for item in root.iter("Object"):
         kind = item.get("type")
         if kind is not None and not (kind in _KINDS or (kind.startswith(_FAMILIES) and not _READING.search(kind))):
             yield f"an object of type {scrubbed(kind, 60)}"
     for element in root.iter():
-        if "Python" in str(element.tag) or element.get("module") or "Python" in (element.get("type") or ""):
-            yield "Python objects"
-        if element.tag in ("XLink", "XLinkSub", "XLinkList", "XLinkSubList", "FileIncluded") and (
-            element.get("file") or element.get("data")
-        ):
-            yield "links to other files"
-        file = element.get("file")
-        if file and not _SHAPE_FILE.fullmatch(file):
-            yield f"a file named {scrubbed(file, 60)}"
-        cell = element.get("content") or ""  # of a spreadsheet: FreeCAD gives =_py the module of Python's built-in functions
-        if _PSEUDO.search(element.get("expression") or "") or (cell.lstrip().startswith("=") and _PSEUDO.search(cell)):
-            yield "an expression that reaches out of it"
+        yield from _harms_of_type(element)
+        yield from _harms_of_content(element)
+
+
+def _harms_of_type(element: Any) -> Iterator[str]:
+    """Yield what an element makes FreeCAD import, or take for something that it is not."""
+    if element.prefix or element.nsmap:  # FreeCAD takes <a:Object> for <Object>
+        yield "names of another vocabulary"
+    wanted, found = _TYPES.get(str(element.tag)), element.get("type") or ""
+    if "Python" in str(element.tag) or element.get("module") or "Python" in found:
+        yield "Python objects"
+    elif element.tag != "Object" and not (wanted.fullmatch(found) if wanted else "::" not in found):
+        yield f"something of type {scrubbed(found, 60)}"
+    if element.get("ViewType"):  # of an object: what shows it on the screen, imported likewise
+        yield "a view of its own"
+
+
+def _harms_of_content(element: Any) -> Iterator[str]:
+    """Yield what an element makes FreeCAD read or evaluate."""
+    if element.tag in ("XLink", "XLinkSub", "XLinkList", "XLinkSubList", "FileIncluded") and (element.get("file") or element.get("data")):
+        yield "links to other files"
+    file = element.get("file")
+    if file and not _SHAPE_FILE.fullmatch(file):
+        yield f"a file named {scrubbed(file, 60)}"
+    cell = element.get("content") or ""  # of a spreadsheet: FreeCAD gives =_py the module of Python's built-in functions
+    if _PSEUDO.search(element.get("expression") or "") or (cell.lstrip().startswith("=") and _PSEUDO.search(cell)):
+        yield "an expression that reaches out of it"
 
 
 @contextlib.contextmanager

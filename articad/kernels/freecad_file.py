@@ -16,8 +16,9 @@ from lxml import etree
 
 EPOCH = "2000-01-01T00:00:00Z"
 DIGITS = 12  # decimals of mm kept of a shape
-_NUMBER = re.compile(rb"-?\d+(?:\.\d+)?e[+-]?\d+|-?\d+\.\d{%d,}" % (DIGITS + 1))
-_LONG = re.compile(rb"-?\d{30,}\.\d+")  # FreeCAD writes 2e100, where a surface has no end, with all its digits
+# Both look for a number from its first digit on alone: from every digit of a long one it would take the square of its length.
+_NUMBER = re.compile(rb"(?<!\d)-?\d+(?:\.\d+)?e[+-]?\d+|(?<!\d)-?\d+\.\d{%d,}" % (DIGITS + 1))
+_LONG = re.compile(rb"(?<!\d)-?\d{30,}\.\d+")  # FreeCAD writes 2e100, where a surface has no end, with all its digits
 _ZIP_TIME = (2000, 1, 1, 0, 0, 0)
 _NAMESPACE = uuid.UUID("6d1d9a3e-0c1b-5b6e-9b35-0a2f4f1c7c11")  # of the Uids that stand in for random ones
 _DATES = {"CreationDate", "LastModifiedDate"}

@@ -66,6 +66,36 @@ POISON = (
     "os._exit(0)"
 )
 
+# A script of FreeCAD's that forges the document of an honest part: what opens it takes the part for good.
+FORGERY = (
+    "import io, re, sys, zipfile\n"
+    "part = sys._getframe(1).f_locals['part']\n"
+    "part.box((0, 0, 0), (1, 1, 1))\n"
+    "document = part.body.Document\n"
+    "document.recompute()\n"
+    "document.saveAs('/tmp/forged.FCStd')\n"
+    "with zipfile.ZipFile('/tmp/forged.FCStd') as archive:\n"
+    "    files = {{name: archive.read(name) for name in archive.namelist()}}\n"
+    "def one_more(text, tag, entry):\n"
+    "    text = re.sub(rf'<{{tag}} Count=\"(\\d+)\"', lambda m: f'<{{tag}} Count=\"{{int(m[1]) + 1}}\"', text, count=1)\n"
+    "    return text.replace(f'</{{tag}}>', f'{{entry}}</{{tag}}>', 1)\n"
+    "xml, more = files['Document.xml'].decode(), {{}}\n"
+    "{forged}\n"
+    "files |= {{'Document.xml': xml.encode()}} | more\n"
+    "out = io.BytesIO()\n"
+    "with zipfile.ZipFile(out, 'w', zipfile.ZIP_DEFLATED) as archive:\n"
+    "    for name, content in files.items():\n"
+    "        archive.writestr(name, content)\n"
+    'left = [b\'{{"ok": true, "connectors": {{}}}}\\n\', out.getvalue()]\n'
+    "for number in range(3, 64):\n"
+    "    try:\n"
+    "        os.pwrite(number, left[0], 0)\n"
+    "        del left[0]\n"
+    "    except (OSError, IndexError):\n"
+    "        pass\n"
+    "os._exit(0)"
+)
+
 ATTACKS = {
     "read /etc/passwd": "return 'root:' in open('/etc/passwd').read()",
     "read a secret file": "return open(TARGET['secret']).read()",
@@ -297,6 +327,9 @@ ATTACKS = {
     ),
     "leave a zip bomb for a shape": POISON.format(report='b\'{"ok": true, "connectors": {}}\\n\'', document="bomb()"),
     "leave code in a document": POISON.format(report='b\'{"ok": true, "connectors": {}}\\n\'', document="trojan()"),
+    "leave code by the name of a type": POISON.format(report='b\'{"ok": true, "connectors": {}}\\n\'', document="code"),
+    "leave code in another vocabulary": POISON.format(report='b\'{"ok": true, "connectors": {}}\\n\'', document="code"),
+    "leave a number without end": POISON.format(report='b\'{"ok": true, "connectors": {}}\\n\'', document="b'1' * 2**20"),
     "hide code from whoever reads a document's end": POISON.format(report='b\'{"ok": true, "connectors": {}}\\n\'', document="two_faced()"),
 }
 # Those that end the process, take long or spoil what comes after them; the others can be tried one after the other in one process.
@@ -339,6 +372,20 @@ FREECAD_ATTACKS = {
     "reopen result files by their numbers": ATTACKS["reopen result files by their numbers"].replace("r+b", "rb"),
     "patch the kernel's measurements": (
         'import json, Part\njson.dumps = lambda *a, **k: \'{"ok": true, "connectors": {}, "volume_mm3": 12345}\'\nreturn False'
+    ),
+    "leave code by the name of a type": FORGERY.format(
+        forged="""xml = one_more(xml, 'Properties', '<Property name="More" type="antigravity::X" group=""><String value=""/></Property>')"""
+    ),
+    "leave code in another vocabulary": FORGERY.format(
+        forged="""xml = one_more(xml, 'Objects', '<a:Object xmlns:a="b" type="antigravity::X" name="More" id="99999"/>')"""
+    ),
+    "leave a number without end": FORGERY.format(
+        forged=(
+            """xml = one_more(xml, 'Objects', '<Object type="Part::Feature" name="More" id="99999"/>')\n"""
+            """shape = '<Property name="Shape" type="Part::PropertyPartShape"><Part file="More.brp"/></Property>'\n"""
+            """entry = f'<Object name="More"><Properties Count="1">{shape}</Properties></Object>'\n"""
+            """xml, more = one_more(xml, 'ObjectData', entry), {'More.brp': b'1' * 2**16}"""
+        )
     ),
     "flood stdout": "for _ in range(100):\n    os.write(1, bytes(2**20))\n    os.write(2, bytes(2**20))\nreturn False",
 }

@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import json
 import pickle
+import time
 import zipfile
 from collections.abc import Callable
 from pathlib import Path
@@ -18,6 +19,7 @@ from articad.geometry.shapes import box
 from articad.kernels.archive import packed
 from articad.kernels.build123d import Build123dKernel
 from articad.kernels.freecad import harmless
+from articad.kernels.freecad_file import rounded, shortened
 from articad.kernels.results import REPORT_BYTES, PoisonedError, numbers, read_lines, read_mesh
 from articad.kernels.zygote import Outcome
 
@@ -226,6 +228,17 @@ def document(inner: str) -> bytes:
         ('<Property type="App::PropertyPythonObject"><Python module="os" class="x"/></Property>', "Python objects"),
         ('<XLink file="/etc/passwd" name="a"/>', "links to other files"),
         ('<Part file="../../a.brp"/>', "a file named"),
+        ('<Cell address="A1" content="=_gui.ActiveDocument"/>', "an expression that reaches out"),
+        ('<a:XLink xmlns:a="b" file="/etc/passwd.txt" name="a"/>', "names of another vocabulary"),
+        ('<a:Object xmlns:a="b" type="Mesh::Import" name="a"/>', "names of another vocabulary"),
+        ('<Object xmlns="b" type="Mesh::Import" name="a"/>', "names of another vocabulary"),
+        ('<Property name="a" type="antigravity::X"/>', "something of type antigravity::X"),
+        ('<_Property name="a" type="antigravity::X"/>', "something of type antigravity::X"),
+        ('<Extension name="a" type="antigravity::Extension"/>', "something of type antigravity::Extension"),
+        ('<Geometry type="Part::Feature"/>', "something of type Part::Feature"),
+        ('<GeoExtension type="Part::GeomCircle"/>', "something of type Part::GeomCircle"),
+        ('<Novelty type="antigravity::X"/>', "something of type antigravity::X"),
+        ('<Object type="Part::Feature" name="a" ViewType="antigravity::X"/>', "a view of its own"),
     ],
 )
 def test_a_document_that_would_do_something_when_it_is_opened_is_refused(inner: str, what: str) -> None:
@@ -239,7 +252,30 @@ def test_a_document_that_would_do_something_when_it_is_opened_is_refused(inner: 
         '<Cell address="A1" content="=1 + B2"/>',
         '<Cell address="A1" content="bolt #4, see href"/>',
         '<A expression="Dimensions.d_a * 1 mm"/>',
+        '<Property name="Shape" type="Part::PropertyPartShape"/><_Property name="Tip" type="App::PropertyLink"/>',
+        '<Extension type="Part::AttachExtension"/><Geometry type="Part::GeomCircle"/><Constrain Type="5"/>',
+        '<GeoExtension type="Sketcher::SketchGeometryExtension" internalGeometryType="0"/>',
     ],
 )
 def test_a_document_of_features_is_kept(inner: str) -> None:
     assert harmless(document(inner)) == document(inner)
+
+
+@pytest.mark.parametrize(
+    "head", ['<?xml version="1.1"?>', '<?xml version="1.0" encoding="iso-8859-1"?>', '<?xml version="1.0" encoding="utf-16"?>']
+)
+def test_a_document_that_two_readers_may_spell_differently_is_refused(head: str) -> None:
+    text = f"{head}<Document><Objects/><ObjectData/></Document>".encode("utf-16" if "utf-16" in head else "utf-8")
+
+    with pytest.raises(PoisonedError, match="another spelling"):
+        harmless(packed({"Document.xml": text}))
+
+
+@pytest.mark.parametrize("reader", [rounded, shortened])
+@pytest.mark.parametrize("text", [b"1" * 2**16, b"1" * 2**16 + b".", b"-1." * 2**15, b"0." + b"1" * 12 + b"-" * 2**16])
+def test_a_number_without_end_takes_no_time_without_end(reader: Callable[[bytes], bytes], text: bytes) -> None:
+    """Each took minutes when it was looked at from every digit on, and hours for the megabytes that a script may leave."""
+    started = time.process_time()
+    assert reader(text) == text
+
+    assert time.process_time() - started < 5.0
