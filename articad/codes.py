@@ -483,6 +483,7 @@ CODES: dict[str, Code] = {
     "W_IMPORT_DROPPED": Code(
         "import", None, "Something in a foreign file has no counterpart and is left out.", "Nothing, if it is not needed."
     ),
+    "W_IMPORT_MUJOCO": Code("import", None, "MuJoCo warns of a model that it takes.", "Correct what it names."),
     "I_IMPORT_FUSED": Code(
         "import", None, "A chain of joints over bare links is read as one joint.", "Read with fuse off to keep them apart."
     ),

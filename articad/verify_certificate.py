@@ -24,6 +24,8 @@ ALIGNED = 1e-12  # sine of axes that are parallel
 SIDES = np.array(list(itertools.product((0, 1), repeat=3)))
 COURSE = ("uses", "parts_a", "parts_b", "about", "cuts", "at", "codes", "along", "of_a")  # arrays of every claim
 REST = 1e-6  # rad or mm: by which what follows a driver may be off at rest
+LARGEST = 1e7  # mm or rad: further out, numbers are rounded by more than matters
+TYPES = {"f": "f8", "i": "i8", "u": "i8", "U": "U"}  # of arrays, by kind: short numbers overflow, and complex ones have no order
 LEAN, ROUND, OUTSIDE = -6, -5, -4  # pieces differ in angle from a ball's axis, or in radius; a box lies outside the cone of a ball
 CUT = -3  # and -2, -1: the piece of a, of b, or the box is cut
 
@@ -45,7 +47,7 @@ def verify_file(file: Path, folder: Path) -> list[str]:
         for name in [*certificate["meshes"], PROOF]:
             need(Path(name).name == name, "a mesh bears the name of no file")
             with (folder / f"{name}.npz").open("rb") as stream, np.load(stream, allow_pickle=False) as found:
-                arrays[name] = dict(found)
+                arrays[name] = {key: array.astype(TYPES[array.dtype.kind]) for key, array in found.items()}
         left = sorted({found.stem for found in folder.glob("*.npz")} - set(arrays))
         need(not left, f"it says nothing of {', '.join(left)}")
         Checker(certificate, arrays).check()
@@ -62,9 +64,12 @@ def digest(vertices: Any, triangles: Any) -> str:
     return hashlib.sha256(b"articad.mesh/1" + np.array([len(v), len(f)], "<i8").tobytes() + v.tobytes() + f.tobytes()).hexdigest()
 
 
-def shells(count: int, F: Any) -> Any:
-    """Return a vertex of each connected piece of a mesh."""
-    label = np.arange(count)
+def shells(V: Any, F: Any) -> Any:
+    """Return a vertex of each connected piece of a mesh that is closed."""
+    need(V.shape[1:] == F.shape[1:] == (3,) and np.abs(V).max() < LARGEST, "a mesh is none")
+    label = np.arange(len(V))
+    forth, back = (np.sort((F * len(V) + np.roll(F, step, 1)).ravel()) for step in (1, -1))  # edges, by their two ends
+    need(np.array_equal(forth, back), "a mesh is open")
     while (label[F] != (least := label[F].min(1, keepdims=True))).any():
         np.minimum.at(label, F, least)
         label = label[label]
@@ -72,12 +77,12 @@ def shells(count: int, F: Any) -> Any:
 
 
 def is_inside(points: Any, corners: Any) -> bool:
-    """Return whether a closed surface winds round one of some points (van Oosterom and Strackee)."""
+    """Return whether a closed surface winds round one of some points, either way (van Oosterom and Strackee)."""
     for point in points:
         a, b, c = np.moveaxis(corners - point, 1, 0)
         la, lb, lc = (np.linalg.norm(v, axis=1) for v in (a, b, c))
         below = la * lb * lc + (a * b).sum(1) * lc + (b * c).sum(1) * la + (c * a).sum(1) * lb
-        if np.arctan2((a * np.cross(b, c)).sum(1), below).sum() > np.pi:  # half of what a surface winds round a point inside
+        if abs(np.arctan2((a * np.cross(b, c)).sum(1), below).sum()) > np.pi:  # half of what a surface winds round a point inside
             return True
     return False
 
@@ -152,10 +157,10 @@ class Checker:
 
     def __init__(self, certificate: dict[str, Any], arrays: dict[str, dict[str, Any]]) -> None:
         self.certificate, self.meshes, self.proof = certificate, arrays, arrays[PROOF]
-        self.joints = {joint["name"]: joint for joint in certificate["mechanism"]["joints"]}
+        self.joints, self.drivers = {joint["name"]: joint for joint in certificate["mechanism"]["joints"]}, list(certificate["drivers"])
         self.freedoms = {f["name"]: f for joint in self.joints.values() for f in joint["freedoms"]}
         self.rest: dict[str, float] = {name: f["rest"] for name, f in self.freedoms.items()}
-        self.lines, self.shells = dict[str, dict[Any, Any]](), dict[str, Any]()
+        self.lines = dict[str, dict[Any, Any]]()
         self.linked = [f["name"] for name in certificate["linkage"] for f in self.joints[name]["freedoms"]]
         self.loops = [[*self.way(j["parent"], j["child"]), (j, False)] for j in self.joints.values() if j["loop"]]
 
@@ -164,7 +169,7 @@ class Checker:
         whole, claims = self.certificate, self.certificate["claims"]
         for name, entry in whole["meshes"].items():
             need(digest(**self.meshes[name]) == entry["sha256"], f"mesh of {name} is missing or another")
-            self.shells[name] = shells(len(self.meshes[name]["vertices"]), self.meshes[name]["triangles"])
+        self.check_joints(*(whole["mechanism"][key] for key in ("parts", "joints", "couplings")))
         for number, claim in enumerate(claims):
             try:
                 self.prove(claim, {key: self.proof[f"{number}.{key}"] for key in COURSE})
@@ -174,13 +179,34 @@ class Checker:
         for a, b in itertools.combinations(whole["meshes"] if whole["ok"] else (), 2):
             moving = {joint["name"]: {f["name"] for f in joint["freedoms"]} for joint, _ in self.way(a, b)}
             free = [names for joint, names in moving.items() if joint in whole["asked"] and joint not in whole["linkage"]]
-            drivers = [{name} for name in whole["drivers"] if any(names & set(self.linked) for names in moving.values())]
+            drivers = [{name} for name in self.drivers if any(names & set(self.linked) for names in moving.values())]
             both = [one | other for one in free for other in [*free, *drivers] if whole["together"]]
             for names in filter(None, [] if {a, b} in waived else [*free, *drivers, *both]):
                 found = any(set(claim["parts"]) == {a, b} and names <= set(claim["vary"]) for claim in claims)
                 need(found, f"{a}/{b} over {', '.join(sorted(names))}: no claim, yet the certificate calls itself ok")
-        left_out = whole["ok"] and not whole["drivers"] and set(whole["linkage"]) & set(whole["asked"])
+        left_out = whole["ok"] and not self.drivers and set(whole["linkage"]) & set(whole["asked"])
         need(not left_out, "nothing drives the loops, yet the certificate calls itself ok")
+
+    def check_joints(self, parts: Any, joints: Any, couplings: Any) -> None:
+        """Refute what is no mechanism, or is said to move otherwise than its loops and couplings let it."""
+        F = list(self.freedoms.values())
+        need(len(self.joints) == len(joints) and len(F) == sum(len(j["freedoms"]) for j in joints), "a name stands twice")
+        is_tree = sum(not j["loop"] for j in joints) == len(parts) - 1 and all(self.way(parts[0], part) is not None for part in parts)
+        need(is_tree, "a loop is said to be none")
+        frames = np.array([np.eye(4), *(j[side] for j in joints for side in ("parent_frame", "child_frame"))])
+        R, turns, slides = frames[:, :3, :3], *(np.array([f[key] for f in F]).reshape(-1, 3) for key in ("turn", "slide"))
+        off = np.abs(R @ R.swapaxes(1, 2) - np.eye(3)).max() + np.abs(frames[:, 3] - [0, 0, 0, 1]).max()
+        need(off < ROUNDING and np.linalg.det(R).min() > 0 and np.abs(frames).max() < LARGEST, "a frame is none")
+        sizes = np.linalg.norm(np.where(turns.any(1)[:, None], turns, slides), axis=1)
+        need((np.abs([sizes - 1, *np.cross(turns, slides).T]) < ROUNDING).all(), "a joint neither turns, slides nor screws")
+        need(all(-LARGEST < f["range"][0] <= f["range"][1] < LARGEST and abs(f["rest"]) < LARGEST for f in F), "a range is none")
+        for ball in (j for j in joints if j["cone"] is not None):
+            turn, slide, ends = (np.array([f[key] for f in ball["freedoms"]]) for key in ("turn", "slide", "range"))
+            is_ball = np.array_equal(turn, np.eye(3)) and not slide.any() and (np.abs(ends).max(1) <= [np.pi, np.pi / 2, LARGEST]).all()
+            need(is_ball and 0 <= ball["cone"] <= np.pi, "what has a cone is no ball")  # turns about x, y and z
+        tied = {joint["name"] for way in self.loops for joint, _ in way}
+        tied |= {j["name"] for j in joints for f in j["freedoms"] for c in couplings if f["name"] in (c["a"], c["b"])}
+        need(self.certificate["linkage"] == sorted(tied), "what is linked is said to move by itself, or the other way round")
 
     def way(self, a: str, b: str, names: Any = None) -> list[Any]:
         """Return the joints from a to b, each with whether it is crossed from parent to child: those named, or of the tree."""
@@ -242,9 +268,10 @@ class Checker:
         As soon as x - A r(x) takes what is within `wide` to what is nearer, it also shrinks distances: Brouwer and Banach. On the line
         A r is near the parabola through three of its points, which is within 5/4 of them.
         """
-        _, J, share = self.closure(names, guess, guess)
+        r, J, share = self.closure(names, guess, guess)
         A, half = np.linalg.pinv(J[:, 1:], rcond=1e-7), (ends[1] - ends[0]) / 2
         rate, B = np.array([1.0, *(-A @ J[:, 0])]), np.abs(A)
+        need(guess[0] == ends.mean() and np.abs([r, J @ rate]).max() < ROUNDING, f"{names[0]} cannot be at {guess[0]:.9g}, or not alone")
         far, near = np.abs(rate) * half, wide
         off = np.max([np.abs(A @ self.closure(names, guess + sign * half * rate, guess)[0]) for sign in (-1, 0, 1)], axis=0)
         off = 1.25 * off + B @ (share @ far) ** 3 / 15 + ROUNDING
@@ -258,7 +285,7 @@ class Checker:
 
     def followers(self, driver: str) -> list[str]:
         """Return a driver and all that is linked, but for other drivers, which stand."""
-        return [driver, *(n for n in self.linked if n != driver and n not in self.certificate["drivers"])]
+        return [driver, *(n for n in self.linked if n != driver and n not in self.drivers)]
 
     def join(self, found: list[Any], names: list[str], ends: Any, guess: Any, wide: Any, other: int) -> None:
         """Add a piece of a driver's range to others if it holds the solution of one that is beside or around it, or at rest."""
@@ -272,8 +299,9 @@ class Checker:
 
     def begin(self, names: list[str]) -> list[Any]:
         """Return the rest pose as a piece, about which a solution is no further than `REST`."""
-        still, at = np.zeros(len(names)), self.rest[names[0]]
-        return [(np.array([at, at]), np.array([self.rest[n] for n in names]), still, REST * (np.arange(len(names)) > 0), still)]
+        at, still = np.array([self.rest[name] for name in names]), np.zeros(len(names))
+        need(np.abs(self.closure(names, at, at)[0]).max() < REST, "a loop or coupling is open at rest")
+        return [(at[[0, 0]], at, still, REST * (np.arange(len(names)) > 0), still)]
 
     def line(self, driver: str) -> dict[float, dict[float, Any]]:
         """Return pieces of a driver's range, by where they begin and end: values, rates, distances; all on the branch of the rest pose."""
@@ -291,7 +319,7 @@ class Checker:
         """Return values, rates and distances by coordinate, over a stretch of a driver's range: of all pieces from one end to the other."""
         stops, rows = [low], []
         while stops[-1] < high:
-            ends = [end for end in self.line(driver).get(stops[-1], {}) if end <= high]
+            ends = [end for end in self.line(driver).get(stops[-1], {}) if stops[-1] < end <= high]
             need(ends, f"{driver} is not followed from {stops[-1]:.9g} to {high:.9g}")
             rows.append(self.line(driver)[stops[-1]][max(ends)])
             stops.append(max(ends))
@@ -304,17 +332,19 @@ class Checker:
         moved, order_a, order_b = (self.proof.get(name, 0.0) for name in proof["uses"].tolist())
         here, way = V + moved, self.way(a, b, claim["via"])
         T, steps = self.place(way, self.rest)
-        said = [pair["strength"].get("epsilon_mm", 0.0) for pair in whole["pairs"] if {*pair["parts"]} == {a, b}]
-        least = sum(whole["meshes"][name]["deflection_mm"] for name in (a, b))
-        need(claim["clear_mm"] >= least - ROUNDING, "it keeps less than the deflection of the meshes")
+        strengths = [pair["strength"] for pair in whole["pairs"] if {*pair["parts"]} == {a, b}]
+        said = [strength["epsilon_mm"] if strength["kind"] == "certified" else 0.0 for strength in strengths]
+        least = [whole["meshes"][name]["deflection_mm"] for name in (a, b)]
+        need(min(least) >= 0 and claim["clear_mm"] >= sum(least) - ROUNDING, "it keeps less than the deflection of the meshes")
         need(claim["shrink_mm"] <= max(said) + ROUNDING or not whole["ok"], "it allows more overlap than it says")
-        need(np.linalg.norm(here - V, axis=1).max() <= claim["shrink_mm"] + ROUNDING, "it moves vertices further than it says")
+        far = np.linalg.norm(here - V, axis=1).max() if here.shape == V.shape else math.inf
+        need(far <= claim["shrink_mm"] + ROUNDING, "it moves vertices further than it says")
         for name, (low, high) in vary.items():
             lower, upper = self.freedoms[name]["range"]
             need((low < lower + 1e-6 and high > upper - 1e-6) or not whole["ok"], f"not over the whole range of {name}")
             need(low <= self.rest[name] + ROUNDING and self.rest[name] <= high + ROUNDING, "not about the rest pose")
         beside = W @ T[:3, :3].T + T[:3, 3]  # if none is inside the other here, surfaces that never meet keep it so
-        for points, corners in ((here[self.shells[a]], beside[G]), (beside[self.shells[b]], here[F])):
+        for points, corners in ((here[shells(V, F)], beside[G]), (beside[shells(W, G)], here[F])):
             need(not is_inside(points, corners), "one is inside the other at rest")
         boxes, halves = self.boxes(way, vary, proof)
         A, B, (centre, axis) = ordered(here[F], order_a), ordered(W[G], order_b), proof["about"]
@@ -355,7 +385,7 @@ class Checker:
     def boxes(self, way: list[Any], vary: dict[str, Any], proof: dict[str, Any]) -> tuple[list[Any], dict[int, Any]]:
         """Cut a range into boxes; of each return the pose in its middle, and how far what goes together."""
         tied = {f["name"] for joint, _ in way for f in joint["freedoms"]} & set(self.linked) - set(vary)
-        drivers, names, todo, found, halves = [n for n in vary if tied and n in self.certificate["drivers"]], list(vary), [vary], [], {}
+        drivers, names, todo, found, halves = [n for n in vary if tied and n in self.drivers], list(vary), [vary], [], {}
         (centre, axis), across = proof["about"], plane(proof["about"][1])
         need(len(drivers) <= 1, "two drivers at once")
         for number, (box, cut, place) in enumerate(zip(todo, proof["cuts"].tolist(), proof["at"].tolist(), strict=True)):

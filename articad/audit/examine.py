@@ -157,7 +157,7 @@ def _mjcf(path: Path, choices: Choices, found: _Found) -> None:
     root = choices.root or package_of(path)
     found.engines = load_in_all(path, ENGINES["mjcf"]) if choices.engines else ()
     assembly = read_mjcf(path, root=root)
-    found.findings += refusals(found.engines)
+    found.findings += [*refusals(found.engines), *assembly.findings.of("W_IMPORT_MUJOCO")]
     simple, _ = _mask(found.engines)
     found.declared = from_assembly(assembly, "mjcf", states_inertia=False, states_collision=True, simple=simple)
     _look(found, assembly, choices)

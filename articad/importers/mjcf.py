@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import replace
 from itertools import product
 from pathlib import Path
@@ -60,8 +62,12 @@ def read_mjcf(path: str | Path, *, root: str | Path | None = None, metadata: boo
         if not edited:
             return assembly_of(records, folder, path)
     _require_safe(document, folder, path, [path.resolve()])
-    model = _Reader(_compiled(path), document.get("model") or path.stem).model()
+    with _warnings() as said:
+        model = _Reader(_compiled(path), document.get("model") or path.stem).model()
     model.findings += edited
+    for text in dict.fromkeys(said):
+        hint = "Correct what it names: simulators read the file the same way."
+        model.findings.append(Finding(code="W_IMPORT_MUJOCO", where=path.name, message=f"MuJoCo warns: {text}", hint=hint))
     require_links(model, path)
     return assemble(fused(model) if fuse else model, path)
 
@@ -104,8 +110,22 @@ def _require_few_copies(element: Any, path: Path) -> None:
         raise unreadable(path, f"line {element.sourceline}", f"It asks for {math.prod(counts)} copies; {MAX_COPIES} are the most.")
 
 
-def _compiled(path: Path) -> Any:
+@contextmanager
+def _warnings() -> Iterator[list[str]]:
+    """Collect what MuJoCo warns of; left alone, it prints that and writes it into a log in the folder where the process stands."""
     import mujoco  # noqa: PLC0415 - only readers of MJCF need it
+
+    said: list[str] = []
+    before = mujoco.get_mju_user_warning()
+    mujoco.set_mju_user_warning(said.append)
+    try:
+        yield said
+    finally:
+        mujoco.set_mju_user_warning(before)
+
+
+def _compiled(path: Path) -> Any:
+    import mujoco  # noqa: PLC0415
 
     try:
         return mujoco.MjModel.from_xml_path(str(path))

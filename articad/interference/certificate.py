@@ -228,7 +228,7 @@ class _Certifying:
             tuple(self.claims),
             tuple(self.ranges.values()),
             self.epsilon,
-            self.scene.meshes,
+            {name: body.mesh for name, body in self.scene.bodies.items()},
             self.scene.deflections,
             self.mechanism,
             tuple(name for name in self._moving() if driving or name not in self._constrained),

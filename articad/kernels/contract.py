@@ -22,6 +22,8 @@ EMPTY_MM3 = 1e-3  # below this a solid has no volume
 DRIFT_RADIAL_MM, DRIFT_RADIAL_SHARE = 0.2, 0.002  # free of comment up to the larger of the two; the share is of the part's diagonal
 DRIFT_ALONG_MM, DRIFT_ALONG_SHARE = 0.5, 0.005
 DRIFT_ANGLE = math.radians(0.25)  # 2.2 mm at a reach of 500 mm
+TOLD_EXTRAS = 20  # connectors that nobody asked for, each with a finding of its own; a script may return any number
+_NAME_CHARACTERS = 60  # of a name that a script chose
 DRIFT_ERROR = 10.0  # times these bounds is what is still a warning
 
 FloatArray = NDArray[np.float64]
@@ -88,13 +90,15 @@ def read_connectors(brief: Json, entries: object, findings: list[Finding]) -> di
     if not isinstance(entries, dict):
         raise PoisonedError("connectors are expected where there are none")
     name, planned = brief["name"], brief["connectors"]
-    for missing in planned.keys() - entries.keys():
+    for missing in (key for key in planned if key not in entries):
         hint = f'Return "{missing}": {{"o": …, "z": …, "x": …}} where the feature is; the plan has it at {_tuple(planned[missing]["o"])}.'
         findings.append(_finding("E_CONNECTOR_MISSING", name, f"Connector {missing!r} is not returned.", hint, at=missing))
-    for extra in entries.keys() - planned.keys():
-        hint = f"Return only {', '.join(planned) or 'an empty dict'}."
+    extras, hint = [key for key in entries if key not in planned], f"Return only {', '.join(planned) or 'an empty dict'}."
+    for extra in (scrubbed(key, _NAME_CHARACTERS) for key in extras[:TOLD_EXTRAS]):
         message = f"Connector {extra!r} is not in the plan.{did_you_mean(extra, planned)}"
         findings.append(_finding("E_CONNECTOR_EXTRA", name, message, hint))
+    if len(extras) > TOLD_EXTRAS:
+        findings.append(_finding("E_CONNECTOR_EXTRA", name, f"{len(extras) - TOLD_EXTRAS} more connectors are not in the plan.", hint))
     connectors: dict[str, Connector] = {}
     for key, reference in planned.items():
         if key not in entries:
@@ -215,6 +219,8 @@ def probe_findings(brief: Json, outcomes: Iterable[Json], *, ended: bool, crashe
         dimension, kind = str(outcome.get("dimension")), outcome.get("outcome")
         if dimension not in brief["dimensions"]:
             raise PoisonedError("the probe reports a dimension that the part does not have")
+        if dimension in reached:
+            raise PoisonedError("the probe reports a dimension twice")
         reached.add(dimension)
         step = "1" if dimension.endswith("_count") else "2 %"
         if kind == "unused":

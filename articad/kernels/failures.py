@@ -15,6 +15,8 @@ MEMORY_SHARE = 0.5  # a crash of a process that held this much of its limit is t
 _PATH = re.compile(r"(?:/[\w.+@~-]+)+/([\w.+@~-]+)")
 _ADDRESS = re.compile(r" at 0x[0-9a-fA-F]+|0x[0-9a-fA-F]{6,}")
 _CRASH_FRAME = re.compile(r'File "part\.py", line (\d{1,6}) in (\w{1,80}|<module>)')
+_END_OF_LINE = re.compile(r"\r\n?|\n")  # as Python counts lines; str.splitlines knows more ends
+_LINE = 500  # characters of a script's line that are shown
 _MEMORY_TYPES = ("MemoryError", "Standard_OutOfMemory")
 
 Json = Mapping[str, Any]
@@ -53,8 +55,11 @@ def poisoned(part: str, script: str, what: str) -> BuildError:
 
 def scrubbed(text: object, limit: int = 500) -> str:
     """Return untrusted text without paths, addresses and control characters, and not too long."""
-    printable = "".join(character if character.isprintable() else " " for character in str(text)[: 4 * limit])
-    return _ADDRESS.sub("", _PATH.sub(r"\1", printable))[:limit].strip()
+    return _ADDRESS.sub("", _PATH.sub(r"\1", _printable(str(text)[: 4 * limit])))[:limit].strip()
+
+
+def _printable(text: str) -> str:
+    return "".join(character if character.isprintable() else " " for character in text)
 
 
 _ALONE = "A script may only compute a shape: no files, network, processes, or articad itself."
@@ -107,12 +112,12 @@ def _memory(part: str, script: str, frames: Frames, limits: Limits | None) -> Bu
 
 
 def _error(code: str, part: str, script: str, message: str, hint: str, frames: Frames, **measured: Any) -> BuildError:
-    lines = script.splitlines()
+    lines = [_printable(text[:_LINE]).strip() for text in _END_OF_LINE.split(script)]
     line = frames[-1][0] if frames else None
-    source = lines[line - 1].strip() if line is not None and 0 < line <= len(lines) else ""
+    source = lines[line - 1] if line is not None and 0 < line <= len(lines) else ""
     at = f" At line {line}{f': `{source[:120]}`' if source else ''}." if line is not None else ""
     finding = Finding(code=code, where=f"parts.{part}", parts=(part,), message=_sentence(message) + at, hint=hint, **measured)
-    shown = [f"line {number}, in {function}: {lines[number - 1].strip()}" for number, function in frames if 0 < number <= len(lines)]
+    shown = [f"line {number}, in {function}: {lines[number - 1]}" for number, function in frames if 0 < number <= len(lines)]
     return BuildError(str(finding), script=script, line=line, traceback="\n".join(shown), findings=[finding], parts=(part,))
 
 

@@ -93,6 +93,19 @@ def test_a_broken_mjcf_is_a_named_error(name: str, tmp_path: Path) -> None:
         read_mjcf(path)
 
 
+def test_what_mujoco_warns_of_is_a_finding_and_leaves_no_log(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    twice = tmp_path / "twice.xml"  # two hinges on one axis: what they carry has no inertia of its own for each
+    twice.write_text('<mujoco><worldbody><body><joint/><joint/><geom size="1"/></body></worldbody></mujoco>')
+    said = read_mjcf(twice).findings.of("W_IMPORT_MUJOCO")
+    assert len(said) == 1
+    assert "singular" in said[0].message
+    assert capfd.readouterr().out == ""
+    assert [path.name for path in tmp_path.iterdir()] == ["twice.xml"]
+
+
 def test_includes_are_followed(tmp_path: Path) -> None:
     (tmp_path / "b.xml").write_text(
         '<mujoco><worldbody><body name="b"><geom size="1"/><joint name="j" axis="0 0 1"/></body></worldbody></mujoco>'

@@ -280,6 +280,7 @@ ATTACKS = {
         "signal.pthread_sigmask(signal.SIG_BLOCK, signal.valid_signals())\nsignal.setitimer(signal.ITIMER_REAL, 0)\nwhile True:\n    pass"
     ),
     "command the terminal through an error": "raise SystemExit('\\x1b]0;BREACH\\x07\\x9b2J\\u202e')",
+    "command the terminal through its own source": "raise SystemExit('\x1b]0;BREACH\x07\x9b2J\u202e')",
     "pretend that the sandbox is broken": (
         "for number in range(1, 64):\n"
         "    try:\n"
@@ -335,7 +336,7 @@ ATTACKS = {
 # Those that end the process, take long or spoil what comes after them; the others can be tried one after the other in one process.
 LOUD = frozenset(ATTACKS) & {
     "make 32-bit system calls", "make system calls by other numbers", "stop itself", "loop with every signal blocked",
-    "command the terminal through an error", "pretend that the sandbox is broken",
+    "command the terminal through an error", "command the terminal through its own source", "pretend that the sandbox is broken",
     "fill the disk", "fill memory", "loop for ever", "sleep for ever", "flood stdout", "forge the report", "leave a process behind",
     "replace itself by a shell", "start threads without end", "start threads of small stacks", "patch the kernel's measurements",
     "write a result of a terabyte", "make many files",

@@ -65,6 +65,16 @@ def test_control_characters_of_a_message_do_not_reach_a_terminal(build: Build) -
     assert "\x1b" not in str(failure(build, "raise RuntimeError(chr(27) + '[31mred' + 'x' * 100000)"))
 
 
+def test_control_characters_of_a_script_reach_no_terminal_and_count_no_lines(kernel: Build123dKernel, brief: dict[str, Any]) -> None:
+    script = 'def build(part):\n    x = "\x0c\u2028\x85\x1b]0;here\x07\u202e\x9b2J"; raise ValueError(x)\n'
+    with pytest.raises(BuildError) as caught:
+        kernel.build(script.encode(), brief)
+
+    assert str(caught.value).isprintable()
+    assert caught.value.traceback.isprintable()
+    assert "raise ValueError(x)" in caught.value.traceback
+
+
 @pytest.mark.parametrize("body", ["import sys\nsys.exit(3)", "import os\nos._exit(0)", "raise KeyboardInterrupt"])
 def test_ending_the_process_is_an_error_of_the_script(build: Build, body: str) -> None:
     assert failure(build, body).findings.codes == ("E_SCRIPT_ERROR",)

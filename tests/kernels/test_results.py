@@ -14,10 +14,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from articad.errors import BuildError
+from articad.errors import BuildError, ContractError
 from articad.geometry.shapes import box
 from articad.kernels.archive import packed
 from articad.kernels.build123d import Build123dKernel
+from articad.kernels.contract import TOLD_EXTRAS
 from articad.kernels.freecad import harmless
 from articad.kernels.freecad_file import rounded, shortened
 from articad.kernels.results import REPORT_BYTES, PoisonedError, numbers, read_lines, read_mesh
@@ -187,6 +188,7 @@ def test_the_forging_kernel_passes_when_it_is_honest(brief: dict[str, Any]) -> N
         ([{"ok": True, "connectors": {"a": 3}}], {}, {}),
         ([{"ok": True, "connectors": {"a": {"o": [0, 0], "z": None}}}], {}, {}),
         ([{"ok": True, "connectors": {}}, {"probe": {"dimension": "not there", "outcome": "unused"}}], {}, {}),
+        ([{"ok": True, "connectors": {}}, *[{"probe": {"dimension": "size", "outcome": "unused"}}] * 2], {}, {}),
         (None, {"volume_mm3": 2.0}, {}),
         (None, {"volume_mm3": None}, {}),
         (None, {"volume_mm3": "1"}, {}),
@@ -208,9 +210,24 @@ def test_forged_results_are_refused(brief: dict[str, Any], script: Any, measured
     kernel = ForgingKernel(script or [{"ok": True, "connectors": {}}], MEASURED | measured, HONEST_FILES | files)
 
     with pytest.raises(BuildError) as caught:
-        kernel.build(b"", {**brief, "connectors": connectors})
+        kernel.build(b"", {**brief, "connectors": connectors, "dimensions": {"size": 1.0}})
 
     assert caught.value.findings.codes == ("E_SCRIPT_FORBIDDEN",)
+
+
+def test_connectors_without_end_are_told_in_few_words(brief: dict[str, Any]) -> None:
+    """Each would be a finding for the model to mend, and thousands of them its whole budget."""
+    frame = {"o": [0, 0, 0], "z": [0, 0, 1], "x": [1, 0, 0]}
+    reported = {f"more_{number}": frame for number in range(5000)} | {"/home/me/\x1b" + "x" * 10**5: frame}
+    kernel = ForgingKernel([{"ok": True, "connectors": dict(reversed(reported.items()))}], MEASURED, HONEST_FILES)
+
+    with pytest.raises(ContractError) as caught:
+        kernel.build(b"", brief)
+
+    told = [finding for finding in caught.value.findings if finding.code == "E_CONNECTOR_EXTRA"]
+    assert len(told) == TOLD_EXTRAS + 1
+    assert "4981 more connectors" in str(caught.value)
+    assert len(str(caught.value)) < 4000
 
 
 def document(inner: str) -> bytes:
