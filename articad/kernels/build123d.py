@@ -269,7 +269,8 @@ class Build123dKernel:
             raise KernelError(f"No process could be started for a part: {outcome.refused}.")
         if outcome.unconfined:
             raise unconfined(outcome.unconfined)
-        said = read_bytes(job / crash)[:_CRASH_BYTES].decode(errors="replace")
+        with (job / crash).open("rb") as file:  # a script may have filled it
+            said = file.read(_CRASH_BYTES).decode(errors="replace")
         return _Ran(outcome, read_lines(job / report), said)
 
     def _measured(self, job: Path, *, form: str, name: str, deflection: float, matrix: list[list[float]] | None = None) -> Json:
