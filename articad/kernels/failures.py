@@ -131,7 +131,7 @@ def _frames(value: object) -> Frames:
 
 
 def _is_line(value: object) -> TypeGuard[int]:
-    return isinstance(value, int) and 0 < value < 10**6
+    return isinstance(value, int) and not isinstance(value, bool) and 0 < value < 10**6
 
 
 def _sentence(text: str) -> str:

@@ -35,7 +35,7 @@ class Form(BaseModel):
 
 def is_name(text: str) -> bool:
     """Tell whether `text` is of the form that names have."""
-    return len(text) <= MAX_NAME and bool(_NAME.match(text)) and not keyword.iskeyword(text)
+    return len(text) <= MAX_NAME and bool(_NAME.fullmatch(text)) and not keyword.iskeyword(text)
 
 
 def _name(value: Any) -> str:
