@@ -16,6 +16,7 @@ import os
 import re
 import secrets
 import shutil
+import stat
 import threading
 import time
 import unicodedata
@@ -198,9 +199,10 @@ class Run:
         """Open a run to go on with it; what a killed process left half-written is swept away.
 
         Raises:
-            RunError: If it is not a run, or another process works in it.
+            RunError: If it is not a run, holds what no run does, or another process works in it.
         """
         path = Path(path)
+        _require_plain(path)
         request = _read_request(path)
         run = cls(path, request, _locked(path))
         run._sweep()
@@ -215,8 +217,9 @@ class Run:
         """Open a run to read it only; any number of processes may.
 
         Raises:
-            RunError: If it is not a run.
+            RunError: If it is not a run, or holds what no run does.
         """
+        _require_plain(Path(path))
         return cls(Path(path), _read_request(Path(path)), None)
 
     def close(self) -> None:
@@ -627,6 +630,31 @@ def _new_directory(prompt: str) -> Path:
     raise RunError.told(DEFAULT_ROOT, f"No free name for a run in {DEFAULT_ROOT}.", "Name a directory with --out.")
 
 
+def _require_plain(path: Path) -> None:
+    """Hold a run to files and folders: a run may be a stranger's, whose links would lead what is written out of it, and whose pipes wait.
+
+    Raises:
+        RunError: If it holds anything else.
+    """
+    waiting = [path] if path.is_dir() else []
+    while waiting:
+        folder = waiting.pop()
+        try:
+            entries = list(folder.iterdir())
+        except FileNotFoundError:  # another process works in it, and has just renamed this
+            continue
+        except OSError as error:
+            raise _unreadable(str(folder), f"Cannot read {folder}: {error.strerror}.") from error
+        for entry in entries:
+            with contextlib.suppress(FileNotFoundError):  # as above
+                mode = entry.lstat().st_mode
+                if stat.S_ISDIR(mode):
+                    waiting.append(entry)
+                elif not stat.S_ISREG(mode):
+                    message = f"{entry} is neither a file nor a folder, and no run holds anything else."
+                    raise RunError.told(path, message, "Do not use this run, or remove what is in it.")
+
+
 def _read_request(path: Path) -> RunRequest:
     run = Run(path, RunRequest(prompt=""), None)
     stored = run._read_json(_REQUEST)  # noqa: SLF001 - the same class, before it is whole
@@ -640,7 +668,7 @@ def _read_request(path: Path) -> RunRequest:
     if not whole:
         raise RunError.told(path, f"{path / _REQUEST} is incomplete.", "Name another run directory.")
     for name, _ in named:  # a run may be a stranger's, and its pictures are sent to a model
-        if not _IMAGE_FILE.fullmatch(name) or (path / name).is_symlink() or (path / _IMAGES).is_symlink():
+        if not _IMAGE_FILE.fullmatch(name):
             raise RunError.told(
                 path, f"{path / _REQUEST} names the picture {name[:100]!r}, which is none of the run.", "Do not use this run."
             )

@@ -303,8 +303,37 @@ def test_a_picture_that_is_a_link_is_not_followed(tmp_path: Path) -> None:
     (folder / "images").mkdir()
     (folder / "images" / "1.png").symlink_to(tmp_path / "secret.png")
 
-    with pytest.raises(RunError, match="none of the run"):
+    with pytest.raises(RunError, match="neither a file nor a folder"):
         Run.view(folder)
+
+
+@pytest.mark.parametrize("place", ["trace.jsonl", "parts", "export", "export/urdf", "request.json"])
+@pytest.mark.parametrize("kind", ["link", "link to nothing", "pipe"])
+def test_a_strangers_run_that_leads_out_of_itself_is_not_opened(tmp_path: Path, place: str, kind: str) -> None:
+    """What is written to a run would be written where its links lead; a pipe would be waited for without end."""
+    folder, outside = tmp_path / "run", tmp_path / "outside"
+    Run.create(RunRequest(prompt="a box"), out=folder).close()
+    outside.mkdir()
+    target = folder / place
+    target.parent.mkdir(exist_ok=True)
+    target.unlink(missing_ok=True)
+    if kind == "pipe":
+        os.mkfifo(target)
+    else:
+        target.symlink_to(outside if kind == "link" else outside / "new")
+
+    for way in (Run.open, Run.view):
+        with pytest.raises(RunError, match=f"{target.name} is neither a file nor a folder"):
+            way(folder)
+    assert list(outside.iterdir()) == []
+
+
+def test_a_run_may_itself_be_reached_by_a_link(tmp_path: Path) -> None:
+    Run.create(RunRequest(prompt="a box"), out=tmp_path / "run").close()
+    (tmp_path / "latest").symlink_to(tmp_path / "run")
+
+    with Run.open(tmp_path / "latest") as run:
+        assert run.prompt == "a box"
 
 
 @pytest.mark.parametrize("changed", [{"images": 3}, {"images": [3]}, {"images": [{}]}, {"prompt": None}, {"options": []}])
