@@ -465,7 +465,10 @@ class Run:
         reports = {}
         for file in sorted((self.path / _EXPORT).glob("*/losses.json")):
             report = self._read_json(str(file.relative_to(self.path))) or {}
-            main = next(iter(report.get("files", {})), "")
+            files = report.get("files")
+            main = next(iter(files), "") if isinstance(files, dict) else ""
+            if Path(main).is_absolute() or ".." in Path(main).parts:
+                raise _unreadable(str(file), f"{file} names a file outside its folder: {main[:100]!r}.")
             reports[file.parent.name] = report | {"folder": str(file.parent), "main": str(file.parent / main)}
         return reports
 

@@ -328,6 +328,19 @@ def test_a_strangers_run_that_leads_out_of_itself_is_not_opened(tmp_path: Path, 
     assert list(outside.iterdir()) == []
 
 
+@pytest.mark.parametrize("name", ["/etc/passwd", "../../../secret", "meshes/../../../secret"])
+def test_a_strangers_export_cannot_name_files_outside(tmp_path: Path, name: str) -> None:
+    Run.create(RunRequest(prompt="a box"), out=tmp_path / "run").close()
+    folder = tmp_path / "run" / "export" / "urdf"
+    folder.mkdir(parents=True)
+    (folder / "losses.json").write_text(json.dumps({"files": {name: 3}}))
+
+    with pytest.raises(ReadError, match="outside its folder"):
+        Run.view(tmp_path / "run").exports()
+    (folder / "losses.json").write_text(json.dumps({"files": [3]}))
+    assert Run.view(tmp_path / "run").exports()["urdf"]["main"] == str(folder)
+
+
 def test_a_run_may_itself_be_reached_by_a_link(tmp_path: Path) -> None:
     Run.create(RunRequest(prompt="a box"), out=tmp_path / "run").close()
     (tmp_path / "latest").symlink_to(tmp_path / "run")
