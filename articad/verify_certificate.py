@@ -295,6 +295,7 @@ class Checker:
         gap = np.abs(guess + rate * (at - ends.mean()) - there - slope * (at - span.mean()))
         same = (gap + near <= apart).all() or (gap + close <= wide).all()  # what one holds is the only solution that the other has
         need(same and ends[0] <= at <= ends[1], f"{names[0]} leaves its branch at {at:.9g}")
+        need(not ends[0] < self.rest[names[0]] < ends[1], f"{names[0]} is on both sides of rest")  # which may be a dead point
         found.append((ends, guess, rate, near, wide))
 
     def begin(self, names: list[str]) -> list[Any]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import json
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -51,7 +52,24 @@ def _verify_certificate(options: argparse.Namespace, terminal: Terminal) -> Repo
 
     file = Path(options.file)
     faults = verify_file(file, Path(options.meshes) if options.meshes else file.parent / "certificate")
-    for fault in faults:
-        terminal.say(f"  {fault}")
+    stated = [] if faults else _stated(json.loads(file.read_bytes()))
+    for line in [*faults, *stated]:
+        terminal.say(f"  {line}")
     terminal.say(f"{file}: {'refuted' if faults else 'accepted'}.")
-    return {"schema": "articad.verification/1", "ok": not faults, "file": str(file), "faults": faults, "findings": []}
+    return {"schema": "articad.verification/1", "ok": not faults, "file": str(file), "faults": faults, "stated": stated, "findings": []}
+
+
+def _stated(certificate: Report) -> list[str]:
+    """Return what an accepted certificate is about: its author chose that, and no proof tells whether it is enough."""
+    moving = [joint["name"] for joint in certificate["mechanism"]["joints"] if joint["freedoms"]]
+    asked, still = certificate["asked"], [name for name in moving if name not in certificate["asked"]]
+    lines = [
+        f"Proven while these move{', also two at a time' if certificate['together'] else ', one at a time'}: {', '.join(asked) or 'none'}."
+    ]
+    if still:
+        lines.append(f"These joints are not asked for: {', '.join(still)}.")
+    waived = {"/".join(pair["parts"]): pair["strength"] for pair in certificate["pairs"] if pair["strength"]["kind"] == "waived"}
+    lines += [f"Waived, so not looked at: {parts} ({how.get('reason') or 'no reason given'})." for parts, how in waived.items()]
+    if not certificate["ok"]:
+        lines.append("It does not call itself ok: what it claims holds, but something that was asked for is not proven.")
+    return lines

@@ -258,6 +258,16 @@ def test_what_follows_is_not_held_still_as_a_driver(loop: Certificate) -> None:
         checker.stretch("crank", -0.2, 0.2)
 
 
+def test_no_piece_reaches_over_rest(loop: Certificate) -> None:
+    """At a dead point more seems to drive than does, so that a piece about rest alone says too little."""
+    names = checker_of(loop).followers("crank")
+    wide = [0.0, *[0.005] * (len(names) - 1)]
+    proof = {"crank.ends": [[-0.001, 0.001]], "crank.values": [[0.0] * len(names)], "crank.wide": [wide], "crank.other": [0]}
+    checker = checker_of(loop, {key: np.array(value) for key, value in proof.items()})
+    with pytest.raises(Refuted, match="on both sides of rest"):
+        checker.stretch("crank", -0.001, 0.001)
+
+
 def test_a_loop_that_is_open_at_rest_is_refused(loop: Certificate) -> None:
     document = document_of(loop)
     pin = next(j for j in document["mechanism"]["joints"] if j["name"] == "pin_b")
