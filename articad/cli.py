@@ -91,6 +91,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     Args:
         arguments: Without the program's name; those of the process by default.
     """
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # more wait for each other by turning: on busy processors 100 times as long
     options = _parsed(arguments)
 
     from articad.terminal import Terminal

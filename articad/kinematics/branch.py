@@ -13,6 +13,7 @@ from articad.connectors import FloatArray
 from articad.errors import DeadPointError, KinematicsError, LoopError
 from articad.findings import Finding
 from articad.kinematics.continuation import Follower, Stop, Trace
+from articad.kinematics.factors import least_squares
 from articad.kinematics.joints import Coordinate, Coupling, Joint, JointType
 from articad.kinematics.layout import IndexArray, Layout
 from articad.kinematics.loops import CLOSED, BoolArray, ClosureSystem
@@ -192,7 +193,7 @@ class Branch:
         where = np.flatnonzero(self.dependent)
         if where.size:
             driven = J @ (G[system.freedoms] / system.scale[:, None])
-            solved = np.linalg.lstsq(J[:, where], -driven, rcond=1e-10)[0] * system.scale[where, None]
+            solved = least_squares(J[:, where], -driven, 1e-10) * system.scale[where, None]
             G[system.freedoms[where]] = solved
         return G
 

@@ -16,6 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from articad.connectors import FloatArray
+from articad.kinematics.factors import least_squares, right_singular, svd
 from articad.kinematics.loops import CLOSED, RANK_TOLERANCE, BoolArray, ClosureSystem
 
 _STEP_LIMIT = 0.35  # rad, or lengths L: of any freedom in one step
@@ -105,7 +106,7 @@ class Follower:
     def linearized(self, Q: FloatArray) -> _Linear:
         """Return the constraints' Jacobian at Q and the singular values of its dependent columns."""
         J = self.system.evaluate_one(Q)[1] * self._weight
-        return _Linear(J, *np.linalg.svd(J[:, self.where], full_matrices=False))
+        return _Linear(J, *svd(J[:, self.where]))
 
     def start(self, Q: FloatArray) -> None:
         """Set how many of the dependent freedoms the constraints determine; idle ones move as little as possible."""
@@ -233,7 +234,7 @@ class Follower:
     def _tangent(self, Q: FloatArray, direction: FloatArray, orientation: FloatArray | None) -> FloatArray | None:
         """Return the unit null vector of the constraints in (dependents, s), oriented along `orientation` or towards growing s."""
         J = self.system.evaluate_one(Q)[1]
-        _, s, Vt = np.linalg.svd(np.column_stack([J[:, self.where], J @ direction]))
+        s, Vt = right_singular(np.column_stack([J[:, self.where], J @ direction]))
         if self.rank < len(self.where) or not s.size:
             return None
         tangent: FloatArray = Vt[-1]
@@ -249,7 +250,7 @@ class Follower:
         for _ in range(12):
             r, J = self.system.evaluate_one(Q)
             columns = np.column_stack([J[:, self.where], J @ direction])
-            step = -np.linalg.lstsq(columns, r, rcond=RANK_TOLERANCE)[0]
+            step = -least_squares(columns, r, RANK_TOLERANCE)
             full = direction * step[-1]
             full[self.where] = step[:-1]
             Q, s = self.system.move(Q, full), s + float(step[-1])
@@ -302,7 +303,7 @@ class Follower:
         rate = D.copy()
         if not len(self.where):
             return np.full(len(D), math.inf), rate
-        U, s, Vt = np.linalg.svd(J_dep, full_matrices=False)
+        U, s, Vt = svd(J_dep)
         k = self.rank
         b = (U.swapaxes(-1, -2) @ driven[..., None])[:, :k, 0] / np.maximum(s[:, :k], 1e-300)
         rate[:, self.where] = -(Vt[:, :k].swapaxes(-1, -2) @ b[..., None])[..., 0]

@@ -21,6 +21,7 @@ from articad.connectors import SE3, FloatArray
 from articad.errors import KinematicsError
 from articad.kinematics.batch import TreeArrays
 from articad.kinematics.equations import BatchEquations, CouplingEquations, closures
+from articad.kinematics.factors import singular_values, svd
 from articad.kinematics.joints import Coupling, Joint
 from articad.kinematics.layout import IndexArray, Layout
 from articad.kinematics.single import SingleEquations
@@ -63,7 +64,7 @@ class Closed(NamedTuple):
     @property
     def rank(self) -> int:
         """Independent constraints on the freedoms that could move."""
-        s = np.linalg.svd(self.J, compute_uv=False)
+        s = singular_values(self.J)
         return int((s > RANK_TOLERANCE * s.max(initial=0.0)).sum())
 
 
@@ -196,7 +197,7 @@ class ClosureSystem:
         norm, mu, y = _norm(r), _DAMPING_START, np.zeros(self.layout.n_freedoms)
         done = 0
         while norm > RESIDUAL_TARGET and done < iterations and where.size:
-            U, s, Vt = np.linalg.svd(J[:, where], full_matrices=False)
+            U, s, Vt = svd(J[:, where])
             b = U.T @ r
             while done < iterations:
                 done += 1
@@ -216,7 +217,7 @@ class ClosureSystem:
 
     def _polished(self, Q: FloatArray, r: FloatArray, J: FloatArray, where: IndexArray) -> tuple[FloatArray, float]:
         y = np.zeros(self.layout.n_freedoms)
-        U, s, Vt = np.linalg.svd(J[:, where], full_matrices=False)
+        U, s, Vt = svd(J[:, where])
         y[where] = _damped_step(s, U.T @ r, Vt, 0.0, RANK_TOLERANCE)
         trial = self.move(Q, y)
         norm, norm_trial = _norm(r), _norm(self.residual_one(trial))

@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from articad.connectors import FloatArray
+from articad.kinematics.factors import right_singular, svd
 from articad.kinematics.graph import JointGraph
 from articad.kinematics.joints import Coupling, Joint, JointLimits, JointType
 from articad.kinematics.layout import Layout
@@ -87,7 +88,7 @@ def motions(system: ClosureSystem, Q: FloatArray) -> tuple[FloatArray, FloatArra
     J = system.evaluate_one(Q)[1][:, where]
     if not J.size:
         return np.zeros((system.layout.n_freedoms, 0)), np.zeros(0)
-    _, s, Vt = np.linalg.svd(J)
+    s, Vt = right_singular(J)
     ratios = s / s[0]
     rank = int((ratios > RANK_TOLERANCE).sum())
     N = np.zeros((system.layout.n_freedoms, len(where) - rank))
@@ -171,7 +172,7 @@ def idle_parts(system: ClosureSystem, mobility: Mobility) -> tuple[tuple[str, ..
 
 
 def _null_space(A: FloatArray) -> FloatArray:
-    _, s, Vt = np.linalg.svd(A)
+    s, Vt = right_singular(A)
     rank = int((s > _STILL * max(1.0, float(s[0]) if s.size else 1.0)).sum())
     null: FloatArray = Vt[rank:].T
     return null
@@ -225,7 +226,7 @@ def redundancies(
 
 
 def _null_space_of_transpose(J: FloatArray, rank: int) -> FloatArray:
-    U, _, _ = np.linalg.svd(J)
+    U, _, _ = svd(J, full=True)
     null: FloatArray = U[:, rank:]
     return null
 

@@ -1,0 +1,56 @@
+"""Factors of the constraints' Jacobians, computed in one thread.
+
+NumPy's BLAS shares what is large among threads that wait for each other by turning in place. Wherever other programs use the
+processors, that takes a hundred times as long as one thread alone, and a Jacobian of twenty loops is large already.
+"""
+
+from __future__ import annotations
+
+from contextlib import AbstractContextManager, nullcontext
+from functools import cache
+from typing import Any
+
+import numpy as np
+
+from articad.connectors import FloatArray
+
+_SHARED = 2000  # entries of a matrix; BLAS begins to share its work at four times as many
+
+
+def svd(A: FloatArray, *, full: bool = False) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return U, σ and Vᵗ of a matrix `(m, n)`: min(m, n) vectors of each, or all `(m, m)` and `(n, n)`."""
+    with _one_thread(A):
+        U, s, Vt = np.linalg.svd(A, full_matrices=full)
+    return U, s, Vt
+
+
+def singular_values(A: FloatArray) -> FloatArray:
+    """Return σ of a matrix."""
+    with _one_thread(A):
+        return np.asarray(np.linalg.svd(A, compute_uv=False), dtype=float)
+
+
+def right_singular(A: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return σ of a matrix `(m, n)` and all its right singular vectors `(n, n)`: those of its null space are the last rows.
+
+    Loops have far more rows than freedoms; all the left vectors `(m, m)`, which nobody asks for, would take most of the time.
+    """
+    _, s, Vt = svd(A, full=A.shape[0] < A.shape[1])
+    return s, Vt
+
+
+def least_squares(A: FloatArray, b: FloatArray, dropped: float) -> FloatArray:
+    """Return the shortest x of least |A x - b|; singular values below a share of the largest count as zero."""
+    with _one_thread(A):
+        return np.asarray(np.linalg.lstsq(A, b, rcond=dropped)[0], dtype=float)
+
+
+def _one_thread(A: FloatArray) -> AbstractContextManager[Any]:
+    return _pools().limit(limits=1, user_api="blas") if A.size > _SHARED else nullcontext()
+
+
+@cache
+def _pools() -> Any:
+    from threadpoolctl import ThreadpoolController  # noqa: PLC0415 - few mechanisms are so large
+
+    return ThreadpoolController()

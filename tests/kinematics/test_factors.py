@@ -1,0 +1,51 @@
+"""Factors of Jacobians: the same as NumPy's, in one thread of BLAS where they are large."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from threadpoolctl import ThreadpoolController, threadpool_limits
+
+from articad.kinematics import factors
+
+
+@pytest.fixture
+def threads(monkeypatch: pytest.MonkeyPatch) -> list[int]:
+    """How many threads BLAS may use whenever NumPy is asked for a factor."""
+    if not ThreadpoolController().select(user_api="blas").info():
+        pytest.skip("NumPy's BLAS here is none that can be told how many threads to use")  # as on macOS
+    found: list[int] = []
+    for name in ("svd", "lstsq"):
+        asked = getattr(np.linalg, name)
+
+        def seen(*arguments: Any, asked: Any = asked, **options: Any) -> Any:
+            found.append(max(pool["num_threads"] for pool in ThreadpoolController().select(user_api="blas").info()))
+            return asked(*arguments, **options)
+
+        monkeypatch.setattr(np.linalg, name, seen)
+    return found
+
+
+def test_large_factors_take_one_thread_and_leave_the_others_to_the_caller(threads: list[int]) -> None:
+    rng = np.random.default_rng(3)
+    large, small = rng.normal(size=(240, 30)), rng.normal(size=(6, 4))
+    with threadpool_limits(2, user_api="blas"):
+        for A in (large, small):
+            factors.svd(A)
+            factors.singular_values(A)
+            factors.right_singular(A)
+            factors.least_squares(A, A[:, 0], 1e-10)
+    assert threads == [1] * 4 + [2] * 4
+
+
+@pytest.mark.parametrize("shape", [(240, 30), (6, 4), (4, 6), (3, 3), (30, 240)])
+def test_right_singular_vectors_span_the_null_space_last(shape: tuple[int, int]) -> None:
+    rng = np.random.default_rng(4)
+    rank = min(shape) - 1
+    A = rng.normal(size=(shape[0], rank)) @ rng.normal(size=(rank, shape[1]))
+    s, Vt = factors.right_singular(A)
+    assert Vt @ Vt.T == pytest.approx(np.eye(shape[1]), abs=1e-12)
+    assert np.abs(A @ Vt[rank:].T).max() < 1e-11 * s[0]
+    assert s[:rank].min() > 1e-6 * s[0]
