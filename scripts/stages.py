@@ -15,7 +15,11 @@ from typing import NamedTuple
 
 ROOT = Path(__file__).resolve().parent.parent
 PYTHON = sys.executable
-ENVIRONMENT = os.environ | {"PYTHONPATH": str(ROOT), "NO_MKDOCS_2_WARNING": "1", "OPENBLAS_NUM_THREADS": "1"}  # several processes test at a time
+ENVIRONMENT = os.environ | {
+    "PYTHONPATH": str(ROOT),
+    "NO_MKDOCS_2_WARNING": "1",
+    "OPENBLAS_NUM_THREADS": "1",  # several processes test at a time, and its threads wait by turning
+}
 
 
 class Outcome(NamedTuple):
