@@ -1,4 +1,4 @@
-"""Factors of the constraints' Jacobians, computed in one thread.
+"""Factors of the constraints' Jacobians, computed in one thread of BLAS.
 
 NumPy's BLAS shares what is large among threads that wait for each other by turning in place. Wherever other programs use the
 processors, that takes a hundred times as long as one thread alone, and a Jacobian of twenty loops is large already.
@@ -19,14 +19,14 @@ _SHARED = 2000  # entries of a matrix; BLAS begins to share its work at four tim
 
 def svd(A: FloatArray, *, full: bool = False) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return U, σ and Vᵗ of a matrix `(m, n)`: min(m, n) vectors of each, or all `(m, m)` and `(n, n)`."""
-    with _one_thread(A):
+    with one_thread(A.size):
         U, s, Vt = np.linalg.svd(A, full_matrices=full)
     return U, s, Vt
 
 
 def singular_values(A: FloatArray) -> FloatArray:
     """Return σ of a matrix."""
-    with _one_thread(A):
+    with one_thread(A.size):
         return np.asarray(np.linalg.svd(A, compute_uv=False), dtype=float)
 
 
@@ -41,12 +41,13 @@ def right_singular(A: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 def least_squares(A: FloatArray, b: FloatArray, dropped: float) -> FloatArray:
     """Return the shortest x of least |A x - b|; singular values below a share of the largest count as zero."""
-    with _one_thread(A):
+    with one_thread(A.size):
         return np.asarray(np.linalg.lstsq(A, b, rcond=dropped)[0], dtype=float)
 
 
-def _one_thread(A: FloatArray) -> AbstractContextManager[Any]:
-    return _pools().limit(limits=1, user_api="blas") if A.size > _SHARED else nullcontext()
+def one_thread(entries: int) -> AbstractContextManager[Any]:
+    """Keep BLAS to one thread while matrices of so many entries are worked on; small ones it does not share anyway."""
+    return _pools().limit(limits=1, user_api="blas") if entries > _SHARED else nullcontext()
 
 
 @cache

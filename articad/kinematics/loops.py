@@ -21,7 +21,7 @@ from articad.connectors import SE3, FloatArray
 from articad.errors import KinematicsError
 from articad.kinematics.batch import TreeArrays
 from articad.kinematics.equations import BatchEquations, CouplingEquations, closures
-from articad.kinematics.factors import singular_values, svd
+from articad.kinematics.factors import one_thread, singular_values, svd
 from articad.kinematics.joints import Coupling, Joint
 from articad.kinematics.layout import IndexArray, Layout
 from articad.kinematics.single import SingleEquations
@@ -192,7 +192,10 @@ class ClosureSystem:
         Returns:
             The best coordinates found, and whether they close.
         """
-        where = np.flatnonzero(free)
+        with one_thread(self.n_rows * self.layout.n_freedoms):
+            return self._closed(Q, np.flatnonzero(free), iterations, polish=polish)
+
+    def _closed(self, Q: FloatArray, where: IndexArray, iterations: int, *, polish: bool) -> Closed:
         r, J = self.evaluate_one(Q)
         norm, mu, y = _norm(r), _DAMPING_START, np.zeros(self.layout.n_freedoms)
         done = 0
@@ -234,8 +237,10 @@ class ClosureSystem:
         Returns:
             The best coordinates `(batch, columns)` and their |r| `(batch,)`; what is not below `CLOSED` did not close.
         """
-        where = np.flatnonzero(free)
-        Q = Q.copy()
+        with one_thread(self.n_rows * self.layout.n_freedoms):
+            return self._closed_many(Q.copy(), np.flatnonzero(free), iterations)
+
+    def _closed_many(self, Q: FloatArray, where: IndexArray, iterations: int) -> tuple[FloatArray, FloatArray]:
         r, J = self.evaluate(Q)
         norm = np.sqrt((r * r).sum(axis=1))
         mu = np.full(len(Q), _DAMPING_START)

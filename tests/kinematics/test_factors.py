@@ -9,26 +9,27 @@ import pytest
 from threadpoolctl import ThreadpoolController, threadpool_limits
 
 from articad.kinematics import factors
+from tests.fuzz.readers import CORPUS, attempt
 
 
 @pytest.fixture
-def threads(monkeypatch: pytest.MonkeyPatch) -> list[int]:
-    """How many threads BLAS may use whenever NumPy is asked for a factor."""
+def threads(monkeypatch: pytest.MonkeyPatch) -> list[tuple[str, int]]:
+    """Which factor NumPy was asked for, and how many threads BLAS might use for it."""
     if not ThreadpoolController().select(user_api="blas").info():
         pytest.skip("NumPy's BLAS here is none that can be told how many threads to use")  # as on macOS
-    found: list[int] = []
-    for name in ("svd", "lstsq"):
+    found: list[tuple[str, int]] = []
+    for name in ("svd", "lstsq", "solve"):
         asked = getattr(np.linalg, name)
 
-        def seen(*arguments: Any, asked: Any = asked, **options: Any) -> Any:
-            found.append(max(pool["num_threads"] for pool in ThreadpoolController().select(user_api="blas").info()))
+        def seen(*arguments: Any, name: str = name, asked: Any = asked, **options: Any) -> Any:
+            found.append((name, max(pool["num_threads"] for pool in ThreadpoolController().select(user_api="blas").info())))
             return asked(*arguments, **options)
 
         monkeypatch.setattr(np.linalg, name, seen)
     return found
 
 
-def test_large_factors_take_one_thread_and_leave_the_others_to_the_caller(threads: list[int]) -> None:
+def test_large_factors_take_one_thread_and_leave_the_others_to_the_caller(threads: list[tuple[str, int]]) -> None:
     rng = np.random.default_rng(3)
     large, small = rng.normal(size=(240, 30)), rng.normal(size=(6, 4))
     with threadpool_limits(2, user_api="blas"):
@@ -37,7 +38,16 @@ def test_large_factors_take_one_thread_and_leave_the_others_to_the_caller(thread
             factors.singular_values(A)
             factors.right_singular(A)
             factors.least_squares(A, A[:, 0], 1e-10)
-    assert threads == [1] * 4 + [2] * 4
+    assert [number for _, number in threads] == [1] * 4 + [2] * 4
+
+
+@pytest.mark.parametrize("file", ["many_loops.xml", "loops_that_do_not_close.xml"])
+def test_twenty_loops_are_closed_in_one_thread(file: str, threads: list[tuple[str, int]]) -> None:
+    """Files of 2.7 kB, found by fuzzing, took half a minute on a machine with other work, and a tenth of a second alone."""
+    with threadpool_limits(2, user_api="blas"):
+        attempt("mjcf", (CORPUS / "mjcf" / file).read_bytes())
+    assert {name for name, _ in threads} >= ({"svd"} if file == "many_loops.xml" else {"svd", "solve"})
+    assert {number for _, number in threads} == {1}
 
 
 @pytest.mark.parametrize("shape", [(240, 30), (6, 4), (4, 6), (3, 3), (30, 240)])
