@@ -16,7 +16,7 @@ from typing import Any
 import FreeCAD as App
 
 STEP, ZERO_MM, ZERO_DEG = 0.02, 0.1, 1.0  # by which a dimension is moved; the latter two where it is zero
-SAME = 1e-9  # relative change of a number that is rounding
+SAME = 1e-9  # change that is rounding: of a number, or of the part's size; a sketch is solved anew to about a hundredth of that
 _OPENED, _SHAPE = "/tmp/part.FCStd", "/tmp/part.brep"  # noqa: S108 - private to this process
 
 Json = dict[str, Any]
@@ -147,9 +147,9 @@ def _fingerprint(document: Any, body: Any, systems: dict[str, str]) -> list[floa
 
 
 def _same(after: list[float], before: list[float]) -> bool:
-    scale = max(map(abs, before), default=1.0)
+    size = max(map(abs, before[1:13]))  # lengths alone: centre, radii of gyration, box
     pairs = zip(after, before, strict=False)
-    return len(after) == len(before) and all(abs(a - b) <= SAME * max(abs(b), 1e-6 * scale, 1e-3) for a, b in pairs)
+    return len(after) == len(before) and all(abs(a - b) <= SAME * max(abs(b), size) for a, b in pairs)
 
 
 def _say(report: int, line: Json) -> None:
