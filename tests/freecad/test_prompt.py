@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+from articad import memory
 from articad.kernels import freecad_install
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -17,7 +18,7 @@ PROMPT = (PROMPTS / "part_freecad.md").read_text()
 AUTHORING = Path(freecad_install.__file__).parent / "inside_freecad" / "part.py"
 BUILT = [
     *ROOT.glob("examples/*/parts/*.freecad.py"),
-    *ROOT.glob("articad/memory/snippets/freecad/*.py"),
+    *Path(memory.__file__).parent.glob("snippets/freecad/*.py"),
     Path(__file__).with_name("test_kernel.py"),
 ]
 NAMED = sorted(set(re.findall(r"part\.([a-z_]+)\(", PROMPT)))
