@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import os
 import subprocess
 import sys
 from collections.abc import Callable
@@ -137,3 +138,13 @@ def test_output_whose_reader_went_away_is_no_defect() -> None:
     running.stderr.close()
     assert running.wait(timeout=60) == 3
     assert told == ""
+
+
+def test_the_command_line_keeps_blas_to_one_thread() -> None:
+    code = (
+        "from articad.cli import main; main(['check', '/nowhere', '--json']); import os; print(os.environ['OPENBLAS_NUM_THREADS'], end='')"
+    )
+    kept = {name: value for name, value in os.environ.items() if name != "OPENBLAS_NUM_THREADS"}
+    for environment, threads in ((kept, "1"), (kept | {"OPENBLAS_NUM_THREADS": "3"}, "3")):
+        done = subprocess.run([sys.executable, "-c", code], env=environment, capture_output=True, text=True, check=True)
+        assert done.stdout.endswith(threads)
