@@ -116,8 +116,8 @@ class Branch:
         Q_all = self.layout.normalized(Q_all)
         wanted = self.system.to_system(Q_all)
         step = self.system.step_between(self.Q, wanted)
-        step[:, self.dependent] = 0.0
-        moving = np.flatnonzero((np.abs(step) > _MOVED).any(axis=0) & self.system.active)
+        step[:, self.dependent | ~self.system.active] = 0.0
+        moving = np.flatnonzero((np.abs(step) > _MOVED).any(axis=0))
         if not moving.size:
             return self.system.into_all(Q_all, np.tile(self.Q, (len(q), 1)))
         column = self._column_of(moving)

@@ -124,6 +124,8 @@ class ClosureSystem:
         self.n_rows = len(self._linear)
         constraints = np.concatenate([self._closures.spin, self._closures.slide, self._tied.J])
         self.active: BoolArray = (constraints != 0).any(axis=0)
+        columns = range(self.layout.n_columns)
+        self._written = np.array([c for c in columns if self.active[self.layout.freedom_of(c)]], dtype=np.intp)
 
     @cached_property
     def _one(self) -> SingleEquations | None:
@@ -273,9 +275,9 @@ class ClosureSystem:
         return mine
 
     def into_all(self, Q_all: FloatArray, Q: FloatArray) -> FloatArray:
-        """Return the coordinates of all joints with this system's columns replaced."""
+        """Return the coordinates of all joints with those that a constraint touches replaced; the others are the caller's."""
         out = np.array(np.broadcast_to(Q_all, (*Q.shape[:-1], Q_all.shape[-1])))
-        out[..., self.columns] = Q
+        out[..., self.columns[self._written]] = Q[..., self._written]
         return out
 
 
