@@ -9,8 +9,8 @@ from articad.convert import FORMAT_OF, READERS, WRITERS, convert, read
 from articad.errors import ExportError, ReadError, UnrepresentableError
 from tests.assemblies import geared_pair
 
-# a foreign file has no B-rep for STEP; FreeCAD writes its documents itself, which tests/freecad holds to more than this
-TARGETS = [suffix for suffix in FORMAT_OF if FORMAT_OF[suffix] not in {"step", "freecad"}]
+# FreeCAD writes its documents itself, which tests/freecad holds to more than this
+TARGETS = [suffix for suffix in FORMAT_OF if FORMAT_OF[suffix] != "freecad"]
 
 
 @pytest.mark.parametrize(("source", "target"), list(product(["urdf", "mjcf"], TARGETS)))
@@ -37,14 +37,6 @@ def test_losses_are_told_and_strict_refuses(tmp_path: Path) -> None:
     assert convert(tmp_path / bundle.main, "a.glb")[1].losses
     with pytest.raises(UnrepresentableError):
         convert(tmp_path / bundle.main, "a.glb", strict=True)
-
-
-def test_a_foreign_file_without_brep_gives_no_step(tmp_path: Path) -> None:
-    bundle = WRITERS["urdf"](geared_pair())
-    bundle.write(tmp_path)
-
-    with pytest.raises(ExportError, match="B-rep"):
-        convert(tmp_path / bundle.main, "a.step")
 
 
 def test_unknown_endings_are_named_with_those_that_are_known(tmp_path: Path) -> None:

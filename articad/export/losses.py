@@ -201,7 +201,7 @@ TABLE: dict[str, dict[Format, Row]] = {
         "step": Row("a solid, whose density is not told", "mass and inertia"),
     },
     "brep.missing": {
-        "step": Row("nothing", "the part has no B-rep, and a mesh is no solid of STEP: it is left out", refused=True),
+        "step": Row("a plane face for each triangle of its mesh", "smooth faces: the part has a mesh and no B-rep"),
     },
     # --- parts
     "mass.missing": {
@@ -223,6 +223,7 @@ TABLE: dict[str, dict[Format, Row]] = {
         "mjcf": Row("a body without geoms"),
         "sdf": Row("a link without shapes"),
         "usd": Row("a body without meshes"),
+        "step": Row("nothing", "its place and name: the part has no shape"),
     },
     "hull": {
         "urdf": Row(

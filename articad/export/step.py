@@ -1,8 +1,11 @@
-"""STEP: one assembly file with a product per part, placed as it rests, with names and colours.
+"""STEP: one assembly file with a product per shape and an instance per part, placed as it rests, with names and colours.
 
 The parts' own STEP files, which the kernel's worker wrote, are merged as text: their entities are renumbered and an assembly
 structure is put above them (ISO 10303-44: next assembly usage occurrences with item-defined transformations), so that no B-rep enters
-this process and the same parts give the same bytes.
+this process and the same parts give the same bytes. Parts with the same file and colour are instances of one product.
+
+A part that has a mesh and no B-rep becomes solids with plane faces, one for each triangle (ISO 10303-42: faceted_brep), or a surface
+model where the mesh is open. (OpenCASCADE drops voids of a faceted_brep, so a solid with voids is a brep_with_voids.)
 """
 
 from __future__ import annotations
@@ -12,11 +15,15 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from articad.connectors.se3 import SE3
 from articad.errors import ExportError
 from articad.export.bundle import Bundle
 from articad.export.losses import Feature, losses_of, refuse
 from articad.export.names import valid_name
+from articad.geometry.mesh import TriMesh, merged
+from articad.geometry.part import Part
 from articad.kinematics.joints import JointType
 
 if TYPE_CHECKING:
@@ -24,6 +31,8 @@ if TYPE_CHECKING:
 
 TIME = "2000-01-01T00:00:00"  # the same assembly gives the same bytes
 UNCERTAINTY_MM = 1e-7  # below which two points of the file are one
+MOST_FACETS = 50_000  # of one part without a B-rep: CAD readers need minutes for more plane faces
+LEAST_AREA_MM2 = 1e-12  # a triangle with less has no plane
 
 _ENTITY = re.compile(r"#(\d+)\s*=\s*((?:[^';]|'(?:[^']|'')*')*);", re.DOTALL)
 _TOKEN = re.compile(r"'(?:[^']|'')*'|#(\d+)", re.DOTALL)
@@ -40,10 +49,10 @@ class _Component:
 
 
 def write_step(assembly: Assembly, *, strict: bool = False) -> Bundle:
-    """Write the B-rep of all parts as one STEP assembly (AP214) in the rest pose, in mm.
+    """Write all parts that have a shape as one STEP assembly (AP214) in the rest pose, in mm.
 
     Args:
-        assembly: What to write; parts without a B-rep are left out.
+        assembly: What to write.
         strict: Refuse losses of motion, mass or shape; STEP holds no joints, so only a rigid assembly passes.
 
     Returns:
@@ -51,23 +60,42 @@ def write_step(assembly: Assembly, *, strict: bool = False) -> Bundle:
 
     Raises:
         UnrepresentableError: If `strict` and there is such a loss.
-        ExportError: If no part has a B-rep, or a part's file is not STEP.
+        ExportError: If no part has a shape, a part's file is not STEP, or a part without a B-rep has more than `MOST_FACETS` triangles.
     """
     losses = losses_of("step", _features(assembly))
     if strict:
         refuse(losses)
-    files = {
-        name: part.solid.step.read_text("utf-8") for name, part in assembly.parts.items() if part.solid is not None and part.solid.step
-    }
-    if not files:
-        raise ExportError(f"No part of {assembly.name!r} has a B-rep, so there is nothing to write as STEP.")
     writer = _Writer()
     root = writer.root(assembly.name)
     rest = assembly.mechanism.rest_poses()
-    for name, text in files.items():
-        # copies do not share a product: many readers show its name, not the instance's
-        writer.place(writer.component(text, name, assembly.parts[name].color), root, name, rest[name])
+    products: dict[tuple[str, str], _Component] = {}
+    for name, part in assembly.parts.items():
+        key = _shape_key(part)
+        if key is None:
+            continue
+        product = products.get((key, part.color))
+        if product is None:
+            product = products[key, part.color] = writer.product(part)
+        writer.place(product, root, name, rest[name])
+    if not products:
+        raise ExportError(f"No part of {assembly.name!r} has a shape, so there is nothing to write as STEP.")
     return Bundle({f"{valid_name(assembly.name)}.step": writer.document(assembly.name)}, losses)
+
+
+def _facets(part: Part) -> TriMesh | None:
+    """Return the mesh of a part without a B-rep: its solid's, else what is drawn, else what collides."""
+    if part.solid is not None:
+        return part.solid.mesh
+    shapes = part.visuals or part.collisions
+    return merged([shape.placed for shape in shapes]) if shapes else None
+
+
+def _shape_key(part: Part) -> str | None:
+    """Return the same text for parts of the same shape; None for a part without one."""
+    if part.solid is not None and part.solid.step is not None:
+        return str(part.solid.step)
+    mesh = _facets(part)
+    return None if mesh is None or not len(mesh.triangles) else mesh.digest
 
 
 class _Writer:
@@ -98,6 +126,26 @@ class _Writer:
 
     def root(self, name: str) -> _Component:
         """Add the product that the parts are placed in."""
+        definition, shape = self._definition(name)
+        origin = self.axes(SE3.identity())
+        representation = self.add(f"SHAPE_REPRESENTATION('',(#{origin}),#{self._geometric_context()})")
+        self.add(f"SHAPE_DEFINITION_REPRESENTATION(#{shape},#{representation})")
+        return _Component(definition, representation, origin)
+
+    def product(self, part: Part) -> _Component:
+        """Add a part's shape as a product: its B-rep, or its mesh as plane faces.
+
+        Raises:
+            ExportError: If its file is not STEP, or its mesh has too many triangles.
+        """
+        if part.solid is not None and part.solid.step is not None:
+            return self.component(part.solid.step.read_text("utf-8"), part.name, part.color)
+        mesh = _facets(part)
+        assert mesh is not None
+        return self.faceted(mesh, part.name, part.color)
+
+    def _definition(self, name: str) -> tuple[int, int]:
+        """Add a product; return its definition and what a shape is attached to."""
         application = self.add("APPLICATION_CONTEXT('automotive design')")
         self.add(f"APPLICATION_PROTOCOL_DEFINITION('international standard','automotive_design',2000,#{application})")
         context = self.add(f"PRODUCT_CONTEXT('',#{application},'mechanical')")
@@ -106,11 +154,7 @@ class _Writer:
         formation = self.add(f"PRODUCT_DEFINITION_FORMATION('','',#{product})")
         stage = self.add(f"PRODUCT_DEFINITION_CONTEXT('part definition',#{application},'design')")
         definition = self.add(f"PRODUCT_DEFINITION('design','',#{formation},#{stage})")
-        shape = self.add(f"PRODUCT_DEFINITION_SHAPE('','',#{definition})")
-        origin = self.axes(SE3.identity())
-        representation = self.add(f"SHAPE_REPRESENTATION('',(#{origin}),#{self._geometric_context()})")
-        self.add(f"SHAPE_DEFINITION_REPRESENTATION(#{shape},#{representation})")
-        return _Component(definition, representation, origin)
+        return definition, self.add(f"PRODUCT_DEFINITION_SHAPE('','',#{definition})")
 
     def _geometric_context(self) -> int:
         length = self.add("( LENGTH_UNIT() NAMED_UNIT(*) SI_UNIT(.MILLI.,.METRE.) )")
@@ -153,6 +197,71 @@ class _Writer:
         self._color(solids, color, re.findall(r"#(\d+)\s*\)\s*$", self.entities[representation - 1])[0])
         return _Component(kinds["PRODUCT_DEFINITION"][0], representation, origin)
 
+    def faceted(self, mesh: TriMesh, name: str, color: str) -> _Component:
+        """Add a mesh as a product: a solid for each closed piece of it, a surface model for each open one.
+
+        Raises:
+            ExportError: If it has more than `MOST_FACETS` triangles.
+        """
+        if len(mesh.triangles) > MOST_FACETS:
+            raise ExportError(
+                f"Part {name!r} has no B-rep, and its mesh of {len(mesh.triangles)} triangles is too fine for plane faces of STEP "
+                f"({MOST_FACETS} at most). Simplify the mesh, or write GLB or 3MF."
+            )
+        definition, shape = self._definition(name)
+        context = self._geometric_context()
+        origin = self.axes(SE3.identity())
+        items, surfaces = self._pieces(mesh if mesh.is_closed else mesh.welded())
+        representation = self.add(f"SHAPE_REPRESENTATION('',{_references((*items, *surfaces, origin))},#{context})")
+        self.add(f"SHAPE_DEFINITION_REPRESENTATION(#{shape},#{representation})")
+        self._color([*items, *surfaces], color, str(context))
+        return _Component(definition, representation, origin)
+
+    def _pieces(self, mesh: TriMesh) -> tuple[list[int], list[int]]:
+        """Add the connected pieces of a mesh: solids with their voids, and surface models."""
+        closed = [piece for piece in mesh.components() if piece.is_closed and abs(piece.volume) > 0]
+        outer = [piece for piece in closed if piece.volume > 0]
+        voids: dict[int, list[TriMesh]] = {}
+        opened = [piece for piece in mesh.components() if not piece.is_closed]
+        for hole in (piece for piece in closed if piece.volume < 0):
+            # the smallest box around the hole is that of the solid it is in; a hole in nothing is a solid inside out
+            around = [i for i, piece in enumerate(outer) if _contains(piece.bounds, hole.bounds)]
+            if around:
+                voids.setdefault(min(around, key=lambda i: outer[i].volume), []).append(hole)
+            else:
+                opened.append(hole)
+        items = []
+        for index, piece in enumerate(outer):
+            shell = self.add(f"CLOSED_SHELL('',{self._faces(piece)})")
+            holes = [self.add(f"CLOSED_SHELL('',{self._faces(hole)})") for hole in voids.get(index, ())]
+            if holes:
+                # the mesh's normals at a void point away from the material, as brep_with_voids wants them (ISO 10303-42)
+                oriented = _references([self.add(f"ORIENTED_CLOSED_SHELL('',*,#{hole},.T.)") for hole in holes])
+                items.append(self.add(f"BREP_WITH_VOIDS('',#{shell},{oriented})"))
+            else:
+                items.append(self.add(f"FACETED_BREP('',#{shell})"))
+        shells = [self.add(f"OPEN_SHELL('',{self._faces(piece)})") for piece in opened]
+        return items, [self.add(f"SHELL_BASED_SURFACE_MODEL('',(#{shell}))") for shell in shells]
+
+    def _faces(self, mesh: TriMesh) -> str:
+        """Add a plane face for each triangle; return the list of them."""
+        points = [self.add(f"CARTESIAN_POINT('',{_reals(vertex)})") for vertex in mesh.vertices]
+        corners = mesh.vertices[mesh.triangles]
+        normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        faces = []
+        for (a, b, c), corner, normal in zip(mesh.triangles, corners, normals, strict=True):
+            length = float(np.linalg.norm(normal))
+            if length < 2 * LEAST_AREA_MM2:
+                continue
+            x = (corner[1] - corner[0]) / np.linalg.norm(corner[1] - corner[0])
+            z, ref = self.add(f"DIRECTION('',{_reals(normal / length)})"), self.add(f"DIRECTION('',{_reals(x)})")
+            axes = self.add(f"AXIS2_PLACEMENT_3D('',#{points[a]},#{z},#{ref})")
+            plane = self.add(f"PLANE('',#{axes})")
+            loop = self.add(f"POLY_LOOP('',(#{points[a]},#{points[b]},#{points[c]}))")
+            bound = self.add(f"FACE_OUTER_BOUND('',#{loop},.T.)")
+            faces.append(self.add(f"FACE_SURFACE('',(#{bound}),#{plane},.T.)"))
+        return _references(faces)
+
     def _color(self, solids: Iterable[int], color: str, context: str) -> None:
         """Give solids a colour."""
         channels = ",".join(_real(int(color[at : at + 2], 16) / 255) for at in (1, 3, 5))
@@ -164,8 +273,7 @@ class _Writer:
         usage = self.add(f"SURFACE_STYLE_USAGE(.BOTH.,#{side})")
         assignment = self.add(f"PRESENTATION_STYLE_ASSIGNMENT((#{usage}))")
         items = [self.add(f"STYLED_ITEM('color',(#{assignment}),#{solid})") for solid in solids]
-        listed = ",".join(f"#{item}" for item in items)
-        self.add(f"MECHANICAL_DESIGN_GEOMETRIC_PRESENTATION_REPRESENTATION('',({listed}),#{context})")
+        self.add(f"MECHANICAL_DESIGN_GEOMETRIC_PRESENTATION_REPRESENTATION('',{_references(items)},#{context})")
 
     def place(self, part: _Component, root: _Component, name: str, T: SE3) -> None:
         """Put an instance of a part's product into the root at a pose."""
@@ -216,8 +324,16 @@ def _real(value: float) -> str:
     return f"{mantissa}E{exponent}" if exponent else mantissa
 
 
+def _references(entities: Iterable[int]) -> str:
+    return "(" + ",".join(f"#{entity}" for entity in entities) + ")"
+
+
 def _reals(values: Iterable[float]) -> str:
     return "(" + ",".join(_real(value) for value in values) + ")"
+
+
+def _contains(outer: np.ndarray, inner: np.ndarray) -> bool:
+    return bool((outer[0] <= inner[0]).all() and (inner[1] <= outer[1]).all())
 
 
 def _features(assembly: Assembly) -> list[Feature]:
@@ -225,6 +341,8 @@ def _features(assembly: Assembly) -> list[Feature]:
     for name, part in assembly.parts.items():
         if part.mass is not None:
             features.append(Feature("mass", f"parts.{name}"))
-        if part.solid is None or part.solid.step is None:
+        if _shape_key(part) is None:
+            features.append(Feature("shape.missing", f"parts.{name}"))
+        elif part.solid is None or part.solid.step is None:
             features.append(Feature("brep.missing", f"parts.{name}"))
     return features

@@ -154,11 +154,18 @@ def derive_part(resolved: ResolvedPlan, name: str, realised: Mapping[str, Realis
         built, part = source.built, source.part.renamed(name)
     else:
         built = mirror_part(kernel, source.built, derivation.S)
-        part = source.part.mirrored(name, derivation.S)
+        part = _with_files(source.part.mirrored(name, derivation.S), built)
     part = replace(part, connectors=target.connectors, color=target.color)
     return RealisedPart(
         part=part, built=built, script=None, digests={}, derived_from=derivation.source, cached=source.cached, findings=Findings()
     )
+
+
+def _with_files(part: Part, built: BuiltPart) -> Part:
+    """Return a mirror image with the B-rep files that the kernel wrote for it."""
+    if part.solid is None:
+        return part
+    return replace(part, solid=replace(part.solid, brep=built.solid.brep, step=built.solid.step))
 
 
 def _derived_in_order(resolved: ResolvedPlan) -> Iterator[str]:

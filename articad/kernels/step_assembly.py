@@ -26,7 +26,7 @@ class StepPart:
     """One solid, or loose faces, of a STEP file.
 
     Attributes:
-        name: Unique in the file: the product's, numbered where several share it.
+        name: Unique in the file: the instance's where several share a product and have names, else the product's, numbered.
         product: As the file has it.
         where: The products above it, joined by "/".
         mesh: In the assembly's frame [mm]; None where it cannot be meshed.
@@ -92,7 +92,7 @@ def _part(index: int, row: Mapping[str, Any], whole: TriMesh, taken: Counter[str
     product = str(row.get("product") or "")[:_NAME]
     path = row.get("path")
     above = [str(name)[:_NAME] for name in path[:50]] if isinstance(path, list) else []
-    wanted = product or f"part_{index + 1}"
+    wanted = str(row.get("instance") or "")[:_NAME] or product or f"part_{index + 1}"
     taken[wanted] += 1
     name = wanted if taken[wanted] == 1 else f"{wanted} ({taken[wanted]})"
     assert whole.face is not None

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import re
 from collections.abc import Iterator
 from typing import Any
 
@@ -25,6 +26,7 @@ from articad.kernels.tessellation import Mesh, tessellate
 
 MOST_DEPTH = 50  # products below products
 MOST_PARTS = 2000
+_GENERATED = re.compile(r"=>|NAUO\d*$|\d*$")  # how instances are called by programs that name products only
 
 Json = dict[str, Any]
 
@@ -52,19 +54,22 @@ def read(content: bytes, *, deflection: float, angle: float) -> tuple[list[Json]
     rows: list[Json] = []
     meshes: list[Mesh] = []
     for label in _sequence(labels):
-        for path, product, shape in _leaves(label, TopLoc_Location(), (), 0):
+        for path, product, instance, shape in _leaves(label, TopLoc_Location(), (), 0):
             for piece, loose in _pieces(shape):
                 if len(rows) >= MOST_PARTS:
                     raise ValueError(f"it holds more than {MOST_PARTS} parts")
-                rows.append(_row(path, product, piece, loose=loose))
+                rows.append(_row(path, product, instance, piece, loose=loose))
                 meshes.append(tessellate(piece, deflection, angle))
     if not rows:
         raise ValueError("it holds no shape")
     return rows, measure.npz(_together(meshes))
 
 
-def _leaves(label: Any, place: Any, path: tuple[str, ...], depth: int) -> Iterator[tuple[tuple[str, ...], str, Any]]:
-    """Yield the shapes that are no assemblies, placed, with the products above them and their own names."""
+def _leaves(label: Any, place: Any, path: tuple[str, ...], depth: int) -> Iterator[tuple[tuple[str, ...], str, str, Any]]:
+    """Yield the shapes that are no assemblies, placed, with the products above them, their own product, and the instance's name.
+
+    The instance's name is empty where the product has only one instance, or a program has numbered its instances.
+    """
     if depth > MOST_DEPTH:
         raise ValueError(f"its products are more than {MOST_DEPTH} deep")
     here = place.Multiplied(XCAFDoc_ShapeTool.GetLocation_s(label)) if XCAFDoc_ShapeTool.IsReference_s(label) else place
@@ -81,7 +86,9 @@ def _leaves(label: Any, place: Any, path: tuple[str, ...], depth: int) -> Iterat
         return
     shape = XCAFDoc_ShapeTool.GetShape_s(target)
     if not shape.IsNull():
-        yield path, product, shape.Moved(here) if not here.IsIdentity() else shape
+        shared = XCAFDoc_ShapeTool.GetUsers_s(target, Sequence_TDF_Label()) > 1
+        own = instance if shared and not _GENERATED.match(instance) else ""
+        yield path, product, own, shape.Moved(here) if not here.IsIdentity() else shape
 
 
 def _pieces(shape: TopoDS_Shape) -> Iterator[tuple[TopoDS_Shape, bool]]:
@@ -94,11 +101,12 @@ def _pieces(shape: TopoDS_Shape) -> Iterator[tuple[TopoDS_Shape, bool]]:
         yield measure.compound(loose), True
 
 
-def _row(path: tuple[str, ...], product: str, piece: TopoDS_Shape, *, loose: bool) -> Json:
+def _row(path: tuple[str, ...], product: str, instance: str, piece: TopoDS_Shape, *, loose: bool) -> Json:
     valid = not loose and bool(BRepCheck_Analyzer(piece).IsValid()) and measure.properties(piece)["volume_mm3"] >= measure.EMPTY_MM3
     return {
         "path": list(path),
         "product": product,
+        "instance": instance,
         "valid": valid,
         "loose": loose,
         "faces": sum(1 for _ in measure.found(piece, TopAbs_FACE)),

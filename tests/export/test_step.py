@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -14,10 +15,11 @@ from articad.connectors.connector import Connector
 from articad.connectors.se3 import SE3
 from articad.errors import ExportError, UnrepresentableError
 from articad.export.step import write_step
+from articad.geometry.mesh import TriMesh, merged
 from articad.geometry.part import Part, Solid
-from articad.geometry.shapes import box
+from articad.geometry.shapes import box, sphere
 from articad.kinematics import declare
-from tests.assemblies import geared_pair
+from articad.plan.schema import AssemblyPlan
 
 pytestmark = pytest.mark.engines
 
@@ -75,19 +77,9 @@ def test_losses_are_told_and_strict_refuses(assembly: Assembly) -> None:
         write_step(assembly, strict=True)
 
 
-def test_a_part_without_a_brep_is_left_out(assembly: Assembly) -> None:
-    first, *others = assembly.parts.values()
-    parts = [replace(first, solid=None), *others]
-    lean = Assembly.from_parts("lean", parts=parts, joints=assembly.joints, ground="base")
-    bundle = write_step(lean)
-
-    assert [loss.where for loss in bundle.losses if "B-rep" in loss.lost] == ["parts.base"]
-    assert b"PRODUCT('base'" not in bundle.files["lean.step"]
-
-
 def test_nothing_to_write_is_an_error() -> None:
     with pytest.raises(ExportError, match="No part"):
-        write_step(geared_pair())
+        write_step(joined(Part.without_geometry("a"), Part.without_geometry("b")))
 
 
 @pytest.mark.parametrize(
@@ -102,3 +94,219 @@ def test_a_file_that_is_not_step_is_an_error(text: str, reason: str, assembly: A
 
     with pytest.raises(ExportError, match=reason):
         write_step(Assembly.from_parts("b", parts=[broken], joints=[], ground="base"))
+
+
+def joined(*parts: Part) -> Assembly:
+    """Return parts that are fixed to the first one at its origin."""
+    held = [replace(part, connectors={"o": Connector("o", SE3.identity())}) for part in parts]
+    joints = [declare.fixed(f"j{i}", held[0]["o"], part["o"]) for i, part in enumerate(held[1:])]
+    return Assembly.from_parts("joined", parts=held, joints=joints, ground=held[0].name)
+
+
+def read_by_occt(assembly: Assembly, folder: Path) -> dict[str, Any]:
+    """Write an assembly and return what OpenCASCADE reads: instance name -> its placed shape and colour, and the product's shape."""
+    from OCP.collections import Sequence_TDF_Label
+    from OCP.Quantity import Quantity_Color
+    from OCP.STEPCAFControl import STEPCAFControl_Reader
+    from OCP.TCollection import TCollection_ExtendedString
+    from OCP.TDataStd import TDataStd_Name
+    from OCP.TDF import TDF_Label
+    from OCP.TDocStd import TDocStd_Document
+    from OCP.TopoDS import TopoDS_Iterator
+    from OCP.XCAFDoc import XCAFDoc_ColorGen, XCAFDoc_ColorSurf, XCAFDoc_DocumentTool, XCAFDoc_ShapeTool
+
+    bundle = write_step(assembly)
+    bundle.write(folder)
+    document = TDocStd_Document(TCollection_ExtendedString("XCAF"))
+    reader = STEPCAFControl_Reader()
+    reader.SetNameMode(namemode=True)
+    reader.SetColorMode(colormode=True)
+    reader.ReadFile(str(folder / bundle.main))
+    reader.Transfer(document)
+    tool = XCAFDoc_DocumentTool.ShapeTool_s(document.Main())
+    colors = XCAFDoc_DocumentTool.ColorTool_s(document.Main())
+    free, components = Sequence_TDF_Label(), Sequence_TDF_Label()
+    tool.GetFreeShapes(free)
+    assert free.Length() == 1
+    XCAFDoc_ShapeTool.GetComponents_s(free.Value(1), components)
+    found: dict[str, Any] = {}
+    for index in range(1, components.Length() + 1):
+        label, product, name, color = components.Value(index), TDF_Label(), TDataStd_Name(), Quantity_Color()
+        XCAFDoc_ShapeTool.GetReferredShape_s(label, product)
+        assert label.FindAttribute(TDataStd_Name.GetID_s(), name)
+        solid = XCAFDoc_ShapeTool.GetShape_s(product)
+        # several solids of one product have a colour each
+        pieces = [solid, TopoDS_Iterator(solid).Value()]
+        assert any(colors.GetColor(piece, kind, color) for piece in pieces for kind in (XCAFDoc_ColorGen, XCAFDoc_ColorSurf))
+        found[str(name.Get().ToExtString())] = (XCAFDoc_ShapeTool.GetShape_s(label), color.Red(), solid)
+    assert len(found) == components.Length()
+    return found
+
+
+def volume_and_centre(shape: Any) -> tuple[float, list[float]]:
+    from OCP.BRepGProp import BRepGProp
+    from OCP.GProp import GProp_GProps
+
+    properties = GProp_GProps()
+    BRepGProp.VolumeProperties_s(shape, properties)
+    centre = properties.CentreOfMass()
+    return properties.Mass(), [centre.X(), centre.Y(), centre.Z()]
+
+
+def hooked(size: Any, hook: Any) -> TriMesh:
+    """Return a block with a smaller one off its centre: no plane of symmetry, two solids that do not touch."""
+    small = box(*hook)
+    return merged([box(*size), TriMesh(small.vertices + np.asarray(size) + np.asarray(hook), small.triangles)])
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_a_part_without_a_brep_is_plane_faces_of_its_mesh(seed: int, tmp_path: Path) -> None:
+    random = np.random.default_rng(seed)
+    parts = []
+    for index in range(6):
+        size, hook = random.uniform(5, 40, 3), random.uniform(1, 4, 3)
+        mesh = hooked(size, hook)
+        if index == 2:
+            mesh = merged([mesh, sphere(2.0).flipped()])  # a void
+        if index == 3:
+            turned = SE3.rot_x(random.uniform(0, 3)) @ SE3.trans(*random.uniform(-9, 9, 3))
+            mesh = mesh.transformed(turned)
+        if index == 4:
+            normal = random.normal(size=3)
+            S = np.eye(4)
+            S[:3, :3] -= 2 * np.outer(normal, normal) / (normal @ normal)
+            mesh = mesh.reflected(S)
+        parts.append(Part.from_mesh(f"p{index}", mesh, color=f"#{16 * index + 9:02x}8040"))
+    assembly = joined(*parts)
+
+    read = read_by_occt(assembly, tmp_path)
+
+    assert list(read) == [part.name for part in parts]
+    for part, (shape, red, _) in zip(parts, read.values(), strict=True):
+        assert part.mesh is not None
+        volume, centre = volume_and_centre(shape)
+        # the divergence theorem over the triangles, by this test itself
+        a, b, c = (part.mesh.vertices[part.mesh.triangles[:, k]] for k in range(3))
+        tetrahedra = np.einsum("ij,ij->i", a, np.cross(b, c)) / 6
+        assert volume == pytest.approx(tetrahedra.sum(), rel=1e-9)
+        assert centre == pytest.approx((tetrahedra[:, None] * (a + b + c) / 4).sum(axis=0) / tetrahedra.sum(), abs=1e-7)
+        assert red == pytest.approx(((int(part.color[1:3], 16) / 255 + 0.055) / 1.055) ** 2.4, abs=1e-3)  # OCCT's colours are linear
+
+
+def test_an_open_mesh_is_a_surface_and_a_part_without_shape_is_a_row(tmp_path: Path) -> None:
+    whole = box(7, 8, 9)
+    opened = Part.from_mesh("open", TriMesh(whole.vertices, whole.triangles[:-2]))
+    assembly = joined(Part.from_mesh("base", box(10, 10, 10)), opened, Part.without_geometry("tip"))
+
+    read = read_by_occt(assembly, tmp_path)
+
+    assert list(read) == ["base", "open"]
+    assert abs(opened.visuals[0].mesh.area - area(read["open"][0])) < 1e-9
+    assert ("parts.tip", "nothing") in [(loss.where, loss.kept) for loss in write_step(assembly).losses]
+
+
+def area(shape: Any) -> float:
+    from OCP.BRepGProp import BRepGProp
+    from OCP.GProp import GProp_GProps
+
+    properties = GProp_GProps()
+    BRepGProp.SurfaceProperties_s(shape, properties)
+    return float(properties.Mass())
+
+
+def test_parts_of_one_shape_and_colour_are_instances_of_one_product(assembly: Assembly, tmp_path: Path) -> None:
+    first = next(iter(assembly.parts.values()))
+    twins = [replace(first, name=name) for name in ("left", "right")]
+    other = replace(first, name="painted", color="#00ff00")
+    lean = joined(first, *twins, other)
+
+    read = read_by_occt(lean, tmp_path)
+
+    assert list(read) == ["base", "left", "right", "painted"]
+    assert read["left"][2].IsSame(read["base"][2])
+    assert not read["painted"][2].IsSame(read["base"][2])
+    assert write_step(lean).files["joined.step"].count(b"MANIFOLD_SOLID_BREP") == 2
+    from articad.importers.step import read_step
+
+    assert list(read_step(tmp_path / "joined.step").parts) == ["base", "left", "right", "painted"]
+
+
+def test_a_mesh_too_fine_for_plane_faces_is_an_error() -> None:
+    n = 200
+    grid = np.array([[i, j, 0.0] for i in range(n) for j in range(n)])
+    i, j = np.meshgrid(np.arange(n - 1), np.arange(n - 1), indexing="ij")
+    corner = (i * n + j).ravel()
+    triangles = np.concatenate([np.stack([corner, corner + n, corner + 1], 1), np.stack([corner + 1, corner + n, corner + n + 1], 1)])
+
+    with pytest.raises(ExportError, match="79202 triangles"):
+        write_step(joined(Part.from_mesh("sheet", TriMesh(grid, triangles))))
+
+
+PLATE = """
+from build123d import *
+
+def build(part):
+    shape = Box(30, 20, 4) + Pos(10, 5, 6) * Cylinder(3, 10) + Pos(-9, -7, 4) * Box(5, 3, 9)
+    return shape, {"o": {"o": (0, 0, 0), "z": (0, 0, 1), "x": (1, 0, 0)}}
+"""
+
+
+def mirrored_plan(seed: int) -> dict[str, Any]:
+    """Return a plan: a part without symmetry, mirrored in a random plane, that image mirrored again, moved and repeated."""
+    random = np.random.default_rng(seed)
+
+    def vector(size: float) -> list[float]:
+        return [round(float(x), 3) for x in random.uniform(-size, size, 3)]
+
+    def derived(name: str, source: str, op: str, **how: Any) -> dict[str, Any]:
+        return {"name": name, "derive": {"from": source, "op": op, **how}}
+
+    def plane() -> dict[str, Any]:
+        return {"point": vector(50), "normal": [0.3, *vector(1)[1:]]}
+
+    step = {"at": [40, 7, 3], "axis": [0.2, 0.3, 1], "angle_deg": 25}
+    parts = [
+        {
+            "name": "a",
+            "material": "steel",
+            "description": "Plate.",
+            "connectors": [{"name": "o", "o": [0, 0, 0], "z": [0, 0, 1], "label": "o"}],
+        },
+        derived("b", "a", "mirror", plane=plane()),
+        derived("c", "b", "mirror", plane=plane()),
+        derived("d", "b", "rigid", move={"at": vector(90)}),
+        derived("e", "d", "pattern", count=2, step=step),
+        derived("f", "d", "mirror", plane=plane()),
+    ]
+    names = ["b", "c", "d", "e_1", "e_2", "f"]
+    joints = [{"name": f"to_{name}", "type": "fixed", "parent": "a.o", "child": f"{name}.o"} for name in names]
+    return {
+        "schema": "articad.plan/1",
+        "name": "images",
+        "description": "Images of one part.",
+        "ground": "a",
+        "freedoms": 0,
+        "materials": [{"name": "steel", "density_kg_m3": 7850, "color": "#8a9299"}],
+        "parts": parts,
+        "joints": joints,
+    }
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_mirror_images_are_written_as_mirrored_brep(seed: int, tmp_path: Path) -> None:
+    (tmp_path / "a.py").write_text(PLATE)
+    assembly = Assembly.from_plan(AssemblyPlan.loads(json.dumps(mirrored_plan(seed))), tmp_path)
+    rest = assembly.mechanism.rest_poses()
+
+    read = read_by_occt(assembly, tmp_path)
+
+    assert list(read) == list(assembly.parts)
+    assert not [loss for loss in write_step(assembly).losses if "mesh" in loss.lost]
+    for name, (shape, _, _) in read.items():
+        mesh = assembly.parts[name].mesh  # a mirrored mesh is the source's, reflected by numpy
+        assert mesh is not None
+        volume, centre = volume_and_centre(shape)
+        assert volume == pytest.approx(mesh.volume, rel=2e-3)
+        assert centre == pytest.approx(rest[name].apply(mesh.centroid), abs=0.02)
+    assert read["d"][2].IsSame(read["e_1"][2])
+    assert write_step(assembly).files["images.step"].count(b"MANIFOLD_SOLID_BREP") == 4  # a, b, c, f; d and e_* are b again
