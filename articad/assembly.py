@@ -28,7 +28,8 @@ from articad.kinematics.joints import Coordinate, Coupling, Joint, JointType
 from articad.kinematics.mechanism import Mechanism
 from articad.kinematics.motion import FeasibleRange, Sweep
 from articad.kinematics.reach import Reach
-from articad.plan.resolve import Fit, Material, ResolvedPlan, Waiver, resolve
+from articad.plan.check import admitted
+from articad.plan.resolve import Fit, Material, ResolvedPlan, Waiver
 from articad.plan.schema import AssemblyPlan
 
 if TYPE_CHECKING:
@@ -131,11 +132,11 @@ class Assembly:
             parameters: Values that replace the plan's own [mm, degrees].
 
         Raises:
-            PlanError: If the plan has errors.
+            PlanError: With every finding of `check_plan` if one is an error; no script has run then.
             ContractError: If a part cannot be built; holds the findings of all that failed.
             SandboxError: If the isolation asked for is not available.
         """
-        resolved = resolve(plan, **dict(parameters or {}))
+        resolved, findings = admitted(plan, **dict(parameters or {}))
         kernel = kernel or Build123dKernel(sandbox=sandbox)
         if isinstance(parts, Mapping):
             scripts = {name: text.encode() if isinstance(text, str) else text for name, text in parts.items()}
@@ -143,7 +144,7 @@ class Assembly:
             scripts = find_scripts(Path(parts), resolved, kernel.name)
         cache = cache or BuildCache()
         realised = build_parts(resolved, scripts, kernel=kernel, cache=cache, deflection=deflection, jobs=jobs, progress=progress)
-        return cls.from_realised(resolved, realised, kernel=kernel, cache=cache, deflection=deflection)
+        return cls.from_realised(resolved, realised, kernel=kernel, cache=cache, deflection=deflection, findings=findings)
 
     @classmethod
     def from_realised(
@@ -154,6 +155,7 @@ class Assembly:
         kernel: PartKernel | None = None,
         cache: BuildCache | None = None,
         deflection: float = DEFLECTION_MM,
+        findings: Findings = Findings(),  # noqa: B008 - immutable
     ) -> Self:
         """Assemble parts that are built already; no model, no kernel.
 
@@ -163,6 +165,7 @@ class Assembly:
             kernel: Builds parts anew when parameters change.
             cache: Holds their files, and those of parts that are built anew.
             deflection: Largest distance of their meshes from the solids [mm].
+            findings: Warnings and notes about the plan.
         """
         mechanism = resolved.mechanism
         return cls(
@@ -174,7 +177,7 @@ class Assembly:
             waivers=resolved.waivers,
             resolved=resolved,
             realised=realised,
-            findings=Findings(finding for part in realised.values() for finding in part.findings),
+            findings=Findings([*findings, *(finding for part in realised.values() for finding in part.findings)]),
             deflection=deflection,
             _kernel=kernel,
             _cache=cache,

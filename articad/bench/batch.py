@@ -127,7 +127,10 @@ def _with_items(items: Sequence[Item], records: Sequence[Json]) -> list[Json]:
 
 
 def summary(records: Iterable[Json]) -> Json:
-    """Return the report `articad.batch-report/1`: how many passed, what was built and kept, and where the time went."""
+    """Return the report `articad.batch-report/1`: how many passed, what was built and kept, and where the time went.
+
+    An item that a check refuses is a result. The batch is `ok` if every item was made and at least one passed.
+    """
     rows = list(records)
     spent: dict[str, float] = {}
     for row in rows:
@@ -139,7 +142,7 @@ def summary(records: Iterable[Json]) -> Json:
             codes[code] = codes.get(code, 0) + 1
     return {
         "schema": "articad.batch-report/1",
-        "ok": all(row.get("made") != "never" for row in rows),
+        "ok": all(row.get("made") != "never" for row in rows) and any(row.get("ok") for row in rows),
         "findings": [],
         "items": len(rows),
         "passed": sum(bool(row.get("ok")) for row in rows),

@@ -23,8 +23,6 @@ from articad.assembly import Assembly
 from articad.errors import ArticadError, ReadError
 from articad.findings import Findings
 from articad.kernels.kernel import BuildCache, PartKernel
-from articad.kernels.parts import find_scripts
-from articad.plan.resolve import resolve
 from articad.plan.schema import AssemblyPlan
 from articad.record import WRITERS, kernel_named
 from articad.run import digest
@@ -143,12 +141,10 @@ def _made(item: Item, folder: Path, cache_root: str | Path | None) -> Json:
     try:
         with clock.on("plan"):
             plan = AssemblyPlan.load(item.plan)
-            resolved = resolve(plan, **dict(item.values))
         with clock.on("kernel"):
             kernel = _kernel(item.kernel or plan.kernel)
-            scripts = find_scripts(Path(item.plan) / "parts", resolved, kernel.name)
             store = BuildCache() if cache_root is None else BuildCache(Path(cache_root))
-            assembly = Assembly.from_plan(plan, scripts, kernel=kernel, cache=store, jobs=1, parameters=item.values)
+            assembly = Assembly.from_plan(plan, Path(item.plan) / "parts", kernel=kernel, cache=store, jobs=1, parameters=item.values)
         record |= {"kernel": kernel.name, "kernel_version": kernel.version}
         sources = [part for part in assembly.realised.values() if part.derived_from is None]
         built = {"parts_built": sum(not part.cached for part in sources), "parts_kept": sum(part.cached for part in sources)}

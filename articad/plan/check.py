@@ -1,4 +1,7 @@
-"""Checking: everything that is wrong with a plan, all at once, before any geometry exists."""
+"""Checking: everything that is wrong with a plan, all at once, before any geometry exists.
+
+`check_plan` reports; `admitted` is the gate in front of every part script: it lets a plan through that has no error.
+"""
 
 from __future__ import annotations
 
@@ -6,11 +9,12 @@ import math
 
 import numpy as np
 
-from articad.errors import ArticadError
+from articad.errors import ArticadError, PlanError
 from articad.findings import Finding, Findings
 from articad.kinematics.graph import JointGraph
 from articad.kinematics.mechanism import Mechanism
 from articad.plan.draft import Draft
+from articad.plan.resolve import ResolvedPlan, resolved_from
 from articad.plan.rest import rest_findings
 from articad.plan.schema import AssemblyPlan
 from articad.plan.usage import scale_findings, usage_findings
@@ -18,24 +22,52 @@ from articad.plan.usage import scale_findings, usage_findings
 _SHOWN_AT_BOUND = 3  # findings reported in full for one bound of one parameter
 
 
-def check_plan(plan: AssemblyPlan) -> Findings:
+def check_plan(plan: AssemblyPlan, /, **parameters: float) -> Findings:
     """Return everything that is wrong with a plan; it never raises.
 
     Numbers, names, axes and limits are checked, the joint graph, the rest pose of every joint, the declared freedoms, and
     all of it again with each parameter at its min and max.
+
+    Args:
+        plan: The plan.
+        **parameters: Values that replace those of parameters: mm, degrees.
     """
-    draft = Draft(plan)
-    found = [*draft.findings(), *rest_findings(draft), *usage_findings(draft)]
-    found += _structure_findings(draft, Findings(found))
-    found += _range_findings(draft, found)
-    return Findings(found)
+    draft = Draft(plan, parameters)
+    found, _ = _judged(draft)
+    return Findings([*found, *_range_findings(draft, found)])
+
+
+def admitted(plan: AssemblyPlan, /, **parameters: float) -> tuple[ResolvedPlan, Findings]:
+    """Return the plan with its numbers, and its warnings and notes; nothing may be built from a plan with an error.
+
+    Args:
+        plan: The plan.
+        **parameters: Values that replace those of parameters: mm, degrees.
+
+    Raises:
+        PlanError: With every finding, if one of them is an error.
+    """
+    found, resolved = _judged(Draft(plan, parameters))
+    findings = Findings(found)
+    if resolved is None or not findings.ok:
+        raise PlanError("\n".join(map(str, findings.errors)), findings=findings)
+    return resolved, findings
+
+
+def _judged(draft: Draft) -> tuple[list[Finding], ResolvedPlan | None]:
+    """Return all findings at the draft's own parameter values, and its numbers where they are free of errors."""
+    stated = draft.findings()
+    resolved = resolved_from(draft, stated) if stated.ok else None
+    found = [*stated, *rest_findings(draft), *usage_findings(draft)]
+    found += _structure_findings(draft, resolved if Findings(found).ok else None)
+    return found, resolved
 
 
 # ---------------------------------------------------------------- mechanism
 
 
-def _structure_findings(draft: Draft, so_far: Findings) -> list[Finding]:
-    """Judge loops, freedoms and drivers, as far as the findings so far leave a mechanism to judge."""
+def _structure_findings(draft: Draft, resolved: ResolvedPlan | None) -> list[Finding]:
+    """Judge loops, freedoms and drivers; loops and couplings only where the parts meet at rest (`resolved`)."""
     if not draft.graph_findings.ok:
         return []
     tree, loop_joints = draft.graph.spanning_tree()
@@ -54,16 +86,13 @@ def _structure_findings(draft: Draft, so_far: Findings) -> list[Finding]:
         found += _freedom_findings(draft, sum(count for _, count in freedoms), account)
         found += _idle_marks(draft.graph)
         return found
-    if not so_far.ok:
-        return found  # what does not meet at rest cannot be solved
-    return found + _mechanism_findings(draft)
+    return found if resolved is None else found + _mechanism_findings(draft, resolved)
 
 
-def _mechanism_findings(draft: Draft) -> list[Finding]:
+def _mechanism_findings(draft: Draft, resolved: ResolvedPlan) -> list[Finding]:
     """Return what the mechanism says of its loops, couplings and drivers, and whether its mobility is the declared one."""
-    plan = draft.plan
     try:
-        mechanism = Mechanism(tuple(draft.parts), plan.ground, draft.joints, draft.couplings, draft.parts[plan.ground].T)
+        mechanism = resolved.mechanism
         found = list(mechanism.findings())
         if not any(finding.code == "E_LOOP_OPEN" for finding in found):
             found += _freedom_findings(draft, mechanism.mobility, _account(mechanism))
@@ -126,7 +155,7 @@ def _range_findings(draft: Draft, found: list[Finding]) -> list[Finding]:
         for name, bound in zip(("min", "max"), draft.evaluation.bounds(parameter), strict=True):
             if not math.isfinite(bound) or not math.isfinite(value) or bound == value:
                 continue
-            tried = Draft(draft.plan, {parameter.name: bound})
+            tried = Draft(draft.plan, {**draft.overrides, parameter.name: bound})
             broken = Findings([*tried.findings(), *rest_findings(tried), *scale_findings(tried)]).errors
             fresh = [finding for finding in broken if (finding.code, finding.where) not in known]
             for finding in fresh[:_SHOWN_AT_BOUND]:

@@ -187,7 +187,7 @@ def resolve(plan: AssemblyPlan, /, **parameters: float) -> ResolvedPlan:
 
     Raises:
         PlanError: With all findings, if a number, name, axis or derivation is wrong. Rest poses that do not meet are
-            no obstacle here: `check_plan` reports them.
+            no obstacle here: `check_plan` reports them, and `admitted` refuses them before anything is built.
     """
     draft = Draft(plan, parameters)
     findings = draft.findings()
