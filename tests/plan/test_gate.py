@@ -37,7 +37,7 @@ def test_no_script_of_a_plan_with_an_error_is_built(case: Case) -> None:
         return  # refused at an earlier door: such a plan cannot be read
     wanted = {(finding.code, finding.where) for finding in check_plan(plan).errors}
     with pytest.raises(PlanError) as caught:
-        Assembly.from_plan(plan, {}, kernel=cast(PartKernel, NoKernel()))
+        Assembly.from_plan(plan, {}, kernel=cast("PartKernel", NoKernel()))
     assert {(finding.code, finding.where) for finding in caught.value.findings if finding.severity == "error"} == wanted
     assert (case.code, case.where) in wanted
 
