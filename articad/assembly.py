@@ -410,7 +410,7 @@ class Assembly:
             joints: Names of the joints to be proven; all that move by default.
             pairs: Whether joints are also moved two at a time.
             epsilon: Distances up to here are contact [mm].
-            budget: Time [s]; what is not proven by then is "not checked", which is not ok.
+            budget: Nominal seconds of work, the same work on every machine; what is not proven by then is "not checked", which is not ok.
         """
         return certify(
             self._meshes(),

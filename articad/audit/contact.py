@@ -12,7 +12,7 @@ import numpy as np
 
 from articad.assembly import Assembly
 from articad.audit.contact_case import Case, Contacts, explained, shared_note
-from articad.audit.contact_motion import Clock, prove_motion, sample_motion
+from articad.audit.contact_motion import prove_motion, sample_motion
 from articad.audit.declared import Declared
 from articad.audit.wording import counted
 from articad.connectors.se3 import SE3
@@ -27,12 +27,13 @@ from articad.interference.relations import Groups
 from articad.interference.report import Checks, PairCheck
 from articad.interference.scene import Scene
 from articad.interference.verdict import judge
+from articad.interference.work import Budget, look_price
 from articad.kinematics.joints import JointType
 
 FOREIGN = ("urdf", "mjcf")  # formats whose shapes stand for bodies without being them
 FOREIGN_GAP_MM = 1.0  # by which shapes of foreign files may miss each other where they are fixed: they are drawn, not made
 MOST_BODIES = 1000  # parts with shapes whose pairs are looked at
-REST_S = 30.0  # of the processor, for overlap at rest of what simulators are given: robots take a second
+REST_S = 30.0  # nominal seconds of work, for overlap at rest of what simulators are given: robots take a second
 MOST_UNION = 24  # shapes of one link that are united; more are taken as they are
 ROUND = ("sphere", "capsule")
 SIMPLE = ("box", "cylinder", "sphere", "capsule", "geom")
@@ -52,8 +53,8 @@ def contacts(
     Args:
         assembly: Of the file.
         declared: What the file says of its shapes.
-        budget: Seconds for sampling the motion.
-        certified: Seconds for proving it instead; None samples.
+        budget: Nominal seconds of work for sampling the motion.
+        certified: The same for proving it instead; None samples.
         simple: Parts that collide with simple shapes, where the file itself does not tell.
         filtered: Pairs of parts that the file keeps from colliding.
     """
@@ -65,7 +66,7 @@ def contacts(
     scene = Scene.of(meshes, assembly.joints, waivers=assembly.waivers, deflection=deflections, fits=assembly.fits)
     case = Case(assembly, foreign, simple | _simple_parts(declared), filtered, scene, _neighbours(assembly, meshes))
     poses = dict(zip(assembly.mechanism.parts, assembly.poses(assembly.mechanism.rest), strict=True))
-    found = Contacts(pairs=_at_rest(case, poses, Clock(REST_S)))
+    found = Contacts(pairs=_at_rest(case, poses, Budget(REST_S)))
     found.findings += explained(case, found.pairs.findings)
     found.findings += _held(case, declared, poses, found.pairs)
     found.undone += [f"overlap with {name}: {reason}" for name, reason in scene.broken.items()]
@@ -132,7 +133,7 @@ def _neighbours(assembly: Assembly, meshes: Mapping[str, TriMesh]) -> frozenset[
 # ---------------------------------------------------------------------- at rest
 
 
-def _at_rest(case: Case, poses: Mapping[str, SE3], clock: Clock) -> Checks:
+def _at_rest(case: Case, poses: Mapping[str, SE3], budget: Budget) -> Checks:
     """Check the rest pose. In simulators' formats holding is judged by what is drawn, elsewhere: see `_held`."""
     if not case.foreign:
         return check_scene(case.scene, poses, ground=case.assembly.ground)
@@ -140,10 +141,11 @@ def _at_rest(case: Case, poses: Mapping[str, SE3], clock: Clock) -> Checks:
     placed = scene.at(poses)
     near = placed.candidates()
     for at, (a, b) in enumerate(near):
-        if clock.left <= 0:
-            findings.append(_unfinished(near[at:], len(near)))
+        if budget.is_spent:
+            findings.append(_unfinished(near[at:], len(near), budget))
             break
         if a not in scene.broken and b not in scene.broken:
+            budget.spend(look_price(*(scene.bodies[name].manifold_triangles for name in (a, b))))
             check, found = judge(scene, (a, b), measured(scene.bodies[a], scene.bodies[b], placed.relative(a, b)))
             pairs.append(check)
             findings += found
@@ -161,12 +163,12 @@ def _too_many(count: int) -> Finding:
     )
 
 
-def _unfinished(left: list[tuple[str, str]], count: int) -> Finding:
+def _unfinished(left: list[tuple[str, str]], count: int, budget: Budget) -> Finding:
     return Finding(
         code="W_AUDIT_NOT_CHECKED",
         where=f"parts.{left[0][0]}",
-        message=f"Overlap at rest of {len(left)} of {counted(count, 'pair')} of parts that are near each other was not looked at, "
-        f"for {REST_S:g} s were spent.",
+        message=f"Overlap at rest of {len(left)} of {counted(count, 'pair')} of parts that are near each other was not looked at. "
+        f"{budget.ended()}",
         hint="Spread the parts: so many of them are hardly meant to stand in one place.",
         value=len(left),
         limit=0,

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import time
 from collections.abc import Mapping
 from collections.abc import Set as AbstractSet
 from dataclasses import replace
@@ -21,6 +20,7 @@ from articad.interference.motion import Freedom, freedoms
 from articad.interference.overlap import volume
 from articad.interference.relations import Groups, Relations
 from articad.interference.sweep import Sweep
+from articad.interference.work import CLOSED, POSE, Budget, look_price
 from articad.kinematics.joints import JointType
 
 STEPS = 25  # poses of a joint: every 15° of a full turn
@@ -32,7 +32,6 @@ CONTACT_MM3 = 1e-6  # shared volume at which contact begins: an edge 10 mm long 
 MOTION = "E_MOTION_COLLISION"
 UNPROVEN = "E_NOT_CHECKED"
 AT_REST = ("E_OVERLAP", "E_STATIC_OVERLAP", "W_STATIC_OVERLAP")
-PATIENCE = 8.0  # times as long as the processor's time may it take by the clock
 DEEPER = 2.0  # a pair that overlaps at rest is told of again where motion makes it so many times as deep
 
 
@@ -54,48 +53,32 @@ class _Together(Groups):
         return self._rigid.together(a, b) or self._case.by_design((a, b))
 
 
-class Clock:
-    """Time for the motion, of the processor, so that a busy machine looks at as much; within reason of the wall's.
-
-    Args:
-        seconds: That there are.
-    """
-
-    def __init__(self, seconds: float) -> None:
-        self._cpu, self._wall = time.process_time() + seconds, time.monotonic() + PATIENCE * seconds
-
-    @property
-    def left(self) -> float:
-        """What is left [s]; negative when it is spent."""
-        return min(self._cpu - time.process_time(), (self._wall - time.monotonic()) / PATIENCE)
-
-
-def sample_motion(case: Case, found: Contacts, budget: float) -> None:
-    """Move each joint over its range, then two at a time, until the time is spent."""
-    clock = Clock(budget)
-    sweep = Sweep(replace(case.scene, relations=_Quiet(case)), case.assembly.mechanism)
+def sample_motion(case: Case, found: Contacts, seconds: float) -> None:
+    """Move each joint over its range, then two at a time, until so many nominal seconds of work are spent."""
+    budget = Budget(seconds)
+    sweep = Sweep(replace(case.scene, relations=_Quiet(case)), case.assembly.mechanism, budget)
     ranges = [freedom for joint in sweep.driving for freedom in freedoms(joint)]
     guilty = {frozenset(finding.parts) for finding in found.findings}
     resting = _depths_at_rest(found)
     late: list[str] = []
     steps = FEWEST_STEPS if case.assembly.mechanism.loop_joints else STEPS  # to close loops takes long: the first joint tells how long
     for at, freedom in enumerate(ranges):
-        if clock.left <= 0:
+        if budget.left <= 0:
             late.append(freedom.name)
             continue
-        before = clock.left
+        before = budget.left
         values = np.linspace(freedom.lower, freedom.upper, steps).tolist()
         checks = sweep.sampled([{freedom.name: value} for value in values], (freedom.name,), values[1] - values[0])
-        left, cost = len(ranges) - at - 1, (before - clock.left) / steps
-        steps = max(FEWEST_STEPS, min(STEPS, int(clock.left / max(cost * left, 1e-9)))) if left else steps
+        left, cost = len(ranges) - at - 1, (before - budget.left) / steps
+        steps = max(FEWEST_STEPS, min(STEPS, int(budget.left / max(cost * left, 1e-9)))) if left else steps
         fresh = [finding for finding in checks.findings if _is_news(finding, resting, guilty)]
-        found.findings += _collisions(case, sweep, freedom, fresh, resting, clock)
+        found.findings += _collisions(case, sweep, freedom, fresh, resting, budget)
         guilty |= {frozenset(finding.parts) for finding in fresh}
     if late:
         found.findings.append(_unfinished(late, len(ranges), budget))
-    undone = _pairs(case, found, sweep, ranges, guilty, clock)
+    undone = _pairs(case, found, sweep, ranges, guilty, budget)
     if undone:
-        found.undone.append(f"{undone} of {math.comb(len(ranges), 2)} pairs of joints together: the time was spent")
+        found.undone.append(f"{undone} of {math.comb(len(ranges), 2)} pairs of joints together: {budget.reason}")
 
 
 def _depths_at_rest(found: Contacts) -> dict[frozenset[str], float]:
@@ -111,11 +94,13 @@ def _is_news(finding: Finding, resting: Mapping[frozenset[str], float], guilty: 
 
 
 def _collisions(
-    case: Case, sweep: Sweep, freedom: Freedom, findings: list[Finding], resting: Mapping[frozenset[str], float], clock: Clock
+    case: Case, sweep: Sweep, freedom: Freedom, findings: list[Finding], resting: Mapping[frozenset[str], float], budget: Budget
 ) -> list[Finding]:
     """Say where each collision begins. In simulators' formats the first one of each joint stands for the others."""
     met = [
-        (finding, None) if frozenset(finding.parts) in resting or clock.left <= 0 else _first_contact(case, sweep, freedom, finding)
+        (finding, None)
+        if frozenset(finding.parts) in resting or budget.left <= 0
+        else _first_contact(case, sweep, freedom, finding, budget)
         for finding in findings
     ]
     if not case.foreign or len(met) < 2:
@@ -129,11 +114,11 @@ def _collisions(
     ]
 
 
-def _pairs(case: Case, found: Contacts, sweep: Sweep, ranges: list[Freedom], guilty: set[frozenset[str]], clock: Clock) -> int:
+def _pairs(case: Case, found: Contacts, sweep: Sweep, ranges: list[Freedom], guilty: set[frozenset[str]], budget: Budget) -> int:
     """Move two joints at a time on a grid; return how many pairs there was no time for."""
     undone, together = 0, list[Finding]()
     for first, second in combinations(ranges, 2):
-        if clock.left <= 0:
+        if budget.left <= 0:
             undone += 1
             continue
         names = (first.name, second.name)
@@ -186,13 +171,16 @@ def _together(finding: Finding, names: tuple[str, str]) -> Finding:
     )
 
 
-def _first_contact(case: Case, sweep: Sweep, freedom: Freedom, finding: Finding) -> tuple[Finding, float | None]:
+def _first_contact(case: Case, sweep: Sweep, freedom: Freedom, finding: Finding, budget: Budget) -> tuple[Finding, float | None]:
     """Return the value at which, on the way from rest, two parts first meet; None where that cannot be said."""
     if finding.code != MOTION or finding.pose is None or freedom.name not in finding.pose:
         return finding, None
     a, b = finding.parts
+    price = look_price(*(case.scene.bodies[name].manifold_triangles for name in (a, b)))
+    price += CLOSED if case.assembly.mechanism.loop_joints else POSE
 
     def shared(value: float) -> float:
+        budget.spend(price)
         poses = case.assembly.poses(np.array(sweep.columns({freedom.name: value})))
         T = relative(*(poses[case.assembly.mechanism.part_index(name)] for name in (a, b)))
         return volume(case.scene.bodies[a], case.scene.bodies[b], T.matrix[:3])
@@ -254,12 +242,12 @@ def _unproven(findings: list[Finding]) -> Finding:
     )
 
 
-def _unfinished(late: list[str], count: int, budget: float) -> Finding:
+def _unfinished(late: list[str], count: int, budget: Budget) -> Finding:
     return Finding(
         code="W_AUDIT_NOT_CHECKED",
         where=f"joints.{late[0]}",
-        message=f"The motion of {len(late)} of {counted(count, 'freedom')} was not looked at, for {budget:g} s were spent: {listed(late)}.",
-        hint="Give it more time with --budget.",
+        message=f"The motion of {len(late)} of {counted(count, 'freedom')} was not looked at: {listed(late)}. {budget.ended()}",
+        hint="Give it more work with --budget.",
         value=len(late),
         limit=0,
     )

@@ -47,8 +47,8 @@ class Choices:
 
     Attributes:
         root: Folder that meshes may be read from; by default the package that the file lies in.
-        budget: Seconds of processor time for sampling the motion.
-        certified: Seconds for proving the motion instead of sampling it.
+        budget: Nominal seconds of work for sampling the motion: the same work on every machine.
+        certified: The same for proving the motion instead of sampling it.
         engines: Whether to ask simulators to load the file.
         motion: Whether to look at motion at all.
     """

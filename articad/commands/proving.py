@@ -21,7 +21,11 @@ if TYPE_CHECKING:
     argument("--joints", metavar="A,B", type=names, default=None, help="those to be proven (all that move)"),
     argument("--pairs", action=argparse.BooleanOptionalAction, default=True, help="move joints two at a time as well (yes)"),
     argument(
-        "--budget", metavar="SECONDS", type=amount, default=600.0, help="what is not proven by then is not checked, which is not ok (600)"
+        "--budget",
+        metavar="SECONDS",
+        type=amount,
+        default=600.0,
+        help="nominal seconds of work, the same work on every machine; what is not proven by then is not checked, which is not ok (600)",
     ),
     argument("--epsilon", metavar="MM", type=amount, default=0.001, help="distances up to here are contact (0.001)"),
 )

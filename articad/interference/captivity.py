@@ -16,11 +16,12 @@ from numpy.typing import NDArray
 
 from articad.connectors.se3 import SE3
 from articad.findings import Finding, Findings
-from articad.interference.cover import Budget, cover_line
+from articad.interference.cover import cover_line
 from articad.interference.motion import Values
 from articad.interference.report import rounded
 from articad.interference.scene import Scene
 from articad.interference.surface import Surface, inwards, surface_distance
+from articad.interference.work import Budget
 
 FloatArray = NDArray[np.float64]
 

@@ -24,7 +24,7 @@ from articad.findings import Finding, Findings
 from articad.geometry.mesh import TriMesh
 from articad.interference.claims import Claim
 from articad.interference.clearing import MOST_PAIRS
-from articad.interference.cover import Budget, cover_line
+from articad.interference.cover import cover_line
 from articad.interference.linkage import LOOKS, LinkageProver, Way
 from articad.interference.motion import ENDLESS_SLIDE_MM, Route, Values, freedoms, proven_freedoms, routes
 from articad.interference.overlap import NOTHING, Overlap, overlap
@@ -34,6 +34,7 @@ from articad.interference.report import PairCheck, Strength, rounded
 from articad.interference.scene import Scene
 from articad.interference.surface import Surface, surface_distance, whole_surface
 from articad.interference.verdict import judge
+from articad.interference.work import PIECE, Budget
 from articad.kinematics.joints import Joint, JointType
 from articad.kinematics.mechanism import Mechanism
 from articad.verify_certificate import PROOF
@@ -86,7 +87,8 @@ class Certificate:
         together: Whether joints were to be moved two at a time, too.
         constrained: Names of the joints of loops and couplings.
         queries: Pairs of pieces of surface that were looked at.
-        seconds: Time spent.
+        work: Units of work spent, the same on every machine; `articad.interference.work`.
+        seconds: Time by the clock.
         followed: Pieces of the drivers' ranges, as arrays that a checker reads.
     """
 
@@ -102,6 +104,7 @@ class Certificate:
     together: bool = True
     constrained: frozenset[str] = frozenset()
     queries: int = 0
+    work: int = 0
     seconds: float = 0.0
     followed: Mapping[str, Any] = field(default_factory=dict)
 
@@ -117,6 +120,7 @@ class Certificate:
             "ok": self.ok,
             "findings": [finding.to_json() for finding in self.findings],
             "epsilon_mm": self.epsilon,
+            "work": self.work,
             "asked": list(self.asked),
             "linkage": sorted(self.constrained),
             "drivers": driver_names(self.mechanism, self.constrained) if self.constrained & set(self.asked) else [],
@@ -181,7 +185,8 @@ def certify(
         joints: Names of those to be proven; all that move by default.
         pairs: Whether joints are also moved two at a time.
         epsilon: Distances up to here are contact [mm].
-        budget: Seconds.
+        budget: Nominal seconds of work: each stands for a fixed count of it (`PIECES_PER_SECOND`), so that the verdict is the same on
+            every machine and beside whatever else runs.
         deflection: How far meshes are from their solids [mm], by part or the same for all.
         waivers: Overlaps that the plan allows.
         fits: By joint name.
@@ -235,7 +240,8 @@ class _Certifying:
             self.together,
             self._constrained,
             self.budget.queries,
-            self.budget.spent,
+            self.budget.work,
+            self.budget.elapsed,
             {key: array for way in self._ways.values() if not isinstance(way, str) for key, array in way.arrays().items()},
         )
 
@@ -346,6 +352,7 @@ class _Certifying:
                 names = driver_names(self.mechanism, self._constrained)
                 document = {"mechanism": mechanism_json(self.mechanism), "linkage": sorted(self._constrained), "drivers": names}
                 way = Way(self.mechanism, driver, document)
+                self.budget.spend(PIECE * (len(way.steps(-1)) + len(way.steps(1))))
                 self._ways[driver] = way if way.steps(-1) or way.steps(1) else "near rest nothing encloses what follows the driver"
             except (KinematicsError, ValueError) as error:
                 self._ways[driver] = str(error)
@@ -484,14 +491,14 @@ class _Certifying:
     def _report_left(self) -> None:
         for joints, pairs in self.left.items():
             for parts in pairs:
-                self._verdict(parts, joints, Strength.not_checked("the budget ran out"), NOTHING, "unknown")
+                self._verdict(parts, joints, Strength.not_checked(self.budget.reason), NOTHING, "unknown")
             names = ", ".join(f"{a}/{b}" for a, b in pairs)
             self.findings.append(
                 Finding(
                     code="E_NOT_CHECKED",
                     where=f"joints.{joints[0]}",
                     parts=tuple(dict.fromkeys(name for pair in pairs for name in pair)),
-                    message=f"The budget of {self.budget.seconds:g} s ran out before these pairs were proven apart over {', '.join(joints)}: {names}.",
+                    message=f"{self.budget.ended()} These pairs are not proven apart over {', '.join(joints)}: {names}.",
                     hint="Raise the budget, or widen the gap between them: the work grows as 1/gap.",
                     value=self.budget.seconds,
                     unit="s",
@@ -512,6 +519,7 @@ class Looks:
         worst, where = self.proof.overlap, None
         for point in self._points():
             self.count += 1
+            self.prover.budget.spend(self.prover.look_price)
             found = overlap(*self.bodies, SE3.from_matrix(self.chain.matrix(point)))
             if found.depth > worst.depth:
                 worst, where = found, self.prover.pose(point)
@@ -565,6 +573,7 @@ class Looks:
     def _deeper_than(self, allowed: float, free: float, hit: float) -> float:
         for _ in range(30):
             middle = (free + hit) / 2
+            self.prover.budget.spend(self.prover.look_price)
             deep = overlap(*self.bodies, SE3.from_matrix(self.chain.matrix((middle,)))).depth > allowed
             free, hit = (free, middle) if deep else (middle, hit)
         return hit

@@ -16,11 +16,11 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from articad.interference.cover import Budget
 from articad.interference.profile import Forest
 from articad.interference.spread import Spread
 from articad.interference.surface import Core
 from articad.interference.trail import CUT_A, CUT_B, CUT_RANGE, LEAN, OF_A, OF_B, ROUND, Trail
+from articad.interference.work import BOX, STEP, Budget
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.signedinteger[Any]]
@@ -43,6 +43,7 @@ class Boxes(Protocol):
 
     Attributes:
         spread: What moves in each.
+        price: Units of work that one costs.
         outside: Whether no joint goes there, for each.
         columns: Which of the claim's coordinates each was cut across, −1 for those that were not.
         places: Where.
@@ -50,6 +51,7 @@ class Boxes(Protocol):
     """
 
     spread: Spread
+    price: int
     outside: list[bool]
     columns: list[int]
     places: list[float]
@@ -136,7 +138,7 @@ def clear(
         needed: Distance that proves nothing, such as the deflection of both meshes [mm].
         axis: The axis or point about which the outlines are, in the frame of a; None if there are none.
         epsilon: What is closer by no more is contact [mm].
-        budget: Time.
+        budget: Of work: the pairs looked at, the rounds of the search and the boxes placed are spent from it.
         most: Pairs of pieces.
     """
     search = _Search(a, b, boxes, needed + ROUNDING_MM, epsilon, axis)
@@ -152,11 +154,14 @@ def clear(
             stack.append(rows.of(np.arange(len(rows)) < len(rows) - CHUNK))
             rows = rows.of(np.arange(len(rows)) >= len(rows) - CHUNK)
         outcome.pairs += len(rows)
+        placed = len(boxes.spread)
         try:
             stack += [found for found in search.step(rows) if len(found)]
         except CannotCut:
             outcome.out_of_budget = True
             break
+        finally:
+            budget.spend(len(rows) + STEP + boxes.price * (len(boxes.spread) - placed), queries=len(rows))
     outcome.boxes = len(boxes.spread)
     if outcome.is_complete:
         outcome.trail = search.trail
@@ -384,6 +389,8 @@ class Ranges:
         bounds: Of each coordinate.
         left_out: Whether a box (lower ends, upper ends) lies outside what the joints allow.
     """
+
+    price = BOX
 
     def __init__(self, spread: Spread, bounds: FloatArray, left_out: Callable[[FloatArray, FloatArray], bool] | None = None) -> None:
         self.spread, self.bounds, self.left_out = spread, bounds, left_out

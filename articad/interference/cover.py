@@ -7,14 +7,13 @@ overlap as little as can be (conservative advancement, two-sided). It finds firs
 
 from __future__ import annotations
 
-import time
-from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
 from articad.interference.motion import Distance
+from articad.interference.work import DISTANCE, Budget
 
 FloatArray = NDArray[np.float64]
 
@@ -37,29 +36,6 @@ class CoverBox:
     centre: tuple[float, ...]
     half: tuple[float, ...]
     distance: float
-
-
-class Budget:
-    """Seconds and distance queries that may be spent.
-
-    Attributes:
-        seconds: Wall time.
-        queries: How many distances were asked for so far.
-    """
-
-    def __init__(self, seconds: float, clock: Callable[[], float] = time.monotonic) -> None:
-        self.seconds, self.queries = seconds, 0
-        self._clock, self._start = clock, clock()
-
-    @property
-    def spent(self) -> float:
-        """Seconds since the beginning."""
-        return self._clock() - self._start
-
-    @property
-    def is_spent(self) -> bool:
-        """True when no time is left."""
-        return self.spent >= self.seconds
 
 
 @dataclass
@@ -106,7 +82,7 @@ def cover_line(
         reach: Speed of the fastest point [mm/rad or 1].
         margin: Part of every distance that proves nothing, such as the deflection of the meshes [mm].
         epsilon: A distance that is above the margin by no more is contact [mm].
-        budget: Time and queries.
+        budget: Of work.
         most: Queries for this line.
     """
     walk = _Walk(distance, reach, margin, epsilon, budget, most)
@@ -127,7 +103,7 @@ class _Walk:
     def spare(self, q: float) -> float:
         """Return what a distance has above the margin [mm]."""
         if q not in self._seen:
-            self.budget.queries += 1
+            self.budget.spend(DISTANCE, queries=1)
             self.left -= 1
             self._seen[q] = self.distance((q,))
         return self._seen[q] - self.margin

@@ -20,13 +20,13 @@ from numpy.typing import NDArray
 
 from articad.connectors.se3 import SE3
 from articad.interference.clearing import Boxes, CannotCut, Cleared
-from articad.interference.cover import Budget
 from articad.interference.motion import Chain, Route, proven_freedoms, turns
 from articad.interference.overlap import Overlap, overlap
 from articad.interference.proof import Proof, Prover, Shrink
 from articad.interference.scene import Scene
 from articad.interference.spread import Spread
 from articad.interference.verdict import UNRELATED_VOLUME_MM3
+from articad.interference.work import PIECE, Budget
 from articad.kinematics.joints import Coordinate, JointType
 from articad.kinematics.layout import Layout
 from articad.kinematics.mechanism import Mechanism
@@ -217,6 +217,8 @@ class Steps:
         step: To be covered; by default the whole way.
     """
 
+    price = PIECE
+
     def __init__(self, way: Way, chain: Chain, others: FloatArray, step: Piece | None = None) -> None:
         self.way, self.chain, self.spread = way, chain, Spread(chain)
         self.free = np.flatnonzero(~np.isnan(others[:, 0]))
@@ -395,6 +397,7 @@ class LinkageProver(Prover):
             values = value + (end - value) * np.linspace(0.0, 1.0, LOOKS) ** 3  # closely at first
             Q, reached, _ = self.way.track.evaluate(values)
             for row, q in zip(Q[reached], values[reached].tolist(), strict=True):
+                self.budget.spend(self.look_price)
                 found = overlap(self.body_a, self.body_b, SE3.from_matrix(self.chain.matrix(self._values(row, contact))))
                 if found.depth > worst.depth:
                     worst, where = found, q

@@ -16,7 +16,6 @@ from numpy.typing import NDArray
 from articad.connectors.se3 import SE3
 from articad.interference.claims import Claim, Course
 from articad.interference.clearing import MOST_PAIRS, Boxes, Cleared, Ranges, clear
-from articad.interference.cover import Budget
 from articad.interference.meridian import Ends, leaning, outline
 from articad.interference.motion import Chain, Mover, Route, freedoms, scattered, swing_and_twist, turned
 from articad.interference.overlap import Overlap, measured, overlap
@@ -25,6 +24,7 @@ from articad.interference.scene import Scene
 from articad.interference.spread import Spread
 from articad.interference.surface import Core, Surface, inwards, near_by, whole_surface
 from articad.interference.verdict import UNRELATED_VOLUME_MM3
+from articad.interference.work import TREE_TRIANGLES, Budget, look_price
 from articad.kinematics.joints import JointType
 
 FloatArray = NDArray[np.float64]
@@ -66,7 +66,7 @@ class Proof:
         upper: Its upper end.
         contacts: Coordinates at which the proof stopped.
         overlap: At the start.
-        out_of_budget: True when time or pairs ran out.
+        out_of_budget: True when the budget or the pairs ran out.
         epsilon: How deep the solids might overlap nevertheless [mm].
         shrink: How the first surface was moved inwards.
         stopped_at: Along a driver of loops, its value at each contact.
@@ -112,6 +112,7 @@ class Prover:
         self.chain = Chain(route, joints, proving=True)
         self.body_a, self.body_b = (scene.bodies[name] for name in self.parts)
         self.margin = scene.deflection_of(*self.parts)
+        self.look_price = look_price(self.body_a.manifold_triangles, self.body_b.manifold_triangles)
         self.allowed = max(scene.tolerated(*self.parts), getattr(scene.relations.waiver(*self.parts), "max_depth", 0.0))
         self.speeds = self.chain.reach(self.body_a.mesh.vertices, self.body_b.mesh.vertices)
         self.bounds = np.array([(freedom.lower, freedom.upper) for freedom in self.chain.freedoms]).reshape(-1, 2)
@@ -124,6 +125,7 @@ class Prover:
 
     def prove(self, *, most: int = MOST_PAIRS, tentative: bool = False) -> Proof:
         """Prove the whole range, or what of a single coordinate can be; a tentative proof ends at the first contact."""
+        self.budget.spend(self.look_price)
         start = measured(self.body_a, self.body_b, self.chain.matrix(self.chain.rest)[:3])
         begun = Proof(self.parts, self.joints, overlap=start, epsilon=self.epsilon)
         if start.depth > self.allowed and start.volume > UNRELATED_VOLUME_MM3:
@@ -191,6 +193,7 @@ class Prover:
         """Return whether the two overlap beyond what is allowed soon after a proof stopped, so that no weaker claim can hold."""
         for contact in proof.contacts:
             for point in beyond(self.chain, self.speeds, [contact[f.name] for f in self.chain.freedoms], self.allowed):
+                self.budget.spend(self.look_price)
                 found = overlap(self.body_a, self.body_b, SE3.from_matrix(self.chain.matrix(point)))
                 if found.depth > self.allowed and found.volume > UNRELATED_VOLUME_MM3:
                     return True
@@ -216,13 +219,13 @@ class Prover:
         needed = self.margin + CLAIM_SLACK_MM
         outcome = clear(a, b, boxes, needed, axis=self.axis, epsilon=self.epsilon, budget=self.budget, most=most)
         outcome.course = boxes
-        self.budget.queries += outcome.pairs
         return outcome
 
     def _surfaces(self, shrink: Shrink) -> tuple[Forest, Forest]:
         """Return trees over both surfaces, with their outlines where a single joint lies between the two."""
         if shrink not in self._forests:
             a, b = self._surface(shrink)[0], whole_surface(self.body_b.mesh)
+            self.budget.spend((len(a.corners) + len(b.corners)) / TREE_TRIANGLES)
             if self.axis is None:
                 self._forests[shrink] = Forest.plain(a), Forest.plain(b)
             else:
@@ -277,6 +280,7 @@ class Prover:
 
     def depth(self, values: Sequence[float]) -> float:
         """Return how deeply the two overlap [mm]."""
+        self.budget.spend(self.look_price)
         found = overlap(self.body_a, self.body_b, SE3.from_matrix(self.chain.matrix(values)))
         return found.depth if found.volume > UNRELATED_VOLUME_MM3 else 0.0
 

@@ -5,6 +5,7 @@ A pair is asked again only where its relative pose is new: while one joint moves
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -25,6 +26,7 @@ from articad.interference.report import Checks, PairCheck, Strength
 from articad.interference.scene import Scene, relatives
 from articad.interference.turning import Turning
 from articad.interference.verdict import UNRELATED_VOLUME_MM3, judge
+from articad.interference.work import CLOSED, PAIRS_PLACED, POSE, TREE_TRIANGLES, Budget, look_price
 from articad.kinematics.joints import Joint
 from articad.kinematics.mechanism import Mechanism
 
@@ -91,10 +93,11 @@ class Sweep:
     Args:
         scene: Bodies and relations.
         mechanism: Places the parts.
+        budget: Counts the work; a sweep does not stop by itself.
     """
 
-    def __init__(self, scene: Scene, mechanism: Mechanism) -> None:
-        self.scene, self.mechanism = scene, mechanism
+    def __init__(self, scene: Scene, mechanism: Mechanism, budget: Budget | None = None) -> None:
+        self.scene, self.mechanism, self.budget = scene, mechanism, budget or Budget(math.inf)
         self.queries = 0
         self._known: dict[tuple[str, str], dict[bytes, float]] = {}
         driving = dict.fromkeys(coordinate.joint for coordinate in mechanism.drivers)
@@ -125,6 +128,7 @@ class Sweep:
 
     def sampled(self, points: Sequence[Mapping[str, float]], over: tuple[str, ...], step: float | None) -> Checks:
         """Check poses given by values of freedoms, the others at rest."""
+        self.budget.spend(len(points) * (CLOSED if self.mechanism.loop_joints else POSE))
         try:
             poses = self.mechanism.poses(np.array([self.columns(point) for point in points])).matrix
         except KinematicsError as error:
@@ -161,6 +165,7 @@ class Sweep:
         names = list(self.scene.bodies)
         low, high = self.scene.boxes(matrices)
         tracks: dict[tuple[str, str], _Track] = {}
+        self.budget.spend(math.comb(len(names), 2) / PAIRS_PLACED)
         for i, j in combinations(range(len(names)), 2):
             a, b = names[i], names[j]
             if self.scene.relations.rigid.together(a, b) or a in self.scene.broken or b in self.scene.broken:
@@ -173,6 +178,7 @@ class Sweep:
             asked = np.flatnonzero(~self.scene.apart(i, j, relative))
             keys = [key.tobytes() for key in np.round(relative, _KEY_DIGITS) + 0.0]
             if turning is not None and len({keys[at] for at in asked}) >= _WORTH_OUTLINES:
+                self.budget.spend(sum(len(self.scene.bodies[name].mesh.triangles) for name in (a, b)) / TREE_TRIANGLES)
                 asked = asked[~turning.apart(i, j, relative[asked])]
             for at in asked.tolist():
                 if keys[at] not in track.volumes:
@@ -187,6 +193,7 @@ class Sweep:
         if key not in known:
             self.queries += 1
             a, b = (self.scene.bodies[name] for name in pair)
+            self.budget.spend(look_price(a.manifold_triangles, b.manifold_triangles))
             solid = common(a, b, pose) if may_overlap(a, b, pose) else None
             known[key] = 0.0 if solid is None else float(solid.volume())
             if known[key] > VOLUME_NOISE_MM3:
@@ -203,6 +210,7 @@ class Sweep:
             if track.volumes[key] > max(UNRELATED_VOLUME_MM3, VOLUME_NOISE_MM3):
                 pose, at = track.poses[key]
                 a, b = (self.scene.bodies[name] for name in parts)
+                self.budget.spend(look_price(a.manifold_triangles, b.manifold_triangles))
                 found = overlap_of(track.solids.get(key) or common(a, b, pose), a, b, pose)
                 if found.depth > worst.depth:
                     worst, where = found, points[at]

@@ -92,7 +92,7 @@ def chain(folder: Path, count: int = 50) -> Path:
 
 
 def test_a_robot_of_fifty_links_takes_less_than_twenty_seconds(tmp_path: Path) -> None:
-    """Of the processor: other programs must not make this test fail. The clock's time is bounded by the budget's patience."""
+    """Of the processor: other programs must not make this test fail. The budget counts work, which a busy machine does as well, but later."""
     path = chain(tmp_path)
     before, start = spent(), time.monotonic()
 
@@ -142,7 +142,7 @@ MENDED = [  # false alarms that were drawn
 
 def told(file: str, code: str, part: str) -> list[Finding]:
     """What is told of a file at rest."""
-    found = audit(ROOT / file, Choices(root=ROOT, engines=file.endswith(".xml"), budget=1e-9)).findings.of(code)
+    found = audit(ROOT / file, Choices(root=ROOT, engines=file.endswith(".xml"), budget=0.0)).findings.of(code)
     return [finding for finding in found if not part or part in finding.parts]
 
 

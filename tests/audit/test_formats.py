@@ -104,7 +104,7 @@ def test_balls_stand_for_limbs_and_need_not_touch(shape: str, floats: bool, tmp_
 
 
 def test_time_that_runs_out_is_told(tmp_path: Path) -> None:
-    found = audit(defects.write(defects.stand(tmp_path), tmp_path), Choices(engines=False, budget=1e-9))
+    found = audit(defects.write(defects.stand(tmp_path), tmp_path), Choices(engines=False, budget=0.0))
 
     (finding,) = found.findings
     assert finding.code == "W_AUDIT_NOT_CHECKED"

@@ -25,12 +25,13 @@ from articad.interference.boxtree import BoxTree
 from articad.interference.certificate import Certificate, certify
 from articad.interference.check import check_pose
 from articad.interference.clearing import shortest_between
-from articad.interference.cover import Budget, cover_line
+from articad.interference.cover import cover_line
 from articad.interference.meridian import leaning, meeting, outline
 from articad.interference.motion import Chain, Route, motion_matrix, swing_and_twist
 from articad.interference.overlap import overlap
 from articad.interference.spread import Spread
 from articad.interference.surface import Core, Surface, surface_distance
+from articad.interference.work import Budget
 from articad.kinematics.joints import Joint, JointType
 from articad.kinematics.mechanism import Mechanism
 from articad.verify_certificate import PROOF, verify_file
