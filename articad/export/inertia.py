@@ -22,7 +22,8 @@ CARRIER_MASS_KG = 1e-4  # small beside any part, but far above the least that si
 CARRIER_INERTIA_KG_M2 = 1e-7  # that of a ball of 50 mm radius and the carrier's mass: what keeps mass matrices well conditioned
 CARRIER_SHARE = 0.05  # carriers take at most this share of the body's pseudo-inertia in any direction, so that it stays physical
 MM_PER_M = 1000.0
-LEAST_MOMENT_KG_M2 = 1e-14  # a principal moment of less is none to simulators: MuJoCo refuses 1e-15
+LEAST_MOMENT_KG_M2 = 2e-14  # a principal moment of less is none to simulators: MuJoCo refuses 1e-14
+LEAST_SHARE = 1e-12  # of the sum of second moments, that a written body has in each direction: rods and plates have none in theory
 LEAST_RADIUS_M = 1e-3  # of gyration, that a body gets along a direction in which its inertia gives it less than nothing
 
 
@@ -57,6 +58,21 @@ class Inertial:
             return self
         moments, axes = np.linalg.eigh(np.trace(self.inertia) / 2 * np.eye(3) - self.inertia)
         least = max(self.mass * LEAST_RADIUS_M**2, LEAST_MOMENT_KG_M2)
+        about_com = (axes * np.maximum(moments, least)) @ axes.T
+        inertia = np.trace(about_com) * np.eye(3) - about_com
+        return Inertial(self.mass, self.com, (inertia + inertia.T) / 2)
+
+    def inside_bounds(self) -> Inertial:
+        """Return this body, thickened where it is a rod or a plate, so that rounding cannot carry it across A + B = C.
+
+        The second moment in a direction is half of A + B − C; readers compute the principal moments A, B, C from the printed numbers with
+        an error of about 1e-15 of the largest, and MuJoCo refuses A + B < C. Second moments below half of `LEAST_SHARE` of their sum are
+        raised to `LEAST_SHARE`, which changes no principal moment by more than 2e-12 of the largest.
+        """
+        moments, axes = np.linalg.eigh(np.trace(self.inertia) / 2 * np.eye(3) - self.inertia)
+        least = max(LEAST_SHARE * float(moments.sum()), LEAST_MOMENT_KG_M2)
+        if moments[0] >= least / 2:
+            return self
         about_com = (axes * np.maximum(moments, least)) @ axes.T
         inertia = np.trace(about_com) * np.eye(3) - about_com
         return Inertial(self.mass, self.com, (inertia + inertia.T) / 2)

@@ -285,6 +285,7 @@ def _placement(T: SE3) -> dict[str, str]:
 
 
 def _inertial(body: Any, inertial: Inertial) -> None:
+    inertial = inertial.inside_bounds()
     I = inertial.inertia
     moments = [I[0, 0], I[1, 1], I[2, 2], I[0, 1], I[0, 2], I[1, 2]]
     child(body, "inertial", {"pos": numbers(inertial.com), "mass": number(inertial.mass), "fullinertia": numbers(moments)})

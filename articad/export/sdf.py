@@ -215,6 +215,7 @@ def _pose(T: SE3) -> str:
 
 
 def _inertial(link: Any, inertial: Inertial) -> None:
+    inertial = inertial.inside_bounds()
     element = child(link, "inertial")
     child(element, "pose", text=f"{numbers(inertial.com)} 0 0 0")
     child(element, "mass", text=number(inertial.mass))

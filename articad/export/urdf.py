@@ -164,6 +164,7 @@ def _link(root: Any, link: Link, inertial: Inertial | None, files: MeshFiles) ->
 
 
 def _inertial(link: Any, inertial: Inertial) -> None:
+    inertial = inertial.inside_bounds()
     element = child(link, "inertial")
     child(element, "origin", {"xyz": numbers(inertial.com), "rpy": "0 0 0"})
     child(element, "mass", {"value": number(inertial.mass)})

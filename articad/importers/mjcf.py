@@ -156,8 +156,7 @@ class _Reader:
         for body in range(1, self.m.nbody):
             self._add_joints(body)
         for row in range(self.m.neq):
-            if self.m.eq_active0[row]:
-                self._add_equality(row)
+            self._add_equality(row)
         return self.raw
 
     def _unique(self, kind: Any, count: int, word: str) -> list[str]:
@@ -298,7 +297,9 @@ class _Reader:
         m, kinds = self.m, self.mujoco.mjtEq
         name = self._free_name(self.mujoco.mj_id2name(m, self.mujoco.mjtObj.mjOBJ_EQUALITY, row) or f"equality_{row}")
         kind = kinds(int(m.eq_type[row]))
-        if kind == kinds.mjEQ_JOINT:
+        if not m.eq_active0[row]:
+            self._drop(f"equality.{name}", f"Equality {name!r} is switched off (active=false); it is left out.")
+        elif kind == kinds.mjEQ_JOINT:
             self._add_tie(row, name)
         elif kind in {kinds.mjEQ_CONNECT, kinds.mjEQ_WELD}:
             self._add_closing(row, name)
@@ -318,12 +319,16 @@ class _Reader:
         self.raw.ties.append(RawTie(self.joints[first], self.joints[second], c1 * unit1 / unit2, offset))
 
     def _add_closing(self, row: int, name: str) -> None:
-        """Add a point or a body that two bodies share, with frames that agree in the rest pose."""
+        """Add a point or a body that two bodies share.
+
+        A connect shares the point `anchors`. A weld of sites makes their frames agree. A weld of bodies holds, with the compiled data
+        anchor a (in body 2), place p and quaternion Q (in body 1): T₁⁻¹ T₂ = trans(p) · Q · trans(−a); the compiler fills p and Q in
+        from the file's own pose where the file gives no `relpose` (MuJoCo: mj_instantiateEquality). Without torque it shares the point only.
+        """
         m = self.m
         sites = m.eq_objtype[row] == self.mujoco.mjtObj.mjOBJ_SITE
         ids = [int(m.eq_obj1id[row]), int(m.eq_obj2id[row])]
         bodies = [int(m.site_bodyid[index]) for index in ids] if sites else ids
-        T = [_rotation_pose(self.data.xpos[body], self.data.xmat[body]) for body in bodies]
         if bodies[0] == bodies[1]:
             self._drop(f"equality.{name}", f"Equality {name!r} ties a body to itself; it is left out.")
             return
@@ -331,11 +336,19 @@ class _Reader:
             self._drop(f"equality.{name}", f"Equality {name!r} ties a mocap body, which a simulation's user moves by hand; it is left out.")
             return
         first, second = (self.bodies[body] for body in bodies)
-        if m.eq_type[row] == self.mujoco.mjtEq.mjEQ_WELD:
-            self.raw.joints.append(RawJoint(name, JointType.FIXED, first, second, IDENTITY, T[1].inverse() @ T[0], closing=True))
+        weld, data = m.eq_type[row] == self.mujoco.mjtEq.mjEQ_WELD, m.eq_data[row]
+        if sites:
+            near, far = (_pose(m.site_pos[index], m.site_quat[index]) for index in ids)
+        elif weld:
+            near, far = _pose(data[3:6], data[6:10]), SE3.from_translation(data[:3] * MM_PER_M)
+        else:
+            near, far = (SE3.from_translation(data[at : at + 3] * MM_PER_M) for at in (0, 3))
+        if weld and data[10] > 0:
+            self.raw.joints.append(RawJoint(name, JointType.FIXED, first, second, near, far, closing=True))
             return
-        anchors = [m.site_pos[index] for index in ids] if sites else [m.eq_data[row][:3], m.eq_data[row][3:6]]
-        near, far = (SE3.from_quaternion(T[i].inverse().quaternion, anchors[i] * MM_PER_M) for i in range(2))
+        # a point: its frames are turned so that the ball rests at zero where the file's own pose has the bodies
+        turns = [_rotation_pose(self.data.xpos[body], self.data.xmat[body]).inverse().quaternion for body in bodies]
+        near, far = (SE3.from_quaternion(turn, frame.translation) for turn, frame in zip(turns, (near, far), strict=True))
         self.raw.joints.append(RawJoint(name, JointType.BALL, first, second, near, far, cone=math.pi, closing=True))
 
 
