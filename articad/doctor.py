@@ -13,7 +13,6 @@ import json
 import os
 import platform
 import shutil
-import subprocess
 import sys
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
@@ -21,6 +20,7 @@ from importlib import metadata
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
+from articad import processes
 from articad.errors import KernelUnavailableError, TransportError
 from articad.findings import Finding
 from articad.kernels.libraries import PACKAGES
@@ -225,17 +225,13 @@ def _packages() -> Iterator[Item]:
 
 def _kernel() -> Item:
     """Start the B-rep kernel in a process of its own, where a crash is only a line of the report."""
-    name, code = "build123d starts", "import build123d, pinocchio; assert abs(build123d.Box(1, 2, 3).volume - 6) < 1e-9"
-    try:
-        done = subprocess.run(  # noqa: S603 - this very interpreter, with a constant
-            [sys.executable, "-W", "ignore", "-c", code], capture_output=True, text=True, timeout=_KERNEL_SECONDS, check=False
-        )
-    except subprocess.TimeoutExpired:
+    name = "build123d starts"
+    ended = processes.run([], module="articad.kernels.trial_start", limits=processes.Limits(seconds=_KERNEL_SECONDS))
+    if ended.late:
         return Item(name, "missing", f"no answer in {_KERNEL_SECONDS} s", "Look at the machine's load and disk.")
-    if done.returncode == 0:
+    if ended.code == 0:
         return Item(name, "ok", "a box has its volume; Pinocchio imports beside it")
-    last = (done.stderr.strip().splitlines() or [f"exit code {done.returncode}"])[-1]
-    return Item(name, "missing", last, "Run ./scripts/setup, or pip install --force-reinstall build123d pin")
+    return Item(name, "missing", ended.last_line, "Run ./scripts/setup, or pip install --force-reinstall build123d pin")
 
 
 def _freecad() -> Item:

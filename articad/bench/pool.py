@@ -11,19 +11,19 @@ import contextlib
 import json
 import os
 import queue
-import subprocess
-import sys
 import threading
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import IO, Any, Final, Self
+from typing import Any, Final, Self
 
+from articad import processes
 from articad.errors import ReadError
 
 Json = dict[str, Any]
 Told = Callable[[Json], object]
 
 RETRIES: Final = 2  # of a call whose worker died
+_LEAVE_SECONDS: Final = 2.0  # for a worker to end once its pipe is closed
 IDLE_SECONDS: Final = 300.0  # after which a worker that is not called ends
 MEMORY_GB: Final = 4.0  # of a worker, its kernel's processes apart, which have bounds of their own
 
@@ -41,6 +41,11 @@ class Call:
     name: str
     arguments: Mapping[str, Any]
     key: str
+
+    @property
+    def needs_keys(self) -> bool:
+        """Whether it calls models."""
+        return self.name == "task"
 
     def to_json(self) -> Json:
         """Return the line that a worker reads."""
@@ -157,8 +162,8 @@ class Worker:
     """A process that answers one call after another; started when first needed, and again after it ended."""
 
     def __init__(self, memory_gb: float, *, idle: float = IDLE_SECONDS) -> None:
-        self._memory, self._idle = memory_gb, idle
-        self._process: subprocess.Popen[str] | None = None
+        self._memory, self._idle, self._has_keys = memory_gb, idle, False
+        self._process: processes.Child | None = None
 
     def __enter__(self) -> Self:
         return self
@@ -175,14 +180,14 @@ class Worker:
         return _never(call.key, f"Its worker died {1 + retries} times.")
 
     def _answer(self, call: Call) -> Json | None:
-        process = self._running()
+        process = self._running(call)
         try:
-            _pipe(process.stdin).write(json.dumps(call.to_json()) + "\n")
-            _pipe(process.stdin).flush()
-            answer = _pipe(process.stdout).readline()
+            process.stdin.write(json.dumps(call.to_json()).encode() + b"\n")
+            process.stdin.flush()
+            answer = process.stdout.readline()
         except OSError:
-            answer = ""
-        if answer.endswith("\n"):  # else it died in the middle of its line
+            answer = b""
+        if answer.endswith(b"\n"):  # else it died in the middle of its line
             return dict(json.loads(answer))
         self._end()
         return None
@@ -191,21 +196,23 @@ class Worker:
         process, self._process = self._process, None
         if process is None:
             return
-        for pipe in (process.stdin, process.stdout):
-            with contextlib.suppress(OSError):  # a line that a dead worker never read
-                _pipe(pipe).close()
-        process.wait()
+        with contextlib.suppress(OSError):  # a line that a dead worker never read
+            process.stdin.close()
+        process.wait(_LEAVE_SECONDS)
+        process.close()
 
-    def _running(self) -> subprocess.Popen[str]:
-        if self._process is not None and self._process.poll() is not None:
+    def _running(self, call: Call) -> processes.Child:
+        """Return the process; one that may know the user's keys only where calls need them."""
+        if self._process is not None and (self._process.ended() or call.needs_keys != self._has_keys):
             self._end()
         if self._process is None:
-            words = [sys.executable, "-m", "articad.bench.worker", str(self._memory), str(os.getpid()), str(self._idle)]
-            self._process = subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)  # noqa: S603 - this very program
+            self._has_keys = call.needs_keys
+            self._process = processes.start(
+                [str(self._idle)],
+                module="articad.bench.worker",
+                limits=processes.Limits(memory=int(self._memory * 2**30)),
+                environment=processes.environment_with_keys() if self._has_keys else processes.environment(*processes.OWN),
+                stdin=processes.PIPE,
+                stderr=None,
+            )
         return self._process
-
-
-def _pipe(stream: IO[str] | None) -> IO[str]:
-    if stream is None:
-        raise OSError("The worker has no pipe.")
-    return stream

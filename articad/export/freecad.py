@@ -10,11 +10,11 @@ from __future__ import annotations
 
 import json
 import re
-import tempfile
 from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from articad import scratch
 from articad.errors import ExportError, KernelUnavailableError
 from articad.export.bundle import Bundle
 from articad.export.freecad_file import Look, normalised
@@ -56,8 +56,8 @@ def write_freecad(assembly: Assembly, *, strict: bool = False, freecad: FreeCAD 
         freecad = freecad or freecad_install.find()
     except KernelUnavailableError:
         return write_freecad_alone(assembly, strict=strict)
-    with tempfile.TemporaryDirectory(prefix="articad-freecad-") as scratch:
-        folder = Path(scratch)
+    with scratch.folder("freecad") as name:
+        folder = Path(name)
         job = Job(assembly, folder)
         (folder / "job.json").write_text(json.dumps(job.told()))
         if strict:
@@ -85,9 +85,9 @@ def write_freecad_alone(assembly: Assembly, *, strict: bool = False) -> Bundle:
     Raises:
         UnrepresentableError: If `strict` and something is lost.
     """
-    with tempfile.TemporaryDirectory(prefix="articad-freecad-") as scratch:
-        job = Job(assembly, Path(scratch), features=False)
-        content, look = document(job.told(), Path(scratch), job.names)
+    with scratch.folder("freecad") as name:
+        job = Job(assembly, Path(name), features=False)
+        content, look = document(job.told(), Path(name), job.names)
     if strict:
         refuse(job.losses)
     unseen = Finding(

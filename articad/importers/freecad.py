@@ -15,6 +15,7 @@ from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
+from articad import scratch
 from articad.assembly import Assembly
 from articad.connectors.connector import Connector
 from articad.connectors.mate import FLIP, Mate
@@ -76,7 +77,7 @@ def read_freecad(path: str | Path, *, root: str | Path | None = None, metadata: 
 @cache
 def _kept() -> tempfile.TemporaryDirectory[str]:
     """Return the folder of the B-rep that was read: it can be written again as it is, until this process ends."""
-    return tempfile.TemporaryDirectory(prefix="articad-read-")
+    return scratch.folder("read")
 
 
 class _Document:

@@ -19,6 +19,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from articad import scratch
 from articad.connectors.connector import Connector
 from articad.connectors.se3 import SE3
 from articad.errors import BuildError, ContractError, KernelError, ReadError, SandboxError
@@ -115,7 +116,7 @@ class Build123dKernel:
 
     @cached_property
     def _scratch(self) -> tempfile.TemporaryDirectory[str]:
-        return tempfile.TemporaryDirectory(prefix="articad-worker-")
+        return scratch.folder("worker")
 
     def warm_up(self) -> None:
         """Start the worker's process now, so that the first part need not wait for it.

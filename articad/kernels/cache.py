@@ -12,6 +12,7 @@ import time
 from collections.abc import Iterator
 from pathlib import Path
 
+from articad import scratch
 from articad.errors import KernelError
 
 _SEAL = "seal.json"  # sha256 of every other file of the folder
@@ -38,7 +39,7 @@ class BuildCache:
         """
         self._own: tempfile.TemporaryDirectory[str] | None = None
         if root and root[0] is None:
-            self._own = tempfile.TemporaryDirectory(prefix="articad-parts-")
+            self._own = scratch.folder("parts")
         given = root[0] if root else default_root()
         self.root = Path(self._own.name) if self._own is not None else Path(given or default_root())
 

@@ -11,16 +11,12 @@ import contextlib
 import itertools
 import os
 import re
-import shutil
-import signal
-import subprocess
-import threading
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
-from typing import IO
 
+from articad import processes
 from articad.errors import KernelUnavailableError
 from articad.findings import Finding
 from articad.kernels import landlock, sandbox, seccomp
@@ -29,7 +25,6 @@ OLDEST = (1, 0)  # the first FreeCAD with assemblies of its own
 HOW_TO_GET = "Run scripts/install-freecad as root (2.3 GB, about 3 minutes), or set ARTICAD_FREECAD to FreeCAD 1.0 or later"
 _NAMES = ("freecadcmd", "FreeCADCmd", "freecad.cmd")
 _INSIDE = ("usr/bin", "bin", ".")  # where a tree, an AppImage and a conda environment have the program
-_END_SECONDS = 5.0  # for the last output to arrive
 _SECONDS = 60.0  # for its version; a cold disk needs 5 s
 _VERSION = re.compile(r"FreeCAD,?\s+(?:Version:?\s+)?(\d+)\.(\d+)(?:\.(\d+))?")
 _ENVIRONMENT = {
@@ -188,7 +183,7 @@ class FreeCAD:
         work = ["--bind", str(folder), "/work", "--chdir", "/work"] if folder is not None else ["--chdir", "/tmp"]  # noqa: S108 - a private one
         variables = [word for name, value in _ENVIRONMENT.items() for word in ("--setenv", name, value)]
         return [
-            shutil.which("bwrap") or "bwrap",
+            sandbox.bubblewrap(),
             *self._mounts(),
             *("--size", str(limits.scratch), "--tmpfs", "/tmp", *self._processes(layers), "--dev", "/dev", "--remount-ro", "/dev"),  # noqa: S108 - a private one
             *("--ro-bind", str(program.resolve()), "/program.py"),
@@ -280,9 +275,9 @@ def _found(asked: str, path: str, conda: str, data: str) -> FreeCAD:
 
 def _candidates(asked: str, path: str, conda: str, data: str) -> Iterator[tuple[str, FreeCAD | None]]:
     if asked:
-        yield f"$ARTICAD_FREECAD ({asked})", _at(Path(asked))
+        yield f"$ARTICAD_FREECAD ({asked})", _at(Path(asked).absolute())
     for name in _NAMES:
-        found = shutil.which(name, path=path)
+        found = processes.which(name, path=path)
         if found:
             yield f"{name} on the PATH", _program(Path(found))
     yield data, _at(Path(data))
@@ -332,14 +327,14 @@ def _steady() -> list[str]:
 
     What a sketch is solved to then differs in the last bits from one process to the next, and so do all files made of it.
     """
-    setarch = shutil.which("setarch")
+    setarch = processes.which("setarch")
     if setarch is None or _ran([setarch, "-R", "true"], {"PATH": "/usr/bin:/bin"}, None, (), _SECONDS).code != 0:
         return []
     return [setarch, "-R"]
 
 
 def _limited(limits: Limits) -> list[str]:
-    prlimit = shutil.which("prlimit")
+    prlimit = processes.which("prlimit")
     if prlimit is None:
         return []
     bounds = {"as": limits.memory, "fsize": limits.file_size, "cpu": _cpu(limits), "nofile": _OPEN_FILES, "core": 0}
@@ -356,35 +351,7 @@ def _confinement_files() -> dict[str, Path]:
     return {"confinement.py": _INSIDE_PROGRAMS / "confinement.py"} | modules
 
 
-def _drained(stream: IO[bytes], tail: bytearray) -> None:
-    """Read a stream to its end and keep its tail: a program may write for as long as it runs."""
-    while piece := os.read(stream.fileno(), 65536):
-        tail += piece
-        del tail[:-_TAIL]
-
-
 def _ran(command: Sequence[str], environment: dict[str, str], folder: Path | None, files: Collection[int], seconds: float) -> Ended:
-    process = subprocess.Popen(  # noqa: S603 - the words are ours
-        command,
-        env=environment,
-        cwd=folder,
-        stdin=subprocess.DEVNULL,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.STDOUT,
-        pass_fds=tuple(files),
-        start_new_session=True,
-    )
-    late, tail = False, bytearray()
-    assert process.stdout is not None
-    reading = threading.Thread(target=_drained, args=(process.stdout, tail), daemon=True)
-    reading.start()
-    try:
-        process.wait(timeout=seconds)
-    except subprocess.TimeoutExpired:
-        late = True
-        os.killpg(process.pid, signal.SIGKILL)
-        process.wait()
-    reading.join(timeout=_END_SECONDS)  # a process that was left behind may hold the pipe, where nothing keeps it from that
-    if not reading.is_alive():
-        process.stdout.close()
-    return Ended(process.returncode, late, bytes(tail).decode(errors="replace"))
+    limits, place = processes.Limits(seconds=seconds), None if folder is None else str(folder)
+    ended = processes.run(command, environment=environment, folder=place, files=files, limits=limits, merged=True)
+    return Ended(ended.code, ended.late, ended.out[-_TAIL:].decode(errors="replace"))

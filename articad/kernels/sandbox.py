@@ -13,9 +13,7 @@ from __future__ import annotations
 import contextlib
 import ctypes
 import os
-import shutil
 import site
-import subprocess
 import sys
 import sysconfig
 from collections.abc import Collection, Iterator
@@ -23,6 +21,7 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
+from articad import processes
 from articad.kernels import landlock, seccomp
 
 LAYERS = ("bwrap", "landlock", "seccomp")
@@ -48,7 +47,7 @@ _LOADER = ("/etc/ld.so.cache", "/etc/ld.so.conf", "/etc/ld.so.conf.d", "/etc/alt
 _PR_SET_PDEATHSIG, _PR_CAPBSET_DROP, _PR_SET_NO_NEW_PRIVS = 1, 24, 38
 _CAPABILITY_VERSION = 0x20080522
 _CAPSET = {"x86_64": 126, "aarch64": 91}
-_PROBE_SECONDS = 20.0  # bubblewrap answers in 0.02 s; a machine that swaps may need longer
+_PROBE = processes.Limits(seconds=20.0)  # bubblewrap answers in 0.02 s; a machine that swaps may need longer
 
 
 @dataclass(frozen=True)
@@ -110,15 +109,15 @@ def missing() -> tuple[str, ...]:
 @cache
 def bubblewrap_problem() -> str | None:
     """Return why bubblewrap does not work here, or None if it does."""
-    if shutil.which("bwrap") is None:
+    if processes.which("bwrap") is None:
         return "not installed"
-    command = bubblewrap_command([sys.executable, "-I", "-S", "-c", "pass"])
     try:
-        tried = subprocess.run(command, env={}, stdin=subprocess.DEVNULL, capture_output=True, timeout=_PROBE_SECONDS, check=False)  # noqa: S603
-    except (OSError, subprocess.TimeoutExpired) as error:
+        tried = processes.run(bubblewrap_command([sys.executable, "-I", "-S", "-c", "pass"]), environment={}, limits=_PROBE)
+    except OSError as error:
         return type(error).__name__
-    lines = tried.stderr.decode(errors="replace").strip().splitlines()
-    return None if tried.returncode == 0 else (lines[-1][:200] if lines else f"exit code {tried.returncode}")
+    if tried.late:
+        return f"no answer in {_PROBE.seconds} s"
+    return None if tried.code == 0 else tried.last_line[:200]
 
 
 def bubblewrap_command(command: list[str]) -> list[str]:
@@ -130,7 +129,7 @@ def bubblewrap_command(command: list[str]) -> list[str]:
     for path in _visible_paths():
         mounts += ["--symlink", str(Path(path).readlink()), path] if Path(path).is_symlink() else ["--ro-bind-try", path, path]
     return [
-        shutil.which("bwrap") or "bwrap",
+        bubblewrap(),
         *("--unshare-all", "--unshare-user", "--uid", "65534", "--gid", "65534", "--cap-drop", "ALL"),
         *disable_user_namespaces(),
         *("--new-session", "--die-with-parent", "--hostname", "sandbox"),
@@ -140,12 +139,16 @@ def bubblewrap_command(command: list[str]) -> list[str]:
     ]
 
 
+def bubblewrap() -> str:
+    """Return the path of bubblewrap; where there is none, one that cannot be started."""
+    return processes.which("bwrap") or "/nonexistent/bwrap"
+
+
 @cache
 def disable_user_namespaces() -> tuple[str, ...]:
     """Return bubblewrap's flag against user namespaces inside, which 0.8.0 and later have."""
-    command = [shutil.which("bwrap") or "bwrap", "--help"]
-    shown = subprocess.run(command, env={}, capture_output=True, timeout=_PROBE_SECONDS, check=False)  # noqa: S603
-    return ("--disable-userns",) if b"--disable-userns" in shown.stdout + shown.stderr else ()
+    shown = processes.run([bubblewrap(), "--help"], environment={}, limits=_PROBE, merged=True)
+    return ("--disable-userns",) if b"--disable-userns" in shown.out else ()
 
 
 def _visible_paths() -> list[str]:

@@ -9,7 +9,6 @@ import json
 import os
 import signal
 import socket
-import subprocess
 import sys
 import threading
 import weakref
@@ -19,6 +18,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any, ClassVar
 
+from articad import processes
 from articad.errors import KernelUnavailableError
 from articad.findings import Finding
 from articad.kernels import sandbox
@@ -26,6 +26,7 @@ from articad.kernels.libraries import install_line, missing_libraries
 
 START_SECONDS = 180.0  # the import takes 2 s, on a cold and busy disk 10 s
 SILENCE_SECONDS = 30.0  # after which a zygote that should have killed a job is taken for dead
+_LEAVE_SECONDS = 2.0  # for a zygote to end once its socket is closed
 _ANSWER = 4096
 _ROOT = str(Path(__file__).parents[2])
 # -P and -s: neither the folder it is started in nor the user's own packages are on the path. -B: nothing is written beside sources.
@@ -81,7 +82,7 @@ class Zygote:
         self._numbers = itertools.count(1)
         self._waiting: dict[int, Future[Outcome]] = {}
         self._control: socket.socket | None = None
-        self._process: subprocess.Popen[bytes] | None = None
+        self._process: processes.Child | None = None
         self._owner = 0
 
     def run(self, task: str, files: Mapping[str, int], limits: sandbox.Limits) -> Outcome:
@@ -135,7 +136,7 @@ class Zygote:
 
     def _started(self) -> socket.socket:
         """Return the socket to a zygote that runs, started now if there is none or if this process is a fork of its owner."""
-        alive = self._process is not None and self._process.poll() is None and self._owner == os.getpid()
+        alive = self._process is not None and not self._process.ended() and self._owner == os.getpid()
         if alive and self._control is not None:
             return self._control
         if self._owner == os.getpid():
@@ -159,11 +160,8 @@ class Zygote:
                 self._control.shutdown(socket.SHUT_RDWR)
             self._control = None
         if self._process is not None and self._owner == os.getpid():
-            try:
-                self._process.wait(timeout=2.0)
-            except subprocess.TimeoutExpired:
-                self._process.kill()
-                self._process.wait()
+            self._process.wait(_LEAVE_SECONDS)
+            self._process.close()
         self._process = None
         atexit.unregister(self.close)
 
@@ -178,8 +176,7 @@ class Zygote:
             ours.settimeout(START_SECONDS)
             hello = json.loads(ours.recv(_ANSWER) or b'{"problem": "it ended before it was ready"}')
             if not hello.get("ready"):
-                process.kill()
-                process.wait()
+                process.close()
                 raise _unavailable(str(hello.get("problem")))
             ours.settimeout(None)
         except (OSError, KernelUnavailableError) as error:
@@ -197,19 +194,12 @@ class Zygote:
             if not future.done():
                 future.set_exception(ZygoteDiedError("the worker's process ended"))
 
-    def _spawn(self, control: socket.socket) -> subprocess.Popen[bytes]:
+    def _spawn(self, control: socket.socket) -> processes.Child:
         command = [sys.executable, "-P", "-s", "-B", "-c", _BOOT]
         if "bwrap" in self._layers:
             command = sandbox.bubblewrap_command(command)
-        return subprocess.Popen(  # noqa: S603 - this interpreter, our module
-            command,
-            stdin=control.fileno(),
-            stdout=subprocess.DEVNULL,
-            stderr=subprocess.DEVNULL,
-            env=sandbox.ENVIRONMENT,
-            cwd="/",
-            start_new_session=True,
-        )
+        nowhere = processes.NOWHERE
+        return processes.start(command, environment=sandbox.ENVIRONMENT, folder="/", stdin=control.fileno(), stdout=nowhere, stderr=nowhere)
 
 
 def _outcome(answer: dict[str, Any]) -> Outcome:

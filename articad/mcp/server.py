@@ -5,7 +5,6 @@ from __future__ import annotations
 import inspect
 import json
 import shutil
-import tempfile
 from collections.abc import Awaitable, Callable, Mapping, Sequence
 from functools import wraps
 from pathlib import Path
@@ -15,7 +14,7 @@ from mcp.server.mcpserver import Context, Image, MCPServer
 from mcp.server.mcpserver.exceptions import ToolError
 from pydantic import Field
 
-from articad import __version__
+from articad import __version__, scratch
 from articad.codes import CODES
 from articad.errors import ArticadError, did_you_mean
 from articad.mcp import answers
@@ -145,16 +144,13 @@ class Tools:
         overlaps: bool = False,
     ) -> list[Any]:
         """Pictures: views (iso, iso_left, iso_back, iso_below, front, back, left, right, top, bottom), or a joint's motion."""
-        folder = tempfile.mkdtemp(prefix=".pictures-", dir=self.bench.root)
-        try:
+        with scratch.folder("pictures") as folder:
             words = ["--motion", motion] if motion else ["--views", ",".join(views[:_PICTURES]), "--explode", repr(explode)]
             words += [*(["--parts", ",".join(parts)] if parts and not motion else []), *(["--overlaps"] if overlaps and not motion else [])]
             place = self.bench.target(design)
             report = await self.bench.run("render", str(place), *words, "--size", str(_PIXELS), "--out", folder, seconds=_LOOK_S)
             files = [Path(file) for file in report.get("files", ()) if file.endswith(".png")][:_PICTURES]
             pictures = [Image(data=file.read_bytes(), format="png") for file in files]
-        finally:
-            shutil.rmtree(folder, ignore_errors=True)
         return pictures or [json.dumps(condensed(report, detail=False))]
 
     async def export(

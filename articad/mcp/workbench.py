@@ -8,16 +8,13 @@ take the server down with it, and obeys the same sandbox and exit codes as the c
 from __future__ import annotations
 
 import asyncio
-import contextlib
 import json
-import os
 import re
-import signal
-import sys
 from collections.abc import Awaitable, Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, Final
 
+from articad import processes
 from articad.errors import ReadError
 from articad.plan.amending import amended
 from articad.run import write_atomically
@@ -31,7 +28,7 @@ SCRIPT_BYTES: Final = 200_000
 BRIEF_BYTES: Final = 6_000  # of an answer, unless details are asked for: a page of text
 FULL_BYTES: Final = 60_000
 SHOWN_FINDINGS: Final = 12
-_REPORT_BYTES: Final = 64_000_000  # of a command's report: that of 10⁵ findings
+_FILE_BYTES: Final = 2**32  # of each file that a command writes
 _TOLD_EVERY_S: Final = 2.0
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,59}\Z")
 _FINDING_KEYS: Final = ("code", "where", "message", "hint", "route", "cause")
@@ -141,29 +138,28 @@ class Workbench:
         Raises:
             ReadError: If it takes too long or leaves no report.
         """
-        process = await asyncio.create_subprocess_exec(
-            *(sys.executable, "-m", "articad.cli", *arguments, "--json"),
-            cwd=self.root,
-            stdin=asyncio.subprocess.DEVNULL,
-            stdout=asyncio.subprocess.PIPE,
-            stderr=asyncio.subprocess.PIPE,
-            start_new_session=True,
+        child = processes.start(
+            [*arguments, "--json"],
+            module="articad.cli",
+            limits=processes.Limits(seconds=seconds, file_size=_FILE_BYTES),
+            environment=processes.environment(*processes.OWN),
         )
         try:
-            out, said = await self._finished(process, arguments[0], seconds, tell)
-        finally:  # cancelled, or late: the command and all that it started
-            if process.returncode is None:
-                with contextlib.suppress(ProcessLookupError):
-                    os.killpg(process.pid, signal.SIGKILL)
-                await process.wait()
+            ended = await self._finished(child, arguments[0], tell)
+        finally:  # cancelled: the command and all that it started; the thread that waits for it does the rest
+            child.kill()
+        if ended.late:
+            message = f"`articad {arguments[0]}` was ended after {seconds:.0f} s."
+            raise ReadError.told(arguments[0], message, "Ask for less at once, or for more seconds.")
         try:
-            return dict(json.loads(out[:_REPORT_BYTES]))
+            return dict(json.loads(ended.out))
         except ValueError as error:
-            last = said.decode(errors="replace").strip()[-400:]
+            last = ended.err.decode(errors="replace").strip()[-400:]
             raise ReadError.told(arguments[0], f"`articad {arguments[0]}` left no report: {last}", "Try it with fewer parts.") from error
 
-    async def _finished(self, process: asyncio.subprocess.Process, command: str, seconds: float, tell: Tell | None) -> tuple[bytes, bytes]:
-        work = asyncio.ensure_future(process.communicate())
+    async def _finished(self, child: processes.Child, command: str, tell: Tell | None) -> processes.Ended:
+        """Wait in a thread for the end of a command, and tell from time to time that it goes on."""
+        work = asyncio.ensure_future(asyncio.to_thread(child.finish))
         waited = 0.0
         while True:
             done, _ = await asyncio.wait([work], timeout=_TOLD_EVERY_S)
@@ -172,11 +168,6 @@ class Workbench:
             waited += _TOLD_EVERY_S
             if tell is not None:
                 await tell(waited, f"{command}: {waited:.0f} s")
-            if waited >= seconds:
-                work.cancel()
-                raise ReadError.told(
-                    command, f"`articad {command}` was ended after {seconds:.0f} s.", "Ask for less at once, or for more seconds."
-                )
 
 
 def condensed(report: Json, *, detail: bool, keep: Sequence[str] = ()) -> Json:

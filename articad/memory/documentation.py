@@ -10,9 +10,6 @@ import ast
 import hashlib
 import json
 import re
-import subprocess
-import sys
-import tempfile
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -22,6 +19,7 @@ from typing import Any, Final, Literal
 
 import numpy as np
 
+from articad import processes, scratch
 from articad.errors import KernelUnavailableError, ReadError
 from articad.findings import Finding
 from articad.kernels import freecad_install
@@ -176,7 +174,7 @@ class DocumentationStore:
 
     def _written_down(self, program: Path) -> dict[str, Any]:
         """Run a program that writes a catalogue, where the package can be imported."""
-        with tempfile.TemporaryDirectory(prefix="articad-docs-") as name:
+        with scratch.folder("docs") as name:
             folder = Path(name)
             if self.dialect == "freecad":
                 folder.chmod(0o777)  # FreeCAD runs as nobody in there
@@ -184,8 +182,9 @@ class DocumentationStore:
                 said, content = ended.said, (folder / "catalogue.json")
                 text = content.read_text(encoding="utf-8") if content.is_file() else ""
             else:
-                done = subprocess.run([sys.executable, program], capture_output=True, text=True, check=False, timeout=_SECONDS)  # noqa: S603
-                said, text = done.stderr, done.stdout
+                limits = processes.Limits(seconds=_SECONDS)
+                done = processes.run([], module="articad.memory.catalogue_build123d", limits=limits)
+                said, text = done.err.decode(errors="replace"), done.out.decode(errors="replace")
         try:
             return dict(json.loads(text))
         except ValueError as error:

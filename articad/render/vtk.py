@@ -6,7 +6,6 @@ Without OpenGL, VTK does not raise but ends the process, so it is first tried in
 from __future__ import annotations
 
 import importlib.util
-import subprocess
 import sys
 from functools import cache
 from typing import Any
@@ -14,16 +13,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from articad import processes
 from articad.render.camera import Camera
 from articad.render.scene import Item, Scene
 from articad.render.shade import INK, PAPER
 
-_PROBE = """
-import pyvista
-plotter = pyvista.Plotter(off_screen=True, window_size=(16, 16))
-plotter.add_mesh(pyvista.Box())
-assert plotter.screenshot(return_img=True).min() < 250
-"""
 _PROBE_SECONDS = 60  # the first start of VTK on a slow disk
 _CREASE_DEGREES = 30.0
 
@@ -33,11 +27,17 @@ def available() -> bool:
     """True when PyVista is installed and can draw here; found out once, in a process of its own."""
     if importlib.util.find_spec("pyvista") is None:
         return False
-    try:
-        probe = subprocess.run([sys.executable, "-c", _PROBE], capture_output=True, timeout=_PROBE_SECONDS, check=False)  # noqa: S603
-    except subprocess.TimeoutExpired:
-        return False
-    return probe.returncode == 0
+    limits = processes.Limits(seconds=_PROBE_SECONDS)
+    return processes.run([], module="articad.render.vtk", limits=limits, environment=processes.environment(*processes.SCREEN)).code == 0
+
+
+def _draws() -> bool:
+    """Draw a box and return whether the picture shows it."""
+    import pyvista  # noqa: PLC0415 - an extra
+
+    plotter: Any = pyvista.Plotter(off_screen=True, window_size=[16, 16])
+    plotter.add_mesh(pyvista.Box())
+    return bool(plotter.screenshot(return_img=True).min() < 250)
 
 
 def draw(scene: Scene, camera: Camera) -> NDArray[np.uint8]:
@@ -86,3 +86,7 @@ def _aim(plotter: Any, camera: Camera, size: float) -> None:
 
 def _hex(color: NDArray[np.float64]) -> str:
     return "#" + "".join(f"{round(channel):02x}" for channel in color)
+
+
+if __name__ == "__main__":
+    sys.exit(0 if _draws() else 1)

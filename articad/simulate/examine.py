@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import tempfile
 from pathlib import Path
 
+from articad import scratch
 from articad.assembly import Assembly
 from articad.errors import ArticadError, ReadError
 from articad.export.lowering import lower
@@ -42,7 +42,7 @@ def simulate_assembly(assembly: Assembly, file: str, *, engines: tuple[Engine, .
     """Export an assembly and hold, drive and let go what was exported: MJCF in MuJoCo, URDF in PyBullet, which leaves loops open."""
     drivers = driving(assembly)
     outcomes = []
-    with tempfile.TemporaryDirectory(prefix="articad-simulate-") as folder:
+    with scratch.folder("simulate") as folder:
         for engine in engines:
             bundle = (write_mjcf if engine == "mujoco" else write_urdf)(assembly)
             target = Path(folder) / engine

@@ -1,6 +1,6 @@
 """Does an engine load a file as it stands? Asked in a process of its own, for some engines end theirs on a bad file.
 
-`python -m articad.simulate.loading ENGINE FILE` prints one JSON object.
+The process runs this module with `ENGINE FILE` and prints one JSON object.
 """
 
 from __future__ import annotations
@@ -11,8 +11,6 @@ import io
 import json
 import os
 import re
-import resource
-import subprocess
 import sys
 import tempfile
 from collections.abc import Iterator
@@ -21,13 +19,16 @@ from itertools import combinations
 from pathlib import Path
 from typing import Any, Literal
 
+from articad import processes
+
 Engine = Literal["mujoco", "pinocchio", "pybullet"]
 
 ENGINES: dict[str, tuple[Engine, ...]] = {"urdf": ("mujoco", "pinocchio", "pybullet"), "mjcf": ("mujoco", "pybullet")}
 """Engines by format of the file."""
 
 SECONDS = 60.0
-MEMORY = 6 << 30  # bytes of address space; MuJoCo reserves more than it uses
+MEMORY = 4 << 30  # bytes of data of a process
+FILE_SIZE = 64 << 20  # bytes of each file that an engine writes: its log
 MOST_BODIES = 300  # whose pairs are looked at one by one
 _MESSAGE = 300  # characters kept of what an engine says
 
@@ -61,36 +62,30 @@ class Loading:
 
 def load(engine: Engine, path: Path, *, seconds: float = SECONDS) -> Loading:
     """Have an engine load a file in a process of its own, with bounded time and memory."""
-    return _answer(engine, start(engine, path, seconds=seconds), seconds)
+    with start(engine, path, seconds=seconds) as child:
+        return _answer(engine, child.finish(), seconds)
 
 
 def load_in_all(path: Path, engines: tuple[Engine, ...], *, seconds: float = SECONDS) -> tuple[Loading, ...]:
     """Have several engines load a file, one beside the other."""
-    started = [(engine, start(engine, path, seconds=seconds)) for engine in engines]
-    return tuple(_answer(engine, process, seconds) for engine, process in started)
+    with contextlib.ExitStack() as stack:
+        started = [(engine, stack.enter_context(start(engine, path, seconds=seconds))) for engine in engines]
+        return tuple(_answer(engine, child.finish(), seconds) for engine, child in started)
 
 
-def start(engine: Engine, path: Path, *, seconds: float = SECONDS) -> subprocess.Popen[bytes]:
+def start(engine: Engine, path: Path, *, seconds: float = SECONDS) -> processes.Child:
     """Start the process that loads a file."""
-    package = Path(__file__).resolve().parents[2]
-    environment = os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, [str(package), os.environ.get("PYTHONPATH")]))}
-    command = [sys.executable, "-m", "articad.simulate.loading", engine, str(path.resolve()), str(seconds)]
-    return subprocess.Popen(  # noqa: S603 - ourselves
-        command, cwd=tempfile.gettempdir(), env=environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL
-    )
+    limits = processes.Limits(seconds=seconds, memory=MEMORY, file_size=FILE_SIZE)
+    return processes.start([engine, str(path.resolve())], module="articad.simulate.loading", limits=limits)
 
 
-def _answer(engine: Engine, process: subprocess.Popen[bytes], seconds: float) -> Loading:
-    try:
-        out, _ = process.communicate(timeout=seconds)
-    except subprocess.TimeoutExpired:
-        process.kill()
-        process.communicate()
+def _answer(engine: Engine, ended: processes.Ended, seconds: float) -> Loading:
+    if ended.late:
         return Loading(engine, "?", loads=False, message=f"it was not done after {seconds:g} s")
     try:
-        answer = answer_in(out)
+        answer = answer_in(ended.out)
     except (ValueError, IndexError):
-        return Loading(engine, "?", loads=False, message=f"its process ended with {_ending(process.returncode)}")
+        return Loading(engine, "?", loads=False, message=f"its process ended with {ended.how}")
     pairs = tuple((str(a), str(b)) for a, b in answer.pop("excluded", ()))
     return Loading(**answer | {"engine": engine, "simple": tuple(answer.get("simple", ())), "excluded": pairs})
 
@@ -106,26 +101,17 @@ def answer_in(out: bytes) -> dict[str, Any]:
     return answer
 
 
-def _ending(code: int) -> str:
-    return f"signal {-code}" if code < 0 else f"exit code {code}"
-
-
 # ---------------------------------------------------------------------- in the process of its own
 
 
 def main(arguments: list[str]) -> int:
     """Load a file and print what came of it."""
-    engine, path, seconds = arguments
-    resource.setrlimit(resource.RLIMIT_CPU, (int(float(seconds)) + 1, int(float(seconds)) + 2))
-    resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
-    with tempfile.TemporaryDirectory(prefix="articad-engine-") as scratch:
-        os.chdir(scratch)  # MuJoCo leaves its log where it stands
-        with _captured() as said:
-            try:
-                answer = _LOADERS[engine](Path(path), said)
-            except ImportError:
-                answer = {"version": "", "loads": None, "message": "it is not installed"}
-        os.chdir("/")
+    engine, path = arguments
+    with _captured() as said:
+        try:
+            answer = _LOADERS[engine](Path(path), said)
+        except ImportError:
+            answer = {"version": "", "loads": None, "message": "it is not installed"}
     print(json.dumps(answer))  # noqa: T201 - this is the answer
     return 0
 

@@ -1,17 +1,14 @@
-"""Trials in processes of their own: `python -m articad.simulate.trial ENGINE FILE DRIVERS` prints what an engine measured as JSON."""
+"""Trials in processes of their own: this module with `ENGINE FILE DRIVERS` prints what an engine measured as JSON."""
 
 from __future__ import annotations
 
 import json
-import os
-import resource
-import subprocess
 import sys
-import tempfile
 from dataclasses import asdict
 from pathlib import Path
 
-from articad.simulate.loading import MEMORY, Engine, answer_in, load
+from articad import processes
+from articad.simulate.loading import FILE_SIZE, MEMORY, Engine, answer_in, load
 from articad.simulate.verdict import Outcome
 
 SECONDS = 300.0
@@ -29,26 +26,20 @@ def try_out(engine: Engine, path: Path, *, drivers: tuple[str, ...] | None = Non
     loading = load(engine, path)
     if not loading.loads:
         return Outcome(engine, loading.version, loads=loading.loads, message=loading.message)
-    package = Path(__file__).resolve().parents[2]
-    environment = os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, [str(package), os.environ.get("PYTHONPATH")]))}
-    command = [sys.executable, "-m", "articad.simulate.trial", engine, str(path.resolve()), json.dumps(drivers)]
-    with tempfile.TemporaryDirectory(prefix="articad-trial-") as scratch:
-        try:
-            done = subprocess.run(  # noqa: S603 - ourselves
-                command, cwd=scratch, env=environment, stdin=subprocess.DEVNULL, capture_output=True, timeout=seconds, check=False
-            )
-        except subprocess.TimeoutExpired:
-            return Outcome(engine, loading.version, loads=False, message=f"it was not done after {seconds:g} s")
+    words = [engine, str(path.resolve()), json.dumps(drivers)]
+    limits = processes.Limits(seconds=seconds, memory=MEMORY, file_size=FILE_SIZE)
+    ended = processes.run(words, module="articad.simulate.trial", limits=limits)
+    if ended.late:
+        return Outcome(engine, loading.version, loads=False, message=f"it was not done after {seconds:g} s")
     try:
-        return Outcome.from_json(answer_in(done.stdout))
+        return Outcome.from_json(answer_in(ended.out))
     except (ValueError, IndexError, TypeError):
-        return Outcome(engine, loading.version, loads=False, message=f"its process ended with exit code {done.returncode}")
+        return Outcome(engine, loading.version, loads=False, message=f"its process ended with {ended.how}")
 
 
 def main(arguments: list[str]) -> int:
     """Try a model out and print what was measured."""
     engine, path, drivers = arguments
-    resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
     names = json.loads(drivers)
     if engine == "mujoco":
         from articad.simulate.mujoco_trial import Trial  # noqa: PLC0415 - each process loads one engine

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import subprocess
 import sys
 
 import pytest
 
+from articad import processes
 from articad.bench.pool import Call, Worker
 
 CALL = Call("score", {}, "k")
@@ -14,11 +14,10 @@ CALL = Call("score", {}, "k")
 
 @pytest.mark.parametrize("said", ["", "{", '{"ok": true'])
 def test_a_worker_that_dies_within_its_answer_has_not_answered(said: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    def dying(worker: Worker) -> subprocess.Popen[str]:
+    def dying(worker: Worker, _call: Call) -> processes.Child:
         words = [sys.executable, "-c", f"import sys; sys.stdin.readline(); sys.stdout.write({said!r})"]
-        process = subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
-        worker._process = process  # as the real one keeps it, so that it is waited for
-        return process
+        worker._process = processes.start(words, stdin=processes.PIPE)  # kept as the real one is, so that it is waited for
+        return worker._process
 
     monkeypatch.setattr(Worker, "_running", dying)
     with Worker(1.0) as worker:

@@ -1,0 +1,21 @@
+"""A stranger's folder: modules of every name that a program may import, each of which leaves a mark when it runs."""
+
+from __future__ import annotations
+
+import sys
+from importlib import metadata
+from pathlib import Path
+
+
+def planted(folder: Path) -> Path:
+    """Plant modules in a folder, which is also somebody's home with packages of its own, and return the file of their marks."""
+    mark = folder.parent / f"{folder.name}.mark"
+    names = {name for name in {*sys.stdlib_module_names, *metadata.packages_distributions()} if name.isidentifier()}
+    names |= {"articad", "sitecustomize", "usercustomize", "pyvista", "pybullet", "distributed", "mcp"}
+    user = folder / ".local" / "lib" / f"python{sys.version_info.major}.{sys.version_info.minor}" / "site-packages"
+    user.mkdir(parents=True)
+    text = f"with open({str(mark)!r}, 'a') as mark:\n    mark.write(__file__ + chr(10))\nraise ImportError('planted')\n"
+    for place in (folder, user):
+        for name in sorted(names):
+            (place / f"{name}.py").write_text(text)
+    return mark

@@ -1,0 +1,254 @@
+"""The launcher: no other start of a process, what a child can see and use, and that nothing outlives whoever started it."""
+
+from __future__ import annotations
+
+import ast
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+import articad
+from articad import processes, scratch
+from articad.processes import Limits
+from tests.planting import planted
+
+PACKAGE = Path(articad.__file__).parent
+ROOT = PACKAGE.parent
+
+STARTERS = {"subprocess", "multiprocessing", "pty", "popen2", "asyncio.subprocess", "concurrent.futures.process"}
+CALLS = ("system", "popen", "fork", "posix_spawn", "startfile", "exec", "spawn", "create_subprocess_", "subprocess")  # of these:
+MODULES = {"os", "posix", "asyncio"}
+CLASSES = {"ProcessPoolExecutor", "LocalCluster"}
+ALLOWED = {
+    ("processes.py", "subprocess"): "the launcher",
+    ("child.py", "execve"): "the launcher's other end",
+    ("kernels/worker.py", "fork"): "the zygote, which forks a confined process for each part script",
+}
+SOURCES = sorted(path for path in PACKAGE.rglob("*.py") if "shipped_examples" not in path.parts and path.parent.name != "parts")
+
+
+def starters_in(source: str) -> Iterator[str]:
+    """Yield what a module has to start a process with."""
+    for node in ast.walk(ast.parse(source)):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names if alias.name in STARTERS)
+        elif isinstance(node, ast.ImportFrom) and node.module:
+            yield from (node.module for _ in [0] if node.module in STARTERS)
+            names = sorted(alias.name for alias in node.names)
+            yield from (name for name in names if name in CLASSES or (node.module in MODULES and name.startswith(CALLS)))
+        elif isinstance(node, ast.Attribute):
+            of_system = isinstance(node.value, ast.Name) and node.value.id in MODULES
+            if node.attr in CLASSES or (of_system and node.attr.startswith(CALLS)):
+                yield node.attr
+
+
+@pytest.mark.parametrize(
+    "source",
+    [
+        "import subprocess",
+        "from subprocess import run",
+        "import os\nos.system('x')",
+        "import os\nos.execv('x', [])",
+        "from os import spawnl",
+        "import asyncio\nasyncio.create_subprocess_exec('x')",
+        "from asyncio import subprocess",
+        "from concurrent.futures import ProcessPoolExecutor",
+        "import concurrent.futures as f\nf.ProcessPoolExecutor()",
+        "import multiprocessing",
+    ],
+)
+def test_the_search_below_finds_every_way_to_start_a_process(source: str) -> None:
+    assert list(starters_in(source))
+
+
+def test_only_the_launcher_starts_processes() -> None:
+    found = {(path.relative_to(PACKAGE).as_posix(), name) for path in SOURCES for name in starters_in(path.read_text(encoding="utf-8"))}
+    assert found == set(ALLOWED)
+
+
+def modules_run() -> list[str]:
+    """Return the modules that the package runs in processes of their own."""
+    return sorted(
+        {
+            keyword.value.value
+            for path in SOURCES
+            for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+            if isinstance(node, ast.Call)
+            for keyword in node.keywords
+            if keyword.arg == "module" and isinstance(keyword.value, ast.Constant) and str(keyword.value.value).startswith("articad.")
+        }
+    )
+
+
+@pytest.mark.parametrize("module", modules_run())
+def test_a_child_imports_nothing_from_where_it_was_started(module: str, tmp_path: Path) -> None:
+    folder = tmp_path / "stranger"
+    folder.mkdir()
+    mark = planted(folder)
+    code = f"""
+import sys
+from articad import processes
+processes.run(["--version"], module={module!r}, limits=processes.Limits(seconds=100), environment=processes.environment(*processes.OWN))
+"""
+    environment = os.environ | {"HOME": str(folder), "TMPDIR": str(folder), "PYTHONPATH": ""}
+    subprocess.run([sys.executable, "-P", "-c", code], cwd=folder, env=environment, check=True, timeout=200)
+    assert not mark.exists(), mark.read_text()
+
+
+def in_child(code: str, **options: object) -> processes.Ended:
+    """Run Python in a child that the launcher starts."""
+    return processes.run([sys.executable, "-I", "-S", "-c", code], limits=Limits(seconds=30), **options)  # type: ignore[arg-type]
+
+
+def test_a_child_runs_the_articad_of_its_parent(tmp_path: Path) -> None:
+    copy = tmp_path / "elsewhere" / "articad"
+    copy.mkdir(parents=True)
+    for name in ("__init__.py", "child.py", "processes.py", "scratch.py"):
+        (copy / name).write_bytes((PACKAGE / name).read_bytes())
+    (copy / "probe.py").write_text("import articad, sys; print(articad.__file__, *sys.argv[1:])")
+    code = "from articad import processes as p; print(p.run(['word'], module='articad.probe', limits=p.Limits(seconds=60)).out.decode())"
+
+    done = subprocess.run([sys.executable, "-c", code], cwd=copy.parent, capture_output=True, text=True, check=True)
+
+    assert done.stdout.split() == [str(copy / "__init__.py"), "word"]
+
+
+def test_a_child_works_in_an_empty_folder_of_its_own_that_is_removed() -> None:
+    ended = in_child(
+        "import os; print(os.getcwd(), os.environ['TMPDIR'], os.environ['HOME'], os.listdir(), oct(os.stat('.').st_mode & 0o777))"
+    )
+    place, temporary, home, listed, mode = ended.out.decode().split()
+    assert place == temporary == home
+    assert (listed, mode) == ("[]", "0o700")
+    assert not Path(place).exists()
+
+
+def test_a_child_gets_no_key_and_no_setting_of_python(monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in ("OPENAI_API_KEY", "AWS_SECRET_ACCESS_KEY", "SOME_TOKEN", "PYTHONPATH", "HTTPS_PROXY", "OPENAI_BASE_URL"):
+        monkeypatch.setenv(name, "secret")
+    monkeypatch.setenv("ARTICAD_CACHE", "kept")
+    for given in (None, processes.environment(), processes.environment(*processes.OWN)):
+        seen = json.loads(in_child("import json, os; print(json.dumps(dict(os.environ)))", environment=given).out)
+        assert "secret" not in seen.values()
+    assert seen["ARTICAD_CACHE"] == "kept"
+    assert in_child("import os; print(dict(os.environ))", environment={"ONE": "1"}).out.split()[:2] == [b"{'ONE':", b"'1',"]
+    assert processes.environment_with_keys()["OPENAI_API_KEY"] == "secret"
+    assert "PYTHONPATH" not in processes.environment_with_keys()
+
+
+def test_a_program_gets_the_environment_as_it_was_given() -> None:
+    assert processes.run(["/usr/bin/env"], limits=Limits(seconds=30), environment={}).out == b""
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="limits of data are Linux's")
+def test_memory_files_and_output_are_bounded() -> None:
+    def tried(code: str, limits: Limits) -> processes.Ended:
+        return processes.run([sys.executable, "-I", "-S", "-c", code], limits=limits)
+
+    assert b"MemoryError" in tried("x = bytearray(2**30)", Limits(seconds=30, memory=2**28)).err
+    assert tried("open('file', 'wb').write(bytes(2**22))", Limits(seconds=30, file_size=2**20)).code != 0
+    out = tried("import os\nfor _ in range(70): os.write(1, b'x' * 2**20)\nos.write(1, b'end')", Limits(seconds=60)).out
+    assert len(out) == processes.OUTPUT
+    assert out.endswith(b"end")
+
+
+def alive(pid: int) -> bool:
+    """Return whether a process runs; one that is only not yet waited for does not."""
+    try:
+        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
+    except OSError:
+        return False
+
+
+def gone(pids: list[int], seconds: float = 5.0) -> bool:
+    until = time.monotonic() + seconds
+    while any(map(alive, pids)):
+        if time.monotonic() > until:
+            return False
+        time.sleep(0.05)
+    return True
+
+
+def test_the_whole_group_is_killed_when_time_is_up_and_when_the_leader_ends() -> None:
+    late = processes.run(["/bin/sh", "-c", "sleep 300 & echo $!; sleep 300"], limits=Limits(seconds=1))
+    early = processes.run(["/bin/sh", "-c", "sleep 300 & echo $!"], limits=Limits(seconds=200))
+    assert (late.late, early.late, early.code) == (True, False, 0)
+    assert gone([int(late.out), int(early.out)])
+
+
+# An engine that waits for ever: the pipe that it is to read has no writer.
+ENGINE = """
+import os, sys
+from pathlib import Path
+from articad import processes
+from articad.simulate import loading
+os.mkfifo("model.urdf")
+start = processes.start
+def told(*words, **options):
+    child = start(*words, **options)
+    print(child.pid, flush=True)
+    return child
+processes.start = told
+loading.load_in_all(Path("model.urdf").resolve(), ("mujoco", "pinocchio"))
+"""
+SCRIPT = """
+from articad.kernels.build123d import Build123dKernel
+kernel = Build123dKernel()
+kernel.warm_up()
+print(kernel.pid, str(kernel._scratch.name) and kernel.pid, flush=True)
+import time
+time.sleep(300)
+"""
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="the kernel's signal for a parent's end is Linux's")
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGKILL, signal.SIGINT])
+@pytest.mark.parametrize("work", [ENGINE, SCRIPT], ids=["engines", "kernel"])
+def test_no_process_outlives_its_parent_and_no_folder_the_next_start(work: str, number: signal.Signals, tmp_path: Path) -> None:
+    temporary = tmp_path / "temporary"
+    temporary.mkdir()
+    environment = os.environ | {"TMPDIR": str(temporary)}
+    with subprocess.Popen([sys.executable, "-c", work], cwd=tmp_path, env=environment, stdout=subprocess.PIPE, text=True) as parent:
+        assert parent.stdout is not None
+        children = [int(word) for _ in range(2 if work is ENGINE else 1) for word in parent.stdout.readline().split()]
+        assert all(map(alive, children))
+        parent.send_signal(number)
+        parent.wait(30)
+
+    assert gone(children)
+    subprocess.run([sys.executable, "-c", "from articad import scratch; scratch.folder('x')"], env=environment, check=True)
+    assert list(temporary.iterdir()) == []
+
+
+def test_the_sweep_leaves_what_is_in_use_or_not_ours(tmp_path: Path) -> None:
+    environment = os.environ | {"TMPDIR": str(tmp_path)}
+    code = "from articad import scratch; kept = scratch.folder('x'); print(kept.name, flush=True); input()"
+    with subprocess.Popen([sys.executable, "-c", code], env=environment, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as other:
+        assert other.stdout is not None
+        used = Path(other.stdout.readline().strip())
+        (tmp_path / "target").mkdir()
+        (tmp_path / "target" / "file").write_text("")
+        (tmp_path / f"{scratch.PREFIX}link").symlink_to(tmp_path / "target")
+        (tmp_path / f"{scratch.PREFIX}dead").mkdir()
+        subprocess.run([sys.executable, "-c", "from articad import scratch; scratch.sweep()"], env=environment, check=True)
+        assert used.is_dir()
+        other.communicate("\n")
+    assert (tmp_path / "target" / "file").exists()
+    assert not (tmp_path / f"{scratch.PREFIX}dead").exists()
+    assert not used.exists()
+
+
+def test_a_program_is_never_taken_from_the_working_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "bwrap").write_text("#!/bin/sh\n")
+    (tmp_path / "bwrap").chmod(0o755)
+    monkeypatch.chdir(tmp_path)
+    assert processes.which("bwrap", "") is None
+    assert processes.which("bwrap", ":.:relative") is None
+    assert processes.which("bwrap", f":{tmp_path}") == str(tmp_path / "bwrap")
