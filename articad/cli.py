@@ -135,9 +135,11 @@ def _prompt_interrupts(terminal: Terminal) -> Iterator[None]:
 
 
 def _run(command: Command, options: argparse.Namespace, terminal: Terminal) -> int:
+    from articad import scratch
     from articad.doctor import require_libraries
     from articad.errors import ArticadError
 
+    scratch.sweep()
     try:
         if command.needs_libraries:
             require_libraries()

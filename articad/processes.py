@@ -309,12 +309,6 @@ def which(name: str, path: str | None = None) -> str | None:
     return shutil.which(name, path=os.pathsep.join(filter(os.path.isabs, folders)) or "/nonexistent")
 
 
-def leave_working_folder() -> None:
-    """Take the working folder off this program's path: an empty entry of PYTHONPATH, or `python -m`, puts it there."""
-    here, own = Path.cwd(), Path(__file__).parents[1]
-    sys.path[:] = [entry for entry in sys.path if (Path(entry).resolve() if entry else here) != here or here == own]
-
-
 def _variables(given: Mapping[str, str] | None, private: str | None, is_ours: bool) -> dict[str, str]:
     """Return the environment of a child: scratch files of ours go to its private folder, and so does its HOME if it needs none."""
     variables = dict(environment() if given is None else given)

@@ -32,9 +32,10 @@ def folder(name: str) -> tempfile.TemporaryDirectory[str]:
 
 def sweep() -> None:
     """Remove what killed processes of this user left behind."""
-    for place in Path(tempfile.gettempdir()).glob(f"{PREFIX}*"):
-        if place not in _homes.values():
-            _remove_if_abandoned(place)
+    with contextlib.suppress(OSError):  # there is no folder for temporary files, or it cannot be listed
+        for place in Path(tempfile.gettempdir()).glob(f"{PREFIX}*"):
+            if place not in _homes.values():
+                _remove_if_abandoned(place)
 
 
 def _home() -> Path:

@@ -77,7 +77,7 @@ def modules_run() -> list[str]:
     """Return the modules that the package runs in processes of their own."""
     return sorted(
         {
-            keyword.value.value
+            str(keyword.value.value)
             for path in SOURCES
             for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
             if isinstance(node, ast.Call)

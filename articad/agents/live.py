@@ -89,6 +89,7 @@ class LiteLLM:
     ) -> None:
         os.environ.setdefault("LITELLM_LOCAL_MODEL_COST_MAP", "True")  # else the import fetches a price list
         os.environ.setdefault("LITELLM_LOG", "ERROR")
+        os.environ["LITELLM_MODE"] = "PRODUCTION"  # else the import loads the nearest .env, which may name another host for the user's key
         import litellm  # noqa: PLC0415 - seconds, and only for those who call a model
 
         litellm.suppress_debug_info = True

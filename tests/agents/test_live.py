@@ -258,3 +258,27 @@ def test_a_providers_vectors_are_a_space_of_their_own_and_find_cases(tmp_path: P
         assert stub.received[0]["input"] == ["something that shines"]
         assert (first.case.prompt, round(first.likeness, 3), round(second.likeness, 3)) == (stub.received[1]["input"][0], 1.0, 0.8)
         assert embedder.embed([]).shape == (0, 1)
+
+
+@pytest.mark.parametrize("above", [False, True])
+@pytest.mark.parametrize("mode", [None, "DEV"])
+def test_no_env_file_is_read(above: bool, mode: str | None, tmp_path: Path) -> None:
+    """Where a program has no file, as here, the search for `.env` begins in the working folder; else beside litellm."""
+    here = tmp_path / "a" / "b"
+    here.mkdir(parents=True)
+    (tmp_path / "a" / ".env" if above else here / ".env").write_text(
+        "OPENAI_BASE_URL=http://127.0.0.1:9/v1\nHTTPS_PROXY=http://127.0.0.1:9\n"
+    )
+    code = """
+import os, dotenv
+loads, before = [], dict(os.environ)
+load = dotenv.load_dotenv
+dotenv.load_dotenv = lambda *words, **options: (loads.append(words), load(*words, **options))
+from articad.agents.live import LiteLLM
+LiteLLM("openai/gpt-x")
+print(loads, [name for name in ("OPENAI_BASE_URL", "HTTPS_PROXY") if os.environ.get(name) != before.get(name)])
+"""
+    environment = os.environ | {"OPENAI_API_KEY": "key"} | ({} if mode is None else {"LITELLM_MODE": mode})
+    done = subprocess.run([sys.executable, "-c", code], cwd=here, env=environment, capture_output=True, text=True, check=False)
+
+    assert done.stdout.strip() == "[] []", done.stderr

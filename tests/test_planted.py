@@ -1,0 +1,141 @@
+"""A stranger's folder is the working folder, the folder of temporary files and the home: no command and no tool runs what is in it."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import os
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+import pytest
+from mcp import Client, StdioServerParameters
+from mcp.client.stdio import stdio_client
+
+from articad.commands.command import COMMANDS
+from tests.agents.openai_stub import Canned, openai_stub
+from tests.planting import planted
+
+# As the console script starts: without the working folder on the path.
+ARTICAD = [sys.executable, "-P", "-c", "import sys; from articad.cli import main; sys.exit(main())"]
+
+LINES = """
+new product
+check product
+part product tray
+build product --out run --no-pictures --export urdf,mjcf
+check run
+certify run --budget 1
+verify-certificate run/certificate.json
+export run --to urdf,mjcf,step
+audit run/export/urdf/product.urdf
+audit run/export/mjcf/product.xml
+sim run/export/urdf/product.urdf
+convert run/export/urdf/product.urdf other.xml
+convert run/export/step/product.step other.urdf
+adopt run/export/mjcf/product.xml --out adopted --no-audit
+render run --size 64 --out pictures
+show run --no-browser --out page.html
+edit run --set width=50 --out edited --no-pictures
+replay RECORDED --out again
+batch batch.json --out made --jobs 1
+bench list
+bench score nothing --task arch_stone_seven
+memory list
+completion bash
+skill print
+doctor
+"""
+RECORDED = Path(__file__).parent / "recordings" / "toy"
+WITH_A_MODEL = ("generate", "resume")
+SERVERS = ("watch", "mcp")
+
+
+@pytest.fixture
+def stranger(tmp_path: Path) -> Path:
+    folder = tmp_path / "stranger"
+    folder.mkdir()
+    planted(folder)
+    (folder / ".env").write_text("OPENAI_BASE_URL=http://127.0.0.1:9/v1\n")
+    (folder / "batch.json").write_text(json.dumps({"items": [{"plan": "product", "formats": ["urdf"]}]}))
+    return folder
+
+
+def variables(folder: Path) -> dict[str, str]:
+    """Return an environment whose home and temporary files are in a folder."""
+    kept = {name: os.environ[name] for name in ("PATH", "LANG", "ARTICAD_SANDBOX") if name in os.environ}
+    return kept | {"HOME": str(folder), "TMPDIR": str(folder), "OPENAI_API_KEY": "key", "OPENBLAS_NUM_THREADS": "1"}
+
+
+def marks(folder: Path) -> str:
+    mark = folder.parent / f"{folder.name}.mark"
+    return mark.read_text() if mark.exists() else ""
+
+
+def test_each_command_has_a_line() -> None:
+    assert {line.split()[0] for line in LINES.split("\n") if line} | {*WITH_A_MODEL, *SERVERS} == set(COMMANDS)
+
+
+@pytest.mark.slow
+def test_no_command_runs_what_a_stranger_planted(stranger: Path) -> None:
+    for line in LINES.strip().replace("RECORDED", str(RECORDED)).split("\n"):
+        done = subprocess.run(
+            [*ARTICAD, *line.split()], cwd=stranger, env=variables(stranger), capture_output=True, text=True, check=False, timeout=500
+        )
+        assert marks(stranger) == "", line
+        assert done.returncode in {0, 1}, (line, done.stdout, done.stderr)
+
+
+@pytest.mark.slow
+def test_neither_models_nor_the_page_server_run_what_a_stranger_planted(stranger: Path) -> None:
+    with openai_stub([Canned(status=400, body=b"{}")]) as stub:
+        words = ["generate", "a box", "--model", "openai/gpt-x", "--api-base", stub.address, "--out", "run", "--no-pictures"]
+        subprocess.run([*ARTICAD, *words], cwd=stranger, env=variables(stranger), capture_output=True, check=False, timeout=300)
+        assert stub.received
+        words = ["resume", "run", "--api-base", stub.address]
+        subprocess.run([*ARTICAD, *words], cwd=stranger, env=variables(stranger), capture_output=True, check=False, timeout=300)
+    subprocess.run([*ARTICAD, "new", "product"], cwd=stranger, env=variables(stranger), check=True, timeout=300)
+    words = ["watch", "product", "--no-browser"]
+    with subprocess.Popen([*ARTICAD, *words], cwd=stranger, env=variables(stranger), stdout=subprocess.DEVNULL) as watching:
+        until = time.monotonic() + 120
+        while time.monotonic() < until and not list(stranger.glob(".cache/articad/parts/*")):
+            time.sleep(0.5)
+        watching.terminate()
+    assert marks(stranger) == ""
+
+
+@pytest.mark.slow
+def test_no_tool_runs_what_a_stranger_planted_in_the_root(stranger: Path) -> None:
+    subprocess.run([*ARTICAD, "new", "product"], cwd=stranger, env=variables(stranger), check=True, timeout=300)
+    calls: dict[str, dict[str, Any]] = {
+        "schema": {"topic": "plan"},
+        "check_plan": {"design": "product"},
+        "build_part": {"design": "product", "part": "tray"},
+        "build": {"design": "product"},
+        "check": {"design": "product"},
+        "certify": {"design": "product", "budget_s": 1.0},
+        "audit": {"design": "product"},
+        "sim": {"design": "product"},
+        "render": {"design": "product"},
+        "export": {"design": "product", "formats": ["urdf", "mjcf"]},
+        "convert": {"source": "product/run/export/urdf/product.urdf", "target": "other.xml"},
+        "edit_parameters": {"design": "product", "values": {"width": 50.0}},
+        "explain": {"code": "E_DUP_NAME"},
+        "docs": {"dialect": "build123d", "intent": "fillet"},
+    }
+
+    async def session() -> None:
+        server = StdioServerParameters(
+            command=ARTICAD[0], args=[*ARTICAD[1:], "mcp", "--root", str(stranger)], env=variables(stranger), cwd=stranger
+        )
+        async with Client(stdio_client(server)) as client:
+            assert {tool.name for tool in (await client.list_tools()).tools} == set(calls)
+            for name, arguments in calls.items():
+                answer = await client.call_tool(name, arguments)
+                assert marks(stranger) == "", name
+                assert not answer.is_error, (name, answer.content)
+
+    asyncio.run(session())
