@@ -84,7 +84,8 @@ def test_jacobians_are_the_velocities_that_the_equations_give(seed: int) -> None
             v, omega = case.velocities(at)
             units = case.equations.L[[case.equations.place[name] for name in case.freedoms]]
             point = case.rng.uniform(-1, 1, 3) * mechanism_size(case)
-            for k, part in enumerate(case.mechanism.parts):
+            for k in case.rng.choice(len(case.mechanism.parts), 2):
+                part = case.mechanism.parts[k]
                 J = case.mechanism.jacobian(case.q(at), part, SE3.from_translation(point))
                 arm = at.X[k, :3, :3] @ point
                 v_point, turning = v[k] + np.cross(omega[k], arm, axis=0), omega[k]
