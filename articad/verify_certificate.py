@@ -12,7 +12,6 @@ import hashlib
 import itertools
 import json
 import math
-from collections import deque
 from pathlib import Path
 from typing import Any
 
@@ -25,6 +24,10 @@ ALIGNED = 1e-12  # sine of axes that are parallel
 SIDES = np.array(list(itertools.product((0, 1), repeat=3)))
 COURSE = ("uses", "parts_a", "parts_b", "about", "cuts", "at", "codes", "along", "of_a")  # arrays of every claim
 REST = 1e-6  # rad or mm: by which what follows a driver may be off at rest
+STIFF = 1e-4  # rad or mm: about the rest pose of what nothing drives, within which there is to be no other one
+SETTLED = 1e-7  # rad or mm: to which a solution is found at the ends of what repeats itself
+FLOAT = 1e-12  # by which a ratio may be off for whole turns to fit it
+BULK = 2048  # rows looked at together
 LARGEST = 1e7  # mm or rad: further out, numbers are rounded by more than matters
 TYPES = {"f": "f8", "i": "i8", "u": "i8", "U": "U"}  # of arrays, by kind: short numbers overflow, and complex ones have no order
 LEAN, ROUND, OUTSIDE = -6, -5, -4  # pieces differ in angle from a ball's axis, or in radius; a box lies outside the cone of a ball
@@ -103,7 +106,8 @@ def hull(corners: Any, span: tuple[int, int], known: dict[tuple[int, int], Any])
     """Return points whose hull holds a piece: the corners of a triangle or two, else of a box."""
     if span not in known:
         points = corners[slice(*span)].reshape(-1, 3)
-        known[span] = points if len(points) < len(SIDES) else np.stack([points.min(0), points.max(0)])[SIDES, [0, 1, 2]]
+        few = len(points) < len(SIDES)
+        known[span] = np.resize(points, SIDES.shape) if few else np.stack([points.min(0), points.max(0)])[SIDES, [0, 1, 2]]
     return known[span]
 
 
@@ -124,13 +128,80 @@ def leans(local: Any, axis: Any) -> tuple[Any, Any]:
     return ends[0].min(0), ends[1].max(0)
 
 
+def apart(u: Any, p: Any, q: Any, moving: Any) -> Any:
+    """Return by how much points `(k, n, 3)` of one part lie behind those of the other along directions `(k, 3)`, wherever these move."""
+    R, t, *rest = moving
+    there = q @ R.swapaxes(1, 2) + t[:, None]
+    ahead = (there @ u[..., None])[..., 0] - motion(u, there, *rest)
+    return ahead.min(1) - (p @ u[..., None])[..., 0].max(1)
+
+
+def follow(rows: Any, codes: list[int], directions: Any, A: Any, B: Any, how: Any, clear: float) -> None:
+    """Cut rows of pieces `(a, b, box)` as written, each time all that are left, until each two are known to be further apart than `clear`."""
+    (along, of_a), (moving, halves, kept), known, first = directions, how, (dict[Any, Any](), dict[Any, Any]()), 0
+    level = list(rows)
+    while level:
+        told, first, left, parted = codes[first : first + len(level)], first + len(level), list[Any](), list[Any]()
+        need(len(told) == len(level), "rows are missing")
+        for row, code in zip(level, told, strict=True):
+            if CUT <= code < 0:
+                k, (start, end) = code - CUT, row[min(code - CUT, 1)]
+                parts = halves[row[2]] if k == 2 else [(start, (start + end) // 2), ((start + end) // 2, end)]
+                left.extend((*row[:k], part, *row[k + 1 :]) for part in parts)
+            elif code >= 0:
+                parted.append((*row, code))
+            else:
+                need(kept(code, slice(*row[0]), slice(*row[1]), row[2]) > clear, "pieces come too near")
+        for start in range(0, len(parted), BULK):
+            a, b, *others = zip(*parted[start : start + BULK], strict=True)
+            box, code = np.array(others)
+            u = np.where((code < of_a)[:, None], along[code], (moving[0][box] @ along[code][..., None])[..., 0])
+            p, q = np.array([hull(A, span, known[0]) for span in a]), np.array([hull(B, span, known[1]) for span in b])
+            for k in np.flatnonzero(~(apart(u, p, q, [part[box] for part in moving]) > clear)).tolist():
+                one, x, y = slice(k, k + 1), slice(*a[k]), slice(*b[k])  # all corners tell more than those of the box
+                gap = apart(u[one], A[x].reshape(1, -1, 3), B[y].reshape(1, -1, 3), [part[box[one]] for part in moving])
+                need(gap[0] > clear, "pieces come too near")
+        level = left
+
+
+def cross(a: Any, b: Any) -> Any:
+    """Return the cross product of two vectors, without the time that NumPy takes for many."""
+    (x, y, z), (u, v, w) = a.tolist(), b.tolist()
+    return np.array([y * w - z * v, z * u - x * w, x * v - y * u])
+
+
+def framed(parent: Any, child: Any) -> Any:
+    """Return what stands before and behind the motion of a joint, crossed from its parent and from its child."""
+    before, after = np.array(parent), np.linalg.inv(child)
+    return (before, after), (np.linalg.inv(after), np.linalg.inv(before))
+
+
+def boxed(ends: Any) -> tuple[tuple[float, float], ...]:
+    """Return ranges `(drivers, 2)` such that they can be looked up."""
+    return tuple((low, high) for low, high in ends.tolist())
+
+
 def joined(ends: Any, rows: list[Any]) -> tuple[Any, Any, Any]:
-    """Return pieces of a driver's range in a row as one: value and rate of a line from end to end, and how far from it they are."""
-    (value, rate, near), half = (np.array(column) for column in zip(*rows, strict=True)), np.diff(ends)[:, None] / 2
-    at = np.stack([value - rate * half, value + rate * half])
-    middle, slope = (at[0, 0] + at[1, -1]) / 2, (at[1, -1] - at[0, 0]) / (ends[-1] - ends[0])
-    places = np.stack([ends[:-1], ends[1:]]) - (ends[0] + ends[-1]) / 2
-    return middle, slope, (np.abs(at - middle - slope * places[..., None]) + near).max((0, 1))
+    """Return pieces of drivers' ranges as one: value and rates of a linear function over all of them, and how far from it they are.
+
+    Ends are (k, drivers, 2); a row is a value (n,), rates (drivers, n) and a distance (n,).
+    """
+    if len(rows) == 1:
+        return tuple(rows[0])
+    (value, rates, near), signs = (np.array(column) for column in zip(*rows, strict=True)), corners_of(ends.shape[1])
+    steps = signs * (ends[..., 1] - ends[..., 0])[:, None] / 2  # from the middle of each piece to its corners
+    at = value[:, None] + steps @ rates
+    places = ends.mean(2)[:, None] + steps - (ends.min((0, 2)) + ends.max((0, 2))) / 2
+    design = np.concatenate([np.ones((*places.shape[:2], 1)), places], axis=2).reshape(-1, 1 + ends.shape[1])
+    middle, *slopes = np.linalg.lstsq(design, at.reshape(len(design), -1), rcond=None)[0]
+    off = at - middle - places @ np.array(slopes)  # linear on each piece, so that corners tell
+    low, high = (off - near[:, None]).min((0, 1)), (off + near[:, None]).max((0, 1))
+    return middle + (low + high) / 2, np.array(slopes), (high - low) / 2 + ROUNDING**2
+
+
+def corners_of(count: int, signs: tuple[int, ...] = (-1, 1)) -> Any:
+    """Return all combinations of signs, (signs^count, count)."""
+    return np.array(list(itertools.product(signs, repeat=count)), dtype=float)
 
 
 def is_outside(ball: dict[str, Any], box: dict[str, tuple[float, float]]) -> bool:
@@ -140,16 +211,20 @@ def is_outside(ball: dict[str, Any], box: dict[str, tuple[float, float]]) -> boo
 
 
 def motion(u: Any, p: Any, spins: Any, v: Any, along: Any, aside: Any, turned: Any, outer: Any) -> Any:
-    """Bound how far points `(n, 3)` go along a direction while what moves goes `along` together and `aside` each, `(n,)`.
+    """Bound how far points `(k, n, 3)` go along directions `(k, 3)` while what moves goes `along` drivers together and `aside` each.
 
     That is their speed, and half the second derivative: along u the factor i outside j turns what j moves by |u x axis i|.
+    `spins (k, F, 3, 3)`, `v (k, F, 3)`, `along (k, F, drivers)`, the others `(k, F)`; returns `(k, n)`.
     """
-    across, width, turns = spins @ u, np.abs(along) + aside, turned > 0  # spins: p @ spin is axis x p
-    speeds, reach, inside = p @ across.T + v @ u, np.linalg.norm(p @ spins + v[:, None], axis=2), 0.0
-    moved, tilt = np.abs(speeds @ along) + np.abs(speeds) @ aside, np.minimum(np.linalg.norm(across, axis=1) + outer, 1.0) * turned
-    for f, share in reversed(list(enumerate(np.cumsum(tilt) - tilt / 2))):
-        carried = width[f] * (reach[f] + inside * turns[f])
-        moved, inside = moved + carried * share, inside + carried
+    across, width, turns = (spins @ u[:, None, :, None])[..., 0], np.abs(along).sum(2) + aside, turned > 0  # p @ spin is axis x p
+    speeds = p @ across.swapaxes(1, 2) + (v @ u[..., None]).swapaxes(1, 2)
+    reach, inside = np.linalg.norm(p[:, None] @ spins + v[:, :, None], axis=3), np.zeros(p.shape[:2])
+    moved = np.abs(speeds @ along).sum(2) + (np.abs(speeds) @ aside[..., None])[..., 0]
+    tilt = np.minimum(np.linalg.norm(across, axis=2) + outer, 1.0) * turned
+    share = np.cumsum(tilt, axis=1) - tilt / 2
+    for f in reversed(range(tilt.shape[1])):
+        carried = width[:, f, None] * (reach[:, f] + inside * turns[:, f, None])
+        moved, inside = moved + carried * share[:, f, None], inside + carried
     return moved
 
 
@@ -160,10 +235,16 @@ class Checker:
         self.certificate, self.meshes, self.proof = certificate, arrays, arrays[PROOF]
         self.joints, self.drivers = {joint["name"]: joint for joint in certificate["mechanism"]["joints"]}, list(certificate["drivers"])
         self.freedoms = {f["name"]: f for joint in self.joints.values() for f in joint["freedoms"]}
-        self.rest, self.lines = {name: f["rest"] for name, f in self.freedoms.items()}, dict[str, dict[Any, Any]]()
+        self.rest = {name: f["rest"] for name, f in self.freedoms.items()}
+        self.frames = {name: framed(j["parent_frame"], j["child_frame"]) for name, j in self.joints.items()}
+        self.turns = {
+            name: (np.array(f["turn"]), np.array(f["slide"]), any(f["turn"]), any(f["slide"])) for name, f in self.freedoms.items()
+        }
         self.shells = functools.cache(lambda name: shells(self.meshes[name]["vertices"], self.meshes[name]["triangles"]))
+        self.lines, self.rows = dict[Any, Any](), dict[Any, Any]()
         self.linked = [f["name"] for name in certificate["linkage"] for f in self.joints[name]["freedoms"]]
         self.loops = [[*self.way(j["parent"], j["child"]), (j, False)] for j in self.joints.values() if j["loop"]]
+        self.groups = self.grouped(certificate["mechanism"]["couplings"])
 
     def check(self) -> None:
         """Prove every claim; of what calls itself ok, find what is missing."""
@@ -176,16 +257,38 @@ class Checker:
                 self.prove(claim, {key: self.proof[f"{number}.{key}"] for key in COURSE})
             except Refuted as reason:
                 raise Refuted(f"{'/'.join(claim['parts'])} over {', '.join(sorted(claim['vary']))}: {reason}") from None
-        waived = [set(pair["parts"]) for pair in whole["pairs"] if pair["strength"]["kind"] == "waived"]
-        for a, b in itertools.combinations(whole["meshes"] if whole["ok"] else (), 2):
-            moving = {joint["name"]: {f["name"] for f in joint["freedoms"]} for joint, _ in self.way(a, b)}
-            free = [names for joint, names in moving.items() if joint in whole["asked"] and joint not in whole["linkage"]]
-            drivers = [{name} for name in self.drivers if any(names & set(self.linked) for names in moving.values())]
-            both = [one | other for one in free for other in [*free, *drivers] if whole["together"]]
-            for names in filter(None, [] if {a, b} in waived else [*free, *drivers, *both]):
-                found = any(set(claim["parts"]) == {a, b} and names <= set(claim["vary"]) for claim in claims)
-                need(found, f"{a}/{b} over {', '.join(sorted(names))}: no claim, yet the certificate calls itself ok")
-        need(self.drivers or not (whole["ok"] and {*whole["linkage"]} & {*whole["asked"]}), "nothing drives loops, yet it calls itself ok")
+        if whole["ok"]:
+            self.check_complete(claims)
+
+    def check_complete(self, claims: Any) -> None:
+        """Refute a certificate without a claim for each two parts over each joint, and each two joints, by which they can move."""
+        whole, fixed = self.certificate, {name for name, joint in self.joints.items() if not joint["freedoms"]}
+        waived = [{*pair["parts"]} for pair in whole["pairs"] if pair["strength"]["kind"] == "waived"]
+        said = [
+            ({*claim["parts"]}, {*claim["vary"]}, {f["name"] for j in claim["via"] for f in self.joints[j]["freedoms"]}) for claim in claims
+        ]
+        for name in {*whole["asked"]} & {*whole["linkage"]}:
+            (group,) = (group for group in self.groups if {f["name"] for f in self.joints[name]["freedoms"]} & {*group})
+            driving = {self.freedoms[driver]["joint"] for driver in self.drivers if driver in group}
+            need(name in driving or driving <= {*whole["asked"]}, f"{name} moves, but not all that drives it is asked for")
+        for a, b in itertools.combinations(whole["meshes"], 2):
+            if {a, b} in waived or self.way(a, b, fixed, whole=False) is not None:
+                continue
+            way = [joint for joint, _ in self.way(a, b)]
+            own = {f["name"] for joint in way for f in joint["freedoms"]}
+            free = [j for j in way if j["freedoms"] and j["name"] in whole["asked"] and j["name"] not in whole["linkage"]]
+            units = [({f["name"] for f in joint["freedoms"]},) * 2 for joint in free]
+            for group in (group for group in self.groups if own & {*group}):
+                driving = [name for name in self.drivers if name in group]
+                units += [({name}, {*group}) for name in driving if self.freedoms[name]["joint"] in whole["asked"]]
+                is_asked = any(self.freedoms[name]["joint"] in whole["asked"] for name in group)
+                need(driving or not is_asked or self.is_rigid(group), f"nothing drives {', '.join(group)}, yet they may move")
+            mine = [(vary, via) for parts, vary, via in said if parts == {a, b}]
+            for some in [*((one,) for one in units), *(itertools.combinations(units, 2) if whole["together"] else ())]:
+                # what is not on the way of a claim does not move its two parts
+                is_found = any(all(names <= vary or not whose & via for names, whose in some) for vary, via in mine)
+                over = ", ".join(sorted(name for names, _ in some for name in names))
+                need(is_found, f"{a}/{b} over {over}: no claim, yet the certificate calls itself ok")
 
     def check_joints(self, parts: Any, joints: Any, couplings: Any) -> None:
         """Refute what is no mechanism, or is said to move otherwise than its loops and couplings let it."""
@@ -193,13 +296,19 @@ class Checker:
         need((len(self.joints), len(self.freedoms)) == (len(joints), len(freedoms)), "a name stands twice")
         is_tree = sum(not j["loop"] for j in joints) == len(parts) - 1 and all(self.way(parts[0], part) is not None for part in parts)
         need(is_tree, "a loop is said to be none")
+        need(all(f["joint"] == j["name"] for j in joints for f in j["freedoms"]), "a coordinate is said to be another joint's")
         frames = np.array([np.eye(4), *(j[side] for j in joints for side in ("parent_frame", "child_frame"))])
         R, turns, slides = frames[:, :3, :3], *(np.array([f[key] for f in freedoms]).reshape(-1, 3) for key in ("turn", "slide"))
         off = np.abs(R @ R.swapaxes(1, 2) - np.eye(3)).max() + np.abs(frames[:, 3] - [0, 0, 0, 1]).max()
         need(off < ROUNDING and np.linalg.det(R).min() > 0 and np.abs(frames).max() < LARGEST, "a frame is none")
         sizes = np.linalg.norm(np.where(turns.any(1, keepdims=True), turns, slides), axis=1)
         need((np.abs([sizes - 1, *np.cross(turns, slides).T]) < ROUNDING).all(), "a joint neither turns, slides nor screws")
-        need(all(-LARGEST < f["range"][0] <= f["range"][1] < LARGEST and abs(f["rest"]) < LARGEST for f in freedoms), "a range is none")
+        ends = [end for f in freedoms for end in (*f["range"], f["rest"], *f["limits"]) if end is not None]
+        need(all(-LARGEST < end < LARGEST for end in ends) and all(f["range"][0] <= f["range"][1] for f in freedoms), "a range is none")
+        for f in freedoms:
+            open_ends = [end is None for end in f["limits"]]
+            same = all(is_open or end == limit for is_open, end, limit in zip(open_ends, f["range"], f["limits"], strict=True))
+            need(len(open_ends) == 2 and same, f"the range of {f['name']} is not what its limits are")
         for ball in (j for j in joints if j["cone"] is not None):
             turn, slide, ends = (np.array([f[key] for f in ball["freedoms"]]) for key in ("turn", "slide", "range"))
             is_ball = np.array_equal(turn, np.eye(3)) and not slide.any() and (np.abs(ends).max(1) <= [np.pi, np.pi / 2, LARGEST]).all()
@@ -207,8 +316,9 @@ class Checker:
         tied = {joint["name"] for way in self.loops for joint, _ in way}
         tied |= {j["name"] for j in joints for f in j["freedoms"] for c in couplings if f["name"] in (c["a"], c["b"])}
         need(self.certificate["linkage"] == sorted(tied), "what is linked is said to move by itself, or the other way round")
+        self.begin(self.linked, 0)  # which also looks at loops in which nothing moves
 
-    def way(self, a: str, b: str, names: Any = None) -> list[Any]:
+    def way(self, a: str, b: str, names: Any = None, *, whole: bool = True) -> Any:
         """Return the joints from a to b, each with whether it is crossed from parent to child: those named, or of the tree."""
         ways: dict[str, list[Any]] = {a: []}
         for part in (todo := [a]):
@@ -217,114 +327,213 @@ class Checker:
                     if near == part and far not in ways and (not joint["loop"] if names is None else joint["name"] in names):
                         ways[far] = [*ways[part], (joint, forward)]
                         todo.append(far)
-        need(b in ways, f"no joints lead from {a} to {b}")
-        return ways[b]
+        need(b in ways or not whole, f"no joints lead from {a} to {b}")
+        return ways.get(b)
+
+    def grouped(self, couplings: Any) -> list[list[str]]:
+        """Return the coordinates that loops and couplings tie, those that move together in one list."""
+        found: list[set[str]] = []
+        ties = [{joint["name"] for joint, _ in way if joint["freedoms"]} for way in self.loops]
+        for tie in [*ties, *({self.freedoms[c[end]]["joint"] for end in ("a", "b")} for c in couplings)]:
+            apart = [group for group in found if not group & tie]
+            found = [*apart, tie.union(*(group for group in found if group & tie))]
+        return [[name for name in self.linked if self.freedoms[name]["joint"] in group] for group in found if group]
 
     def place(self, way: list[Any], values: dict[str, float]) -> tuple[Any, dict[str, Any]]:
         """Return T_a_b, and of each freedom on the way its axis and its speed at a's origin, as a sees them."""
         T, steps = np.eye(4), {}
         for joint, forward in way:
-            before, after, sign = np.array(joint["parent_frame"]), np.linalg.inv(joint["child_frame"]), 1 if forward else -1
-            T = T @ (before if forward else np.linalg.inv(after))
+            before, after, sign = (*self.frames[joint["name"]][0 if forward else 1], 1 if forward else -1)
+            T = T @ before
             for f in joint["freedoms"][::sign]:
-                axis, angle, motion = sign * T[:3, :3] @ f["turn"], sign * values[f["name"]], np.eye(4)
-                steps[f["name"]] = axis, sign * T[:3, :3] @ f["slide"] + np.cross(T[:3, 3], axis)
-                K = np.cross(f["turn"], np.eye(3)).T
-                motion[:3, :3] += math.sin(angle) * K + (1 - math.cos(angle)) * K @ K  # Rodrigues
-                motion[:3, 3] = np.multiply(f["slide"], angle)
+                turn, slide, is_turn, is_slide = self.turns[f["name"]]
+                axis, angle, motion = sign * T[:3, :3] @ turn, sign * values[f["name"]], np.eye(4)
+                steps[f["name"]] = axis, sign * T[:3, :3] @ slide + cross(T[:3, 3], axis)
+                if is_turn:
+                    K = np.array([[0.0, -turn[2], turn[1]], [turn[2], 0.0, -turn[0]], [-turn[1], turn[0], 0.0]])
+                    motion[:3, :3] += math.sin(angle) * K + (1 - math.cos(angle)) * K @ K  # Rodrigues
+                if is_slide:
+                    motion[:3, 3] = slide * angle
                 T = T @ motion
-            T = T @ (after if forward else np.linalg.inv(before))
+            T = T @ after
         return T, steps
 
     def closure(self, names: list[str], values: Any, about: Any) -> tuple[Any, Any, Any]:
         """Return residuals of loops and couplings, their Jacobian, and shares s: |r''| <= (s · change)², and the third is below its cube.
 
-        Lengths are in levers: no turn carries what is round a loop by more than one while no slide is further from 0 than 1 more
-        than twice what it is `about`.
+        Those in which none of the names takes part are left out. Lengths are in levers: no turn carries what is round a loop by more
+        than one while no slide is further from 0 than 1 more than twice what it is `about`.
         """
         known, r, J, shares = {**self.rest, **dict(zip(names, values.tolist(), strict=True))}, [], [], []
-        size = {**self.rest, **dict(zip(names, about.tolist(), strict=True))}
+        size, mine = {**self.rest, **dict(zip(names, about.tolist(), strict=True))}, {*names}
         for way in self.loops:
+            moving = {f["name"] for joint, _ in way for f in joint["freedoms"]}
+            if moving and not moving & mine:
+                continue
             (T, steps), ends = self.place(way, known), []
             need(np.abs(T[:3, :3] - np.eye(3)).max() < HALF, "a loop is not closed")  # half a turn leaves no residual either
             for joint, forward in way:
-                ends += [np.array(joint[f"{side}_frame"])[:3, 3] for side in (("parent", "child") if forward else ("child", "parent"))]
+                ends += [joint[f"{side}_frame"] for side in (("parent", "child") if forward else ("child", "parent"))]
+            ends = [[row[3] for row in frame[:3]] for frame in ends]
             lever: Any = sum(math.dist(far, near) for far, near in zip(ends[1::2], [*ends[2::2], ends[0]], strict=True))
             lever += sum(2 * math.hypot(*self.freedoms[name]["slide"]) * (1 + abs(size[name])) for name in steps)
-            lever, there = lever or 1.0, T[:3, :3] @ ends[0] + T[:3, 3]
-            columns = {name: np.concatenate([(v + np.cross(w, there)) / lever, w]) for name, (w, v) in steps.items()}
-            r += [*(there - ends[0]) / lever, *((T[[2, 0, 1], [1, 2, 0]] - T[[1, 2, 0], [2, 0, 1]]) / 2)]
-            J += np.transpose([columns.get(name, np.zeros(6)) for name in names]).tolist()
-            shares += [[(name in steps) * (1.0 if any(self.freedoms[name]["turn"]) else 1 / lever) for name in names]] * 6
+            lever, start = lever or 1.0, np.array(ends[0])
+            there = T[:3, :3] @ start + T[:3, 3]
+            r += [*(there - start) / lever, *((T[[2, 0, 1], [1, 2, 0]] - T[[1, 2, 0], [2, 0, 1]]) / 2)]
+            columns, share = np.zeros((6, len(names))), np.zeros(len(names))
+            for at, name in enumerate(names):
+                if name in steps:
+                    w, v = steps[name]
+                    columns[:3, at], columns[3:, at] = (v + cross(w, there)) / lever, w
+                    share[at] = 1.0 if self.turns[name][2] else 1 / lever
+            J += columns.tolist()
+            shares += [share] * 6
         for c in self.certificate["mechanism"]["couplings"]:
-            r.append(known[c["b"]] - c["ratio"] * known[c["a"]] - c["offset"])
-            J.append([float(name == c["b"]) - c["ratio"] * (name == c["a"]) for name in names])
-            shares.append([0.0] * len(names))
-        return np.array(r), np.array(J), np.array(shares)
+            if {c["a"], c["b"]} & mine:
+                r.append(known[c["b"]] - c["ratio"] * known[c["a"]] - c["offset"])
+                J.append([float(name == c["b"]) - c["ratio"] * (name == c["a"]) for name in names])
+                shares.append(np.zeros(len(names)))
+        return np.array(r), np.array(J).reshape(len(r), len(names)), np.array(shares).reshape(len(r), len(names))
 
     def piece(self, names: list[str], ends: Any, guess: Any, wide: Any) -> tuple[Any, Any]:
-        """Return rates, and distances from the line that they draw within which is a solution; within `wide` there is no other one.
+        """Return rates `(drivers, n)`, and distances from the line that they draw within which is a solution; within `wide` is no other one.
 
-        As soon as x - A r(x) takes what is within `wide` to what is nearer, it also shrinks distances: Brouwer and Banach. On the line
-        A r is near the parabola through three of its points, which is within 5/4 of them.
+        `ends (drivers, 2)` of the first of the names, which drive. As soon as x - A r(x) takes what is within `wide` to what is nearer,
+        it also shrinks distances: Brouwer and Banach. Along each driver A r and A J are within 1/15 of their third derivative of the
+        parabola through three points, which is within 5/4 of them; so over several drivers of what is drawn through the grid of these.
         """
+        count, half = len(ends), (ends[:, 1] - ends[:, 0]) / 2
         r, J, share = self.closure(names, guess, guess)
-        A, half = np.linalg.pinv(J[:, 1:], rcond=1e-7), (ends[1] - ends[0]) / 2
-        rate, B = np.array([1.0, *(-A @ J[:, 0])]), np.abs(A)
-        need(guess[0] == ends.mean() and np.abs([r, J @ rate]).max() < ROUNDING, f"{names[0]} cannot be at {guess[0]:.9g}, or not alone")
-        far, near = np.abs(rate) * half, wide
-        off = np.max([np.abs(A @ self.closure(names, guess + sign * half * rate, guess)[0]) for sign in (-1, 0, 1)], axis=0)
-        off = 1.25 * off + B @ (share @ far) ** 3 / 15 + ROUNDING
-        exact = (np.abs(A @ J[:, 1:] - np.eye(len(names) - 1)).sum(1) < ROUNDING).all()
-        holds = exact and (far + wide <= 1 + np.abs(guess)).all() and (share @ (far + wide) < 1).all()
+        A, rates = np.linalg.pinv(J[:, count:], rcond=1e-7), np.eye(count, len(names))
+        rates[:, count:], B = -(A @ J[:, :count]).T, np.abs(A)
+        fits = np.array_equal(guess[:count], ends.mean(1)) and np.abs([*r, *(J @ rates.T).ravel()]).max(initial=0.0) < (
+            ROUNDING if count else REST
+        )
+        need(fits, f"{', '.join(names[:count])} cannot be at {guess[:count].round(9).tolist()}, or not alone")
+        far, near, off, bend = half @ np.abs(rates), wide, 0.0, 0.0
+        for signs in corners_of(count, (-1, 0, 1)):
+            there, slope, _ = self.closure(names, guess + (signs * half) @ rates, guess)
+            off, bend = np.maximum(off, np.abs(A @ there)), np.maximum(bend, np.abs(A @ (slope - J)[:, count:]))
+        off, bend = off * 1.25**count + ROUNDING, bend * 1.25**count
+        for k in range(count):
+            third = (share @ (np.abs(rates[k]) * half[k])) ** 3 * 1.25**k / 15
+            off, bend = off + B @ third, bend + B @ (third[:, None] * share[:, count:])
+        exact = (np.abs(A @ J[:, count:] - np.eye(len(names) - count)).sum(1) < ROUNDING).all()
+        bends = share.any(0)  # what no loop carries is in couplings alone, which are exact
+        holds = exact and (far + wide <= 1 + np.abs(guess))[bends].all() and (share @ (far + wide) < 1).all()
         for _ in range(4):
-            closer = np.append(0.0, off + B @ ((share @ (far + near)) * (share @ near)))
-            need(holds and (closer <= near).all(), f"{names[0]} cannot be followed from {ends[0]:.9g} to {ends[1]:.9g}")
+            closer = np.append(np.zeros(count), off + bend @ near[count:] + B @ (share @ near) ** 2)
+            need(holds and (closer <= near).all(), f"{', '.join(names[:count])} cannot be followed over {np.round(ends, 9).tolist()}")
             near = closer
-        return rate, near
+        return rates, near
 
-    def followers(self, driver: str) -> list[str]:
-        """Return a driver and all that is linked, but for other drivers, which stand."""
-        return [driver, *(n for n in self.linked if n != driver and n not in self.drivers)]
+    def followers(self, drivers: Any) -> list[str]:
+        """Return drivers of one group and all that is linked with them, but for its other drivers, which stand."""
+        (group,) = (group for group in self.groups if {*drivers} <= {*group})
+        return [*drivers, *(name for name in group if name not in self.drivers)]
+
+    def is_rigid(self, group: list[str]) -> bool:
+        """Return whether coordinates that nothing drives cannot move: near rest, there is no other solution."""
+        rest, wide = np.array([self.rest[name] for name in group]), np.full(len(group), STIFF)
+        try:
+            self.piece(group, np.empty((0, 2)), rest, wide)
+        except Refuted:
+            return False
+        return True
 
     def join(self, found: list[Any], names: list[str], ends: Any, guess: Any, wide: Any, other: int) -> None:
-        """Add a piece of a driver's range to others if it holds the solution of one that is beside or around it, or at rest."""
-        rate, near = self.piece(names, ends, guess, wide)
-        span, there, slope, close, apart = found[other]
-        at = np.clip(ends.mean(), *span)
-        gap = np.abs(guess + rate * (at - ends.mean()) - there - slope * (at - span.mean()))
+        """Add a piece of drivers' ranges to others if it holds the solution of one that is beside or around it, or at rest."""
+        rates, near = self.piece(names, ends, guess, wide)
+        span, there, slopes, close, apart = found[other]
+        at = np.clip(ends.mean(1), *span.T)
+        gap = np.abs(guess + (at - ends.mean(1)) @ rates - there - (at - span.mean(1)) @ slopes)
         same = (gap + near <= apart).all() or (gap + close <= wide).all()  # what one holds is the only solution that the other has
-        need(same and ends[0] <= at <= ends[1], f"{names[0]} leaves its branch at {at:.9g}")
-        need(not ends[0] < self.rest[names[0]] < ends[1], f"{names[0]} is on both sides of rest")  # which may be a dead point
-        found.append((ends, guess, rate, near, wide))
+        need(
+            same and (ends[:, 0] <= at).all() and (at <= ends[:, 1]).all(),
+            f"{', '.join(names[: len(ends)])} leaves its branch at {at.round(9).tolist()}",
+        )
+        for name, (low, high) in zip(names[: len(ends)], ends, strict=True):
+            need(not low < self.rest[name] < high, f"{name} is on both sides of rest")  # which may be a dead point
+        found.append((ends, guess, rates, near, wide))
 
-    def begin(self, names: list[str]) -> list[Any]:
-        """Return the rest pose as a piece, about which a solution is no further than `REST`."""
-        at, still = np.array([self.rest[name] for name in names]), np.zeros(len(names))
-        need(np.abs(self.closure(names, at, at)[0]).max() < REST, "a loop or coupling is open at rest")
-        return [(at[[0, 0]], at, still, REST * (np.arange(len(names)) > 0), still)]
+    def begin(self, names: list[str], count: int) -> list[Any]:
+        """Return the rest pose as a piece, about which a solution is no further than `REST`; the first of the names drive."""
+        at, still = np.array([self.rest[name] for name in names]), np.zeros((count, len(names)))
+        need(np.abs(self.closure(names, at, at)[0]).max(initial=0.0) < REST, "a loop or coupling is open at rest")
+        return [(np.stack([at[:count]] * 2, axis=1), at, still, REST * (np.arange(len(names)) >= count), np.zeros(len(names)))]
 
-    def line(self, driver: str) -> dict[float, dict[float, Any]]:
-        """Return pieces of a driver's range, by where they begin and end: values, rates, distances; all on the branch of the rest pose."""
-        if driver not in self.lines:
-            names = self.followers(driver)
-            found = self.begin(names)
-            for row in zip(*(self.proof[f"{driver}.{key}"] for key in ("ends", "values", "wide", "other")), strict=True):
+    def line(self, drivers: tuple[str, ...]) -> tuple[Any, Any]:
+        """Return pieces of drivers' ranges, all on the branch of the rest pose, and how ranges are parted into them; by their ends."""
+        if drivers not in self.lines:
+            names, key = self.followers(drivers), "+".join(drivers)
+            found = self.begin(names, len(drivers))
+            ends, *others = (self.proof[f"{key}.{what}"] for what in ("ends", "values", "wide", "other"))
+            for row in zip(ends.reshape(-1, len(drivers), 2), *others, strict=True):
                 self.join(found, names, *row)
-            self.lines[driver] = {}
-            for (low, high), *row, _ in found[1:]:
-                self.lines[driver].setdefault(low, {})[high] = row
-        return self.lines[driver]
+            pieces = {boxed(ends): row for ends, *row in found[1:]}
+            boxes, cuts, places = (self.proof.get(f"{key}.{what}", np.empty(0)) for what in ("boxes", "cuts", "at"))
+            parted = zip(map(boxed, boxes.reshape(-1, len(drivers), 2)), zip(cuts.tolist(), places.tolist(), strict=True), strict=True)
+            self.lines[drivers] = pieces, dict(parted)
+        return self.lines[drivers]
 
-    def stretch(self, driver: str, low: float, high: float) -> dict[str, Any]:
-        """Return values, rates and distances by coordinate, over a stretch of a driver's range: of all pieces from one end to the other."""
-        stops, rows = [low], []
-        while stops[-1] < high:
-            ends = [end for end in self.line(driver).get(stops[-1], {}) if stops[-1] < end <= high]
-            need(ends, f"{driver} is not followed from {stops[-1]:.9g} to {high:.9g}")
-            rows.append(self.line(driver)[stops[-1]][max(ends)])
-            stops.append(max(ends))
-        return dict(zip(self.followers(driver), zip(*joined(np.array(stops), rows), strict=True), strict=True))
+    def stretch(self, drivers: tuple[str, ...], box: Any) -> dict[str, Any]:
+        """Return value, rates and distance by coordinate, over ranges of drivers: of all pieces into which these are parted."""
+        pieces, parted = self.line(drivers)
+        if (drivers, box) not in self.rows:
+            todo, found = [box], []
+            while todo:
+                one = todo.pop()
+                need(one in pieces or one in parted, f"{', '.join(drivers)} not followed over {np.round(box, 9).tolist()}")
+                if one in pieces:
+                    found.append(one)
+                    continue
+                cut, place = parted[one]
+                need(one[cut][0] < place < one[cut][1], "a part of the range is left out")
+                todo += [(*one[:cut], half, *one[cut + 1 :]) for half in ((one[cut][0], place), (place, one[cut][1]))]
+            middle, slopes, near = joined(np.array(found), [pieces[one][:3] for one in found])
+            self.rows[drivers, box] = dict(zip(self.followers(drivers), zip(middle, slopes.T, near, strict=True), strict=True))
+        return self.rows[drivers, box]
+
+    def check_range(self, name: str, low: float, high: float, *, is_driver: bool) -> None:
+        """Refute a range that is not all to which a coordinate comes: of an endless one, a turn, or what its followers repeat."""
+        (least, most), (_, _, is_turn, is_slide) = self.freedoms[name]["limits"], self.turns[name]
+        is_whole = (least is None or low < least + 1e-6) and (most is None or high > most - 1e-6)
+        need(is_whole, f"not over the whole range of {name}")
+        if least is None or most is None:
+            need(is_turn and not is_slide, f"{name} slides without limits")
+            need(high - low > 2 * math.pi - ROUNDING, f"not over a whole turn of {name}")
+            need(not is_driver or self.is_repeated(name, low, high), f"what follows {name} does not come back over its range")
+
+    def is_repeated(self, driver: str, low: float, high: float) -> bool:
+        """Return whether all that follows a driver is at the end of a range what it is at its beginning, but for whole turns.
+
+        Loops are the same after whole turns, couplings where these fit their ratio; so it moves on as it did before. Other drivers
+        stand here: where they move, what follows stays on the branch on which it is while they stand.
+        """
+        names, (pieces, _) = self.followers((driver,)), self.line((driver,))
+        first = [(box[0], row) for box, row in pieces.items() if box[0][0] == low]
+        last = [(box[0], row) for box, row in pieces.items() if box[0][1] == high]
+        need(first and last, f"{driver} is not followed from {low:.9g} to {high:.9g}")
+        low_x, high_x = (self.settled(names, *one, at) for one, at in ((first[0], low), (last[0], high)))
+        shift = high_x - low_x
+        turns = np.round(shift / (2 * math.pi)) * [self.turns[name][2] and not self.turns[name][3] for name in names]
+        known = dict(zip(names, turns.tolist(), strict=True))
+        ties = [(known.get(c["a"], 0.0) * c["ratio"], known.get(c["b"], 0.0)) for c in self.certificate["mechanism"]["couplings"]]
+        fits = all(abs(one - other) <= FLOAT * max(1.0, abs(other)) for one, other in ties)
+        return bool(fits and (np.abs(shift - 2 * math.pi * turns) < SETTLED).all())
+
+    def settled(self, names: list[str], ends: Any, row: Any, at: float) -> Any:
+        """Return the solution at an end of a piece of one driver's range, to within `SETTLED`: the only one within its tube there."""
+        value, rates, _, wide = row
+        there = value + rates[0] * (at - sum(ends) / 2)
+        x = there.copy()
+        for _ in range(5):
+            r, J, _ = self.closure(names, x, x)
+            x[1:] -= np.linalg.pinv(J[:, 1:], rcond=1e-7) @ r
+        r = self.closure(names, x, x)[0]
+        is_held = np.abs(r).max(initial=0.0) < ROUNDING and (np.abs(x - there)[1:] + SETTLED < wide[1:]).all()
+        need(is_held, f"{names[0]} cannot be at {at:.9g}")
+        return x
 
     def said(self, parts: set[str]) -> float:
         """Return how deep two parts are said to overlap at most; a waiver says nothing of that."""
@@ -343,69 +552,67 @@ class Checker:
         need(min(least) >= 0 and claim["clear_mm"] >= sum(least) - ROUNDING, "it keeps less than the deflection of the meshes")
         need(claim["shrink_mm"] <= self.said({a, b}) + ROUNDING or not whole["ok"], "it allows more overlap than it says")
         need(here.shape == V.shape and np.linalg.norm(here - V, axis=1).max() <= claim["shrink_mm"] + ROUNDING, "it moves vertices further")
+        lines = self.driven(way, vary)
         for name, (low, high) in vary.items():
-            lower, upper = self.freedoms[name]["range"]
-            need((low < lower + 1e-6 and high > upper - 1e-6) or not whole["ok"], f"not over the whole range of {name}")
             need(low <= self.rest[name] + ROUNDING and self.rest[name] <= high + ROUNDING, "not about the rest pose")
+            if whole["ok"]:
+                self.check_range(name, low, high, is_driver=any(name in drivers for drivers in lines))
         beside = W @ T[:3, :3].T + T[:3, 3]  # if none is inside the other here, surfaces that never meet keep it so
         for points, corners in ((here[self.shells(a)], beside[G]), (beside[self.shells(b)], here[F])):
             need(not is_inside(points, corners), "one is inside the other at rest")
-        boxes, halves = self.boxes(way, vary, proof)
+        boxes, moving, halves = self.boxes(way, vary, lines, proof)
         A, B, (centre, axis) = ordered(here[F], order_a), ordered(W[G], order_b), proof["about"]
         both = A - centre, B @ T[:3, :3].T + T[:3, 3] - centre
-        near, far = zip(*(radii(local @ plane(axis)) for local in both), strict=True)
         turns = [joint for joint, _ in way if {f["name"] for f in joint["freedoms"]} & {*vary, *self.linked}]
         cone = turns[0]["cone"] if len(turns) == 1 and all(f["name"] in vary and not f["rest"] for f in turns[0]["freedoms"]) else None
         angles = [leans(local, steps[turns[0]["freedoms"][-1]["name"]][0]) for local in both if cone]
+        near, far = zip(*(radii(local @ plane(axis)) for local in both), strict=True)
         spans = [list(itertools.pairwise(proof[key].tolist())) for key in ("parts_a", "parts_b")]
         need([(own[0][0], own[-1][1]) for own in spans] == [(0, len(A)), (0, len(B))], "a triangle is left out")
-        known = dict[Any, Any](), dict[Any, Any]()
-        rows, codes = deque[Any](itertools.product(*spans, [0])), iter(proof["codes"].tolist())
-        while rows:
-            row, code = rows.popleft(), next(codes)
-            if CUT <= code < 0:
-                k, (start, end) = code - CUT, row[min(code - CUT, 1)]
-                parts = halves[row[2]] if k == 2 else [(start, (start + end) // 2), ((start + end) // 2, end)]
-                rows.extend((*row[:k], part, *row[k + 1 :]) for part in parts)
-                continue
-            x, y, (box, R, t, is_steady, *moving) = slice(*row[0]), slice(*row[1]), boxes[row[2]]
-            if code == OUTSIDE:
-                gap = math.inf if any(is_outside(joint, box) for joint, _ in way if joint["cone"] is not None) else 0.0
-            elif code == ROUND:
-                gap = max(near[0][x].min() - far[1][y].max(), near[1][y].min() - far[0][x].max()) if is_steady else 0.0
-            elif code == LEAN:  # a swing changes angles by no more than its own, the twist by none
-                need(is_steady and angles, "only a ball keeps angles")
-                over = angles[0][0][x].min() - angles[1][1][y], angles[1][0][y] - angles[0][1][x].max()
-                gap = max((near[1][y] * np.sin(np.clip(side - cone, 0, np.pi / 2))).min() for side in over)
-            else:
-                u = (proof["along"][code] if code < proof["of_a"] else R @ proof["along"][code]) / math.hypot(*proof["along"][code])
-                for p, q in ((hull(A, row[0], known[0]), hull(B, row[1], known[1])), (A[x].reshape(-1, 3), B[y].reshape(-1, 3))):
-                    there = q @ R.T + t
-                    gap = (there @ u - motion(u, there, *moving)).min() - (p @ u).max()
-                    if gap > claim["clear_mm"]:  # else all corners tell more than those of the box
-                        break
-            need(gap > claim["clear_mm"], "pieces come too near")
 
-    def boxes(self, way: list[Any], vary: dict[str, Any], proof: dict[str, Any]) -> tuple[list[Any], dict[int, Any]]:
-        """Cut a range into boxes; of each return the pose in its middle, and how far what goes together."""
-        tied = {f["name"] for joint, _ in way for f in joint["freedoms"]} & set(self.linked) - set(vary)
-        drivers, names, todo, found, halves = [n for n in vary if tied and n in self.drivers], list(vary), [vary], [], {}
-        (centre, axis), across = proof["about"], plane(proof["about"][1])
-        need(len(drivers) <= 1, "two drivers at once")
+        def kept(code: int, x: slice, y: slice, number: int) -> Any:
+            box, is_steady = boxes[number]
+            if code == OUTSIDE:
+                return math.inf if any(is_outside(joint, box) for joint, _ in way if joint["cone"] is not None) else 0.0
+            need(is_steady and (code == ROUND or (code == LEAN and angles)), "what is compared is not kept")
+            if code == ROUND:
+                return max(near[0][x].min() - far[1][y].max(), near[1][y].min() - far[0][x].max())
+            over = angles[0][0][x].min() - angles[1][1][y], angles[1][0][y] - angles[0][1][x].max()  # a swing changes angles by no more
+            return max((near[1][y] * np.sin(np.clip(side - cone, 0, np.pi / 2))).min() for side in over)  # than its own, a twist by none
+
+        along = proof["along"] / np.linalg.norm(proof["along"], axis=1, keepdims=True), int(proof["of_a"])
+        follow(itertools.product(*spans, [0]), proof["codes"].tolist(), along, A, B, (moving, halves, kept), claim["clear_mm"])
+
+    def driven(self, way: list[Any], vary: Any) -> list[tuple[str, ...]]:
+        """Return the drivers of each group of which something on a way follows: what does not move by itself."""
+        here = {f["name"] for joint, _ in way for f in joint["freedoms"]} - set(vary)
+        found = [tuple(name for name in self.drivers if name in group and name in vary) for group in self.groups if here & {*group}]
+        return [drivers for drivers in found if drivers]
+
+    def boxes(self, way: list[Any], vary: dict[str, Any], lines: Any, proof: dict[str, Any]) -> tuple[list[Any], list[Any], dict[int, Any]]:
+        """Cut a range into boxes; of each return whether points keep to an axis; of all the pose in the middle, and how far what goes."""
+        names, todo, found, steady, halves = list(vary), [{name: (low, high) for name, (low, high) in vary.items()}], [], [], {}
+        (centre, axis), across, count = proof["about"], plane(proof["about"][1]), sum(map(len, lines))
         for number, (box, cut, place) in enumerate(zip(todo, proof["cuts"].tolist(), proof["at"].tolist(), strict=True)):
             if cut >= 0:
                 (low, high), name = box[names[cut]], names[cut]
                 need(low < place < high, "a part of the range is left out")
                 halves[number] = len(todo), len(todo) + 1
                 todo += [{**box, name: (low, place)}, {**box, name: (place, high)}]  # they become more
-            values = {name: (sum(ends) / 2, 0.0, (ends[1] - ends[0]) / 2) for name, ends in box.items()}
-            for driver in drivers:
-                line, half = self.stretch(driver, *box[driver]), values[driver][2]
-                values |= {n: (value, rate * half, near) for n, (value, rate, near) in line.items() if n == driver or n not in vary}
+            values, first = {name: (sum(ends) / 2, np.zeros(count), (ends[1] - ends[0]) / 2) for name, ends in box.items()}, 0
+            for drivers in lines:
+                span = np.array([box[name] for name in drivers])
+                for n, (value, rates, near) in self.stretch(drivers, boxed(span)).items():
+                    if n in drivers or n not in vary:
+                        along = np.zeros(count)
+                        along[first : first + len(drivers)] = rates * (span[:, 1] - span[:, 0]) / 2
+                        values[n] = value, along, near
+                first += len(drivers)
             T, steps = self.place(way, {**self.rest, **{name: value for name, (value, *_) in values.items()}})
             w, v, along, aside = map(np.array, zip(*((*steps[name], *values[name][1:]) for name in steps if name in values), strict=True))
-            turned, loose = (np.abs(along) + aside) * w.any(1), np.abs(np.cross(w, w[w.any(1).argmax()])).max() > ALIGNED
+            turned, loose = (np.abs(along).sum(1) + aside) * w.any(1), np.abs(np.cross(w, w[w.any(1).argmax()])).max() > ALIGNED
             off = [(v + np.cross(w, centre)) @ across, np.cross(w, axis), across @ across - across]  # none about one axis or point
-            is_steady, outer = max(np.abs(part).max() for part in off) < ROUNDING, loose * (np.cumsum(turned) - turned)
-            found.append((box, T[:3, :3], T[:3, 3], is_steady, np.cross(w[:, None], np.eye(3)), v, along, aside, turned, outer))
-        return found, halves
+            steady.append((box, max(np.abs(part).max() for part in off) < ROUNDING))
+            outer = loose * (np.cumsum(turned) - turned)
+            found.append((T[:3, :3], T[:3, 3], np.cross(w[:, None], np.eye(3)), v, along, aside, turned, outer))
+        return steady, [np.array(column) for column in zip(*found, strict=True)], halves

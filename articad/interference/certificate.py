@@ -25,8 +25,8 @@ from articad.geometry.mesh import TriMesh
 from articad.interference.claims import Claim
 from articad.interference.clearing import MOST_PAIRS
 from articad.interference.cover import cover_line
-from articad.interference.linkage import LOOKS, LinkageProver, Way
-from articad.interference.motion import ENDLESS_SLIDE_MM, Route, Values, freedoms, proven_freedoms, routes
+from articad.interference.linkage import LOOKS, LinkageProver, Way, driven_range
+from articad.interference.motion import Route, Values, freedoms, proven_freedoms, routes, slides_endlessly
 from articad.interference.overlap import NOTHING, Overlap, overlap
 from articad.interference.proof import Proof, Prover, beyond
 from articad.interference.relations import FitLike, WaiverLike
@@ -37,13 +37,15 @@ from articad.interference.verdict import judge
 from articad.interference.work import PIECE, Budget
 from articad.kinematics.joints import Joint, JointType
 from articad.kinematics.mechanism import Mechanism
-from articad.verify_certificate import PROOF
+from articad.verify_certificate import PROOF, Checker, Refuted
 
 DEFAULT_EPSILON_MM = 1e-3
 DEFAULT_BUDGET_S = 600.0
-FIRST_PAIRS = 40_000  # of pieces, spent on each pair along a driver before those that need more hold up the others
+FIRST_PAIRS = 40_000  # of pieces, spent on each pair along drivers before those that need more hold up the others
 WIDE_PAIRS = 60_000  # of pieces, spent on all joints at once before they are taken one by one
 TIED_PAIRS = 8_000  # of pieces, spent on whatever a linkage does before its drivers are followed: that is cheap
+FOLLOWED_PAIRS = 400_000  # of pieces, spent on whatever a linkage does that cannot be followed
+MOST_TOGETHER = 2  # drivers of one group followed all at once before they are taken two at a time
 _END_SLACK = 1e-6  # rad or mm: by which a driver may end before its limit
 _ENTRY_MM = 1e-6  # distance at which meshes are said to touch
 
@@ -123,7 +125,7 @@ class Certificate:
             "work": self.work,
             "asked": list(self.asked),
             "linkage": sorted(self.constrained),
-            "drivers": driver_names(self.mechanism, self.constrained) if self.constrained & set(self.asked) else [],
+            "drivers": driver_names(self.mechanism, self.constrained),
             "together": self.together,
             "meshes": {name: {"sha256": mesh.digest, "deflection_mm": self.deflections[name]} for name, mesh in self.meshes.items()},
             "mechanism": mechanism_json(self.mechanism),
@@ -210,13 +212,18 @@ class _Certifying:
     later: list[LinkageProver] = field(default_factory=list)
     left: dict[tuple[str, ...], list[tuple[str, str]]] = field(default_factory=dict)
     _constrained: frozenset[str] = frozenset()
-    _ways: dict[int, Way | str] = field(default_factory=dict)
+    _ways: dict[tuple[str, ...], Way | str] = field(default_factory=dict)
+    _reasons: dict[str, tuple[str, str]] = field(default_factory=dict)
+    _checker: Checker = field(init=False)
+    _groups: list[list[str]] = field(init=False)  # drivers of each group
 
     def run(self) -> Certificate:
         self._constrained = constrained_joints(self.mechanism)
-        driving = {driver.joint for driver in self.mechanism.drivers} & self._constrained
-        if self.asked is not None and set(self.asked) & self._constrained - driving:  # what follows moves with what drives it
-            self.asked = [*self.asked, *sorted(driving - set(self.asked))]
+        names = driver_names(self.mechanism, self._constrained)
+        document = {"mechanism": mechanism_json(self.mechanism), "linkage": sorted(self._constrained), "drivers": names}
+        self._checker = Checker(document, {PROOF: {}})
+        self._groups = [[name for name in names if name in group] for group in self._checker.groups]
+        self.asked = self._with_drivers()
         solid = [name for name in self.mechanism.parts if name in self.scene.bodies]
         for at, a in enumerate(solid):
             found = routes(self.mechanism.joints, a)
@@ -236,7 +243,7 @@ class _Certifying:
             {name: body.mesh for name, body in self.scene.bodies.items()},
             self.scene.deflections,
             self.mechanism,
-            tuple(name for name in self._moving() if driving or name not in self._constrained),
+            tuple(self._moving()),
             self.together,
             self._constrained,
             self.budget.queries,
@@ -244,6 +251,17 @@ class _Certifying:
             self.budget.elapsed,
             {key: array for way in self._ways.values() if not isinstance(way, str) for key, array in way.arrays().items()},
         )
+
+    def _with_drivers(self) -> Sequence[str] | None:
+        """Return what is asked for, and what drives those of it that only follow."""
+        if self.asked is None:
+            return None
+        asked = list(self.asked)
+        for group, drivers in zip(self._checker.groups, self._groups, strict=True):
+            driving = {self._checker.freedoms[name]["joint"] for name in drivers}
+            if {self._checker.freedoms[name]["joint"] for name in group} & set(asked) - driving:
+                asked += sorted(driving - set(asked))
+        return asked
 
     def _moving(self) -> list[str]:
         return [joint.name for joint in self.mechanism.joints if freedoms(joint) and self._is_asked(joint.name)]
@@ -255,30 +273,68 @@ class _Certifying:
         moving = [joint.name for joint in route.joints if freedoms(joint)]
         tied = [name for name in moving if name in self._constrained]
         wanted = [name for name in moving if name not in tied and self._is_asked(name)]
-        drivers = [
-            k for k, driver in enumerate(self.mechanism.drivers) if driver.joint in self._constrained and self._is_asked(driver.joint)
-        ]
-        if not wanted and not (tied and drivers):
-            return
+        drivers = [name for at in self._groups_of(tied) for name in self._groups[at] if self._is_asked(self._joint_of(name))]
         a, b = route.parts[0], route.parts[-1]
-        for name in [name for name in wanted if _is_endless_slide(self._joint(name))]:
+        if not self._is_driven((a, b), tied) or (not wanted and not drivers):
+            return
+        for name in [name for name in wanted if slides_endlessly(self._joint(name))]:
             self._refuse((a, b), (name,), "it slides without limits")
             wanted.remove(name)
         if a in self.scene.broken or b in self.scene.broken:
-            over = (*wanted, *(self.mechanism.drivers[k].joint for k in drivers if tied))
+            over = (*wanted, *map(self._joint_of, drivers))
             self._refuse((a, b), over, "; ".join(self.scene.broken[name] for name in (a, b) if name in self.scene.broken))
             return
-        if tied and drivers:
-            bounded = not any(_is_endless_slide(self._joint(name)) for name in tied)
-            names = driver_names(self.mechanism, self._constrained)
-            if bounded and self._prove(route, (*tied, *wanted), most=TIED_PAIRS, tentative=True, also=names):
-                return  # whatever the linkage does
-            for driver in drivers:
-                self._follow(route, tied, wanted, driver)
+        if drivers:
+            self._linked(route, tied, wanted, drivers)
+            return
         if len(wanted) > 1 and self._prove(route, tuple(wanted), most=WIDE_PAIRS, tentative=True):
             return
         for sets in self._smaller(wanted):
             self._prove(route, sets)
+
+    def _joint_of(self, coordinate: str) -> str:
+        return str(self._checker.freedoms[coordinate]["joint"])
+
+    def _groups_of(self, tied: Sequence[str]) -> list[int]:
+        """Return the places of the groups of joints of loops and couplings."""
+        return [at for at, group in enumerate(self._checker.groups) if {self._joint_of(name) for name in group} & set(tied)]
+
+    def _is_driven(self, parts: tuple[str, str], tied: Sequence[str]) -> bool:
+        """Return whether each group between two parts has a driver, or cannot move; refuse the pair else."""
+        for at in self._groups_of(tied):
+            group = self._checker.groups[at]
+            is_asked = any(self._is_asked(self._joint_of(name)) for name in group)
+            if is_asked and not self._groups[at] and not self._checker.is_rigid(group):
+                self._refuse(parts, tuple(tied), f"nothing drives {', '.join(group)}, and it is not proven that they cannot move")
+                return False
+        return True
+
+    def _linked(self, route: Route, tied: Sequence[str], wanted: Sequence[str], drivers: Sequence[str]) -> None:
+        """Prove one pair over loops and couplings between them: whatever they do, or along their drivers, with what moves by itself."""
+        parts = route.parts[0], route.parts[-1]
+        ways = {name: self._way((name,)) for name in drivers}
+        bad = {name: way for name, way in ways.items() if isinstance(way, str)}
+        if not any(slides_endlessly(self._joint(name)) for name in tied):
+            also = driver_names(self.mechanism, self._constrained)
+            most = FOLLOWED_PAIRS if bad else TIED_PAIRS
+            if self._prove(route, (*tied, *wanted), most=most, tentative=True, also=also):
+                return  # whatever the linkage does
+        for name, reason in bad.items():
+            self._refuse(parts, (self._joint_of(name),), f"the linkage cannot be followed: {reason}")
+        followed = [name for name in drivers if name not in bad]
+        units = [*followed, *wanted]
+        if self.together and len(units) > 1 and self._along(route, followed, wanted, tentative=True):
+            return
+        for name in followed:
+            self._along(route, [name], [])
+        for name in wanted:
+            self._prove(route, (name,))
+        for one, other in combinations(units, 2) if self.together else ():
+            driving = [name for name in (one, other) if name in followed]
+            if driving:
+                self._along(route, driving, [name for name in (one, other) if name not in driving])
+            else:
+                self._prove(route, (one, other))
 
     def _smaller(self, wanted: Sequence[str]) -> Iterator[tuple[str, ...]]:
         for name in wanted:
@@ -319,24 +375,26 @@ class _Certifying:
         contact = "contact" if proof.overlap.volume > 0 or proof.shrink.depth else "clear"
         self._verdict(prover.parts, over or proof.joints, Strength.certified(proof.epsilon), proof.overlap, contact)
 
-    def _follow(self, route: Route, tied: Sequence[str], wanted: Sequence[str], driver: int) -> None:
-        """Prove one pair along a driver of the loops and couplings between them, then with each joint that moves by itself."""
-        joint, parts = self.mechanism.drivers[driver].joint, (route.parts[0], route.parts[-1])
+    def _along(self, route: Route, drivers: Sequence[str], own: Sequence[str], *, tentative: bool = False) -> bool:
+        """Prove one pair along drivers, while some joints move by themselves; all others stand."""
+        parts, over = (route.parts[0], route.parts[-1]), (*map(self._joint_of, drivers), *own)
+        sets = [tuple(name for name in group if name in drivers) for group in self._groups]
         if self.budget.is_spent:
-            self.left.setdefault((joint,), []).append(parts)
-            return
-        way = self._way(driver)
-        if isinstance(way, str):
-            self._refuse(parts, (joint,), f"the linkage cannot be followed: {way}")
-            return
-        own = list(wanted) if self.together else []
-        if own and self._along(route, tied, own, way, tentative=True):
-            return
-        for others in ([], *([name] for name in own)):
-            self._along(route, tied, others, way)
-
-    def _along(self, route: Route, tied: Sequence[str], own: Sequence[str], way: Way, *, tentative: bool = False) -> bool:
-        prover = LinkageProver(self.scene, route, (*tied, *own), way, epsilon=self.epsilon, budget=self.budget)
+            if not tentative:
+                self.left.setdefault(over, []).append(parts)
+            return False
+        if tentative and any(len(some) > MOST_TOGETHER for some in sets):
+            return False
+        ways = [self._way(some) for some in sets if some]
+        reasons = [way for way in ways if isinstance(way, str)]
+        if reasons:
+            if not tentative:
+                self._refuse(parts, over, f"the linkage cannot be followed: {reasons[0]}")
+            return False
+        found = [way for way in ways if not isinstance(way, str)]
+        names = {name for way in found for name in way.names}
+        joints = [joint.name for joint in route.joints if joint.name in own or {f.name for f in proven_freedoms(joint)} & names]
+        prover = LinkageProver(self.scene, route, joints, found, epsilon=self.epsilon, budget=self.budget)
         proof = prover.prove(most=FIRST_PAIRS, tentative=tentative)
         if tentative and not proof.is_complete:
             return False
@@ -346,30 +404,42 @@ class _Certifying:
             self._followed(prover, proof)
         return proof.is_complete
 
-    def _way(self, driver: int) -> Way | str:
-        if driver not in self._ways:
+    def _way(self, drivers: tuple[str, ...]) -> Way | str:
+        if drivers not in self._ways:
             try:
-                names = driver_names(self.mechanism, self._constrained)
-                document = {"mechanism": mechanism_json(self.mechanism), "linkage": sorted(self._constrained), "drivers": names}
-                way = Way(self.mechanism, driver, document)
-                self.budget.spend(PIECE * (len(way.steps(-1)) + len(way.steps(1))))
-                self._ways[driver] = way if way.steps(-1) or way.steps(1) else "near rest nothing encloses what follows the driver"
-            except (KinematicsError, ValueError) as error:
-                self._ways[driver] = str(error)
-        return self._ways[driver]
+                self._ways[drivers] = self._new_way(drivers)
+            except (KinematicsError, ValueError, Refuted) as error:
+                self._ways[drivers] = str(error)
+        return self._ways[drivers]
+
+    def _new_way(self, drivers: tuple[str, ...]) -> Way | str:
+        if len(drivers) == 1:
+            names = [driver.name for driver in self.mechanism.drivers]
+            ends, self._reasons[drivers[0]] = driven_range(self.mechanism, self._checker, names.index(drivers[0]))
+            way = Way(self._checker, drivers, (ends,))
+            found = way.whole
+            self.budget.spend(PIECE * way.count)
+            return way if found else "near rest nothing encloses what follows the driver"
+        ways = [self._way((name,)) for name in drivers]
+        bad = [way for way in ways if isinstance(way, str)]
+        if bad:
+            return bad[0]
+        way = Way(self._checker, drivers, tuple(way.whole.ends[0] for way in ways if not isinstance(way, str) and way.whole))
+        found = way.whole
+        self.budget.spend(PIECE * way.count)
+        return way if found else f"{' and '.join(drivers)} do not reach all of their ranges together, or nothing encloses what follows"
 
     def _followed(self, prover: LinkageProver, proof: Proof) -> None:
-        name, parts = prover.coordinate.name, prover.parts
+        parts = prover.parts
         own = [joint for joint in prover.joints if joint not in self._constrained]
-        over = (prover.coordinate.joint, *own)
+        over = (*map(self._joint_of, prover.drivers), *own)
         if proof.is_complete:
             self._proven(prover, proof, over)
         elif proof.out_of_budget and not proof.contacts:
             self.left.setdefault(over, []).append(parts)
             return
         else:
-            worst, value = prover.worst(proof)
-            pose = None if value is None else {name: value}
+            worst, pose = prover.worst(proof)
             check, found = judge(
                 self.scene, parts, worst, over=over, pose=pose, baseline=proof.overlap.volume, strength=Strength.sampled(LOOKS)
             )
@@ -377,9 +447,10 @@ class _Certifying:
             self.findings += found
             if not any(finding.code == "E_MOTION_COLLISION" for finding in found) and check.strength.kind != "waived":
                 self.findings.append(_unproven(parts, over, worst, check.allowed, LOOKS))
-        if own:
+        if not prover.is_single:
             return
-        known = self.ranges.get(name, Range(name, *prover.way.bounds, prover.way.bounds))
+        (name,), (way,) = prover.drivers, prover.ways
+        known = self.ranges.get(name, Range(name, *way.bounds[0], way.bounds[0]))
         if proof.lower is not None and proof.upper is not None:
             self.ranges[name] = replace(known, lower=max(known.lower, proof.lower), upper=min(known.upper, proof.upper))
         else:
@@ -468,13 +539,16 @@ class _Certifying:
 
     def _report_unreached(self) -> None:
         """Say where the declared range of a driver is longer than what its linkage can be followed over."""
-        for way in self._ways.values():
-            if isinstance(way, str):
+        coordinates = {driver.name: driver for driver in self.mechanism.drivers}
+        for drivers, way in self._ways.items():
+            if isinstance(way, str) or len(drivers) > 1:
                 continue
-            driver = way.coordinate
-            for sign, declared, reason in ((-1, driver.lower, way.reasons[0]), (1, driver.upper, way.reasons[1])):
+            driver, rest = coordinates[drivers[0]], self._checker.rest[drivers[0]]
+            both = zip((-1, 1), (driver.lower, driver.upper), way.bounds[0], self._reasons[driver.name], strict=True)
+            for sign, declared, bound, reason in both:
                 end = way.reached(sign)
-                wanted = declared if math.isfinite(declared) else way.track.start + sign * math.pi
+                endless = bound if reason in ("endless", "not followed further") else rest + sign * math.pi
+                wanted = declared if math.isfinite(declared) else endless
                 if abs(end - wanted) > _END_SLACK:
                     self.findings.append(
                         Finding(
@@ -635,16 +709,20 @@ def _freedoms_json(joint: Joint) -> list[dict[str, Any]]:
         JointType.UNIVERSAL: [(none, X), (none, Y)],
         JointType.BALL: [(none, X), (none, Y), (none, Z)],
     }
+    open_ends = [(None if math.isinf(c.lower) else c.lower, None if math.isinf(c.upper) else c.upper) for c in joint.columns]
+    found = proven_freedoms(joint)
+    bounds = [[f.lower, f.upper] for f in found] if joint.type is JointType.BALL else [list(ends) for ends in open_ends]
     return [
         {
             "name": freedom.name,
             "joint": joint.name,
             "range": [freedom.lower, freedom.upper],
+            "limits": limits,
             "rest": freedom.rest,
             "slide": slide,
             "turn": turn,
         }
-        for freedom, (slide, turn) in zip(proven_freedoms(joint), steps[joint.type], strict=True)
+        for freedom, limits, (slide, turn) in zip(found, bounds, steps[joint.type], strict=True)
     ]
 
 
@@ -660,10 +738,6 @@ def _unproven(parts: tuple[str, str], joints: tuple[str, ...], worst: Overlap, a
         limit=allowed,
         unit="mm",
     )
-
-
-def _is_endless_slide(joint: Joint) -> bool:
-    return any(freedom.upper - freedom.lower >= ENDLESS_SLIDE_MM for freedom in freedoms(joint))
 
 
 def _up(value: float) -> float:

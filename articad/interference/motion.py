@@ -46,7 +46,10 @@ class Freedom(NamedTuple):
 
 
 def freedoms(joint: Joint) -> tuple[Freedom, ...]:
-    """Return the coordinates along which a joint moves; one that turns endlessly over one turn."""
+    """Return the coordinates along which a joint moves.
+
+    One without limits ranges over a whole turn about its rest, or from its one limit; over more where it rests further away.
+    """
     if joint.type is JointType.BALL:
         cone = math.pi if joint.limits.cone is None else joint.limits.cone
         twist = FULL_TURN if joint.limits.twist is None else joint.limits.twist
@@ -54,11 +57,23 @@ def freedoms(joint: Joint) -> tuple[Freedom, ...]:
         return tuple(Freedom(f"{joint.name}.{key}", lo, hi, 0.0) for key, (lo, hi) in ranges.items())
     found = []
     for column in joint.columns:
-        endless = ENDLESS_SLIDE_MM if column.unit == "mm" else math.pi
-        lower = column.lower if math.isfinite(column.lower) else column.rest - endless
-        upper = column.upper if math.isfinite(column.upper) else column.rest + endless
-        found.append(Freedom(column.name, lower, upper, column.rest))
+        turn = 2 * ENDLESS_SLIDE_MM if column.unit == "mm" else 2 * math.pi
+        lower, upper, rest = column.lower, column.upper, column.rest
+        if math.isinf(lower) and math.isinf(upper):
+            lower, upper = rest - turn / 2, rest + turn / 2
+        elif math.isinf(lower):
+            lower = upper - turn * max(1, math.ceil((upper - rest) / turn))
+        elif math.isinf(upper):
+            upper = lower + turn * max(1, math.ceil((rest - lower) / turn))
+        found.append(Freedom(column.name, lower, upper, rest))
     return tuple(found)
+
+
+def slides_endlessly(joint: Joint) -> bool:
+    """Return whether a joint without limits takes its part ever further, so that no turn covers all of its poses."""
+    endless = any(math.isinf(column.lower) or math.isinf(column.upper) for column in joint.columns if column.unit == "mm")
+    screws = joint.type is JointType.SCREW and joint.lead != 0
+    return endless or (screws and any(math.isinf(column.lower) or math.isinf(column.upper) for column in joint.columns))
 
 
 def scattered(ranges: Sequence[Freedom], count: int) -> list[tuple[float, ...]]:

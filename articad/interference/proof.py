@@ -64,12 +64,11 @@ class Proof:
         claims: Proven statements; the whole range when `is_complete`.
         lower: Of a single coordinate, the lower end of the proven range about rest.
         upper: Its upper end.
-        contacts: Coordinates at which the proof stopped.
+        contacts: Coordinates at which the proof stopped, those of drivers of loops with them.
         overlap: At the start.
         out_of_budget: True when the budget or the pairs ran out.
         epsilon: How deep the solids might overlap nevertheless [mm].
         shrink: How the first surface was moved inwards.
-        stopped_at: Along a driver of loops, its value at each contact.
     """
 
     parts: tuple[str, str]
@@ -82,7 +81,6 @@ class Proof:
     out_of_budget: bool = False
     epsilon: float = 0.0
     shrink: Shrink = NO_SHRINK
-    stopped_at: tuple[float, ...] = ()
 
     def width(self) -> float:
         """Return how much of a single coordinate is proven [rad or mm]."""

@@ -240,13 +240,13 @@ def checker_of(certificate: Certificate, proof: dict[str, Any] | None = None) ->
 def test_a_driver_that_stays_near_rest_is_not_taken_round(loop: Certificate) -> None:
     """Every piece says where it is to be, and is where the first one is."""
     proof, step, count = proof_of(loop), 0.002, 200
-    names, stops = checker_of(loop).followers("crank"), np.arange(count + 1) * step
+    names, stops = checker_of(loop).followers(("crank",)), np.arange(count + 1) * step
     proof["crank.ends"] = np.stack([stops[:-1], stops[1:]], axis=1)
     proof["crank.values"] = np.zeros((count, len(names)))
     proof["crank.wide"] = np.tile([1.25 * step, *[0.005] * (len(names) - 1)], (count, 1))  # room for the driver, too
     proof["crank.other"] = np.arange(count)
     with pytest.raises(Refuted, match="cannot be at"):
-        checker_of(loop, proof).stretch("crank", 0.0, stops[-1])
+        checker_of(loop, proof).stretch(("crank",), ((0.0, stops[-1]),))
 
 
 def test_what_follows_is_not_held_still_as_a_driver(loop: Certificate) -> None:
@@ -255,17 +255,17 @@ def test_what_follows_is_not_held_still_as_a_driver(loop: Certificate) -> None:
     proof = {"crank.ends": [[-0.2, 0.2]], "crank.values": [[0.0]], "crank.wide": [[0.0]], "crank.other": [0]}
     checker = Checker(document, {PROOF: {key: np.array(value) for key, value in proof.items()}})
     with pytest.raises(Refuted, match="not alone"):
-        checker.stretch("crank", -0.2, 0.2)
+        checker.stretch(("crank",), ((-0.2, 0.2),))
 
 
 def test_no_piece_reaches_over_rest(loop: Certificate) -> None:
     """At a dead point more seems to drive than does, so that a piece about rest alone says too little."""
-    names = checker_of(loop).followers("crank")
+    names = checker_of(loop).followers(("crank",))
     wide = [0.0, *[0.005] * (len(names) - 1)]
     proof = {"crank.ends": [[-0.001, 0.001]], "crank.values": [[0.0] * len(names)], "crank.wide": [wide], "crank.other": [0]}
     checker = checker_of(loop, {key: np.array(value) for key, value in proof.items()})
     with pytest.raises(Refuted, match="on both sides of rest"):
-        checker.stretch("crank", -0.001, 0.001)
+        checker.stretch(("crank",), ((-0.001, 0.001),))
 
 
 def test_a_loop_that_is_open_at_rest_is_refused(loop: Certificate) -> None:
@@ -277,8 +277,8 @@ def test_a_loop_that_is_open_at_rest_is_refused(loop: Certificate) -> None:
 
 def test_a_piece_of_no_length_does_not_hold_the_checker(loop: Certificate) -> None:
     proof = proof_of(loop)
-    names = checker_of(loop).followers("crank")
+    names = checker_of(loop).followers(("crank",))
     proof |= {"crank.ends": [[0.0, 0.0]], "crank.values": [[0.0] * len(names)], "crank.wide": [[0.0, 0.01, 0.01, 0.01]], "crank.other": [0]}
     checker = checker_of(loop, {key: np.array(value) for key, value in proof.items()})
     with pytest.raises(Refuted, match="not followed"):
-        checker.stretch("crank", 0.0, 1.0)
+        checker.stretch(("crank",), ((0.0, 1.0),))
