@@ -343,7 +343,7 @@ class Checker:
         """Return T_a_b, and of each freedom on the way its axis and its speed at a's origin, as a sees them."""
         T, steps = np.eye(4), {}
         for joint, forward in way:
-            before, after, sign = (*self.frames[joint["name"]][0 if forward else 1], 1 if forward else -1)
+            sign, (before, after) = (1, self.frames[joint["name"]][0]) if forward else (-1, self.frames[joint["name"]][1])
             T = T @ before
             for f in joint["freedoms"][::sign]:
                 turn, slide, is_turn, is_slide = self.turns[f["name"]]
@@ -462,7 +462,7 @@ class Checker:
         need(np.abs(self.closure(names, at, at)[0]).max(initial=0.0) < REST, "a loop or coupling is open at rest")
         return [(np.stack([at[:count]] * 2, axis=1), at, still, REST * (np.arange(len(names)) >= count), np.zeros(len(names)))]
 
-    def line(self, drivers: tuple[str, ...]) -> tuple[Any, Any]:
+    def line(self, drivers: tuple[str, ...]) -> Any:
         """Return pieces of drivers' ranges, all on the branch of the rest pose, and how ranges are parted into them; by their ends."""
         if drivers not in self.lines:
             names, key = self.followers(drivers), "+".join(drivers)
@@ -476,7 +476,7 @@ class Checker:
             self.lines[drivers] = pieces, dict(parted)
         return self.lines[drivers]
 
-    def stretch(self, drivers: tuple[str, ...], box: Any) -> dict[str, Any]:
+    def stretch(self, drivers: tuple[str, ...], box: Any) -> Any:
         """Return value, rates and distance by coordinate, over ranges of drivers: of all pieces into which these are parted."""
         pieces, parted = self.line(drivers)
         if (drivers, box) not in self.rows:

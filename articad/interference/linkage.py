@@ -274,8 +274,8 @@ class Way:
     def at(self, values: FloatArray) -> dict[str, float] | None:
         """Return the coordinates of the group at values of the drivers; None where these have not been followed."""
         spans = np.array([row[0] for row in self._found])
-        holds = ((spans[..., 0] <= values) & (spans[..., 1] >= values)).all(axis=1)
-        x = self.solved(values, len(holds) - 1 - int(np.argmax(holds[::-1]))) if holds.any() else None
+        holding = np.flatnonzero(np.all((spans[..., 0] <= values) & (spans[..., 1] >= values), axis=1))
+        x = self.solved(values, int(holding[-1])) if len(holding) else None
         return None if x is None else dict(zip(self.names, x.tolist(), strict=True))
 
     def arrays(self) -> dict[str, FloatArray | IntArray]:
