@@ -277,12 +277,12 @@ class Checker:
             way = [joint for joint, _ in self.way(a, b)]
             own = {f["name"] for joint in way for f in joint["freedoms"]}
             free = [j for j in way if j["freedoms"] and j["name"] in whole["asked"] and j["name"] not in whole["linkage"]]
-            units = [({f["name"] for f in joint["freedoms"]},) * 2 for joint in free]
+            units: list[Any] = [({f["name"] for f in joint["freedoms"]},) * 2 for joint in free]
             for group in (group for group in self.groups if own & {*group}):
-                driving = [name for name in self.drivers if name in group]
-                units += [({name}, {*group}) for name in driving if self.freedoms[name]["joint"] in whole["asked"]]
+                movers = [name for name in self.drivers if name in group]
+                units += [({name}, {*group}) for name in movers if self.freedoms[name]["joint"] in whole["asked"]]
                 is_asked = any(self.freedoms[name]["joint"] in whole["asked"] for name in group)
-                need(driving or not is_asked or self.is_rigid(group), f"nothing drives {', '.join(group)}, yet they may move")
+                need(movers or not is_asked or self.is_rigid(group), f"nothing drives {', '.join(group)}, yet they may move")
             mine = [(vary, via) for parts, vary, via in said if parts == {a, b}]
             for some in [*((one,) for one in units), *(itertools.combinations(units, 2) if whole["together"] else ())]:
                 # what is not on the way of a claim does not move its two parts
@@ -303,8 +303,8 @@ class Checker:
         need(off < ROUNDING and np.linalg.det(R).min() > 0 and np.abs(frames).max() < LARGEST, "a frame is none")
         sizes = np.linalg.norm(np.where(turns.any(1, keepdims=True), turns, slides), axis=1)
         need((np.abs([sizes - 1, *np.cross(turns, slides).T]) < ROUNDING).all(), "a joint neither turns, slides nor screws")
-        ends = [end for f in freedoms for end in (*f["range"], f["rest"], *f["limits"]) if end is not None]
-        need(all(-LARGEST < end < LARGEST for end in ends) and all(f["range"][0] <= f["range"][1] for f in freedoms), "a range is none")
+        numbers = [end for f in freedoms for end in (*f["range"], f["rest"], *f["limits"]) if end is not None]
+        need(all(-LARGEST < end < LARGEST for end in numbers) and all(f["range"][0] <= f["range"][1] for f in freedoms), "a range is none")
         for f in freedoms:
             open_ends = [end is None for end in f["limits"]]
             same = all(is_open or end == limit for is_open, end, limit in zip(open_ends, f["range"], f["limits"], strict=True))
