@@ -94,11 +94,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # more wait for each other by turning: on busy processors 100 times as long
     options = _parsed(arguments)
 
+    from articad.processes import safe_path
     from articad.terminal import Terminal
 
     terminal = Terminal(as_json=options.as_json, quiet=options.quiet, verbose=options.verbose, color=not options.colorless)
     try:
-        with _prompt_interrupts(terminal):
+        with _prompt_interrupts(terminal), safe_path():
             return _run(COMMANDS[options.command], options, terminal)
     except BrokenPipeError:  # the reader of our output went away, as `head` does: nothing is left to be said, at exit neither
         with contextlib.suppress(OSError, ValueError):

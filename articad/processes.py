@@ -22,7 +22,7 @@ import subprocess
 import sys
 import threading
 import time
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
@@ -50,6 +50,7 @@ SCREEN: Final = (
 )
 """What drawing with OpenGL needs."""
 _BASIC: Final = ("PATH", "LANG", "LC_", "TZ", "LD_LIBRARY_PATH", "DYLD_LIBRARY_PATH", "OMP_", "OPENBLAS_", "SYSTEMROOT")
+_SAFE_PATH: Final = "PYTHONSAFEPATH"  # `-P` for all Python processes that inherit it
 _CHILD: Final = str(Path(__file__).with_name("child.py"))
 _LOOK_S: Final = 0.2  # between two looks whether a child has ended that closed no pipe
 _END_S: Final = 5.0  # for pipes to close once all processes of a group are killed
@@ -298,6 +299,23 @@ def environment_with_keys() -> dict[str, str]:
     return {name: value for name, value in os.environ.items() if not name.startswith("PYTHON")}
 
 
+@contextlib.contextmanager
+def safe_path() -> Iterator[None]:
+    """Keep Python processes that a library starts by itself from importing modules of the working folder.
+
+    The import of mujoco imports glfw, which runs `python -c` to ask a library for its version.
+    """
+    before = os.environ.get(_SAFE_PATH)
+    os.environ[_SAFE_PATH] = "1"
+    try:
+        yield
+    finally:
+        if before is None:
+            del os.environ[_SAFE_PATH]
+        else:
+            os.environ[_SAFE_PATH] = before
+
+
 def which(name: str, path: str | None = None) -> str | None:
     """Return where a program is, searched in the absolute folders of the PATH: an empty entry would stand for the working folder.
 
@@ -314,6 +332,8 @@ def _variables(given: Mapping[str, str] | None, private: str | None, is_ours: bo
     variables = dict(environment() if given is None else given)
     if private is not None and (is_ours or given is None):
         variables |= {"TMPDIR": private, "HOME": variables.get("HOME", private)}
+    if is_ours:
+        variables |= {_SAFE_PATH: "1", "MUJOCO_GL": "disable"}  # for what its libraries start; we draw nothing with MuJoCo
     return variables
 
 

@@ -35,6 +35,7 @@ audit run/export/urdf/product.urdf
 audit run/export/mjcf/product.xml
 sim run/export/urdf/product.urdf
 convert run/export/urdf/product.urdf other.xml
+convert foreign.xml foreign.urdf
 convert run/export/step/product.step other.urdf
 adopt run/export/mjcf/product.xml --out adopted --no-audit
 render run --size 64 --out pictures
@@ -60,6 +61,9 @@ def stranger(tmp_path: Path) -> Path:
     folder.mkdir()
     planted(folder)
     (folder / ".env").write_text("OPENAI_BASE_URL=http://127.0.0.1:9/v1\n")
+    (folder / "foreign.xml").write_text(
+        '<mujoco><worldbody><geom size="1"/><body pos="9 0 0"><joint/><geom size="1"/></body></worldbody></mujoco>'
+    )
     (folder / "batch.json").write_text(json.dumps({"items": [{"plan": "product", "formats": ["urdf"]}]}))
     return folder
 

@@ -252,3 +252,24 @@ def test_a_program_is_never_taken_from_the_working_folder(tmp_path: Path, monkey
     assert processes.which("bwrap", "") is None
     assert processes.which("bwrap", ":.:relative") is None
     assert processes.which("bwrap", f":{tmp_path}") == str(tmp_path / "bwrap")
+
+
+@pytest.mark.parametrize(
+    "statement",
+    [
+        "from articad.importers.mjcf import read_mjcf; read_mjcf('foreign.xml')",
+        "from articad.cli import main; main(['convert', 'foreign.xml', 'out.urdf'])",
+        "from articad import processes; processes.run([], module='articad.simulate.loading', limits=processes.Limits(seconds=50))",
+    ],
+)
+def test_no_library_starts_python_in_the_working_folder(statement: str, tmp_path: Path) -> None:
+    """The import of mujoco does: glfw runs `python -c "import ctypes"` beside it."""
+    folder = tmp_path / "stranger"
+    folder.mkdir()
+    mark = planted(folder)
+    (folder / "foreign.xml").write_text(
+        '<mujoco><worldbody><geom size="1"/><body pos="9 0 0"><joint/><geom size="1"/></body></worldbody></mujoco>'
+    )
+    environment = {name: value for name, value in os.environ.items() if name != "PYTHONSAFEPATH"}
+    subprocess.run([sys.executable, "-P", "-c", statement], cwd=folder, env=environment, check=True, timeout=200)
+    assert not mark.exists(), mark.read_text()

@@ -20,6 +20,7 @@ from articad.audit.step_parts import audit_step
 from articad.audit.urdf_text import UrdfText
 from articad.errors import ArticadError, ReadError
 from articad.findings import Finding, Findings
+from articad.importers.closure import package_of, require_closed
 from articad.importers.freecad import read_freecad
 from articad.importers.mjcf import read_mjcf
 from articad.importers.reading import MAX_LINKS, Folder, read_xml, unreadable
@@ -107,7 +108,13 @@ def asked(found: Audit, exports: Sequence[Path]) -> Audit:
     """Return an audit with what engines say of its exports; what else a reader meets in them, an audit of the file tells."""
     start, engines, findings = time.monotonic(), [*found.engines], [*found.findings]
     for path in exports:
-        loadings = load_in_all(path, ENGINES.get(FORMATS.get(path.suffix.lower(), ""), ()))
+        names = ENGINES.get(FORMATS.get(path.suffix.lower(), ""), ())
+        try:
+            require_closed(path)
+        except ArticadError as error:
+            findings += error.findings
+            continue
+        loadings = load_in_all(path, names)
         engines += loadings
         findings += [replace(finding, where=f"{path.name}: {finding.where}") for finding in refusals(loadings)]
     return replace(found, engines=tuple(engines), findings=Findings(findings), seconds=found.seconds + time.monotonic() - start)
@@ -148,14 +155,16 @@ def _urdf(path: Path, choices: Choices, found: _Found) -> None:
         found.undone.append("engines, contact and motion: the file names meshes outside the folders that may be read")
         _check_text(found)
         return
-    found.engines = load_in_all(path, ENGINES["urdf"]) if choices.engines else ()
+    require_closed(path, root)
+    found.engines = load_in_all(path, ENGINES["urdf"], root=root) if choices.engines else ()
     found.findings += refusals(found.engines)
     _read_and_look(found, lambda: read_urdf(path, root=root), choices, path)
 
 
 def _mjcf(path: Path, choices: Choices, found: _Found) -> None:
     root = choices.root or package_of(path)
-    found.engines = load_in_all(path, ENGINES["mjcf"]) if choices.engines else ()
+    require_closed(path, root)
+    found.engines = load_in_all(path, ENGINES["mjcf"], root=root) if choices.engines else ()
     assembly = read_mjcf(path, root=root)
     found.findings += [*refusals(found.engines), *assembly.findings.of("W_IMPORT_MUJOCO")]
     simple, _ = _mask(found.engines)
@@ -244,15 +253,6 @@ def _mask(loadings: tuple[Loading, ...]) -> tuple[frozenset[str], frozenset[froz
         if loading.engine == "mujoco" and loading.loads:
             return frozenset(loading.simple), frozenset(map(frozenset, loading.excluded))
     return frozenset(), frozenset()
-
-
-def package_of(path: Path) -> Path:
-    """Return the folder that a file may take meshes from: the nearest ROS package above it, else its own."""
-    here = path.resolve().parent
-    for folder in (here, *here.parents):
-        if (folder / "package.xml").is_file():
-            return folder
-    return here
 
 
 def _no_robot(path: Path, document: Any) -> Finding:

@@ -6,13 +6,13 @@ import math
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import replace
-from itertools import product
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from articad import processes
 from articad.assembly import Assembly
 from articad.connectors.se3 import SE3
 from articad.findings import Finding
@@ -20,16 +20,15 @@ from articad.geometry.mass import MassProperties
 from articad.geometry.mesh import TriMesh
 from articad.geometry.part import DEFAULT_COLOR, Shape
 from articad.geometry.shapes import box, cylinder, sphere
+from articad.importers.closure import require_closed
 from articad.importers.fusing import fused
 from articad.importers.raw import ENDLESS, IDENTITY, RawJoint, RawLink, RawModel, RawTie, aligned, assemble, floating, require_links
-from articad.importers.reading import MAX_LINKS, MM_PER_M, Folder, color_text, read_xml, unreadable
+from articad.importers.reading import MM_PER_M, Folder, color_text, read_xml, unreadable
 from articad.importers.records import assembly_of, read_records, stale
 from articad.kinematics.joints import JointType
 
 FloatArray = NDArray[np.float64]
 
-MAX_INCLUDES = 100
-MAX_COPIES = 1000  # of <replicate>, <composite> and the like
 _RECORD_PREFIX = "articad."
 
 
@@ -61,7 +60,7 @@ def read_mjcf(path: str | Path, *, root: str | Path | None = None, metadata: boo
         edited = stale(records, [*document.iterfind("worldbody"), *document.iterfind("equality")], path)
         if not edited:
             return assembly_of(records, folder, path)
-    _require_safe(document, folder, path, [path.resolve()])
+    require_closed(path, folder.root)
     with _warnings() as said:
         model = _Reader(_compiled(path), document.get("model") or path.stem).model()
     model.findings += edited
@@ -72,48 +71,11 @@ def read_mjcf(path: str | Path, *, root: str | Path | None = None, metadata: boo
     return assemble(fused(model) if fuse else model, path)
 
 
-def _require_safe(document: Any, folder: Folder, path: Path, seen: list[Path]) -> None:
-    """Refuse files outside the root, before MuJoCo opens any; includes are followed."""
-    folders = [element.get(name, "") for element in document.iter("compiler") for name in ("meshdir", "texturedir", "assetdir")]
-    bodies = sum(1 for _ in document.iter("body"))
-    if bodies > MAX_LINKS:
-        raise unreadable(path, "", f"It has {bodies} bodies; {MAX_LINKS} are the most.")
-    for element in document.iter():
-        _require_few_copies(element, path)
-        names = [value for name, value in element.attrib.items() if name.startswith("file") and value]
-        for name, base in product(names, dict.fromkeys(["", *folders])):
-            if not _resolved(folder.here / base / name, path).is_relative_to(folder.root):
-                raise unreadable(path, f"line {element.sourceline}", f"{name!r} leads out of {folder.root}.", "E_UNSAFE_PATH")
-    for element in document.iter("include"):
-        target = _resolved(path.resolve().parent / element.get("file", ""), path)
-        if not target.is_file():
-            target = _resolved(folder.here / element.get("file", ""), path)
-        if target in seen or len(seen) > MAX_INCLUDES:
-            raise unreadable(path, f"line {element.sourceline}", f"{element.get('file')!r} is included again; includes must not go round.")
-        if target.is_file():
-            seen.append(target)
-            _require_safe(read_xml(target), folder, target, seen)
-
-
-def _resolved(name: Path, path: Path) -> Path:
-    try:
-        target = name.resolve()
-        target.is_file()
-    except (OSError, RuntimeError, ValueError):  # too long, a link to itself, a zero byte
-        raise unreadable(path, "", f"{str(name)[:200]!r} is not a file name.") from None
-    return target
-
-
-def _require_few_copies(element: Any, path: Path) -> None:
-    counts = [int(word) for word in element.get("count", "1").split() if word.isdigit()]
-    if math.prod(counts) > MAX_COPIES:
-        raise unreadable(path, f"line {element.sourceline}", f"It asks for {math.prod(counts)} copies; {MAX_COPIES} are the most.")
-
-
 @contextmanager
 def _warnings() -> Iterator[list[str]]:
     """Collect what MuJoCo warns of; left alone, it prints that and writes it into a log in the folder where the process stands."""
-    import mujoco  # noqa: PLC0415 - only readers of MJCF need it
+    with processes.safe_path():
+        import mujoco  # noqa: PLC0415 - only readers of MJCF need it
 
     said: list[str] = []
     before = mujoco.get_mju_user_warning()

@@ -10,6 +10,7 @@ from articad.errors import ArticadError, ReadError
 from articad.export.lowering import lower
 from articad.export.mjcf import write_mjcf
 from articad.export.urdf import write_urdf
+from articad.importers.closure import package_of, require_closed
 from articad.simulate.expected import held_to_kinematics
 from articad.simulate.loading import Engine
 from articad.simulate.trial import SECONDS, try_out
@@ -28,14 +29,16 @@ def simulate_file(path: str | Path, *, engines: tuple[Engine, ...] = ENGINES, se
         seconds: For each of them.
 
     Raises:
-        ReadError: If its ending is neither.
+        ReadError: If its ending is neither; E_UNSAFE_PATH if it names files outside its ROS package, or outside its folder without one.
     """
     path = Path(path)
     if path.suffix.lower() not in SUFFIXES:
         raise ReadError(f"{path}: simulators load {', '.join(SUFFIXES)}; convert it first.", path=str(path))
     if not path.is_file():
         raise ReadError(f"{path}: there is no such file.", path=str(path))
-    return Verdict(str(path), tuple(try_out(engine, path, seconds=seconds) for engine in engines))
+    root = package_of(path)
+    require_closed(path, root)
+    return Verdict(str(path), tuple(try_out(engine, path, root=root, seconds=seconds) for engine in engines))
 
 
 def simulate_assembly(assembly: Assembly, file: str, *, engines: tuple[Engine, ...] = ENGINES, seconds: float = SECONDS) -> Verdict:

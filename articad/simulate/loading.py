@@ -20,6 +20,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 from articad import processes
+from articad.kernels import sandbox
 
 Engine = Literal["mujoco", "pinocchio", "pybullet"]
 
@@ -60,23 +61,35 @@ class Loading:
         return {"engine": self.engine, "version": self.version, "loads": self.loads, "message": self.message, "mass_kg": self.mass}
 
 
-def load(engine: Engine, path: Path, *, seconds: float = SECONDS) -> Loading:
-    """Have an engine load a file in a process of its own, with bounded time and memory."""
-    with start(engine, path, seconds=seconds) as child:
+def load(engine: Engine, path: Path, *, root: Path | None = None, seconds: float = SECONDS) -> Loading:
+    """Have an engine load a file in a process of its own, with bounded time and memory.
+
+    Args:
+        engine: Its name.
+        path: The file.
+        root: Folder that the engine may read; the file's own by default. Landlock enforces it where the machine has it.
+        seconds: After which it is ended.
+    """
+    with start(engine, path, root=root, seconds=seconds) as child:
         return _answer(engine, child.finish(), seconds)
 
 
-def load_in_all(path: Path, engines: tuple[Engine, ...], *, seconds: float = SECONDS) -> tuple[Loading, ...]:
-    """Have several engines load a file, one beside the other."""
+def load_in_all(path: Path, engines: tuple[Engine, ...], *, root: Path | None = None, seconds: float = SECONDS) -> tuple[Loading, ...]:
+    """Have several engines load a file, one beside the other; see `load`."""
     with contextlib.ExitStack() as stack:
-        started = [(engine, stack.enter_context(start(engine, path, seconds=seconds))) for engine in engines]
+        started = [(engine, stack.enter_context(start(engine, path, root=root, seconds=seconds))) for engine in engines]
         return tuple(_answer(engine, child.finish(), seconds) for engine, child in started)
 
 
-def start(engine: Engine, path: Path, *, seconds: float = SECONDS) -> processes.Child:
+def start(engine: Engine, path: Path, *, root: Path | None = None, seconds: float = SECONDS) -> processes.Child:
     """Start the process that loads a file."""
     limits = processes.Limits(seconds=seconds, memory=MEMORY, file_size=FILE_SIZE)
-    return processes.start([engine, str(path.resolve())], module="articad.simulate.loading", limits=limits)
+    return processes.start([engine, *places(path, root)], module="articad.simulate.loading", limits=limits)
+
+
+def places(path: Path, root: Path | None) -> tuple[str, str]:
+    """Return the absolute names of a file and of the folder that an engine may read."""
+    return str(path.resolve()), str((root or path.resolve().parent).resolve())
 
 
 def _answer(engine: Engine, ended: processes.Ended, seconds: float) -> Loading:
@@ -106,7 +119,8 @@ def answer_in(out: bytes) -> dict[str, Any]:
 
 def main(arguments: list[str]) -> int:
     """Load a file and print what came of it."""
-    engine, path = arguments
+    engine, path, root = arguments
+    sandbox.keep_to([root], [str(Path.cwd())])
     with _captured() as said:
         try:
             answer = _LOADERS[engine](Path(path), said)

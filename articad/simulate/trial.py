@@ -8,25 +8,29 @@ from dataclasses import asdict
 from pathlib import Path
 
 from articad import processes
-from articad.simulate.loading import FILE_SIZE, MEMORY, Engine, answer_in, load
+from articad.kernels import sandbox
+from articad.simulate.loading import FILE_SIZE, MEMORY, Engine, answer_in, load, places
 from articad.simulate.verdict import Outcome
 
 SECONDS = 300.0
 
 
-def try_out(engine: Engine, path: Path, *, drivers: tuple[str, ...] | None = None, seconds: float = SECONDS) -> Outcome:
+def try_out(
+    engine: Engine, path: Path, *, root: Path | None = None, drivers: tuple[str, ...] | None = None, seconds: float = SECONDS
+) -> Outcome:
     """Have an engine load a model and move it, in a process of its own with bounded time and memory.
 
     Args:
         engine: "mujoco" or "pybullet".
         path: A URDF or MJCF file.
+        root: Folder that the engine may read; see `articad.simulate.loading.load`.
         drivers: Joints that drive closed loops; None where nobody knows.
         seconds: After which it is ended.
     """
-    loading = load(engine, path)
+    loading = load(engine, path, root=root)
     if not loading.loads:
         return Outcome(engine, loading.version, loads=loading.loads, message=loading.message)
-    words = [engine, str(path.resolve()), json.dumps(drivers)]
+    words = [engine, *places(path, root), json.dumps(drivers)]
     limits = processes.Limits(seconds=seconds, memory=MEMORY, file_size=FILE_SIZE)
     ended = processes.run(words, module="articad.simulate.trial", limits=limits)
     if ended.late:
@@ -39,7 +43,8 @@ def try_out(engine: Engine, path: Path, *, drivers: tuple[str, ...] | None = Non
 
 def main(arguments: list[str]) -> int:
     """Try a model out and print what was measured."""
-    engine, path, drivers = arguments
+    engine, path, root, drivers = arguments
+    sandbox.keep_to([root], [str(Path.cwd())])
     names = json.loads(drivers)
     if engine == "mujoco":
         from articad.simulate.mujoco_trial import Trial  # noqa: PLC0415 - each process loads one engine

@@ -1,0 +1,136 @@
+"""Which files a URDF or MJCF file makes an engine open: all of them must lie inside one folder.
+
+MuJoCo opens whatever a file names: meshes, textures, height fields, included files and whole models, each of which may name more.
+The walk below follows includes and models and refuses a name that leads outside, or to a pipe or device, before an engine sees the
+file. Folders that any file of the closure sets for meshes or textures count for the names in all of them.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from itertools import product
+from pathlib import Path
+from typing import Any
+
+from articad.errors import ReadError
+from articad.importers.reading import MAX_LINKS, Folder, read_xml, unreadable
+
+MAX_FILES = 100  # that include each other
+MAX_COPIES = 1000  # of <replicate>, <composite> and the like
+MAX_NAMES = 100_000  # places where a file may lie that is named
+_FOLDERS = ("meshdir", "texturedir", "assetdir")
+
+Named = list[tuple[str, Path, int]]  # the name, the file in which it stands, and the line
+
+
+def require_closed(path: Path, root: Path | None = None) -> None:
+    """Refuse a URDF or MJCF file that names files outside a folder.
+
+    Args:
+        path: The file.
+        root: The folder; the file's own by default.
+
+    Raises:
+        ReadError: E_UNSAFE_PATH if a name leads out; E_READ if a file of the closure cannot be read, includes go round, or counts are
+            beyond reason.
+    """
+    _Closure(Folder.of(path, root)).follow(path.resolve())
+
+
+def package_of(path: Path) -> Path:
+    """Return the folder that a file may take meshes from: the nearest ROS package above it, else its own."""
+    here = path.resolve().parent
+    for folder in (here, *here.parents):
+        if (folder / "package.xml").is_file():
+            return folder
+    return here
+
+
+class _Closure:
+    """The files that a model is made of, as far as they are read as XML, and the names in them."""
+
+    def __init__(self, folder: Folder) -> None:
+        self._folder = folder
+        self._seen: list[Path] = []
+
+    def follow(self, path: Path) -> None:
+        """Read a model with everything that it includes, check its names, then do the same for the models that it names."""
+        named: Named = []
+        folders: dict[str, None] = {"": None}
+        models: Named = []
+        self._collect(path, path.parent, named, folders, models)
+        if len(named) * len(folders) > MAX_NAMES:
+            raise unreadable(path, "", f"It names {len(named)} files in {len(folders)} folders; that is more than {MAX_NAMES} places.")
+        for (name, file, line), base in product(named, folders):
+            self._checked(path.parent / base, name, file, line)
+        for (name, file, line), base in product(models, folders):
+            target = self._checked(path.parent / base, name, file, line)
+            if target.is_file() and target not in self._seen:
+                self.follow(target)
+
+    def _collect(self, path: Path, here: Path, named: Named, folders: dict[str, None], models: Named) -> None:
+        """Gather what a file and its includes name; `here` is the folder of the model that includes them."""
+        if len(self._seen) >= MAX_FILES:
+            raise unreadable(path, "", f"More than {MAX_FILES} files include each other.")
+        self._seen.append(path)
+        document = read_xml(path)
+        if (bodies := sum(1 for _ in document.iter("body"))) > MAX_LINKS:
+            raise unreadable(path, "", f"It has {bodies} bodies; {MAX_LINKS} are the most.")
+        for element in _read_by_engines(document):
+            _require_few_copies(element, path)
+            names = [(value, path, element.sourceline) for name, value in element.attrib.items() if name.startswith("file") and value]
+            named += names
+            if element.tag == "compiler":
+                folders |= dict.fromkeys(element.get(name, "") for name in _FOLDERS)
+            elif element.tag == "model":
+                models += names
+        for element in document.iter("include"):
+            self._include(element, path, here, named, folders, models)
+
+    def _include(self, element: Any, path: Path, here: Path, named: Named, folders: dict[str, None], models: Named) -> None:
+        """Follow an include; engines start its name at the file or at the model, so that both are followed."""
+        name = element.get("file", "")
+        places = dict.fromkeys(self._checked(base, name, path, element.sourceline) for base in (path.parent, here))
+        for number, target in enumerate(place for place in places if place.is_file()):
+            if target not in self._seen:
+                self._collect(target, here, named, folders, models)
+            elif number == 0:
+                raise unreadable(path, f"line {element.sourceline}", f"{name!r} is included again; includes must not go round.")
+
+    def _checked(self, base: Path, name: str, file: Path, line: int) -> Path:
+        """Return the file that a name means, which lies inside the root."""
+        where = f"line {line}"
+        if name.startswith("package://"):
+            try:
+                return self._folder.find(name)
+            except ReadError as error:
+                if "E_UNSAFE_PATH" in error.findings.codes:
+                    raise
+                return base / "package:"  # there is no such file: engines say so themselves
+        try:
+            target = (base / name.removeprefix("file://")).resolve()
+            is_other = target.exists() and not target.is_file() and not target.is_dir()
+        except (OSError, RuntimeError, ValueError):  # too long, a link to itself, a zero byte
+            raise unreadable(file, where, f"{name[:200]!r} is not a file name.") from None
+        if not target.is_relative_to(self._folder.root):
+            raise unreadable(file, where, f"{name!r} leads out of {self._folder.root}.", "E_UNSAFE_PATH")
+        if is_other:
+            raise unreadable(file, where, f"{name!r} is neither a file nor a folder but a pipe, a socket or a device.", "E_UNSAFE_PATH")
+        return target
+
+
+def _read_by_engines(document: Any) -> Iterator[Any]:
+    """Yield the elements in which engines look for files: of URDF not those of Gazebo, ros2_control and others."""
+    if document.tag != "robot":
+        yield from document.iter()
+        return
+    yield from document.iter("mesh", "texture")
+    for block in document.iter("mujoco"):
+        yield from block.iter()
+
+
+def _require_few_copies(element: Any, path: Path) -> None:
+    counts = [int(word) for word in element.get("count", "1").split() if word.isdigit()]
+    if math.prod(counts) > MAX_COPIES:
+        raise unreadable(path, f"line {element.sourceline}", f"It asks for {math.prod(counts)} copies; {MAX_COPIES} are the most.")
