@@ -17,7 +17,7 @@ from articad.assembly import Assembly
 from articad.audit import limits, masses, shapes
 from articad.audit.contact import united
 from articad.audit.declared import Declared, DeclaredLink
-from articad.audit.examine import Choices, audit, package_of
+from articad.audit.examine import Choices, audit
 from articad.audit.mesh_references import MeshReferences
 from articad.audit.names import MOST_CHARACTERS
 from articad.audit.report import Audit
@@ -31,6 +31,7 @@ from articad.export.urdf import write_urdf
 from articad.geometry.mass import MassProperties
 from articad.geometry.mesh import TriMesh
 from articad.geometry.mesh_files import write_obj, write_stl
+from articad.importers.closure import package_of
 from articad.importers.reading import MM_PER_M, Folder, read_xml
 
 BAD_INERTIA = ("E_AUDIT_INERTIA", "E_AUDIT_INERTIA_TRIANGLE", "W_AUDIT_INERTIA_SHAPE", "W_AUDIT_COM")

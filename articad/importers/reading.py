@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from itertools import islice
 from pathlib import Path
+from stat import S_ISREG
 from typing import Any
 
 from lxml import etree
@@ -43,7 +44,10 @@ def read_xml(path: Path) -> Any:
         ReadError: If it is missing, too large, not XML, or declares entities.
     """
     try:
-        if path.stat().st_size > MAX_XML_BYTES:
+        state = path.stat()
+        if not S_ISREG(state.st_mode):
+            raise unreadable(path, "", "It is not a file but a folder, a pipe, a socket or a device.")
+        if state.st_size > MAX_XML_BYTES:
             raise unreadable(path, "", f"The file is larger than {MAX_XML_BYTES >> 20} MiB.")
         content = path.read_bytes()
     except OSError as error:
