@@ -30,6 +30,8 @@ CHUNK = 4096  # pairs of pieces looked at together
 MOTION_SHARE = 1.0  # of the pieces' size: when the motion is larger, the range is cut before the pieces
 LEAST_SHARE = 1e-3  # of the motion in any direction: along the normal of faces in one plane there is nothing to cut
 MOST_PAIRS = 4_000_000  # of pieces, after which a search is given up
+NEARLY_STILL = 1e-3  # of the largest motion: what is less does not choose directions, though it counts in every bound
+MOST_WAYS = 2  # lines along which something slides, that directions are sought across
 _EYE = np.eye(3)
 _COARSE = 64.0  # directions between boxes are rounded to so many parts: any direction is a proof, and few of them take less room
 
@@ -175,11 +177,14 @@ class _Search:
         self.spread, self.trail = boxes.spread, Trail()
         self.outcome = Cleared()
         self.size_a, self.size_b = np.linalg.norm(self.a.half, axis=1), np.linalg.norm(self.b.half, axis=1)
+        self.slides: Slides | None = None
 
     def roots(self) -> _Pairs:
         """Return each two trees over the whole range."""
         both = np.array(list(itertools.product(self.forests[0].roots, self.forests[1].roots)))
-        return _Pairs(both[:, 0], both[:, 1], np.full(len(both), self.boxes.root()[0]), self.trail.begin(len(both)))
+        root = int(self.boxes.root()[0])
+        self.slides = Slides.of(self.spread, root)
+        return _Pairs(both[:, 0], both[:, 1], np.full(len(both), root), self.trail.begin(len(both)))
 
     def step(self, rows: _Pairs) -> list[_Pairs]:
         """Settle what is settled and cut the rest."""
@@ -225,8 +230,8 @@ class _Search:
         centre = (R @ self.b.centre[rows.b][..., None])[..., 0] + T[:, :3, 3]
         extent = R.transpose(0, 2, 1) * self.b.half[rows.b][..., None]  # rows: half axes of b's box in a's frame
         apart = centre - self.a.centre[rows.a]
-        coarse = _coarse(apart)[:, None]
-        if self.axis is not None:
+        coarse = (_coarse(apart) if self.slides is None else self.slides.across(apart))[:, None]
+        if self.axis is not None and self.slides is None:
             coarse = np.concatenate([coarse, self._turning(self.a.centre[rows.a], centre)[:, None]], axis=1)
         u = np.concatenate([np.broadcast_to(_EYE, (len(rows), 3, 3)), R.transpose(0, 2, 1), unit(coarse)], axis=1)
         thick = (np.abs(u) @ self.a.half[rows.a][..., None])[..., 0] + np.abs(u @ extent.transpose(0, 2, 1)).sum(axis=2)
@@ -241,6 +246,8 @@ class _Search:
         at = np.arange(len(rows))
         along, most = motion[left][at, best], motion[left].max(axis=1)
         moving = (along > MOTION_SHARE * thick[left][at, best]) & (along > LEAST_SHARE * most)
+        if self.slides is not None:  # a pair of triangles then needs no part of the range for itself: see `Slides`
+            moving[:] = False
         shares = shares[left]
         return [*self._cut_range(rows.of(moving), shares[at, best][moving]), *self._cut_pieces(rows.of(~moving))]
 
@@ -292,7 +299,9 @@ class _Search:
         q = self.b.corners[self.b.triangle[rows.b]] @ T[:, :3, :3].transpose(0, 2, 1) + T[:, None, :3, 3]
         nearest, towards = shortest_between(p, q)
         u = np.stack([_normals(p), _normals(q), towards], axis=1)
-        if self.axis is not None:
+        if self.slides is not None:
+            u = np.concatenate([u, self.slides.directions(box, p, q)], axis=1)
+        elif self.axis is not None:
             u = np.concatenate([u, unit(self._turning(p.mean(axis=1), q.mean(axis=1)))[:, None]], axis=1)
         mine, theirs = u @ p.transpose(0, 2, 1), u @ q.transpose(0, 2, 1)  # (n, D, 3 corners)
         ahead = theirs.min(axis=2) - mine.max(axis=2) > mine.min(axis=2) - theirs.max(axis=2)
@@ -346,8 +355,10 @@ def _normals(p: FloatArray) -> FloatArray:
     return np.asarray(n / np.where(length > 0, length, 1.0)[:, None])
 
 
-def shortest_between(p: FloatArray, q: FloatArray) -> tuple[FloatArray, FloatArray]:
+def shortest_between(p: FloatArray, q: FloatArray, *, flat: bool = False) -> tuple[FloatArray, FloatArray]:
     """Return the distance of triangles `(n, 3, 3)` each that do not pierce one another, and the direction in which it is measured.
+
+    Of `flat` triangles, all in parallel planes or lines, edges alone are looked at: their outlines decide there.
 
     It is reached between two edges, or between a corner and the inside of the other triangle (Ericson, Real-time collision
     detection, 5.1). Any direction proves its own gap, so nothing rests on this being exact.
@@ -361,7 +372,9 @@ def shortest_between(p: FloatArray, q: FloatArray) -> tuple[FloatArray, FloatArr
     t = np.clip((b * s + g) / np.maximum(f, 1e-300), 0.0, 1.0)
     s = np.clip((b * t - c) / np.maximum(a, 1e-300), 0.0, 1.0)
     edges = t[..., None] * e[:, None] - s[..., None] * d[:, :, None] - between
-    found = np.concatenate([edges.reshape(-1, 9, 3), _over(p, q), -_over(q, p)], axis=1)
+    found = edges.reshape(-1, 9, 3)
+    if not flat:
+        found = np.concatenate([found, _over(p, q), -_over(q, p)], axis=1)
     squares = (found * found).sum(axis=2)
     nearest = np.argmin(squares, axis=1)
     rows = np.arange(len(p))
@@ -379,6 +392,59 @@ def _over(p: FloatArray, q: FloatArray) -> FloatArray:
         edge = p[:, (k + 1) % 3] - p[:, k]
         inside &= ((q - p[:, None, k]) @ np.cross(n, edge)[..., None])[..., 0] >= 0
     return np.asarray(np.where(inside[..., None], (up @ n[..., None]) * n[:, None], 1e150))
+
+
+class Slides:
+    """Directions that keep two triangles apart while one of them slides along one line, or in one plane, without turning.
+
+    The displacements of a box are Σ tₖ gₖ with |tₖ| ≤ 1 for one or two vectors g. The distance of two convex bodies is a convex
+    function of t, so it is least where each tₖ is −1, or 1, or where the direction of the distance is across gₖ. One direction for
+    each of these cases is therefore all that can keep two triangles apart, and the range need not be cut for them: with one g, that
+    between their shadows along g, and those at both ends.
+
+    Args:
+        spread: Of boxes.
+        ways: Unit vectors along g, `(k, 3)`.
+        groups: Which generators of first order go along each of them, `(k, G)`: what goes along the same line adds up.
+    """
+
+    def __init__(self, spread: Spread, ways: FloatArray, groups: NDArray[np.bool_]) -> None:
+        self.spread, self.ways, self.groups = spread, ways, groups
+        self._basis = _complement(ways)
+
+    @classmethod
+    def of(cls, spread: Spread, root: int) -> Slides | None:
+        """Return it for boxes cut from `root`; None where something turns, or slides along more than two lines."""
+        flow = spread.flow[root]
+        size = np.linalg.norm(flow, axis=1)
+        left = size > NEARLY_STILL * size.max(initial=0.0)
+        if spread.turns.any() or not left.any():
+            return None
+        ways, groups = list[FloatArray](), list[NDArray[np.bool_]]()
+        while left.any():
+            ways.append(unit(flow[np.argmax(size * left)]))
+            groups.append(left & (np.linalg.norm(flow - np.outer(flow @ ways[-1], ways[-1]), axis=1) <= NEARLY_STILL * size))
+            left = left & ~groups[-1]
+        return cls(spread, np.array(ways), np.array(groups)) if len(ways) <= MOST_WAYS else None
+
+    def across(self, apart: FloatArray) -> FloatArray:
+        """Return the directions of vectors `(n, 3)` across all slides, rounded so that few different ones remain."""
+        return np.asarray(_coarse(apart @ self._basis.T) @ self._basis)
+
+    def directions(self, box: IntArray, p: FloatArray, q: FloatArray) -> FloatArray:
+        """Return directions `(n, D, 3)`, one of which keeps triangles `(n, 3, 3)` apart over their boxes if any does."""
+        far = np.linalg.norm(self.spread.flow[box], axis=2) @ self.groups.T
+        found = []
+        for signs in itertools.product((0, -1, 1), repeat=len(self.ways)):
+            there = q + ((far * signs) @ self.ways)[:, None]
+            basis = _complement(self.ways[np.array(signs) == 0])
+            found.append(shortest_between(p @ basis.T @ basis, there @ basis.T @ basis, flat=len(basis) < 3)[1])
+        return np.stack(found, axis=1)
+
+
+def _complement(ways: FloatArray) -> FloatArray:
+    """Return unit vectors across some, `(3 - k, 3)`, and across each other."""
+    return np.asarray(np.linalg.svd(ways)[2][len(ways) :]) if len(ways) else _EYE
 
 
 class Ranges:

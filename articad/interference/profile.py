@@ -19,6 +19,9 @@ FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
 
 WEIGHT = 10.0  # of outlines against the size of pieces: what they tell apart is cut by them first
+SLIDING_WEIGHT = np.array(
+    [100.0, 100.0, 100.0, 1.0]
+)  # the same of what slides: it is cut lengthwise first, since pieces at all heights meet
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,20 +50,22 @@ class Forest:
         return cls(tree, (0,), none, none, np.ones(len(none), dtype=bool))
 
     @classmethod
-    def pair(cls, a: Surface, b: Surface, of_a: Ends, of_b: Ends, limit: float | FloatArray) -> tuple[Forest, Forest]:
+    def pair(
+        cls, a: Surface, b: Surface, of_a: Ends, of_b: Ends, limit: float | FloatArray, weight: float | FloatArray = WEIGHT
+    ) -> tuple[Forest, Forest]:
         """Return two surfaces with their outlines; outlines meet that are within `limit` of each other [mm]."""
         met_a = meeting(of_a, of_b, limit)
         met_b = meeting(of_b, (of_a[0][met_a], of_a[1][met_a]), limit)
-        return cls._of(a, of_a, met_a), cls._of(b, of_b, met_b)
+        return cls._of(a, of_a, met_a, weight), cls._of(b, of_b, met_b, weight)
 
     @classmethod
-    def _of(cls, surface: Surface, ends: Ends, met: BoolArray) -> Forest:
+    def _of(cls, surface: Surface, ends: Ends, met: BoolArray, weight: float | FloatArray) -> Forest:
         trees, rows, corners = list[BoxTree](), list[NDArray[np.intp]](), surface.corners
         for which in (~met, met):
             if not which.any():
                 continue
             own = corners[which]
-            spans = [(own.min(axis=1), own.max(axis=1)), (WEIGHT * ends[0][which], WEIGHT * ends[1][which])]
+            spans = [(own.min(axis=1), own.max(axis=1)), (weight * ends[0][which], weight * ends[1][which])]
             low, high = (np.concatenate(side, axis=1) for side in zip(*spans, strict=True))
             trees.append(BoxTree.over(low, high, own).flat())
             rows.append(np.flatnonzero(which))

@@ -5,6 +5,7 @@ A search cuts pieces of both surfaces, and the range, until each two are apart (
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -19,7 +20,7 @@ from articad.interference.clearing import MOST_PAIRS, Boxes, Cleared, Ranges, cl
 from articad.interference.meridian import Ends, leaning, outline
 from articad.interference.motion import Chain, Mover, Route, freedoms, scattered, swing_and_twist, turned
 from articad.interference.overlap import Overlap, measured, overlap
-from articad.interference.profile import Forest
+from articad.interference.profile import SLIDING_WEIGHT, WEIGHT, Forest
 from articad.interference.scene import Scene
 from articad.interference.spread import Spread
 from articad.interference.surface import Core, Surface, inwards, near_by, whole_surface
@@ -32,6 +33,7 @@ FloatArray = NDArray[np.float64]
 LOOK_PAIRS = 300_000  # of pieces, after which a few poses are looked at, lest a collision be sought by proof
 LOOKS = 40  # poses
 LOOK_GROWTH = 1.6  # poses beyond the one where a proof stopped lie ever further apart, so that thin parts are not jumped over
+PARALLEL = 1e-12  # sine between sliders along one line
 CONE_ROUNDING = 1e-9  # of the cosine of an angle
 CLAIM_SLACK_MM = 1e-6  # more than what is claimed is proven, so that a checker's rounding does not matter
 FIRST_STEP = 1 / 16  # of the way to a bound: of the walk to where the parts meet
@@ -116,10 +118,7 @@ class Prover:
         self.bounds = np.array([(freedom.lower, freedom.upper) for freedom in self.chain.freedoms]).reshape(-1, 2)
         self._forests: dict[Shrink, tuple[Forest, Forest]] = {}
         self._kept: dict[Shrink, tuple[Surface, NDArray[np.float32] | None]] = {}
-        single = self.chain.movers[0] if len(self.chain.movers) == 1 else None
-        steady = single is not None and single.joint.type in _STEADY
-        about = 3 if single is not None and single.joint.type is JointType.BALL else 2
-        self.axis = Core(single.before, about) if single is not None and steady else None
+        self.axis = self._axis()
 
     def prove(self, *, most: int = MOST_PAIRS, tentative: bool = False) -> Proof:
         """Prove the whole range, or what of a single coordinate can be; a tentative proof ends at the first contact."""
@@ -158,6 +157,22 @@ class Prover:
             if radius < float(self.axis.radii(self.body_a.mesh.vertices).max()):
                 yield Shrink(self.allowed, radius)
         yield Shrink(self.allowed)
+
+    def _axis(self) -> Core | None:
+        """Return the axis or point about which the parts turn or slide, as a sees it; None where several joints have none in common."""
+        movers = self.chain.movers
+        if len(movers) == 1 and movers[0].joint.type in _STEADY:
+            return Core(movers[0].before, 3 if movers[0].joint.type is JointType.BALL else 2)
+        if not movers or any(mover.joint.type is not JointType.SLIDER for mover in movers):
+            return None
+        ways = self._ways()
+        return Core(movers[0].before) if np.linalg.norm(np.cross(ways, ways[0]), axis=1).max() <= PARALLEL else None
+
+    def _ways(self) -> FloatArray:
+        """Return the directions in which sliders, with nothing that turns between them, carry b as a sees it, `(movers, 3)`."""
+        turned = itertools.accumulate((mover.before[:3, :3] for mover in self.chain.movers), np.matmul)
+        signs = [1.0 if mover.forward else -1.0 for mover in self.chain.movers]
+        return np.array([sign * R[:, 2] for R, sign in zip(turned, signs, strict=True)])
 
     @property
     def is_line(self) -> bool:
@@ -213,13 +228,13 @@ class Prover:
 
     def search_over(self, boxes: Boxes, shrink: Shrink, most: int = MOST_PAIRS) -> Cleared:
         """Keep the surfaces apart over boxes."""
-        a, b = self._surfaces(shrink)
+        a, b = self.forests(shrink)
         needed = self.margin + CLAIM_SLACK_MM
         outcome = clear(a, b, boxes, needed, axis=self.axis, epsilon=self.epsilon, budget=self.budget, most=most)
         outcome.course = boxes
         return outcome
 
-    def _surfaces(self, shrink: Shrink) -> tuple[Forest, Forest]:
+    def forests(self, shrink: Shrink) -> tuple[Forest, Forest]:
         """Return trees over both surfaces, with their outlines where a single joint lies between the two."""
         if shrink not in self._forests:
             a, b = self._surface(shrink)[0], whole_surface(self.body_b.mesh)
@@ -227,14 +242,17 @@ class Prover:
             if self.axis is None:
                 self._forests[shrink] = Forest.plain(a), Forest.plain(b)
             else:
-                self._forests[shrink] = Forest.pair(a, b, *self._outlines(self.axis, a, b))
+                weight = SLIDING_WEIGHT if self.chain.movers[0].joint.type is JointType.SLIDER else WEIGHT
+                self._forests[shrink] = Forest.pair(a, b, *self._outlines(self.axis, a, b), weight)
         return self._forests[shrink]
 
     def _outlines(self, axis: Core, a: Surface, b: Surface) -> tuple[Ends, Ends, FloatArray]:
         """Return what of two surfaces the joint between them keeps, and by how much it is to be apart."""
         mover, needed = self.chain.movers[0], self.margin + 2 * CLAIM_SLACK_MM
-        turns, core_b = mover.joint.type is not JointType.SLIDER, Core(np.asarray(np.linalg.inv(self.chain.last)), axis.dimensions)
-        of_a, of_b = outline(axis, a.corners, turns=turns), outline(core_b, b.corners, self.travel(mover), turns=turns)
+        frame_b = np.asarray(np.linalg.solve(self.chain.matrix(np.zeros(len(self.bounds))), axis.frame))  # where all coordinates are 0
+        turns, core_b = mover.joint.type is not JointType.SLIDER, Core(frame_b, axis.dimensions)
+        travel = self.travel(mover) if turns else self.slid()
+        of_a, of_b = outline(axis, a.corners, turns=turns), outline(core_b, b.corners, travel, turns=turns)
         limit = np.full(of_a[0].shape[1], needed)
         if axis.dimensions == 2:
             return of_a, of_b, limit
@@ -242,10 +260,21 @@ class Prover:
         of_a, of_b = _beside(of_a, leaning(axis, a.corners, 0.0, 0.0)), _beside(of_b, leaning(core_b, b.corners, cone, needed))
         return of_a, of_b, np.append(limit, 0.0)
 
+    def slid(self) -> tuple[float, float]:
+        """Return how far sliders along one line together carry b along the axis, as a sees it [mm]."""
+        ways = self._ways()
+        ends = [
+            sorted(float(way @ ways[0]) * end for end in self.ends(mover.columns[0]))
+            for mover, way in zip(self.chain.movers, ways, strict=True)
+        ]
+        sign = 1.0 if self.chain.movers[0].forward else -1.0
+        low, high = sorted(sign * sum(side) for side in zip(*ends, strict=True))
+        return low, high
+
     def travel(self, mover: Mover) -> tuple[float, float]:
         """Return how far a joint about an axis carries b along its axis, as a sees it [mm]."""
         match mover.joint.type:
-            case JointType.CYLINDRICAL | JointType.SLIDER:
+            case JointType.CYLINDRICAL:
                 pitch = 1.0
             case JointType.SCREW:
                 pitch = mover.joint.lead / (2 * np.pi)
@@ -322,7 +351,7 @@ class Prover:
         chain, (_, moved) = self.chain, self._surface(shrink)
         assert outcome.trail is not None
         assert outcome.course is not None
-        boxes, forests = outcome.course, self._surfaces(shrink)
+        boxes, forests = outcome.course, self.forests(shrink)
         about = np.full((2, 3), np.nan)
         if self.axis is not None:
             about = np.stack([self.axis.frame[:3, 3], self.axis.frame[:3, 2] * (self.axis.dimensions == 2)])

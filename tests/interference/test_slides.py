@@ -1,0 +1,211 @@
+"""Sliding members: what slides along lines is proven without a cut in its range, and what it meets at the end of travel is found."""
+
+from __future__ import annotations
+
+import itertools
+import math
+
+import manifold3d as m3
+import numpy as np
+import pytest
+
+from articad.connectors import SE3
+from articad.geometry import TriMesh
+from articad.interference.certificate import certify
+from articad.interference.clearing import Ranges, Slides, clear
+from articad.interference.motion import Chain, Route
+from articad.interference.profile import Forest
+from articad.interference.proof import NO_SHRINK, Prover
+from articad.interference.scene import Scene
+from articad.interference.spread import Spread
+from articad.interference.surface import whole_surface
+from articad.interference.work import PIECES_PER_SECOND, Budget
+from articad.kinematics.joints import Joint
+from tests.interference.mechanisms import joint, manifold_mesh, random_rotation, verified
+from tests.interference.slides import cabinet
+
+CASES = 22  # pairs of parts that move against each other
+MOST_WORK = 5 * PIECES_PER_SECOND
+NEEDED = 1e-3  # mm
+
+
+# --- the drawer on two telescopic slides
+
+
+@pytest.mark.parametrize(
+    ("segments", "turned", "closing"), [(0, None, "tree"), (32, None, "tree"), (32, 3, "tree"), (8, None, "both"), (8, 1, "both")]
+)
+def test_a_telescopic_slide_is_proven_with_little_work(segments: int, turned: int | None, closing: str) -> None:
+    drawer = cabinet(segments, turned=turned, closing=closing)
+    certificate = certify(drawer.meshes, drawer.mechanism)
+    assert certificate.ok, str(certificate.findings)
+    assert len(certificate.pairs) == CASES
+    assert certificate.work < MOST_WORK
+    assert verified(certificate.to_json(), certificate) == []
+
+
+@pytest.mark.parametrize("turned", [None, 2])
+def test_a_lip_that_is_too_thick_at_the_end_of_travel_is_refused(turned: int | None) -> None:
+    drawer = cabinet(8, turned=turned, closing="tree", too_thick=0.05)
+    certificate = certify(drawer.meshes, drawer.mechanism)
+    assert not certificate.ok
+    (finding,) = certificate.findings.of("E_MOTION_COLLISION")
+    assert set(finding.parts) == {"outer_left", "inner_left"}
+    assert finding.value == pytest.approx(0.05, abs=1e-3)
+    assert not any(set(claim.parts) == {"outer_left", "inner_left"} for claim in certificate.claims)
+    assert certificate.work < MOST_WORK
+
+
+@pytest.mark.parametrize("turned", [None, 2])
+def test_a_lip_that_just_passes_is_proven(turned: int | None) -> None:
+    drawer = cabinet(8, turned=turned, closing="tree", too_thick=-0.05)
+    certificate = certify(drawer.meshes, drawer.mechanism)
+    assert certificate.ok, str(certificate.findings)
+    assert verified(certificate.to_json(), certificate) == []
+
+
+def test_boxes_of_what_slides_hold_their_triangles() -> None:
+    drawer = cabinet(8, closing="tree")
+    parts, joints = ("outer_left", "middle_left"), [drawer.joints[2]]
+    prover = Prover(Scene.of(drawer.meshes, joints), Route(parts, tuple(joints)), ["left_1"])
+    for forest in prover.forests(NO_SHRINK):
+        tree = forest.tree
+        for node in range(len(tree.centre)):
+            corners = tree.corners[tree.order[tree.start[node] : tree.start[node] + tree.size[node]]]
+            assert (np.abs(corners - tree.centre[node]) <= tree.half[node]).all()
+
+
+# --- random bodies on random slides, against the gap of the swept hull
+
+
+def sliders(rng: np.random.Generator, ways: int, *, more: int) -> list[Joint]:
+    """Return sliders in a row along a few random lines, some along the same one, their parts' frames turned at random."""
+    along = [random_rotation(rng) for _ in range(ways)]
+    chosen = [*range(ways), *rng.integers(ways, size=more).tolist()]
+    own = [random_rotation(rng) for _ in range(len(chosen) + 1)]
+    found = []
+    for at, which in enumerate(chosen):
+        low, high = sorted(rng.uniform(-20.0, 20.0, size=2).tolist())
+        parent, child = (at, at + 1) if rng.random() < 0.5 else (at + 1, at)
+        frames = [own[part].inverse() @ along[which] for part in (parent, child)]
+        found.append(
+            joint(f"s{at}", "slider", f"p{parent}", f"p{child}", at_parent=frames[0], at_child=frames[1], lower=(low,), upper=(high,))
+        )
+    return found
+
+
+def body(rng: np.random.Generator) -> m3.Manifold:
+    """Return a convex body of a few corners."""
+    return m3.Manifold.hull_points(rng.uniform(-6.0, 6.0, size=(int(rng.integers(4, 9)), 3)))
+
+
+def swept(solid: m3.Manifold, chain: Chain) -> m3.Manifold:
+    """Return the hull of a convex body at all corners of a range: where it slides, as the chain's first part sees it."""
+    corners = [chain.matrix(values)[:3] for values in itertools.product(*((f.lower, f.upper) for f in chain.freedoms))]
+    return m3.Manifold.batch_hull([solid.transform(T) for T in corners])
+
+
+def drawn(seed: int) -> tuple[m3.Manifold, m3.Manifold, Chain, np.ndarray]:
+    """Return two bodies on random slides, and a way for the first that ends where it just touches what the second sweeps."""
+    rng = np.random.default_rng(seed)
+    joints = sliders(rng, 1 + seed % 2, more=seed // 2 % 2)
+    parts = tuple(f"p{at}" for at in range(len(joints) + 1))
+    chain = Chain(Route(parts, tuple(joints)), [j.name for j in joints], proving=True)
+    a, b = body(rng), body(rng)
+    way = swept(b, chain)
+    low, high = np.array(way.bounding_box()).reshape(2, 3)
+    start, end = rng.normal(size=3) * 200.0, rng.uniform(low, high)
+    apart, meets = 0.0, 1.0  # shares of the way from start to end: bisected to where they touch
+    for _ in range(45):
+        middle = (apart + meets) / 2
+        hits = float((a.translate(start + middle * (end - start)) ^ way).volume()) > 0
+        apart, meets = (apart, middle) if hits else (middle, meets)
+    return a.translate(start + apart * (end - start)), b, chain, (end - start) / np.linalg.norm(end - start)
+
+
+def search(mesh_a: TriMesh, mesh_b: TriMesh, chain: Chain, bounds: np.ndarray, *, most: int = 8_000) -> tuple[bool, int]:
+    """Return whether two bodies are kept apart over a range, and in how many boxes."""
+    a, b = (Forest.plain(whole_surface(mesh)) for mesh in (mesh_a, mesh_b))
+    boxes = Ranges(Spread(chain), bounds)
+    found = clear(a, b, boxes, NEEDED, epsilon=1e-3, budget=Budget(math.inf), most=most)
+    return found.is_complete, len(boxes.spread)
+
+
+def compared(seeds: range) -> int:
+    """Compare the search with the gap of the swept hull, a little before and behind the place where they touch; return how many apart."""
+    apart = 0
+    for seed in seeds:
+        a, b, chain, towards = drawn(seed)
+        way, mesh_b, bounds = swept(b, chain), manifold_mesh(b), np.array([(f.lower, f.upper) for f in chain.freedoms])
+        for step in (-0.05, -0.01, 0.01, 0.05):
+            there = a.translate(step * towards)
+            complete, boxes = search(manifold_mesh(there), mesh_b, chain, bounds)
+            if float((there ^ way).volume()) > 0:
+                assert not complete, (seed, step)
+            elif there.min_gap(way, 1.0) > 2 * NEEDED:
+                apart += 1
+                assert (complete, boxes) == (True, 1), (seed, step)  # one box: the range is not cut
+    return apart
+
+
+def test_random_slides_are_proven_in_one_box_exactly_where_the_swept_hull_keeps_apart() -> None:
+    assert compared(range(10)) >= 10
+
+
+@pytest.mark.soak
+def test_many_random_slides_are_proven_in_one_box_exactly_where_the_swept_hull_keeps_apart() -> None:
+    assert compared(range(1000, 2000)) >= 1000
+
+
+# --- bounds of motion, against dense samples
+
+
+def mixed(rng: np.random.Generator) -> Chain:
+    """Return a chain of random joints that slide, turn and screw, crossed either way."""
+    kinds = rng.choice(["slider", "revolute", "cylindrical", "screw", "planar"], size=int(rng.integers(1, 4)))
+    joints = []
+    for at, kind in enumerate(kinds.tolist()):
+        forth = rng.random() < 0.5
+        names = (f"p{at}", f"p{at + 1}") if forth else (f"p{at + 1}", f"p{at}")
+        frames = [SE3.from_translation(rng.uniform(-30, 30, size=3)) @ random_rotation(rng) for _ in range(2)]
+        upper = (1.0,) * {"cylindrical": 2, "planar": 3}.get(kind, 1)
+        lower = tuple(-end for end in upper)
+        joints.append(joint(f"j{at}", kind, *names, at_parent=frames[0], at_child=frames[1], lower=lower, upper=upper, lead=4.0))
+    return Chain(Route(tuple(f"p{at}" for at in range(len(joints) + 1)), tuple(joints)), [j.name for j in joints], proving=True)
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_no_point_goes_further_than_its_bound(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    chain = mixed(rng)
+    spread = Spread(chain)
+    centre, half = rng.uniform(-1, 1, size=len(chain.freedoms)), 10.0 ** rng.uniform(-2, 0.3, size=len(chain.freedoms))
+    columns = [factor.column for _, factor in spread.factors]
+    box = spread.add(centre[None], half[columns][None])
+    points, u = rng.uniform(-40, 40, size=(20, 3)), rng.normal(size=(20, 6, 3))
+    u /= np.linalg.norm(u, axis=2, keepdims=True)
+    T = chain.matrix(centre)
+    here = points @ T[:3, :3].T + T[:3, 3]
+    rows = np.repeat(box, len(points))
+    bound = spread.first_order(rows, u, here, None).sum(axis=2) + spread.second_order(rows, u, here, np.zeros(len(points)))
+    signs = np.array(list(itertools.product((-1, 1), repeat=len(half))))
+    farthest = np.zeros_like(bound)
+    for share in [*signs, *rng.uniform(-1, 1, size=(800, len(half)))]:
+        T = chain.matrix(centre + share * half)
+        moved = points @ T[:3, :3].T + T[:3, 3] - here
+        farthest = np.maximum(farthest, np.abs(np.einsum("pdi,pi->pd", u, moved)))
+    assert (farthest <= bound + 1e-9).all()
+    assert np.median(bound / np.maximum(farthest, 1e-9)) < 100  # it is of some use, too
+
+
+def test_what_turns_or_slides_everywhere_has_no_directions_of_slides() -> None:
+    rng = np.random.default_rng(0)
+    for joints, expected in (
+        (sliders(rng, 2, more=1), True),
+        (sliders(rng, 3, more=0), False),
+        ([joint("r", "revolute", "p0", "p1")], False),
+    ):
+        chain = Chain(Route(tuple(f"p{at}" for at in range(len(joints) + 1)), tuple(joints)), [j.name for j in joints], proving=True)
+        spread = Spread(chain)
+        spread.add(chain.rest[None], np.ones((1, len(spread.factors))))
+        assert (Slides.of(spread, 0) is not None) == expected
