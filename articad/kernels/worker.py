@@ -35,7 +35,9 @@ Json = dict[str, Any]
 @dataclass
 class _Job:
     number: int
-    deadline: float
+    deadline: float  # of its first report; the kernel's own alarm comes before it
+    last: float  # of everything that follows a report, as the dimension probe does
+    report: int
     fault: int  # a pipe that says why the sandbox could not be put on; a script that runs has no hold of it
     late: bool = False
 
@@ -65,9 +67,16 @@ class Zygote:
                     os.read(self._wake, 4096)
             for pid, job in self._jobs.items():
                 if time.monotonic() > job.deadline:
-                    job.late, job.deadline = True, math.inf
-                    os.kill(pid, signal.SIGKILL)
+                    self._fence(pid, job)
             self._reap()
+
+    def _fence(self, pid: int, job: _Job) -> None:
+        """Kill a job that survived its own alarm; one that has reported by now has the time that is meant for what follows."""
+        if job.deadline < job.last and os.fstat(job.report).st_size:
+            job.deadline = job.last
+            return
+        job.late, job.deadline = True, math.inf
+        os.kill(pid, signal.SIGKILL)
 
     def kill_all(self) -> None:
         """Kill every job, and every process that a job left behind."""
@@ -91,11 +100,12 @@ class Zygote:
             return True
         if pid == 0:
             self._become(request, dict(zip(request["files"], files, strict=True)), parent, faulty)
+        report = os.dup(files[request["files"].index("report")])
         for file in (*files, faulty):
             os.close(file)
         limits = request["limits"]
-        deadline = time.monotonic() + limits["seconds"] + limits["probe_seconds"] + FENCE_SECONDS
-        self._jobs[pid] = _Job(request["id"], deadline, fault)
+        deadline = time.monotonic() + limits["seconds"] + FENCE_SECONDS
+        self._jobs[pid] = _Job(request["id"], deadline, deadline + limits["probe_seconds"], report, fault)
         return True
 
     def _become(self, request: Json, files: dict[str, int], parent: int, faulty: int) -> NoReturn:
@@ -130,6 +140,7 @@ class Zygote:
                 os.kill(orphan, signal.SIGKILL)
             job = self._jobs.pop(pid, None)
             if job is not None:
+                os.close(job.report)
                 answer: Json = {"id": job.number, "status": status, "late": job.late, "peak": usage.ru_maxrss * 1024}
                 answer["unconfined"] = _last_words(job.fault)
                 self._control.send(json.dumps(answer).encode())

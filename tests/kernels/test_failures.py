@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import time
 from typing import Any
 
 import pytest
@@ -11,7 +12,7 @@ from articad.errors import BuildError
 from articad.kernels.build123d import Build123dKernel
 from articad.kernels.results import read_mesh
 from articad.kernels.sandbox import Limits
-from tests.kernels.conftest import HEAD, Build
+from tests.kernels.conftest import HEAD, Build, kernel_of_its_own
 
 FIRST = len(HEAD.splitlines()) + 1  # line of the body's first line
 
@@ -100,6 +101,19 @@ def test_a_script_that_does_not_end_is_stopped_and_told_where_it_was(build: Buil
 def test_a_script_that_defies_the_alarm_is_stopped_all_the_same(build: Build, hasty: Build123dKernel) -> None:
     body = "import signal\nsignal.setitimer(signal.ITIMER_REAL, 0)\nsignal.signal(signal.SIGALRM, signal.SIG_IGN)\nwhile True:\n    pass"
     assert failure(build, body, with_kernel=hasty).findings.codes == ("E_SCRIPT_TIMEOUT",)
+
+
+def test_a_script_that_defies_the_alarm_does_not_get_the_time_of_the_probe(build: Build) -> None:
+    body = "import signal\nsignal.signal(signal.SIGALRM, signal.SIG_IGN)\nwhile True:\n    pass"
+    kernel = kernel_of_its_own(timeout=1.0, probe_timeout=90.0)
+    kernel.warm_up()
+    started = time.monotonic()
+    try:
+        error = failure(build, body, with_kernel=kernel, probe=True)
+    finally:
+        kernel.close()
+    assert (error.findings.codes, error.findings[0].limit) == (("E_SCRIPT_TIMEOUT",), 1.0)
+    assert time.monotonic() - started < 60.0  # it was 93 s
 
 
 @pytest.mark.parametrize("body", ["x = bytearray(3 << 30)", "x = 'x' * (1 << 40)", "x = [bytes(1 << 28) for _ in range(99)]"])
