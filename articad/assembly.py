@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Literal, Self
@@ -17,8 +17,9 @@ from articad.errors import LimitError, PlanError, UnknownJointError
 from articad.findings import Findings
 from articad.geometry.mesh import TriMesh
 from articad.geometry.part import MassProperties, Part
-from articad.interference.certificate import DEFAULT_BUDGET_S, DEFAULT_EPSILON_MM, Certificate, certify
+from articad.interference.certificate import DEFAULT_BUDGET_S, DEFAULT_EPSILON_MM, Certificate, certify, constrained_joints
 from articad.interference.check import Checks, check_pose
+from articad.interference.fits import CERTIFIED_PAIRS, PROOF_PAIRS, FitReport, certified_fits, check_fits, followed
 from articad.interference.scene import Scene
 from articad.interference.sweep import sweep
 from articad.kernels.build123d import Build123dKernel
@@ -357,14 +358,14 @@ class Assembly:
     # ------------------------------------------------------------------ what is true of it
 
     def check(self, q: ArrayLike | None = None) -> Checks:
-        """Check one pose for overlap, floating parts, fits and broken meshes.
+        """Check one pose for overlap, floating parts and broken meshes; at rest the declared fits, too, also over their motion.
 
         Args:
             q: Configuration `(nq,)` [rad, mm]; the rest pose by default.
         """
         at_rest = q is None
         poses = self.poses(self.mechanism.rest if q is None else q)
-        return check_pose(
+        checks = check_pose(
             self._meshes(),
             dict(Poses(self.mechanism.parts, poses)),
             joints=self.joints,
@@ -374,9 +375,12 @@ class Assembly:
             fits=self.fits,
             ground=self.ground,
         )
+        return self._with_fits(checks) if at_rest else checks
 
     def sweep(self, joints: Sequence[str] | None = None, *, steps: int = 60, together: bool = False, samples: int = 0) -> Checks:
         """Sample the motion of every driver over its range, the others at rest; a sample proves nothing between two poses.
+
+        Declared fits are held over the motion of their joints, too; each row of `fits` says whether that is proven or sampled.
 
         Args:
             joints: Names of the joints to move; all that drive by default.
@@ -384,7 +388,7 @@ class Assembly:
             together: Whether to move every two coordinates on a grid as well.
             samples: Further poses, scattered over all coordinates at once.
         """
-        return sweep(
+        checks = sweep(
             self._meshes(),
             self.mechanism,
             joints=joints,
@@ -395,6 +399,7 @@ class Assembly:
             deflection=self._deflections(),
             fits=self.fits,
         )
+        return self._with_fits(checks, joints)
 
     def certify(
         self,
@@ -406,13 +411,15 @@ class Assembly:
     ) -> Certificate:
         """Prove that no parts meet while joints move over their whole ranges; what the budget does not suffice for is "not checked".
 
+        Declared fits are proven, too. A fit that only samples speak for is `W_NOT_CERTIFIED`, which is not ok.
+
         Args:
             joints: Names of the joints to be proven; all that move by default.
             pairs: Whether joints are also moved two at a time.
             epsilon: Distances up to here are contact [mm].
             budget: Nominal seconds of work, the same work on every machine; what is not proven by then is "not checked", which is not ok.
         """
-        return certify(
+        certificate = certify(
             self._meshes(),
             self.mechanism,
             joints=joints,
@@ -423,6 +430,11 @@ class Assembly:
             waivers=self.waivers,
             fits=self.fits,
         )
+        if not self.fits:
+            return certificate
+        fits = certified_fits(self._held_fits(joints, certificate.spans, pairs=CERTIFIED_PAIRS))
+        claims = (*certificate.claims, *fits.claims)
+        return replace(certificate, findings=certificate.findings + fits.findings, claims=claims, fits=fits.rows)
 
     def mass(self, q: ArrayLike | None = None) -> MassProperties:
         """Return mass, centre of mass and inertia of the whole in the ground frame; parts without mass count as massless.
@@ -468,6 +480,21 @@ class Assembly:
     def scene(self) -> Scene:
         """Return bodies, relations and fits, for measurements of interference beyond `check`, `sweep` and `certify`."""
         return Scene.of(self._meshes(), self.joints, waivers=self.waivers, deflection=self._deflections(), fits=self.fits)
+
+    def _with_fits(self, checks: Checks, joints: Sequence[str] | None = None) -> Checks:
+        if not self.fits:
+            return checks
+        fits = self._held_fits(joints)
+        return replace(checks, findings=checks.findings + fits.findings, fits=fits.rows)
+
+    def _held_fits(
+        self, joints: Sequence[str] | None, spans: Mapping[str, tuple[float, float]] | None = None, *, pairs: int = PROOF_PAIRS
+    ) -> FitReport:
+        """Hold the fits of some joints, and of those that move with them in loops and couplings; of all by default."""
+        if joints is not None:
+            tied = constrained_joints(self.mechanism)
+            joints = [*joints, *(sorted(tied) if tied & set(joints) else ())]
+        return check_fits(self.scene(), lambda: followed(self.mechanism), proven=spans, joints=joints, pairs=pairs)
 
     def _meshes(self) -> dict[str, TriMesh]:
         return {name: mesh for name, part in self.parts.items() if (mesh := part.mesh) is not None}

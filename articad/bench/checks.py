@@ -24,7 +24,7 @@ from articad.bench.shape_checks import Holds, Holes, Stands, Studs, Symmetric, V
 from articad.bench.subject import Subject
 from articad.connectors import FloatArray
 from articad.interference.captivity import escapes
-from articad.interference.fits import Gauge
+from articad.interference.gauge import Gauge
 from articad.kinematics.joints import Joint, JointType
 from articad.plan.fields import Form
 from articad.plan.resolve import Fit

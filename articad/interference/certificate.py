@@ -30,7 +30,7 @@ from articad.interference.motion import Route, Values, freedoms, proven_freedoms
 from articad.interference.overlap import NOTHING, Overlap, overlap
 from articad.interference.proof import Proof, Prover, beyond
 from articad.interference.relations import FitLike, WaiverLike
-from articad.interference.report import PairCheck, Strength, rounded
+from articad.interference.report import PairCheck, Row, Strength, rounded
 from articad.interference.scene import Scene
 from articad.interference.surface import Surface, surface_distance, whole_surface
 from articad.interference.verdict import judge
@@ -92,6 +92,8 @@ class Certificate:
         work: Units of work spent, the same on every machine; `articad.interference.work`.
         seconds: Time by the clock.
         followed: Pieces of the drivers' ranges, as arrays that a checker reads.
+        fits: Declared fits against what was measured and proven, in the order of the joints.
+        spans: Between which values each coordinate that follows is proven to stay [rad or mm].
     """
 
     findings: Findings
@@ -109,6 +111,8 @@ class Certificate:
     work: int = 0
     seconds: float = 0.0
     followed: Mapping[str, Any] = field(default_factory=dict)
+    fits: tuple[Row, ...] = ()
+    spans: Mapping[str, tuple[float, float]] = field(default_factory=dict)
 
     @property
     def ok(self) -> bool:
@@ -135,6 +139,7 @@ class Certificate:
                 for r in self.ranges
             ],
             "claims": [claim.to_json() for claim in self.claims],
+            "fits": [row.to_json() for row in self.fits],
         }
 
     def mesh_files(self) -> dict[str, bytes]:
@@ -250,6 +255,7 @@ class _Certifying:
             self.budget.work,
             self.budget.elapsed,
             {key: array for way in self._ways.values() if not isinstance(way, str) for key, array in way.arrays().items()},
+            spans=self._spans(),
         )
 
     def _with_drivers(self) -> Sequence[str] | None:
@@ -262,6 +268,15 @@ class _Certifying:
             if {self._checker.freedoms[name]["joint"] for name in group} & set(asked) - driving:
                 asked += sorted(driving - set(asked))
         return asked
+
+    def _spans(self) -> dict[str, tuple[float, float]]:
+        """Return between which values each coordinate stays that follows a driver, over all that could be followed."""
+        spans: dict[str, tuple[float, float]] = {}
+        for way in self._ways.values():
+            for name, (low, high) in ({} if isinstance(way, str) else way.spans()).items():
+                known = spans.get(name, (low, high))
+                spans[name] = min(low, known[0]), max(high, known[1])
+        return spans
 
     def _moving(self) -> list[str]:
         return [joint.name for joint in self.mechanism.joints if freedoms(joint) and self._is_asked(joint.name)]

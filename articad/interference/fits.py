@@ -1,37 +1,57 @@
 """Fits: what a joint declares about the gap between its two parts, held against what is measured.
 
-The gap is the smallest distance of the two surfaces, near the joint's axis only if the fit says so. The upper bound holds at
-rest, the lower one over the whole motion of the joint, which is sampled. Meshes may be off by their deflection either way, so a
-fit is called broken only beyond that.
+The lower bound holds over the whole motion of the joint. It is proven where that succeeds, and sampled elsewhere; each row says which.
+The upper bound is held against the play at rest (`articad.interference.gauge`). Meshes may be off by their deflection either way, so a
+fit is called broken only beyond that. Definitions: `docs/reference/plan.md`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
-from articad.connectors.se3 import SE3
-from articad.errors import InvalidSolidError
 from articad.findings import Finding, Findings
-from articad.interference.motion import freedoms, motion_matrix
-from articad.interference.overlap import VOLUME_NOISE_MM3, overlap
+from articad.interference.claims import Claim
+from articad.interference.cover import Budget
+from articad.interference.gauge import Gauge
+from articad.interference.motion import ENDLESS_SLIDE_MM, Freedom, Route, freedoms, scattered
+from articad.interference.overlap import NOTHING
+from articad.interference.profile import Forest
+from articad.interference.proof import NO_SHRINK, Prover, Shrink
 from articad.interference.relations import FitLike
-from articad.interference.report import rounded
+from articad.interference.report import Strength, rounded
 from articad.interference.scene import Scene
-from articad.interference.surface import Core, Surface, split_by_radius, surface_distance
 from articad.kinematics.joints import Joint, JointType
+from articad.kinematics.mechanism import Mechanism
 
-FloatArray = NDArray[np.float64]
+__all__ = [
+    "CERTIFIED_PAIRS",
+    "CONTACT_MM",
+    "PROOF_PAIRS",
+    "FitCheck",
+    "FitReport",
+    "FitVerdict",
+    "Gauge",
+    "certified_fits",
+    "check_fits",
+    "followed",
+]
 
 STEPS = 24  # poses per coordinate at which the gap is measured in motion
 CONTACT_MM = 0.02  # surfaces this close touch, beyond the deflection of their meshes
-_EDGE_SHARE = 0.1  # of `within`: longest edge of triangles left crossing it
+EPSILON_MM = 1e-4  # a gap that exceeds what is to be proven by no more counts as contact in the search
+PROOF_PAIRS = 250_000  # of pieces of surface, for each attempt at a proof
+CERTIFIED_PAIRS = 2_000_000  # the same, for a certificate
+ENDLESS_SAMPLED_MM = 100.0  # either way of rest, of what slides without limits
+_FOLLOWED = 61  # poses of each driver's range: a turn in steps of 6°, its half included
 
 FitVerdict = Literal["ok", "tight", "loose", "contact", "apart", "not_checked"]
+Span = Mapping[str, tuple[float, float]]
 
 
 @dataclass(frozen=True)
@@ -43,9 +63,12 @@ class FitCheck:
         parts: Its two parts.
         declared: The fit.
         rest: Gap at rest [mm]; negative is the depth of an overlap. None when it could not be measured.
-        least: Smallest gap over the motion [mm].
-        at: Where the smallest gap is [rad, mm].
+        least: Smallest gap that was measured over the motion [mm].
+        at: Where the smallest gap is [rad, mm]; None at rest.
         verdict: "ok"; "tight" or "loose"; "contact" where it is forbidden; "apart" where contact is required; or "not_checked".
+        play: At rest, whatever the place of the pin in its hole [mm]; None where nothing stops the child, or where it is not asked for.
+        tolerance: How far both meshes together may be from their solids [mm].
+        strength: How the lower bound is known over the motion.
     """
 
     joint: str
@@ -55,6 +78,9 @@ class FitCheck:
     least: float | None
     at: Mapping[str, float] | None
     verdict: FitVerdict
+    play: float | None = None
+    tolerance: float = 0.0
+    strength: Strength = field(default_factory=partial(Strength.sampled, 1))
 
     def to_json(self) -> dict[str, Any]:
         """Return a row of the table."""
@@ -66,6 +92,9 @@ class FitCheck:
             "rest_mm": rounded(self.rest),
             "least_mm": rounded(self.least),
             "at": None if self.at is None else {name: rounded(value) for name, value in self.at.items()},
+            "play_mm": rounded(self.play),
+            "tolerance_mm": rounded(self.tolerance),
+            "strength": self.strength.to_json(),
             "verdict": self.verdict,
         }
 
@@ -77,10 +106,12 @@ class FitReport:
     Attributes:
         findings: One per broken fit.
         rows: One per declared fit, in order.
+        claims: What is proven of them, for a certificate.
     """
 
     findings: Findings
     rows: tuple[FitCheck, ...]
+    claims: tuple[Claim, ...] = ()
 
     @property
     def ok(self) -> bool:
@@ -97,139 +128,323 @@ class FitReport:
         }
 
 
-def check_fits(scene: Scene, reached: Mapping[str, tuple[float, float]] | None = None) -> FitReport:
-    """Measure every declared fit of a scene.
+def check_fits(
+    scene: Scene,
+    reached: Span | Callable[[], Span] | None = None,
+    *,
+    proven: Span | None = None,
+    joints: Sequence[str] | None = None,
+    pairs: int = PROOF_PAIRS,
+    budget: Budget | None = None,
+) -> FitReport:
+    """Hold every declared fit of a scene against its parts, at rest and over the motion of its joint.
 
     Args:
         scene: Bodies and relations.
-        reached: How far coordinates go that follow others, by name [rad, mm]: a joint of a linkage need not reach its own limits.
+        reached: How far coordinates go that follow others, by name [rad, mm], or a function that finds it: a joint of a linkage need
+            not reach its own limits.
+        proven: The same, where it is proven that they go no further; asked before `reached`.
+        joints: Names of those to be held; all by default.
+        pairs: Pieces of surface that each proof may compare.
+        budget: Of all proofs together.
     """
     rows: list[FitCheck] = []
     findings: list[Finding] = []
+    claims: list[Claim] = []
     for joint in scene.relations.joints:
         fit = scene.fits.get(joint.name)
-        if fit is None:
+        if fit is None or (joints is not None and joint.name not in joints):
             continue
-        row, finding = _check_fit(scene, joint, fit, reached or {})
+        unable = [name for name in (joint.parent, joint.child) if name not in scene.bodies or name in scene.broken]
+        if unable:
+            reason = f"{' and '.join(unable)} {'have' if len(unable) > 1 else 'has'} no closed mesh"
+            strength = Strength.not_checked(reason)
+            rows.append(FitCheck(joint.name, (joint.parent, joint.child), fit, None, None, None, "not_checked", strength=strength))
+            findings.append(_unmeasured(joint, reason))
+            continue
+        held = _Held(scene, joint, fit, pairs, budget or Budget(math.inf))
+        row, finding = held.check(reached, proven or {})
         rows.append(row)
         findings += finding
-    return FitReport(Findings(findings), tuple(rows))
+        claims += held.claims
+    return FitReport(Findings(findings), tuple(rows), tuple(claims))
 
 
-def _check_fit(scene: Scene, joint: Joint, fit: FitLike, reached: Mapping[str, tuple[float, float]]) -> tuple[FitCheck, list[Finding]]:
-    parts = (joint.parent, joint.child)
-    unable = [name for name in parts if name not in scene.bodies or name in scene.broken]
-    if unable:
-        return FitCheck(joint.name, parts, fit, None, None, None, "not_checked"), [_unmeasured(joint, unable)]
-    gauge = Gauge(scene, joint, fit)
-    rest, least, where = gauge.rest(), *gauge.least(reached)
-    slack = scene.deflection_of(*parts)
-    verdict, value, limit = _verdict(fit, rest, least, slack)
-    row = FitCheck(joint.name, parts, fit, rest, least, where, verdict)
-    return row, [] if verdict == "ok" else [_finding(joint, verdict, value, limit, where if value == least != rest else None)]
+def certified_fits(report: FitReport) -> FitReport:
+    """Return a report that also names the fits for whose motion only samples speak."""
+    open_rows = [row for row in report.rows if row.verdict == "ok" and row.strength.kind == "sampled" and (row.strength.poses or 0) > 1]
+    return replace(report, findings=report.findings + Findings(_unproven(row) for row in open_rows))
 
 
-def _verdict(fit: FitLike, rest: float, least: float, slack: float) -> tuple[FitVerdict, float, float]:
-    touches = CONTACT_MM + slack
-    if fit.contact == "forbidden" and least <= slack:
-        return "contact", least, 0.0
-    if fit.contact == "required" and rest > touches:
-        return "apart", rest, touches
-    allowed = fit.contact in ("allowed", "required") and least >= -slack - CONTACT_MM
-    if fit.gap_min is not None and least < fit.gap_min - slack and not (allowed and least <= touches):
-        return "tight", least, fit.gap_min
-    if fit.gap_max is not None and rest > fit.gap_max + slack:
-        return "loose", rest, fit.gap_max
-    return "ok", least, 0.0
+def followed(mechanism: Mechanism) -> dict[str, tuple[float, float]]:
+    """Return how far each coordinate of a linkage goes while its drivers move, one at a time [rad, mm]; nothing for a tree.
+
+    These are samples of each driver's range.
+    """
+    if mechanism.is_tree:
+        return {}
+    rows = [mechanism.configuration(mechanism.rest).columns[None]]
+    for column, driver in enumerate(mechanism.drivers):
+        found = mechanism.feasible_range(driver.name)
+        q = np.repeat(np.array(mechanism.rest, dtype=np.float64)[None], _FOLLOWED, axis=0)
+        endless = ENDLESS_SAMPLED_MM if driver.unit == "mm" else math.pi
+        low = found.lower if math.isfinite(found.lower) else driver.rest - endless
+        high = found.upper if math.isfinite(found.upper) else driver.rest + endless
+        q[:, column] = np.linspace(low, high, _FOLLOWED)
+        rows.append(mechanism.configuration(q).columns)
+    every = np.concatenate(rows)
+    return {
+        c.name: (float(low), float(high)) for c, low, high in zip(mechanism.coordinates, every.min(axis=0), every.max(axis=0), strict=True)
+    }
 
 
-class Gauge:
-    """Measures the gap of one joint."""
+class _Held:
+    """One fit, held against its two parts."""
 
-    def __init__(self, scene: Scene, joint: Joint, fit: FitLike) -> None:
-        self.joint, self.fit = joint, fit
-        self.bodies = scene.bodies[joint.parent], scene.bodies[joint.child]
-        frames = joint.T_parent_connector, joint.T_child_connector
-        self.surfaces = [self._near_axis(body.mesh, frame) for body, frame in zip(self.bodies, frames, strict=True)]
+    def __init__(self, scene: Scene, joint: Joint, fit: FitLike, pairs: int, budget: Budget) -> None:
+        self.scene, self.joint, self.fit, self.pairs, self.budget = scene, joint, fit, pairs, budget
+        self.gauge = Gauge(scene, joint, fit)
+        self.slack = self.gauge.slack
+        self.moving = freedoms(joint)
+        self.claims: tuple[Claim, ...] = ()
 
-    def rest(self) -> float:
-        """Return the gap at rest [mm]; negative is a depth."""
-        return self.at([freedom.rest for freedom in freedoms(self.joint)])
+    @property
+    def touches(self) -> float:
+        """The gap up to which two parts are said to touch [mm]."""
+        return CONTACT_MM + self.slack
 
-    def least(self, reached: Mapping[str, tuple[float, float]]) -> tuple[float, dict[str, float] | None]:
-        """Return the smallest gap over the motion, one coordinate at a time, and where; `reached` replaces declared ranges."""
-        moving = freedoms(self.joint)
-        rest = [freedom.rest for freedom in moving]
-        least, where = self.at(rest), None
-        for column, freedom in enumerate(moving):
-            low, high = reached.get(freedom.name, (freedom.lower, freedom.upper))
-            for value in np.linspace(low, high, STEPS).tolist():
-                gap = self.at([*rest[:column], value, *rest[column + 1 :]])
-                if gap < least:
-                    least, where = gap, {freedom.name: value}
-        return least, where
+    @property
+    def may_touch(self) -> bool:
+        """True when the fit lets the parts touch, so that the gap has no lower bound but that of an overlap."""
+        return self.fit.contact in ("allowed", "required")
 
-    def at(self, values: list[float]) -> float:
-        """Return the gap at values of the joint's freedoms [mm]."""
-        joint = self.joint
-        J = motion_matrix(joint, values) if values else np.eye(4)
-        flip = np.diag([1.0, -1.0, -1.0, 1.0]) if joint.mate == "opposed" else np.eye(4)
-        T = joint.T_parent_connector.matrix @ J @ flip @ joint.T_child_connector.inverse().matrix
-        gap = surface_distance(self.surfaces[0], self.surfaces[1], T)
-        if gap > 0:
-            return gap
-        try:
-            found = overlap(self.bodies[0], self.bodies[1], SE3.from_matrix(T))
-        except InvalidSolidError:
-            return 0.0
-        return -found.depth if found.volume > VOLUME_NOISE_MM3 else 0.0
+    @property
+    def least_allowed(self) -> float | None:
+        """The gap below which the fit is broken over the motion [mm]; None where it says nothing. Negative is a depth."""
+        if self.may_touch:
+            return None if self.fit.gap_min is None else -self.touches
+        bounds = [] if self.fit.gap_min is None else [self.fit.gap_min - self.slack]
+        bounds += [self.slack] if self.fit.contact == "forbidden" else []
+        return max(bounds, default=None)
 
-    def _near_axis(self, mesh: Any, frame: SE3) -> Surface:
-        if self.fit.within is None:
-            return Surface.of(mesh)
-        from_point = self.joint.type in (JointType.BALL, JointType.FIXED)
-        core = Core(frame.matrix, 3 if from_point else 2)
-        inside, seam, _ = split_by_radius(mesh, core, self.fit.within, _EDGE_SHARE * self.fit.within)
-        return Surface(np.concatenate([inside.corners, seam.corners]))
+    def check(self, reached: Span | Callable[[], Span] | None, proven: Span) -> tuple[FitCheck, list[Finding]]:
+        """Return the row, and the finding if the fit is broken."""
+        rest = self.gauge.rest()
+        asked = self.fit.gap_max is not None or (self.fit.gap_min is not None and self.may_touch)
+        play = self.gauge.play() if asked and rest > -self.touches else None
+        row = FitCheck(self.joint.name, (self.joint.parent, self.joint.child), self.fit, rest, rest, None, "ok", play, self.slack)
+        verdict, value, limit = self._at_rest(rest, play)
+        if verdict != "ok":
+            return replace(row, verdict=verdict), [self._finding(verdict, value, limit, None, is_play=value == play)]
+        if self.least_allowed is None or not self.moving:
+            return row, []
+        seen = self._over(row, self.moving)
+        if not _is_proven(seen) and (inside := _within(self.moving, proven)) != self.moving:
+            seen = self._over(row, inside)
+        if seen.verdict != "ok" and reached is not None:  # it may be where the linkage never brings it
+            inside = _within(self.moving, reached() if callable(reached) else reached)
+            if inside != self.moving:
+                seen, self.claims = self._over(row, inside), ()
+                if _is_proven(seen):  # over a range that samples have shown
+                    seen = replace(seen, strength=Strength.sampled(_FOLLOWED))
+        if seen.verdict == "ok":
+            return seen, []
+        verdict, value, limit = self._in_motion(seen.least)
+        return seen, [self._finding(verdict, value, limit, seen.at)]
+
+    def _at_rest(self, rest: float, play: float | None) -> tuple[FitVerdict, float, float]:
+        """Return the verdict on the rest pose, with the number and the bound that decide."""
+        fit = self.fit
+        if fit.contact == "required" and rest > self.touches:
+            return "apart", rest, self.touches
+        verdict, value, limit = self._in_motion(rest)
+        if verdict != "ok":
+            return verdict, value, limit
+        if self.may_touch and fit.gap_min is not None and play is not None and play < fit.gap_min - self.slack:
+            return "tight", play, fit.gap_min
+        wide = rest if play is None else play
+        if fit.gap_max is not None and wide > fit.gap_max + self.slack:
+            return "loose", wide, fit.gap_max
+        return "ok", rest, 0.0
+
+    def _in_motion(self, gap: float | None) -> tuple[FitVerdict, float, float]:
+        assert gap is not None
+        fit = self.fit
+        if fit.contact == "forbidden" and gap <= self.slack:
+            return "contact", gap, 0.0
+        if fit.gap_min is not None and gap < (-self.touches if self.may_touch else fit.gap_min - self.slack):
+            return "tight", gap, 0.0 if self.may_touch else fit.gap_min
+        return "ok", gap, 0.0
+
+    def _over(self, row: FitCheck, moving: tuple[Freedom, ...]) -> FitCheck:
+        """Hold the lower bound over a range: by samples, which find what is plainly wrong, then by a proof."""
+        poses = 0
+        for values in _samples(moving):
+            poses += 1
+            row = self._nearer(row, values, moving)
+            if self._in_motion(row.least)[0] != "ok":
+                return replace(row, verdict=self._in_motion(row.least)[0], strength=Strength.sampled(poses))
+        if any(freedom.upper - freedom.lower >= ENDLESS_SLIDE_MM for freedom in moving):
+            return replace(row, strength=Strength.sampled(poses))
+        found = self._proven(row, moving)
+        return replace(row, strength=Strength.sampled(poses)) if found is None else found
+
+    def _nearer(self, row: FitCheck, values: Sequence[float], moving: tuple[Freedom, ...]) -> FitCheck:
+        assert row.rest is not None
+        assert row.least is not None
+        gap = self.gauge.nearer_than(max(row.rest - self.slack, self.least_allowed or 0.0, 0.0), list(values))
+        return replace(row, least=gap, at=_named(moving, values)) if gap < row.least else row
+
+    def _proven(self, row: FitCheck, moving: tuple[Freedom, ...]) -> FitCheck | None:
+        """Return the row with a proof or a pose where the fit is broken; None where neither was found."""
+        least = self.least_allowed
+        assert least is not None
+        for needed, off in ((least + 2 * self.slack, self.slack), (least, 2 * self.slack)) if self.slack else ((least, 0.0),):
+            prover = _FitProver(self, moving, max(needed, 0.0))
+            shrink = NO_SHRINK if needed > 0 else Shrink(max(-needed, EPSILON_MM))
+            if shrink.depth and self.fit.within is not None:
+                return None  # a cut surface has no inside to move it to
+            outcome = prover.search(prover.bounds, shrink, self.pairs)
+            if outcome.is_complete:
+                if self.fit.within is None and needed >= self.slack:
+                    self.claims = (prover.claim(NOTHING, prover.vary(prover.bounds), shrink, outcome),)
+                return replace(row, strength=Strength.certified(off))
+            if outcome.out_of_budget:
+                return None
+            if outcome.contact is not None and self._is_within(prover, outcome.contact):
+                gap = self.gauge.between(prover.chain.matrix(outcome.contact))
+                pose = prover.pose(outcome.contact)
+                if gap < (math.inf if row.least is None else row.least):
+                    row = replace(row, least=gap, at=pose)
+                verdict = self._in_motion(gap)[0]
+                if verdict != "ok":
+                    return replace(row, verdict=verdict, strength=Strength.sampled(1))
+        return None
+
+    def _is_within(self, prover: _FitProver, values: Sequence[float]) -> bool:
+        """Return whether a pose of the search is one of the joint: a ball is proven over a little more than its limits."""
+        if self.joint.type is not JointType.BALL:
+            return True
+        sx, sy, twist = prover.pose(values).values()
+        cone, last = self.moving[0].upper, self.moving[2]
+        return math.hypot(sx, sy) <= cone and last.lower <= twist <= last.upper
+
+    def _finding(
+        self, verdict: FitVerdict, value: float, limit: float, where: Mapping[str, float] | None, *, is_play: bool = False
+    ) -> Finding:
+        a, b = self.joint.parent, self.joint.child
+        kind = "play" if is_play else "gap"
+        measured = f"the {kind} of {a} and {b} is {value:.4g} mm" if value >= 0 else f"{a} and {b} overlap {-value:.4g} mm deep"
+        code, message, hint = {
+            "tight": (
+                "E_FIT_TIGHT",
+                f"{measured}, less than {limit:g} mm",
+                f"Widen the gap by {limit - value:.4g} mm: enlarge the bore or thin the pin.",
+            ),
+            "loose": (
+                "E_FIT_LOOSE",
+                f"{measured} at rest, more than {limit:g} mm",
+                f"Narrow the gap by {value - limit:.4g} mm: narrow the bore or thicken the pin.",
+            ),
+            "contact": ("E_FIT_CONTACT", f"{measured}, but contact is forbidden", "Move the two surfaces apart."),
+            "apart": ("E_FIT_CONTACT", f"{measured}, but contact is required", f"Bring the two surfaces {value:.4g} mm closer."),
+        }[verdict]
+        place = "" if not where else " at " + ", ".join(f"{name} = {q:.4g}" for name, q in where.items())
+        return Finding(
+            code=code,
+            where=f"joints.{self.joint.name}.fit",
+            parts=(a, b),
+            message=f"Joint {self.joint.name!r}: {message}{place}.",
+            hint=hint,
+            value=value,
+            limit=limit,
+            unit="mm",
+            pose=where,
+        )
 
 
-def _finding(joint: Joint, verdict: FitVerdict, value: float, limit: float, where: Mapping[str, float] | None) -> Finding:
-    a, b = joint.parent, joint.child
-    measured = f"the gap of {a} and {b} is {value:.4g} mm" if value >= 0 else f"{a} and {b} overlap {-value:.4g} mm deep"
-    code, message, hint = {
-        "tight": (
-            "E_FIT_TIGHT",
-            f"{measured}, less than {limit:g} mm",
-            f"Widen the gap by {limit - value:.4g} mm: enlarge the bore or thin the pin.",
-        ),
-        "loose": (
-            "E_FIT_LOOSE",
-            f"{measured} at rest, more than {limit:g} mm",
-            f"Narrow the gap by {value - limit:.4g} mm: narrow the bore or thicken the pin.",
-        ),
-        "contact": ("E_FIT_CONTACT", f"{measured}, but contact is forbidden", "Move the two surfaces apart."),
-        "apart": ("E_FIT_CONTACT", f"{measured}, but contact is required", f"Bring the two surfaces {value:.4g} mm closer."),
-    }[verdict]
-    place = "" if not where else " at " + ", ".join(f"{name} = {q:.4g}" for name, q in where.items())
-    return Finding(
-        code=code,
-        where=f"joints.{joint.name}.fit",
-        parts=(a, b),
-        message=f"Joint {joint.name!r}: {message}{place}.",
-        hint=hint,
-        value=value,
-        limit=limit,
-        unit="mm",
-        pose=where,
+class _FitProver(Prover):
+    """Proves that the two parts of a joint keep a gap while that joint moves."""
+
+    def __init__(self, held: _Held, moving: tuple[Freedom, ...], gap: float) -> None:
+        joint = held.joint
+        super().__init__(held.scene, Route((joint.parent, joint.child), (joint,)), (joint.name,), epsilon=EPSILON_MM, budget=held.budget)
+        self.margin = gap
+        if joint.type is not JointType.BALL:
+            self.bounds = np.array([(freedom.lower, freedom.upper) for freedom in moving]).reshape(-1, 2)
+        self.within = None if held.fit.within is None else held.gauge.surfaces
+
+    def _surfaces(self, shrink: Shrink) -> tuple[Forest, Forest]:
+        if self.within is None:
+            return super()._surfaces(shrink)
+        if shrink not in self._forests:
+            a, b = self.within
+            self._forests[shrink] = (
+                (Forest.plain(a), Forest.plain(b)) if self.axis is None else Forest.pair(a, b, *self._outlines(self.axis, a, b))
+            )
+        return self._forests[shrink]
+
+
+def _is_proven(row: FitCheck) -> bool:
+    return row.verdict == "ok" and row.strength.kind == "certified"
+
+
+def _within(moving: tuple[Freedom, ...], spans: Span) -> tuple[Freedom, ...]:
+    """Return freedoms over the part of their ranges that lies within spans."""
+    return tuple(
+        f._replace(lower=max(f.lower, spans[f.name][0]), upper=min(f.upper, spans[f.name][1])) if f.name in spans else f for f in moving
     )
 
 
-def _unmeasured(joint: Joint, unable: list[str]) -> Finding:
+def _samples(moving: Sequence[Freedom]) -> Iterator[list[float]]:
+    """Yield poses of a joint: each coordinate through its range, the others at rest, then all together."""
+    ranges = [_bounded(freedom) for freedom in moving]
+    rest = [freedom.rest for freedom in moving]
+    for column, freedom in enumerate(ranges):
+        for value in np.linspace(freedom.lower, freedom.upper, STEPS).tolist():
+            yield [*rest[:column], value, *rest[column + 1 :]]
+    if len(ranges) > 1:
+        swings = moving[0].name.endswith(".sx")
+        for point in scattered(ranges, STEPS):
+            if not swings or math.hypot(point[0], point[1]) <= moving[0].upper:
+                yield list(point)
+
+
+def _bounded(freedom: Freedom) -> Freedom:
+    """Return a range that can be sampled: a piece about rest of what slides without limits."""
+    if freedom.upper - freedom.lower < ENDLESS_SLIDE_MM:
+        return freedom
+    near = freedom.rest - ENDLESS_SAMPLED_MM, freedom.rest + ENDLESS_SAMPLED_MM
+    return freedom._replace(lower=max(freedom.lower, near[0]), upper=min(freedom.upper, near[1]))
+
+
+def _named(moving: Sequence[Freedom], values: Sequence[float]) -> dict[str, float] | None:
+    """Return the coordinates that are not at rest, by name."""
+    return {freedom.name: value for freedom, value in zip(moving, values, strict=True) if value != freedom.rest} or None
+
+
+def _unproven(row: FitCheck) -> Finding:
+    where = "" if row.at is None else " at " + ", ".join(f"{name} = {value:.4g}" for name, value in row.at.items())
+    return Finding(
+        code="W_NOT_CERTIFIED",
+        where=f"joints.{row.joint}.fit",
+        parts=row.parts,
+        message=f"The fit of joint {row.joint!r} is not proven over its motion: at {row.strength.poses} poses the gap is {row.least:.4g} mm "
+        f"or more{where}.",
+        hint="Declare a smaller least gap, or make the gap wider than that.",
+        value=row.least,
+        limit=row.declared.gap_min,
+        unit="mm",
+        stage="fit",
+    )
+
+
+def _unmeasured(joint: Joint, reason: str) -> Finding:
     return Finding(
         code="E_NOT_CHECKED",
         where=f"joints.{joint.name}.fit",
         parts=(joint.parent, joint.child),
-        message=f"The fit of joint {joint.name!r} is not measured: {' and '.join(unable)} {'have' if len(unable) > 1 else 'has'} no closed mesh.",
+        message=f"The fit of joint {joint.name!r} is not measured: {reason}.",
         hint="Give the part geometry, or leave the fit out.",
         stage="fit",
     )

@@ -149,6 +149,18 @@ class Way:
         grown = self._grown(self.bounds)
         return None if grown is None else self.piece(grown)
 
+    def spans(self) -> dict[str, tuple[float, float]]:
+        """Return between which values each coordinate stays over all that could be followed [rad or mm]."""
+        found: dict[str, tuple[float, float]] = {}
+        for number in () if self.whole is None else self.whole.numbers:
+            ends, *line = self._found[number][:4]
+            middle, slopes, near = joined(np.array([ends]), [tuple(line)])
+            far = np.abs(slopes).T @ (np.ptp(np.array(ends), axis=1) / 2) + near
+            for name, low, high in zip(self.names, (middle - far).tolist(), (middle + far).tolist(), strict=True):
+                known = found.get(name, (low, high))
+                found[name] = min(low, known[0]), max(high, known[1])
+        return found
+
     def _grown(self, ends: Ends) -> Ends | None:
         """Follow several drivers over a box, in parts where it is too large: what is nearer to rest first."""
         for at, (low, high) in enumerate(ends):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any, Literal, Self
+from typing import Any, Literal, Protocol, Self
 
 from articad.findings import Findings
 from articad.html_tables import html_table
@@ -116,6 +116,14 @@ class PairCheck:
         }
 
 
+class Row(Protocol):
+    """What is known of one fit."""
+
+    @property
+    def joint(self) -> str: ...  # noqa: D102
+    def to_json(self) -> dict[str, Any]: ...  # noqa: D102
+
+
 @dataclass(frozen=True)
 class Checks:
     """The report of an interference check.
@@ -127,6 +135,7 @@ class Checks:
         over: "rest", "pose", or the names of the joints that moved.
         parts: All parts that have geometry.
         without_geometry: Parts that have none, so that they cannot overlap anything.
+        fits: Declared fits against what was measured, in the order of the joints.
     """
 
     findings: Findings
@@ -135,6 +144,7 @@ class Checks:
     over: str | tuple[str, ...] = "rest"
     parts: tuple[str, ...] = field(default=())
     without_geometry: tuple[str, ...] = field(default=())
+    fits: tuple[Row, ...] = field(default=())
 
     @property
     def ok(self) -> bool:
@@ -159,6 +169,7 @@ class Checks:
             "findings": [finding.to_json() for finding in self.findings],
             "deflection_mm": rounded(self.deflection),
             "pairs": [pair.to_json() for pair in self.pairs],
+            "fits": [row.to_json() for row in self.fits],
         }
 
     def _repr_html_(self) -> str:
@@ -168,15 +179,17 @@ class Checks:
         return f"<p>{'ok' if self.ok else 'NOT ok'}</p>{self.findings._repr_html_() if len(self.findings) else ''}{pairs}"
 
     def __add__(self, other: Checks) -> Checks:
-        """Return both reports as one."""
+        """Return both reports as one; what both say of a fit is said once."""
+        told = [finding for finding in other.findings if not (finding.where.endswith(".fit") and finding in tuple(self.findings))]
         over = tuple(dict.fromkeys(_names(self.over) + _names(other.over)))
         return Checks(
-            self.findings + other.findings,
+            Findings([*self.findings, *told]),
             self.pairs + other.pairs,
             max(self.deflection, other.deflection),
             over,
             tuple(dict.fromkeys(self.parts + other.parts)),
             tuple(dict.fromkeys(self.without_geometry + other.without_geometry)),
+            tuple({row.joint: row for row in (*self.fits, *other.fits)}.values()),
         )
 
 
