@@ -19,7 +19,7 @@ from articad.geometry.mesh import TriMesh
 from articad.geometry.part import MassProperties, Part
 from articad.interference.certificate import DEFAULT_BUDGET_S, DEFAULT_EPSILON_MM, Certificate, certify, constrained_joints
 from articad.interference.check import Checks, check_pose
-from articad.interference.fits import CERTIFIED_PAIRS, PROOF_PAIRS, FitReport, certified_fits, check_fits, followed
+from articad.interference.fits import PROOF_SECONDS, FitReport, certified_fits, check_fits, followed
 from articad.interference.scene import Scene
 from articad.interference.sweep import sweep
 from articad.kernels.build123d import Build123dKernel
@@ -432,7 +432,7 @@ class Assembly:
         )
         if not self.fits:
             return certificate
-        fits = certified_fits(self._held_fits(joints, certificate.spans, pairs=CERTIFIED_PAIRS))
+        fits = certified_fits(self._held_fits(joints, certificate.spans, seconds=budget))
         claims = (*certificate.claims, *fits.claims)
         return replace(certificate, findings=certificate.findings + fits.findings, claims=claims, fits=fits.rows)
 
@@ -488,13 +488,13 @@ class Assembly:
         return replace(checks, findings=checks.findings + fits.findings, fits=fits.rows)
 
     def _held_fits(
-        self, joints: Sequence[str] | None, spans: Mapping[str, tuple[float, float]] | None = None, *, pairs: int = PROOF_PAIRS
+        self, joints: Sequence[str] | None, spans: Mapping[str, tuple[float, float]] | None = None, *, seconds: float = PROOF_SECONDS
     ) -> FitReport:
         """Hold the fits of some joints, and of those that move with them in loops and couplings; of all by default."""
         if joints is not None:
             tied = constrained_joints(self.mechanism)
             joints = [*joints, *(sorted(tied) if tied & set(joints) else ())]
-        return check_fits(self.scene(), lambda: followed(self.mechanism), proven=spans, joints=joints, pairs=pairs)
+        return check_fits(self.scene(), lambda: followed(self.mechanism), proven=spans, joints=joints, seconds=seconds)
 
     def _meshes(self) -> dict[str, TriMesh]:
         return {name: mesh for name, part in self.parts.items() if (mesh := part.mesh) is not None}

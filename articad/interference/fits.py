@@ -17,7 +17,6 @@ import numpy as np
 
 from articad.findings import Finding, Findings
 from articad.interference.claims import Claim
-from articad.interference.cover import Budget
 from articad.interference.gauge import Gauge
 from articad.interference.motion import ENDLESS_SLIDE_MM, Freedom, Route, freedoms, scattered
 from articad.interference.overlap import NOTHING
@@ -26,13 +25,13 @@ from articad.interference.proof import NO_SHRINK, Prover, Shrink
 from articad.interference.relations import FitLike
 from articad.interference.report import Strength, rounded
 from articad.interference.scene import Scene
+from articad.interference.work import Budget
 from articad.kinematics.joints import Joint, JointType
 from articad.kinematics.mechanism import Mechanism
 
 __all__ = [
-    "CERTIFIED_PAIRS",
     "CONTACT_MM",
-    "PROOF_PAIRS",
+    "PROOF_SECONDS",
     "FitCheck",
     "FitReport",
     "FitVerdict",
@@ -45,8 +44,7 @@ __all__ = [
 STEPS = 24  # poses per coordinate at which the gap is measured in motion
 CONTACT_MM = 0.02  # surfaces this close touch, beyond the deflection of their meshes
 EPSILON_MM = 1e-4  # a gap that exceeds what is to be proven by no more counts as contact in the search
-PROOF_PAIRS = 250_000  # of pieces of surface, for each attempt at a proof
-CERTIFIED_PAIRS = 2_000_000  # the same, for a certificate
+PROOF_SECONDS = 2.0  # nominal, for the proof of each fit
 ENDLESS_SAMPLED_MM = 100.0  # either way of rest, of what slides without limits
 _FOLLOWED = 61  # poses of each driver's range: a turn in steps of 6°, its half included
 
@@ -134,8 +132,7 @@ def check_fits(
     *,
     proven: Span | None = None,
     joints: Sequence[str] | None = None,
-    pairs: int = PROOF_PAIRS,
-    budget: Budget | None = None,
+    seconds: float = PROOF_SECONDS,
 ) -> FitReport:
     """Hold every declared fit of a scene against its parts, at rest and over the motion of its joint.
 
@@ -145,8 +142,7 @@ def check_fits(
             not reach its own limits.
         proven: The same, where it is proven that they go no further; asked before `reached`.
         joints: Names of those to be held; all by default.
-        pairs: Pieces of surface that each proof may compare.
-        budget: Of all proofs together.
+        seconds: Nominal seconds of work for each fit; see `articad.interference.work`.
     """
     rows: list[FitCheck] = []
     findings: list[Finding] = []
@@ -162,7 +158,7 @@ def check_fits(
             rows.append(FitCheck(joint.name, (joint.parent, joint.child), fit, None, None, None, "not_checked", strength=strength))
             findings.append(_unmeasured(joint, reason))
             continue
-        held = _Held(scene, joint, fit, pairs, budget or Budget(math.inf))
+        held = _Held(scene, joint, fit, Budget(seconds))
         row, finding = held.check(reached, proven or {})
         rows.append(row)
         findings += finding
@@ -201,8 +197,8 @@ def followed(mechanism: Mechanism) -> dict[str, tuple[float, float]]:
 class _Held:
     """One fit, held against its two parts."""
 
-    def __init__(self, scene: Scene, joint: Joint, fit: FitLike, pairs: int, budget: Budget) -> None:
-        self.scene, self.joint, self.fit, self.pairs, self.budget = scene, joint, fit, pairs, budget
+    def __init__(self, scene: Scene, joint: Joint, fit: FitLike, budget: Budget) -> None:
+        self.scene, self.joint, self.fit, self.budget = scene, joint, fit, budget
         self.gauge = Gauge(scene, joint, fit)
         self.slack = self.gauge.slack
         self.moving = freedoms(joint)
@@ -304,7 +300,7 @@ class _Held:
             shrink = NO_SHRINK if needed > 0 else Shrink(max(-needed, EPSILON_MM))
             if shrink.depth and self.fit.within is not None:
                 return None  # a cut surface has no inside to move it to
-            outcome = prover.search(prover.bounds, shrink, self.pairs)
+            outcome = prover.search(prover.bounds, shrink)
             if outcome.is_complete:
                 if self.fit.within is None and needed >= self.slack:
                     self.claims = (prover.claim(NOTHING, prover.vary(prover.bounds), shrink, outcome),)

@@ -61,7 +61,7 @@ class Gauge:
         self.bodies = scene.bodies[joint.parent], scene.bodies[joint.child]
         self.slack = scene.deflection_of(joint.parent, joint.child)
         frames = joint.T_parent_connector, joint.T_child_connector
-        self.surfaces = tuple(self._near_axis(body.mesh, frame) for body, frame in zip(self.bodies, frames, strict=True))
+        self.surfaces = self._near_axis(self.bodies[0].mesh, frames[0]), self._near_axis(self.bodies[1].mesh, frames[1])
         self._moving: dict[float, tuple[Surface, Surface]] = {}
 
     def rest(self) -> float:
@@ -118,7 +118,7 @@ class Gauge:
             for joint in self.scene.relations.joints:
                 if joint.type is JointType.FIXED and name in (joint.parent, joint.child):
                     step = placed(joint, [])
-                    far, step = (joint.child, step) if name == joint.parent else (joint.parent, np.linalg.inv(step))
+                    far, step = (joint.child, step) if name == joint.parent else (joint.parent, np.asarray(np.linalg.inv(step)))
                     if far not in places:
                         places[far] = places[name] @ step
                         todo.append(far)
