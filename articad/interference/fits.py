@@ -44,7 +44,7 @@ __all__ = [
 STEPS = 24  # poses per coordinate at which the gap is measured in motion
 CONTACT_MM = 0.02  # surfaces this close touch, beyond the deflection of their meshes
 EPSILON_MM = 1e-4  # a gap that exceeds what is to be proven by no more counts as contact in the search
-PROOF_SECONDS = 2.0  # nominal, for the proof of each fit
+PROOF_SECONDS = 1.2  # nominal, for the proof of each fit
 ENDLESS_SAMPLED_MM = 100.0  # either way of rest, of what slides without limits
 _FOLLOWED = 61  # poses of each driver's range: a turn in steps of 6°, its half included
 
@@ -236,7 +236,7 @@ class _Held:
             return row, []
         seen = self._over(row, self.moving)
         if not _is_proven(seen) and (inside := _within(self.moving, proven)) != self.moving:
-            seen = self._over(row, inside)
+            seen, self.claims = self._over(row, inside), ()  # a claim is about all of a joint's range
         if seen.verdict != "ok" and reached is not None:  # it may be where the linkage never brings it
             inside = _within(self.moving, reached() if callable(reached) else reached)
             if inside != self.moving:

@@ -13,6 +13,7 @@ import math
 from typing import Any
 from weakref import WeakKeyDictionary
 
+import fcl
 import numpy as np
 from numpy.typing import NDArray
 
@@ -44,6 +45,7 @@ _SQUARE = math.sqrt(0.5)
 _ACROSS = np.array([[1, 0, 0], [0, 1, 0], [_SQUARE, _SQUARE, 0], [_SQUARE, -_SQUARE, 0]])
 _ALL_WAYS = np.concatenate([np.eye(3), np.array([[1, 1, 1], [1, 1, -1], [1, -1, 1], [-1, 1, 1]]) / math.sqrt(3)])
 
+_groups: WeakKeyDictionary[Scene, dict[tuple[int, ...], tuple[Surface, Surface]]] = WeakKeyDictionary()
 _known: WeakKeyDictionary[TriMesh, dict[bytes, float | None]] = WeakKeyDictionary()
 
 
@@ -86,6 +88,17 @@ class Gauge:
         gap = surface_distance(*self._within_reach(limit), T)
         return self._or_depth(gap, T) if gap < limit else math.inf
 
+    def _joined(self, own: Surface, group: list[tuple[TriMesh, FloatArray]]) -> Surface:
+        """Return a surface with the meshes added that are fixed to it; made once for all joints of a part."""
+        if len(group) == 1:
+            return own
+        made = _groups.setdefault(self.scene, {})
+        key = id(own), *(id(mesh) for mesh, _ in group)
+        if key not in made:
+            more = [mesh.vertices[mesh.triangles] @ T[:3, :3].T + T[:3, 3] for mesh, T in group[1:]]
+            made[key] = own, Surface(np.concatenate([own.corners, *more]))
+        return made[key][1]
+
     def place(self, values: list[float]) -> FloatArray:
         """Return where the child stands as the parent sees it, `(4, 4)`."""
         return placed(self.joint, values)
@@ -105,7 +118,7 @@ class Gauge:
         key += self.joint.type.encode()
         known = _known.setdefault(self.bodies[0].mesh, {})
         if key not in known:
-            a, b = (_joined(own, group[1:]) for own, group in zip(self.surfaces, groups, strict=True))
+            a, b = (self._joined(own, group) for own, group in zip(self.surfaces, groups, strict=True))
             known[key] = _Room(a, b, T).play(self._ways() @ frame.T)
         return known[key]
 
@@ -179,13 +192,6 @@ def placed(joint: Joint, values: list[float]) -> FloatArray:
     return np.asarray(joint.T_parent_connector.matrix @ J @ (flip(joint.mate) @ joint.T_child_connector.inverse()).matrix)
 
 
-def _joined(own: Surface, others: list[tuple[TriMesh, FloatArray]]) -> Surface:
-    """Return a surface with meshes added, each where it stands."""
-    if not others:
-        return own
-    return Surface(np.concatenate([own.corners, *(mesh.vertices[mesh.triangles] @ T[:3, :3].T + T[:3, 3] for mesh, T in others)]))
-
-
 class _Room:
     """The free room of one surface beside another, explored by straight moves.
 
@@ -219,8 +225,23 @@ class _Room:
                 middle, moved = middle + shift * way, max(moved, abs(shift))
             if moved <= STOP_MM:
                 break
-        chords = [both for both in (self._both(middle, way) for way in ways) if both is not None]
-        return max(((forth * square_to + back * square_back) / 2 for (forth, square_to), (back, square_back) in chords), default=None)
+        most: float | None = None
+        for way in ways:
+            if most is not None and all(self._is_stopped(middle, sign * way, most + 2 * STOP_MM) for sign in (1, -1)):
+                continue  # there is no more play this way
+            both = self._both(middle, way)
+            if both is not None:
+                (forth, square_to), (back, square_back) = both
+                most = max(most or 0.0, (forth * square_to + back * square_back) / 2)
+        return most
+
+    def _is_stopped(self, start: FloatArray, way: FloatArray, before: float) -> bool:
+        """Return whether the surfaces surely meet before the second has gone so far; quicker than to find where."""
+        a, b = self.whole
+        T = self.T.copy()
+        T[:3, 3] += start + before * way
+        b.moving.setTransform(fcl.Transform(T[:3, :3], T[:3, 3]))
+        return bool(fcl.collide(a.standing, b.moving, fcl.CollisionRequest(), fcl.CollisionResult()) > 0)
 
     def _both(self, start: FloatArray, way: FloatArray) -> tuple[tuple[float, float], tuple[float, float]] | None:
         forth = self._known_stop(start, way)
