@@ -139,7 +139,7 @@ class Certificate:
                 for r in self.ranges
             ],
             "claims": [claim.to_json() for claim in self.claims],
-            "fits": [row.to_json() for row in self.fits],
+            **({"fits": [row.to_json() for row in self.fits]} if self.fits else {}),
         }
 
     def mesh_files(self) -> dict[str, bytes]:

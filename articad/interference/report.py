@@ -169,7 +169,7 @@ class Checks:
             "findings": [finding.to_json() for finding in self.findings],
             "deflection_mm": rounded(self.deflection),
             "pairs": [pair.to_json() for pair in self.pairs],
-            "fits": [row.to_json() for row in self.fits],
+            **({"fits": [row.to_json() for row in self.fits]} if self.fits else {}),
         }
 
     def _repr_html_(self) -> str:
