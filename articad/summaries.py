@@ -61,6 +61,18 @@ def print_checks(report: Report, terminal: Terminal) -> None:
         )
     else:
         terminal.say("Largest overlap depth: 0 mm.")
+    print_fits(report, terminal)
+
+
+def print_fits(report: Report, terminal: Terminal) -> None:
+    """Print how the declared fits fared, and how that is known over the motion."""
+    rows = report.get("fits", [])
+    if rows:
+        verdicts, known = (
+            _counts(row["verdict"].replace("_", " ") for row in rows),
+            _counts(row["strength"]["kind"].replace("_", " ") for row in rows),
+        )
+        terminal.say(f"Fits: {counted_things(len(rows), 'fit', 'fits')} ({verdicts}; over the motion {known}).")
 
 
 def print_certificate(report: Report, terminal: Terminal) -> None:
@@ -73,6 +85,7 @@ def print_certificate(report: Report, terminal: Terminal) -> None:
             terminal.say(
                 f"  {free['joint']}: free in [{free['free'][0]:.6g}, {free['free'][1]:.6g}], declared {free['declared']} (rad, mm)"
             )
+    print_fits(report, terminal)
     print_findings(report["findings"], terminal)
 
 

@@ -46,8 +46,8 @@ class Fit:
     """How closely the two parts of a joint fit.
 
     Attributes:
-        gap_min: Smallest surface distance over the whole motion [mm]; None: not checked.
-        gap_max: Largest one at rest [mm]; None: not checked.
+        gap_min: Least distance of the surfaces over the whole motion [mm]; where they may touch, the least play. None: not checked.
+        gap_max: Largest play at rest [mm]: half the difference of diameters of a hole and its pin, wherever that lies. None: not checked.
         within: Only surface closer than this to the joint's axis counts [mm]; None: all of it.
         contact: "allowed", "required", "forbidden"; None: not checked.
     """

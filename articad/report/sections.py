@@ -220,23 +220,29 @@ def _certificate(certificate: Json | None, known: set[str]) -> str:
 
 def _fits(assembly: Assembly, checks: Json | None, known: set[str]) -> str:
     gaps = {frozenset(pair["parts"]): pair["gap_mm"] for pair in (checks or {}).get("pairs", ()) if pair["over"] == "rest"}
+    measured = {row["joint"]: row for row in (checks or {}).get("fits", ())}
     rows: list[list[Cell]] = []
     for joint in assembly.joints:
         fit = assembly.fits.get(joint.name)
         if fit is None:
             continue
+        row = measured.get(joint.name, {})
         wanted = f"{'' if fit.gap_min is None else f'{fit.gap_min:.6g}'} … {'' if fit.gap_max is None else f'{fit.gap_max:.6g}'}"
         rows.append(
             [
                 joint.name,
                 f"{joint.parent} – {joint.child}",
                 wanted if wanted != " … " else "not declared",
-                gaps.get(frozenset({joint.parent, joint.child})),
+                row.get("least_mm", gaps.get(frozenset({joint.parent, joint.child}))),
+                row.get("play_mm"),
                 fit.contact,
+                row.get("verdict", "not measured"),
                 _show(joint.name + ".", [joint.parent, joint.child], None, known),
             ]
         )
-    return _scroll(html_table(["joint", "between", "gap declared mm", "measured mm", "contact", ""], rows, numbers=(3,)))
+    return _scroll(
+        html_table(["joint", "between", "gap declared mm", "least gap mm", "play mm", "contact", "verdict", ""], rows, numbers=(3, 4))
+    )
 
 
 def _exports(exports: Mapping[str, Json]) -> str:
