@@ -13,6 +13,7 @@ import numpy as np
 from articad.assembly import Assembly, Poses
 from articad.connectors import SE3, FloatArray
 from articad.errors import ArticadError
+from articad.interference.check import check_scene
 from articad.interference.report import Checks
 from articad.interference.scene import Scene
 from articad.kinematics.joints import Joint, JointType
@@ -43,8 +44,8 @@ class Subject:
 
     @cached_property
     def at_rest(self) -> Checks:
-        """Interference at rest."""
-        return self.assembly.check()
+        """Interference at rest; declared fits are no part of it."""
+        return check_scene(self.scene, self.assembly.at(), ground=self.assembly.ground)
 
     @cached_property
     def scene(self) -> Scene:

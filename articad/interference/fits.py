@@ -20,11 +20,11 @@ from articad.interference.claims import Claim
 from articad.interference.gauge import Gauge
 from articad.interference.motion import ENDLESS_SLIDE_MM, Freedom, Route, freedoms, scattered
 from articad.interference.overlap import NOTHING
-from articad.interference.profile import Forest
 from articad.interference.proof import NO_SHRINK, Prover, Shrink
 from articad.interference.relations import FitLike
 from articad.interference.report import Strength, rounded
 from articad.interference.scene import Scene
+from articad.interference.surface import Surface
 from articad.interference.work import Budget
 from articad.kinematics.joints import Joint, JointType
 from articad.kinematics.mechanism import Mechanism
@@ -370,15 +370,8 @@ class _FitProver(Prover):
             self.bounds = np.array([(freedom.lower, freedom.upper) for freedom in moving]).reshape(-1, 2)
         self.within = None if held.fit.within is None else held.gauge.surfaces
 
-    def _surfaces(self, shrink: Shrink) -> tuple[Forest, Forest]:
-        if self.within is None:
-            return super()._surfaces(shrink)
-        if shrink not in self._forests:
-            a, b = self.within
-            self._forests[shrink] = (
-                (Forest.plain(a), Forest.plain(b)) if self.axis is None else Forest.pair(a, b, *self._outlines(self.axis, a, b))
-            )
-        return self._forests[shrink]
+    def _sides(self, shrink: Shrink) -> tuple[Surface, Surface]:
+        return super()._sides(shrink) if self.within is None else self.within
 
 
 def _is_proven(row: FitCheck) -> bool:

@@ -237,7 +237,7 @@ class Prover:
     def forests(self, shrink: Shrink) -> tuple[Forest, Forest]:
         """Return trees over both surfaces, with their outlines where a single joint lies between the two."""
         if shrink not in self._forests:
-            a, b = self._surface(shrink)[0], whole_surface(self.body_b.mesh)
+            a, b = self._sides(shrink)
             self.budget.spend((len(a.corners) + len(b.corners)) / TREE_TRIANGLES)
             if self.axis is None:
                 self._forests[shrink] = Forest.plain(a), Forest.plain(b)
@@ -245,6 +245,10 @@ class Prover:
                 weight = SLIDING_WEIGHT if self.chain.movers[0].joint.type is JointType.SLIDER else WEIGHT
                 self._forests[shrink] = Forest.pair(a, b, *self._outlines(self.axis, a, b), weight)
         return self._forests[shrink]
+
+    def _sides(self, shrink: Shrink) -> tuple[Surface, Surface]:
+        """Return the surfaces that are kept apart."""
+        return self._surface(shrink)[0], whole_surface(self.body_b.mesh)
 
     def _outlines(self, axis: Core, a: Surface, b: Surface) -> tuple[Ends, Ends, FloatArray]:
         """Return what of two surfaces the joint between them keeps, and by how much it is to be apart."""
