@@ -1,7 +1,19 @@
-"""Freedoms that a mechanism really has: rank of the constraints, not a count of joints.
+"""Freedoms that a mechanism really has: the local dimension of the set of its closed configurations.
 
-Grübler's count is wrong for every planar mechanism in space, so the rank of the scaled Jacobian decides. A single
-configuration may be singular; the mobility is the smallest of several neighbours on the linkage's own motion.
+Grübler's count is wrong for every planar mechanism in space, so the constraints themselves decide. Their rank at rest gives
+the freedoms to first order, which is an upper bound: it is too large where the rest pose is singular, and everywhere on a
+set whose equations have a multiple root (a platform on eight parallel rods). A freedom counts only if the linkage can be
+moved along it by a finite amount:
+
+1. At rest, move along a random combination of all first-order freedoms by ε and correct in the directions that the
+   constraints determine. If the residual vanishes the set is a manifold of that dimension, because a random direction of a
+   null space of dimension k is realised only if the set has dimension k (slicing, as in Bates, Hauenstein, Peterson,
+   Sommese 2009).
+2. Otherwise close from several such points with all freedoms. What comes back to rest shows that the linkage only shakes.
+3. At each neighbour that stays away, repeat step 1. If it fails again the equations have a multiple root there: the
+   displacements that survive closing span the tangent space, and their rank is the dimension.
+
+The mobility is the largest dimension found: the local dimension at rest.
 """
 
 from __future__ import annotations
@@ -10,6 +22,7 @@ import itertools
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -21,9 +34,15 @@ from articad.kinematics.layout import Layout
 from articad.kinematics.loops import RANK_TOLERANCE, ClosureSystem
 
 NEAR_SINGULAR = 1e-3  # σ/σ₁ between the rank tolerance and this is reported: drift, or a dead point nearby
-_TRIES = 10
-_PERTURBATION = 0.3  # rad, or lengths L: along the freedoms, far enough to leave a singular configuration
-_STUCK = 1e-2  # rad, or lengths L: a perturbed configuration that closes nearer than this has not moved
+REALISED = 1e-12  # |r| of a finite motion that the constraints allow; rounding leaves 1e-15 · reach/L
+_SLICE = 0.05  # rad, or lengths L: a finite motion; an obstruction of order m leaves a residual of 0.05ᵐ
+_SLICE_SHARE = 0.3  # of the smallest singular value: beyond it the linear model is worth nothing
+_SHORTEST_SLICE = 2e-4  # a shorter one cannot tell an obstruction from rounding
+_NEIGHBOURS = 5  # random neighbours of a singular rest pose
+_SCALES = (0.05, 0.005)  # rad, or lengths L: how far away; the second for linkages that move by thousandths only
+_STUCK = 0.1  # share of the way to a neighbour: what closes nearer to rest has not moved
+_MULTIPLE = 1e-4  # σ/σ₁ at a neighbour; at a root of multiplicity two the solver stops 1e-6 away from it
+_SURVIVES = 0.2  # share of a displacement that is left after closing, of a true motion
 _INDEPENDENT = 1e-5  # share of a driver's freedom that others do not give already
 _STILL = 1e-7  # rad, or lengths L per unit of motion: a part that moves less stands still
 
@@ -33,12 +52,14 @@ class Mobility:
     """What the constraints leave free.
 
     Attributes:
-        mobility: Freedoms of the joints that take part, in general position.
-        first_order: The same at the given configuration; larger when that is singular.
-        rank: Of the constraints, in general position.
+        mobility: Dimension of the set of closed configurations round the given one, of the joints that take part.
+        first_order: Dimension of the null space of the constraints at the given configuration; never smaller.
+        rank: Number of freedoms that the constraints determine.
         Q: A configuration in general position `(columns,)`; the given one where that is.
         freedoms: Orthonormal motions there `(freedoms, mobility)`, scaled.
         near: Smallest nonzero σ/σ₁ at the given configuration.
+        obstruction: |r| that a small motion along the freedoms of first order leaves at least; 0 where all are real.
+        multiple: Freedoms of first order at `Q` that are no motions: the equations have a multiple root there.
     """
 
     mobility: int
@@ -47,6 +68,8 @@ class Mobility:
     Q: FloatArray
     freedoms: FloatArray
     near: float
+    obstruction: float = 0.0
+    multiple: int = 0
 
     @property
     def shaky(self) -> bool:
@@ -55,42 +78,153 @@ class Mobility:
 
 
 def mobility_of(system: ClosureSystem, Q: FloatArray) -> Mobility:
-    """Return the mobility of a system, judged at the closed configuration `Q` and at neighbours of it."""
+    """Return the mobility of a system at the closed configuration `Q`."""
     N, ratios = motions(system, Q)
     nonzero = ratios[ratios > RANK_TOLERANCE]
-    first = N.shape[1]
-    best, at = N, Q
-    rng = np.random.default_rng(0)
-    stuck = moved = 0
-    for _ in range(_TRIES if first else 0):
-        closed = system.close(system.move(Q, _PERTURBATION * (N @ rng.standard_normal(first))), system.active)
-        if not closed.ok:
-            continue
-        if np.abs(system.step_between(Q, closed.Q)).max() < _STUCK:
-            stuck += 1
-            continue
-        moved += 1
-        there, _ = motions(system, closed.Q)
-        if there.shape[1] < best.shape[1]:
-            best, at = there, closed.Q
-        if best.shape[1] == 1:  # it moved, so it has a freedom, and no more than one
-            break
-    if stuck and not moved:  # every try fell back to where it began: it moves to first order only
-        best, at = N[:, :0], Q
-    n_active = int(system.active.sum())
     near = float(nonzero.min()) if nonzero.size else 1.0
-    return Mobility(best.shape[1], first, n_active - best.shape[1], at, best, near)
+    first, n_active = N.shape[1], int(system.active.sum())
+    rank = n_active - first
+    regular = Mobility(first, first, rank, Q, N, near)
+    if not first or rank == system.n_rows:  # independent constraints: the implicit function theorem
+        return regular
+    rng = np.random.default_rng(0)
+    obstruction = _obstruction(system, Q, N, rank, rng)
+    if obstruction <= REALISED:
+        return regular
+    found = _near(system, Q, N, rng)
+    best = max(found, key=lambda one: one.T.shape[1], default=_Neighbour(Q, N[:, :0], 0))
+    mobility = best.T.shape[1]
+    return Mobility(mobility, first, n_active - mobility, best.Q, best.T, near, obstruction, best.multiple)
 
 
-def motions(system: ClosureSystem, Q: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return the null space `(freedoms, n)` of the constraints at Q among the active freedoms, and all σ/σ₁."""
+class Settled(NamedTuple):
+    """Where the correction by the well-determined directions ended.
+
+    Attributes:
+        Q: Coordinates `(columns,)`.
+        residual: |r| there; what is left belongs to directions in which nothing was corrected.
+        U: Left singular vectors `(rows, rows)` of the constraints in the active freedoms.
+        s: Their singular values.
+        Vt: Right singular vectors `(active, active)`.
+        r: The residuals `(rows,)`.
+    """
+
+    Q: FloatArray
+    residual: float
+    U: FloatArray
+    s: FloatArray
+    Vt: FloatArray
+    r: FloatArray
+
+
+def settled(system: ClosureSystem, Q: FloatArray, rank: int | None, *, dropped: float = NEAR_SINGULAR, iterations: int = 12) -> Settled:
+    """Correct Q by Gauss–Newton in the directions that the constraints determine, and leave the others alone.
+
+    Args:
+        system: The equations.
+        Q: Start `(columns,)`.
+        rank: How many directions to correct; None: those with σ/σ₁ above `dropped`, counted anew in each step.
+        dropped: See `rank`.
+        iterations: Steps at most.
+    """
+    where = np.flatnonzero(system.active)
+    y, last = np.zeros(system.layout.n_freedoms), math.inf
+    for k in itertools.count():
+        r, J = system.evaluate_one(Q)
+        U, s, Vt = svd(J[:, where], full=True)
+        kept = rank if rank is not None else int((s > dropped * s.max(initial=0.0)).sum())
+        step = -(Vt[:kept].T @ ((U[:, :kept].T @ r) / np.maximum(s[:kept], 1e-300)))
+        size = float(np.abs(step).max(initial=0.0))
+        if k >= iterations or size < 1e-15 or (size < 1e-9 and size >= 0.5 * last):
+            break
+        y[where] = step * min(1.0, 0.5 / size)
+        Q, last = system.move(Q, y), size
+    return Settled(Q, float(np.linalg.norm(r)), U, s, Vt, r)
+
+
+def _obstruction(system: ClosureSystem, Q: FloatArray, N: FloatArray, rank: int, rng: np.random.Generator, longest: float = _SLICE) -> float:
+    """Return |r| that is left after a finite motion along a random combination of N; inf where it leads elsewhere."""
+    sigma = _smallest(system, Q, rank)
+    size = max(_SHORTEST_SLICE, min(longest, _SLICE_SHARE * sigma))
+    worst = 0.0
+    for _ in range(2):
+        c = rng.standard_normal(N.shape[1])
+        predicted = system.move(Q, size * (N @ (c / np.linalg.norm(c))))
+        there = settled(system, predicted, rank)
+        if np.abs(system.step_between(predicted, there.Q)).max() > 0.5 * size:
+            return math.inf
+        worst = max(worst, there.residual)
+        if worst > REALISED:
+            break
+    return worst
+
+
+def _smallest(system: ClosureSystem, Q: FloatArray, rank: int) -> float:
+    """Return the smallest singular value that counts in the rank; the constraints are scaled, so it is a pure number."""
+    if not rank:
+        return 1.0
+    s, _ = right_singular(system.evaluate_one(Q)[1][:, np.flatnonzero(system.active)])
+    return float(s[rank - 1])
+
+
+class _Neighbour(NamedTuple):
+    """A closed configuration near rest: its tangent space `(freedoms, dimension)`, and how many of its null vectors are no motions."""
+
+    Q: FloatArray
+    T: FloatArray
+    multiple: int
+
+
+def _near(system: ClosureSystem, Q: FloatArray, N: FloatArray, rng: np.random.Generator) -> list[_Neighbour]:
+    """Return closed neighbours of a singular rest pose; none if the linkage falls back to rest from everywhere."""
+    for scale in _SCALES:
+        found = []
+        for _ in range(_NEIGHBOURS):
+            c = rng.standard_normal(N.shape[1])
+            closed = system.close(system.move(Q, scale * (N @ (c / np.linalg.norm(c)))), system.active)
+            if closed.ok and np.linalg.norm(system.step_between(Q, closed.Q)) > _STUCK * scale:
+                found.append(_tangent_space(system, closed.Q, 0.2 * scale, rng))
+        if found:
+            return found
+    return []
+
+
+def _tangent_space(system: ClosureSystem, Q: FloatArray, scale: float, rng: np.random.Generator) -> _Neighbour:
+    """Return the tangent space of the closed configurations at a point in general position, multiple root or not."""
+    N, _ = motions(system, Q, _MULTIPLE)
+    k = N.shape[1]
+    rank = int(system.active.sum()) - k
+    if not k or rank == system.n_rows or _obstruction(system, Q, N, rank, rng, scale) <= REALISED:
+        return _Neighbour(Q, N, 0)
+    rows = []
+    for _ in range(k + 2):
+        c = rng.standard_normal(k)
+        c *= scale / np.linalg.norm(c)
+        ends = [system.close(system.move(Q, sign * (N @ c)), system.active) for sign in (1.0, -1.0)]
+        if all(end.ok for end in ends):  # the central difference has no error of second order
+            rows.append(system.step_between(ends[1].Q, ends[0].Q) @ N / (2 * scale))
+    if not rows:
+        return _Neighbour(Q, N[:, :0], k)
+    _, s, Vt = svd(np.array(rows), full=True)
+    dimension = int((s > _SURVIVES * max(1.0, float(s[0]))).sum())
+    return _Neighbour(Q, N @ Vt[:dimension].T, k - dimension)
+
+
+def motions(system: ClosureSystem, Q: FloatArray, tolerance: float = RANK_TOLERANCE) -> tuple[FloatArray, FloatArray]:
+    """Return the null space `(freedoms, n)` of the constraints at Q among the active freedoms, and all σ/σ₁.
+
+    Args:
+        system: The equations.
+        Q: Coordinates `(columns,)`.
+        tolerance: σ/σ₁ of a constraint that is none.
+    """
     where = np.flatnonzero(system.active)
     J = system.evaluate_one(Q)[1][:, where]
     if not J.size:
         return np.zeros((system.layout.n_freedoms, 0)), np.zeros(0)
     s, Vt = right_singular(J)
     ratios = s / s[0]
-    rank = int((ratios > RANK_TOLERANCE).sum())
+    rank = int((ratios > tolerance).sum())
     N = np.zeros((system.layout.n_freedoms, len(where) - rank))
     N[where] = Vt[rank:].T
     return N, ratios
