@@ -1,0 +1,265 @@
+"""Consistent geometry nearest to connectors that were rounded.
+
+Overconstrained loops need geometry that real data never have: axes of a planar linkage that are parallel to the last bit. A
+file holds 3 to 9 decimals, so the loop stays open by micrometres, or is locked. Here the connector frames of the loops' joints
+are moved as little as possible, such that the loops close and move as the data mean.
+
+The unknowns are a twist δ (6 numbers, lengths over L) for each of the two frames of each joint on a loop, and the coordinates
+Q₁ … Q_K of K configurations along the intended motion. They solve
+
+    min |δ|²   such that   r(Q_k, δ) = 0,   k = 1 … K.
+
+The Q_k are found with a rank that ignores singular values below 2e-3 σ₁, so that noise does not lock the motion. With
+J_k = ∂r/∂Q = U Σ Vᵀ and D_k = ∂r/∂δ, the columns U₂ of U beyond that rank eliminate Q_k: U₂ᵀ D_k δ = −U₂ᵀ r_k. Stacked over k
+these equations are consistent to second order where a mobile geometry is near, and their shortest solution is the correction
+(Gauss–Newton, three or four steps).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from articad.connectors import SE3, FloatArray
+from articad.kinematics.factors import least_squares
+from articad.kinematics.graph import JointGraph
+from articad.kinematics.joints import Coupling, Joint
+from articad.kinematics.layout import Layout
+from articad.kinematics.loops import ClosureSystem
+from articad.kinematics.mobility import REALISED, Settled, settled
+
+POSITION_TOLERANCE = 1e-3  # mm: coordinates with 3 decimals are off by up to 0.5e-3 each
+RELATIVE_TOLERANCE = 1e-5  # of L: coordinates with 6 significant digits, or single precision
+ANGLE_TOLERANCE = 8e-5  # rad: axes with 4 decimals are off by up to 0.5e-4 in each component; 0.01° between two axes is beyond
+NOISE = 2e-3  # σ/σ₁: what noise within the tolerances can give a direction in which the exact linkage is free
+_NEARLY = 0.05  # |r| of a loop that is open by so little that a cause is worth looking for
+_CLEAR = 5e-3  # σ/σ₁ that a sample needs beyond the noise
+_WALK, _STEPS = 0.25, 4  # rad, or lengths L; steps of each walk from rest along the intended motion
+_ITERATIONS = 8
+_CUTS = (1e-2, 1e-3, 1e-4)  # σ/σ₁ below which the conditions for mobility count as noise; the first that works
+
+
+@dataclass(frozen=True)
+class Moved:
+    """How far the frame of one connector was moved.
+
+    Attributes:
+        joint: Whose frame.
+        part: That carries the connector.
+        connector: Name of the connector.
+        distance: [mm].
+        angle: [rad].
+    """
+
+    joint: str
+    part: str
+    connector: str
+    distance: float
+    angle: float
+
+
+@dataclass(frozen=True)
+class Correction:
+    """Joints with consistent frames, and what was moved.
+
+    Attributes:
+        joints: All joints, in order.
+        moved: Each frame of a joint on a loop.
+        length: L [mm] of the linkage.
+        askew: The two connectors of one part that were turned most against each other, and by what angle [rad].
+        closed: Whether the loops close with these joints; if not, no mobile geometry is near.
+    """
+
+    joints: tuple[Joint, ...]
+    moved: tuple[Moved, ...]
+    length: float
+    askew: tuple[Moved, Moved, float] | None
+    closed: bool
+
+    @property
+    def distance(self) -> float:
+        """How far the frame that moved most was moved [mm]."""
+        return max((one.distance for one in self.moved), default=0.0)
+
+    @property
+    def angle(self) -> float:
+        """How far the frame that turned most was turned [rad]."""
+        return max((one.angle for one in self.moved), default=0.0)
+
+    @property
+    def distance_tolerance(self) -> float:
+        """Up to which distance [mm] frames may be moved: 1e-3 mm, or 1e-5 L if that is more."""
+        return max(POSITION_TOLERANCE, RELATIVE_TOLERANCE * self.length)
+
+    @property
+    def within(self) -> bool:
+        """True where the loops close and nothing was moved beyond the tolerances."""
+        return self.closed and self.distance <= self.distance_tolerance and self.angle <= ANGLE_TOLERANCE
+
+
+def nearest(parts: Sequence[str], ground: str, joints: Sequence[Joint], couplings: Sequence[Coupling]) -> Correction | None:
+    """Return the consistent geometry nearest to the given one.
+
+    Args:
+        parts: Of the mechanism.
+        ground: The part that stands still.
+        joints: As given.
+        couplings: Relations between coordinates.
+
+    Returns:
+        The correction; None where the geometry is consistent already, or so far from it that no rounding explains it.
+    """
+    problem = _Problem(parts, ground, joints, couplings)
+    samples = problem.samples()
+    if samples is None or max(one.residual for one in samples) <= REALISED:
+        return None
+    best: tuple[float, FloatArray] | None = None
+    for cut in _CUTS:
+        left, delta = problem.solved(samples, cut)
+        if best is None or left < best[0]:
+            best = left, delta
+        if left <= REALISED:
+            break
+    assert best is not None  # noqa: S101 - there are cuts
+    return problem.correction(best[1], closed=best[0] <= REALISED)
+
+
+class _Problem:
+    """The least-squares problem of one mechanism."""
+
+    def __init__(self, parts: Sequence[str], ground: str, joints: Sequence[Joint], couplings: Sequence[Coupling]) -> None:
+        self._parts, self._ground, self._couplings = tuple(parts), ground, tuple(couplings)
+        self._joints = tuple(joints)
+        self._system = self._made(self._joints)
+        on_loops = {joint.name for loop in self._system.loops for joint in loop.joints}
+        self._names = [joint.name for joint in joints if joint.name in on_loops]
+
+    def _made(self, joints: tuple[Joint, ...]) -> ClosureSystem:
+        tree, loop_joints = JointGraph(self._parts, self._ground, joints).spanning_tree()
+        return ClosureSystem(tree, Layout(joints), loop_joints, self._couplings)
+
+    # --- the intended motion
+
+    def samples(self) -> list[Settled] | None:
+        """Return configurations along the intended motion, rest first; None if the loops are far from closing."""
+        system = self._system
+        start = settled(system, system.layout.rest, None, dropped=NOISE)
+        if not start.residual < _NEARLY:
+            start = settled(system, system.close(system.layout.rest, system.active).Q, None, dropped=NOISE)
+        if not start.residual < _NEARLY:
+            return None
+        found, rng = [start], np.random.default_rng(0)
+        free = _freedoms(start)
+        for _ in range(free + 1 if free else 0):
+            c = rng.standard_normal(free)
+            for sign in (1.0, -1.0):
+                found += self._walk(start, sign * (_null_space(start).T @ (c / np.linalg.norm(c))))
+        return found
+
+    def _walk(self, start: Settled, direction: FloatArray) -> list[Settled]:
+        """Return where the linkage comes to when it keeps its direction, up to where noise and a singularity cannot be told apart."""
+        system, at, found = self._system, start, list[Settled]()
+        where = np.flatnonzero(system.active)
+        for _ in range(_STEPS):
+            y = np.zeros(system.layout.n_freedoms)
+            y[where] = _WALK * direction
+            there = settled(system, system.move(at.Q, y), None, dropped=NOISE)
+            kept = len(there.Vt) - _freedoms(there)
+            went = system.step_between(at.Q, there.Q)[where]
+            if there.residual > _NEARLY / 10 or np.linalg.norm(went) < 0.5 * _WALK or (kept and there.s[kept - 1] < _CLEAR * there.s[0]):
+                break
+            N = _null_space(there)
+            if not len(N):
+                break
+            direction = N.T @ (N @ went)
+            direction /= np.linalg.norm(direction)
+            found.append(there)
+            at = there
+        return found
+
+    # --- the correction
+
+    def solved(self, samples: Sequence[Settled], cut: float) -> tuple[float, FloatArray]:
+        """Return the largest |r| of the samples that is left, and δ `(joints, 2, 6)`, by Gauss–Newton."""
+        delta = np.zeros((len(self._names), 2, 6))
+        ranks = [len(one.Vt) - _freedoms(one) for one in samples]
+        system, at = self._system, list(samples)
+        best = max(one.residual for one in at), delta
+        for _ in range(_ITERATIONS):
+            rows, rights = [], []
+            for one, rank in zip(at, ranks, strict=True):
+                across = one.U[:, rank:].T
+                D = across @ self._by_frames(system, one.Q)
+                rows.append(D)
+                rights.append(D @ delta.ravel() - across @ one.r)
+            delta = least_squares(np.concatenate(rows), np.concatenate(rights), cut).reshape(delta.shape)
+            system = self._made(self._with(delta))
+            at = [settled(system, one.Q, rank) for one, rank in zip(at, ranks, strict=True)]
+            left = max(one.residual for one in at)
+            if left >= 0.5 * best[0]:
+                break
+            best = left, delta
+        return best
+
+    def _by_frames(self, system: ClosureSystem, Q: FloatArray) -> FloatArray:
+        """Return ∂r/∂δ `(rows, 12 joints)`: a twist of a frame moves what is beyond it as the joint itself would."""
+        T = dict(zip(system.parts, system.arrays.matrices(Q[None])[:, 0], strict=False))
+        place = {name: i for i, name in enumerate(self._names)}
+        D = np.zeros((system.n_rows, len(self._names), 2, 6))
+        for i, loop in enumerate(system.loops):
+            B = T[loop.joint.child] @ loop.joint.T_child_connector.matrix
+            out = D[6 * i : 6 * i + 6]
+            for joint, near in zip(loop.joints, (*loop.parts[:-1], None), strict=True):
+                side = 1.0 if joint.parent == near else -1.0
+                frames = (T[joint.parent] @ joint.T_parent_connector.matrix, T[joint.child] @ joint.T_child_connector.matrix)
+                for k, P in enumerate(frames):
+                    sign = side if k == 0 else -side
+                    arms = np.cross(P[:3, :3].T, B[:3, 3] - P[:3, 3])  # of a turn about each axis
+                    out[:3, place[joint.name], k, :3] = sign * (B[:3, :3].T @ P[:3, :3])
+                    out[:3, place[joint.name], k, 3:] = sign * (B[:3, :3].T @ arms.T) / system.length
+                    out[3:, place[joint.name], k, 3:] = sign * (B[:3, :3].T @ P[:3, :3])
+        return D.reshape(system.n_rows, -1)
+
+    def _with(self, delta: FloatArray) -> tuple[Joint, ...]:
+        """Return the joints with their frames moved by δ."""
+        scale = np.array([self._system.length] * 3 + [1.0] * 3)
+        twists = dict(zip(self._names, delta * scale, strict=True))
+        return tuple(_moved(joint, twists[joint.name]) if joint.name in twists else joint for joint in self._joints)
+
+    def correction(self, delta: FloatArray, *, closed: bool) -> Correction:
+        """Return the joints with their frames moved by δ, and by how much each."""
+        joints = self._with(delta)
+        moved, turned = list[Moved](), dict[str, list[tuple[Moved, FloatArray]]]()
+        by_name = {joint.name: joint for joint in self._joints}
+        for name, two in zip(self._names, delta, strict=True):
+            joint = by_name[name]
+            ends = (
+                (joint.parent, joint.parent_connector, joint.T_parent_connector),
+                (joint.child, joint.child_connector, joint.T_child_connector),
+            )
+            for (part, connector, frame), twist in zip(ends, two, strict=True):
+                distance, angle = float(np.linalg.norm(twist[:3])) * self._system.length, float(np.linalg.norm(twist[3:]))
+                one = Moved(name, part, connector, distance, angle)
+                moved.append(one)
+                turned.setdefault(part, []).append((one, frame.rotation @ twist[3:]))
+        pairs = [(a, b, float(np.linalg.norm(x - y))) for ends in turned.values() for i, (a, x) in enumerate(ends) for b, y in ends[:i]]
+        askew = max(pairs, key=lambda pair: pair[2], default=None)
+        return Correction(joints, tuple(moved), self._system.length, askew, closed)
+
+
+def _freedoms(at: Settled) -> int:
+    """Return how many directions are free if singular values below the noise are."""
+    return len(at.Vt) - int((at.s > NOISE * at.s.max(initial=0.0)).sum())
+
+
+def _null_space(at: Settled) -> FloatArray:
+    """Return these directions as rows, in the active freedoms."""
+    null: FloatArray = at.Vt[len(at.Vt) - _freedoms(at) :]
+    return null
+
+
+def _moved(joint: Joint, twists: FloatArray) -> Joint:
+    parent, child = (frame @ SE3.exp(twist) for frame, twist in zip((joint.T_parent_connector, joint.T_child_connector), twists, strict=True))
+    return replace(joint, T_parent_connector=parent, T_child_connector=child)
