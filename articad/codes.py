@@ -223,9 +223,21 @@ CODES: dict[str, Code] = {
     "E_COUPLING_REST": Code(
         "plan", "design", "A linear coupling's offset does not agree with the rest values.", "Set the offset to the named value."
     ),
+    "E_COUPLING_LOCKED": Code(
+        "plan",
+        "design",
+        "Couplings hold each other fast, such as three gears in a triangle.",
+        "Remove one of them, or correct a ratio: round a closed train the product of the ratios must be 1.",
+    ),
     "E_FIT": Code("plan", "design", "A fit's range is impossible.", "Give 0 <= min <= max in mm."),
     "E_ALLOW": Code("plan", "design", "A waiver is incomplete.", "Name two different parts, a positive depth in mm and a reason."),
     "E_LOOP_OPEN": Code("plan", "design", "A loop cannot be closed.", "Lengthen a link or move a pivot."),
+    "W_LOOP_INEXACT": Code(
+        "plan",
+        "design",
+        "A loop closes and moves only after its connectors are moved by less than the tolerance: they are rounded.",
+        "Give the named connectors with more digits; nothing is to be done where rounding is all there is.",
+    ),
     "E_LOOP_LOCKED": Code("plan", "design", "A loop cannot move.", "Make the axes parallel, or change a joint of the loop."),
     "E_LOOP_LIMIT": Code(
         "motion",

@@ -14,6 +14,7 @@ from articad.errors import DeadPointError, KinematicsError, LoopError
 from articad.findings import Finding
 from articad.kinematics.continuation import Follower, Stop, Trace
 from articad.kinematics.factors import least_squares
+from articad.kinematics.inexact import shown_gap
 from articad.kinematics.joints import Coordinate, Coupling, Joint, JointType
 from articad.kinematics.layout import IndexArray, Layout
 from articad.kinematics.loops import CLOSED, BoolArray, ClosureSystem
@@ -23,6 +24,7 @@ from articad.kinematics.tree import KinematicTree
 
 _STARTS = 12  # random starts before a loop is said to be open
 _LAST_ITERATIONS = 200  # for the best gap: convergence to a stretched chain is linear
+_ALMOST = 1e-3  # |r| at which a loop is open by inexact data, not by its rest values
 _SAME_MODE = 1e-6  # rad, or lengths L: two solutions this close are one
 _MOVED = 1e-15  # rad, or lengths L: a driver that moved less did not move
 
@@ -71,6 +73,8 @@ class Branch:
         closed = system.close(system.layout.rest, system.active)
         if closed.ok:
             return closed.Q
+        if closed.residual < _ALMOST:  # other ways of assembling it are not what is meant
+            self._raise_open(closed.Q, from_rest=False)
         rng = np.random.default_rng(0)
         starts = system.move(system.layout.rest, rng.uniform(-math.pi, math.pi, (_STARTS, system.layout.n_freedoms)))
         Q, norm = system.close_many(starts, system.active, iterations=60)
@@ -88,14 +92,18 @@ class Branch:
         worst = int(np.argmax(gaps))
         loop, gap = self.system.loops[worst], float(gaps[worst])
         joint = loop.joint
+        turn = float(np.linalg.norm(self.system.residual_one(Q)[6 * worst + 3 : 6 * worst + 6]))
+        sizes = (shown_gap(gap), f"{math.degrees(turn):.2g}°")
+        lever = turn * self.system.length
+        size = sizes[0] if lever < 0.01 * gap else sizes[1] if gap < 1e-6 * lever else " and ".join(sizes)
         place = f"{joint.parent}.{joint.parent_connector} / {joint.child}.{joint.child_connector}"
         if from_rest:
             message, hint = (
-                f"loop {loop} does not close near its rest pose: gap {gap:.3f} mm at {place}.",
+                f"loop {loop} does not close near its rest pose: gap {size} at {place}.",
                 "Give rest values that close it.",
             )
         else:
-            message = f"loop {loop} cannot close: best gap {gap:.3f} mm at {place}{_arithmetic(loop.joints)}."
+            message = f"loop {loop} cannot close: best gap {size} at {place}{_arithmetic(loop.joints)}."
             hint = "Lengthen a link or move a pivot."
         finding = Finding(
             code="E_LOOP_OPEN", where=f"joints.{joint.name}", message=message, hint=hint, parts=loop.parts, value=gap, limit=0.0, unit="mm"

@@ -32,10 +32,12 @@ from articad.kinematics.mobility import REALISED, Settled, settled
 
 POSITION_TOLERANCE = 1e-3  # mm: coordinates with 3 decimals are off by up to 0.5e-3 each
 RELATIVE_TOLERANCE = 1e-5  # of L: coordinates with 6 significant digits, or single precision
-ANGLE_TOLERANCE = 8e-5  # rad: axes with 4 decimals are off by up to 0.5e-4 in each component; 0.01° between two axes is beyond
+ANGLE_TOLERANCE = 7e-5  # rad: axes with 4 decimals are off by up to 0.5e-4 in each component; 0.01° between two axes is beyond
 NOISE = 2e-3  # σ/σ₁: what noise within the tolerances can give a direction in which the exact linkage is free
 _NEARLY = 0.05  # |r| of a loop that is open by so little that a cause is worth looking for
-_CLEAR = 5e-3  # σ/σ₁ that a sample needs beyond the noise
+_COARSE = 0.05  # σ/σ₁ that an axis askew by some degrees can give, where only the cause is looked for
+_CLEAR = 2.5  # times the noise that the smallest singular value of a sample must have
+_EXPLAINED = 0.1  # share of what is wrong that one frame alone may leave, if it is to be the cause
 _WALK, _STEPS = 0.25, 4  # rad, or lengths L; steps of each walk from rest along the intended motion
 _ITERATIONS = 8
 _CUTS = (1e-2, 1e-3, 1e-4)  # σ/σ₁ below which the conditions for mobility count as noise; the first that works
@@ -99,7 +101,9 @@ class Correction:
         return self.closed and self.distance <= self.distance_tolerance and self.angle <= ANGLE_TOLERANCE
 
 
-def nearest(parts: Sequence[str], ground: str, joints: Sequence[Joint], couplings: Sequence[Coupling]) -> Correction | None:
+def nearest(
+    parts: Sequence[str], ground: str, joints: Sequence[Joint], couplings: Sequence[Coupling], *, coarse: bool = False
+) -> Correction | None:
     """Return the consistent geometry nearest to the given one.
 
     Args:
@@ -107,11 +111,12 @@ def nearest(parts: Sequence[str], ground: str, joints: Sequence[Joint], coupling
         ground: The part that stands still.
         joints: As given.
         couplings: Relations between coordinates.
+        coarse: Look for geometry that is off by degrees, to name the cause.
 
     Returns:
         The correction; None where the geometry is consistent already, or so far from it that no rounding explains it.
     """
-    problem = _Problem(parts, ground, joints, couplings)
+    problem = _Problem(parts, ground, joints, couplings, _COARSE if coarse else NOISE)
     samples = problem.samples()
     if samples is None or max(one.residual for one in samples) <= REALISED:
         return None
@@ -123,13 +128,17 @@ def nearest(parts: Sequence[str], ground: str, joints: Sequence[Joint], coupling
         if left <= REALISED:
             break
     assert best is not None  # noqa: S101 - there are cuts
-    return problem.correction(best[1], closed=best[0] <= REALISED)
+    alone = problem.alone(samples) if coarse else None
+    return problem.correction(best[1] if alone is None else alone, closed=best[0] <= REALISED)
 
 
 class _Problem:
     """The least-squares problem of one mechanism."""
 
-    def __init__(self, parts: Sequence[str], ground: str, joints: Sequence[Joint], couplings: Sequence[Coupling]) -> None:
+    def __init__(
+        self, parts: Sequence[str], ground: str, joints: Sequence[Joint], couplings: Sequence[Coupling], noise: float = NOISE
+    ) -> None:
+        self._noise = noise
         self._parts, self._ground, self._couplings = tuple(parts), ground, tuple(couplings)
         self._joints = tuple(joints)
         self._system = self._made(self._joints)
@@ -145,17 +154,17 @@ class _Problem:
     def samples(self) -> list[Settled] | None:
         """Return configurations along the intended motion, rest first; None if the loops are far from closing."""
         system = self._system
-        start = settled(system, system.layout.rest, None, dropped=NOISE)
+        start = settled(system, system.layout.rest, None, dropped=self._noise)
         if not start.residual < _NEARLY:
-            start = settled(system, system.close(system.layout.rest, system.active).Q, None, dropped=NOISE)
+            start = settled(system, system.close(system.layout.rest, system.active).Q, None, dropped=self._noise)
         if not start.residual < _NEARLY:
             return None
         found, rng = [start], np.random.default_rng(0)
-        free = _freedoms(start)
+        free = self._freedoms(start)
         for _ in range(free + 1 if free else 0):
             c = rng.standard_normal(free)
             for sign in (1.0, -1.0):
-                found += self._walk(start, sign * (_null_space(start).T @ (c / np.linalg.norm(c))))
+                found += self._walk(start, sign * (self._null_space(start).T @ (c / np.linalg.norm(c))))
         return found
 
     def _walk(self, start: Settled, direction: FloatArray) -> list[Settled]:
@@ -165,12 +174,16 @@ class _Problem:
         for _ in range(_STEPS):
             y = np.zeros(system.layout.n_freedoms)
             y[where] = _WALK * direction
-            there = settled(system, system.move(at.Q, y), None, dropped=NOISE)
-            kept = len(there.Vt) - _freedoms(there)
+            there = settled(system, system.move(at.Q, y), None, dropped=self._noise)
+            kept = len(there.Vt) - self._freedoms(there)
             went = system.step_between(at.Q, there.Q)[where]
-            if there.residual > _NEARLY / 10 or np.linalg.norm(went) < 0.5 * _WALK or (kept and there.s[kept - 1] < _CLEAR * there.s[0]):
+            if (
+                there.residual > max(0.1 * _NEARLY, 2.0 * start.residual)
+                or np.linalg.norm(went) < 0.5 * _WALK
+                or (kept and there.s[kept - 1] < _CLEAR * self._noise * there.s[0])
+            ):
                 break
-            N = _null_space(there)
+            N = self._null_space(there)
             if not len(N):
                 break
             direction = N.T @ (N @ went)
@@ -179,22 +192,25 @@ class _Problem:
             at = there
         return found
 
+    def _freedoms(self, at: Settled) -> int:
+        """Return how many directions are free if singular values below the noise are."""
+        return len(at.Vt) - int((at.s > self._noise * at.s.max(initial=0.0)).sum())
+
+    def _null_space(self, at: Settled) -> FloatArray:
+        """Return these directions as rows, in the active freedoms."""
+        null: FloatArray = at.Vt[len(at.Vt) - self._freedoms(at) :]
+        return null
+
     # --- the correction
 
     def solved(self, samples: Sequence[Settled], cut: float) -> tuple[float, FloatArray]:
         """Return the largest |r| of the samples that is left, and δ `(joints, 2, 6)`, by Gauss–Newton."""
         delta = np.zeros((len(self._names), 2, 6))
-        ranks = [len(one.Vt) - _freedoms(one) for one in samples]
+        ranks = [len(one.Vt) - self._freedoms(one) for one in samples]
         system, at = self._system, list(samples)
         best = max(one.residual for one in at), delta
         for _ in range(_ITERATIONS):
-            rows, rights = [], []
-            for one, rank in zip(at, ranks, strict=True):
-                across = one.U[:, rank:].T
-                D = across @ self._by_frames(system, one.Q)
-                rows.append(D)
-                rights.append(D @ delta.ravel() - across @ one.r)
-            delta = least_squares(np.concatenate(rows), np.concatenate(rights), cut).reshape(delta.shape)
+            delta = least_squares(*self._linear(system, at, ranks, delta), cut).reshape(delta.shape)
             system = self._made(self._with(delta))
             at = [settled(system, one.Q, rank) for one, rank in zip(at, ranks, strict=True)]
             left = max(one.residual for one in at)
@@ -202,6 +218,36 @@ class _Problem:
                 break
             best = left, delta
         return best
+
+    def alone(self, samples: Sequence[Settled]) -> FloatArray | None:
+        """Return the smallest δ that moves one frame alone and explains nearly all that is wrong; None where none does."""
+        A, b = self._linear(
+            self._system, samples, [len(one.Vt) - self._freedoms(one) for one in samples], np.zeros((len(self._names), 2, 6))
+        )
+        found: list[tuple[float, int, FloatArray]] = []
+        for frame in range(2 * len(self._names)):
+            columns = A[:, 6 * frame : 6 * frame + 6]
+            twist = least_squares(columns, b, _CUTS[0])
+            if np.linalg.norm(columns @ twist - b) < _EXPLAINED * np.linalg.norm(b):
+                found.append((round(float(np.linalg.norm(twist)), 6), frame, twist))
+        if not found:
+            return None
+        _, frame, twist = min(found, key=lambda one: one[:2])
+        delta = np.zeros((2 * len(self._names), 6))
+        delta[frame] = twist
+        return delta.reshape(-1, 2, 6)
+
+    def _linear(
+        self, system: ClosureSystem, samples: Sequence[Settled], ranks: Sequence[int], delta: FloatArray
+    ) -> tuple[FloatArray, FloatArray]:
+        """Return the equations A δ = b of all samples, linear about the present δ: U₂ᵀ D (δ' − δ) = −U₂ᵀ r."""
+        rows, rights = [], []
+        for one, rank in zip(samples, ranks, strict=True):
+            across = one.U[:, rank:].T
+            D = across @ self._by_frames(system, one.Q)
+            rows.append(D)
+            rights.append(D @ delta.ravel() - across @ one.r)
+        return np.concatenate(rows), np.concatenate(rights)
 
     def _by_frames(self, system: ClosureSystem, Q: FloatArray) -> FloatArray:
         """Return ∂r/∂δ `(rows, 12 joints)`: a twist of a frame moves what is beyond it as the joint itself would."""
@@ -249,17 +295,13 @@ class _Problem:
         return Correction(joints, tuple(moved), self._system.length, askew, closed)
 
 
-def _freedoms(at: Settled) -> int:
-    """Return how many directions are free if singular values below the noise are."""
-    return len(at.Vt) - int((at.s > NOISE * at.s.max(initial=0.0)).sum())
-
-
-def _null_space(at: Settled) -> FloatArray:
-    """Return these directions as rows, in the active freedoms."""
-    null: FloatArray = at.Vt[len(at.Vt) - _freedoms(at) :]
-    return null
-
-
 def _moved(joint: Joint, twists: FloatArray) -> Joint:
-    parent, child = (frame @ SE3.exp(twist) for frame, twist in zip((joint.T_parent_connector, joint.T_child_connector), twists, strict=True))
+    parent, child = (
+        frame @ SE3.exp(twist) for frame, twist in zip((joint.T_parent_connector, joint.T_child_connector), twists, strict=True)
+    )
     return replace(joint, T_parent_connector=parent, T_child_connector=child)
+
+
+def shown_gap(mm: float) -> str:
+    """Return a gap as findings show it, in powers of ten where it is small."""
+    return f"{mm:.3f} mm" if mm >= 0.01 else f"{mm:.1e} mm"

@@ -1,21 +1,25 @@
-"""What there is to say about loops and couplings: open, locked, shaky, singular, idle, redundant."""
+"""What there is to say about loops and couplings: open, inexact, locked, shaky, singular, idle, redundant."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from articad.errors import LoopError
 from articad.findings import Finding
-from articad.kinematics.joints import Joint
+from articad.kinematics.inexact import ANGLE_TOLERANCE, Correction, shown_gap
+from articad.kinematics.joints import Coupling, Joint
 from articad.kinematics.mobility import NEAR_SINGULAR, idle_parts, redundancies
 
 if TYPE_CHECKING:
     from articad.kinematics.branch import Branch
     from articad.kinematics.mechanism import Mechanism
 
+_STILL = 1e-9  # of a unit motion of the whole mechanism: a coordinate that moves less stands still
 _MOST_LOOPS_RELEASED = 4  # a proposal costs a few ms per joint; larger mechanisms get it when they ask for it
 
 
@@ -25,13 +29,109 @@ def loop_findings(mechanism: Mechanism) -> list[Finding]:
         branch = mechanism.branch
     except LoopError as error:
         return list(error.findings)
-    return [*_driver_findings(branch), *_mobility_findings(branch), *_redundancy_findings(mechanism)]
+    return [
+        *_inexact_findings(mechanism),
+        *_driver_findings(branch, mechanism.inconsistency),
+        *_coupling_findings(branch),
+        *_mobility_findings(branch),
+        *_redundancy_findings(mechanism),
+    ]
 
 
-def _driver_findings(branch: Branch) -> list[Finding]:
+# --- inexact geometry
+
+
+def _inexact_findings(mechanism: Mechanism) -> list[Finding]:
+    """Say by how much connectors were moved so that loops close and move."""
+    correction = mechanism.correction
+    if correction is None:
+        return []
+    far, turned = max(correction.moved, key=lambda one: one.distance), max(correction.moved, key=lambda one: one.angle)
+    message = (
+        f"The loops close and move only after connectors are moved by up to {correction.distance:.1e} mm ({far.part}.{far.connector}) "
+        f"and {correction.angle:.1e} rad ({turned.part}.{turned.connector}): the given ones are rounded. "
+        f"Tolerance {correction.distance_tolerance:.1e} mm and {ANGLE_TOLERANCE:.1e} rad."
+    )
+    hint = "Poses use the moved connectors. Give connectors with more digits to make them exact."
+    return [
+        Finding(
+            code="W_LOOP_INEXACT",
+            where=f"joints.{far.joint}",
+            message=message,
+            hint=hint,
+            parts=tuple(dict.fromkeys((far.part, turned.part))),
+            value=correction.distance,
+            limit=correction.distance_tolerance,
+            unit="mm",
+        )
+    ]
+
+
+def askew_error(error: LoopError, needed: Correction) -> LoopError:
+    """Return the error of an open loop with its cause: which connectors do not fit, and by how much."""
+    (finding,) = error.findings
+    cause, hint = inconsistency(needed)
+    message = finding.message.rstrip(".") + f": {cause}."
+    return LoopError(
+        f"{finding.code}: {message} {hint}", loop=error.loop, gap=error.gap, findings=[replace(finding, message=message, hint=hint)]
+    )
+
+
+def inconsistency(needed: Correction) -> tuple[str, str]:
+    """Say what keeps loops from closing and moving that are nearly consistent, and what to do about it."""
+    if needed.askew is not None and needed.askew[2] > ANGLE_TOLERANCE:
+        a, b, angle = needed.askew
+        cause = f"the axes of {b.part}.{b.connector} and {a.part}.{a.connector} are {math.degrees(angle):.3f}° askew"
+        return cause, f"Turn one of the two axes by {math.degrees(angle):.3f}°, or release a joint of the loop."
+    far = max(needed.moved, key=lambda one: one.distance)
+    cause = f"{far.part}.{far.connector} would have to move by {shown_gap(far.distance)} (tolerance {needed.distance_tolerance:.1e} mm)"
+    return cause, f"Move {far.part}.{far.connector}, or release a joint of the loop."
+
+
+# --- drivers and couplings
+
+
+def _coupling_findings(branch: Branch) -> list[Finding]:
+    """Say which couplings hold each other fast, such as three gears in a triangle."""
+    system, moving = branch.system, np.abs(branch.analysis.freedoms).max(axis=1, initial=0.0) > _STILL
+    locked = [
+        coupling
+        for coupling, row in zip(system.couplings, system.coupling_rows, strict=True)
+        if not moving[np.flatnonzero(row)].any()
+    ]
+    found = []
+    for group in _connected(locked):
+        names, joints = ", ".join(repr(c.name) for c in group), ", ".join(dict.fromkeys(n for c in group for n in (c.a, c.b)))
+        message = f"Coupling(s) {names} cannot move: with the rest of the mechanism they hold {joints} fast."
+        hint = (
+            "Remove a coupling, or correct a ratio: round a closed train the product of the ratios must be 1, so gears need an even number."
+        )
+        parts = tuple(
+            dict.fromkeys(
+                part
+                for c in group
+                for n in (c.a, c.b)
+                for joint in [system.layout.joint(n.split(".")[0])]
+                for part in (joint.parent, joint.child)
+            )
+        )
+        found.append(Finding(code="E_COUPLING_LOCKED", where=f"couplings.{group[0].name}", message=message, hint=hint, parts=parts))
+    return found
+
+
+def _connected(couplings: Sequence[Coupling]) -> list[list[Coupling]]:
+    """Return the couplings in groups that share coordinates."""
+    groups: list[list[Coupling]] = []
+    for coupling in couplings:
+        touched = [group for group in groups if any({c.a, c.b} & {coupling.a, coupling.b} for c in group)]
+        groups = [group for group in groups if group not in touched] + [[*(c for group in touched for c in group), coupling]]
+    return groups
+
+
+def _driver_findings(branch: Branch, beyond: Correction | None) -> list[Finding]:
     analysis = branch.analysis
     if analysis.mobility == 0 and branch.refused:
-        return [_locked(branch, joint) for joint in branch.refused]
+        return [_locked(branch, joint, beyond) for joint in branch.refused]
     names = ", ".join(c.name for c in branch.drivers)
     found = []
     for joint in branch.refused:
@@ -41,17 +141,22 @@ def _driver_findings(branch: Branch) -> list[Finding]:
     return found
 
 
-def _locked(branch: Branch, driver: Joint) -> Finding:
+def _locked(branch: Branch, driver: Joint, beyond: Correction | None) -> Finding:
     """Say why a loop cannot move: usually an axis that is tilted against the others."""
     sigma = branch.analysis.near
     message = f"mobility 0: driver {driver.name!r} cannot move; the smallest singular value is {sigma:.2g}"
     loops = [loop for loop in branch.system.loops if driver.name in {joint.name for joint in loop.joints}]
+    named = False
     for loop in loops[:1]:
         joint, tilt = _most_tilted(branch, loop.joints)
         if 0 < tilt < math.radians(5):  # more is no misalignment but a spatial loop
+            named = True
             message += f" and belongs to the axis of {joint.parent}.{joint.parent_connector}, tilted by {math.degrees(tilt):.3f}°"
     parts = loops[0].parts if loops else (driver.parent, driver.child)
     hint = "Make the hinge axes parallel, or release a joint of the loop."
+    if beyond is not None and beyond.closed and not named:
+        cause, hint = inconsistency(beyond)
+        message += f": {cause}"
     return Finding(code="E_LOOP_LOCKED", where=f"joints.{driver.name}", message=f"{message}.", hint=hint, parts=parts, value=sigma)
 
 

@@ -5,24 +5,47 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from articad.connectors import SE3, FloatArray, quaternion
-from articad.errors import KinematicsError, PlanError, did_you_mean
+from articad.errors import KinematicsError, LoopError, PlanError, did_you_mean
 from articad.findings import Finding, Findings
 from articad.kinematics.batch import TreeArrays
 from articad.kinematics.branch import Branch
 from articad.kinematics.configuration import Configuration
 from articad.kinematics.graph import JointGraph
+from articad.kinematics.inexact import NOISE, Correction, nearest
 from articad.kinematics.joint_check import joint_findings
 from articad.kinematics.joints import Coordinate, Coupling, Joint
 from articad.kinematics.layout import Layout
-from articad.kinematics.linkage_findings import loop_findings
-from articad.kinematics.mobility import Redundancy, redundancies
+from articad.kinematics.linkage_findings import askew_error, loop_findings
+from articad.kinematics.mobility import NEARLY_FREE, REALISED, Redundancy, redundancies
 from articad.kinematics.motion import FeasibleRange, Sweep, feasible_range, sweep
 from articad.kinematics.reach import Reach, reach
+from articad.kinematics.tree import KinematicTree
+
+
+class _Compiled(NamedTuple):
+    """Joints and what is computed of their frames."""
+
+    joints: tuple[Joint, ...]
+    tree: KinematicTree
+    loop_joints: tuple[Joint, ...]
+    layout: Layout
+    arrays: TreeArrays
+
+
+class _Linkage(NamedTuple):
+    """Joints and their loops, closed at rest, or why they are not; what was moved for it, or would have to be."""
+
+    compiled: _Compiled
+    branch: Branch | None = None
+    error: KinematicsError | None = None
+    correction: Correction | None = None
+    beyond: Correction | None = None
 
 
 class Mechanism:
@@ -43,37 +66,100 @@ class Mechanism:
         self, parts: Sequence[str], ground: str, joints: Sequence[Joint], couplings: Sequence[Coupling] = (), T_ground: SE3 | None = None
     ) -> None:
         self.parts, self.ground = tuple(parts), ground
-        self.joints, self.couplings = tuple(joints), tuple(couplings)
+        self.given_joints, self.couplings = tuple(joints), tuple(couplings)
         self.T_ground = SE3.identity() if T_ground is None else T_ground
-        graph = JointGraph(self.parts, ground, self.joints)
-        findings = Findings([*graph.findings(), *joint_findings(self.joints), *_coupling_findings(self)])
+        graph = JointGraph(self.parts, ground, self.given_joints)
+        findings = Findings([*graph.findings(), *joint_findings(self.given_joints), *_coupling_findings(self)])
         if not findings.ok:
             raise PlanError("\n".join(map(str, findings.errors)), findings=findings)
         self._structure = findings
-        self.tree, self.loop_joints = graph.spanning_tree()
-        self.layout = Layout(self.joints)
-        self.arrays = TreeArrays(self.parts, self.tree, self.layout, self.T_ground)
+        self._given = _compiled(self, self.given_joints, graph)
 
     # --- what it is
 
     @property
     def is_tree(self) -> bool:
         """True when no joint closes a loop and no coupling ties joints: every coordinate is free."""
-        return not self.loop_joints and not self.couplings
+        return not self._given.loop_joints and not self.couplings
+
+    @property
+    def joints(self) -> tuple[Joint, ...]:
+        """The joints in order of declaration, as given; of inexact loops with the nearest frames that close and move.
+
+        See `correction`; `given_joints` has them as given.
+        """
+        return self._used.joints
+
+    @property
+    def tree(self) -> KinematicTree:
+        """The tree that carries every part."""
+        return self._used.tree
+
+    @property
+    def loop_joints(self) -> tuple[Joint, ...]:
+        """The joints that close loops."""
+        return self._used.loop_joints
+
+    @property
+    def layout(self) -> Layout:
+        """Where the coordinates of each joint stand."""
+        return self._used.layout
+
+    @property
+    def arrays(self) -> TreeArrays:
+        """The tree compiled for arithmetic."""
+        return self._used.arrays
+
+    @property
+    def correction(self) -> Correction | None:
+        """What was moved, and by how much, because the loops' connectors are inexact; None where nothing was."""
+        return self._linkage.correction
+
+    @property
+    def inconsistency(self) -> Correction | None:
+        """What would have to be moved for the loops to move; None where nothing has, or where no such geometry is near."""
+        return self._linkage.beyond
+
+    @property
+    def _used(self) -> _Compiled:
+        return self._linkage.compiled
+
+    @cached_property
+    def _linkage(self) -> _Linkage:
+        """The loops with consistent frames: the given ones wherever those close and move."""
+        if self.is_tree:
+            return _Linkage(self._given)
+        given = _linked(self._given, self.couplings)
+        if not _is_doubtful(given):
+            return given
+        found = nearest(self.parts, self.ground, self.given_joints, self.couplings)
+        if found is not None and found.within:
+            graph = JointGraph(self.parts, self.ground, found.joints)
+            corrected = _linked(_compiled(self, found.joints, graph), self.couplings, found)
+            if corrected.branch is not None and not _is_doubtful(corrected, noise=False):
+                return corrected
+        if isinstance(given.error, LoopError):
+            cause = nearest(self.parts, self.ground, self.given_joints, self.couplings, coarse=True) or found
+            return given if cause is None else given._replace(error=askew_error(given.error, cause))
+        return given._replace(beyond=found)
 
     @property
     def coordinates(self) -> tuple[Coordinate, ...]:
         """Columns of all joints, in order of declaration."""
         return self.layout.coordinates
 
-    @cached_property
+    @property
     def branch(self) -> Branch:
         """The loops and couplings, closed at rest; of a mechanism that has some.
 
         Raises:
             LoopError: E_LOOP_OPEN if the loops cannot be closed from the rest pose.
         """
-        return Branch(self.tree, self.layout, self.loop_joints, self.couplings)
+        if self._linkage.error is not None:
+            raise self._linkage.error.with_traceback(None)
+        if self._linkage.branch is None:
+            raise KinematicsError("A tree of joints has no loops to close.")
+        return self._linkage.branch
 
     @property
     def drivers(self) -> tuple[Coordinate, ...]:
@@ -120,7 +206,7 @@ class Mechanism:
         """Return what there is to say about a mechanism that could be made.
 
         Of a tree only warnings about its joints; of loops and couplings also whether they close and move (E_LOOP_OPEN,
-        E_LOOP_LOCKED, E_DRIVER, W_SHAKY, W_NEAR_SINGULAR, W_IDLE_FREEDOM, I_REDUNDANT). Ranges: `motion_findings`.
+        E_LOOP_LOCKED, E_DRIVER, W_LOOP_INEXACT, W_SHAKY, W_NEAR_SINGULAR, W_IDLE_FREEDOM, I_REDUNDANT). Ranges: `motion_findings`.
         """
         return self._structure if self.is_tree else self._structure + loop_findings(self)
 
@@ -299,11 +385,38 @@ class Mechanism:
         return f"Mechanism({len(self.parts)} parts, {len(self.joints)} joints, {len(self.loop_joints)} loops)"
 
 
+def _compiled(mechanism: Mechanism, joints: tuple[Joint, ...], graph: JointGraph) -> _Compiled:
+    tree, loop_joints = graph.spanning_tree()
+    layout = Layout(joints)
+    return _Compiled(joints, tree, loop_joints, layout, TreeArrays(mechanism.parts, tree, layout, mechanism.T_ground))
+
+
+def _linked(compiled: _Compiled, couplings: tuple[Coupling, ...], correction: Correction | None = None) -> _Linkage:
+    try:
+        branch = Branch(compiled.tree, compiled.layout, compiled.loop_joints, couplings)
+    except KinematicsError as error:
+        return _Linkage(compiled, None, error, correction)
+    return _Linkage(compiled, branch, None, correction)
+
+
+def _is_doubtful(linkage: _Linkage, *, noise: bool = True) -> bool:
+    """Tell whether inexact frames may keep the loops from closing or moving.
+
+    Args:
+        linkage: Closed, or not.
+        noise: Whether a small singular value counts, which may also be a dead point nearby.
+    """
+    if linkage.branch is None:
+        return bool(linkage.compiled.loop_joints) and isinstance(linkage.error, LoopError)
+    analysis = linkage.branch.analysis
+    return REALISED < analysis.obstruction < NEARLY_FREE or (noise and analysis.near < NOISE)
+
+
 def _coupling_findings(mechanism: Mechanism) -> list[Finding]:
     found: list[Finding] = []
     if not mechanism.couplings:
         return found
-    columns = {name: joint for joint in mechanism.joints for name in joint.column_names}
+    columns = {name: joint for joint in mechanism.given_joints for name in joint.column_names}
     for coupling in mechanism.couplings:
         where = f"couplings.{coupling.name}"
         for name in dict.fromkeys((coupling.a, coupling.b)):

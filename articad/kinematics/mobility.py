@@ -35,6 +35,7 @@ from articad.kinematics.loops import RANK_TOLERANCE, ClosureSystem
 
 NEAR_SINGULAR = 1e-3  # σ/σ₁ between the rank tolerance and this is reported: drift, or a dead point nearby
 REALISED = 1e-12  # |r| of a finite motion that the constraints allow; rounding leaves 1e-15 · reach/L
+NEARLY_FREE = 1e-3  # |r| below which an obstruction may be noise of the data; a true one of second order leaves 2.5e-3 or more
 _SLICE = 0.05  # rad, or lengths L: a finite motion; an obstruction of order m leaves a residual of 0.05ᵐ
 _SLICE_SHARE = 0.3  # of the smallest singular value: beyond it the linear model is worth nothing
 _SHORTEST_SLICE = 2e-4  # a shorter one cannot tell an obstruction from rounding
@@ -142,7 +143,9 @@ def settled(system: ClosureSystem, Q: FloatArray, rank: int | None, *, dropped: 
     return Settled(Q, float(np.linalg.norm(r)), U, s, Vt, r)
 
 
-def _obstruction(system: ClosureSystem, Q: FloatArray, N: FloatArray, rank: int, rng: np.random.Generator, longest: float = _SLICE) -> float:
+def _obstruction(
+    system: ClosureSystem, Q: FloatArray, N: FloatArray, rank: int, rng: np.random.Generator, longest: float = _SLICE
+) -> float:
     """Return |r| that is left after a finite motion along a random combination of N; inf where it leads elsewhere."""
     sigma = _smallest(system, Q, rank)
     size = max(_SHORTEST_SLICE, min(longest, _SLICE_SHARE * sigma))

@@ -590,6 +590,8 @@ FROM_ELSEWHERE = {
     "E_DRIVER": "mechanism: below",
     "E_LOOP_OPEN": "mechanism",
     "E_LOOP_LOCKED": "mechanism",
+    "E_COUPLING_LOCKED": "mechanism",
+    "W_LOOP_INEXACT": "mechanism",
     "W_SHAKY": "mechanism",
     "W_IDLE_FREEDOM": "mechanism",
     "I_REDUNDANT": "mechanism",
