@@ -31,7 +31,7 @@ from articad.kinematics.loops import ClosureSystem
 from articad.kinematics.mobility import REALISED, Settled, settled
 
 POSITION_TOLERANCE = 1e-3  # mm: coordinates with 3 decimals are off by up to 0.5e-3 each
-RELATIVE_TOLERANCE = 1e-5  # of L: coordinates with 6 significant digits, or single precision
+RELATIVE_TOLERANCE = 3e-5  # of L: coordinates with 6 significant digits, and what axes with 4 decimals miss at a distance L
 ANGLE_TOLERANCE = 7e-5  # rad: axes with 4 decimals are off by up to 0.5e-4 in each component; 0.01° between two axes is beyond
 NOISE = 2e-3  # σ/σ₁: what noise within the tolerances can give a direction in which the exact linkage is free
 _NEARLY = 0.05  # |r| of a loop that is open by so little that a cause is worth looking for
@@ -40,7 +40,7 @@ _CLEAR = 2.5  # times the noise that the smallest singular value of a sample mus
 _EXPLAINED = 0.1  # share of what is wrong that one frame alone may leave, if it is to be the cause
 _WALK, _STEPS = 0.25, 4  # rad, or lengths L; steps of each walk from rest along the intended motion
 _ITERATIONS = 8
-_CUTS = (1e-2, 1e-3, 1e-4)  # σ/σ₁ below which the conditions for mobility count as noise; the first that works
+_CUTS = (1e-2, 1e-3, 1e-4, 1e-5)  # σ/σ₁ below which the conditions for mobility count as noise; the first that works
 
 
 @dataclass(frozen=True)
@@ -92,7 +92,7 @@ class Correction:
 
     @property
     def distance_tolerance(self) -> float:
-        """Up to which distance [mm] frames may be moved: 1e-3 mm, or 1e-5 L if that is more."""
+        """Up to which distance [mm] frames may be moved: 1e-3 mm, or 3e-5 L if that is more."""
         return max(POSITION_TOLERANCE, RELATIVE_TOLERANCE * self.length)
 
     @property
@@ -120,16 +120,13 @@ def nearest(
     samples = problem.samples()
     if samples is None or max(one.residual for one in samples) <= REALISED:
         return None
-    best: tuple[float, FloatArray] | None = None
-    for cut in _CUTS:
-        left, delta = problem.solved(samples, cut)
-        if best is None or left < best[0]:
-            best = left, delta
+    left, delta = problem.solved(samples, _CUTS[0])
+    for cut in _CUTS[1:]:
         if left <= REALISED:
             break
-    assert best is not None  # noqa: S101 - there are cuts
+        left, delta = min((left, delta), problem.solved(samples, cut), key=lambda one: one[0])
     alone = problem.alone(samples) if coarse else None
-    return problem.correction(best[1] if alone is None else alone, closed=best[0] <= REALISED)
+    return problem.correction(delta if alone is None else alone, closed=left <= REALISED)
 
 
 class _Problem:
@@ -263,7 +260,7 @@ class _Problem:
                 for k, P in enumerate(frames):
                     sign = side if k == 0 else -side
                     arms = np.cross(P[:3, :3].T, B[:3, 3] - P[:3, 3])  # of a turn about each axis
-                    out[:3, place[joint.name], k, :3] = sign * (B[:3, :3].T @ P[:3, :3])
+                    out[:3, place[joint.name], k, :3] = sign * (B[:3, :3].T @ P[:3, :3]) * (self._system.length / system.length)
                     out[:3, place[joint.name], k, 3:] = sign * (B[:3, :3].T @ arms.T) / system.length
                     out[3:, place[joint.name], k, 3:] = sign * (B[:3, :3].T @ P[:3, :3])
         return D.reshape(system.n_rows, -1)

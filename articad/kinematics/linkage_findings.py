@@ -95,9 +95,7 @@ def _coupling_findings(branch: Branch) -> list[Finding]:
     """Say which couplings hold each other fast, such as three gears in a triangle."""
     system, moving = branch.system, np.abs(branch.analysis.freedoms).max(axis=1, initial=0.0) > _STILL
     locked = [
-        coupling
-        for coupling, row in zip(system.couplings, system.coupling_rows, strict=True)
-        if not moving[np.flatnonzero(row)].any()
+        coupling for coupling, row in zip(system.couplings, system.coupling_rows, strict=True) if not moving[np.flatnonzero(row)].any()
     ]
     found = []
     for group in _connected(locked):

@@ -38,6 +38,7 @@ _LARGEST_STEP = 0.5  # rad, or lengths L: the linear model is worth nothing beyo
 _DAMPING_FALL, _DAMPING_RISE = 0.2, 8.0  # of a step that helped, and of one that did not
 _DAMPING_START = 1e-3
 _FEW_JOINTS = 16  # joints up to which plain numbers win over NumPy at one configuration (measured with scissors of 1 … 20 stages)
+_COINCIDENT = 1e-4  # of the longest link
 _FALLBACK_LENGTH = 100.0  # mm, where no part has two connectors apart
 
 
@@ -333,5 +334,6 @@ def _characteristic_length(joints: Sequence[Joint]) -> float:
         origins.setdefault(joint.parent, []).append(joint.T_parent_connector.translation)
         origins.setdefault(joint.child, []).append(joint.T_child_connector.translation)
     lengths = [float(np.linalg.norm(p - points[0])) for points in origins.values() for p in points[1:]]
-    lengths = [length for length in lengths if length > 1e-6]
+    least = _COINCIDENT * max(lengths, default=0.0)  # connectors nearer to each other are one place, rounded
+    lengths = [length for length in lengths if length > max(1e-6, least)]
     return float(np.median(lengths)) if lengths else _FALLBACK_LENGTH
