@@ -40,7 +40,8 @@ _SLICE = 0.05  # rad, or lengths L: a finite motion; an obstruction of order m l
 _SLICE_SHARE = 0.3  # of the smallest singular value: beyond it the linear model is worth nothing
 _SHORTEST_SLICE = 2e-4  # a shorter one cannot tell an obstruction from rounding
 _NEIGHBOURS = 5  # random neighbours of a singular rest pose
-_SCALES = (0.05, 0.005)  # rad, or lengths L: how far away; the second for linkages that move by thousandths only
+_BESIDE = 0.05  # rad, or lengths L: how far away they are
+_NEARER, _FARTHER = 0.005, 0.3  # for linkages that move by thousandths only; for obstructions of an order that 0.05 does not show
 _STUCK = 0.1  # share of the way to a neighbour: what closes nearer to rest has not moved
 _MULTIPLE = 1e-4  # σ/σ₁ at a neighbour; at a root of multiplicity two the solver stops 1e-6 away from it
 _SURVIVES = 0.2  # share of a displacement that is left after closing, of a true motion
@@ -154,9 +155,9 @@ def _obstruction(
         c = rng.standard_normal(N.shape[1])
         predicted = system.move(Q, size * (N @ (c / np.linalg.norm(c))))
         there = settled(system, predicted, rank)
-        if np.abs(system.step_between(predicted, there.Q)).max() > 0.5 * size:
+        if float(np.abs(system.step_between(predicted, there.Q)).max()) > 0.5 * size:
             return math.inf
-        worst = max(worst, there.residual)
+        worst = max(worst, float(there.residual))
         if worst > REALISED:
             break
     return worst
@@ -180,16 +181,26 @@ class _Neighbour(NamedTuple):
 
 def _near(system: ClosureSystem, Q: FloatArray, N: FloatArray, rng: np.random.Generator) -> list[_Neighbour]:
     """Return closed neighbours of a singular rest pose; none if the linkage falls back to rest from everywhere."""
-    for scale in _SCALES:
-        found = []
-        for _ in range(_NEIGHBOURS):
-            c = rng.standard_normal(N.shape[1])
-            closed = system.close(system.move(Q, scale * (N @ (c / np.linalg.norm(c)))), system.active)
-            if closed.ok and np.linalg.norm(system.step_between(Q, closed.Q)) > _STUCK * scale:
-                found.append(_tangent_space(system, closed.Q, 0.2 * scale, rng))
-        if found:
-            return found
-    return []
+    found, slow = _neighbours(system, Q, N, _BESIDE, rng)
+    if not found:
+        found, _ = _neighbours(system, Q, N, _FARTHER if slow else _NEARER, rng)
+    return found
+
+
+def _neighbours(
+    system: ClosureSystem, Q: FloatArray, N: FloatArray, scale: float, rng: np.random.Generator
+) -> tuple[list[_Neighbour], bool]:
+    """Return closed neighbours at a distance, and whether one nearly closed there without falling back to rest."""
+    found, slow = list[_Neighbour](), False
+    for _ in range(_NEIGHBOURS):
+        c = rng.standard_normal(N.shape[1])
+        closed = system.close(system.move(Q, scale * (N @ (c / np.linalg.norm(c)))), system.active)
+        if np.linalg.norm(system.step_between(Q, closed.Q)) <= _STUCK * scale:
+            continue
+        if closed.ok:
+            found.append(_tangent_space(system, closed.Q, 0.2 * scale, rng))
+        slow |= not closed.ok
+    return found, slow
 
 
 def _tangent_space(system: ClosureSystem, Q: FloatArray, scale: float, rng: np.random.Generator) -> _Neighbour:
@@ -202,7 +213,7 @@ def _tangent_space(system: ClosureSystem, Q: FloatArray, scale: float, rng: np.r
     rows = []
     for _ in range(k + 2):
         c = rng.standard_normal(k)
-        c *= scale / np.linalg.norm(c)
+        c *= scale / float(np.linalg.norm(c))
         ends = [system.close(system.move(Q, sign * (N @ c)), system.active) for sign in (1.0, -1.0)]
         if all(end.ok for end in ends):  # the central difference has no error of second order
             rows.append(system.step_between(ends[1].Q, ends[0].Q) @ N / (2 * scale))
