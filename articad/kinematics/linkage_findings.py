@@ -178,6 +178,13 @@ def _mobility_findings(branch: Branch) -> list[Finding]:
     if analysis.shaky:
         message = f"The linkage has {analysis.first_order} freedom(s) to first order only: it is rigid, but barely."
         found.append(Finding(code="W_SHAKY", where=where, message=message, hint="Change a length.", parts=parts))
+    elif analysis.multiple:
+        message = (
+            f"The linkage has {analysis.first_order} freedoms to first order at rest and {analysis.mobility} in truth: nearby, "
+            f"{analysis.multiple} more stay(s) free to first order, though no finite motion follows. Play of the joints lets parts move there."
+        )
+        hint = "Use fewer links, or links that are not parallel or equal; feasible ranges may end early at such poses."
+        found.append(Finding(code="W_NEAR_SINGULAR", where=where, message=message, hint=hint, parts=parts, value=0.0, limit=NEAR_SINGULAR))
     elif analysis.first_order > analysis.mobility:
         message = f"The rest pose is singular: {analysis.first_order} freedoms to first order, {analysis.mobility} in general position."
         hint = "Choose a rest pose in which the links are not in line."

@@ -13,7 +13,7 @@ moved along it by a finite amount:
 3. At each neighbour that stays away, repeat step 1. If it fails again the equations have a multiple root there: the
    displacements that survive closing span the tangent space, and their rank is the dimension.
 
-The mobility is the largest dimension found: the local dimension at rest.
+The mobility is the largest dimension that two neighbours agree on.
 """
 
 from __future__ import annotations
@@ -27,11 +27,11 @@ from typing import NamedTuple
 import numpy as np
 
 from articad.connectors import FloatArray
-from articad.kinematics.factors import right_singular, svd
+from articad.kinematics.factors import least_squares, right_singular, svd
 from articad.kinematics.graph import JointGraph
 from articad.kinematics.joints import Coupling, Joint, JointLimits, JointType
 from articad.kinematics.layout import Layout
-from articad.kinematics.loops import RANK_TOLERANCE, ClosureSystem
+from articad.kinematics.loops import CLOSED, RANK_TOLERANCE, ClosureSystem
 
 NEAR_SINGULAR = 1e-3  # σ/σ₁ between the rank tolerance and this is reported: drift, or a dead point nearby
 REALISED = 1e-12  # |r| of a finite motion that the constraints allow; rounding leaves 1e-15 · reach/L
@@ -41,10 +41,12 @@ _SLICE_SHARE = 0.3  # of the smallest singular value: beyond it the linear model
 _SHORTEST_SLICE = 2e-4  # a shorter one cannot tell an obstruction from rounding
 _NEIGHBOURS = 5  # random neighbours of a singular rest pose
 _BESIDE = 0.05  # rad, or lengths L: how far away they are
-_NEARER, _FARTHER = 0.005, 0.3  # for linkages that move by thousandths only; for obstructions of an order that 0.05 does not show
+_NEARER, _FARTHER = 0.005, 0.3  # for linkages that move by thousandths only; for obstructions of high order
+_FAINT = 1e-8  # |r| of an obstruction at rest so small that it is of order four or more
 _STUCK = 0.1  # share of the way to a neighbour: what closes nearer to rest has not moved
 _MULTIPLE = 1e-4  # σ/σ₁ at a neighbour; at a root of multiplicity two the solver stops 1e-6 away from it
-_SURVIVES = 0.2  # share of a displacement that is left after closing, of a true motion
+_KEPT, _PATIENCE = 1e-9, 60  # σ/σ₁ that is corrected there, and steps
+_SURVIVES = 0.3  # share of a displacement that is left after closing, of a true motion
 _INDEPENDENT = 1e-5  # share of a driver's freedom that others do not give already
 _STILL = 1e-7  # rad, or lengths L per unit of motion: a part that moves less stands still
 
@@ -93,9 +95,11 @@ def mobility_of(system: ClosureSystem, Q: FloatArray) -> Mobility:
     obstruction = _obstruction(system, Q, N, rank, rng)
     if obstruction <= REALISED:
         return regular
-    found = _near(system, Q, N, rng)
-    best = max(found, key=lambda one: one.T.shape[1], default=_Neighbour(Q, N[:, :0], 0))
-    mobility = best.T.shape[1]
+    found = _near(system, Q, N, obstruction, rng)
+    dimensions = [one.T.shape[1] for one in found]
+    seen_twice = [d for d in dimensions if dimensions.count(d) > 1]  # at single ones an obstruction of high order is too faint
+    mobility = max(seen_twice or dimensions, default=0)
+    best = next((one for one in found if one.T.shape[1] == mobility), _Neighbour(Q, N[:, :0], 0))
     return Mobility(mobility, first, n_active - mobility, best.Q, best.T, near, obstruction, best.multiple)
 
 
@@ -179,28 +183,26 @@ class _Neighbour(NamedTuple):
     multiple: int
 
 
-def _near(system: ClosureSystem, Q: FloatArray, N: FloatArray, rng: np.random.Generator) -> list[_Neighbour]:
+def _near(system: ClosureSystem, Q: FloatArray, N: FloatArray, obstruction: float, rng: np.random.Generator) -> list[_Neighbour]:
     """Return closed neighbours of a singular rest pose; none if the linkage falls back to rest from everywhere."""
-    found, slow = _neighbours(system, Q, N, _BESIDE, rng)
-    if not found:
-        found, _ = _neighbours(system, Q, N, _FARTHER if slow else _NEARER, rng)
+    scales = (_FARTHER, _BESIDE, _NEARER) if obstruction < _FAINT else (_BESIDE, _NEARER)
+    return next((found for scale in scales if (found := _neighbours(system, Q, N, scale, rng))), [])
+
+
+def _neighbours(system: ClosureSystem, Q: FloatArray, N: FloatArray, scale: float, rng: np.random.Generator) -> list[_Neighbour]:
+    """Return closed neighbours at a distance from rest."""
+    found = []
+    for _ in range(_NEIGHBOURS):
+        c = rng.standard_normal(N.shape[1])
+        closed = _closed_beside(system, system.move(Q, scale * (N @ (c / np.linalg.norm(c)))))
+        if closed.residual <= CLOSED and np.linalg.norm(system.step_between(Q, closed.Q)) > _STUCK * scale:
+            found.append(_tangent_space(system, closed.Q, 0.2 * scale, rng))
     return found
 
 
-def _neighbours(
-    system: ClosureSystem, Q: FloatArray, N: FloatArray, scale: float, rng: np.random.Generator
-) -> tuple[list[_Neighbour], bool]:
-    """Return closed neighbours at a distance, and whether one nearly closed there without falling back to rest."""
-    found, slow = list[_Neighbour](), False
-    for _ in range(_NEIGHBOURS):
-        c = rng.standard_normal(N.shape[1])
-        closed = system.close(system.move(Q, scale * (N @ (c / np.linalg.norm(c)))), system.active)
-        if np.linalg.norm(system.step_between(Q, closed.Q)) <= _STUCK * scale:
-            continue
-        if closed.ok:
-            found.append(_tangent_space(system, closed.Q, 0.2 * scale, rng))
-        slow |= not closed.ok
-    return found, slow
+def _closed_beside(system: ClosureSystem, Q: FloatArray) -> Settled:
+    """Close from Q by plain Gauss–Newton: it halves the distance to a multiple root in each step, where damping would stall."""
+    return settled(system, Q, None, dropped=_KEPT, iterations=_PATIENCE)
 
 
 def _tangent_space(system: ClosureSystem, Q: FloatArray, scale: float, rng: np.random.Generator) -> _Neighbour:
@@ -210,17 +212,19 @@ def _tangent_space(system: ClosureSystem, Q: FloatArray, scale: float, rng: np.r
     rank = int(system.active.sum()) - k
     if not k or rank == system.n_rows or _obstruction(system, Q, N, rank, rng, scale) <= REALISED:
         return _Neighbour(Q, N, 0)
-    rows = []
+    tried, left = [], []
     for _ in range(k + 2):
         c = rng.standard_normal(k)
         c *= scale / float(np.linalg.norm(c))
-        ends = [system.close(system.move(Q, sign * (N @ c)), system.active) for sign in (1.0, -1.0)]
-        if all(end.ok for end in ends):  # the central difference has no error of second order
-            rows.append(system.step_between(ends[1].Q, ends[0].Q) @ N / (2 * scale))
-    if not rows:
+        ends = [_closed_beside(system, system.move(Q, sign * (N @ c))) for sign in (1.0, -1.0)]
+        if all(end.residual <= CLOSED for end in ends):  # the central difference has no error of second order
+            tried.append(c)
+            left.append(0.5 * system.step_between(ends[1].Q, ends[0].Q) @ N)
+    if len(tried) < k:
         return _Neighbour(Q, N[:, :0], k)
-    _, s, Vt = svd(np.array(rows), full=True)
-    dimension = int((s > _SURVIVES * max(1.0, float(s[0]))).sum())
+    projection = least_squares(np.array(tried), np.array(left), RANK_TOLERANCE)  # c ↦ what is left of it: 1 on the tangent space, else 0
+    _, s, Vt = svd(projection, full=True)
+    dimension = int((s > _SURVIVES).sum())
     return _Neighbour(Q, N @ Vt[:dimension].T, k - dimension)
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from scipy.optimize import least_squares
 
 from articad.connectors import SE3
-from articad.kinematics import Coupling, Joint, JointType, Mechanism
+from articad.kinematics import Coupling, Joint, Mechanism
 from tests.kinematics.linkages import at, bennett, from_rest, joint
 
 Row = tuple[float, float, float]  # link length a, twist α, offset d (Denavit and Hartenberg)
@@ -47,12 +47,10 @@ def ring(rows: Sequence[Row], angles: Sequence[float]) -> Mechanism:
     """Return the closed chain of revolute joints: joint i turns about the z of link i, then the link leads to the next."""
     n = len(rows)
     joints = []
-    for i, ((a, alpha, d), theta) in enumerate(zip(rows, angles, strict=True)):
-        far = SE3.trans(a, 0, d) @ SE3.rot_x(alpha)  # of the joint's own link, after its turn
+    for i, theta in enumerate(angles):
         before = (i - 1) % n
         a_, alpha_, d_ = rows[before]
         near = SE3.trans(a_, 0, d_) @ SE3.rot_x(alpha_)
-        del far
         joints.append(joint(f"j{i}", "revolute", (f"l{before}", near), (f"l{i}", at(0)), rest=[float(theta)], driver=i == 0))
     return Mechanism(tuple(f"l{i}" for i in range(n)), f"l{n - 1}", joints)
 
@@ -115,7 +113,7 @@ def myard_five_bar() -> Mechanism:
     alpha = 0.8
     b = 80.0
     a = b * math.sin(alpha)
-    rows = [(a, alpha, 0.0), (b, math.pi / 2, 0.0), (0.0, math.pi - 2 * alpha, 0.0), (b, math.pi / 2, 0.0), (a, alpha, 0.0)]
+    rows = [(a, alpha, 0.0), (b, math.pi / 2, 0.0), (0.0, math.pi - 2 * alpha, 0.0), (b, math.pi / 2, 0.0), (a, math.pi - alpha, 0.0)]
     return closed_ring(rows, first=1.2)
 
 
@@ -124,7 +122,7 @@ def schatz() -> Mechanism:
     a, q = 50.0, math.pi / 2
     rng = np.random.default_rng(2)
     # joints 1 and 6 are parallel and √3 a apart; their offsets are equal and opposite
-    rows = [(0.0, q, -20.0), (a, q, 0.0), (a, q, 0.0), (a, q, 0.0), (0.0, q, 20.0), (math.sqrt(3) * a, 0.0, 0.0)]
+    rows = [(0.0, q, -20.0), (a, q, 0.0), (a, q, 0.0), (a, q, 0.0), (0.0, q, 0.0), (math.sqrt(3) * a, 0.0, 20.0)]
     for _ in range(60):
         angles, left = closing_angles(rows, rng.uniform(-math.pi, math.pi, 6), {0: 0.8})
         if left < 1e-12:
@@ -165,7 +163,7 @@ def parallel_rods(n: int, foot: str = "universal", *, circle: bool = False) -> M
     if circle:
         turn = np.sort(rng.uniform(0, 2 * math.pi, n))
         points = np.column_stack([90 * np.cos(turn), 90 * np.sin(turn), np.zeros(n)])
-    return rods(points, points + [0, 0, 120])
+    return rods(points, points + np.array([0, 0, 120]), foot)
 
 
 def similar_hexagons(twist: float = 0.3) -> Mechanism:
@@ -208,16 +206,6 @@ def double_parallelogram() -> Mechanism:
     return planar(links | {f"crank{i}": {f"f{i}": feet[i], f"h{i}": heads[i]} for i in range(3)}, "ground")
 
 
-def burmester() -> Mechanism:
-    """Kempe's and Burmester's focal mechanism: a four-bar and a point P inside, joined to one pivot on each side; mobility 1.
-
-    P is a focus of a conic that touches the sides, so the sides are seen from P under angles that add to π in opposite pairs, and the
-    pivots lie where the quadrilaterals round P are similar in opposite pairs.
-    """
-    # a kite-free quadrilateral that is itself a pair of similar halves: the square's centre with any equal pivots is the plain case
-    raise NotImplementedError
-
-
 def dixon_first() -> Mechanism:
     """Dixon's first mechanism, K₃,₃ and up: points on two perpendicular lines, every one of one line tied to every one of the other.
 
@@ -245,15 +233,13 @@ def klann() -> Mechanism:
             "rocker": {"lower": lower, "elbow": elbow},
             "swing": {"upper": upper, "shoulder": shoulder},
             "leg": {"shoulder": shoulder, "knee": knee, "foot": foot},
-        }
-        | {},
+        },
         "ground",
     )
 
 
-def delta(*, parallelograms: bool = True) -> Mechanism:
+def delta() -> Mechanism:
     """A Delta robot: three arms, each with a parallelogram of two ball-ended rods: three translations, and six rods that spin."""
-    del parallelograms
     joints, parts = [], ["base", "top"]
     for i in range(3):
         R = SE3.rot_z(2 * math.pi / 3 * i)
@@ -274,9 +260,7 @@ def gear_triangle(teeth: Sequence[int] = (20, 30, 40), *, belt: bool = False) ->
     ratios = [-teeth[a] / teeth[b] for a, b in pairs]
     if belt:
         ratios[2] = -ratios[2]
-    couplings = [
-        Coupling(f"mesh{a}{b}", "gear", f"wheel{a}", f"wheel{b}", ratio) for (a, b), ratio in zip(pairs, ratios, strict=True)
-    ]
+    couplings = [Coupling(f"mesh{a}{b}", "gear", f"wheel{a}", f"wheel{b}", ratio) for (a, b), ratio in zip(pairs, ratios, strict=True)]
     return Mechanism(("frame", "w0", "w1", "w2"), "frame", joints, couplings)
 
 
@@ -308,4 +292,3 @@ SINGLE: dict[str, Callable[[], Mechanism]] = {
     "klann": klann,
     "similar_hexagons": similar_hexagons,
 }
-TYPES = JointType
