@@ -21,7 +21,7 @@ def screw(a: float, alpha: float, d: float, theta: float) -> np.ndarray:
     return np.array([[ct, -sn * ca, sn * sa, a * ct], [sn, ct * ca, -ct * sa, a * sn], [0, sa, ca, d], [0, 0, 0, 1]])
 
 
-def closing_angles(rows: Sequence[Row], guess: Sequence[float], fixed: dict[int, float]) -> tuple[np.ndarray, float]:
+def closing_angles(rows: Sequence[Row], guess: Sequence[float] | np.ndarray, fixed: dict[int, float]) -> tuple[np.ndarray, float]:
     """Return the joint angles that close a ring with some of them given, and the residual that is left, by least squares."""
     free = [i for i in range(len(rows)) if i not in fixed]
     size = max(max(abs(a), abs(d)) for a, _, d in rows)
@@ -43,7 +43,7 @@ def closing_angles(rows: Sequence[Row], guess: Sequence[float], fixed: dict[int,
     return angles(best.x), math.sqrt(2 * best.cost)
 
 
-def ring(rows: Sequence[Row], angles: Sequence[float]) -> Mechanism:
+def ring(rows: Sequence[Row], angles: Sequence[float] | np.ndarray) -> Mechanism:
     """Return the closed chain of revolute joints: joint i turns about the z of link i, then the link leads to the next."""
     n = len(rows)
     joints = []
