@@ -30,7 +30,9 @@ FLOAT = 1e-12  # by which a ratio may be off for whole turns to fit it
 BULK = 2048  # rows looked at together
 LARGEST = 1e7  # mm or rad: further out, numbers are rounded by more than matters
 TYPES = {"f": "f8", "i": "i8", "u": "i8", "U": "U"}  # of arrays, by kind: short numbers overflow, and complex ones have no order
+SWUNG = -7  # a piece keeps inside a cone about a ball's axis however it swings, and the other one outside
 LEAN, ROUND, OUTSIDE = -6, -5, -4  # pieces differ in angle from a ball's axis, or in radius; a box lies outside the cone of a ball
+BESIDE = np.radians([0, *(sign * 2.0**k for sign in (-1, 1) for k in range(-1, 6))])  # of the cones that keep a swing apart
 CUT = -3  # and -2, -1: the piece of a, of b, or the box is cut
 
 
@@ -179,6 +181,22 @@ def framed(parent: Any, child: Any) -> Any:
 def boxed(ends: Any) -> tuple[tuple[float, float], ...]:
     """Return ranges `(drivers, 2)` such that they can be looked up."""
     return tuple((low, high) for low, high in ends.tolist())
+
+
+def swung(local: Any, axis: Any, cone: float) -> Any:
+    """Return how far triangles `(n, 3, 3)` are outside cones about an axis through 0: at least as they stand, at most while they swing.
+
+    That is r cos c - z sin c, which changes by no more than a point moves; a swing adds at most its angle to that from the axis.
+    """
+    flat, far, found = local @ plane(axis), np.linalg.norm(local, axis=2), []
+    r, mean, narrow = np.linalg.norm(flat, axis=2), flat.mean(1, keepdims=True), radii(flat)[0]
+    along = (flat * mean).sum(2) / np.maximum(np.linalg.norm(mean, axis=2), 1e-300)  # no more than the radius
+    for z, c in itertools.product((local @ axis, -local @ axis), np.clip(cone + BESIDE, 0, np.pi / 2)):
+        d, ahead = c - cone, (z >= 0).all(1, keepdims=True)
+        most = np.where((z * np.cos(d) + r * np.sin(d) >= 0) & ahead, r * np.cos(d) - z * np.sin(d), far)
+        least = np.maximum((along * np.cos(c) - z * np.sin(c)).min(1), narrow * np.cos(c) - z.max(1) * np.sin(c))
+        found.append([least, most.max(1)])
+    return np.moveaxis(np.array(found), 0, 2)
 
 
 def joined(ends: Any, rows: list[Any]) -> tuple[Any, Any, Any]:
@@ -567,6 +585,7 @@ class Checker:
         cone = turns[0]["cone"] if len(turns) == 1 and all(f["name"] in vary and not f["rest"] for f in turns[0]["freedoms"]) else None
         angles = [leans(local, steps[turns[0]["freedoms"][-1]["name"]][0]) for local in both if cone]
         near, far = zip(*(radii(local @ plane(axis)) for local in both), strict=True)
+        outside = [swung(local, steps[turns[0]["freedoms"][-1]["name"]][0], cone) for local in both if cone and cone <= np.pi / 2]
         spans = [list(itertools.pairwise(proof[key].tolist())) for key in ("parts_a", "parts_b")]
         need([(own[0][0], own[-1][1]) for own in spans] == [(0, len(A)), (0, len(B))], "a triangle is left out")
 
@@ -574,9 +593,13 @@ class Checker:
             box, is_steady = boxes[number]
             if code == OUTSIDE:
                 return math.inf if any(is_outside(joint, box) for joint, _ in way if joint["cone"] is not None) else 0.0
-            need(is_steady and (code == ROUND or (code == LEAN and angles)), "what is compared is not kept")
+            need(is_steady and (code == ROUND or (code == LEAN and angles) or (code == SWUNG and outside)), "what is compared is not kept")
             if code == ROUND:
                 return max(near[0][x].min() - far[1][y].max(), near[1][y].min() - far[0][x].max())
+            if code == SWUNG:
+                return max(
+                    (outside[1][0][y].min(0) - outside[0][1][x].max(0)).max(), (outside[0][0][x].min(0) - outside[1][1][y].max(0)).max()
+                )
             over = angles[0][0][x].min() - angles[1][1][y], angles[1][0][y] - angles[0][1][x].max()  # a swing changes angles by no more
             return max((near[1][y] * np.sin(np.clip(side - cone, 0, np.pi / 2))).min() for side in over)  # than its own, a twist by none
 

@@ -577,17 +577,27 @@ class _Certifying:
                         )
                     )
 
+    def _ended(self) -> str:
+        """Return the sentence that says why work ended: a pair is given up after so many pieces, before the budget is spent."""
+        return self.budget.ended() if self.budget.is_spent else f"The search was given up after {MOST_PAIRS} pieces of a pair."
+
     def _report_left(self) -> None:
         for joints, pairs in self.left.items():
             for parts in pairs:
-                self._verdict(parts, joints, Strength.not_checked(self.budget.reason), NOTHING, "unknown")
+                self._verdict(
+                    parts,
+                    joints,
+                    Strength.not_checked(self.budget.reason if self.budget.is_spent else "the search for a pair was given up"),
+                    NOTHING,
+                    "unknown",
+                )
             names = ", ".join(f"{a}/{b}" for a, b in pairs)
             self.findings.append(
                 Finding(
                     code="E_NOT_CHECKED",
                     where=f"joints.{joints[0]}",
                     parts=tuple(dict.fromkeys(name for pair in pairs for name in pair)),
-                    message=f"{self.budget.ended()} These pairs are not proven apart over {', '.join(joints)}: {names}.",
+                    message=f"{self._ended()} These pairs are not proven apart over {', '.join(joints)}: {names}.",
                     hint="Raise the budget, or widen the gap between them: the work grows as 1/gap.",
                     value=self.budget.seconds,
                     unit="s",

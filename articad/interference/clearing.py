@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from articad.interference.profile import Forest
 from articad.interference.spread import Spread
 from articad.interference.surface import Core
-from articad.interference.trail import CUT_A, CUT_B, CUT_RANGE, LEAN, OF_A, OF_B, ROUND, Trail
+from articad.interference.trail import CUT_A, CUT_B, CUT_RANGE, LEAN, OF_A, OF_B, ROUND, SWUNG, Trail
 from articad.interference.work import BOX, STEP, Budget
 
 FloatArray = NDArray[np.float64]
@@ -208,10 +208,13 @@ class _Search:
         ahead, behind = b.low[rows.b] - a.high[rows.a], a.low[rows.a] - b.high[rows.b]
         gap = np.maximum(ahead, behind)
         ball = self.axis.dimensions == 3
-        far = gap > np.array([self.needed, 0.0 if ball else self.needed, self.needed, self.needed])[: gap.shape[1]]  # angles tell of that
+        limit = np.full(gap.shape[1], self.needed)
+        if ball:
+            limit[1] = 0.0  # angles tell of that
+        far = gap > limit
         apart, best = np.asarray(far.any(axis=1)), np.argmax(far, axis=1)
-        for k, code in enumerate((ROUND, LEAN) if ball else (ROUND,)):
-            self.trail.keep(rows.number[apart & (best == k)], code)
+        for k, code in enumerate((ROUND, LEAN, SWUNG) if ball else (ROUND,)):
+            self.trail.keep(rows.number[apart & (np.minimum(best, 2) == k if ball else best == k)], code)
         axes = self.axis.frame[:3, 3 - gap.shape[1] + 1 : 3].T
         for k in () if ball else range(1, gap.shape[1]):
             for side, sign in ((ahead, 1.0), (behind, -1.0)):

@@ -17,6 +17,8 @@ BoolArray = NDArray[np.bool_]
 Ends = tuple[FloatArray, FloatArray]
 
 _ROUNDING = 1e-9  # rad: of angles
+_STEPS = np.radians([0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0])
+BESIDE_CONE = np.concatenate([-_STEPS[::-1], [0.0], _STEPS])  # rad: angles of the cones of `swung`, beside the cone of the ball
 CHUNK = 65_536  # rows looked at together
 
 
@@ -55,6 +57,37 @@ def leaning(core: Core, corners: FloatArray, cone: float, needed: float) -> Ends
     more = cone + np.arcsin(np.clip(needed / np.maximum(least, 1e-300), 0.0, 1.0)) + _ROUNDING
     more = np.where(least > needed, more, np.pi)
     return (low - more)[:, None], (high + more)[:, None]
+
+
+def swung(core: Core, corners: FloatArray, cone: float) -> Ends:
+    """Return how far each triangle is outside some cones about the axis: as it stands, and at most while it swings, `(T, k)` each [mm].
+
+    Outside a cone of half angle c a point at height z and radius r is by r cos c - z sin c = ρ sin(θ - c), θ its angle from the
+    axis. That changes by no more than the point moves. The radius is at least what is measured along one direction, so the least of
+    a triangle is bounded at its corners, or by its least radius and its largest height. A swing by at most `cone` changes θ by as much, and a twist does not: the largest is
+    ρ sin(θ + cone - c), or ρ where that angle is beyond a right one. It is the largest of functions convex in the point, hence
+    reached at a corner, while the whole triangle is on the side to which the axis points. A part that leans out of a ball's centre
+    thus keeps clear of a ring about it whatever its own twist is.
+
+    Args:
+        core: The centre, with its axis.
+        corners: `(T, 3, 3)`.
+        cone: At most a right angle [rad].
+    """
+    local = corners - core.frame[:3, 3]
+    z, rho = local @ core.frame[:3, 2], np.linalg.norm(local, axis=2)
+    flat = local - z[..., None] * core.frame[:3, 2]
+    r, mean = np.linalg.norm(flat, axis=2), flat.mean(axis=1, keepdims=True)
+    along = (flat * (mean / np.maximum(np.linalg.norm(mean, axis=2, keepdims=True), 1e-300))).sum(axis=2)
+    least, low, high = Core(core.frame).least_radii(corners), [], []
+    for side in (z, -z):
+        is_ahead = (side >= 0).all(axis=1)
+        for c in np.clip(cone + BESIDE_CONE, 0.0, np.pi / 2):
+            flat_end = least * np.cos(c) - side.max(axis=1) * np.sin(c)
+            low.append(np.maximum((along * np.cos(c) - side * np.sin(c)).min(axis=1), flat_end))
+            leant = np.where(side * np.cos(c - cone) + r * np.sin(c - cone) >= 0, r * np.cos(c - cone) - side * np.sin(c - cone), rho)
+            high.append(np.where(is_ahead, leant.max(axis=1), rho.max(axis=1)))
+    return np.stack(low, axis=1), np.stack(high, axis=1)
 
 
 def meeting(a: Ends, b: Ends, needed: float | FloatArray) -> BoolArray:

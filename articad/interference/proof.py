@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from articad.connectors.se3 import SE3
 from articad.interference.claims import Claim, Course
 from articad.interference.clearing import MOST_PAIRS, Boxes, Cleared, Ranges, clear
-from articad.interference.meridian import Ends, leaning, outline
+from articad.interference.meridian import Ends, leaning, outline, swung
 from articad.interference.motion import Chain, Mover, Route, freedoms, scattered, swing_and_twist, turned
 from articad.interference.overlap import Overlap, measured, overlap
 from articad.interference.profile import SLIDING_WEIGHT, WEIGHT, Forest
@@ -262,7 +262,10 @@ class Prover:
             return of_a, of_b, limit
         cone = self.chain.freedoms[mover.columns[0]].upper
         of_a, of_b = _beside(of_a, leaning(axis, a.corners, 0.0, 0.0)), _beside(of_b, leaning(core_b, b.corners, cone, needed))
-        return of_a, of_b, np.append(limit, 0.0)
+        if cone > np.pi / 2:
+            return of_a, of_b, np.append(limit, 0.0)
+        of_a, of_b = _beside(of_a, swung(axis, a.corners, cone)), _beside(of_b, swung(core_b, b.corners, cone))
+        return of_a, of_b, np.concatenate([limit, [0.0], np.full(of_a[0].shape[1] - 2, needed)])
 
     def slid(self) -> tuple[float, float]:
         """Return how far sliders along one line together carry b along the axis, as a sees it [mm]."""

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
-LEAN, ROUND, OUTSIDE, CUT_A, CUT_B, CUT_RANGE = -6, -5, -4, -3, -2, -1
+SWUNG, LEAN, ROUND, OUTSIDE, CUT_A, CUT_B, CUT_RANGE = -7, -6, -5, -4, -3, -2, -1
 OF_A, OF_B = 0, 1  # who sees a direction as it is written
 
 
@@ -23,7 +23,7 @@ class Written(NamedTuple):
     """A trail as a checker reads it.
 
     Attributes:
-        codes: Of each row a cut, `LEAN`, `ROUND`, `OUTSIDE`, or the number of a direction.
+        codes: Of each row a cut, `SWUNG`, `LEAN`, `ROUND`, `OUTSIDE`, or the number of a direction.
         along: Directions `(n, 3)`, those of a first.
         of_a: How many of them are of a.
     """
