@@ -290,5 +290,4 @@ SINGLE: dict[str, Callable[[], Mechanism]] = {
     "double_parallelogram": double_parallelogram,
     "dixon": dixon_first,
     "klann": klann,
-    "similar_hexagons": similar_hexagons,
 }

@@ -28,9 +28,8 @@ def test_a_linkage_of_the_literature_has_mobility_one(name: str) -> None:
     assert mechanism.mobility == 1
     assert mechanism.correction is None
     assert mechanism.nq == 1
-    if name != "similar_hexagons":  # its equations have a multiple root: see below
-        moves_by(mechanism, 0.05)
-        assert mechanism.branch.analysis.first_order == 1
+    moves_by(mechanism, 0.05)
+    assert mechanism.branch.analysis.first_order == 1
 
 
 def test_platforms_robots_and_six_bars_have_their_mobility() -> None:
@@ -57,7 +56,9 @@ def rods_close(points: np.ndarray, forced: dict[int, float], seed: int) -> float
     return math.sqrt(2 * min(costs))
 
 
-@pytest.mark.parametrize(("n", "mobility"), [(3, 3), (4, 2), (5, 2), (6, 2), (8, 2)])
+@pytest.mark.parametrize(
+    ("n", "mobility"), [(3, 3), (4, 2), (5, 2), pytest.param(6, 2, marks=pytest.mark.soak), pytest.param(8, 2, marks=pytest.mark.soak)]
+)
 def test_a_platform_on_parallel_rods_translates_and_turns_only_on_three(n: int, mobility: int) -> None:
     mechanism = parallel_rods(n)
     analysis = mechanism.branch.analysis
@@ -76,7 +77,7 @@ def test_a_platform_on_parallel_rods_translates_and_turns_only_on_three(n: int, 
 
 
 def test_balls_at_both_ends_let_every_rod_spin_besides() -> None:
-    assert parallel_rods(5, "ball").mobility == 2 + 5
+    assert parallel_rods(4, "ball").mobility == 2 + 4
 
 
 def test_rods_between_similar_hexagons_screw_the_platform() -> None:
@@ -114,6 +115,6 @@ def test_three_gears_in_a_triangle_are_locked_and_named() -> None:
 
 
 def test_a_mobility_is_the_same_every_time() -> None:
-    first, second = (parallel_rods(5).branch.analysis for _ in range(2))
+    first, second = (parallel_rods(4).branch.analysis for _ in range(2))
     assert np.array_equal(first.freedoms, second.freedoms)
     assert np.array_equal(first.Q, second.Q)
