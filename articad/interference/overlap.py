@@ -28,6 +28,7 @@ _DEPTH_PIECES = 24  # pieces of an overlap whose depth is sampled, the largest f
 _BEACONS = 400  # points of a surface that bound how far others are from it
 _SQUARES_ROUNDING = 1e-14  # of sums of squares, relative
 _SPREAD_SAMPLES = 96  # further points where faces that a mesh cuts into many triangles have become few
+_CONVEX = 1e-9  # share of its volume by which the hull of a convex solid may be larger
 _DEPTH_SAMPLES = 48  # vertices, and as many centres of triangles, at which the depth of one piece is sampled
 
 
@@ -37,7 +38,8 @@ class Overlap:
 
     Attributes:
         volume: [mm³].
-        depth: Of the deepest piece: the larger of its mean thickness 2V/A and the deepest sampled point [mm].
+        depth: How far the deepest point of the common solid lies below a surface that it does not lie on [mm]: the larger of the deepest
+            sampled point of its own surface and, where the two surfaces coincide, the largest ball inside it.
         pieces: Number of separate pieces.
         box: Bounding box of all pieces in the first body's frame, `(2, 3)` [mm]; None when there is nothing.
     """
@@ -68,9 +70,11 @@ def overlap_of(common: Any, a: Body, b: Body, T_a_b: FloatArray) -> Overlap:
     pieces = sorted(((volume, piece) for volume, piece in pieces if volume > VOLUME_NOISE_MM3), key=lambda pair: -pair[0])
     if not pieces:
         return NOTHING
-    depth = max(2 * volume / float(piece.surface_area()) for volume, piece in pieces)
+    depth = 0.0
     for _, piece in pieces[:_DEPTH_PIECES]:
         depth = _sampled_depth(piece, a, b, T_a_b, depth)
+    thick = [(2 * volume / float(piece.surface_area()), piece) for volume, piece in pieces]  # mean thicknesses
+    depth = max([depth, *(_inscribed(piece, mean) for mean, piece in thick if mean > depth)])  # there both surfaces coincide
     box = np.array(common.bounding_box()).reshape(2, 3)
     return Overlap(sum(volume for volume, _ in pieces), depth, len(pieces), box)
 
@@ -200,6 +204,27 @@ def _sampled_depth(piece: Any, a: Body, b: Body, T_a_b: FloatArray, known: float
     known = _deepest(a, points[asked[:, 0]], own[0], known)
     R, t = T_a_b[:, :3], T_a_b[:, 3]
     return _deepest(b, (points[asked[:, 1]] - t) @ R, (own[1] - t) @ R, known)
+
+
+def _inscribed(piece: Any, thickness: float) -> float:
+    """Return the radius of the largest ball in a convex solid [mm]; of any other solid its mean thickness.
+
+    Linear program: the largest r with n·x + r <= n·p for the plane (n, p) of every face (Chebyshev centre; Boyd and Vandenberghe,
+    Convex Optimization, 4.3.1).
+    """
+    from scipy.optimize import linprog  # noqa: PLC0415 - rarely needed, and slow to import
+
+    if float(piece.hull().volume()) > (1 + _CONVEX) * float(piece.volume()):
+        return thickness
+    mesh = piece.to_mesh64()
+    corners = np.asarray(mesh.vert_properties)[:, :3][np.asarray(mesh.tri_verts)]
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    sizes = np.linalg.norm(normals, axis=1)
+    flat = sizes > 0
+    normals = normals[flat] / sizes[flat, None]
+    planes = np.column_stack([normals, np.ones(len(normals))])
+    found = linprog([0, 0, 0, -1], planes, np.einsum("ti,ti->t", normals, corners[flat, 0]), bounds=[(None, None)] * 3 + [(0, None)])
+    return float(found.x[3]) if found.success else thickness
 
 
 def _samples(vertices: FloatArray, triangles: NDArray[np.int64], *, all_over: bool) -> tuple[FloatArray, NDArray[np.int64]]:

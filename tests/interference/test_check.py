@@ -11,7 +11,9 @@ import pytest
 
 from articad.connectors import SE3
 from articad.geometry import TriMesh, box, cylinder, merged, sphere
+from articad.interference.body import Body
 from articad.interference.check import Checks, check_pose
+from articad.interference.overlap import overlap
 from articad.kinematics.joints import Joint
 from tests.interference.mechanisms import (
     IDENTITY,
@@ -38,14 +40,14 @@ def check(a: TriMesh, b: TriMesh, T_a_b: SE3, joints: tuple[Joint, ...] = (), *,
 # --- overlap and its tolerance
 
 
-@pytest.mark.parametrize("overlap", [0.05, 0.1, 1.0])
-def test_overlapping_faces_are_found_with_their_volume_and_depth(overlap: float) -> None:
-    report = check(CUBE, CUBE, at(10 - overlap))
+@pytest.mark.parametrize("deep", [0.05, 0.1, 1.0])
+def test_overlapping_faces_are_found_with_their_volume_and_depth(deep: float) -> None:
+    report = check(CUBE, CUBE, at(10 - deep))
     (pair,) = report.pairs
     assert report.findings.codes == ("E_OVERLAP",)
     assert not report.ok
-    assert pair.volume == pytest.approx(100 * overlap)
-    assert pair.depth == pytest.approx(overlap, rel=1e-6)
+    assert pair.volume == pytest.approx(100 * deep)
+    assert pair.depth == pytest.approx(deep, rel=1e-6)
     assert pair.verdict == "overlap"
 
 
@@ -378,3 +380,16 @@ def test_a_refined_mesh_gives_the_verdict_of_the_coarse_one() -> None:
     for T, ok in ((at(9.9), False), (at(10.0), True), (at(9.0, 9.0, 9.0), False), (at(10.5), True)):
         assert check(fine, CUBE, T).ok is ok
         assert check(fine, fine, T).ok is ok
+
+
+@pytest.mark.parametrize(
+    ("mesh", "deepest"),
+    [(box(20, 20, 20), 10.0), (box(4, 30, 12), 2.0), (cylinder(5, 40, segments=64), 5 * math.cos(math.pi / 64)), (cylinder(30, 8), 4.0)],
+    ids=["cube", "plate", "rod", "disc"],
+)
+def test_two_equal_solids_in_one_place_are_as_deep_as_the_largest_ball_inside(mesh: TriMesh, deepest: float) -> None:
+    rng = np.random.default_rng(5)
+    for _ in range(3):
+        T = SE3.from_axes(tuple(rng.uniform(-50, 50, 3)), tuple(rng.normal(size=3)))
+        moved = mesh.transformed(T)
+        assert overlap(Body(moved), Body(moved), IDENTITY).depth == pytest.approx(deepest, rel=1e-6)
