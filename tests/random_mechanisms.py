@@ -25,6 +25,7 @@ Place = Callable[[FloatArray], FloatArray]  # from a frame of a motif to the wor
 MOST_PARTS = 12
 LINES = (1.0, 1e4)  # mm: mechanisms are from 1 mm to 10 m large
 INF = math.inf
+RATIOS = (0.25, 0.5, 1.0, 2.0, math.sqrt(2), None)
 
 
 @dataclass(frozen=True)
@@ -61,10 +62,18 @@ class Garden:
     Args:
         rng: Makes all choices.
         scale: Length [mm] of a typical motif; drawn by default.
+        kinds: Of single joints.
+        ratios: Of couplings, but for their units; None stands for any number.
     """
 
-    def __init__(self, rng: np.random.Generator, scale: float | None = None) -> None:
-        self.rng = rng
+    def __init__(
+        self,
+        rng: np.random.Generator,
+        scale: float | None = None,
+        kinds: Sequence[str] = tuple(JointType),
+        ratios: Sequence[float | None] = RATIOS,
+    ) -> None:
+        self.rng, self.kinds, self.ratios = rng, kinds, ratios
         self.scale = math.exp(rng.uniform(*np.log(LINES))) if scale is None else scale
         self.rest: dict[str, FloatArray] = {"ground": random_frame(rng, self.scale)}
         self.size = {"ground": self.scale}
@@ -158,7 +167,7 @@ class Garden:
 
     def _joint(self, carrier: str, place: Place, size: float) -> None:
         """A joint of any type with a part on it."""
-        kind, at = str(self.rng.choice(list(JointType))), place(np.eye(4))
+        kind, at = str(self.rng.choice(self.kinds)), place(np.eye(4))
         name = self.join(kind, carrier, self.sprout(at, size), at, size, driver=self.rng.random() < 0.7)
         self.freedoms += JointType(kind).freedoms
         if kind == "revolute":
@@ -196,8 +205,8 @@ class Garden:
             a, b = b, a
         columns = {c.name: c for joint in self.joints.values() for c in joint.columns}
         units = {"rad": 1.0, "mm": 0.5 * size}
-        ratio = float(self.rng.choice([0.25, 0.5, 1.0, 2.0, math.sqrt(2), self.rng.uniform(0.3, 3.0)]) * self.rng.choice([-1, 1]))
-        ratio *= units[columns[b].unit] / units[columns[a].unit]
+        drawn = self.ratios[self.rng.integers(len(self.ratios))] or self.rng.uniform(0.3, 3.0)
+        ratio = float(drawn * self.rng.choice([-1, 1])) * units[columns[b].unit] / units[columns[a].unit]
         self.couplings.append(Coupling(f"coupling{len(self.couplings)}", "linear", a, b, ratio, columns[b].rest - ratio * columns[a].rest))
         self._unite([a.split(".")[0], b.split(".")[0]])
 
