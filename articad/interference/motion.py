@@ -54,7 +54,8 @@ def freedoms(joint: Joint) -> tuple[Freedom, ...]:
         cone = math.pi if joint.limits.cone is None else joint.limits.cone
         twist = FULL_TURN if joint.limits.twist is None else joint.limits.twist
         ranges = {"sx": (-cone, cone), "sy": (-cone, cone), "twist": twist}
-        return tuple(Freedom(f"{joint.name}.{key}", lo, hi, 0.0) for key, (lo, hi) in ranges.items())
+        rests = swing_and_twist(np.array(joint.rest))
+        return tuple(Freedom(f"{joint.name}.{key}", lo, hi, rest) for (key, (lo, hi)), rest in zip(ranges.items(), rests, strict=True))
     found = []
     for column in joint.columns:
         turn = 2 * ENDLESS_SLIDE_MM if column.unit == "mm" else 2 * math.pi
@@ -122,7 +123,8 @@ def proven_freedoms(joint: Joint) -> tuple[Freedom, ...]:
     more = 2 * math.atan(math.tan(math.acos(math.sqrt(math.cos(cone))) / 2) ** 2) if cone < math.pi / 2 else math.pi
     twist = FULL_TURN if most - least + 2 * more >= 2 * math.pi else (least - more, most + more)
     ranges = {"x": (-cone, cone), "y": (-min(cone, math.pi / 2), min(cone, math.pi / 2)), "z": twist}
-    return tuple(Freedom(f"{joint.name}.{key}", lo, hi, 0.0) for key, (lo, hi) in ranges.items())
+    rests = turns(SE3.from_quaternion(joint.rest).rotation)
+    return tuple(Freedom(f"{joint.name}.{key}", lo, hi, rest) for (key, (lo, hi)), rest in zip(ranges.items(), rests, strict=True))
 
 
 def turns(R: FloatArray) -> list[float]:

@@ -258,7 +258,7 @@ class Prover:
         travel = self.travel(mover) if turns else self.slid()
         of_a, of_b = outline(axis, a.corners, turns=turns), outline(core_b, b.corners, travel, turns=turns)
         limit = np.full(of_a[0].shape[1], needed)
-        if axis.dimensions == 2:
+        if axis.dimensions == 2 or any(self.chain.rest):  # the checker places both parts at rest, where the axes of the ball must agree
             return of_a, of_b, limit
         cone = self.chain.freedoms[mover.columns[0]].upper
         of_a, of_b = _beside(of_a, leaning(axis, a.corners, 0.0, 0.0)), _beside(of_b, leaning(core_b, b.corners, cone, needed))
