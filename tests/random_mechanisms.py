@@ -205,7 +205,7 @@ class Garden:
             a, b = b, a
         columns = {c.name: c for joint in self.joints.values() for c in joint.columns}
         units = {"rad": 1.0, "mm": 0.5 * size}
-        drawn = self.ratios[self.rng.integers(len(self.ratios))] or self.rng.uniform(0.3, 3.0)
+        drawn = self.ratios[int(self.rng.integers(len(self.ratios)))] or self.rng.uniform(0.3, 3.0)
         ratio = float(drawn * self.rng.choice([-1, 1])) * units[columns[b].unit] / units[columns[a].unit]
         self.couplings.append(Coupling(f"coupling{len(self.couplings)}", "linear", a, b, ratio, columns[b].rest - ratio * columns[a].rest))
         self._unite([a.split(".")[0], b.split(".")[0]])

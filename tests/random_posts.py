@@ -48,7 +48,7 @@ class Convex:
 
     def depth(self, other: Convex, T: FloatArray) -> FloatArray:
         """Return by how much the other at poses `(n, 4, 4)` is in this one, negative where some plane is between them [mm]."""
-        out = self.radius + other.radius - np.linalg.norm(T[:, :3, 3], axis=1)
+        out: FloatArray = self.radius + other.radius - np.linalg.norm(T[:, :3, 3], axis=1)
         near = np.flatnonzero(out > -2 * CLEAR)
         for rows in np.array_split(near, math.ceil(len(near) / CHUNK)) if len(near) else []:
             out[rows] = self._depth(other, T[rows])
