@@ -34,6 +34,7 @@ LOOK_PAIRS = 300_000  # of pieces, after which a few poses are looked at, lest a
 LOOKS = 40  # poses
 LOOK_GROWTH = 1.6  # poses beyond the one where a proof stopped lie ever further apart, so that thin parts are not jumped over
 PARALLEL = 1e-12  # sine between sliders along one line
+EVERYWHERE = 1e30  # mm or rad: an interval up to here keeps nothing apart
 CONE_ROUNDING = 1e-9  # of the cosine of an angle
 CLAIM_SLACK_MM = 1e-6  # more than what is claimed is proven, so that a checker's rounding does not matter
 FIRST_STEP = 1 / 16  # of the way to a bound: of the walk to where the parts meet
@@ -258,8 +259,11 @@ class Prover:
         travel = self.travel(mover) if turns else self.slid()
         of_a, of_b = outline(axis, a.corners, turns=turns), outline(core_b, b.corners, travel, turns=turns)
         limit = np.full(of_a[0].shape[1], needed)
-        if axis.dimensions == 2 or any(self.chain.rest):  # the checker places both parts at rest, where the axes of the ball must agree
+        if axis.dimensions == 2:
             return of_a, of_b, limit
+        if any(self.chain.rest):  # the checker takes angles from the axis at rest: of a ball that rests turned they say nothing
+            wide = [np.full((len(surface.corners), 1), EVERYWHERE) for surface in (a, b)]
+            return _beside(of_a, (-wide[0], wide[0])), _beside(of_b, (-wide[1], wide[1])), np.append(limit, 0.0)
         cone = self.chain.freedoms[mover.columns[0]].upper
         of_a, of_b = _beside(of_a, leaning(axis, a.corners, 0.0, 0.0)), _beside(of_b, leaning(core_b, b.corners, cone, needed))
         if cone > np.pi / 2:
