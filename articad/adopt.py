@@ -49,12 +49,13 @@ def _polyhedron(corners, triangles):
 """
 
 
-def adopt(source: str | Path, *, root: str | Path | None = None) -> tuple[Assembly, Bundle]:
+def adopt(source: str | Path, *, root: str | Path | None = None, fuse: bool = False) -> tuple[Assembly, Bundle]:
     """Make a plan folder of a URDF, MJCF, FreeCAD or STEP file; nothing is written yet.
 
     Args:
         source: The file.
         root: Folder that meshes may be read from; the file's own by default.
+        fuse: Make chains of joints over bare links the one joint that they stand for; see `articad.convert.read`.
 
     Returns:
         The assembly that the plan tells, and `plan.json`, `parts/*.py`, `meshes/*.stl`, with what could not be taken over.
@@ -66,7 +67,7 @@ def adopt(source: str | Path, *, root: str | Path | None = None) -> tuple[Assemb
     path = Path(source)
     if path.suffix.lower() == ".json":
         raise ReadError(f"{path} is a plan already.", path=str(path))
-    assembly, findings = _without_frames(read(path, root=root))
+    assembly, findings = _without_frames(read(path, root=root, fuse=fuse))
     plan, features = plan_of(assembly)
     document: Json = json.loads(plan.dumps())
     scripts: dict[str, bytes] = {}

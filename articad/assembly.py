@@ -66,6 +66,23 @@ class Poses(Mapping[str, SE3]):
         return f"Poses({', '.join(self._names)})"
 
 
+@dataclass(frozen=True)
+class Kept:
+    """Something that a file said and that an assembly has no field for.
+
+    Attributes:
+        format: Of the file, such as "urdf".
+        where: What it was said of: `joints.elbow`, `parts.arm`, or `model`.
+        what: In words, for reports.
+        xml: The element, to be written below `where` into a file of the same format; empty where that is not possible.
+    """
+
+    format: str
+    where: str
+    what: str
+    xml: str = ""
+
+
 @dataclass(frozen=True, eq=False)
 class Assembly:
     """Parts, the mechanism that moves them, and the fits and waivers that were declared.
@@ -83,6 +100,7 @@ class Assembly:
         deflection: Largest distance of meshes from their solids [mm].
         foreign: True when it was read from a file that articad did not write: where its base stands and its joints rest is what that
             file happened to have.
+        kept: What that file said beyond this.
     """
 
     name: str
@@ -96,6 +114,7 @@ class Assembly:
     findings: Findings = field(default_factory=Findings)
     deflection: float = DEFLECTION_MM
     foreign: bool = False
+    kept: tuple[Kept, ...] = ()
     _kernel: PartKernel | None = None
     _cache: BuildCache | None = None  # a temporary one, and the B-rep files in it, go with whoever holds it last
 

@@ -482,6 +482,12 @@ CODES: dict[str, Code] = {
     "E_MIMIC_FIT": Code(
         "export", None, "A closed loop cannot be written as mimic joints within 0.1 mm.", "Use another way to write loops, or MJCF."
     ),
+    "I_EFFORT_ASSUMED": Code(
+        "export",
+        None,
+        "Effort, velocity or damping of a joint are computed, because nobody states them.",
+        "State them where drives are known.",
+    ),
     "E_READ": Code("import", None, "A file cannot be read.", "Check the file at the named place."),
     "W_IMPORT_STALE": Code(
         "import", None, "A file was edited after articad wrote it, so its records are not used.", "Edit the plan and export again."
@@ -496,8 +502,11 @@ CODES: dict[str, Code] = {
         "import", None, "Something in a foreign file has no counterpart and is left out.", "Nothing, if it is not needed."
     ),
     "W_IMPORT_MUJOCO": Code("import", None, "MuJoCo warns of a model that it takes.", "Correct what it names."),
+    "I_IMPORT_CHAIN": Code(
+        "import", None, "A chain of joints over bare links could be read as one joint.", "Read with fuse to make them one."
+    ),
     "I_IMPORT_FUSED": Code(
-        "import", None, "A chain of joints over bare links is read as one joint.", "Read with fuse off to keep them apart."
+        "import", None, "A chain of joints over bare links is read as one joint.", "Read without fuse to keep them apart."
     ),
     "I_ADOPT_MERGED": Code(
         "import", None, "A part without shape is fixed to another, and is part of it in the adopted plan.", "Nothing, if it is a frame."

@@ -78,12 +78,17 @@ FORMAT_OF: Final[Mapping[str, str]] = {
 """Format that a file name's ending asks for."""
 
 
-def read(path: str | Path, *, root: str | Path | None = None) -> Assembly:
+FUSING: Final = frozenset({".urdf", ".xml", ".mjcf"})
+"""Endings whose readers can fuse chains of joints."""
+
+
+def read(path: str | Path, *, root: str | Path | None = None, fuse: bool = False) -> Assembly:
     """Read an assembly from a file in any format that articad reads.
 
     Args:
         path: A URDF, MJCF, FreeCAD or STEP file, or a plan with its part scripts.
         root: Folder that meshes may be read from; the file's own by default.
+        fuse: Of URDF and MJCF: make chains of joints over bare links the one joint that they stand for, such as a ball.
 
     Raises:
         ReadError: If the format is not read, or the file cannot be.
@@ -94,10 +99,12 @@ def read(path: str | Path, *, root: str | Path | None = None) -> Assembly:
         message = f"{path}: {path.suffix or 'no'} extension is not one of {', '.join(READERS)}."
         finding = Finding(code="E_READ", where=str(path), message=message, hint="Convert it first, or correct its name.")
         raise ReadError(message, path=str(path), findings=[finding])
-    return reader(path, root=root)
+    return reader(path, root=root, fuse=True) if fuse and path.suffix.lower() in FUSING else reader(path, root=root)
 
 
-def convert(source: str | Path, target: str | Path, *, strict: bool = False, root: str | Path | None = None) -> tuple[Assembly, Bundle]:
+def convert(
+    source: str | Path, target: str | Path, *, strict: bool = False, root: str | Path | None = None, fuse: bool = False
+) -> tuple[Assembly, Bundle]:
     """Convert a file; nothing is written yet.
 
     Args:
@@ -105,6 +112,7 @@ def convert(source: str | Path, target: str | Path, *, strict: bool = False, roo
         target: The file to write; its ending says the format, its folder is where `bundle.write(...)` should put the rest.
         strict: Refuse losses of motion, mass or shape.
         root: Folder that meshes may be read from.
+        fuse: As for `read`.
 
     Returns:
         What was read, with its findings, and what is to be written, with its losses.
@@ -116,5 +124,5 @@ def convert(source: str | Path, target: str | Path, *, strict: bool = False, roo
     suffix = Path(target).suffix.lower()
     if suffix not in FORMAT_OF:
         raise ExportError(f"{target}: {suffix or 'no'} extension is not one of {', '.join(FORMAT_OF)}.")
-    assembly = read(source, root=root)
+    assembly = read(source, root=root, fuse=fuse)
     return assembly, WRITERS[FORMAT_OF[suffix]](assembly, strict=strict)

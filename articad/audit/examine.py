@@ -237,12 +237,12 @@ def _carriers(declared: Declared, assembly: Assembly) -> Iterator[Finding]:
     """Chains over bare links in URDF that stand for a joint that URDF has no word for."""
     if declared.format != "urdf":
         return
-    for finding in assembly.findings.of("I_IMPORT_FUSED"):
+    for finding in assembly.findings.of("I_IMPORT_CHAIN"):
         yield Finding(
             code="I_AUDIT_CARRIERS",
             where=finding.where,
             message=f"{finding.message} Links without shape carry it.",
-            hint="Nothing for URDF, which has no such joint; MJCF and CAD hold it as one: use `articad convert`.",
+            hint="Nothing for URDF, which has no such joint; MJCF and CAD hold it as one: use `articad convert --fuse`.",
             cause="carrier",
         )
 

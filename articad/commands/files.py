@@ -67,6 +67,7 @@ def _export(options: argparse.Namespace, terminal: Terminal) -> Report:
     argument("source", metavar="IN", help="a .urdf, .xml (MJCF), .FCStd or .step file, or a plan.json"),
     argument("target", metavar="OUT", help="its ending says the format: .urdf .xml .FCStd .json .sdf .usda .step .glb .3mf"),
     argument("--strict", action="store_true", help="refuse what the format cannot hold, instead of reporting it as lost"),
+    argument("--fuse", action="store_true", help="of a URDF or MJCF file: make chains of joints over bare links one joint, such as a ball"),
 )
 def _convert(options: argparse.Namespace, terminal: Terminal) -> Report:
     from dataclasses import replace
@@ -75,7 +76,7 @@ def _convert(options: argparse.Namespace, terminal: Terminal) -> Report:
     from articad.convert import FORMAT_OF, convert
 
     target = Path(options.target)
-    assembly, bundle = convert(options.source, target, strict=options.strict)
+    assembly, bundle = convert(options.source, target, strict=options.strict, fuse=options.fuse)
     bundle = replace(bundle, files={target.name if path == bundle.main else path: content for path, content in bundle.files.items()})
     bundle.write(target.parent)
     report = bundle.to_json() | {"folder": str(target.parent), "main": str(target)}
@@ -91,6 +92,7 @@ def _convert(options: argparse.Namespace, terminal: Terminal) -> Report:
     argument("--out", metavar="DIR", required=True, help="the folder: plan.json, parts/*.py, meshes/*.stl; it must be empty or new"),
     argument("--root", metavar="DIR", default=None, help="folder that meshes may be read from (the file's own)"),
     argument("--script", metavar="FILE", default=None, help="what made the file, to keep it beside the plan"),
+    argument("--fuse", action="store_true", help="of a URDF or MJCF file: make chains of joints over bare links one joint, such as a ball"),
     argument("--no-audit", dest="audit", action="store_false", help="do not look for what is wrong with the file"),
 )
 def _adopt(options: argparse.Namespace, terminal: Terminal) -> Report:
@@ -107,7 +109,7 @@ def _adopt(options: argparse.Namespace, terminal: Terminal) -> Report:
     if options.script is not None and not Path(options.script).is_file():
         raise WriteError(f"There is no file {options.script}.", path=options.script)
     with terminal.progress("Reading"):
-        assembly, bundle = adopt(source, root=options.root)
+        assembly, bundle = adopt(source, root=options.root, fuse=options.fuse)
     files = bundle.write(folder)
     if options.script is not None:
         (folder / "source").mkdir()

@@ -11,6 +11,7 @@ from articad.export.convex import THRESHOLDS, Pieces, is_convex, pieces_of, whol
 from articad.export.hulls import HullOverlap, Pair
 from articad.export.losses import Feature
 from articad.export.once import once
+from articad.geometry.mesh import TriMesh
 from articad.geometry.part import Shape
 from articad.kernels.cache import BuildCache
 
@@ -79,6 +80,10 @@ def collide(assembly: Assembly, model: LoweredModel, collision: Collision, skip:
     return Collisions(replace(model, links=links, features=tuple(features)), tuple(contacts))
 
 
+def _reshaped(shape: Shape, mesh: TriMesh) -> Shape:
+    return shape if mesh is shape.mesh else replace(shape, mesh=mesh, primitive=None)
+
+
 def contact_feature(contact: HullOverlap) -> Feature:
     """Return the row of the table of losses that a contact is."""
     return Feature("hull", "parts." + "+".join(contact.parts), f"hulls share {contact.volume:.3g} mm³")
@@ -103,13 +108,13 @@ class _Shaped:
     def shapes(self) -> tuple[Shape, ...]:
         """The pieces, in the part's frame."""
         rows = zip(self.link.collisions, self._pieces, strict=True)
-        return tuple(replace(placed.shape, mesh=mesh) for placed, pieces in rows for mesh in pieces.meshes)
+        return tuple(_reshaped(placed.shape, mesh) for placed, pieces in rows for mesh in pieces.meshes)
 
     @property
     def result(self) -> Link:
         """The link with its pieces."""
         rows = zip(self.link.collisions, self._pieces, strict=True)
-        pieces = (replace(placed, shape=replace(placed.shape, mesh=mesh)) for placed, found in rows for mesh in found.meshes)
+        pieces = (replace(placed, shape=_reshaped(placed.shape, mesh)) for placed, found in rows for mesh in found.meshes)
         return replace(self.link, collisions=tuple(pieces))
 
     @property

@@ -48,6 +48,7 @@ def joint_features(joint: Joint) -> list[Feature]:
             features.append(Feature("slide.endless", where))
     if any(velocity is not None for velocity in joint.velocity):
         features.append(Feature("velocity", where))
+    features.extend(Feature(f"joint.{name}", where) for name in ("damping", "friction") if any(getattr(joint, name)))
     return features
 
 
@@ -87,7 +88,7 @@ def _coupling_features(assembly: Assembly) -> list[Feature]:
 
 def _part_features(assembly: Assembly) -> list[Feature]:
     features = []
-    still = rigid_with_ground(assembly)
+    still = rigid_with_ground(assembly) | without_own_mass(assembly)
     used = {end for joint in assembly.joints for end in ((joint.parent, joint.parent_connector), (joint.child, joint.child_connector))}
     for name, part in assembly.parts.items():
         where = f"parts.{name}"
@@ -106,6 +107,23 @@ def _part_features(assembly: Assembly) -> list[Feature]:
     return features
 
 
+def without_own_mass(assembly: Assembly) -> set[str]:
+    """Return the parts of a file that have no mass and are fixed to another: frames, to which engines add the mass of nothing."""
+    return {
+        edge.part for edge in assembly.mechanism.tree.edges if assembly.foreign and edge.joint.type is JointType.FIXED and not edge.reversed
+    }
+
+
+def primitive_features(assembly: Assembly) -> list[Feature]:
+    """Return the parts with shapes that a file stated as primitive bodies, for formats that are written with meshes."""
+    return [
+        Feature("shape.primitive", f"parts.{name}", shape.primitive.kind)
+        for name, part in assembly.parts.items()
+        for shape in (*part.visuals, *part.collisions)
+        if shape.primitive is not None
+    ]
+
+
 def is_flat(mesh: TriMesh) -> bool:
     """True for a mesh within a plane, a line or a point: it has no hull to collide with."""
     if mesh.is_closed and mesh.volume > 0:
@@ -117,7 +135,10 @@ def is_flat(mesh: TriMesh) -> bool:
 
 def solid_enough(part: Part) -> tuple[Shape, ...]:
     """Return what a part collides with; what is flat is thickened to `THIN_MM`."""
-    return tuple(replace(shape, mesh=_thick(shape.mesh)) if is_flat(shape.mesh) else shape for shape in part.collisions or part.visuals)
+    return tuple(
+        replace(shape, mesh=_thick(shape.mesh), primitive=None) if is_flat(shape.mesh) else shape
+        for shape in part.collisions or part.visuals
+    )
 
 
 def _thick(mesh: TriMesh) -> TriMesh:

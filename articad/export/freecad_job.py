@@ -21,7 +21,7 @@ from articad.export.bundle import Loss
 from articad.export.features import joint_features
 from articad.export.freecad_expressions import Followed
 from articad.export.freecad_file import mesh_kernel
-from articad.export.losses import Feature, losses_of
+from articad.export.losses import Feature, kept_losses, losses_of
 from articad.export.lowering import lower
 from articad.export.metadata import dumps, records
 from articad.export.names import Names
@@ -304,7 +304,7 @@ class Job:
     @property
     def losses(self) -> tuple[Loss, ...]:
         """What FreeCAD has no words for; complete after `told`."""
-        return losses_of("freecad", self._told)
+        return (*losses_of("freecad", self._told), *kept_losses("freecad", self.assembly.kept))
 
 
 def _distances(coupling: Coupling) -> dict[str, float]:

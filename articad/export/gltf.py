@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from articad.connectors.se3 import SE3
 from articad.errors import KinematicsError
 from articad.export.bundle import Bundle
-from articad.export.losses import Feature, losses_of, refuse
+from articad.export.losses import Feature, kept_losses, losses_of, refuse
 from articad.export.names import Names, valid_name
 from articad.geometry.mesh import TriMesh
 from articad.kinematics.joints import JointType
@@ -48,7 +48,7 @@ def write_glb(assembly: Assembly, *, strict: bool = False) -> Bundle:
     Raises:
         UnrepresentableError: If `strict` and there is such a loss.
     """
-    losses = losses_of("glb", _features(assembly))
+    losses = (*losses_of("glb", _features(assembly)), *kept_losses("glb", assembly.kept))
     if strict:
         refuse(losses)
     buffer = _Buffer()

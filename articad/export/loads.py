@@ -18,7 +18,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from articad.export.carried import LEAST_REACH_M, MM_PER_M, Carried, CarriedParts
 from articad.geometry.part import Part
@@ -30,6 +30,9 @@ MARGIN = 2.0  # for friction and acceleration, on top of holding the load
 DAMPING_SHARE = 0.05  # of the effort, spent at full velocity
 
 
+ALL = frozenset({"effort", "velocity", "damping"})
+
+
 @dataclass(frozen=True)
 class Load:
     """What one coordinate of a joint can do.
@@ -39,12 +42,16 @@ class Load:
         velocity: [rad/s] or [m/s].
         damping: [N·m·s/rad] or [N·s/m].
         carried: Inertia about the axis, or mass, that it moves in the worst pose [kg·m²] or [kg].
+        friction: Coulomb friction [N·m] or [N].
+        assumed: Which of effort, velocity and damping the joint does not state.
     """
 
     effort: float
     velocity: float
     damping: float
     carried: float
+    friction: float = 0.0
+    assumed: frozenset[str] = ALL
 
 
 def joint_loads(mechanism: Mechanism, parts: Mapping[str, Part]) -> dict[str, tuple[Load, ...]]:
@@ -84,17 +91,25 @@ def _loads(joint: Joint, carried: Carried) -> tuple[Load, ...]:
 
 
 def _load(effort: float, velocity: float, carried: float) -> Load:
-    return Load(effort, velocity, DAMPING_SHARE * effort / velocity, carried)
+    return Load(effort, velocity, DAMPING_SHARE * effort / velocity if velocity > 0 else 0.0, carried)
 
 
 def _stated(joint: Joint, index: int, computed: Load, effort_unit: float, velocity_unit: float) -> Load:
     """Return the load with what the joint states itself; a torque is stated in N·mm, a sliding velocity in mm/s."""
-    effort = joint.effort[index] if index < len(joint.effort) else None
-    velocity = joint.velocity[index] if index < len(joint.velocity) else None
-    if effort is None and velocity is None:
+    effort, velocity, damping, friction = (
+        values[index] if index < len(values) else None for values in (joint.effort, joint.velocity, joint.damping, joint.friction)
+    )
+    if effort is None and velocity is None and damping is None and friction is None:
         return computed
-    return _load(
+    load = _load(
         computed.effort if effort is None else effort / effort_unit,
         computed.velocity if velocity is None else velocity / velocity_unit,
         computed.carried,
+    )
+    stated = {"effort": effort, "velocity": velocity, "damping": damping}
+    return replace(
+        load,
+        damping=load.damping if damping is None else damping / effort_unit * velocity_unit,
+        friction=0.0 if friction is None else friction / effort_unit,
+        assumed=frozenset(name for name, value in stated.items() if value is None),
     )

@@ -6,12 +6,15 @@ all of it. A feature whose `lost` is empty is held by the format without loss.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from typing import Literal, NamedTuple
+from collections.abc import Container, Iterable
+from typing import TYPE_CHECKING, Literal, NamedTuple
 
 from articad.errors import UnrepresentableError
 from articad.export.bundle import Loss
 from articad.findings import Finding
+
+if TYPE_CHECKING:
+    from articad.assembly import Kept
 
 Format = Literal["urdf", "mjcf", "sdf", "usd", "freecad", "glb", "3mf", "step", "plan"]
 
@@ -138,6 +141,28 @@ TABLE: dict[str, dict[Format, Row]] = {
         "sdf": Row("the velocity of <limit>"),
         "usd": Row("nothing", "UsdPhysics has no limit on a joint's velocity"),
     },
+    "joint.damping": {
+        "urdf": Row("the damping of <dynamics>"),
+        "mjcf": Row("the damping of the joint"),
+        "sdf": Row("the damping of <dynamics>"),
+        "usd": Row("nothing", "damping: UsdPhysics has drives only"),
+    },
+    "joint.friction": {
+        "urdf": Row("the friction of <dynamics>"),
+        "mjcf": Row("the frictionloss of the joint"),
+        "sdf": Row("the friction of <dynamics>"),
+        "usd": Row("nothing", "friction in joints"),
+    },
+    "effort.assumed": {
+        name: Row("effort and velocity that carry the load", "that the file states none, where this format demands them")
+        for name in MECHANISM_FORMATS
+    },
+    "effort.zero": {
+        "urdf": Row("an effort of zero"),
+        "mjcf": Row("no actuatorfrcrange", "that no force may drive the joint: MuJoCo takes an empty range for none"),
+        "sdf": Row("an effort of zero"),
+        "usd": Row("nothing", "efforts"),
+    },
     # --- loops and couplings
     "loop": {
         "urdf": Row("metadata", "URDF holds trees only: this joint is left out and its loop is open", refused=True),
@@ -204,6 +229,16 @@ TABLE: dict[str, dict[Format, Row]] = {
         "step": Row("a plane face for each triangle of its mesh", "smooth faces: the part has a mesh and no B-rep"),
     },
     # --- parts
+    "link.frame": {
+        name: Row("a frame on the joint", "the link's frame as it came: the joint does not pass through its origin")
+        for name in MECHANISM_FORMATS
+    },
+    "shape.primitive": {
+        "urdf": Row("a mesh", "that it is a primitive body, which URDF (1.0) does not have"),
+        "mjcf": Row("a geom of that kind"),
+        "sdf": Row("a mesh", "that it is a primitive body"),
+        "usd": Row("a mesh", "that it is a primitive body"),
+    },
     "mass.missing": {
         "urdf": Row("1e-4 kg", "the mass of a moving part is not known", refused=True),
         "mjcf": Row("1e-4 kg", "the mass of a moving part is not known", refused=True),
@@ -288,6 +323,8 @@ _FREECAD: dict[str, Row] = {
     "limits.open": Row("a limit to one side only"),
     "slide.endless": Row("a joint without that limit"),
     "velocity": Row("a record", "FreeCAD has no limit on a joint's velocity"),
+    "joint.damping": Row("a record", "damping: FreeCAD has none"),
+    "joint.friction": Row("a record", "friction in joints: FreeCAD has none"),
     "coupling": Row("a joint of its kind, switched off", "FreeCAD's solver does not hold it", refused=True),
     "fit": Row("a record", "fits: FreeCAD has no word for them"),
     "freecad.coupling": Row("a record", "FreeCAD has no such coupling", refused=True),
@@ -303,6 +340,8 @@ _FREECAD: dict[str, Row] = {
 _PLAN: dict[str, Row] = {
     "mass.missing": Row("a density of 1000 kg/m³", "the mass of a moving part is not known", refused=True),
     "name": Row("a name of lower-case words", "the name as given"),
+    "joint.damping": Row("nothing", "damping: a plan has none, and exports compute it"),
+    "joint.friction": Row("nothing", "friction in joints: a plan has none"),
     "plan.shape": Row("the sides of each part's bounding box", "the shapes: a plan says what to build, and scripts build it", refused=True),
     "plan.mass": Row("a material of the density that gives its mass", "centre of mass and inertia where they are not those of a solid"),
     "plan.density": Row("a density of 1000 kg/m³", "its mass: its shape encloses no volume that it could be spread over", refused=True),
@@ -319,7 +358,10 @@ for _key, _row in _FREECAD.items():
     TABLE[_key]["freecad"] = _row
 for _key, _rows in TABLE.items():
     if _key in _PLAN or (
-        "urdf" in _rows and not _key.startswith(("hull", "collision", "limits", "slide.", "loop.points", "loop.mimic", "loop.rest"))
+        "urdf" in _rows
+        and not _key.startswith(
+            ("hull", "collision", "limits", "slide.", "loop.points", "loop.mimic", "loop.rest", "effort.", "link.frame", "shape.primitive")
+        )
     ):
         _rows["plan"] = _PLAN.get(_key, Row("the same"))
 
@@ -333,6 +375,25 @@ def losses_of(format_name: Format, features: Iterable[Feature]) -> tuple[Loss, .
             kept = f"{row.becomes} ({feature.detail})" if feature.detail else row.becomes
             losses[Loss(format_name, feature.where, kept, row.lost, row.refused)] = None
     return tuple(losses)
+
+
+def kept_losses(format_name: Format, kept: Iterable[Kept], written: Container[Kept] = ()) -> tuple[Loss, ...]:
+    """Return a loss for everything that the file said beyond the assembly and that is not written."""
+    rows = (Loss(format_name, item.where, "nothing", item.what, refused=False) for item in kept if item not in written)
+    return tuple(dict.fromkeys(rows))
+
+
+def assumed_finding(joints: Iterable[str], format_name: Format) -> list[Finding]:
+    """Return the finding that says whose effort, velocity or damping is computed because nobody states it."""
+    names = list(dict.fromkeys(joints))
+    if not names:
+        return []
+    listed = ", ".join(names[:8]) + (f" and {len(names) - 8} others" if len(names) > 8 else "")
+    message = (
+        f"Effort, velocity or damping of {listed} are not stated; {format_name} has values computed from mass, gravity and the worst pose."
+    )
+    hint = "State them where the drives are known."
+    return [Finding(code="I_EFFORT_ASSUMED", where="joints", message=message, hint=hint, stage="export")]
 
 
 def refuse(losses: Iterable[Loss]) -> None:

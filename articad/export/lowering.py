@@ -5,6 +5,10 @@ For a tree edge that is crossed from parent to child, `T_link_part = F · C_c⁻
 other way, the frame is `B_child · C_c · F`, the motion is J(q)⁻¹ (the same motions backwards about turned axes) and `T_link_part = C_p⁻¹`.
 So every coordinate of a format equals ours, whichever way the tree crosses a joint and whatever its mate; only a ball
 that is crossed backwards has the inverse quaternion.
+
+A link that came from a file keeps its frame where that is possible: then the joint's frame is put on the part's, which changes J(q) into
+K⁻¹ J(q) K with K = `T_link_part` of the rule above. That is the same motion about turned axes as long as every axis that turns passes
+through the part's origin. Elsewhere the frame moves, which is a row of the losses.
 """
 
 from __future__ import annotations
@@ -19,7 +23,7 @@ from numpy.typing import NDArray
 
 from articad.connectors.mate import flip
 from articad.connectors.se3 import SE3
-from articad.export.features import features_of, rigid_with_ground, solid_enough
+from articad.export.features import features_of, rigid_with_ground, solid_enough, without_own_mass
 from articad.export.inertia import MM_PER_M, Inertial
 from articad.export.loads import Load, joint_loads
 from articad.export.losses import Feature
@@ -50,6 +54,9 @@ class Motion(NamedTuple):
     axis: tuple[float, float, float]
     coordinate: int | None
 
+
+ON_AXIS_MM = 1e-6  # by which a turning axis may miss the origin of a link that keeps its frame
+ROUND = 1e-12  # by which a component of an axis may miss a whole number
 
 _X, _Y, _Z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
 
@@ -153,7 +160,7 @@ class Link:
         part: Ours.
         T_link_part: The part's frame in the link's [m].
         inertial: In the link's frame.
-        moves: False for what is rigidly connected with the ground.
+        moves: False for what needs no mass: it is rigidly connected with the ground, or a frame of a file that is fixed to another link.
         visuals: What is drawn.
         collisions: What collides.
         friction: Between its surfaces and others; None when it has no material.
@@ -213,10 +220,20 @@ def lower(assembly: Assembly, reserved: Iterable[str] = ()) -> LoweredModel:
     loads = once(assembly, "loads", lambda: joint_loads(mechanism, assembly.parts))
     T_link_part = {mechanism.ground: mechanism.T_ground}
     joints = []
+    moved: list[Feature] = []
     for edge in mechanism.tree.edges:
-        head, T_link_part[edge.part] = _frames(edge.joint, backwards=edge.reversed)
-        T_parent_joint = metres(T_link_part[edge.parent] @ head)
-        joints.append(_lowered(edge.joint, edge.parent, edge.part, T_parent_joint, SE3.identity(), loads, names, backwards=edge.reversed))
+        head, K = _frames(edge.joint, backwards=edge.reversed)
+        T_link_part[edge.part] = K
+        keeps = assembly.foreign and _keeps_frame(edge.joint, K)
+        if keeps:
+            T_link_part[edge.part] = SE3.identity()
+        elif assembly.foreign and not K.allclose(SE3.identity(), mm=ON_AXIS_MM, rad=1e-9):
+            moved.append(_moved(edge.part, K))
+        T_parent_joint = metres(T_link_part[edge.parent] @ head @ (K if keeps else SE3.identity()))
+        row = _lowered(edge.joint, edge.parent, edge.part, T_parent_joint, SE3.identity(), loads, names, backwards=edge.reversed)
+        if keeps:
+            row = replace(row, freedoms=tuple(replace(one, axis=_rounded(K.rotation.T @ one.axis)) for one in row.freedoms))
+        joints.append(row)
     still = rigid_with_ground(assembly)
     loops = []
     for joint in mechanism.loop_joints:
@@ -226,15 +243,40 @@ def lower(assembly: Assembly, reserved: Iterable[str] = ()) -> LoweredModel:
         head, tail = _frames(joint, backwards=backwards)
         T_parent_joint, T_child_joint = metres(T_link_part[near] @ head), metres(T_link_part[far] @ tail.inverse())
         loops.append(_lowered(joint, near, far, T_parent_joint, T_child_joint, loads, names, backwards=backwards))
-    links = tuple(_link(names.links[part], assembly, part, T_link_part[part], moves=part not in still) for part in mechanism.tree.parts)
+    massless = still | without_own_mass(assembly)
+    links = tuple(_link(names.links[part], assembly, part, T_link_part[part], moves=part not in massless) for part in mechanism.tree.parts)
     return LoweredModel(
         valid_name(assembly.name),
         links,
         tuple(joints),
         tuple(loops),
         _couplings(assembly, [*joints, *loops]),
-        (*features_of(assembly), *names.features(assembly)),
+        (*features_of(assembly), *names.features(assembly), *moved),
     )
+
+
+def _keeps_frame(joint: Joint, K: SE3) -> bool:
+    """True when the joint's frame can be put on the part's, which is at K⁻¹ of it, without another motion (see the module)."""
+    if joint.type is JointType.BALL:  # its values are turns about the frame's own axes
+        return K.allclose(SE3.identity(), mm=ON_AXIS_MM, rad=1e-12)
+    origin = K.translation  # of the part, seen from the joint's frame
+    turning = [np.array(motion.axis) for motion in MOTIONS[joint.type] if motion.kind == "turn"]
+    return all(float(np.linalg.norm(np.cross(axis, origin))) <= ON_AXIS_MM for axis in turning)
+
+
+def _moved(part: str, K: SE3) -> Feature:
+    x, y, z = K.inverse().translation
+    return Feature(
+        "link.frame",
+        f"parts.{part}",
+        f"moved by {x:.6g}, {y:.6g}, {z:.6g} mm in its own axes, turned by {math.degrees(float(K.angle_to(SE3.identity()))):.6g}°",
+    )
+
+
+def _rounded(axis: FloatArray) -> FloatArray:
+    """Return a unit vector whose components are whole where they nearly are."""
+    whole = np.round(axis)
+    return np.asarray(np.where(np.abs(axis - whole) < ROUND, whole, axis)) + 0.0
 
 
 class _ValidNames:
@@ -378,8 +420,8 @@ def _link(name: str, assembly: Assembly, part_name: str, T_link_part: SE3, *, mo
         metres(T_link_part),
         Inertial.from_part(part.mass, T_link_part).possible() if known and part.mass is not None else None,
         moves,
-        tuple(_placed(shape, part, T_link_part) for shape in part.visuals or part.collisions),
-        tuple(_placed(shape, part, T_link_part) for shape in solid_enough(part)),
+        tuple(_placed(shape, part, T_link_part) for shape in part.visuals or (() if assembly.foreign else part.collisions)),
+        tuple(_placed(shape, part, T_link_part) for shape in (solid_enough(part) if part.collisions or not assembly.foreign else ())),
         None if material is None else material.friction,
     )
 

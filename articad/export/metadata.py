@@ -1,6 +1,6 @@
 """articad's own records inside foreign files, so that nothing is lost on the way back.
 
-A record is one JSON object: `{"kind": "assembly" | "part" | "joint" | "coupling" | "material" | "fit" | "waiver", …}`, in mm, rad, kg and
+A record is one JSON object: `{"kind": "assembly" | "part" | "joint" | "coupling" | "material" | "fit" | "waiver" | "kept", …}`, in mm, rad, kg and
 N·mm, numbers in full, frames as seven numbers `x y z qx qy qz qw`; null stands for an infinite limit. URDF holds each as the text
 of an `<articad>` element below `<robot>`, MJCF as the data of a `<text>` below `<custom>`.
 """
@@ -57,6 +57,7 @@ def records(assembly: Assembly, model: LoweredModel, files: Mapping[str, str], w
         *(_coupling(coupling) for coupling in mechanism.couplings),
         *({"kind": "fit", "joint": joint, **_plain(fit)} for joint, fit in assembly.fits.items()),
         *({"kind": "waiver", **_plain(waiver)} for waiver in assembly.waivers),
+        *({"kind": "kept", **_plain(kept)} for kept in assembly.kept),
     ]
 
 
@@ -97,7 +98,14 @@ def _solid(part: Part, files: Mapping[str, str]) -> Record | None:
 
 def _shapes(shapes: tuple[Any, ...], files: Mapping[str, str]) -> list[Record]:
     return [
-        {"file": files.get(shape.mesh.digest), "frame": _frame(shape.frame), "color": shape.color, "name": shape.name} for shape in shapes
+        {
+            "file": files.get(shape.mesh.digest),
+            "frame": _frame(shape.frame),
+            "color": shape.color,
+            "name": shape.name,
+            **({"primitive": [shape.primitive.kind, *shape.primitive.size]} if shape.primitive else {}),
+        }
+        for shape in shapes
     ]
 
 
@@ -133,6 +141,8 @@ def _joint(joint: Joint, name: str) -> Record:
         "driver": joint.driver,
         "effort": list(joint.effort),
         "velocity": list(joint.velocity),
+        **({"damping": list(joint.damping)} if joint.damping else {}),
+        **({"friction": list(joint.friction)} if joint.friction else {}),
     }
 
 

@@ -15,7 +15,7 @@ from articad.export.collisions import Collision, collide, contact_feature
 from articad.export.hulls import HullOverlap, Pair, mating_pairs, same_group_pairs
 from articad.export.inertia import Inertial
 from articad.export.loads import GRAVITY_M_S2
-from articad.export.losses import losses_of, refuse
+from articad.export.losses import Feature, assumed_finding, kept_losses, losses_of, refuse
 from articad.export.lowering import (
     Follows,
     Freedom,
@@ -31,7 +31,9 @@ from articad.export.markup import child, document, number, numbers, rgba, wxyz
 from articad.export.meshes import MM_TO_M, MeshFiles, MeshKind
 from articad.export.metadata import dumps, records
 from articad.export.names import Names
+from articad.findings import Findings
 from articad.geometry.mesh import TriMesh
+from articad.geometry.part import Primitive
 from articad.kernels.cache import BuildCache
 from articad.kinematics.joints import JointType
 
@@ -83,12 +85,15 @@ def write_mjcf(
         UnrepresentableError: If `strict` and there is such a loss.
     """
     model, contacts = collide(assembly, lower(assembly, RESERVED), collision, _skipped(assembly), cache)
-    losses = losses_of("mjcf", (*model.features, *map(contact_feature, contacts)))
+    zero = [row.joint.name for row in model.joints if any(_no_force(freedom) for freedom in row.freedoms)]
+    features = [*model.features, *map(contact_feature, contacts), *(Feature("effort.zero", f"joints.{name}") for name in zero)]
+    losses = (*losses_of("mjcf", features), *kept_losses("mjcf", assembly.kept))
     if strict:
         refuse(losses)
     writer = _Writer(assembly, model, MeshFiles(meshes))
     root = writer.document(contacts, actuators=actuators)
-    return Bundle({f"{model.name}.xml": document(root), **writer.files.files}, losses)
+    assumed = [] if assembly.foreign else [row.joint.name for row in model.joints if any(freedom.load.assumed for freedom in row.freedoms)]
+    return Bundle({f"{model.name}.xml": document(root), **writer.files.files}, losses, Findings(assumed_finding(assumed, "mjcf")))
 
 
 class _Writer:
@@ -168,21 +173,29 @@ class _Writer:
             total = ball_total_angle(joint.joint)
             if total < math.pi:
                 attributes["range"] = numbers([0, total])
-            child(body, "joint", attributes | {"damping": number(joint.freedoms[0].load.damping)})
+            child(body, "joint", attributes | _dynamics(joint.freedoms[0]))
             R = SE3.from_quaternion(joint.joint.rest)
             self.qpos[joint.name] = list(wxyz(R.inverse() if joint.backwards else R))
             return
         for freedom in joint.freedoms:
-            child(body, "joint", _joint(freedom))
+            child(body, "joint", _joint(freedom, foreign=self.assembly.foreign))
             self.qpos[freedom.name] = [freedom.rest]
 
     def _geoms(self, body: Any, link: Link) -> None:
         for placed in link.visuals:
-            geom = {"class": "visual", "mesh": self._mesh(placed, link.name), "material": _material(placed.color)}
+            geom = {"class": "visual"} | self._form(placed, link.name) | {"material": _material(placed.color)}
             child(body, "geom", geom | _placement(placed.T_link_shape))
         friction = {} if link.friction is None else {"friction": numbers([link.friction, FRICTION_SPIN, FRICTION_ROLL])}
         for placed in link.collisions:
-            child(body, "geom", {"class": "collision", "mesh": self._mesh(placed, link.name)} | friction | _placement(placed.T_link_shape))
+            child(body, "geom", {"class": "collision"} | self._form(placed, link.name) | friction | _placement(placed.T_link_shape))
+
+    def _form(self, placed: Placed, name: str) -> dict[str, str]:
+        """Return the attributes of a geom that say its shape: a primitive body, or a mesh."""
+        form = placed.shape.primitive
+        if form is None:
+            return {"mesh": self._mesh(placed, name)}
+        self.files.path(placed.shape.mesh, name)  # the records name it
+        return {"type": form.kind, "size": numbers(_half_sizes(form))}
 
     def _mesh(self, placed: Placed, name: str) -> str:
         """Return the name of the asset that is this mesh, adding it if it is new."""
@@ -237,7 +250,7 @@ class _Writer:
             ghost = child(near, "body", {"name": loop.carriers[-1]} | _placement(loop.T_parent_joint))
             _inertial(ghost, self.ghosts[loop.name])
             for freedom in loop.freedoms:
-                child(ghost, "joint", _joint(freedom))
+                child(ghost, "joint", _joint(freedom, foreign=self.assembly.foreign))
                 self.qpos[freedom.name] = [freedom.rest]
                 if freedom.follows is not None:
                     _tie(equality, freedom.name, freedom.name, freedom.follows)
@@ -291,15 +304,35 @@ def _inertial(body: Any, inertial: Inertial) -> None:
     child(body, "inertial", {"pos": numbers(inertial.com), "mass": number(inertial.mass), "fullinertia": numbers(moments)})
 
 
-def _joint(freedom: Freedom) -> dict[str, str]:
-    """Return the attributes of a hinge or slide; the effort limits what actuators give it."""
+def _half_sizes(form: Primitive) -> list[float]:
+    """Return the sizes of a geom [m]: MuJoCo halves what has two ends."""
+    sizes = [size * MM_TO_M for size in form.size]
+    if form.kind == "box":
+        return [size / 2 for size in sizes]
+    return [sizes[0], sizes[1] / 2] if form.kind in {"cylinder", "capsule"} else sizes
+
+
+def _no_force(freedom: Freedom) -> bool:
+    """True for a stated effort of zero: MuJoCo reads the range from 0 to 0 as none."""
+    return freedom.load.effort == 0 and "effort" not in freedom.load.assumed
+
+
+def _dynamics(freedom: Freedom) -> dict[str, str]:
+    friction = {"frictionloss": number(freedom.load.friction)} if freedom.load.friction else {}
+    return {"damping": number(freedom.load.damping)} | friction
+
+
+def _joint(freedom: Freedom, *, foreign: bool = False) -> dict[str, str]:
+    """Return the attributes of a hinge or slide; the effort limits what actuators give it, where a foreign file states one."""
     turn = freedom.kind == "turn"
     attributes = {"name": freedom.name, "type": "hinge" if turn else "slide", "axis": numbers(freedom.axis)}
     bounds = _range(freedom)
     if bounds is not None:
         attributes["range"] = bounds
     effort = freedom.load.effort
-    return attributes | {"actuatorfrcrange": numbers([-effort, effort]), "damping": number(freedom.load.damping)}
+    if not effort > 0 or (foreign and "effort" in freedom.load.assumed):
+        return attributes | _dynamics(freedom)
+    return attributes | {"actuatorfrcrange": numbers([-effort, effort])} | _dynamics(freedom)
 
 
 def _range(freedom: Freedom) -> str | None:

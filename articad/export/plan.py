@@ -18,7 +18,7 @@ from articad.connectors.se3 import SE3
 from articad.errors import KinematicsError, UnrepresentableError
 from articad.export.bundle import Bundle
 from articad.export.features import features_of
-from articad.export.losses import Feature, losses_of, refuse
+from articad.export.losses import Feature, kept_losses, losses_of, refuse
 from articad.findings import Finding
 from articad.geometry.part import Part
 from articad.kinematics.joints import Joint, JointType
@@ -52,7 +52,7 @@ def write_plan(assembly: Assembly, *, strict: bool = False) -> Bundle:
         UnrepresentableError: If `strict` and there is such a loss, or a loop rests where a plan cannot let it rest.
     """
     plan, features = plan_of(assembly)
-    losses = losses_of("plan", features)
+    losses = (*losses_of("plan", features), *kept_losses("plan", assembly.kept))
     if strict:
         refuse(losses)
     return Bundle({PLAN_FILE: plan.dumps().encode()}, losses)

@@ -10,13 +10,15 @@ from lxml import etree
 
 from articad.connectors.se3 import SE3
 from articad.export.bundle import Bundle
+from articad.export.features import primitive_features
 from articad.export.follow import followers
 from articad.export.inertia import Inertial
-from articad.export.losses import Feature, losses_of, refuse
+from articad.export.losses import Feature, assumed_finding, kept_losses, losses_of, refuse
 from articad.export.lowering import Follows, Freedom, Link, LoweredJoint, LoweredModel, Placed, lower
 from articad.export.markup import child, document, number, numbers, rgba, rpy
 from articad.export.meshes import MM_TO_M, MeshFiles, MeshKind
 from articad.export.metadata import dumps, records
+from articad.findings import Findings
 from articad.kinematics.joints import JointType
 
 if TYPE_CHECKING:
@@ -55,11 +57,15 @@ def write_sdf(assembly: Assembly, *, strict: bool = False, meshes: MeshKind = "s
         UnrepresentableError: If `strict` and there is such a loss.
     """
     model = lower(assembly, RESERVED)
-    losses = losses_of("sdf", [*model.features, *([Feature("loop.rest", "joints")] if model.loops else [])])
+    features = [*model.features, *([Feature("loop.rest", "joints")] if model.loops else []), *primitive_features(assembly)]
+    losses = (*losses_of("sdf", features), *kept_losses("sdf", assembly.kept))
     if strict:
         refuse(losses)
     writer = _Writer(assembly, model, MeshFiles(meshes))
-    return Bundle({f"{model.name}.sdf": document(writer.document()), **writer.files.files}, losses)
+    assumed = [] if assembly.foreign else [row.joint.name for row in model.joints if any(freedom.load.assumed for freedom in row.freedoms)]
+    return Bundle(
+        {f"{model.name}.sdf": document(writer.document()), **writer.files.files}, losses, Findings(assumed_finding(assumed, "sdf"))
+    )
 
 
 class _Writer:
@@ -129,6 +135,11 @@ class _Writer:
         """Return how far the joint has moved in the pose that is written."""
         if not self.at_rest or joint.joint.type is JointType.FIXED:
             return SE3.identity()
+        if joint.joint.type is not JointType.BALL:
+            T = SE3.identity()
+            for freedom in joint.freedoms:  # in the joint's frame, which may not be ours: lowering keeps the frames of links
+                T = T @ _motion(freedom)
+            return T
         motion = joint.joint.motion(joint.joint.rest)
         in_metres = SE3.from_quaternion(motion.quaternion, motion.translation / 1000.0)
         return in_metres.inverse() if joint.backwards else in_metres
@@ -188,9 +199,14 @@ class _Writer:
         for name, bound in (("lower", freedom.lower), ("upper", freedom.upper)):
             if math.isfinite(bound):
                 child(limit, name, text=number(bound - zero))
-        child(limit, "effort", text=number(freedom.load.effort))
-        child(limit, "velocity", text=number(freedom.load.velocity))
-        child(child(element, "dynamics"), "damping", text=number(freedom.load.damping))
+        load = freedom.load
+        for name, value in (("effort", load.effort), ("velocity", load.velocity)):
+            if not self.assembly.foreign or name not in load.assumed:  # SDFormat demands neither
+                child(limit, name, text=number(value))
+        dynamics = child(element, "dynamics")
+        child(dynamics, "damping", text=number(load.damping))
+        if load.friction:
+            child(dynamics, "friction", text=number(load.friction))
         tie: Follows | None = self.follows.get(freedom.name)
         if tie is not None and freedom.follows is None:
             mimic = child(element, "mimic", {"joint": self._joint_name(tie.leader)})

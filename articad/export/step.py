@@ -20,7 +20,7 @@ import numpy as np
 from articad.connectors.se3 import SE3
 from articad.errors import ExportError
 from articad.export.bundle import Bundle
-from articad.export.losses import Feature, losses_of, refuse
+from articad.export.losses import Feature, kept_losses, losses_of, refuse
 from articad.export.names import valid_name
 from articad.geometry.mesh import TriMesh, merged
 from articad.geometry.part import Part
@@ -62,7 +62,7 @@ def write_step(assembly: Assembly, *, strict: bool = False) -> Bundle:
         UnrepresentableError: If `strict` and there is such a loss.
         ExportError: If no part has a shape, a part's file is not STEP, or a part without a B-rep has more than `MOST_FACETS` triangles.
     """
-    losses = losses_of("step", _features(assembly))
+    losses = (*losses_of("step", _features(assembly)), *kept_losses("step", assembly.kept))
     if strict:
         refuse(losses)
     writer = _Writer()

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from articad.connectors.se3 import SE3
 from articad.export.bundle import Bundle
-from articad.export.losses import Feature, losses_of, refuse
+from articad.export.losses import Feature, kept_losses, losses_of, refuse
 from articad.export.markup import child, document, number
 from articad.export.names import Names
 from articad.findings import Finding, Findings
@@ -58,7 +58,7 @@ def write_3mf(assembly: Assembly, *, strict: bool = False, process: Process = "f
     Raises:
         UnrepresentableError: If `strict` and there is such a loss.
     """
-    losses = losses_of("3mf", _features(assembly))
+    losses = (*losses_of("3mf", _features(assembly)), *kept_losses("3mf", assembly.kept))
     if strict:
         refuse(losses)
     files: dict[str, bytes] = {}

@@ -15,7 +15,7 @@ from articad.export.collisions import Collision, collide, contact_feature
 from articad.export.follow import followers
 from articad.export.hulls import HullOverlap, Pair, mating_pairs, same_group_pairs
 from articad.export.inertia import Inertial
-from articad.export.losses import Feature, losses_of, refuse
+from articad.export.losses import Feature, assumed_finding, kept_losses, losses_of, refuse
 from articad.export.lowering import Follows, Freedom, Link, LoweredJoint, LoweredModel, Placed, lower
 from articad.export.markup import child, document, number, numbers, rgba, rpy
 from articad.export.meshes import MM_TO_M, MeshFiles, MeshKind
@@ -23,10 +23,12 @@ from articad.export.metadata import dumps, records
 from articad.export.mimic import linear_followers
 from articad.export.ros import add_control, package_files, require_package_name
 from articad.export.ros import srdf as disabled_pairs
+from articad.findings import Findings
+from articad.geometry.part import Primitive
 from articad.kernels.cache import BuildCache
 
 if TYPE_CHECKING:
-    from articad.assembly import Assembly
+    from articad.assembly import Assembly, Kept
 
 Loops = Literal["none", "isaac", "drake", "mimic"]
 
@@ -78,20 +80,25 @@ def write_urdf(
     model = lower(assembly)
     model, contacts = collide(assembly, model, collision, _skipped(assembly, model), cache)
     tied = {loop.name: tied_points(model, loop) for loop in model.loops} if loops in {"isaac", "drake"} else {}
-    losses = losses_of("urdf", (*_loop_features(model, loops, tied), *map(contact_feature, contacts)))
+    keeper = _Keeper(assembly, model)
+    features = [*_loop_features(model, loops, tied), *map(contact_feature, contacts), *_form_features(model, keeper)]
+    features += [Feature("effort.assumed", f"joints.{name}") for name in _assumed(model, keeper)]
+    losses = (*losses_of("urdf", features), *kept_losses("urdf", assembly.kept, keeper.written))
     if strict:
         refuse(losses)
     files = MeshFiles(meshes, prefix="" if package is None else f"package://{package}/")
     follows = followers(model, [driver.name for driver in assembly.mechanism.drivers])
     if loops == "mimic" and model.loops:
         follows |= linear_followers(assembly, model)
-    root = etree.Element("robot", {"name": model.name}, nsmap={"drake": DRAKE} if loops == "drake" else None)
+    version = {"version": keeper.version} if keeper.version else {}
+    root = etree.Element("robot", {"name": model.name} | version, nsmap={"drake": DRAKE} if loops == "drake" else None)
     _compiler(root)
     _materials(root, model)
-    _tree(root, model, follows, files)
+    _tree(root, model, follows, files, keeper)
     for loop in model.loops:
         for point in tied.get(loop.name, ()):
             (_isaac if loops == "isaac" else _drake)(root, loop, point)
+    keeper.write(root)
     for record in records(assembly, model, files.by_digest, [*root.iterfind("link"), *root.iterfind("joint")]):
         child(root, "articad", {"kind": str(record["kind"])}, dumps(record))
     if ros2_control:
@@ -102,10 +109,79 @@ def write_urdf(
     else:
         main = {f"{kind}/{model.name}.{kind}": content for kind, content in documents.items()}
         main |= package_files(package, model.name, [*documents, files.folder])
-    return Bundle({**main, **files.files}, losses)
+    return Bundle({**main, **files.files}, losses, Findings(assumed_finding(_assumed(model, keeper, all_of=True), "urdf")))
 
 
-def _tree(root: Any, model: LoweredModel, follows: dict[str, Follows], files: MeshFiles) -> None:
+class _Keeper:
+    """What the URDF file that an assembly came from says beyond it, and where it is written again."""
+
+    def __init__(self, assembly: Assembly, model: LoweredModel) -> None:
+        self.foreign = assembly.foreign
+        self.version = ""
+        self._places = {f"parts.{link.part.name}": ("link", link.name) for link in model.links}
+        self._places |= {f"joints.{row.joint.name}": ("joint", row.name) for row in model.joints if len(row.freedoms) <= 1}
+        self._places["model"] = ("robot", "")
+        renamed = [old for where, (_, new) in self._places.items() if where != "model" and (old := where.partition(".")[2]) != new]
+        self.written: list[Kept] = []
+        for item in assembly.kept:
+            if item.format != "urdf" or not item.xml or item.where not in self._places or any(name in item.xml for name in renamed):
+                continue
+            self.written.append(item)
+            if item.where == "model" and item.xml.startswith("<robot "):
+                self.version = etree.fromstring(item.xml).get("version", "")
+
+    @property
+    def capsules(self) -> bool:
+        """Whether <capsule> may be written: URDF has it from 1.2 on."""
+        return self.version not in {"", "1.0", "1.1"}
+
+    def write(self, root: Any) -> None:
+        """Put every element back, or its attributes where the element is there already."""
+        places = {("link", element.get("name")): element for element in root.iterfind("link")}
+        places |= {("joint", element.get("name")): element for element in root.iterfind("joint")}
+        places["robot", ""] = root
+        for item in self.written:
+            element, target = etree.fromstring(item.xml), places[self._places[item.where]]
+            there = target.find(element.tag) if element.tag in {"limit", "dynamics", "mimic"} else None
+            if element.tag == "robot":
+                continue
+            if there is None:
+                target.append(element)
+            else:
+                there.attrib.update(element.attrib)
+
+
+def _assumed(model: LoweredModel, keeper: _Keeper, *, all_of: bool = False) -> list[str]:
+    """Return the joints whose effort or velocity is written and not stated, those of a file or all."""
+    if not keeper.foreign and not all_of:
+        return []
+    return [row.joint.name for row in model.joints if any(_writes_assumed(freedom, keeper) for freedom in row.freedoms)]
+
+
+def _writes_assumed(freedom: Freedom, keeper: _Keeper) -> bool:
+    needed = freedom.load.assumed - ({"damping"} if keeper.foreign else set())
+    return bool(needed) and not (keeper.foreign and _type(freedom) == "continuous")
+
+
+def _form_features(model: LoweredModel, keeper: _Keeper) -> list[Feature]:
+    """Return the primitives that become meshes."""
+    shapes = [(link.part.name, placed.shape.primitive) for link in model.links for placed in (*link.visuals, *link.collisions)]
+    return [Feature("shape.primitive", f"parts.{name}", form.kind) for name, form in shapes if form and _form(form, keeper) is None]
+
+
+def _form(form: Primitive, keeper: _Keeper) -> tuple[str, dict[str, str]] | None:
+    """Return the element of a primitive, None where URDF has none."""
+    metres_ = [size * MM_TO_M for size in form.size]
+    if form.kind == "box":
+        return "box", {"size": numbers(metres_)}
+    if form.kind == "sphere":
+        return "sphere", {"radius": number(metres_[0])}
+    if form.kind == "cylinder" or (form.kind == "capsule" and keeper.capsules):
+        return form.kind, {"radius": number(metres_[0]), "length": number(metres_[1])}
+    return None
+
+
+def _tree(root: Any, model: LoweredModel, follows: dict[str, Follows], files: MeshFiles, keeper: _Keeper) -> None:
     """Write links and joints, each joint after the link that it moves, carriers before it."""
     carried = {joint.child: joint for joint in model.joints}
     for link in model.links:
@@ -115,9 +191,9 @@ def _tree(root: Any, model: LoweredModel, follows: dict[str, Follows], files: Me
         if joint is not None:
             for name in joint.carriers[:carriers]:
                 _inertial(child(root, "link", {"name": name}), carrier)
-        _link(root, link, whole, files)
+        _link(root, link, whole, files, keeper)
         if joint is not None:
-            _joints(root, joint, follows)
+            _joints(root, joint, follows, keeper)
 
 
 def _disabled_pairs(assembly: Assembly, model: LoweredModel, contacts: Iterable[HullOverlap]) -> bytes:
@@ -152,15 +228,15 @@ def _inertials(link: Link, carriers: int) -> tuple[Inertial | None, Inertial]:
     return (Inertial.carrier() if link.moves else None), Inertial.carrier()
 
 
-def _link(root: Any, link: Link, inertial: Inertial | None, files: MeshFiles) -> None:
+def _link(root: Any, link: Link, inertial: Inertial | None, files: MeshFiles, keeper: _Keeper) -> None:
     element = child(root, "link", {"name": link.name})
     if inertial is not None:
         _inertial(element, inertial)
     for placed in link.visuals:
-        visual = _shape(element, "visual", placed, link.name, files)
+        visual = _shape(element, "visual", placed, link.name, files, keeper)
         child(visual, "material", {"name": _material(placed.color)})
     for placed in link.collisions:
-        _shape(element, "collision", placed, link.name, files)
+        _shape(element, "collision", placed, link.name, files, keeper)
 
 
 def _inertial(link: Any, inertial: Inertial) -> None:
@@ -172,9 +248,14 @@ def _inertial(link: Any, inertial: Inertial) -> None:
     child(element, "inertia", moments)
 
 
-def _shape(link: Any, tag: str, placed: Placed, name: str, files: MeshFiles) -> Any:
+def _shape(link: Any, tag: str, placed: Placed, name: str, files: MeshFiles, keeper: _Keeper) -> Any:
     element = child(link, tag)
     _origin(element, placed.T_link_shape)
+    form = None if placed.shape.primitive is None else _form(placed.shape.primitive, keeper)
+    if form is not None:
+        child(child(element, "geometry"), *form)
+        files.path(placed.shape.mesh, name)  # the records name it
+        return element
     mesh = {"filename": files.uri(placed.shape.mesh, name), "scale": numbers([MM_TO_M] * 3)}
     child(child(element, "geometry"), "mesh", mesh)
     return element
@@ -184,7 +265,7 @@ def _origin(parent: Any, T: SE3) -> None:
     child(parent, "origin", {"xyz": numbers(T.translation), "rpy": numbers(rpy(T))})
 
 
-def _joints(root: Any, joint: LoweredJoint, follows: dict[str, Follows]) -> None:
+def _joints(root: Any, joint: LoweredJoint, follows: dict[str, Follows], keeper: _Keeper) -> None:
     """Write a joint as a chain of one-freedom joints over its carriers."""
     if not joint.freedoms:
         element = child(root, "joint", {"name": joint.name, "type": "fixed"})
@@ -196,8 +277,10 @@ def _joints(root: Any, joint: LoweredJoint, follows: dict[str, Follows]) -> None
         element = child(root, "joint", {"name": freedom.name, "type": _type(freedom)})
         _ends(element, T, near, far)
         child(element, "axis", {"xyz": numbers(freedom.axis)})
-        child(element, "limit", _limit(freedom))
-        child(element, "dynamics", {"damping": number(freedom.load.damping), "friction": "0"})
+        limit = _limit(freedom, keeper)
+        if limit:
+            child(element, "limit", limit)
+        child(element, "dynamics", {"damping": number(freedom.load.damping), "friction": number(freedom.load.friction)})
         if freedom.name in follows:
             tie = follows[freedom.name]
             child(element, "mimic", {"joint": tie.leader, "multiplier": number(tie.ratio), "offset": number(tie.offset)})
@@ -216,8 +299,10 @@ def _type(freedom: Freedom) -> str:
     return "continuous" if math.isinf(freedom.lower) and math.isinf(freedom.upper) else "revolute"
 
 
-def _limit(freedom: Freedom) -> dict[str, str]:
-    bounds = {}
+def _limit(freedom: Freedom, keeper: _Keeper) -> dict[str, str]:
+    bounds: dict[str, str] = {}
+    if keeper.foreign and _type(freedom) == "continuous" and freedom.load.assumed >= {"effort", "velocity"}:
+        return bounds
     if _type(freedom) != "continuous":
         far = FAR_RAD if freedom.kind == "turn" else FAR_M
         bounds = {"lower": number(max(freedom.lower, -far)), "upper": number(min(freedom.upper, far))}

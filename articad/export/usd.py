@@ -14,9 +14,9 @@ from numpy.typing import NDArray
 from articad.connectors.mate import flip
 from articad.connectors.se3 import SE3
 from articad.export.bundle import Bundle
-from articad.export.features import features_of, solid_enough
+from articad.export.features import features_of, primitive_features, solid_enough
 from articad.export.inertia import Inertial, is_possible
-from articad.export.losses import Feature, losses_of, refuse
+from articad.export.losses import Feature, kept_losses, losses_of, refuse
 from articad.export.markup import number
 from articad.export.names import Names, valid_name
 from articad.geometry.mass import MassProperties
@@ -68,7 +68,8 @@ def write_usd(assembly: Assembly, *, strict: bool = False) -> Bundle:
     root = valid_name(assembly.name)
     bodies = {name: links.claim(name) for name in assembly.parts}
     names = {joint.name: joints.claim(joint.name) for joint in assembly.joints}
-    losses = losses_of("usd", (*features_of(assembly), *_name_features(assembly, bodies, names)))
+    features = (*features_of(assembly), *_name_features(assembly, bodies, names), *primitive_features(assembly))
+    losses = (*losses_of("usd", features), *kept_losses("usd", assembly.kept))
     if strict:
         refuse(losses)
     rest = assembly.mechanism.rest_poses()

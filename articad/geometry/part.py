@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 from types import MappingProxyType
-from typing import Self
+from typing import Literal, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -21,12 +21,26 @@ from articad.geometry.mass import MassProperties
 from articad.geometry.mesh import TriMesh, merged
 from articad.geometry.mesh_files import read_mesh
 
-__all__ = ["MassProperties", "Part", "Shape", "Solid", "SolidReader"]
+__all__ = ["MassProperties", "Part", "Primitive", "Shape", "Solid", "SolidReader"]
 
 FloatArray = NDArray[np.float64]
 
 DEFAULT_COLOR = "#9aa5b1"
 IDENTITY = SE3.identity()
+
+
+@dataclass(frozen=True)
+class Primitive:
+    """What a mesh stands for exactly, in the mesh's frame.
+
+    Attributes:
+        kind: Of the body; all are centred, and a cylinder and a capsule lie along z.
+        size: [mm]: x, y, z of a box; radius and length of a cylinder; radius and length between the balls' centres of a capsule; radius of a
+            sphere; half axes x, y, z of an ellipsoid.
+    """
+
+    kind: Literal["box", "cylinder", "sphere", "capsule", "ellipsoid"]
+    size: tuple[float, ...]
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,12 +52,14 @@ class Shape:
         frame: `T_part_mesh`: where that frame is in the part.
         color: "#rrggbb", or None for the part's.
         name: For files and reports.
+        primitive: What the mesh stands for, where a file said so.
     """
 
     mesh: TriMesh
     frame: SE3 = IDENTITY
     color: str | None = None
     name: str = ""
+    primitive: Primitive | None = None
 
     @property
     def placed(self) -> TriMesh:

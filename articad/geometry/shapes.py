@@ -66,9 +66,30 @@ def sphere(r: float, segments: int = 32) -> TriMesh:
     _require_positive(r=r)
     _require_segments(segments)
     bands = max(segments // 2, 2)
-    polar = np.pi * np.arange(1, bands) / bands
-    rings = [_at_height(_circle(r * np.sin(angle), segments, 0.0), r * np.cos(angle)) for angle in polar]
-    vertices = np.concatenate([*rings, [[0, 0, r], [0, 0, -r]]])
+    return _round_ended(r, 0.0, np.pi * np.arange(1, bands) / bands, segments)
+
+
+def capsule(r: float, length: float, segments: int = 32) -> TriMesh:
+    """Return a cylinder along z with half a sphere on each end, its vertices on the surface.
+
+    Args:
+        r: Radius [mm].
+        length: Between the centres of the two spheres [mm].
+        segments: Meridians; half of a sphere has a quarter as many bands.
+    """
+    _require_positive(r=r, length=length)
+    _require_segments(segments)
+    quarter = max(segments // 4, 1)
+    polar = np.pi / 2 * np.arange(1, quarter + 1) / quarter
+    return _round_ended(r, length, np.concatenate([polar, np.pi - polar[::-1]]), segments)
+
+
+def _round_ended(r: float, length: float, polar: FloatArray, segments: int) -> TriMesh:
+    """Return rings at angles from the north pole on a sphere that is cut at the equator and pulled apart by `length`."""
+    bands = len(polar) + 1
+    half = np.where(np.arange(len(polar)) < len(polar) / 2, length / 2, -length / 2)
+    rings = [_at_height(_circle(r * np.sin(angle), segments, 0.0), r * np.cos(angle) + up) for angle, up in zip(polar, half, strict=True)]
+    vertices = np.concatenate([*rings, [[0, 0, r + length / 2], [0, 0, -r - length / 2]]])
     i, j, n = np.arange(segments), (np.arange(segments) + 1) % segments, segments
     north, south = len(vertices) - 2, len(vertices) - 1
     triangles = [np.stack([i, j, np.full(n, north)], 1)]

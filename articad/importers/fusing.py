@@ -11,6 +11,7 @@ import math
 from collections.abc import Callable
 from dataclasses import replace
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,12 +27,32 @@ FloatArray = NDArray[np.float64]
 BARE_MASS_KG = 1e-3  # at most: exporters give carriers a little mass, because engines refuse none
 SAME_POINT_MM = 1e-6
 SAME_AXIS = 1e-9  # rad, and sine of the angle
+TWIST_ROUNDING = 1e-12  # rad by which a twist that begins or ends at zero may miss it
 
 _SLIDE, _TURN = JointType.SLIDER, JointType.REVOLUTE
 
 
 def fused(model: RawModel) -> RawModel:
     """Return the model with every chain over bare links that is one of our joints made that joint."""
+    return _replaced(model, _chains(model))
+
+
+def with_chains_named(model: RawModel) -> RawModel:
+    """Return the model as it is, with a note for every chain that `fused` would make one joint."""
+    findings = [
+        Finding(
+            code="I_IMPORT_CHAIN",
+            where=f"joints.{joint.name}",
+            message=f"{' and '.join(repr(part.name) for part in chain)} make one {joint.type} joint together; they are kept apart.",
+            hint="Read with fuse to make them one.",
+        )
+        for joint, chain in _chains(model).values()
+    ]
+    return replace(model, findings=[*model.findings, *findings])
+
+
+def _chains(model: RawModel) -> dict[str, tuple[RawJoint, tuple[RawJoint, ...]]]:
+    """Return the joints that chains stand for, and the chains, by the name of the last joint of each."""
     bare = _bare_links(model)
     before: dict[str, RawJoint] = {joint.child: joint for joint in model.joints}
     beyond: dict[str, RawJoint] = {joint.parent: joint for joint in reversed(model.joints)}
@@ -52,7 +73,7 @@ def fused(model: RawModel) -> RawModel:
                 found[last.name] = joint, joints
                 used |= {part.name for part in joints}
                 break
-    return _replaced(model, found)
+    return found
 
 
 def _bare_links(model: RawModel) -> set[str]:
@@ -119,8 +140,7 @@ def _fuse_cylindrical(joints: tuple[RawJoint, ...], inner: list[RawTie]) -> RawJ
         frame_c=second.frame_c @ X.inverse(),
         ranges=(_signed(slide.ranges[0], turned[slide.name]), _signed(turn.ranges[0], turned[turn.name])),
         rest=tuple(turned[joint.name] * joint.rest[0] for joint in (slide, turn) if joint.rest),
-        effort=(*slide.effort[:1], *turn.effort[:1]),
-        velocity=(*slide.velocity[:1], *turn.velocity[:1]),
+        **_capacities((slide, turn)),
     )
     if not inner:
         return whole
@@ -134,8 +154,7 @@ def _fuse_cylindrical(joints: tuple[RawJoint, ...], inner: list[RawTie]) -> RawJ
         ranges=(whole.ranges[1],),
         rest=whole.rest[1:],
         lead=ratio * turned[slide.name] * turned[turn.name] * math.tau,
-        effort=turn.effort[:1],
-        velocity=turn.velocity[:1],
+        **_capacities((turn,)),
     )
 
 
@@ -155,8 +174,7 @@ def _fuse_universal(joints: tuple[RawJoint, ...], _inner: list[RawTie]) -> RawJo
         frame_c=second.frame_c @ X.inverse() @ W,
         ranges=(*first.ranges, *second.ranges),
         rest=(*first.rest, *second.rest),
-        effort=(*first.effort[:1], *second.effort[:1]),
-        velocity=(*first.velocity[:1], *second.velocity[:1]),
+        **_capacities((first, second)),
     )
 
 
@@ -176,8 +194,7 @@ def _fuse_three(joints: tuple[RawJoint, ...], kind: JointType) -> tuple[RawJoint
         child=third.child,
         frame_p=first.frame_p @ W,
         frame_c=third.frame_c @ (X @ Y).inverse() @ W,
-        effort=tuple(effort for joint in joints for effort in joint.effort[:1]),
-        velocity=tuple(velocity for joint in joints for velocity in joint.velocity[:1]),
+        **_capacities(joints),
     )
     return whole, math.copysign(1.0, along)
 
@@ -192,19 +209,49 @@ def _fuse_planar(joints: tuple[RawJoint, ...], _inner: list[RawTie]) -> RawJoint
 
 
 def _fuse_ball(joints: tuple[RawJoint, ...], _inner: list[RawTie]) -> RawJoint | None:
-    """Three turns about x, y, ±z. The box of their limits becomes the cone that it contains and the twist about z."""
+    """Three turns about x, y, ±z whose box of limits contains a cone and a twist; None where it does not, or where the three differ.
+
+    A swing s of Rx(a)·Ry(b) has cos s = cos a · cos b, so a swing up to c stays in |a|, |b| ≤ c. The third angle is the ball's twist less
+    the twist of Rx(a)·Ry(b), which is at most w(c) (`swing_twist`), so a twist within [l + w, u − w] keeps it in [l, u]. Both contain 0.
+    A ball has one effort, one velocity, one damping and one friction, so those of the three must be the same.
+    """
     found = _fuse_three(joints, JointType.BALL)
     if found is None:
         return None
     joint, sign = found
-    cone = min(max(min(abs(bound) for one in joints[:2] for bound in one.ranges[0]), 1e-3), math.pi)
-    twist = _signed(joints[2].ranges[0], sign)
-    free = math.isinf(twist[0]) or math.isinf(twist[1]) or twist[1] - twist[0] >= math.tau
+    capacities: dict[str, Any] = {name: tuple(dict.fromkeys(values)) for name, values in _capacities(joints).items()}
+    if any(len(values) > 1 for values in capacities.values()) or any(not one.ranges[0][0] <= 0 <= one.ranges[0][1] for one in joints[:2]):
+        return None
+    cone = min(*(abs(bound) for one in joints[:2] for bound in one.ranges[0]), math.pi)
+    low, high = _signed(joints[2].ranges[0], sign)
+    free = math.isinf(low) or math.isinf(high) or high - low >= math.tau
+    own = swing_twist(cone)
+    twist = low + own, high - own
+    if not cone > 0 or (not free and not twist[0] <= TWIST_ROUNDING >= -twist[1]):
+        return None
     x, y, z = _rests(joints)
     rest = tuple(float(v) for v in (SE3.rot_x(x) @ SE3.rot_y(y) @ SE3.rot_z(sign * z)).quaternion)
     return replace(
-        joint, ranges=(), rest=rest, cone=cone, twist=None if free else (min(twist[0], 0.0), max(twist[1], 0.0)), effort=(), velocity=()
+        joint,
+        ranges=(),
+        rest=rest,
+        cone=cone,
+        twist=None if free else (min(twist[0], 0.0), max(twist[1], 0.0)),
+        **capacities,
     )
+
+
+def swing_twist(cone: float) -> float:
+    """Return the largest twist of Rx(a)·Ry(b) with a swing up to `cone` [rad]: that of a = b; endless from a quarter turn on."""
+    if cone >= math.pi / 2:
+        return math.inf
+    return 2 * math.atan(math.tan(math.acos(math.sqrt(math.cos(cone))) / 2) ** 2)
+
+
+def _capacities(joints: tuple[RawJoint, ...]) -> dict[str, Any]:
+    """Return effort, velocity, damping and friction of joints of one freedom, in their order."""
+    names = ("effort", "velocity", "damping", "friction")
+    return {name: tuple(value for joint in joints for value in getattr(joint, name)[:1]) for name in names}
 
 
 def _rests(joints: tuple[RawJoint, ...]) -> list[float]:
@@ -265,7 +312,7 @@ def _replaced(model: RawModel, found: dict[str, tuple[RawJoint, tuple[RawJoint, 
             code="I_IMPORT_FUSED",
             where=f"joints.{joint.name}",
             message=f"{' and '.join(repr(part.name) for part in chain)} are one {joint.type} joint {joint.name!r}.",
-            hint="Read with fuse off to keep them apart.",
+            hint="Read without fuse to keep them apart.",
         )
         for joint, chain in found.values()
     ]

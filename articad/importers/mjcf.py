@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
@@ -13,15 +13,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from articad import processes
-from articad.assembly import Assembly
+from articad.assembly import Assembly, Kept
 from articad.connectors.se3 import SE3
 from articad.findings import Finding
 from articad.geometry.mass import MassProperties
 from articad.geometry.mesh import TriMesh
-from articad.geometry.part import DEFAULT_COLOR, Shape
-from articad.geometry.shapes import box, cylinder, sphere
+from articad.geometry.part import DEFAULT_COLOR, Primitive, Shape
+from articad.geometry.shapes import box, capsule, cylinder, sphere
 from articad.importers.closure import require_closed
-from articad.importers.fusing import fused
+from articad.importers.fusing import fused, with_chains_named
+from articad.importers.mjcf_kept import kept_attributes
 from articad.importers.raw import ENDLESS, IDENTITY, RawJoint, RawLink, RawModel, RawTie, aligned, assemble, floating, require_links
 from articad.importers.reading import MM_PER_M, Folder, color_text, read_xml, unreadable
 from articad.importers.records import assembly_of, read_records, stale
@@ -32,7 +33,7 @@ FloatArray = NDArray[np.float64]
 _RECORD_PREFIX = "articad."
 
 
-def read_mjcf(path: str | Path, *, root: str | Path | None = None, metadata: bool = True, fuse: bool = True) -> Assembly:
+def read_mjcf(path: str | Path, *, root: str | Path | None = None, metadata: bool = True, fuse: bool = False) -> Assembly:
     """Read an MJCF file.
 
     Bodies become parts in their own frames, the world is the ground; joints keep their names and values, a free joint becomes three
@@ -64,11 +65,12 @@ def read_mjcf(path: str | Path, *, root: str | Path | None = None, metadata: boo
     with _warnings() as said:
         model = _Reader(_compiled(path), document.get("model") or path.stem).model()
     model.findings += edited
+    model.kept += kept_attributes(document, path)
     for text in dict.fromkeys(said):
         hint = "Correct what it names: simulators read the file the same way."
         model.findings.append(Finding(code="W_IMPORT_MUJOCO", where=path.name, message=f"MuJoCo warns: {text}", hint=hint))
     require_links(model, path)
-    return assemble(fused(model) if fuse else model, path)
+    return assemble(fused(model) if fuse else with_chains_named(model), path)
 
 
 @contextmanager
@@ -157,7 +159,7 @@ class _Reader:
         return RawLink(name, mass, tuple(visuals), tuple(collisions), color)
 
     def _shape(self, geom: int, body: str) -> Shape | None:
-        mesh = self._mesh(geom)
+        mesh, form = self._mesh(geom)
         if mesh is None:
             self._drop(f"parts.{body}", f"A geom of type {self.mujoco.mjtGeom(self.m.geom_type[geom]).name} is left out.")
             return None
@@ -165,29 +167,29 @@ class _Reader:
         rgba = self.m.mat_rgba[material] if material >= 0 else self.m.geom_rgba[geom]
         color = color_text(rgba)
         name = self.mujoco.mj_id2name(self.m, self.mujoco.mjtObj.mjOBJ_GEOM, geom) or ""
-        return Shape(mesh, _pose(self.m.geom_pos[geom], self.m.geom_quat[geom]), color, name)
+        return Shape(mesh, _pose(self.m.geom_pos[geom], self.m.geom_quat[geom]), color, name, form)
 
-    def _mesh(self, geom: int) -> TriMesh | None:  # noqa: PLR0911 - one per kind of geom
+    def _mesh(self, geom: int) -> tuple[TriMesh | None, Primitive | None]:
+        """Return a geom's mesh, and the primitive body that it stands for."""
         kinds = self.mujoco.mjtGeom
         a, b, c = (float(size) * MM_PER_M for size in self.m.geom_size[geom])
-        kind = self.m.geom_type[geom]
-        if kind == kinds.mjGEOM_BOX:
-            return box(2 * a, 2 * b, 2 * c)
-        if kind == kinds.mjGEOM_SPHERE:
-            return sphere(a)
-        if kind == kinds.mjGEOM_CYLINDER:
-            return cylinder(a, 2 * b)
-        if kind == kinds.mjGEOM_CAPSULE:
-            ball = sphere(a)
-            return TriMesh(ball.vertices + np.sign(ball.vertices[:, 2:]) * [0, 0, b], ball.triangles)
-        if kind == kinds.mjGEOM_ELLIPSOID:
-            return TriMesh(sphere(1.0).vertices * [a, b, c], sphere(1.0).triangles)
+        kind = int(self.m.geom_type[geom])
+        forms: dict[int, tuple[Callable[[], TriMesh], Primitive]] = {
+            int(kinds.mjGEOM_BOX): (lambda: box(2 * a, 2 * b, 2 * c), Primitive("box", (2 * a, 2 * b, 2 * c))),
+            int(kinds.mjGEOM_SPHERE): (lambda: sphere(a), Primitive("sphere", (a,))),
+            int(kinds.mjGEOM_CYLINDER): (lambda: cylinder(a, 2 * b), Primitive("cylinder", (a, 2 * b))),
+            int(kinds.mjGEOM_CAPSULE): (lambda: capsule(a, 2 * b), Primitive("capsule", (a, 2 * b))),
+            int(kinds.mjGEOM_ELLIPSOID): (lambda: _ellipsoid(a, b, c), Primitive("ellipsoid", (a, b, c))),
+        }
+        if kind in forms:
+            make, form = forms[kind]
+            return make(), form
         if kind != kinds.mjGEOM_MESH:
-            return None
+            return None, None
         mesh = self.m.geom_dataid[geom]
         vertices = self.m.mesh_vert[self.m.mesh_vertadr[mesh] :][: self.m.mesh_vertnum[mesh]]
         triangles = self.m.mesh_face[self.m.mesh_faceadr[mesh] :][: self.m.mesh_facenum[mesh]]
-        return TriMesh(vertices.astype(np.float64) * MM_PER_M, triangles)
+        return TriMesh(vertices.astype(np.float64) * MM_PER_M, triangles), None
 
     # ------------------------------------------------------------------ joints
 
@@ -228,7 +230,9 @@ class _Reader:
             twist = (-reach, reach) if limited else None
             rest = _xyzw(qpos[at : at + 4])
             self.raw.joints.append(
-                RawJoint(name, JointType.BALL, parent, child, start @ anchor, anchor, cone=reach, twist=twist, rest=rest)
+                RawJoint(
+                    name, JointType.BALL, parent, child, start @ anchor, anchor, cone=reach, twist=twist, rest=rest, **self._dynamics(index)
+                )
             )
             return
         slides = kind == kinds.mjJNT_SLIDE
@@ -239,7 +243,26 @@ class _Reader:
         bounds = (low * unit, high * unit) if limited else ENDLESS
         joint_type = JointType.SLIDER if slides else JointType.REVOLUTE
         value = (float(qpos[at]) * unit,)
-        self.raw.joints.append(RawJoint(name, joint_type, parent, child, start @ R @ back, R, (bounds,), rest=value))
+        self.raw.joints.append(
+            RawJoint(name, joint_type, parent, child, start @ R @ back, R, (bounds,), rest=value, **self._dynamics(index))
+        )
+
+    def _dynamics(self, index: int) -> dict[str, Any]:
+        """Return what a joint states of effort, damping and friction, in N, mm and s; a ball is like a hinge."""
+        m, name = self.m, self.joints[index]
+        slides = m.jnt_type[index] == self.mujoco.mjtJoint.mjJNT_SLIDE
+        force, length = (1.0, MM_PER_M) if slides else (MM_PER_M, 1.0)
+        at = m.jnt_dofadr[index]
+        effort = None
+        if m.jnt_actfrclimited[index]:
+            low, high = (float(bound) for bound in m.jnt_actfrcrange[index])
+            effort = max(-low, high) * force
+            if low != -high:
+                self.raw.kept.append(
+                    Kept("mjcf", f"joints.{name}", f"actuatorfrcrange {low:.6g} {high:.6g}: the larger end holds both ways")
+                )
+        damping, friction = float(m.dof_damping[at]) * force / length, float(m.dof_frictionloss[at]) * force
+        return {"effort": (effort,), "damping": (damping,), "friction": (friction,)}
 
     def _bare_link(self, wanted: str) -> str:
         while wanted in self.raw.links:
@@ -312,6 +335,11 @@ class _Reader:
         turns = [_rotation_pose(self.data.xpos[body], self.data.xmat[body]).inverse().quaternion for body in bodies]
         near, far = (SE3.from_quaternion(turn, frame.translation) for turn, frame in zip(turns, (near, far), strict=True))
         self.raw.joints.append(RawJoint(name, JointType.BALL, first, second, near, far, cone=math.pi, closing=True))
+
+
+def _ellipsoid(a: float, b: float, c: float) -> TriMesh:
+    ball = sphere(1.0)
+    return TriMesh(ball.vertices * [a, b, c], ball.triangles)
 
 
 def _resting(joint: RawJoint, rest: tuple[float, ...]) -> RawJoint:

@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from articad.assembly import Assembly
+from articad.assembly import Assembly, Kept
 from articad.connectors.connector import Connector
 from articad.connectors.mate import FLIP, Mate
 from articad.connectors.se3 import SE3
@@ -68,6 +68,8 @@ class RawJoint:
         rest: Wanted rest values; the nearest within the limits are taken.
         effort: [N·mm] or [N], None where the file gives none.
         velocity: [rad/s] or [mm/s], likewise.
+        damping: [N·mm·s/rad] or [N·s/mm]; a file that says nothing has none.
+        friction: [N·mm] or [N], likewise.
         closing: True when it was a constraint in the file, not a joint of its tree.
     """
 
@@ -84,6 +86,8 @@ class RawJoint:
     rest: tuple[float, ...] = ()
     effort: tuple[float | None, ...] = ()
     velocity: tuple[float | None, ...] = ()
+    damping: tuple[float | None, ...] = ()
+    friction: tuple[float | None, ...] = ()
     closing: bool = False
 
 
@@ -108,6 +112,7 @@ class RawModel:
         joints: In the file's order.
         ties: Between joints of one coordinate.
         findings: What could not be taken over.
+        kept: What the file says that no other field holds.
     """
 
     name: str
@@ -116,6 +121,7 @@ class RawModel:
     joints: list[RawJoint] = field(default_factory=list)
     ties: list[RawTie] = field(default_factory=list)
     findings: list[Finding] = field(default_factory=list)
+    kept: list[Kept] = field(default_factory=list)
 
 
 def aligned(axis: FloatArray) -> SE3:
@@ -180,7 +186,7 @@ def assemble(model: RawModel, path: Path) -> Assembly:
         mechanism.rest  # noqa: B018 - loops must close before anything is promised
     except (ArticadError, np.linalg.LinAlgError) as error:
         raise unreadable(path, "", f"It makes no mechanism: {error}") from error
-    return Assembly(model.name, mechanism, parts, findings=Findings(model.findings), foreign=True)
+    return Assembly(model.name, mechanism, parts, findings=Findings(model.findings), foreign=True, kept=tuple(model.kept))
 
 
 def _consistent_ties(model: RawModel) -> list[RawTie]:
@@ -238,6 +244,8 @@ def _joint(joint: RawJoint, rest: tuple[float, ...], findings: list[Finding]) ->
         lead=joint.lead,
         effort=joint.effort,
         velocity=joint.velocity,
+        damping=joint.damping or ((0.0,) * max(len(ranges), 1) if joint.type is not JointType.FIXED else ()),  # unstated is none
+        friction=joint.friction,
     )
 
 

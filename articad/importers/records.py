@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from articad.assembly import Assembly
+from articad.assembly import Assembly, Kept
 from articad.connectors.connector import Connector
 from articad.connectors.mate import Mate
 from articad.connectors.se3 import SE3
@@ -19,13 +19,14 @@ from articad.findings import Finding
 from articad.fingerprint import fingerprint
 from articad.geometry.mass import MassProperties
 from articad.geometry.mesh import TriMesh
-from articad.geometry.part import Part, Shape, Solid
+from articad.geometry.part import Part, Primitive, Shape, Solid
 from articad.importers.reading import LARGEST_MM, Folder, unreadable
 from articad.kinematics.joints import Coupling, Joint, JointLimits, JointType
 from articad.kinematics.mechanism import Mechanism
 from articad.plan.resolve import Fit, Material, Waiver
 
 VERSION = 1
+PRIMITIVES = ("box", "cylinder", "sphere", "capsule", "ellipsoid")
 
 Record = dict[str, Any]
 Scale = tuple[float, float, float]
@@ -102,6 +103,7 @@ def _assembly(records: list[Record], folder: Folder) -> Assembly:
         waivers=tuple(Waiver(**_without_kind(record) | {"parts": tuple(record["parts"])}) for record in by_kind.get("waiver", [])),
         deflection=head["deflection"],
         foreign=head.get("foreign", False) is True,
+        kept=tuple(Kept(**{key: str(value) for key, value in _without_kind(record).items()}) for record in by_kind.get("kept", [])),
     )
 
 
@@ -113,7 +115,11 @@ def _part(record: Record, folder: Folder) -> Part:
 
     def shapes(rows: list[Record]) -> tuple[Shape, ...]:
         found = ((row, mesh(row["file"])) for row in rows)
-        return tuple(Shape(body, _frame(row["frame"]), row["color"], row["name"]) for row, body in found if body is not None)
+        return tuple(
+            Shape(body, _frame(row["frame"]), row["color"], row["name"], _primitive(row.get("primitive")))
+            for row, body in found
+            if body is not None
+        )
 
     return Part(
         record["name"],
@@ -125,6 +131,12 @@ def _part(record: Record, folder: Folder) -> Part:
         record["color"],
         record["material"],
     )
+
+
+def _primitive(record: list[Any] | None) -> Primitive | None:
+    if record is None or record[0] not in PRIMITIVES:
+        return None
+    return Primitive(record[0], tuple(float(size) for size in record[1:]))
 
 
 def _solid(record: Record | None, mesh: Any) -> Solid | None:
@@ -166,6 +178,8 @@ def _joint(record: Record) -> Joint:
         driver=record["driver"],
         effort=tuple(record["effort"]),
         velocity=tuple(record["velocity"]),
+        damping=tuple(record.get("damping", ())),
+        friction=tuple(record.get("friction", ())),
     )
 
 

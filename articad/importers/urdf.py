@@ -18,21 +18,24 @@ from articad.errors import InvalidSolidError
 from articad.findings import Finding
 from articad.geometry.mass import MassProperties
 from articad.geometry.mesh import TriMesh
-from articad.geometry.part import DEFAULT_COLOR, Shape
+from articad.geometry.part import DEFAULT_COLOR, Primitive, Shape
 from articad.geometry.shapes import box, cylinder, sphere
-from articad.importers.fusing import fused
+from articad.geometry.shapes import capsule as capsule_mesh
+from articad.importers.fusing import fused, with_chains_named
 from articad.importers.raw import ENDLESS, IDENTITY, RawJoint, RawLink, RawModel, RawTie, aligned, assemble, floating, require_links
 from articad.importers.reading import MAX_LINKS, MM_PER_M, Folder, color_text, read_xml, unreadable
 from articad.importers.records import assembly_of, read_records, stale
+from articad.importers.urdf_kept import kept_elements
 from articad.kinematics.joints import JointType
 
 FloatArray = NDArray[np.float64]
 
+_CAPSULE = "capsule:"  # before the name of a shape that is one
 _SHAPES = {"box", "cylinder", "sphere", "mesh"}
 _JOINT_TYPES = {"fixed", "revolute", "continuous", "prismatic", "planar", "floating", "spherical"}
 
 
-def read_urdf(path: str | Path, *, root: str | Path | None = None, metadata: bool = True, fuse: bool = True) -> Assembly:
+def read_urdf(path: str | Path, *, root: str | Path | None = None, metadata: bool = True, fuse: bool = False) -> Assembly:
     """Read a URDF file.
 
     Links become parts in their own frames, joints keep their names and values. `mimic` becomes a coupling, `planar` a planar joint,
@@ -62,16 +65,18 @@ def read_urdf(path: str | Path, *, root: str | Path | None = None, metadata: boo
     model = _model(document, folder, path)
     model.findings += edited
     require_links(model, path)
-    return assemble(fused(model) if fuse else model, path)
+    return assemble(fused(model) if fuse else with_chains_named(model), path)
 
 
 def _model(document: Any, folder: Folder, path: Path) -> RawModel:
     if not document.get("name"):
         raise unreadable(path, f"line {document.sourceline}", "The robot has no name.")
     _require_numbers(document, path)
+    kept = kept_elements(document)
+    _quaternions_to_angles(document, path)
     findings = _strip(document, path)
     robot = _parse(document, path)
-    model = RawModel(robot.name or path.stem, _root(robot, path), findings=[*findings])
+    model = RawModel(robot.name or path.stem, _root(robot, path), findings=[*findings], kept=kept)
     colors = {material.name: _color(material) for material in robot.materials}
     for link in robot.links:
         if link.name in model.links:
@@ -112,7 +117,11 @@ def _strip(document: Any, path: Path) -> list[Finding]:
             document.remove(element)
     for shape in [*document.iterfind("link/visual"), *document.iterfind("link/collision")]:
         geometry = shape.find("geometry")
-        if geometry is None or not len(geometry) or geometry[0].tag not in _SHAPES:
+        if geometry is not None and len(geometry) and geometry[0].tag == "capsule":
+            # yourdfpy does not know capsules; it reads a cylinder with a mark
+            geometry[0].tag = "cylinder"
+            shape.set("name", _CAPSULE + shape.get("name", ""))
+        elif geometry is None or not len(geometry) or geometry[0].tag not in _SHAPES:
             what = geometry[0].tag if geometry is not None and len(geometry) else "nothing"
             where = f"links.{shape.getparent().get('name')}"
             message = f"A shape of {what} is left out."
@@ -121,9 +130,50 @@ def _strip(document: Any, path: Path) -> list[Finding]:
     return findings
 
 
+def _quaternions_to_angles(document: Any, path: Path) -> None:
+    """Turn the quat_xyzw of an origin, which URDF has from 1.1 on, into the angles that every reader knows."""
+    if document.get("version", "") in {"", "1", "1.0"}:
+        return  # urdfdom reads it in later versions only; it is reported as kept
+    for origin in document.iter("origin"):
+        text = origin.get("quat_xyzw")
+        if text is None:
+            continue
+        if origin.get("rpy") is not None:
+            raise unreadable(path, f"line {origin.sourceline}", "An origin has rpy and quat_xyzw; one is needed.")
+        xyzw = [float(word) for word in text.split()]
+        length = math.hypot(*xyzw)
+        if not length > 1e-9:
+            raise unreadable(path, f"line {origin.sourceline}", f"quat_xyzw={text!r} is no rotation.")
+        origin.set("rpy", " ".join(repr(angle) for angle in _angles(SE3.from_quaternion([number / length for number in xyzw]).rotation)))
+
+
+def _angles(R: FloatArray) -> tuple[float, float, float]:
+    """Return roll, pitch and yaw [rad] with R = Rz(yaw) · Ry(pitch) · Rx(roll); the roll is that of R with yaw taken back."""
+    yaw = math.atan2(R[1, 0], R[0, 0])
+    s, c = math.sin(yaw), math.cos(yaw)
+    return math.atan2(s * R[0, 2] - c * R[1, 2], c * R[1, 1] - s * R[0, 1]), math.atan2(-R[2, 0], math.hypot(R[0, 0], R[1, 0])), yaw
+
+
 def _require_numbers(document: Any, path: Path) -> None:
     """Refuse NaN, infinities and numbers beyond reason, wherever they stand; yourdfpy would take them."""
-    names = ("xyz", "rpy", "value", "size", "radius", "length", "scale", "lower", "upper", "effort", "velocity", "multiplier", "offset")
+    names = (
+        "xyz",
+        "rpy",
+        "quat_xyzw",
+        "value",
+        "size",
+        "radius",
+        "length",
+        "scale",
+        "lower",
+        "upper",
+        "effort",
+        "velocity",
+        "multiplier",
+        "offset",
+        "damping",
+        "friction",
+    )
     moments = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
     for element in document.iter():
         for name in (*names, *moments):
@@ -133,7 +183,20 @@ def _require_numbers(document: Any, path: Path) -> None:
             try:
                 numbers = [float(word) for word in (text.replace(",", " ") if name in {"size", "scale"} else text).split()]
             except ValueError:
-                if element.tag in {"origin", "axis", "limit", "mass", "inertia", "mimic", "box", "cylinder", "sphere", "mesh"}:
+                if element.tag in {
+                    "origin",
+                    "axis",
+                    "limit",
+                    "dynamics",
+                    "mass",
+                    "inertia",
+                    "mimic",
+                    "box",
+                    "cylinder",
+                    "sphere",
+                    "capsule",
+                    "mesh",
+                }:
                     raise unreadable(path, f"line {element.sourceline}", f"{name}={text!r} is not a number.") from None
                 continue
             if len(numbers) not in _COUNTS.get(name, (1,)) and element.tag in {"origin", "axis", "mesh", "box"}:
@@ -143,7 +206,7 @@ def _require_numbers(document: Any, path: Path) -> None:
                 raise unreadable(path, f"line {element.sourceline}", f"{name}={text!r} is beyond reason.")
 
 
-_COUNTS = {"xyz": (3,), "rpy": (3,), "size": (3,), "scale": (1, 3)}
+_COUNTS = {"xyz": (3,), "rpy": (3,), "quat_xyzw": (4,), "size": (3,), "scale": (1, 3)}
 _LARGEST = 1e12  # m, kg, N: beyond it arithmetic on poses means nothing
 
 
@@ -184,7 +247,8 @@ def _shapes(rows: Any, colors: dict[str, str], folder: Folder, where: str) -> tu
     shapes = []
     for row in rows:
         try:
-            mesh = _mesh(row.geometry, folder, where)
+            capsule = (row.name or "").startswith(_CAPSULE)
+            mesh, form = _mesh(row.geometry, folder, where, capsule=capsule)
         except InvalidSolidError as error:
             message = f"A shape is left out: {error.message}"
             folder.findings.append(Finding(code="W_IMPORT_DROPPED", where=where, message=message, hint="Give it a size."))
@@ -192,20 +256,27 @@ def _shapes(rows: Any, colors: dict[str, str], folder: Folder, where: str) -> tu
         if mesh is not None:
             material = getattr(row, "material", None)
             color = None if material is None else _color(material) or colors.get(material.name) or None
-            shapes.append(Shape(mesh, _pose(row.origin), color or None, row.name or ""))
+            shapes.append(Shape(mesh, _pose(row.origin), color or None, (row.name or "").removeprefix(_CAPSULE), form))
     return tuple(shapes)
 
 
-def _mesh(geometry: Any, folder: Folder, where: str) -> TriMesh | None:
+def _mesh(geometry: Any, folder: Folder, where: str, *, capsule: bool) -> tuple[TriMesh | None, Primitive | None]:
+    """Return a shape's mesh, and what it stands for."""
     if geometry.box is not None:
-        return box(*(float(size) * MM_PER_M for size in geometry.box.size))
+        form = Primitive("box", tuple(float(size) * MM_PER_M for size in geometry.box.size))
+        x, y, z = form.size
+        return box(x, y, z), form
     if geometry.cylinder is not None:
-        return cylinder(geometry.cylinder.radius * MM_PER_M, geometry.cylinder.length * MM_PER_M)
+        sizes = (float(geometry.cylinder.radius) * MM_PER_M, float(geometry.cylinder.length) * MM_PER_M)
+        if capsule:
+            return capsule_mesh(*sizes), Primitive("capsule", sizes)
+        return cylinder(*sizes), Primitive("cylinder", sizes)
     if geometry.sphere is not None:
-        return sphere(geometry.sphere.radius * MM_PER_M)
+        form = Primitive("sphere", (float(geometry.sphere.radius) * MM_PER_M,))
+        return sphere(form.size[0]), form
     scale = np.ones(3) if geometry.mesh.scale is None else np.broadcast_to(geometry.mesh.scale, 3)
     x, y, z = (float(factor) * MM_PER_M for factor in scale)
-    return folder.mesh(geometry.mesh.filename or "", (x, y, z), where)
+    return folder.mesh(geometry.mesh.filename or "", (x, y, z), where), None
 
 
 def _color(material: Any) -> str:
@@ -248,11 +319,21 @@ def _add_joint(model: RawModel, joint: Any, types: dict[str, str], path: Path) -
     slides = joint.type == "prismatic"
     unit = MM_PER_M if slides else 1.0
     limit = joint.limit
-    effort = None if limit is None or not limit.effort else abs(limit.effort) * (1.0 if slides else MM_PER_M)
-    velocity = None if limit is None or not limit.velocity else abs(limit.velocity) * unit
+    force = 1.0 if slides else MM_PER_M  # our N·mm or N of one N·m or N
+    dynamics = joint.dynamics
     bounds = _range(model, joint, unit)
-    kind = JointType.SLIDER if slides else JointType.REVOLUTE
-    model.joints.append(RawJoint(joint.name, kind, *ends, (bounds,), effort=(effort,), velocity=(velocity,)))
+    model.joints.append(
+        RawJoint(
+            joint.name,
+            JointType.SLIDER if slides else JointType.REVOLUTE,
+            *ends,
+            (bounds,),
+            effort=(None if limit is None or limit.effort is None else abs(limit.effort) * force,),
+            velocity=(None if limit is None or limit.velocity is None else abs(limit.velocity) * unit,),
+            damping=(0.0 if dynamics is None else float(dynamics.damping or 0.0) * force / unit,),
+            friction=(0.0 if dynamics is None else float(dynamics.friction or 0.0) * force,),
+        )
+    )
     if joint.mimic is not None:
         model.ties.append(_tie(joint, types))
 

@@ -218,6 +218,8 @@ class Joint:
         driver: Asked for as a driver of a loop.
         effort: Largest force [N] or torque [N·mm] per coordinate, None where it is to be computed; empty: all of them.
         velocity: Largest speed [mm/s, rad/s] per coordinate, likewise.
+        damping: Resistance per speed [N·s/mm, N·mm·s/rad] per coordinate, likewise.
+        friction: Coulomb friction [N, N·mm] per coordinate; None and empty: none.
     """
 
     name: str
@@ -235,6 +237,8 @@ class Joint:
     driver: bool = False
     effort: tuple[float | None, ...] = ()
     velocity: tuple[float | None, ...] = ()
+    damping: tuple[float | None, ...] = ()
+    friction: tuple[float | None, ...] = ()
 
     @property
     def column_names(self) -> tuple[str, ...]:

@@ -116,7 +116,7 @@ def same_places(first: Assembly, again: Assembly, q: Any, again_q: Any) -> float
 @pytest.mark.parametrize("form", PAIRS)
 def test_chains_are_fused_back_without_records(form: str, tmp_path: Path) -> None:
     first = all_joint_kinds()
-    again = round_trip(first, form, tmp_path, metadata=False)
+    again = round_trip(first, form, tmp_path, metadata=False, fuse=True)
     types = {joint.name: joint.type for joint in again.joints}
     expected = {joint.name: joint.type for joint in first.joints if joint.type is not JointType.FIXED}
 
@@ -135,7 +135,7 @@ def test_chains_are_fused_back_without_records(form: str, tmp_path: Path) -> Non
 @pytest.mark.parametrize("form", PAIRS)
 def test_masses_survive_without_records(form: str, tmp_path: Path) -> None:
     first = all_joint_kinds()
-    again = round_trip(first, form, tmp_path, metadata=False)
+    again = round_trip(first, form, tmp_path, metadata=False, fuse=True)
     total = sum(part.mass.mass for part in first.parts.values() if part.mass)
 
     assert again.mass().mass == pytest.approx(total, rel=1e-9)
@@ -149,7 +149,7 @@ def test_masses_survive_without_records(form: str, tmp_path: Path) -> None:
 
 def test_couplings_come_back_from_mimics_and_equalities(tmp_path: Path) -> None:
     for form in PAIRS:
-        again = round_trip(geared_pair(), form, tmp_path, metadata=False)
+        again = round_trip(geared_pair(), form, tmp_path, metadata=False, fuse=True)
         q = np.array([0.4])
         assert len(again.drivers) == 1
         configuration = again.mechanism.configuration(q)
@@ -159,14 +159,14 @@ def test_couplings_come_back_from_mimics_and_equalities(tmp_path: Path) -> None:
 
 
 def test_a_loop_closed_by_points_comes_back_as_a_loop(tmp_path: Path) -> None:
-    again = round_trip(four_bar(), "mjcf", tmp_path, metadata=False)
+    again = round_trip(four_bar(), "mjcf", tmp_path, metadata=False, fuse=True)
 
     assert len(again.mechanism.loop_joints) == 2  # two points on one axis
     assert again.mechanism.mobility == 1
 
 
 def test_ball_limits_come_back_as_the_cone(tmp_path: Path) -> None:
-    again = round_trip(all_joint_kinds(), "urdf", tmp_path, metadata=False)
+    again = round_trip(all_joint_kinds(), "urdf", tmp_path, metadata=False, fuse=True)
     head = next(joint for joint in again.joints if joint.name == "head")
 
     assert head.limits.cone == pytest.approx(math.pi / 3)
@@ -182,7 +182,7 @@ def test_welds_and_bodies_that_are_tied_come_back(tmp_path: Path) -> None:
       <joint joint1="ja" polycoef="0.1 0 0 0 0"/><joint joint1="ja" joint2="jb" polycoef="0 0 1 0 0"/>
       <weld body1="a" body2="b" active="false"/>
       </equality></mujoco>""")
-    again = read_mjcf(tmp_path / "a.xml")
+    again = read_mjcf(tmp_path / "a.xml", fuse=True)
     types = {joint.name: joint.type for joint in again.joints}
 
     assert (types["w"], types["p"], types["jc"]) == (JointType.FIXED, JointType.BALL, JointType.BALL)
@@ -191,6 +191,7 @@ def test_welds_and_bodies_that_are_tied_come_back(tmp_path: Path) -> None:
     assert [finding.where for finding in again.findings.of("W_IMPORT_DROPPED")] == [
         "equality.equality_2",
         "equality.equality_3",
+        "equality.equality_4",
         "joints.jc",
         "parts.world",
     ]
