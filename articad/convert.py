@@ -22,7 +22,7 @@ from articad.findings import Finding
 from articad.importers.freecad import read_freecad
 from articad.importers.mjcf import read_mjcf
 from articad.importers.step import read_step
-from articad.importers.urdf import read_urdf
+from articad.importers.urdf import EXPAND, read_urdf
 from articad.plan.schema import AssemblyPlan
 
 WRITERS: Final[Mapping[str, Callable[..., Bundle]]] = {
@@ -95,6 +95,11 @@ def read(path: str | Path, *, root: str | Path | None = None, fuse: bool = False
     """
     path = Path(path)
     reader = READERS.get(path.suffix.lower())
+    if path.suffix.lower() == ".xacro":
+        message = f"{path}: a xacro file is a program that writes a URDF; it is not run here."
+        raise ReadError(
+            f"{message} {EXPAND}", path=str(path), findings=[Finding(code="E_READ", where=str(path), message=message, hint=EXPAND)]
+        )
     if reader is None:
         message = f"{path}: {path.suffix or 'no'} extension is not one of {', '.join(READERS)}."
         finding = Finding(code="E_READ", where=str(path), message=message, hint="Convert it first, or correct its name.")

@@ -48,10 +48,13 @@ if TYPE_CHECKING:
 )
 def _audit(options: argparse.Namespace, terminal: Terminal) -> Report:
     from articad.audit.examine import Choices
+    from articad.errors import ReadError
 
     root = None if options.root is None else Path(options.root)
     choices = Choices(root=root, budget=options.budget, certified=options.certify, engines=options.engines)
     target = Path(options.target)
+    if not target.exists():
+        raise ReadError(f"There is no {target}.", path=str(target))
     if target.is_dir() and not any((target / name).is_file() for name in ("request.json", "plan.json")):
         return _audit_folder(options, terminal, choices)
     audit = _audit_one(options, terminal, choices)
@@ -138,9 +141,13 @@ def _audit_one(options: argparse.Namespace, terminal: Terminal, choices: Choices
 
 def _audit_folder(options: argparse.Namespace, terminal: Terminal, choices: Choices) -> Report:
     from articad.audit.many import audit_folder, models_below
+    from articad.errors import ReadError
 
     folder = Path(options.target)
-    with terminal.progress("Auditing", total=sum(1 for _ in models_below(folder))) as tell:
+    count = sum(1 for _ in models_below(folder))
+    if not count:
+        raise ReadError(f"There is no model below {folder}: no URDF, MJCF, FreeCAD or STEP file.", path=str(folder))
+    with terminal.progress("Auditing", total=count) as tell:
         board = audit_folder(folder, choices, progress=tell)
     if options.report:
         from articad.audit.page import scoreboard_page

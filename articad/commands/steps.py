@@ -85,7 +85,7 @@ def loaded(target: str, options: argparse.Namespace, terminal: Terminal) -> Asse
     if (Path(target) / "request.json").is_file():
         with Run.view(target) as run, terminal.progress("Reading") as tell:
             return assembly_of(run, progress=tell)
-    if Path(target).suffix.lower() in convert.READERS:
+    if Path(target).suffix.lower() in {*convert.READERS, ".xacro"}:
         return convert.read(target)
     plan = AssemblyPlan.load(target)
     folder = Path(target) if Path(target).is_dir() else Path(target).parent

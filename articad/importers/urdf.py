@@ -30,6 +30,8 @@ from articad.kinematics.joints import JointType
 
 FloatArray = NDArray[np.float64]
 
+EXPAND = "Run `xacro FILE.urdf.xacro > FILE.urdf` (pip install xacro) and read what it writes."
+_XACRO = {"http://www.ros.org/wiki/xacro", "http://ros.org/wiki/xacro", "http://wiki.ros.org/xacro"}
 _CAPSULE = "capsule:"  # before the name of a shape that is one
 _SHAPES = {"box", "cylinder", "sphere", "mesh"}
 _JOINT_TYPES = {"fixed", "revolute", "continuous", "prismatic", "planar", "floating", "spherical"}
@@ -71,6 +73,7 @@ def read_urdf(path: str | Path, *, root: str | Path | None = None, metadata: boo
 def _model(document: Any, folder: Folder, path: Path) -> RawModel:
     if not document.get("name"):
         raise unreadable(path, f"line {document.sourceline}", "The robot has no name.")
+    _require_expanded(document, path)
     _require_numbers(document, path)
     kept = kept_elements(document)
     _quaternions_to_angles(document, path)
@@ -128,6 +131,22 @@ def _strip(document: Any, path: Path) -> list[Finding]:
             findings.append(Finding(code="W_IMPORT_DROPPED", where=where, message=message, hint="Use a box, cylinder, sphere or mesh."))
             shape.getparent().remove(shape)
     return findings
+
+
+def _require_expanded(document: Any, path: Path) -> None:
+    """Refuse instructions of xacro, which say what the file would hold if they were carried out.
+
+    Properties and arguments alone change nothing, and are kept like any foreign element.
+    """
+    for element in document.iter():
+        namespace, _, name = str(element.tag).removeprefix("{").rpartition("}")
+        if (namespace in _XACRO or name.startswith("xacro:")) and (name := name.rpartition(":")[2]) not in {"property", "arg"}:
+            said = " ".join(f'{key}="{value}"' for key, value in element.attrib.items())
+            raise unreadable(
+                path,
+                f"line {element.sourceline}",
+                f"<xacro:{name}{f' {said}' if said else ''}> is not expanded. {EXPAND}",
+            )
 
 
 def _quaternions_to_angles(document: Any, path: Path) -> None:

@@ -148,7 +148,7 @@ def _kept(element: Any, where: str) -> Kept:
     """Return an element as it stands, without the white space after it."""
     name = element.get("name") or element.get("reference")
     text = etree.tostring(element, encoding="unicode", with_tail=False)
-    return Kept("urdf", where, f"<{etree.QName(element).localname}{f' {name}' if name else ''}>", text)
+    return Kept("urdf", where, f"<{str(element.tag).rpartition('}')[2]}{f' {name}' if name else ''}>", text)
 
 
 def _number(text: str) -> float:
