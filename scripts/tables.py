@@ -13,6 +13,8 @@ import articad.commands
 from articad.codes import CODES
 from articad.commands.command import COMMANDS
 from articad.export.losses import TABLE, Format
+from articad.importers.mjcf_kept import READ as READ_MJCF
+from articad.importers.urdf_kept import READ as READ_URDF
 
 REFERENCE = Path(__file__).resolve().parent.parent / "docs" / "reference"
 NOTE = "<!-- Written by scripts/tables.py from the code; edit that. -->\n"
@@ -47,6 +49,16 @@ def findings() -> str:
     return "\n".join(lines) + "\n"
 
 
+KEPT_URDF = (
+    "Everything else is kept word for word. `convert` writes it back into a URDF, where it was; in any other format it is a row of the losses, "
+    "and so is what a URDF cannot take back: textures, transparency, and attributes of shapes."
+)
+KEPT_MJCF = (
+    "MuJoCo's compiler resolves defaults, classes, frames, includes and copies first. Everything else is a row of the losses of every format, "
+    "MJCF too: its names refer to geoms, sites and tendons that an assembly does not have."
+)
+
+
 def losses() -> str:
     """Return the page of what each format holds and loses."""
     lines = [
@@ -64,6 +76,9 @@ def losses() -> str:
             if format_name in rows:
                 row = rows[format_name]
                 lines.append(f"| `{key}` | {row.becomes} | {row.lost} | {'refused' if row.refused else ''} |")
+    for name, kept, read in (("URDF", KEPT_URDF, READ_URDF), ("MJCF", KEPT_MJCF, READ_MJCF)):
+        lines += ["", f"## What is read of {name}", "", kept, "", "| element | attributes |", "|---|---|"]
+        lines += [f"| `{key}` | {'all' if '*' in names else ', '.join(sorted(names)) or 'none'} |" for key, names in read.items()]
     lines[5:] = [re.sub(r"<\w+>", r"`\g<0>`", line) for line in lines[5:]]  # a tag in a cell is text, not HTML
     return "\n".join(lines) + "\n"
 

@@ -81,7 +81,9 @@ def mend(path: str | Path, out: str | Path, *, density: float | None = None, cho
         raise ReadError(f"{path}: --fix mends URDF, and this is <{root.tag}>; convert it first.", path=str(path))
     references = MeshReferences(Folder.of(path, choices.root or package_of(path)))
     declared = UrdfText(references).declared(root, path)
-    mended = Mended(out / f"{Names().claim(declared.name)[:MOST_CHARACTERS]}.urdf")
+    declared = replace(declared, states_frames=any(True for _ in root.iterfind("articad")))  # as for the audit of our own files
+    beside = (out / path.name).resolve() == path.resolve()  # the original is left as it is
+    mended = Mended(out / (f"{path.stem}_mended{path.suffix}" if beside else path.name))
     _Mender(root, declared, references, density, mended).run()
     files = _meshes(root, references, mended)
     out.mkdir(parents=True, exist_ok=True)
@@ -254,8 +256,14 @@ def _body(link: DeclaredLink) -> TriMesh | None:
     closed = [mesh for mesh in meshes if mesh is not None and mesh.is_closed and mesh.volume > 0]
     if not closed or len(closed) != len(meshes):
         return None
-    whole = united(closed)
+    whole = united([body for mesh in closed for body in _bodies(mesh)])
     return whole if whole.is_closed and whole.volume > 0 else None
+
+
+def _bodies(mesh: TriMesh) -> tuple[TriMesh, ...]:
+    """Return the bodies of a mesh, so that overlaps of them count once; the mesh itself where one of its pieces is a void."""
+    pieces = mesh.components()
+    return pieces if all(piece.is_closed and piece.volume > 0 for piece in pieces) else (mesh,)
 
 
 def _meshes(root: Any, references: MeshReferences, mended: Mended) -> dict[str, bytes]:

@@ -338,6 +338,13 @@ def _add_joint(model: RawModel, joint: Any, types: dict[str, str], path: Path) -
     slides = joint.type == "prismatic"
     unit = MM_PER_M if slides else 1.0
     limit = joint.limit
+    for name in ("effort", "velocity"):
+        value = None if limit is None else getattr(limit, name)
+        if value is not None and value < 0:
+            message = f"Joint {joint.name!r} has the {name} {value:g}; {-value:g} is taken."
+            model.findings.append(
+                Finding(code="W_IMPORT_LIMITS", where=f"joints.{joint.name}", message=message, hint="Give a positive one.")
+            )
     force = 1.0 if slides else MM_PER_M  # our N·mm or N of one N·m or N
     dynamics = joint.dynamics
     bounds = _range(model, joint, unit)

@@ -6,15 +6,20 @@ import math
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from lxml import etree
 
 from articad.audit.examine import Choices, audit
 from articad.audit.mend import Mended, mend
-from articad.geometry.mesh_files import read_mesh, write_glb
+from articad.export.urdf import write_urdf
+from articad.geometry.mesh import TriMesh, merged
+from articad.geometry.mesh_files import read_mesh, write_glb, write_stl
+from articad.geometry.shapes import box
 from articad.simulate.loading import load
 from articad.simulate.trial import try_out
 from articad.simulate.verdict import Verdict
+from tests.assemblies import all_joint_kinds
 from tests.audit import defects
 
 QUICK = Choices(engines=False)
@@ -152,3 +157,38 @@ def test_an_impossible_inertia_keeps_its_stated_mass(tmp_path: Path) -> None:
     again = etree.parse(str(result.file)).getroot()
     assert float(again.find("link[@name='arm']/inertial/mass").get("value")) == pytest.approx(0.25, rel=1e-12)
     assert float(again.find("link[@name='arm']/inertial/inertia").get("izz")) == pytest.approx(0.25 * (0.08**2 + 0.02**2) / 12, rel=1e-5)
+
+
+def test_a_mended_file_keeps_its_name_and_never_replaces_the_original(tmp_path: Path) -> None:
+    path = defects.write(defects.stand(tmp_path), tmp_path)
+    before = path.read_bytes()
+
+    assert mend(path, tmp_path / "out", choices=QUICK).file.name == path.name
+    assert mend(path, path.parent, choices=QUICK).file != path
+    assert path.read_bytes() == before
+
+
+def test_an_export_of_our_own_stays_where_it_stands(tmp_path: Path) -> None:
+    """Its parts reach below its base's origin, where the design puts them."""
+    bundle = write_urdf(all_joint_kinds())
+    bundle.write(tmp_path)
+
+    result = mend(tmp_path / bundle.main, tmp_path / "out", choices=QUICK)
+
+    assert not [line for line in result.done if "base link" in line]
+
+
+def test_bodies_of_one_mesh_that_overlap_are_weighed_once(tmp_path: Path) -> None:
+    """Two blocks of 40 x 20 x 20 mm share 10 x 20 x 20 mm: together 28,000 mm³."""
+    block = box(40, 20, 20)
+    twice = merged([block, TriMesh(block.vertices + np.array([30.0, 0, 0]), block.triangles)])
+    (tmp_path / "m.stl").write_bytes(write_stl(twice))
+    path = tmp_path / "a.urdf"
+    path.write_text(
+        '<robot name="r"><link name="base"/><link name="a"><visual><geometry><mesh filename="m.stl" scale="0.001 0.001 0.001"/></geometry></visual>'
+        '</link><joint name="j" type="continuous"><parent link="base"/><child link="a"/><axis xyz="0 0 1"/></joint></robot>'
+    )
+
+    result = mend(path, tmp_path / "out", density=1000.0, choices=QUICK)
+
+    assert result.masses["a"] == pytest.approx(0.028, rel=1e-6)
