@@ -28,8 +28,8 @@ from articad.export.plan import plan_of
 from articad.findings import Finding, Findings
 from articad.geometry.mesh import TriMesh, merged
 from articad.geometry.mesh_files import write_stl
-from articad.geometry.part import Part, Shape
-from articad.geometry.shapes import box, cylinder, sphere
+from articad.geometry.part import Part, Primitive, Shape
+from articad.geometry.shapes import box, capsule, cylinder, sphere
 from articad.kinematics.joints import Joint, JointType
 from articad.kinematics.mechanism import Mechanism
 from articad.plan.schema import PLAN_FILE, AssemblyPlan
@@ -239,7 +239,7 @@ class _Writer:
 
     def _primitive(self, shape: Shape) -> bool:
         """Add a box, cylinder, sphere or capsule, if the mesh is exactly that of one."""
-        kind, sizes = recognised(shape.mesh)
+        kind, sizes = recognised(shape.mesh) if shape.primitive is None else _stated(shape.primitive)
         if not kind:
             return False
         self.counts[kind] = self.counts.get(kind, 0) + 1
@@ -294,6 +294,12 @@ class _Writer:
         self.findings.append(Finding(code=code, where=f"parts.{self.name}", parts=(self.name,), message=message, hint=hint))
 
 
+def _stated(form: Primitive) -> tuple[str, dict[str, float]]:
+    """Return what `recognised` would of the primitive's mesh; an ellipsoid has no word in a script."""
+    names = {"box": "xyz", "cylinder": ("radius", "height"), "sphere": ("radius",), "capsule": ("radius", "length")}.get(form.kind)
+    return ("", {}) if names is None else (form.kind, dict(zip(names, form.size, strict=True)))
+
+
 def recognised(mesh: TriMesh) -> tuple[str, dict[str, float]]:
     """Return what primitive a mesh is, as importers make it, and its sizes [mm]; "" for none."""
     x, y, z = (float(side) for side in mesh.bounds[1] - mesh.bounds[0])
@@ -305,12 +311,10 @@ def recognised(mesh: TriMesh) -> tuple[str, dict[str, float]]:
         return "cylinder", {"radius": x / 2, "height": z}
     if mesh.digest == sphere(z / 2).digest:
         return "sphere", {"radius": z / 2}
-    ball = sphere(x / 2)
     length = z - x
-    if length > 0 and mesh.vertices.shape == ball.vertices.shape and (mesh.triangles == ball.triangles).all():
-        stretched = ball.vertices + np.sign(ball.vertices[:, 2:]) * [0, 0, length / 2]
-        if np.allclose(mesh.vertices, stretched, rtol=0, atol=1e-9 * z):
-            return "capsule", {"radius": x / 2, "length": length}
+    if length > 0 and mesh.vertices.shape == (whole := capsule(x / 2, length)).vertices.shape:
+        same = np.array_equal(mesh.triangles, whole.triangles) and np.allclose(mesh.vertices, whole.vertices, rtol=0, atol=1e-9 * z)
+        return ("capsule", {"radius": x / 2, "length": length}) if same else ("", {})
     return "", {}
 
 

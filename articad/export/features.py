@@ -96,6 +96,8 @@ def _part_features(assembly: Assembly) -> list[Feature]:
             features.append(Feature("mass.missing", where))
         elif part.mass is not None and part.mass.mass > 0 and not is_possible(part.mass.mass, part.mass.inertia / MM_PER_M**2):
             features.append(Feature("mass.impossible", where))
+        elif name in still and part.mass is not None and part.mass.mass <= 0 and part.mass.inertia.any():
+            features.append(Feature("mass.impossible", where, "none: without mass"))
         if any(is_flat(shape.mesh) for shape in part.collisions or part.visuals):
             features.append(Feature("shape.flat", where))
         if not part.visuals and not part.collisions:

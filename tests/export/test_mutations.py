@@ -98,8 +98,8 @@ def _forgetful_metres(metres: Callable[[SE3], SE3]) -> Callable[[SE3], SE3]:
     return lambda T: metres(SE3.from_quaternion(T.quaternion))
 
 
-def _joint_with_axis_against(freedom: lowering.Freedom) -> dict[str, str]:
-    return JOINT(replace(freedom, axis=-freedom.axis))
+def _joint_with_axis_against(freedom: lowering.Freedom, **options: bool) -> dict[str, str]:
+    return JOINT(replace(freedom, axis=-freedom.axis), **options)
 
 
 def test_the_unchanged_lowering_agrees(tmp_path: Path) -> None:

@@ -19,6 +19,7 @@ from articad.geometry.mesh import TriMesh, merged
 from articad.geometry.part import Part, Solid
 from articad.geometry.shapes import box, sphere
 from articad.kinematics import declare
+from articad.plan.resolve import resolve
 from articad.plan.schema import AssemblyPlan
 
 pytestmark = pytest.mark.engines
@@ -247,8 +248,9 @@ from build123d import *
 
 def build(part):
     shape = Box(30, 20, 4) + Pos(10, 5, 6) * Cylinder(3, 10) + Pos(-9, -7, 4) * Box(5, 3, 9)
-    return shape, {"o": {"o": (0, 0, 0), "z": (0, 0, 1), "x": (1, 0, 0)}}
+    return shape, CONNECTORS
 """
+IMAGES = ["b", "c", "d", "e_1", "e_2", "f"]
 
 
 def mirrored_plan(seed: int) -> dict[str, Any]:
@@ -266,21 +268,19 @@ def mirrored_plan(seed: int) -> dict[str, Any]:
 
     step = {"at": [40, 7, 3], "axis": [0.2, 0.3, 1], "angle_deg": 25}
     parts = [
-        {
-            "name": "a",
-            "material": "steel",
-            "description": "Plate.",
-            "connectors": [{"name": "o", "o": [0, 0, 0], "z": [0, 0, 1], "label": "o"}],
-        },
+        {"name": "a", "material": "steel", "description": "Plate.", "connectors": []},
         derived("b", "a", "mirror", plane=plane()),
         derived("c", "b", "mirror", plane=plane()),
         derived("d", "b", "rigid", move={"at": vector(90)}),
         derived("e", "d", "pattern", count=2, step=step),
         derived("f", "d", "mirror", plane=plane()),
     ]
-    names = ["b", "c", "d", "e_1", "e_2", "f"]
-    joints = [{"name": f"to_{name}", "type": "fixed", "parent": "a.o", "child": f"{name}.o"} for name in names]
-    return {
+    joints = [{"name": f"to_{name}", "type": "fixed", "parent": f"a.to_{name}", "child": f"{name}.o"} for name in IMAGES]
+    connectors: list[dict[str, Any]] = [
+        {"name": name, "o": [0, 0, 0], "z": [0, 0, 1], "x": [1, 0, 0], "label": name} for name in ("o", *(f"to_{n}" for n in IMAGES))
+    ]
+    parts[0]["connectors"] = connectors
+    plan: dict[str, Any] = {
         "schema": "articad.plan/1",
         "name": "images",
         "description": "Images of one part.",
@@ -290,12 +290,21 @@ def mirrored_plan(seed: int) -> dict[str, Any]:
         "parts": parts,
         "joints": joints,
     }
+    # the plate has a connector for each image, where the image's own connector is at rest
+    images = resolve(AssemblyPlan.loads(json.dumps(plan))).parts
+    for connector in connectors[1:]:
+        image = images[connector["name"].removeprefix("to_")]
+        T = image.T_rest @ image.connectors["o"].frame
+        connector |= {"o": T.translation.tolist(), "z": T.z_axis.tolist(), "x": T.x_axis.tolist()}
+    return plan
 
 
 @pytest.mark.parametrize("seed", range(3))
 def test_mirror_images_are_written_as_mirrored_brep(seed: int, tmp_path: Path) -> None:
-    (tmp_path / "a.py").write_text(PLATE)
-    assembly = Assembly.from_plan(AssemblyPlan.loads(json.dumps(mirrored_plan(seed))), tmp_path)
+    plan = mirrored_plan(seed)
+    held = {item["name"]: {axis: item[axis] for axis in "ozx"} for item in plan["parts"][0]["connectors"]}
+    (tmp_path / "a.py").write_text(PLATE.replace("CONNECTORS", repr(held)))
+    assembly = Assembly.from_plan(AssemblyPlan.loads(json.dumps(plan)), tmp_path)
     rest = assembly.mechanism.rest_poses()
 
     read = read_by_occt(assembly, tmp_path)

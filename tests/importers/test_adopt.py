@@ -19,7 +19,7 @@ from articad.errors import ReadError
 from articad.export.mjcf import write_mjcf
 from articad.export.urdf import write_urdf
 from articad.geometry.mesh import TriMesh
-from articad.geometry.shapes import box, cylinder, sphere, tube
+from articad.geometry.shapes import box, capsule, cylinder, sphere, tube
 from articad.plan.check import check_plan
 from articad.plan.resolve import resolve
 from articad.plan.schema import AssemblyPlan
@@ -164,12 +164,11 @@ def test_a_folder_with_something_in_it_and_a_plan_are_refused(tmp_path: Path, ca
 
 def test_primitives_are_recognised_and_nothing_else_is() -> None:
     ball = sphere(3.0)
-    capsule = TriMesh(ball.vertices + np.sign(ball.vertices[:, 2:]) * [0, 0, 5.0], ball.triangles)
 
     assert recognised(box(1, 2, 3)) == ("box", {"x": 1, "y": 2, "z": 3})
     assert recognised(cylinder(3.3, 7)) == ("cylinder", {"radius": 3.3, "height": 7})
     assert recognised(ball) == ("sphere", {"radius": 3.0})
-    assert recognised(capsule) == ("capsule", {"radius": 3.0, "length": 10.0})
+    assert recognised(capsule(3.0, 10.0)) == ("capsule", {"radius": 3.0, "length": 10.0})
     assert recognised(tube(1, 2, 3)) == ("", {})
     assert recognised(read(FILES / "tree.xml").parts["b9"].collisions[0].mesh) == ("", {})
 

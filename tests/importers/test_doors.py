@@ -13,6 +13,7 @@ from lxml import etree
 
 from articad.convert import WRITERS
 from articad.export.bundle import Bundle
+from articad.geometry.shapes import capsule
 from articad.importers.mjcf import read_mjcf
 from articad.importers.mjcf_kept import READ as READ_MJCF
 from articad.importers.urdf import read_urdf
@@ -172,6 +173,14 @@ SAME = 'effort="5" velocity="1"'
 def three(*ranges: tuple[float, float], efforts: tuple[float, ...] = (5, 5, 5)) -> str:
     rows = zip(ranges, efforts, strict=True)
     return THREE.format(*(f'lower="{low}" upper="{high}" effort="{effort}" velocity="1"' for (low, high), effort in rows))
+
+
+def test_a_capsule_is_a_cylinder_with_two_half_balls() -> None:
+    body = capsule(3.0, 10.0, 256)
+
+    assert body.is_closed
+    assert body.volume == pytest.approx(np.pi * 9 * 10 + 4 / 3 * np.pi * 27, rel=1e-3)
+    assert np.allclose(body.bounds, [[-3, -3, -8], [3, 3, 8]])
 
 
 def test_three_joints_stay_three_unless_fusing_is_asked_for(tmp_path: Path) -> None:
