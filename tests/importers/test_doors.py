@@ -414,3 +414,30 @@ def test_mujoco_moves_the_copy_as_the_original(tmp_path: Path) -> None:
         ends.append(np.array(data.qpos))
 
     assert ends[0] == pytest.approx(ends[1], rel=1e-6)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_mujoco_reads_from_the_mjcf_what_pinocchio_reads_from_the_urdf(seed: int, tmp_path: Path) -> None:
+    import mujoco
+    import pinocchio as pin
+
+    source, copy, _ = converted(random_urdf(np.random.default_rng(100 + seed)), "mjcf", tmp_path)
+    model = mujoco.MjModel.from_xml_path(str(copy))
+    data = mujoco.MjData(model)
+    mujoco.mj_kinematics(model, data)  # all values zero
+    read, there = in_pinocchio(source), pin.buildModelFromUrdf(str(source))
+
+    for name in (name for name in read["frames"] if name.startswith("l")):
+        pose = np.eye(4)
+        pose[:3, :3], pose[:3, 3] = data.body(name).xmat.reshape(3, 3), data.body(name).xpos
+        assert np.allclose(pose, read["frames"][name], atol=1e-9), name
+    for joint in range(model.njnt):
+        name = mujoco.mj_id2name(model, mujoco.mjtObj.mjOBJ_JOINT, joint)
+        index = there.getJointId(name)
+        at, q = there.joints[index].idx_v, there.joints[index].idx_q
+        assert model.dof_damping[joint] == pytest.approx(there.damping[at])
+        assert model.dof_frictionloss[joint] == pytest.approx(there.friction[at])
+        if model.jnt_limited[joint]:
+            assert model.jnt_range[joint] == pytest.approx([there.lowerPositionLimit[q], there.upperPositionLimit[q]])
+        if model.jnt_actfrclimited[joint]:
+            assert model.jnt_actfrcrange[joint][1] == pytest.approx(there.effortLimit[at])
