@@ -25,6 +25,7 @@ SLOTS = {"revolute": (5,), "slider": (2,), "cylindrical": (2, 5), "planar": (0, 
 STEP = 0.06  # rad, or sizes: of the driver that moves most, from one solution to the next
 CONVERGED = 3e-14
 WELL_POSED = 0.15  # of the smallest singular value at rest: below it a way is not followed
+FALLS = 1.5  # times its fall in one step, below which a singular pose may be stepped over
 LONGEST = 0.5  # rad, or sizes: by which anything may follow in one step
 _IDLE = 1e-7  # singular values below it belong to freedoms that no driver holds
 
@@ -158,12 +159,14 @@ class PoseEquations:
         turns = {self._joint(name): Rotation.from_matrix(R) for name, R in (balls or {}).items()}
         far = float(np.abs((goal - self.rest.s) / self.L).max(initial=0.0))
         steps = max(4, math.ceil(far / STEP))
-        found = [self.rest]
+        found, at_rest = [self.rest], self._sigma(self.rest, free)
+        last = at_rest
         for share in np.linspace(0, 1, steps + 1)[1:]:
             at = self._at_drivers(found[-1], self._places(targets), self.rest.s + share * (goal - self.rest.s), turns, share)
             solved = self._solved(at, free)
-            if solved is None or solved.sigma < WELL_POSED * self._sigma(self.rest, free):
+            if solved is None or solved.sigma < max(WELL_POSED * at_rest, FALLS * (last - solved.sigma)):
                 break
+            last = solved.sigma
             if np.abs((solved.s - found[-1].s) / self.L).max(initial=0.0) > LONGEST:
                 break
             found.append(solved)
