@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Literal, Self
@@ -29,6 +29,7 @@ from articad.kinematics.joints import Coordinate, Coupling, Joint, JointType
 from articad.kinematics.mechanism import Mechanism
 from articad.kinematics.motion import FeasibleRange, Sweep
 from articad.kinematics.reach import Reach
+from articad.kinematics.solution import Solution
 from articad.plan.check import admitted
 from articad.plan.resolve import Fit, Material, ResolvedPlan, Waiver
 from articad.plan.schema import AssemblyPlan
@@ -121,6 +122,14 @@ class Assembly:
     def __post_init__(self) -> None:
         for attribute in ("parts", "materials", "fits", "realised"):
             object.__setattr__(self, attribute, MappingProxyType(dict(getattr(self, attribute))))
+
+    def __reduce__(self) -> tuple[object, ...]:
+        """Let an assembly cross to another process; its kernel and its cache stay: the copy builds parts with those by default."""
+        given = {entry.name: getattr(self, entry.name) for entry in fields(self) if entry.name not in {"_kernel", "_cache"}}
+        return _restored, (
+            type(self),
+            {name: dict(value) if isinstance(value, MappingProxyType) else value for name, value in given.items()},
+        )
 
     # ------------------------------------------------------------------ making one
 
@@ -279,7 +288,7 @@ class Assembly:
     # ------------------------------------------------------------------ where things are
 
     def q(self, **by_joint: JointValue) -> FloatArray:
-        """Return the configuration with these joints set and all other drivers at rest.
+        """Return the configuration with these joints set and all other drivers at rest; what follows them is within its limits.
 
         Args:
             by_joint: A number for a joint of one coordinate, else a sequence in the order of its coordinates [rad, mm];
@@ -290,7 +299,8 @@ class Assembly:
 
         Raises:
             UnknownJointError: If a name is not that of a joint that drives.
-            LimitError: If a value is outside its limits.
+            LimitError: If a value is outside its limits, or a joint that follows would be; it says how far the driver may go.
+            DeadPointError: If a loop does not reach it.
             PlanError: If a joint gets more or fewer values than it has coordinates.
         """
         q = np.array(self.mechanism.rest, dtype=np.float64)
@@ -306,6 +316,7 @@ class Assembly:
                 raise PlanError(f"Joint {name!r} takes {len(columns[name])} number(s) ({wanted}), not {values.size}.")
             q[columns[name]] = values
         self._refuse_outside_limits(q, by_joint)
+        self._refuse_followers_outside_limits(q, by_joint)
         return q
 
     def at(self, **by_joint: JointValue) -> Poses:
@@ -316,15 +327,44 @@ class Assembly:
         return Poses(self.mechanism.parts, self.poses(self.q(**by_joint)))
 
     def poses(self, q: ArrayLike) -> SE3:
-        """Place every part in the ground frame.
+        """Place every part in the ground frame, whatever the limits of joints; `q` and `at` hold to them.
 
         Args:
             q: Coordinates of the drivers [rad, mm], `(*batch, nq)`.
 
         Returns:
             `T_ground_part` of all parts in the order of `parts`, `(*batch, N, 7)` [mm, quaternion xyzw].
+
+        Raises:
+            KinematicsError: If loops do not reach a row; of a batch it names which. `solve` returns those that are reached.
         """
         return self.mechanism.poses(np.asarray(q, dtype=np.float64))
+
+    def solve(self, q: ArrayLike) -> Solution:
+        """Place every part where the mechanism reaches the drivers' values, and say where it does not; see `Mechanism.solve`.
+
+        Args:
+            q: Coordinates of the drivers [rad, mm], `(*batch, nq)`.
+        """
+        return self.mechanism.solve(q)
+
+    def path(self, start: ArrayLike, goal: ArrayLike, *, clear: bool = False) -> FloatArray:
+        """Return waypoints of the drivers from one configuration to another; straight lines between them keep to branch and limits.
+
+        Args:
+            start: Values of the drivers `(nq,)` [rad, mm].
+            goal: Likewise.
+            clear: Whether parts must not meet on the way either: poses every 0.1 rad or lengths of a link are looked at, which
+                is sampled; `certify` proves.
+
+        Returns:
+            `(n, nq)`, start and goal included.
+
+        Raises:
+            LimitError: If start or goal is outside limits, followers included.
+            KinematicsError: E_NO_PATH if no way was found.
+        """
+        return self.mechanism.path(start, goal, accept=self._is_clear if clear else None)
 
     def jacobian(self, q: ArrayLike, part: str, frame: SE3 | str | None = None) -> FloatArray:
         """Return how fast a frame of a part moves with each driver.
@@ -364,15 +404,21 @@ class Assembly:
         """
         return self.mechanism.feasible_range(driver, at=at)
 
-    def reach(self, part: str, target: SE3 | ArrayLike, frame: SE3 | str | None = None) -> Reach:
+    def reach(self, part: str, target: SE3 | ArrayLike, frame: SE3 | str | None = None, *, clear: bool = False) -> Reach:
         """Return a configuration within limits that brings a frame to a target, or how near it comes and what stops it.
+
+        Starts from rest, then from random configurations, always the same ones.
 
         Args:
             part: Name of the part that carries the frame.
             target: A pose in the ground frame, or a point `(3,)` [mm], which leaves the orientation free.
             frame: Frame in the part, or the name of one of its connectors; the part's own frame by default.
+            clear: Whether parts must not meet in the configuration either.
+
+        Raises:
+            KinematicsError: E_REACH_BARRED if the target is reached only where parts meet.
         """
-        return self.mechanism.reach(part, target, self._frame(part, frame))
+        return self.mechanism.reach(part, target, self._frame(part, frame), accept=self._is_clear if clear else None)
 
     # ------------------------------------------------------------------ what is true of it
 
@@ -526,6 +572,32 @@ class Assembly:
             return self.parts[part][frame].connector.frame
         return SE3.identity() if frame is None else frame
 
+    def _is_clear(self, q: FloatArray) -> bool:
+        """Tell whether no two parts overlap in a configuration beyond what joints, fits and waivers allow."""
+        return all(pair.verdict in {"clear", "contact"} for pair in self.check(q).pairs)
+
+    def _refuse_followers_outside_limits(self, q: FloatArray, names: Iterable[str]) -> None:
+        if self.mechanism.is_tree:
+            return
+        mine = [group for group in self.mechanism.branch.groups if {c.joint for c in group.drivers} & set(names)]
+        followers = {joint.name: group for group in mine for joint in group.joints}
+        for error in self.mechanism.configuration(q).violations() if mine else ():
+            group = followers.get(error.joint.split(".")[0])
+            if group is None or error.joint in {c.name for c in group.drivers}:
+                continue
+            driver = next(c for c in group.drivers if c.joint in set(names))
+            raise LimitError(error.joint, error.value, error.lower, error.upper, error.unit, self._advice(driver, q, names))
+
+    def _advice(self, driver: Coordinate, q: FloatArray, names: Iterable[str]) -> str:
+        """Say how far a driver may go, the other drivers that were set standing where they are asked for."""
+        if driver.unit == "1":
+            return f"It follows {driver.joint!r}."
+        others = {
+            c.name: float(v) for c, v in zip(self.drivers, q, strict=True) if c.joint in set(names) - {driver.joint} and c.unit != "1"
+        }
+        feasible = self.mechanism.feasible_range(driver.name, at=others)
+        return f"It follows {driver.name!r}, which may go from {feasible.lower:.6g} to {feasible.upper:.6g} {driver.unit} there."
+
     def _refuse_outside_limits(self, q: FloatArray, names: Iterable[str]) -> None:
         asked = set(names)
         for value, driver in zip(q, self.drivers, strict=True):
@@ -533,6 +605,10 @@ class Assembly:
                 continue
             if not driver.lower - _LIMIT_SLACK <= value <= driver.upper + _LIMIT_SLACK:
                 raise LimitError(driver.name, float(value), driver.lower, driver.upper, driver.unit)
+
+
+def _restored(kind: type[Assembly], given: dict[str, Any]) -> Assembly:
+    return kind(**given)
 
 
 def build(

@@ -252,6 +252,24 @@ CODES: dict[str, Code] = {
         "The mechanism passes a singular configuration where its branch is not determined.",
         "Keep the driver away from the named value.",
     ),
+    "E_NO_PATH": Code(
+        "motion",
+        "design",
+        "No way of the drivers between two configurations was found on the branch and within limits.",
+        "Give waypoints, or widen limits.",
+    ),
+    "E_REACH_BARRED": Code(
+        "motion",
+        "design",
+        "A target is reached, but only in configurations in which parts overlap.",
+        "Move the target, or what is in the way.",
+    ),
+    "E_NOT_FOLLOWED": Code(
+        "motion",
+        "design",
+        "A linkage was followed over as many steps as there may be; nothing is known to bar the way beyond.",
+        "Ask for a value nearer to rest, or give the driver limits.",
+    ),
     "W_NEAR_SINGULAR": Code(
         "motion", "design", "A loop is close to a singular configuration.", "Check for a misaligned axis or a dead point."
     ),

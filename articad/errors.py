@@ -57,6 +57,16 @@ class ArticadError(Exception):
     def __str__(self) -> str:
         return self.message
 
+    def __reduce__(self) -> tuple[object, ...]:
+        """Let errors cross from one process to another, whatever their own arguments are."""
+        return _restored, (type(self), self.args, self.__dict__)
+
+
+def _restored(kind: type[ArticadError], arguments: tuple[object, ...], attributes: dict[str, object]) -> ArticadError:
+    error = kind.__new__(kind, *arguments)
+    error.__dict__.update(attributes)
+    return error
+
 
 class PlanError(ArticadError):
     """A plan that cannot be solved; `findings` holds every reason."""
@@ -80,11 +90,12 @@ class UnknownJointError(KinematicsError):
 
 
 class LimitError(KinematicsError):
-    """A coordinate outside its joint's limits."""
+    """A coordinate outside its joint's limits; `advice` says what would bring it back, where that is known."""
 
-    def __init__(self, joint: str, value: float, lower: float, upper: float, unit: str = "rad") -> None:
-        self.joint, self.value, self.lower, self.upper, self.unit = joint, value, lower, upper, unit
-        super().__init__(f"Joint {joint!r} is at {value:.6g} {unit}, outside its limits [{lower:.6g}, {upper:.6g}] {unit}.")
+    def __init__(self, joint: str, value: float, lower: float, upper: float, unit: str = "rad", advice: str = "") -> None:
+        self.joint, self.value, self.lower, self.upper, self.unit, self.advice = joint, value, lower, upper, unit, advice
+        message = f"Joint {joint!r} is at {value:.6g} {unit}, outside its limits [{lower:.6g}, {upper:.6g}] {unit}."
+        super().__init__(f"{message} {advice}" if advice else message)
 
 
 class LoopError(KinematicsError):

@@ -77,6 +77,8 @@ class PinocchioUrdf:
     def poses(self, values: Mapping[str, float]) -> dict[str, FloatArray]:
         q = self.pin.neutral(self.model)
         for name, value in values.items():
+            if not self.model.existJointName(name):  # it closes a loop, which a URDF cannot hold
+                continue
             joint = self.model.joints[self.model.getJointId(name)]
             q[joint.idx_q : joint.idx_q + joint.nq] = [math.cos(value), math.sin(value)] if joint.nq == 2 else [value]
         self.pin.framesForwardKinematics(self.model, self.data, q)

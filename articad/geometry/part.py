@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
 from pathlib import Path
 from types import MappingProxyType
@@ -173,6 +173,11 @@ class Part:
         object.__setattr__(self, "connectors", MappingProxyType(dict(self.connectors)))
         object.__setattr__(self, "visuals", tuple(self.visuals))
         object.__setattr__(self, "collisions", tuple(self.collisions))
+
+    def __reduce__(self) -> tuple[object, ...]:
+        """Let a part cross to another process: a read-only mapping does not go as it is."""
+        values = [dict(self.connectors) if entry.name == "connectors" else getattr(self, entry.name) for entry in fields(self)]
+        return type(self), tuple(values)
 
     @classmethod
     def from_mesh(

@@ -8,6 +8,7 @@ from articad.kinematics.graph import JointGraph
 from articad.kinematics.joints import Coordinate, Coupling, Joint, JointLimits, JointType
 from articad.kinematics.layout import Layout
 from articad.kinematics.mechanism import Mechanism
+from articad.kinematics.solution import Solution
 from articad.kinematics.tree import Edge, KinematicTree
 
 __all__ = [
@@ -22,4 +23,5 @@ __all__ = [
     "KinematicTree",
     "Layout",
     "Mechanism",
+    "Solution",
 ]

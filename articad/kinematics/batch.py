@@ -83,7 +83,7 @@ class TreeArrays:
         c, carried = self.compiled, np.zeros((self.n_parts, self.layout.n_freedoms))
         for k in range(self._n_edges):
             carried[c.far[k]] = carried[c.near[k]]
-            carried[c.far[k], self.layout.freedoms[c.joints[k].name]] = c.sign[k]
+            carried[c.far[k], self.layout.freedoms.get(c.joints[k].name, slice(0))] = c.sign[k]
         return carried
 
     @cached_property

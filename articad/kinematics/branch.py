@@ -1,11 +1,15 @@
-"""Branch: the one way of being assembled that the rest pose shows, and every configuration that is reached from it."""
+"""Branch: the one way of being assembled that the rest pose shows, and every configuration that is reached from it.
+
+Loops and couplings that share no joint that they move have nothing to do with each other: each such group is closed, driven and
+followed by itself. Two drivers of different groups need no common way, and what one group cannot reach says nothing about another.
+"""
 
 from __future__ import annotations
 
-import contextlib
 import math
 from collections.abc import Sequence
-from typing import NoReturn
+from functools import cached_property
+from typing import NamedTuple, NoReturn
 
 import numpy as np
 
@@ -17,8 +21,10 @@ from articad.kinematics.factors import least_squares
 from articad.kinematics.inexact import shown_gap
 from articad.kinematics.joints import Coordinate, Coupling, Joint, JointType
 from articad.kinematics.layout import IndexArray, Layout
-from articad.kinematics.loops import CLOSED, BoolArray, ClosureSystem
-from articad.kinematics.mobility import choose_drivers, mobility_of
+from articad.kinematics.loops import CLOSED, ClosureSystem
+from articad.kinematics.mobility import Mobility, choose_drivers, mobility_of
+from articad.kinematics.roadmap import Roadmap
+from articad.kinematics.ties import BoolArray
 from articad.kinematics.track import Track
 from articad.kinematics.tree import KinematicTree
 
@@ -27,45 +33,73 @@ _LAST_ITERATIONS = 200  # for the best gap: convergence to a stretched chain is 
 _ALMOST = 1e-3  # |r| at which a loop is open by inexact data, not by its rest values
 _SAME_MODE = 1e-6  # rad, or lengths L: two solutions this close are one
 _MOVED = 1e-15  # rad, or lengths L: a driver that moved less did not move
+_ROWS_NAMED = 5  # of a batch that cannot be reached
 
 
-class Branch:
-    """A mechanism with loops or couplings, closed at rest, its drivers chosen.
+class Solved(NamedTuple):
+    """What is reached of a batch of drivers' values.
+
+    Attributes:
+        Q: Coordinates `(batch, columns)`; of rows that are not reached those of the drivers asked for, the others as they rest.
+        reached: `(batch,)`.
+    """
+
+    Q: FloatArray
+    reached: BoolArray
+
+
+class Group:
+    """Loops and couplings that share joints: what moves together, and what drives it.
 
     Args:
         tree: Which carries all parts.
-        layout: Of all joints.
-        loop_joints: Joints that close loops.
+        layout: Of all joints of the mechanism.
+        loop_joints: Joints that close the loops.
         couplings: Relations between coordinates.
+
+    Attributes:
+        system: The equations.
+        analysis: What they leave free.
+        columns: Places of the group's coordinates among those of all joints: drivers and what follows them.
+        joints: Whose coordinates these are.
+        drivers: Coordinates that drive, in order of declaration.
+        driver_columns: Their places among the coordinates of all joints.
+        refused: Joints marked as drivers that cannot drive.
+        dependent: Freedoms of the system that follow.
+        follower: Follows the branch.
+        Q: The system's coordinates at rest.
 
     Raises:
         LoopError: E_LOOP_OPEN if the loops cannot be closed from the rest pose.
     """
 
     def __init__(self, tree: KinematicTree, layout: Layout, loop_joints: Sequence[Joint], couplings: Sequence[Coupling]) -> None:
-        self.layout = layout
         self.system = ClosureSystem(tree, layout, loop_joints, couplings)
+        own = self.system.layout
         Q = self._closed_at_rest()
         self.analysis = mobility_of(self.system, Q)
-        self.columns, self.refused = choose_drivers(layout, self.system, self.analysis.freedoms)
-        self.drivers: tuple[Coordinate, ...] = tuple(layout.coordinates[i] for i in self.columns)
-        self.driver_freedoms: IndexArray = np.array(_freedoms(layout, self.columns), dtype=np.intp)
-        driven = np.isin(self.system.freedoms, self.driver_freedoms)
+        self._places, self.refused = choose_drivers(self.system, self.analysis.freedoms)
+        self.columns: IndexArray = self.system.written
+        self.joints: tuple[Joint, ...] = own.joints
+        self.drivers: tuple[Coordinate, ...] = tuple(own.coordinates[i] for i in self._places)
+        self.driver_columns: IndexArray = self.system.columns[list(self._places)]
+        self._driving: IndexArray = np.array(driver_freedoms(own, self._places), dtype=np.intp)
+        driven = np.zeros(own.n_freedoms, dtype=bool)
+        driven[self._driving] = True
         self.dependent: BoolArray = self.system.active & ~driven
         # the drivers stay where the plan has them, if the rest can be closed there
         exact = self.system.close(self._with_rest_drivers(Q), self.dependent)
-        self.Q_rest = self.system.into_all(layout.rest, exact.Q if exact.ok else Q)
-        self.Q = self.system.to_system(self.Q_rest)
+        self.Q = exact.Q if exact.ok else Q
         self.follower = Follower(self.system, self.dependent)
         self.follower.start(self.analysis.Q)
+        self._follows: BoolArray = (self.follower.basis.matrix != 0).any(axis=1) | ~self.system.active
         self._tracks: dict[tuple[int, bool], Track] = {}
 
     # --- at rest
 
     def _with_rest_drivers(self, Q: FloatArray) -> FloatArray:
         out = Q.copy()
-        mine = np.isin(self.system.columns, np.array(self.columns, dtype=np.intp))
-        out[mine] = self.system.layout.rest[mine]
+        out[list(self._places)] = self.system.layout.rest[list(self._places)]
         return out
 
     def _closed_at_rest(self) -> FloatArray:
@@ -85,7 +119,7 @@ class Branch:
 
     def _raise_open(self, Q: FloatArray, *, from_rest: bool) -> NoReturn:
         gaps = self.system.gaps(Q)
-        if not gaps.size:
+        if not gaps.size or self.system.contradiction(Q) > CLOSED:
             message = "Couplings contradict each other."
             finding = Finding(code="E_COUPLING_REST", where="couplings", message=message, hint="Set their offsets from the rest values.")
             raise LoopError(f"E_COUPLING_REST: {message}", findings=[finding])
@@ -112,32 +146,10 @@ class Branch:
 
     # --- elsewhere
 
-    def configurations(self, q: FloatArray) -> FloatArray:
-        """Return the coordinates of all joints `(batch, n_columns)` at the drivers' values `(batch, nq)`.
-
-        Raises:
-            DeadPointError: If a driver would have to pass a dead point.
-            KinematicsError: E_SINGULAR if the branch is not determined on the way.
-        """
-        Q_all = np.tile(self.Q_rest, (len(q), 1))
-        Q_all[:, self.columns] = q
-        Q_all = self.layout.normalized(Q_all)
-        wanted = self.system.to_system(Q_all)
-        step = self.system.step_between(self.Q, wanted)
-        step[:, self.dependent | ~self.system.active] = 0.0
-        moving = np.flatnonzero((np.abs(step) > _MOVED).any(axis=0))
-        if not moving.size:
-            return self.system.into_all(Q_all, np.tile(self.Q, (len(q), 1)))
-        column = self._column_of(moving)
-        if column is not None:
-            track = self.track(column)
-            Q, reached, _ = track.evaluate(wanted[:, column])
-            if not reached.all():
-                value = float(wanted[np.argmin(reached), column])
-                self.refuse(track.side(value), column, track.value(1 if value >= track.start else -1, track.side(value).end), value)
-        else:
-            Q = self._along_lines(step, wanted)
-        return self.system.into_all(Q_all, Q)
+    def place_of(self, column: int) -> int | None:
+        """Return the place in the system of a driver's column among all joints; None if it does not drive this group."""
+        at = np.flatnonzero(self.driver_columns == column)
+        return self._places[int(at[0])] if at.size else None
 
     def track(self, column: int, *, certify: bool = False, Q: FloatArray | None = None) -> Track:
         """Return the way of one driver (a column of the system) from rest, kept for later questions, or from Q, which is not kept."""
@@ -145,64 +157,286 @@ class Branch:
             return Track(self.follower, Q, column, certify)
         return self._tracks.setdefault((column, certify), Track(self.follower, self.Q, column, certify))
 
-    def _column_of(self, moving: IndexArray) -> int | None:
-        """Return the one column that moves, or None: several do, or a ball."""
+    def solve(self, Q_all: FloatArray) -> Solved:
+        """Follow the branch from rest to the drivers' values, each row by itself.
+
+        One driver alone follows its track. Several move along a straight line, or where that is barred along a way round that a
+        roadmap finds; the same values always lead to the same configuration.
+
+        Args:
+            Q_all: Coordinates of all joints `(batch, n_columns)`, of which the drivers' count.
+        """
+        if len(Q_all) > 1 and (Q_all[:, self.driver_columns] == Q_all[:1, self.driver_columns]).all():
+            one = self.solve(Q_all[:1])
+            return Solved(np.tile(one.Q, (len(Q_all), 1)), np.tile(one.reached, len(Q_all)))
+        Q, wanted, step = self._asked(Q_all)
+        reached: BoolArray = np.ones(len(Q), dtype=bool)
+        moves = np.abs(step[:, self._driving]) > _MOVED
+        alone = self._moving_alone(moves)
+        for place in np.unique(alone[alone >= 0]).tolist():
+            rows = np.flatnonzero(alone == place)
+            Q[rows], reached[rows], _ = self.track(place).evaluate(wanted[rows, place])
+        rows = np.flatnonzero((alone < 0) & moves.any(axis=1))
+        if rows.size:
+            Q[rows], reached[rows] = self._together(step[rows], wanted[rows])
+        Q[~reached] = wanted[~reached]
+        return Solved(Q, reached)
+
+    def _asked(self, Q_all: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Return the rest configuration for each row, the same with the drivers where they are asked for, and the step between."""
+        Q = np.tile(self.Q, (len(Q_all), 1))
+        wanted = Q.copy()
+        wanted[:, list(self._places)] = Q_all[:, self.driver_columns]
+        wanted = self.system.ties.fitted(wanted, ~self.dependent)
+        return Q, wanted, self.step(Q, wanted)
+
+    def step(self, start: FloatArray, wanted: FloatArray) -> FloatArray:
+        """Return the scaled displacement `(batch, freedoms)` of the drivers, and of what is tied to them, between configurations."""
+        step = self.system.step_between(start, wanted)
+        step[:, self._follows] = 0.0
+        return step
+
+    def _moving_alone(self, moves: BoolArray) -> IndexArray:
+        """Return for each row the one column that moves, or −1: several do, or a ball, or none."""
         layout = self.system.layout
-        if len(moving) > 1:
-            return None
-        freedom = int(moving[0])
-        return None if freedom in layout.ball_freedoms else layout.column_of_freedom(freedom)
+        columns = [-1 if int(f) in layout.ball_freedoms else layout.column_of_freedom(int(f)) for f in self._driving]
+        if not columns:
+            return np.full(len(moves), -1, dtype=np.intp)
+        return np.where(moves.sum(axis=1) == 1, np.array(columns, dtype=np.intp)[moves.argmax(axis=1)], -1)
 
-    def _along_lines(self, step: FloatArray, wanted: FloatArray) -> FloatArray:
-        """Follow straight lines in the space of several drivers."""
-        Q, arrived = self.follower.trace_many(self.Q, step)
-        for i in np.flatnonzero(~arrived):
-            trace = self.follower.trace(self.Q, step[i], 1.0)
-            if trace.stop is not Stop.ARRIVED:
-                freedom = int(np.argmax(np.abs(step[i])))
-                column = self.system.layout.column_of_freedom(freedom)
-                self.refuse(trace, column, float(self.system.move(self.Q, step[i] * trace.end)[column]), float(wanted[i, column]))
-            Q[i] = trace.Q_end
-        # the drivers' own columns to the last bit
-        driven = np.isin(self.system.columns, np.array(self.columns, dtype=np.intp))
-        Q[:, driven] = wanted[:, driven]
-        return Q
+    def advance(self, Q: FloatArray, wanted: FloatArray) -> Solved:
+        """Follow straight lines from configurations `(batch, columns)` to where the drivers are in `wanted`."""
+        found, arrived = self.follower.trace_many(Q, self.step(Q, wanted))
+        found[:, list(self._places)] = wanted[:, list(self._places)]  # to the last bit
+        return Solved(self.system.ties.fitted(found, ~self.dependent), arrived)
 
-    def refuse(self, trace: Trace, column: int, end: float, asked: float) -> NoReturn:
-        """Raise what stopped a trace on the way to `asked`, at the driver value `end`."""
-        coordinate = self.system.layout.coordinates[column]
-        there, wanted = shown(end, coordinate.unit), shown(asked, coordinate.unit)
-        if trace.stop is Stop.DEAD_POINT:
-            finding = Finding(
-                code="E_DEAD_POINT",
-                where=f"joints.{coordinate.joint}",
-                message=f"driver {coordinate.name!r} cannot go to {wanted}: the loop reaches only {there}.",
-                hint=f"Stay on this side of {there}, or lengthen a link.",
-                value=end,
-                unit=coordinate.unit,
+    def advance_from(self, Q_all: FloatArray, wanted_all: FloatArray) -> FloatArray | None:
+        """Return where a straight line of the drivers leads from a closed configuration of all joints; None if it is barred."""
+        Q = self.system.to_system(Q_all)
+        wanted = Q.copy()
+        wanted[list(self._places)] = wanted_all[self.driver_columns]
+        wanted = self.system.ties.fitted(wanted, ~self.dependent)
+        if np.array_equal(wanted, Q):
+            return Q
+        found, arrived = self.advance(Q[None], wanted[None])
+        return found[0] if arrived[0] else None
+
+    def _together(self, step: FloatArray, wanted: FloatArray) -> Solved:
+        Q, arrived = self.advance(np.tile(self.Q, (len(step), 1)), wanted)
+        barred = np.flatnonzero(~arrived)
+        for i in barred[self._closable(wanted[barred])] if barred.size else barred:
+            trace = self.follower.trace(self.Q, step[i], 1.0)  # with all guards, where the batch gave up
+            straight = trace.stop is Stop.ARRIVED
+            found = trace.Q_end if straight else self._roadmap.reached(step[i][self._driving], wanted[i])
+            if found is not None:
+                Q[i], arrived[i] = found, True
+        return Solved(Q, arrived)
+
+    @cached_property
+    def _roadmap(self) -> Roadmap:
+        return Roadmap(self)
+
+    def _closable(self, wanted: FloatArray) -> BoolArray:
+        """Tell which rows can be assembled at all, from a few random starts."""
+        noise = np.random.default_rng(0).uniform(-math.pi, math.pi, (_STARTS, self.system.layout.n_freedoms)) * self.dependent
+        starts = self.system.move(wanted[:, None], noise).reshape(-1, wanted.shape[1])
+        _, norm = self.system.close_many(starts, self.dependent, iterations=60)
+        return np.asarray((norm.reshape(len(wanted), _STARTS) <= CLOSED).any(axis=1))
+
+    @property
+    def driving(self) -> IndexArray:
+        """Freedoms of the system that drive."""
+        return self._driving
+
+    def failure(self, Q_all: FloatArray, row: str) -> KinematicsError:
+        """Return the error that says why the drivers' values of one row `(n_columns,)` are not reached."""
+        Q, wanted, step = self._asked(Q_all[None])
+        moves = np.abs(step[:, self._driving]) > _MOVED
+        place = int(self._moving_alone(moves)[0])
+        if place >= 0:
+            track, value = self.track(place), float(wanted[0, place])
+            trace = track.side(value)
+            return failure(
+                trace, self.system.layout.coordinates[place], track.value(1 if value >= track.start else -1, trace.end), value, row
             )
-            raise DeadPointError(str(finding), driver=coordinate.name, q=end, findings=[finding])
-        finding = Finding(
-            code="E_SINGULAR",
-            where=f"joints.{coordinate.joint}",
-            message=f"on the way to {wanted} the mechanism is singular at {coordinate.name} = {there}: its branch is not determined beyond.",
-            hint="Keep the driver away from there.",
-            value=end,
-            unit=coordinate.unit,
+        trace = self.follower.trace(Q[0], step[0], 1.0)
+        freedom = int(self._driving[np.argmax(np.abs(step[0, self._driving]))])
+        place = self.system.layout.column_of_freedom(freedom)
+        end = float(self.system.move(Q[0], step[0] * trace.end)[place])
+        asked = float(wanted[0, place])
+        row += "no way round was found; " if self._closable(wanted)[0] else "nothing that closes was found there; "
+        return failure(trace, self.system.layout.coordinates[place], end, asked, row)
+
+    def velocities(self, Q_all: FloatArray, G: FloatArray) -> None:
+        """Write into G `(n_freedoms, nv)`, whose drivers' rows are given, how fast what follows moves at closed coordinates."""
+        system, where = self.system, np.flatnonzero(self.dependent)
+        if where.size:
+            J = system.evaluate_one(system.to_system(Q_all))[1]
+            driven = J @ (G[system.freedoms] / system.scale[:, None])
+            G[system.freedoms[where]] = least_squares(J[:, where], -driven, 1e-10) * system.scale[where, None]
+
+    def modes(self, Q_all: FloatArray, starts: int) -> FloatArray:
+        """Return all ways found of assembling the group at the drivers' values, its own branch first: `(modes, columns)`."""
+        system, rng = self.system, np.random.default_rng(0)
+        _, wanted, _ = self._asked(Q_all[None])
+        noise = rng.uniform(-math.pi, math.pi, (starts, system.layout.n_freedoms)) * self.dependent
+        candidates, norm = system.close_many(system.move(wanted[0], noise), self.dependent, iterations=80)
+        closed = list(candidates[norm <= CLOSED])
+        Q, reached = self.solve(Q_all[None])
+        if reached[0]:  # where the branch does not reach this value, others may
+            closed.insert(0, Q[0])
+        kept: list[FloatArray] = []
+        for one in closed:
+            if all(self._apart(one, known) for known in kept):
+                kept.append(one)
+        return np.array(kept).reshape(-1, system.layout.n_columns)
+
+    def _apart(self, a: FloatArray, b: FloatArray) -> bool:
+        step = self.system.step_between(a, b)
+        angles = ~self.system.layout.is_length
+        step[angles] = np.mod(step[angles] + math.pi, 2 * math.pi) - math.pi
+        return bool(np.abs(step).max() > _SAME_MODE)
+
+
+class Branch:
+    """A mechanism with loops or couplings, closed at rest, its drivers chosen.
+
+    Args:
+        tree: Which carries all parts.
+        layout: Of all joints.
+        loop_joints: Joints that close loops.
+        couplings: Relations between coordinates.
+
+    Attributes:
+        groups: What moves independently, in order of the first joint.
+        drivers: Coordinates that drive, in order of declaration: those of all groups, and all that no constraint touches.
+        columns: Their places among the coordinates of all joints.
+        driver_freedoms: Their freedoms among those of all joints.
+        refused: Joints marked as drivers that cannot drive.
+        Q_rest: Coordinates of all joints at rest, closed.
+
+    Raises:
+        LoopError: E_LOOP_OPEN if the loops cannot be closed from the rest pose.
+    """
+
+    def __init__(self, tree: KinematicTree, layout: Layout, loop_joints: Sequence[Joint], couplings: Sequence[Coupling]) -> None:
+        self.layout = layout
+        self._given = tree, tuple(loop_joints), tuple(couplings)
+        self.groups = tuple(Group(tree, layout, *members) for members in independent(tree, layout, loop_joints, couplings))
+        touched = {int(column) for group in self.groups for column in group.columns}
+        driving = {int(column) for group in self.groups for column in group.driver_columns}
+        self.columns: tuple[int, ...] = tuple(c for c in range(layout.n_columns) if c in driving or c not in touched)
+        self.drivers: tuple[Coordinate, ...] = tuple(layout.coordinates[i] for i in self.columns)
+        self.driver_freedoms: IndexArray = np.array(driver_freedoms(layout, self.columns), dtype=np.intp)
+        self.refused: tuple[Joint, ...] = tuple(joint for group in self.groups for joint in group.refused)
+        Q = layout.rest
+        for group in self.groups:
+            Q = group.system.into_all(Q, group.Q)
+        self.Q_rest = Q
+
+    # --- all groups as one
+
+    @cached_property
+    def system(self) -> ClosureSystem:
+        """The equations of all groups together: for what concerns the mechanism as a whole. Each group has its own, which is smaller."""
+        tree, loop_joints, couplings = self._given
+        return ClosureSystem(tree, self.layout, loop_joints, couplings)
+
+    @property
+    def Q(self) -> FloatArray:
+        """Coordinates of `system` at rest."""
+        return self.system.to_system(self.Q_rest)
+
+    @cached_property
+    def dependent(self) -> BoolArray:
+        """Freedoms of `system` that follow."""
+        mine: BoolArray = self.system.active & ~np.isin(self.system.freedoms, self.driver_freedoms)
+        return mine
+
+    @cached_property
+    def analysis(self) -> Mobility:
+        """What all constraints leave free, in the coordinates of `system`."""
+        Q_all = self.Q_rest
+        total = sum(group.analysis.mobility for group in self.groups)
+        motions = np.zeros((self.layout.n_freedoms, total))
+        at = 0
+        for group in self.groups:
+            found = group.analysis
+            Q_all = group.system.into_all(Q_all, found.Q)
+            motions[group.system.freedoms, at : at + found.mobility] = found.freedoms * group.system.scale[:, None]
+            at += found.mobility
+        freedoms = motions[self.system.freedoms] / self.system.scale[:, None]
+        return Mobility(
+            total,
+            sum(group.analysis.first_order for group in self.groups),
+            sum(group.analysis.rank for group in self.groups),
+            self.system.to_system(Q_all),
+            freedoms / np.maximum(np.linalg.norm(freedoms, axis=0), 1e-300),
+            min((group.analysis.near for group in self.groups), default=1.0),
         )
-        raise KinematicsError(str(finding), findings=[finding])
+
+    def group_of(self, joint: str) -> Group | None:
+        """Return the group that a joint belongs to, the first one if its coordinates belong to several; None if it moves by itself."""
+        first = self.layout.columns[joint]
+        return next((group for group in self.groups if any(first.start <= c < first.stop for c in group.columns)), None)
+
+    def driven_by(self, column: int) -> tuple[Group, int] | None:
+        """Return the group that a driver's column moves, and its place there; None if nothing follows it."""
+        for group in self.groups:
+            place = group.place_of(column)
+            if place is not None:
+                return group, place
+        return None
+
+    # --- elsewhere
+
+    def solve(self, q: FloatArray) -> Solved:
+        """Return the coordinates of all joints `(batch, n_columns)` at the drivers' values `(batch, nq)`, and which rows are reached."""
+        Q_all, reached = self._with_drivers(q), np.ones(len(q), dtype=bool)
+        for group in self.groups:
+            Q, mine = group.solve(Q_all)
+            Q_all, reached = group.system.into_all(Q_all, Q), reached & mine
+        return Solved(Q_all, reached)
+
+    def _with_drivers(self, q: FloatArray) -> FloatArray:
+        Q_all = np.tile(self.Q_rest, (len(q), 1))
+        Q_all[:, self.columns] = q
+        return self.layout.normalized(Q_all)
+
+    def configurations(self, q: FloatArray) -> FloatArray:
+        """Return the coordinates of all joints `(batch, n_columns)` at the drivers' values `(batch, nq)`.
+
+        Raises:
+            DeadPointError: If a driver would have to pass a dead point; it names the rows that are not reached.
+            KinematicsError: E_SINGULAR if the branch is not determined on the way; E_NOT_FOLLOWED if it is too long.
+        """
+        Q_all, reached = self.solve(q)
+        if not reached.all():
+            raise self.failure(q, reached)
+        return Q_all
+
+    def failure(self, q: FloatArray, reached: BoolArray) -> KinematicsError:
+        """Return the error about the rows `(batch, nq)` that are not reached: which they are, and why the first one is not."""
+        rows = np.flatnonzero(~reached)
+        first = int(rows[0])
+        Q_all = self._with_drivers(q[first : first + 1])
+        row = ""
+        if len(q) > 1:
+            named = "; ".join(f"row {i} ({self._values(q[i])})" for i in rows[:_ROWS_NAMED].tolist())
+            more = f" and {len(rows) - _ROWS_NAMED} more" if len(rows) > _ROWS_NAMED else ""
+            row = f"{len(rows)} of {len(q)} rows are not reached: {named}{more}. Row {first}: "
+        group = next(group for group in self.groups if not group.solve(Q_all).reached[0])
+        return group.failure(Q_all[0], row)
+
+    def _values(self, q: FloatArray) -> str:
+        return ", ".join(f"{c.name} = {shown(float(value), c.unit)}" for c, value in zip(self.drivers, q, strict=True))
 
     def velocities(self, Q_all: FloatArray) -> FloatArray:
         """Return how fast all freedoms move per driver freedom, `(n_freedoms, nv)`, in rad and mm, at closed coordinates."""
-        system = self.system
         G = np.zeros((self.layout.n_freedoms, len(self.driver_freedoms)))
         G[self.driver_freedoms, np.arange(len(self.driver_freedoms))] = 1.0
-        J = system.evaluate_one(system.to_system(Q_all))[1]
-        where = np.flatnonzero(self.dependent)
-        if where.size:
-            driven = J @ (G[system.freedoms] / system.scale[:, None])
-            solved = least_squares(J[:, where], -driven, 1e-10) * system.scale[where, None]
-            G[system.freedoms[where]] = solved
+        for group in self.groups:
+            group.velocities(Q_all, G)
         return G
 
     def modes(self, q: FloatArray, starts: int) -> FloatArray:
@@ -210,27 +444,52 @@ class Branch:
 
         Random starts; a way that a start never falls into is not found. The rest pose's own branch is first, if it is there.
         """
-        system, rng = self.system, np.random.default_rng(0)
-        Q_all = self.Q_rest.copy()
-        Q_all[list(self.columns)] = q
-        Q_all = self.layout.normalized(Q_all)
-        base = system.to_system(Q_all)
-        noise = rng.uniform(-math.pi, math.pi, (starts, system.layout.n_freedoms)) * self.dependent
-        candidates, norm = system.close_many(system.move(base, noise), self.dependent, iterations=80)
-        closed = list(candidates[norm <= CLOSED])
-        with contextlib.suppress(KinematicsError):  # where the branch does not reach this value, others may
-            closed.insert(0, system.to_system(self.configurations(np.asarray(q)[None])[0]))
-        kept: list[FloatArray] = []
-        for Q in closed:
-            if all(self._apart(Q, known) for known in kept):
-                kept.append(Q)
-        return system.into_all(Q_all, np.array(kept).reshape(-1, system.layout.n_columns))
+        found = self._with_drivers(np.asarray(q)[None])
+        for group in self.groups:
+            ways = group.modes(found[0], starts)
+            found = np.concatenate([group.system.into_all(one, ways) for one in found])
+        return found
 
-    def _apart(self, a: FloatArray, b: FloatArray) -> bool:
-        step = self.system.step_between(a, b)
-        angles = ~self.system.layout.is_length
-        step[angles] = np.mod(step[angles] + math.pi, 2 * math.pi) - math.pi
-        return bool(np.abs(step).max() > _SAME_MODE)
+
+def independent(
+    tree: KinematicTree, layout: Layout, loop_joints: Sequence[Joint], couplings: Sequence[Coupling]
+) -> list[tuple[list[Joint], list[Coupling]]]:
+    """Return loops and couplings in groups that share no freedom: connected components, in order of their first freedom."""
+    touched: list[tuple[Joint | Coupling, set[int]]] = []
+    for closing in loop_joints:
+        round_it = (closing, *tree.joints_between(closing.parent, closing.child))
+        own = {f for joint in round_it for f in range(layout.freedoms[joint.name].start, layout.freedoms[joint.name].stop)}
+        touched.append((closing, own))
+    touched += [(c, {layout.freedom_of(layout.column_of[name]) for name in (c.a, c.b)}) for c in couplings]
+    merged: list[tuple[list[Joint | Coupling], set[int]]] = []
+    for one, own in touched:
+        beside = [group for group in merged if group[1] & own]
+        merged = [group for group in merged if not group[1] & own]
+        members = [*(member for group in beside for member in group[0]), one]
+        merged.append((members, own.union(*(group[1] for group in beside))))
+    merged.sort(key=lambda group: min(group[1], default=-1))
+    order = {id(one): i for i, (one, _) in enumerate(touched)}
+    groups = [sorted(members, key=lambda one: order[id(one)]) for members, _ in merged]
+    return [([m for m in members if isinstance(m, Joint)], [m for m in members if isinstance(m, Coupling)]) for members in groups]
+
+
+def failure(trace: Trace, coordinate: Coordinate, end: float, asked: float, row: str = "") -> KinematicsError:
+    """Return the error that says what stopped a trace on the way to `asked`, at the driver value `end`."""
+    there, wanted = shown(end, coordinate.unit), shown(asked, coordinate.unit)
+    where = f"joints.{coordinate.joint}"
+    if trace.stop is Stop.DEAD_POINT:
+        message = f"{row}driver {coordinate.name!r} cannot go to {wanted}: the loop reaches only {there}."
+        hint = f"Stay on this side of {there}, or lengthen a link."
+        finding = Finding(code="E_DEAD_POINT", where=where, message=message, hint=hint, value=end, unit=coordinate.unit)
+        return DeadPointError(str(finding), driver=coordinate.name, q=end, findings=[finding])
+    if trace.stop is Stop.SINGULAR:
+        what = f"the mechanism is singular at {coordinate.name} = {there}: its branch is not determined beyond."
+        code, hint = "E_SINGULAR", "Keep the driver away from there."
+    else:
+        what = f"the mechanism was followed to {coordinate.name} = {there} and not further: the way takes too many steps."
+        code, hint = "E_NOT_FOLLOWED", f"Ask for a value nearer than {there}; nothing is known to bar the way beyond."
+    finding = Finding(code=code, where=where, message=f"{row}on the way to {wanted} {what}", hint=hint, value=end, unit=coordinate.unit)
+    return KinematicsError(str(finding), findings=[finding])
 
 
 def shown(value: float, unit: str) -> str:
@@ -240,7 +499,7 @@ def shown(value: float, unit: str) -> str:
     return f"{value:.3f} mm" if unit == "mm" else f"{value:.4f}"
 
 
-def _freedoms(layout: Layout, columns: Sequence[int]) -> list[int]:
+def driver_freedoms(layout: Layout, columns: Sequence[int]) -> list[int]:
     """Return the freedoms of driver columns, in their order; a ball's four columns have three."""
     freedoms: list[int] = []
     for column in columns:

@@ -3,6 +3,7 @@
 Predictor and corrector with three guards (kinematics: continuation along a sweep): the step stays below half the smallest
 singular value, the orientation of the constraints does not change, and the corrector is shorter than half the predictor.
 Where a step would be smaller than 1e-7 the driver has a dead point, which is then found exactly, or the linkage is singular.
+Couplings are linear: what they tie needs no steps, and only freedoms that move loops are followed (see `ties`).
 """
 
 from __future__ import annotations
@@ -13,11 +14,11 @@ from enum import StrEnum
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
 from articad.connectors import FloatArray
 from articad.kinematics.factors import least_squares, right_singular, svd
-from articad.kinematics.loops import CLOSED, RANK_TOLERANCE, BoolArray, ClosureSystem
+from articad.kinematics.loops import CLOSED, RANK_TOLERANCE, ClosureSystem
+from articad.kinematics.ties import BoolArray
 
 _STEP_LIMIT = 0.35  # rad, or lengths L: of any freedom in one step
 _SIGMA_SHARE = 0.5  # of σ_min that a step may take: beyond it another branch may be as near
@@ -32,11 +33,12 @@ _FIRST_ARC = 0.01  # rad, or lengths L: first step of the search for a dead poin
 
 
 class Stop(StrEnum):
-    """Why a trace ended."""
+    """Why a trace ended; STEPS is no property of the linkage: the follower took as many steps as it may."""
 
     ARRIVED = "arrived"
     DEAD_POINT = "dead point"
     SINGULAR = "singular"
+    STEPS = "not followed further"
 
 
 class Node(NamedTuple):
@@ -91,22 +93,29 @@ class Follower:
     Args:
         system: The equations.
         dependent: Freedoms that follow; the others are drivers.
+
+    Attributes:
+        basis: Independent motions of the dependent freedoms; what is tied to a driver is none of them.
+        rank: How many of them the loops determine.
     """
 
     def __init__(self, system: ClosureSystem, dependent: BoolArray) -> None:
         self.system, self.dependent = system, dependent
-        self.where = np.flatnonzero(dependent)
-        self.reach = _reach(system)
-        self._c = math.hypot(self.reach / system.length, 1.0)
-        self.rank = len(self.where)
-        self._weight = _row_weights(system, self.where)
-        self._longest = _STEP_LIMIT if system.loops else math.inf  # couplings alone are linear: one step arrives
-        self._share = _SIGMA_SHARE if system.loops else math.inf
+        self.basis = system.ties.basis(dependent)
+        self._c = max(
+            (math.hypot(reach / length, 1.0) for reach, length in zip(_reaches(system), system.lengths, strict=True)), default=1.0
+        )
+        self.rank = self.basis.size
+        self._looped = np.flatnonzero(system.in_loops)
+        self._n_rows = 6 * len(system.loops)
+        # (Σ|y|)² ≤ n |z|² for steps z of drivers and independent motions, y of all freedoms that move loops
+        driven = int((self.basis.matrix[self._looped] == 0).all(axis=1).sum())
+        self._n = max(1.0, driven + float((np.abs(self.basis.matrix[self._looped]).sum(axis=0) ** 2).sum()))
 
     def linearized(self, Q: FloatArray) -> _Linear:
-        """Return the constraints' Jacobian at Q and the singular values of its dependent columns."""
-        J = self.system.evaluate_one(Q)[1] * self._weight
-        return _Linear(J, *svd(J[:, self.where]))
+        """Return the loops' Jacobian at Q and the singular values of it by the independent motions."""
+        J = self.system.evaluate_one(Q)[1][: self._n_rows]
+        return _Linear(J, *svd(self.basis.of(J)))
 
     def start(self, Q: FloatArray) -> None:
         """Set how many of the dependent freedoms the constraints determine; idle ones move as little as possible."""
@@ -119,9 +128,9 @@ class Follower:
         k = self.rank
         if k:
             inverse = np.where(lin.s[:k] > 0, 1.0 / np.maximum(lin.s[:k], 1e-300), 0.0)
-            rate[self.where] = -(lin.Vt[:k].T @ (inverse * (lin.U[:, :k].T @ (lin.J @ direction))))
+            rate -= self.basis.step(lin.Vt[:k].T @ (inverse * (lin.U[:, :k].T @ (lin.J @ direction))))
         sigma = float(lin.s[k - 1]) if k else math.inf
-        bend = 0.5 * float(np.abs(rate).sum()) ** 2 * self._c
+        bend = 0.5 * float(np.abs(rate[self._looped]).sum()) ** 2 * self._c
         return Node(s, Q, rate, sigma, bend)
 
     def trace(self, Q: FloatArray, direction: FloatArray, length: float, *, certify: bool = False) -> Trace:
@@ -129,7 +138,7 @@ class Follower:
 
         Args:
             Q: Closed coordinates `(columns,)`.
-            direction: Scaled velocities of the drivers `(freedoms,)`, zero for dependents.
+            direction: Scaled velocities of the drivers and of what is tied to them `(freedoms,)`, zero for all others.
             length: Where to arrive, > 0.
             certify: Take steps for which Kantorovich's theorem proves that there is one solution, near the predictor.
 
@@ -142,10 +151,10 @@ class Follower:
         for _ in range(_MOST_STEPS):
             if node.s >= length:
                 return Trace(tuple(nodes), Stop.ARRIVED, length, node.Q, certify)
-            fastest = max(float(np.abs(node.rate).max()), 1e-300)
+            fastest = self._fastest(node.rate)
             if node.sigma < _SINGULAR:
                 return self._stopped(nodes, direction, certify=certify)
-            h = min(2.0 * h, length - node.s, min(self._longest, self._share * node.sigma) / fastest)
+            h = min(2.0 * h, length - node.s, min(_STEP_LIMIT, _SIGMA_SHARE * node.sigma) / fastest)
             if certify:
                 h = min(h, self.certified_step(node))
             while h * fastest >= _SMALLEST_STEP or h >= length - node.s:
@@ -159,12 +168,15 @@ class Follower:
             if node.s + 1e-15 * length >= length:
                 node = node._replace(s=length)
             nodes.append(node)
-        return Trace(tuple(nodes), Stop.SINGULAR, node.s, node.Q, certify)
+        return Trace(tuple(nodes), Stop.STEPS, node.s, node.Q, certify)
+
+    def _fastest(self, rate: FloatArray) -> float:
+        """Return the largest rate of a freedom that moves a loop; without loops nothing limits a step."""
+        return max(float(np.abs(rate[self._looped]).max(initial=0.0)), 1e-300)
 
     def certified_step(self, node: Node) -> float:
         """Return the largest step from the node with β K η ≤ 0.45 (Kantorovich), β = 1/σ, K = n c, η = β bend h²."""
-        n = max(1, self.system.layout.n_freedoms)
-        return math.sqrt(_CERTIFIED_SHARE * node.sigma**2 / (n * self._c * max(node.bend, 1e-300)))
+        return math.sqrt(_CERTIFIED_SHARE * node.sigma**2 / (self._n * self._c * max(node.bend, 1e-300)))
 
     def tube(self, node: Node, h: FloatArray) -> FloatArray:
         """Return how far the only solution may be from the predictor of a step h: 2η [rad, lengths L]."""
@@ -179,8 +191,8 @@ class Follower:
         closed = self.system.close(predicted, self.dependent, iterations=8, polish=last)
         if not closed.ok:
             return None
-        correction = float(np.abs(self.system.step_between(predicted, closed.Q)).max())
-        if correction > _CORRECTOR_SHARE * h * float(np.abs(node.rate).max()) + ROUNDING:
+        correction = float(np.abs(self.system.step_between(predicted, closed.Q)[self._looped]).max(initial=0.0))
+        if correction > _CORRECTOR_SHARE * h * self._fastest(node.rate) + ROUNDING:
             return None
         lin = self.linearized(closed.Q)
         U, turned = self._orientation(basis, lin)
@@ -192,17 +204,17 @@ class Follower:
         """Return the constraints' basis, carried along from the last one, and the sign of their determinant in it (0: none)."""
         k = self.rank
         U = lin.U[:, :k].copy()
-        if not k or k < len(self.where):
+        if not k or k < self.basis.size:
             return U, 0.0
         if np.linalg.det(basis.T @ U) < 0:
             U[:, 0] *= -1.0
-        return U, float(np.sign(np.linalg.det(U.T @ lin.J[:, self.where])))
+        return U, float(np.sign(np.linalg.det(U.T @ self.basis.of(lin.J))))
 
     # --- dead points
 
     def _stopped(self, nodes: list[Node], direction: FloatArray, *, certify: bool) -> Trace:
         node = nodes[-1]
-        if np.abs(node.rate).max() > _FOLD_RATE * max(np.abs(direction).max(), 1e-300):
+        if self._fastest(node.rate) > _FOLD_RATE * self._fastest(direction):
             fold = self._fold(node, direction)
             if fold is not None:
                 s, Q = fold
@@ -233,9 +245,9 @@ class Follower:
 
     def _tangent(self, Q: FloatArray, direction: FloatArray, orientation: FloatArray | None) -> FloatArray | None:
         """Return the unit null vector of the constraints in (dependents, s), oriented along `orientation` or towards growing s."""
-        J = self.system.evaluate_one(Q)[1]
-        s, Vt = right_singular(np.column_stack([J[:, self.where], J @ direction]))
-        if self.rank < len(self.where) or not s.size:
+        J = self.system.evaluate_one(Q)[1][: self._n_rows]
+        s, Vt = right_singular(np.column_stack([self.basis.of(J), J @ direction]))
+        if self.rank < self.basis.size or not s.size:
             return None
         tangent: FloatArray = Vt[-1]
         towards = tangent[-1] if orientation is None else tangent @ orientation
@@ -243,20 +255,15 @@ class Follower:
 
     def along_arc(self, node: Node, direction: FloatArray, tangent: FloatArray, arc: float) -> tuple[float, FloatArray, FloatArray] | None:
         """Return s, Q and the tangent at an arc length from a node, drivers and dependents corrected together."""
-        y, s = arc * tangent[:-1], node.s + arc * tangent[-1]
-        full = direction * (s - node.s)
-        full[self.where] = y
-        Q = self.system.move(node.Q, full)
+        s = node.s + arc * tangent[-1]
+        Q = self.system.move(node.Q, direction * (s - node.s) + self.basis.step(arc * tangent[:-1]))
         for _ in range(12):
-            r, J = self.system.evaluate_one(Q)
-            columns = np.column_stack([J[:, self.where], J @ direction])
-            step = -least_squares(columns, r, RANK_TOLERANCE)
-            full = direction * step[-1]
-            full[self.where] = step[:-1]
-            Q, s = self.system.move(Q, full), s + float(step[-1])
+            r, J = (part[: self._n_rows] for part in self.system.evaluate_one(Q))
+            step = -least_squares(np.column_stack([self.basis.of(J), J @ direction]), r, RANK_TOLERANCE)
+            Q, s = self.system.move(Q, direction * step[-1] + self.basis.step(step[:-1])), s + float(step[-1])
             if np.abs(step).max() < 1e-13:
                 break
-        if np.sqrt((self.system.residual_one(Q) ** 2).sum()) > CLOSED:
+        if np.sqrt((self.system.residual_one(Q)[: self._n_rows] ** 2).sum()) > CLOSED:
             return None
         here = self._tangent(Q, direction, tangent)
         return None if here is None else (s, Q, here)
@@ -264,17 +271,17 @@ class Follower:
     # --- many at once
 
     def trace_many(self, Q: FloatArray, displacement: FloatArray) -> tuple[FloatArray, BoolArray]:
-        """Follow the branch from one closed configuration to many driver values at once, each along its own straight line.
+        """Follow the branch from closed configurations to many driver values at once, each along its own straight line.
 
         Args:
-            Q: Closed coordinates `(columns,)`.
-            displacement: Scaled displacement of the drivers `(batch, freedoms)`.
+            Q: Closed coordinates `(columns,)`, or one start per line `(batch, columns)`.
+            displacement: Scaled displacement of the drivers and of what is tied to them `(batch, freedoms)`.
 
         Returns:
             Coordinates `(batch, columns)`, and which of them arrived; the rest met a dead point or a singularity.
         """
         batch = len(displacement)
-        at = np.tile(Q, (batch, 1))
+        at = np.array(np.broadcast_to(Q, (batch, self.system.layout.n_columns)))
         s, h = np.zeros(batch), np.full(batch, 0.25)
         failed = np.zeros(batch, dtype=bool)
         for _ in range(400):
@@ -282,15 +289,14 @@ class Follower:
             if not run.size:
                 break
             D = displacement[run]
-            J = self.system.evaluate(at[run])[1] * self._weight
-            J_dep = J[:, :, self.where]
-            sigma, rate = self._rates(J_dep, (J @ D[..., None])[..., 0], D)
-            fastest = np.maximum(np.abs(rate).max(axis=1), 1e-300)
-            limit = np.minimum(self._longest, self._share * sigma) / fastest
+            J = self.system.evaluate(at[run])[1][:, : self._n_rows]
+            sigma, rate = self._rates(self.basis.of(J), (J @ D[..., None])[..., 0], D)
+            fastest = np.maximum(np.abs(rate[:, self._looped]).max(axis=1, initial=0.0), 1e-300)
+            limit = np.minimum(_STEP_LIMIT, _SIGMA_SHARE * sigma) / fastest
             step = np.minimum(np.minimum(2.0 * h[run], limit), 1.0 - s[run])
             predicted = self.system.move(at[run], step[:, None] * rate)
             closed, norm = self.system.close_many(predicted, self.dependent, iterations=6)
-            correction = np.abs(self.system.step_between(predicted, closed)).max(axis=1)
+            correction = np.abs(self.system.step_between(predicted, closed)[:, self._looped]).max(axis=1, initial=0.0)
             good = (norm <= CLOSED) & (correction <= _CORRECTOR_SHARE * step * fastest + ROUNDING)
             at[run[good]] = closed[good]
             s[run[good]] = np.where(step[good] >= 1.0 - s[run[good]], 1.0, s[run[good]] + step[good])
@@ -301,37 +307,24 @@ class Follower:
     def _rates(self, J_dep: FloatArray, driven: FloatArray, D: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return σ_min `(batch,)` and dy/ds `(batch, freedoms)`."""
         rate = D.copy()
-        if not len(self.where):
+        if not self.basis.size:
             return np.full(len(D), math.inf), rate
         U, s, Vt = svd(J_dep)
         k = self.rank
         b = (U.swapaxes(-1, -2) @ driven[..., None])[:, :k, 0] / np.maximum(s[:, :k], 1e-300)
-        rate[:, self.where] = -(Vt[:, :k].swapaxes(-1, -2) @ b[..., None])[..., 0]
-        sigma: FloatArray = s[:, k - 1]
+        rate -= self.basis.step((Vt[:, :k].swapaxes(-1, -2) @ b[..., None])[..., 0])
+        sigma: FloatArray = s[:, k - 1] if k else np.full(len(D), math.inf)
         return sigma, rate
 
 
-def _row_weights(system: ClosureSystem, where: npt.NDArray[np.intp]) -> FloatArray:
-    """Return factors `(rows, 1)` that make the largest coefficient of a dependent freedom 1 in each coupling's row.
-
-    A coupling is linear, so no branch is near however small its coefficient: a screw that turns 150 rad while its nut
-    travels one length L would otherwise be followed in steps of a degree, or taken for singular.
-    """
-    weights = np.ones((system.n_rows, 1))
-    largest = np.abs(system.coupling_rows[:, where]).max(axis=1, initial=0.0)
-    weights[system.n_rows - len(largest) :, 0] = 1.0 / np.where(largest > 0, largest, 1.0)
-    return weights
-
-
-def _reach(system: ClosureSystem) -> float:
-    """Return a bound [mm] of the distance between any two points of a loop: the sum of its links and travels."""
-    longest = 0.0
+def _reaches(system: ClosureSystem) -> list[float]:
+    """Return for each loop a bound [mm] of the distance between any two points of it: the sum of its links and travels."""
+    reaches = []
     for loop in system.loops:
         ends: dict[str, list[FloatArray]] = {}
         for joint in loop.joints:
             ends.setdefault(joint.parent, []).append(joint.T_parent_connector.translation)
             ends.setdefault(joint.child, []).append(joint.T_child_connector.translation)
         links = sum(float(np.linalg.norm(points[0] - points[-1])) for points in ends.values())
-        travels = sum(abs(c.rest) for joint in loop.joints for c in joint.columns if c.unit == "mm")
-        longest = max(longest, links + travels)
-    return longest
+        reaches.append(links + sum(abs(c.rest) for joint in loop.joints for c in joint.columns if c.unit == "mm"))
+    return reaches

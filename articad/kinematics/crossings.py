@@ -67,7 +67,7 @@ class Crossings:
 
     def _place_coordinates(self, layout: Layout) -> None:
         starts = layout.first
-        first = np.array([starts[joint.name] for joint in self.joints], dtype=np.intp)
+        first = np.array([starts.get(joint.name, 0) for joint in self.joints], dtype=np.intp)  # what is held fast has none
         turns, slides = _TURNS[self._codes], _SLIDES[self._codes]
         self.first: IndexArray = first
         self.angle: IndexArray = np.where(turns, first + _N_COLUMNS[self._codes] - 1, 0)

@@ -25,7 +25,7 @@ class Closures(NamedTuple):
         connectors: C_c, the same in both `(loops, 4, 4)`.
         spin: Turn [rad] of each loop about the axis of each freedom, per scaled unit `(loops, freedoms)`.
         slide: Travel [L] along it `(loops, freedoms)`.
-        length: L [mm].
+        lengths: L of each loop [mm] `(loops,)`.
     """
 
     arrays: TreeArrays
@@ -33,17 +33,17 @@ class Closures(NamedTuple):
     connectors: FloatArray
     spin: FloatArray
     slide: FloatArray
-    length: float
+    lengths: FloatArray
 
 
-def closures(arrays: TreeArrays, loop_joints: Sequence[Joint], scale: FloatArray, length: float) -> Closures:
+def closures(arrays: TreeArrays, loop_joints: Sequence[Joint], scale: FloatArray, lengths: FloatArray) -> Closures:
     """Return what closes the loops.
 
     Args:
         arrays: The tree with ghosts of the loop joints' children.
         loop_joints: Joints that close loops.
         scale: What one scaled unit of each freedom is [rad, mm].
-        length: L [mm].
+        lengths: L of each loop [mm].
     """
     index = {part: i for i, part in enumerate(arrays.parts)}
     far = [index[joint.child] for joint in loop_joints]
@@ -54,7 +54,9 @@ def closures(arrays: TreeArrays, loop_joints: Sequence[Joint], scale: FloatArray
     ghosts = range(arrays.n_parts, arrays.n_parts + len(loop_joints))
     connectors = np.array([joint.T_child_connector.matrix for joint in loop_joints]).reshape(-1, 4, 4)
     angular, linear = arrays.twists.angular[:, 0, 0], arrays.twists.linear[:, 0, 0]
-    return Closures(arrays, np.array([ghosts, far], dtype=np.intp), connectors, weight * angular, weight * linear / length, length)
+    return Closures(
+        arrays, np.array([ghosts, far], dtype=np.intp), connectors, weight * angular, weight * linear / lengths[:, None], lengths
+    )
 
 
 class BatchEquations:
@@ -65,12 +67,12 @@ class BatchEquations:
     """
 
     def __init__(self, closures: Closures) -> None:
-        self._arrays, self._length = closures.arrays, closures.length
+        self._arrays, self._lengths = closures.arrays, closures.lengths[:, None, None]  # (loops, 1, 1)
         self._ends = closures.ends.ravel()
         self._C_c = np.concatenate([closures.connectors, closures.connectors])[:, None]
         # what a freedom's axis, and its moment about B, count in the residual: (loops, 1, freedoms, 1)
         self._spin, self._slide = closures.spin[:, None, :, None], closures.slide[:, None, :, None]
-        self._turn = self._spin / self._length
+        self._turn = self._spin / self._lengths[..., None]
 
     def residual(self, Q: FloatArray) -> FloatArray:
         """Return the residuals `(batch, 6 loops)` at `Q` `(batch, columns)`."""
@@ -98,7 +100,7 @@ class BatchEquations:
         return R_A, p_B, t, _rotation_log(R_A.swapaxes(-1, -2) @ B[..., :3, :3])
 
     def _residual(self, t: FloatArray, phi: FloatArray) -> FloatArray:
-        r: FloatArray = np.concatenate([t / self._length, phi], axis=-1).swapaxes(0, 1).reshape(t.shape[1], 6 * len(t))
+        r: FloatArray = np.concatenate([t / self._lengths, phi], axis=-1).swapaxes(0, 1).reshape(t.shape[1], 6 * len(t))
         return r
 
 

@@ -16,7 +16,7 @@ from articad.kinematics.joints import Coupling, Joint
 from articad.kinematics.mobility import NEAR_SINGULAR, idle_parts, redundancies
 
 if TYPE_CHECKING:
-    from articad.kinematics.branch import Branch
+    from articad.kinematics.branch import Group
     from articad.kinematics.mechanism import Mechanism
 
 _STILL = 1e-9  # of a unit motion of the whole mechanism: a coordinate that moves less stands still
@@ -29,13 +29,10 @@ def loop_findings(mechanism: Mechanism) -> list[Finding]:
         branch = mechanism.branch
     except LoopError as error:
         return list(error.findings)
-    return [
-        *_inexact_findings(mechanism),
-        *_driver_findings(branch, mechanism.inconsistency),
-        *_coupling_findings(branch),
-        *_mobility_findings(branch),
-        *_redundancy_findings(mechanism),
-    ]
+    found = _inexact_findings(mechanism)
+    for group in branch.groups:
+        found += [*_driver_findings(group, mechanism.inconsistency), *_coupling_findings(group), *_mobility_findings(group)]
+    return [*found, *_redundancy_findings(mechanism)]
 
 
 # --- inexact geometry
@@ -91,15 +88,15 @@ def inconsistency(needed: Correction) -> tuple[str, str]:
 # --- drivers and couplings
 
 
-def _coupling_findings(branch: Branch) -> list[Finding]:
+def _coupling_findings(group: Group) -> list[Finding]:
     """Say which couplings hold each other fast, such as three gears in a triangle."""
-    system, moving = branch.system, np.abs(branch.analysis.freedoms).max(axis=1, initial=0.0) > _STILL
+    system, moving = group.system, np.abs(group.analysis.freedoms).max(axis=1, initial=0.0) > _STILL
     locked = [
         coupling for coupling, row in zip(system.couplings, system.coupling_rows, strict=True) if not moving[np.flatnonzero(row)].any()
     ]
     found = []
-    for group in _connected(locked):
-        names, joints = ", ".join(repr(c.name) for c in group), ", ".join(dict.fromkeys(n for c in group for n in (c.a, c.b)))
+    for train in _connected(locked):
+        names, joints = ", ".join(repr(c.name) for c in train), ", ".join(dict.fromkeys(n for c in train for n in (c.a, c.b)))
         message = f"Coupling(s) {names} cannot move: with the rest of the mechanism they hold {joints} fast."
         hint = (
             "Remove a coupling, or correct a ratio: round a closed train the product of the ratios must be 1, so gears need an even number."
@@ -107,13 +104,13 @@ def _coupling_findings(branch: Branch) -> list[Finding]:
         parts = tuple(
             dict.fromkeys(
                 part
-                for c in group
+                for c in train
                 for n in (c.a, c.b)
                 for joint in [system.layout.joint(n.split(".")[0])]
                 for part in (joint.parent, joint.child)
             )
         )
-        found.append(Finding(code="E_COUPLING_LOCKED", where=f"couplings.{group[0].name}", message=message, hint=hint, parts=parts))
+        found.append(Finding(code="E_COUPLING_LOCKED", where=f"couplings.{train[0].name}", message=message, hint=hint, parts=parts))
     return found
 
 
@@ -126,27 +123,27 @@ def _connected(couplings: Sequence[Coupling]) -> list[list[Coupling]]:
     return groups
 
 
-def _driver_findings(branch: Branch, beyond: Correction | None) -> list[Finding]:
-    analysis = branch.analysis
-    if analysis.mobility == 0 and branch.refused:
-        return [_locked(branch, joint, beyond) for joint in branch.refused]
-    names = ", ".join(c.name for c in branch.drivers)
+def _driver_findings(group: Group, beyond: Correction | None) -> list[Finding]:
+    analysis = group.analysis
+    if analysis.mobility == 0 and group.refused:
+        return [_locked(group, joint, beyond) for joint in group.refused]
+    names = ", ".join(c.name for c in group.drivers)
     found = []
-    for joint in branch.refused:
+    for joint in group.refused:
         message = f"Joint {joint.name!r} is marked as a driver, but the {analysis.mobility} freedom(s) are driven already by {names}."
         hint = "Mark as drivers as many independent joints as there are freedoms."
         found.append(Finding(code="E_DRIVER", where=f"joints.{joint.name}", message=message, hint=hint, value=analysis.mobility))
     return found
 
 
-def _locked(branch: Branch, driver: Joint, beyond: Correction | None) -> Finding:
+def _locked(group: Group, driver: Joint, beyond: Correction | None) -> Finding:
     """Say why a loop cannot move: usually an axis that is tilted against the others."""
-    sigma = branch.analysis.near
+    sigma = group.analysis.near
     message = f"mobility 0: driver {driver.name!r} cannot move; the smallest singular value is {sigma:.2g}"
-    loops = [loop for loop in branch.system.loops if driver.name in {joint.name for joint in loop.joints}]
+    loops = [loop for loop in group.system.loops if driver.name in {joint.name for joint in loop.joints}]
     named = False
     for loop in loops[:1]:
-        joint, tilt = _most_tilted(branch, loop.joints)
+        joint, tilt = _most_tilted(group, loop.joints)
         if 0 < tilt < math.radians(5):  # more is no misalignment but a spatial loop
             named = True
             message += f" and belongs to the axis of {joint.parent}.{joint.parent_connector}, tilted by {math.degrees(tilt):.3f}°"
@@ -158,10 +155,10 @@ def _locked(branch: Branch, driver: Joint, beyond: Correction | None) -> Finding
     return Finding(code="E_LOOP_LOCKED", where=f"joints.{driver.name}", message=f"{message}.", hint=hint, parts=parts, value=sigma)
 
 
-def _most_tilted(branch: Branch, joints: tuple[Joint, ...]) -> tuple[Joint, float]:
+def _most_tilted(group: Group, joints: tuple[Joint, ...]) -> tuple[Joint, float]:
     """Return the joint whose axis differs most from the loop's common one at rest, and by how much [rad]."""
-    system = branch.system
-    T = system.arrays.matrices(branch.Q[None])[:, 0]
+    system = group.system
+    T = system.arrays.matrices(group.Q[None])[:, 0]
     axes = np.array([(T[system.parts.index(j.parent)] @ j.T_parent_connector.matrix)[:3, 2] for j in joints])
     axes *= np.where(axes @ axes[0] < 0, -1.0, 1.0)[:, None]
     common = np.median(axes, axis=0)
@@ -170,8 +167,8 @@ def _most_tilted(branch: Branch, joints: tuple[Joint, ...]) -> tuple[Joint, floa
     return joints[worst], float(tilt[worst])
 
 
-def _mobility_findings(branch: Branch) -> list[Finding]:
-    analysis, system = branch.analysis, branch.system
+def _mobility_findings(group: Group) -> list[Finding]:
+    analysis, system = group.analysis, group.system
     where = f"joints.{system.loops[0].joint.name}" if system.loops else "couplings"
     parts = system.loops[0].parts if system.loops else ()
     found = []
@@ -195,10 +192,10 @@ def _mobility_findings(branch: Branch) -> list[Finding]:
         found.append(
             Finding(code="W_NEAR_SINGULAR", where=where, message=message, hint=hint, parts=parts, value=analysis.near, limit=NEAR_SINGULAR)
         )
-    for group in idle_parts(system, analysis):
-        message = f"{' and '.join(group)} can move while all other parts stand still."
+    for idle in idle_parts(system, analysis):
+        message = f"{' and '.join(idle)} can move while all other parts stand still."
         hint = "This is right for a leg that may spin; otherwise fix it."
-        found.append(Finding(code="W_IDLE_FREEDOM", where=f"parts.{group[0]}", message=message, hint=hint, parts=group))
+        found.append(Finding(code="W_IDLE_FREEDOM", where=f"parts.{idle[0]}", message=message, hint=hint, parts=idle))
     return found
 
 

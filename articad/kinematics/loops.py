@@ -10,24 +10,23 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
 from articad.connectors import SE3, FloatArray
 from articad.errors import KinematicsError
 from articad.kinematics.batch import TreeArrays
 from articad.kinematics.equations import BatchEquations, CouplingEquations, closures
 from articad.kinematics.factors import one_thread, singular_values, svd
-from articad.kinematics.joints import Coupling, Joint
+from articad.kinematics.joints import Coupling, Joint, JointLimits, JointType
 from articad.kinematics.layout import IndexArray, Layout
 from articad.kinematics.single import SingleEquations
-from articad.kinematics.tree import Edge, KinematicTree
-
-BoolArray = npt.NDArray[np.bool_]
+from articad.kinematics.ties import Basis, BoolArray, Ties
+from articad.kinematics.ties import missed as tie_errors
+from articad.kinematics.tree import KinematicTree
 
 CLOSED = 1e-10  # |t|/L and rad: a loop with a smaller residual is closed
 RESIDUAL_TARGET = 1e-12  # where the iteration stops, before one more polishing step
@@ -90,7 +89,8 @@ class Loop:
 class ClosureSystem:
     """Equations of loops and couplings in the coordinates of the joints that take part.
 
-    Only the parts that loops need are placed. Freedoms are scaled: a length counts in units of L.
+    Only the parts that loops need are placed, and only joints that a constraint touches have coordinates here: others on the way
+    stand as they rest, which no equation sees. Freedoms are scaled: a length counts in units of L. Every loop has an L of its own.
 
     Args:
         tree: Which carries all parts.
@@ -105,28 +105,44 @@ class ClosureSystem:
     def __init__(self, tree: KinematicTree, layout: Layout, loop_joints: Sequence[Joint], couplings: Sequence[Coupling]) -> None:
         self.couplings = tuple(couplings)
         coupled = {layout.coordinates[layout.column_of[name]].joint for c in couplings for name in (c.a, c.b)}
-        tied = [joint for joint in layout.joints if joint.name in coupled]
-        edges = _edges_below(tree, [part for joint in (*loop_joints, *tied) for part in (joint.parent, joint.child)])
-        kept = {edge.joint.name for edge in edges} | {joint.name for joint in loop_joints}
-        self.layout = Layout([joint for joint in layout.joints if joint.name in kept])
+        looped = {joint.name for closing in loop_joints for joint in (closing, *tree.joints_between(closing.parent, closing.child))}
+        self.layout = Layout([joint for joint in layout.joints if joint.name in coupled or joint.name in looped])
         self.columns = _places(layout.columns, self.layout.columns)  # of this system's columns among all
         self.freedoms = _places(layout.freedoms, self.layout.freedoms)
-        subtree = KinematicTree(tree.ground, edges)
+        placed = [part for joint in (*loop_joints, *self.layout.joints) for part in (joint.parent, joint.child)]
+        subtree = _subtree(tree, placed, coupled | looped)
         self.parts = subtree.parts
         self.loops = tuple(_loop(subtree, joint) for joint in loop_joints)
-        self.length = _characteristic_length(self.layout.joints)
-        if not math.isfinite(self.length):
+        self.length = characteristic_length(self.layout.joints)
+        self.lengths: FloatArray = np.array([characteristic_length(loop.joints) for loop in self.loops])  # L of each loop
+        if not np.isfinite([self.length, *self.lengths]).all():
             raise KinematicsError("E_NONFINITE: the distances between joints are beyond what numbers can hold.")
         self.arrays = TreeArrays(subtree.parts, subtree, self.layout, SE3.identity(), loop_joints)
-        self.scale: FloatArray = np.where(self.layout.is_length, self.length, 1.0)
-        self._closures = closures(self.arrays, loop_joints, self.scale, self.length)
+        self.scale: FloatArray = np.where(self.layout.is_length, self._travels(), 1.0)
+        self._closures = closures(self.arrays, loop_joints, self.scale, self.lengths)
         self._many, self._tied = BatchEquations(self._closures), CouplingEquations(self.couplings, self.layout, self.scale, self.length)
-        self._linear = np.concatenate([np.zeros((6 * len(self.loops), self.layout.n_freedoms)), self._tied.J])
+        self._n_loop_rows = 6 * len(self.loops)
+        self._linear = np.concatenate([np.zeros((self._n_loop_rows, self.layout.n_freedoms)), self._tied.J])
         self.n_rows = len(self._linear)
-        constraints = np.concatenate([self._closures.spin, self._closures.slide, self._tied.J])
-        self.active: BoolArray = (constraints != 0).any(axis=0)
+        self.in_loops: BoolArray = (np.concatenate([self._closures.spin, self._closures.slide]) != 0).any(axis=0)
+        self.active: BoolArray = self.in_loops | (self._tied.J != 0).any(axis=0)
+        self.ties = Ties(self.couplings, self.layout, self.scale, self.in_loops)
         columns = range(self.layout.n_columns)
         self._written = np.array([c for c in columns if self.active[self.layout.freedom_of(c)]], dtype=np.intp)
+
+    def _travels(self) -> FloatArray:
+        """Return the length of each freedom: L of the smallest loop that it moves, or of the whole system."""
+        lengths = np.full(self.layout.n_freedoms, math.inf)
+        for loop, length in zip(self.loops, self.lengths, strict=True):
+            for joint in loop.joints:
+                own = self.layout.freedoms[joint.name]
+                lengths[own] = np.minimum(lengths[own], length)
+        return np.where(np.isfinite(lengths), lengths, self.length)
+
+    @property
+    def written(self) -> IndexArray:
+        """Places, among the columns of all joints, of the coordinates that this system determines or is driven by."""
+        return self.columns[self._written]
 
     @cached_property
     def _one(self) -> SingleEquations | None:
@@ -167,8 +183,13 @@ class ClosureSystem:
     def gaps(self, Q: FloatArray) -> FloatArray:
         """Return the distance `(loops,)` [mm] between each ghost and its connector at `Q` `(columns,)`."""
         r = self.residual_one(Q)[: 6 * len(self.loops)].reshape(-1, 6)
-        distance: FloatArray = np.linalg.norm(r[:, :3], axis=1) * self.length
+        distance: FloatArray = np.linalg.norm(r[:, :3], axis=1) * self.lengths
         return distance
+
+    def contradiction(self, Q: FloatArray) -> float:
+        """Return by how much couplings contradict each other at `Q` `(columns,)`: what no value of the tied coordinates mends."""
+        Q = self.ties.fitted(Q, np.zeros(self.layout.n_freedoms, dtype=bool))
+        return float(tie_errors(self._tied.residual(Q), Q))
 
     def move(self, Q: FloatArray, y: FloatArray) -> FloatArray:
         """Return coordinates after the scaled step `y` `(*batch, freedoms)`."""
@@ -181,10 +202,11 @@ class ClosureSystem:
     # --- closing
 
     def close(self, Q: FloatArray, free: BoolArray, *, iterations: int = 60, polish: bool = True) -> Closed:
-        """Close all loops from a start, moving only the free freedoms.
+        """Close all loops from a start, moving only the free freedoms; couplings hold exactly from the start on.
 
         Levenberg–Marquardt on the manifold: y = −V diag(s/(s² + λ²)) Uᵀ r with λ = μ·min(1, |r|), which vanishes at a
-        solution, so that convergence is quadratic; directions with σ < 1e-10 σ₁ are left out.
+        solution, so that convergence is quadratic; directions with σ < 1e-10 σ₁ are left out. Steps are taken in the independent
+        motions that couplings leave (`Ties.basis`), so that the loops' equations are all that is iterated.
 
         Args:
             Q: Start `(columns,)`.
@@ -196,37 +218,41 @@ class ClosureSystem:
             The best coordinates found, and whether they close.
         """
         with one_thread(self.n_rows * self.layout.n_freedoms):
-            return self._closed(Q, np.flatnonzero(free), iterations, polish=polish)
+            return self._closed(Q, free, iterations, polish=polish)
 
-    def _closed(self, Q: FloatArray, where: IndexArray, iterations: int, *, polish: bool) -> Closed:
-        r, J = self.evaluate_one(Q)
-        norm, mu, y = _norm(r), _DAMPING_START, np.zeros(self.layout.n_freedoms)
+    def _closed(self, Q: FloatArray, free: BoolArray, iterations: int, *, polish: bool) -> Closed:
+        Q, B = self.ties.fitted(Q, ~free), self.ties.basis(free)
+        missed = float(tie_errors(self._tied.residual(Q), Q))  # what no step changes: every step obeys the couplings
+        r, J = self._loops_at(Q)
+        norm, mu = _norm(r), _DAMPING_START
         done = 0
-        while norm > RESIDUAL_TARGET and done < iterations and where.size:
-            U, s, Vt = svd(J[:, where])
+        while norm > RESIDUAL_TARGET and done < iterations and B.size:
+            U, s, Vt = svd(B.of(J))
             b = U.T @ r
             while done < iterations:
                 done += 1
-                y[where] = _damped_step(s, b, Vt, mu * min(1.0, norm))
-                trial = self.move(Q, y)
-                r_trial, J_trial = self.evaluate_one(trial)
+                trial = self.move(Q, B.step(damped_step(s, b, Vt, mu * min(1.0, norm))))
+                r_trial, J_trial = self._loops_at(trial)
                 norm_trial = _norm(r_trial)
                 if norm_trial < norm:
                     Q, r, J, norm, mu = trial, r_trial, J_trial, norm_trial, mu * _DAMPING_FALL
                     break
                 if norm < CLOSED or mu > 1e12:  # at the rounding floor, or at a minimum that is no solution
-                    return Closed(Q, norm, done, J[:, where])
+                    return Closed(Q, norm + missed, done, J[:, free])
                 mu *= _DAMPING_RISE
-        if polish and where.size and _ROUNDING < norm <= CLOSED:
-            Q, norm = self._polished(Q, r, J, where)
-        return Closed(Q, norm, done, J[:, where])
+        if polish and B.size and _ROUNDING < norm <= CLOSED:
+            Q, norm = self._polished(Q, r, J, B)
+        return Closed(self.ties.fitted(Q, ~free), norm + missed, done, J[:, free])
 
-    def _polished(self, Q: FloatArray, r: FloatArray, J: FloatArray, where: IndexArray) -> tuple[FloatArray, float]:
-        y = np.zeros(self.layout.n_freedoms)
-        U, s, Vt = svd(J[:, where])
-        y[where] = _damped_step(s, U.T @ r, Vt, 0.0, RANK_TOLERANCE)
-        trial = self.move(Q, y)
-        norm, norm_trial = _norm(r), _norm(self.residual_one(trial))
+    def _loops_at(self, Q: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return the residuals of the loops alone and their Jacobian."""
+        r, J = self.evaluate_one(Q)
+        return r[: self._n_loop_rows], J[: self._n_loop_rows]
+
+    def _polished(self, Q: FloatArray, r: FloatArray, J: FloatArray, B: Basis) -> tuple[FloatArray, float]:
+        U, s, Vt = svd(B.of(J))
+        trial = self.move(Q, B.step(damped_step(s, U.T @ r, Vt, 0.0, RANK_TOLERANCE)))
+        norm, norm_trial = _norm(r), _norm(self.residual_one(trial)[: self._n_loop_rows])
         return (trial, norm_trial) if norm_trial <= max(norm, RESIDUAL_TARGET) else (Q, norm)
 
     def close_many(self, Q: FloatArray, free: BoolArray, *, iterations: int = 40) -> tuple[FloatArray, FloatArray]:
@@ -241,21 +267,23 @@ class ClosureSystem:
             The best coordinates `(batch, columns)` and their |r| `(batch,)`; what is not below `CLOSED` did not close.
         """
         with one_thread(self.n_rows * self.layout.n_freedoms):
-            return self._closed_many(Q.copy(), np.flatnonzero(free), iterations)
+            Q = self.ties.fitted(Q, ~free)
+            missed = tie_errors(self._tied.residual(Q), Q)
+            closed, norm = self._closed_many(Q.copy(), self.ties.basis(free), iterations)
+            return self.ties.fitted(closed, ~free), norm + missed
 
-    def _closed_many(self, Q: FloatArray, where: IndexArray, iterations: int) -> tuple[FloatArray, FloatArray]:
-        r, J = self.evaluate(Q)
+    def _closed_many(self, Q: FloatArray, B: Basis, iterations: int) -> tuple[FloatArray, FloatArray]:
+        r, J = self._loops_of(Q)
         norm = np.sqrt((r * r).sum(axis=1))
         mu = np.full(len(Q), _DAMPING_START)
         floor = np.zeros(len(Q), dtype=bool)
-        for _ in range(iterations if where.size else 0):
+        for _ in range(iterations if B.size else 0):
             at = np.flatnonzero((norm > RESIDUAL_TARGET) & ~floor)
             if not at.size:
                 break
-            y = np.zeros((at.size, self.layout.n_freedoms))
-            y[:, where] = _normal_step(J[at][:, :, where], r[at], mu[at] * np.minimum(1.0, norm[at]))
+            y = B.step(_normal_step(B.of(J[at]), r[at], mu[at] * np.minimum(1.0, norm[at])))
             trial = self.move(Q[at], y)
-            r_trial, J_trial = self.evaluate(trial)
+            r_trial, J_trial = self._loops_of(trial)
             norm_trial = np.sqrt((r_trial * r_trial).sum(axis=1))
             better = norm_trial < norm[at]
             won, lost = at[better], at[~better]
@@ -264,11 +292,13 @@ class ClosureSystem:
             mu[lost] *= _DAMPING_RISE
             floor[lost] |= (norm[lost] < CLOSED) | (mu[lost] > 1e12)
         at = np.flatnonzero((norm <= CLOSED) & (norm > 0))
-        if at.size and where.size:  # the last system gives one more step, below the rounding of the residual
-            y = np.zeros((at.size, self.layout.n_freedoms))
-            y[:, where] = _normal_step(J[at][:, :, where], r[at], np.zeros(at.size))
-            Q[at] = self.move(Q[at], y)
+        if at.size and B.size:  # the last system gives one more step, below the rounding of the residual
+            Q[at] = self.move(Q[at], B.step(_normal_step(B.of(J[at]), r[at], np.zeros(at.size))))
         return Q, norm
+
+    def _loops_of(self, Q: FloatArray) -> tuple[FloatArray, FloatArray]:
+        r, J = self.evaluate(Q)
+        return r[:, : self._n_loop_rows], J[:, : self._n_loop_rows]
 
     def to_system(self, Q_all: FloatArray) -> FloatArray:
         """Return this system's columns of the coordinates of all joints."""
@@ -286,7 +316,7 @@ def _norm(r: FloatArray) -> float:
     return math.sqrt(r @ r)
 
 
-def _damped_step(s: FloatArray, b: FloatArray, Vt: FloatArray, damping: float, dropped: float = _DROPPED) -> FloatArray:
+def damped_step(s: FloatArray, b: FloatArray, Vt: FloatArray, damping: float, dropped: float = _DROPPED) -> FloatArray:
     """Return −V diag(s/(s² + λ²)) b, without the directions that have no singular value, capped in length."""
     values, square = s.tolist(), damping * damping + 1e-300
     inverse = [-value / (value * value + square) if value > dropped * values[0] else 0.0 for value in values]
@@ -309,13 +339,27 @@ def _normal_step(J: FloatArray, r: FloatArray, damping: FloatArray) -> FloatArra
     return capped
 
 
-def _edges_below(tree: KinematicTree, parts: Sequence[str]) -> list[Edge]:
-    """Return the edges between the ground and these parts."""
-    needed: dict[str, Edge] = {}
-    for part in dict.fromkeys(parts):
-        for edge in tree.ancestors(part):
-            needed[edge.part] = edge
-    return [edge for edge in tree.edges if edge.part in needed]
+def _subtree(tree: KinematicTree, parts: Sequence[str], moving: set[str]) -> KinematicTree:
+    """Return the tree that carries these parts, from the part nearest to them that holds them all still.
+
+    Joints on the way that are not among `moving` stand at rest: where two connectors are to each other does not depend on them.
+    """
+    chains = [tree.ancestors(part) for part in dict.fromkeys(parts)]
+    still = 0
+    for edges in zip(*chains, strict=False):
+        if len({edge.part for edge in edges}) > 1 or edges[0].joint.name in moving:
+            break
+        still += 1
+    needed = {edge.part for chain in chains for edge in chain[still:]}
+    root = chains[0][still - 1].part if still else tree.ground
+    below = [edge for edge in tree.edges if edge.part in needed]
+    return KinematicTree(root, [edge if edge.joint.name in moving else edge._replace(joint=_held(edge.joint)) for edge in below])
+
+
+def _held(joint: Joint) -> Joint:
+    """Return the fixed joint that a joint is at rest."""
+    T = joint.T_parent_connector @ joint.motion(joint.rest)
+    return replace(joint, type=JointType.FIXED, T_parent_connector=T, limits=JointLimits(), rest=(), lead=0.0)
 
 
 def _loop(tree: KinematicTree, joint: Joint) -> Loop:
@@ -327,7 +371,7 @@ def _places(all_slices: dict[str, slice], kept: dict[str, slice]) -> IndexArray:
     return np.array([i for name in kept for i in range(all_slices[name].start, all_slices[name].stop)], dtype=np.intp)
 
 
-def _characteristic_length(joints: Sequence[Joint]) -> float:
+def characteristic_length(joints: Sequence[Joint]) -> float:
     """Return the median distance [mm] between connectors of one part; any length within a factor of 100 does as well."""
     origins: dict[str, list[FloatArray]] = {}
     for joint in joints:

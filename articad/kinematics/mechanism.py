@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property
 from typing import NamedTuple
 
@@ -24,7 +24,9 @@ from articad.kinematics.layout import Layout
 from articad.kinematics.linkage_findings import askew_error, loop_findings
 from articad.kinematics.mobility import NEARLY_FREE, REALISED, Redundancy, redundancies
 from articad.kinematics.motion import FeasibleRange, Sweep, feasible_range, sweep
+from articad.kinematics.path import path
 from articad.kinematics.reach import Reach, reach
+from articad.kinematics.solution import Solution
 from articad.kinematics.tree import KinematicTree
 
 
@@ -242,11 +244,40 @@ class Mechanism:
             `T_ground_part` of all parts in the order of `parts`, `(*batch, N, 7)` [mm, quaternion xyzw].
 
         Raises:
-            KinematicsError: If q is not finite or has another number of columns.
-            DeadPointError: If a loop would have to pass a dead point.
+            KinematicsError: If q is not finite or has another number of columns; E_SINGULAR, E_NOT_FOLLOWED.
+            DeadPointError: If a loop would have to pass a dead point. Of a batch it names the rows; `solve` returns the others.
             LoopError: E_LOOP_OPEN if a loop cannot be closed at rest.
         """
         return self.arrays.poses(self._columns(q))
+
+    def solve(self, q: npt.ArrayLike) -> Solution:
+        """Place every part where the mechanism reaches the drivers' values, and say where it does not.
+
+        Unlike `poses`, which refuses a batch of which one row is not reached. Limits are not looked at, as in `poses`.
+
+        Args:
+            q: Coordinates of the drivers [rad, mm], `(*batch, nq)`.
+
+        Returns:
+            Poses, NaN where not reached; a mask; and why the first row that is not reached is not.
+
+        Raises:
+            KinematicsError: If q is not finite or has another number of columns.
+            LoopError: E_LOOP_OPEN if a loop cannot be closed at rest.
+        """
+        values = self._finite_drivers(q)
+        batch = values.shape[:-1]
+        flat = values.reshape(math.prod(batch), self.nq)
+        if self.is_tree:
+            columns, reached = self.layout.normalized(flat), np.ones(len(flat), dtype=bool)
+        else:
+            columns, reached = self.branch.solve(flat)
+        findings = Findings() if reached.all() else self.branch.failure(flat, reached).findings
+        poses = np.array(self.arrays.poses(columns).data)
+        columns = np.where(reached[:, None], columns, np.nan)
+        poses[~reached] = np.nan
+        placed = SE3.from_unit_array(poses.reshape(*batch, *poses.shape[1:]))
+        return Solution(values, reached.reshape(batch), columns.reshape(*batch, self.layout.n_columns), placed, findings)
 
     def rest_poses(self) -> dict[str, SE3]:
         """Return the pose of every part at rest."""
@@ -331,16 +362,48 @@ class Mechanism:
         b = self.branch
         return redundancies(self.parts, self.ground, self.layout, b.system, b.analysis, b.Q_rest)
 
-    def reach(self, part: str, target: SE3 | npt.ArrayLike, T_part_frame: SE3 | None = None, *, starts: int = 8) -> Reach:
+    def reach(
+        self,
+        part: str,
+        target: SE3 | npt.ArrayLike,
+        T_part_frame: SE3 | None = None,
+        *,
+        starts: int = 32,
+        accept: Callable[[FloatArray], bool] | None = None,
+    ) -> Reach:
         """Return a configuration within limits that brings a frame of a part to a target, or how near it comes and what stops it.
 
         Args:
             part: The part that carries the frame.
             target: A pose in the ground frame, or a point `(3,)` [mm], which leaves the orientation free.
             T_part_frame: The frame in the part; the part's own frame by default.
-            starts: How many random configurations to try besides the rest pose.
+            starts: How many random configurations within limits to try besides the rest pose, until the target is reached.
+            accept: Tells of drivers' values `(nq,)` that reach the target whether they will do; others are looked for where not.
+
+        Raises:
+            KinematicsError: E_REACH_BARRED if the target is reached, but never as `accept` wants it.
         """
-        return reach(self, part, target, SE3.identity() if T_part_frame is None else T_part_frame, starts)
+        return reach(self, part, target, SE3.identity() if T_part_frame is None else T_part_frame, starts, accept)
+
+    def path(self, start: npt.ArrayLike, goal: npt.ArrayLike, *, accept: Callable[[FloatArray], bool] | None = None) -> FloatArray:
+        """Return waypoints of the drivers from one configuration to another, straight lines between which keep to branch and limits.
+
+        Straight where that is free, else two random trees that meet (RRT-Connect), seeded: the same question has the same answer.
+        Limits are looked at every 0.1 rad or lengths of a link, which is sampled, not proved.
+
+        Args:
+            start: Values of the drivers `(nq,)` [rad, mm].
+            goal: Likewise; the way ends in the configuration that `poses` has there.
+            accept: Tells of drivers' values `(nq,)` on the way whether they will do, such as that no parts meet.
+
+        Returns:
+            `(n, nq)`, start and goal included.
+
+        Raises:
+            LimitError: If start or goal is outside limits, followers included.
+            KinematicsError: E_NO_PATH if no way was found.
+        """
+        return path(self, start, goal, accept)
 
     def part_index(self, part: str) -> int:
         """Return the place of a part in the array of poses.
@@ -356,14 +419,18 @@ class Mechanism:
 
     def _columns(self, q: npt.ArrayLike) -> FloatArray:
         """Return the coordinates of all joints `(*batch, n_columns)` at the drivers' values."""
-        values = self._drivers_array(q)
+        values = self._finite_drivers(q)
         if self.is_tree:
             return self.layout.normalized(values)
-        if not np.isfinite(values).all():
-            raise KinematicsError("E_NONFINITE: a coordinate is NaN or infinite.")
         batch = values.shape[:-1]
         flat = values.reshape(math.prod(batch), self.nq)
         return self.branch.configurations(flat).reshape(*batch, self.layout.n_columns)
+
+    def _finite_drivers(self, q: npt.ArrayLike) -> FloatArray:
+        values = self._drivers_array(q)
+        if not np.isfinite(values).all():
+            raise KinematicsError("E_NONFINITE: a coordinate is NaN or infinite.")
+        return values
 
     def _drivers_array(self, q: npt.ArrayLike) -> FloatArray:
         values = np.asarray(q, dtype=np.float64)

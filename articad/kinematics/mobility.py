@@ -248,26 +248,23 @@ def motions(system: ClosureSystem, Q: FloatArray, tolerance: float = RANK_TOLERA
     return N, ratios
 
 
-def choose_drivers(layout: Layout, system: ClosureSystem, freedoms: FloatArray) -> tuple[tuple[int, ...], tuple[Joint, ...]]:
-    """Choose which columns drive: those of marked joints first, then the others, each if it is independent of the chosen.
+def choose_drivers(system: ClosureSystem, freedoms: FloatArray) -> tuple[tuple[int, ...], tuple[Joint, ...]]:
+    """Choose which coordinates drive: those of marked joints first, then the others, each if it is independent of the chosen.
 
     Args:
-        layout: Of all joints of the mechanism.
         system: The equations.
         freedoms: Motions that the constraints leave `(freedoms of the system, mobility)`.
 
     Returns:
-        Columns of all joints in order of declaration, and the marked joints that cannot drive.
+        Columns of the system in order of declaration, and the marked joints that cannot drive.
     """
     basis: list[FloatArray] = []
     chosen: list[int] = []
     refused: list[Joint] = []
+    layout = system.layout
     for joint in sorted(layout.joints, key=lambda joint: not joint.driver):
-        columns = layout.columns[joint.name]
-        if joint.name not in system.layout.columns or not system.active[system.layout.freedoms[joint.name]].any():
-            chosen.extend(range(columns.start, columns.stop))
-            continue
-        rows = list(freedoms[system.layout.freedoms[joint.name]])
+        columns, own = layout.columns[joint.name], layout.freedoms[joint.name]
+        rows = list(freedoms[own])
         if joint.type is JointType.BALL:
             grown = _extended(basis, rows)
             if len(grown) == len(basis) + 3:
@@ -282,7 +279,7 @@ def choose_drivers(layout: Layout, system: ClosureSystem, freedoms: FloatArray) 
             if len(grown) > len(basis):
                 basis, taken = grown, taken + 1
                 chosen.append(columns.start + offset)
-        if joint.driver and not taken:
+        if joint.driver and not taken and system.active[own].all():
             refused.append(joint)
     return tuple(sorted(chosen)), tuple(refused)
 

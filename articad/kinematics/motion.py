@@ -13,11 +13,11 @@ import numpy as np
 from articad.connectors import SE3, FloatArray
 from articad.errors import KinematicsError, UnknownJointError
 from articad.findings import Finding, Findings
-from articad.kinematics.branch import Branch, shown
+from articad.kinematics.branch import shown
 from articad.kinematics.configuration import Configuration
 from articad.kinematics.continuation import Stop, Trace
 from articad.kinematics.joints import LIMIT_SLACK, Coordinate, JointType, swing, twist
-from articad.kinematics.track import Track
+from articad.kinematics.track import Period, Track
 
 if TYPE_CHECKING:
     from articad.kinematics.mechanism import Mechanism
@@ -92,16 +92,15 @@ def sweep(mechanism: Mechanism, driver: str, lo: float, hi: float, steps: int, a
     q = start_values(mechanism, at)
     track = track_of(mechanism, index, q, certify=certify)
     if track is None:
-        columns = np.tile(mechanism.configuration(q).columns, (steps, 1))
-        columns[:, mechanism.driver_columns[index]] = values
-        configuration = Configuration(mechanism.joints, columns)
+        rows = np.tile(q, (steps, 1))
+        rows[:, index] = values
+        configuration = mechanism.configuration(rows)
         findings = Findings(_limit_findings(coordinate, configuration, values))
         return Sweep(mechanism, coordinate, values, configuration, "certified", "a tree has one branch", 0.0, findings)
-    branch = mechanism.branch
     Q, reached, proved = track.evaluate(values)
     found = [] if reached.all() else [_stop_finding(track, coordinate, float(v)) for v in (lo, hi)]
     base = mechanism.configuration(q).columns
-    configuration = Configuration(mechanism.joints, branch.system.into_all(base, Q[reached]))
+    configuration = Configuration(mechanism.joints, track.follower.system.into_all(base, Q[reached]))
     found += _limit_findings(coordinate, configuration, values[reached])
     certified = bool(certify and proved[reached].all() and reached.any())
     tube = track.largest_tube() if certified else 0.0
@@ -132,52 +131,89 @@ def feasible_range(mechanism: Mechanism, driver: str, at: Mapping[str, float] | 
         lower, upper = coordinate.lower, coordinate.upper
         reasons = ["endless" if math.isinf(v) else "declared limit" for v in (lower, upper)]
         return FeasibleRange(coordinate, lower, upper, reasons[0], reasons[1], Findings())
-    branch = mechanism.branch
     sides: dict[int, tuple[float, str]] = {}
     for sign in (1, -1):
-        if -sign in sides and sides[-sign][1] == "endless":
+        if -sign in sides and sides[-sign][1] == "endless" and _is_symmetric(track):
             sides[sign] = (sign * math.inf, "endless")
         else:
-            sides[sign] = _side_range(branch, track, coordinate, sign)
+            sides[sign] = _side_range(track, coordinate, sign)
     (upper, upper_reason), (lower, lower_reason) = sides[1], sides[-1]
     found = _range_findings(coordinate, lower, upper, lower_reason, upper_reason)
     return FeasibleRange(coordinate, lower, upper, lower_reason, upper_reason, Findings(found))
 
 
-def _side_range(branch: Branch, track: Track, coordinate: Coordinate, sign: int) -> tuple[float, str]:
-    bound = coordinate.upper if sign > 0 else coordinate.lower
-    declared = math.isfinite(bound)
+def _is_symmetric(track: Track) -> bool:
+    """Tell whether what goes on for ever one way does so the other way too: it comes back, and what goes on turning has no limits."""
+    period = track.repeat(1)
+    if period is None:
+        return False
+    limited = [math.isfinite(c.lower) or math.isfinite(c.upper) for c in track.follower.system.layout.coordinates if c.unit != "1"]
+    turning = [bool(a) for a, c in zip(period.advance, track.follower.system.layout.coordinates, strict=True) if c.unit != "1"]
+    return not any(has_limit and turns for has_limit, turns in zip(limited, turning, strict=True))
+
+
+def _side_range(track: Track, coordinate: Coordinate, sign: int) -> tuple[float, str]:
+    bound, why = _bound(track, coordinate, sign)
     came_back = False
-    if declared:
+    if math.isfinite(bound):
         trace = track.side(bound) if sign * (bound - track.start) > 0 else None
     else:
         trace, came_back = _followed(track, coordinate, sign)
     if trace is None:  # at rest on its limit
-        return track.start, "declared limit"
+        return track.start, why
     end, reason = track.value(sign, trace.end), str(trace.stop)
     if trace.stop is Stop.ARRIVED:
-        end, reason = (bound, "declared limit") if declared else (end, "not followed further")
-    cut = _first_violation(branch, track, trace, sign, coordinate)
+        end, reason = (bound, why) if math.isfinite(bound) else (end, str(Stop.STEPS))
+    cut = _first_violation(track, trace, sign, coordinate)
     if cut is not None:
         return cut
     return (sign * math.inf, "endless") if came_back else (end, reason)
 
 
+def _bound(track: Track, coordinate: Coordinate, sign: int) -> tuple[float, str]:
+    """Return how far the driver may go by its own limits and those of what couplings tie to it, and which of them it is."""
+    system = track.follower.system
+    bound, why = (coordinate.upper if sign > 0 else coordinate.lower), "declared limit"
+    for column, ratio, offset in system.ties.tied_to(track.column):
+        other = system.layout.coordinates[column]
+        limit = ((other.upper if ratio * sign > 0 else other.lower) - offset) / ratio
+        if sign * (bound - limit) > LIMIT_SLACK * max(1.0, 1.0 / abs(ratio)):
+            bound, why = limit, f"limit of {other.name}"
+    return bound, why
+
+
 def _followed(track: Track, coordinate: Coordinate, sign: int) -> tuple[Trace, bool]:
-    """Follow an unlimited driver until the configuration comes back."""
-    if coordinate.unit != "rad":
-        return track.side(track.start + sign * _LONGEST_TRAVEL * track.follower.system.length), False
-    came_back = track.period(sign) is not None
-    return track.side(track.start + sign * 2 * math.pi), came_back
+    """Follow an unlimited driver until all loops come back, or as far as the joints with limits of their own let it."""
+    system = track.follower.system
+    if not system.loops:
+        return track.side(track.start + sign * 2 * math.pi), True
+    if track.turn is None:
+        far = 2 * math.pi if coordinate.unit == "rad" else _LONGEST_TRAVEL * system.length
+        return track.side(track.start + sign * far), False
+    period = track.repeat(sign)
+    if period is None:
+        return track.side(track.start + sign * track.turn), False
+    turns = _turns_to_limits(track, period)
+    return track.side(track.start + sign * period.length * turns), turns == 1
 
 
-def _first_violation(branch: Branch, track: Track, trace: Trace, sign: int, coordinate: Coordinate) -> tuple[float, str] | None:
+def _turns_to_limits(track: Track, period: Period) -> float:
+    """Return how many periods bring a coordinate that goes on turning to one of its limits; 1 if none has any."""
+    layout, most = track.follower.system.layout, 1.0
+    for i, c in enumerate(layout.coordinates):
+        limit = c.upper if period.advance[i] > 0 else c.lower
+        if period.advance[i] and math.isfinite(limit) and c.unit != "1":
+            most = max(most, math.ceil(abs((limit - track.Q[i]) / period.advance[i])) + 1.0)
+    return most
+
+
+def _first_violation(track: Track, trace: Trace, sign: int, coordinate: Coordinate) -> tuple[float, str] | None:
     """Return where another joint first leaves its limits, and which one; None if none does."""
     stations = [node.s for node in trace.nodes] + ([trace.end] if trace.end > trace.nodes[-1].s else [])
     if len(stations) == 1:  # stopped where it stands
         return None
     fine = np.unique(np.concatenate([np.linspace(a, b, _SAMPLES_PER_STEP + 1) for a, b in itertools.pairwise(stations)]))
-    names, margins = _margins(branch, track, sign, fine, coordinate)
+    names, margins = _margins(track, sign, fine, coordinate)
     if not names or not (margins < -LIMIT_SLACK).any():
         return None
     for _ in range(_ROUNDS):
@@ -186,7 +222,7 @@ def _first_violation(branch: Branch, track: Track, trace: Trace, sign: int, coor
             break
         a, b = fine[first - 1], fine[first]
         fine = np.linspace(a, b, _SPLITS + 1)
-        names, margins = _margins(branch, track, sign, fine, coordinate)
+        names, margins = _margins(track, sign, fine, coordinate)
         if not (margins < -LIMIT_SLACK).any():
             break
     first = int(np.argmax((margins < -LIMIT_SLACK).any(axis=0)))
@@ -194,11 +230,11 @@ def _first_violation(branch: Branch, track: Track, trace: Trace, sign: int, coor
     return track.value(sign, float(fine[max(0, first - 1)])), f"limit of {names[worst]}"
 
 
-def _margins(branch: Branch, track: Track, sign: int, s: FloatArray, coordinate: Coordinate) -> tuple[list[str], FloatArray]:
+def _margins(track: Track, sign: int, s: FloatArray, coordinate: Coordinate) -> tuple[list[str], FloatArray]:
     """Return for every bounded coordinate but the driver's how far it is inside its limits, `(names, len(s))`."""
     values = np.array([track.value(sign, float(x)) for x in s])
     Q, reached, _ = track.evaluate(values)
-    layout = branch.system.layout
+    layout = track.follower.system.layout
     names: list[str] = []
     rows: list[FloatArray] = []
     for joint in layout.joints:
@@ -222,16 +258,17 @@ def _margins(branch: Branch, track: Track, sign: int, s: FloatArray, coordinate:
 
 def _range_findings(c: Coordinate, lower: float, upper: float, lower_reason: str, upper_reason: str) -> list[Finding]:
     """Say where the declared range is larger than what the loop allows."""
-    codes = {"dead point": "E_DEAD_POINT", "singular": "E_SINGULAR"}
+    codes = {"dead point": "E_DEAD_POINT", "singular": "E_SINGULAR", str(Stop.STEPS): "E_NOT_FOLLOWED"}
     found = []
     for reason, value in ((lower_reason, lower), (upper_reason, upper)):
         code = codes.get(reason, "E_LOOP_LIMIT" if reason.startswith("limit of ") else None)
         bounded = math.isfinite(c.lower) or math.isfinite(c.upper)
-        if code is None or (not bounded and code == "E_DEAD_POINT"):  # an endless driver follows as far as the loop lets it
+        if code is None or (not bounded and code in {"E_DEAD_POINT", "E_NOT_FOLLOWED"}):  # an endless driver follows as far as it can
             continue
         declared = f"[{shown(c.lower, c.unit)}, {shown(c.upper, c.unit)}]"
         reached = f"[{shown(lower, c.unit)}, {shown(upper, c.unit)}]"
-        why = {"E_DEAD_POINT": "a dead point", "E_SINGULAR": "a singular configuration"}.get(code, f"the {reason}")
+        whys = {"E_DEAD_POINT": "a dead point", "E_SINGULAR": "a singular configuration", "E_NOT_FOLLOWED": "it was not followed beyond"}
+        why = whys.get(code, f"the {reason}")
         message = f"driver {c.name!r} declared {declared} but the loop reaches only {reached}: {why} at {shown(value, c.unit)}."
         hint = f"Set these limits: {reached}."
         found.append(Finding(code=code, where=f"joints.{c.joint}", message=message, hint=hint, value=value, unit=c.unit))
@@ -244,7 +281,7 @@ def _stop_finding(track: Track, c: Coordinate, asked: float) -> Finding | None:
     end = track.value(sign, trace.end)
     if trace.stop is Stop.ARRIVED or sign * (end - asked) >= 0:
         return None
-    code = "E_DEAD_POINT" if trace.stop is Stop.DEAD_POINT else "E_SINGULAR"
+    code = {Stop.DEAD_POINT: "E_DEAD_POINT", Stop.STEPS: "E_NOT_FOLLOWED"}.get(trace.stop, "E_SINGULAR")
     message = f"driver {c.name!r} was asked for {shown(asked, c.unit)} but the loop reaches only {shown(end, c.unit)}."
     return Finding(code=code, where=f"joints.{c.joint}", message=message, hint="Stay on this side of it.", value=end, unit=c.unit)
 
@@ -302,13 +339,11 @@ def start_values(mechanism: Mechanism, at: Mapping[str, float] | None) -> FloatA
 
 def track_of(mechanism: Mechanism, index: int, q: FloatArray, *, certify: bool = False) -> Track | None:
     """Return the way of a driver through q; None if nothing follows it, as in a tree."""
-    if mechanism.is_tree:
+    driven = None if mechanism.is_tree else mechanism.branch.driven_by(mechanism.driver_columns[index])
+    if driven is None:
         return None
-    branch = mechanism.branch
-    places = np.flatnonzero(branch.system.columns == mechanism.driver_columns[index])
-    if not places.size or not branch.system.active[branch.system.layout.freedom_of(int(places[0]))]:
-        return None
-    if np.array_equal(q, mechanism.rest):
-        return branch.track(int(places[0]), certify=certify)
-    start = branch.system.to_system(branch.configurations(q[None])[0])
-    return branch.track(int(places[0]), certify=certify, Q=start)
+    group, place = driven
+    start = group.system.to_system(mechanism.branch.configurations(q[None])[0])
+    if np.array_equal(start, group.Q):
+        return group.track(place, certify=certify)
+    return group.track(place, certify=certify, Q=start)

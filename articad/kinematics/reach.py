@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -10,9 +11,11 @@ import numpy.typing as npt
 
 from articad.connectors import SE3, FloatArray, quaternion
 from articad.errors import KinematicsError
+from articad.findings import Finding
 from articad.kinematics.configuration import Configuration
+from articad.kinematics.factors import svd
 from articad.kinematics.joints import JointType
-from articad.kinematics.loops import CLOSED
+from articad.kinematics.loops import CLOSED, characteristic_length, damped_step
 
 if TYPE_CHECKING:
     from articad.kinematics.mechanism import Mechanism
@@ -23,7 +26,6 @@ _ITERATIONS = 150
 _CLOSURE_WEIGHT = 10.0  # closing loops matters more than the target while both are open
 _AT_LIMIT = 1e-9  # rad or mm: a coordinate this near its limit is at it
 _SAME = 1e-6  # rad, mm: the drivers alone must lead to the same configuration
-_LARGEST_STEP = 0.5  # rad, or lengths of the mechanism
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,9 +58,7 @@ class _Task:
     def __init__(self, mechanism: Mechanism, part: str, target: SE3, frame: SE3, *, oriented: bool) -> None:
         self.mechanism, self.index, self.target, self.frame, self.oriented = mechanism, mechanism.part_index(part), target, frame, oriented
         self.branch = None if mechanism.is_tree else mechanism.branch
-        T = mechanism.arrays.matrices(mechanism.layout.rest[None])[:, 0]
-        spread = float(np.linalg.norm(np.ptp(T[:, :3, 3], axis=0)))
-        self.length = self.branch.system.length if self.branch else (spread or 100.0)
+        self.length = characteristic_length(mechanism.joints)  # of links, not of part frames, which may all be one
         self.scale: FloatArray = np.where(mechanism.layout.is_length, self.length, 1.0)
 
     def evaluate(self, Q: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -90,7 +90,14 @@ class _Task:
         return float(placed.distance_to(self.target)), quaternion.log(turn) if self.oriented else np.zeros(3)
 
 
-def reach(mechanism: Mechanism, part: str, target: SE3 | npt.ArrayLike, frame: SE3, starts: int) -> Reach:
+def reach(
+    mechanism: Mechanism,
+    part: str,
+    target: SE3 | npt.ArrayLike,
+    frame: SE3,
+    starts: int,
+    accept: Callable[[FloatArray], bool] | None = None,
+) -> Reach:
     """Bring a frame of a part to a target; see `Mechanism.reach`."""
     goal = target if isinstance(target, SE3) else SE3.from_translation(target)
     if goal.batch_shape:
@@ -106,27 +113,35 @@ def reach(mechanism: Mechanism, part: str, target: SE3 | npt.ArrayLike, frame: S
         found = _approached(task, Q)
         if found is not None and (best is None or found.distance + task.length * found.angle < best.distance + task.length * best.angle):
             best = found
-        if best is not None and best.ok:
-            return best
+        if found is not None and found.ok and (accept is None or accept(found.q)):
+            return found
+    if accept is not None and best is not None and best.ok:
+        message = f"{part!r} reaches the target, but only in configurations that are not accepted."
+        hint = "Move the target, or what is in the way."
+        finding = Finding(code="E_REACH_BARRED", where=f"parts.{part}", message=message, hint=hint, parts=(part,))
+        raise KinematicsError(str(finding), findings=[finding])
     assert best is not None  # the rest pose itself is always a configuration of its own branch
     return best
 
 
 def _approached(task: _Task, Q: FloatArray) -> Reach | None:
-    """Levenberg–Marquardt within the box of the limits; None if the drivers' own branch does not lead where it ends."""
+    """Levenberg–Marquardt within the box of the limits; None if the drivers' own branch does not lead where it ends.
+
+    y = −V diag(s/(s² + λ²)) Uᵀ r with λ = μ·min(1, |r|): defined at singular configurations too, such as a stretched arm.
+    """
     mechanism, layout = task.mechanism, task.mechanism.layout
     Q = _clamped(mechanism, Q)
     r, J = task.evaluate(Q)
-    norm, mu = float(np.linalg.norm(r)), 1e-2
+    norm, mu = float(np.linalg.norm(r)), 0.1
     for _ in range(_ITERATIONS):
         if norm < 1e-13:
             break
         free = ~_held(mechanism, Q, -(J.T @ r))
-        Jf = J[:, free]
-        H = Jf.T @ Jf
+        if not free.any():
+            break
+        U, s, Vt = svd(J[:, free])
         y = np.zeros(layout.n_freedoms)
-        y[free] = -np.linalg.solve(H + (mu * min(1.0, norm) ** 2 + 1e-14) * np.eye(len(H)), Jf.T @ r)
-        y *= min(1.0, _LARGEST_STEP / max(float(np.abs(y).max(initial=0.0)), 1e-300))
+        y[free] = damped_step(s, U.T @ r, Vt, mu * min(1.0, norm))
         trial = _clamped(mechanism, layout.integrate(Q, y * task.scale))
         r_trial, J_trial = task.evaluate(trial)
         norm_trial = float(np.linalg.norm(r_trial))

@@ -66,7 +66,7 @@ class SingleEquations:
 
     def __init__(self, closures: Closures) -> None:
         arrays = closures.arrays
-        self._per_length = 1.0 / closures.length
+        self._per_length: list[float] = (1.0 / closures.lengths).tolist()
         self._steps: list[_Step] = []
         carrier: dict[int, tuple[int, FloatArray]] = {arrays.ground: (0, arrays.T_ground.matrix)}  # of a part: a frame, the part in it
         ray_of: dict[int, int] = {}
@@ -92,15 +92,19 @@ class SingleEquations:
     def residual(self, Q: FloatArray) -> list[float]:
         """Return the residuals (6 per loop) at `Q` `(columns,)`."""
         frames, _ = self._walk(Q.tolist())
-        return [value for A, B in self._closing(frames) for value in self._mismatch(A, B)]
+        return [
+            value
+            for (A, B), per_length in zip(self._closing(frames), self._per_length, strict=True)
+            for value in _mismatch(A, B, per_length)
+        ]
 
     def fill(self, Q: FloatArray, J: FloatArray) -> list[float]:
         """Return the residuals, and write their derivatives by the freedoms that change them into `J` `(rows, freedoms)`."""
         frames, rays = self._walk(Q.tolist())
         r: list[float] = []
         for i, (A, B) in enumerate(self._closing(frames)):
-            mismatch = self._mismatch(A, B)
-            columns = self._columns(A, B, mismatch[3:], rays, self._shares[i])
+            mismatch = _mismatch(A, B, self._per_length[i])
+            columns = _columns(A, B, mismatch[3:], rays, self._shares[i], self._per_length[i])
             J[6 * i : 6 * i + 6, self._freedoms[i]] = np.array(columns).reshape(-1, 6).T
             r += mismatch
         return r
@@ -121,44 +125,46 @@ class SingleEquations:
         """Return of each loop the ghost's connector A and the real one B."""
         return [(_times(frames[ghost.near], ghost.P), _times(frames[real.near], real.P)) for ghost, real in self._ends]
 
-    def _mismatch(self, A: Numbers, B: Numbers) -> list[float]:
-        """Return [t(M)/L ; log R(M)] of M = A⁻¹B."""
-        a0, a1, a2, a3, a4, a5, a6, a7, a8, ax, ay, az = A
-        b0, b1, b2, b3, b4, b5, b6, b7, b8, bx, by, bz = B
-        dx, dy, dz = (bx - ax) * self._per_length, (by - ay) * self._per_length, (bz - az) * self._per_length
-        cosine = 0.5 * (a0 * b0 + a1 * b1 + a2 * b2 + a3 * b3 + a4 * b4 + a5 * b5 + a6 * b6 + a7 * b7 + a8 * b8) - 0.5
-        t = [a0 * dx + a1 * dy + a2 * dz, a3 * dx + a4 * dy + a5 * dz, a6 * dx + a7 * dy + a8 * dz]
-        if cosine < NEAR_PI:
-            return t + _logarithm(A, B)
-        x = 0.5 * (a6 * b3 + a7 * b4 + a8 * b5 - a3 * b6 - a4 * b7 - a5 * b8)
-        y = 0.5 * (a0 * b6 + a1 * b7 + a2 * b8 - a6 * b0 - a7 * b1 - a8 * b2)
-        z = 0.5 * (a3 * b0 + a4 * b1 + a5 * b2 - a0 * b3 - a1 * b4 - a2 * b5)
-        sine = math.sqrt(x * x + y * y + z * z) + 1e-300  # never zero, and never seen
-        factor = math.atan2(sine, cosine) / sine
-        return [*t, x * factor, y * factor, z * factor]
 
-    def _columns(
-        self, A: Numbers, B: Numbers, phi: Sequence[float], rays: Sequence[Numbers], shares: Sequence[tuple[int, float, float]]
-    ) -> list[float]:
-        """Return six derivatives for each share: of t(M)/L by its slide and its moment about B, of log R(M) by its spin."""
-        a0, a1, a2, a3, a4, a5, a6, a7, a8, _, _, _ = A
-        bx, by, bz = B[9:]
-        w0, w1, w2, w3, w4, w5, w6, w7, w8 = _turned_log_jacobian(A, phi)
-        columns: list[float] = []
-        for ray, spin, slide in shares:
-            ux, uy, uz, ox, oy, oz = rays[ray]
-            sx, sy, sz = ux * spin, uy * spin, uz * spin
-            dx, dy, dz = (bx - ox) * self._per_length, (by - oy) * self._per_length, (bz - oz) * self._per_length
-            vx, vy, vz = sy * dz - sz * dy + ux * slide, sz * dx - sx * dz + uy * slide, sx * dy - sy * dx + uz * slide
-            columns += (
-                a0 * vx + a1 * vy + a2 * vz,
-                a3 * vx + a4 * vy + a5 * vz,
-                a6 * vx + a7 * vy + a8 * vz,
-                w0 * sx + w1 * sy + w2 * sz,
-                w3 * sx + w4 * sy + w5 * sz,
-                w6 * sx + w7 * sy + w8 * sz,
-            )
-        return columns
+def _mismatch(A: Numbers, B: Numbers, per_length: float) -> list[float]:
+    """Return [t(M)/L ; log R(M)] of M = A⁻¹B."""
+    a0, a1, a2, a3, a4, a5, a6, a7, a8, ax, ay, az = A
+    b0, b1, b2, b3, b4, b5, b6, b7, b8, bx, by, bz = B
+    dx, dy, dz = (bx - ax) * per_length, (by - ay) * per_length, (bz - az) * per_length
+    cosine = 0.5 * (a0 * b0 + a1 * b1 + a2 * b2 + a3 * b3 + a4 * b4 + a5 * b5 + a6 * b6 + a7 * b7 + a8 * b8) - 0.5
+    t = [a0 * dx + a1 * dy + a2 * dz, a3 * dx + a4 * dy + a5 * dz, a6 * dx + a7 * dy + a8 * dz]
+    if cosine < NEAR_PI:
+        return t + _logarithm(A, B)
+    x = 0.5 * (a6 * b3 + a7 * b4 + a8 * b5 - a3 * b6 - a4 * b7 - a5 * b8)
+    y = 0.5 * (a0 * b6 + a1 * b7 + a2 * b8 - a6 * b0 - a7 * b1 - a8 * b2)
+    z = 0.5 * (a3 * b0 + a4 * b1 + a5 * b2 - a0 * b3 - a1 * b4 - a2 * b5)
+    sine = math.sqrt(x * x + y * y + z * z) + 1e-300  # never zero, and never seen
+    factor = math.atan2(sine, cosine) / sine
+    return [*t, x * factor, y * factor, z * factor]
+
+
+def _columns(
+    A: Numbers, B: Numbers, phi: Sequence[float], rays: Sequence[Numbers], shares: Sequence[tuple[int, float, float]], per_length: float
+) -> list[float]:
+    """Return six derivatives for each share: of t(M)/L by its slide and its moment about B, of log R(M) by its spin."""
+    a0, a1, a2, a3, a4, a5, a6, a7, a8, _, _, _ = A
+    bx, by, bz = B[9:]
+    w0, w1, w2, w3, w4, w5, w6, w7, w8 = _turned_log_jacobian(A, phi)
+    columns: list[float] = []
+    for ray, spin, slide in shares:
+        ux, uy, uz, ox, oy, oz = rays[ray]
+        sx, sy, sz = ux * spin, uy * spin, uz * spin
+        dx, dy, dz = (bx - ox) * per_length, (by - oy) * per_length, (bz - oz) * per_length
+        vx, vy, vz = sy * dz - sz * dy + ux * slide, sz * dx - sx * dz + uy * slide, sx * dy - sy * dx + uz * slide
+        columns += (
+            a0 * vx + a1 * vy + a2 * vz,
+            a3 * vx + a4 * vy + a5 * vz,
+            a6 * vx + a7 * vy + a8 * vz,
+            w0 * sx + w1 * sy + w2 * sz,
+            w3 * sx + w4 * sy + w5 * sz,
+            w6 * sx + w7 * sy + w8 * sz,
+        )
+    return columns
 
 
 def _step(c: Crossing, near: int, T: FloatArray, layout: Layout) -> _Step:

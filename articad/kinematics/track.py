@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 import math
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -12,9 +13,10 @@ import numpy as np
 from articad.connectors import FloatArray
 from articad.kinematics.continuation import ROUNDING, Follower, Stop, Trace
 from articad.kinematics.layout import IndexArray
-from articad.kinematics.loops import CLOSED, BoolArray
+from articad.kinematics.loops import CLOSED
+from articad.kinematics.ties import BoolArray
 
-_MOST_TURNS = 12  # of a driver, after which a motion that has not come back is not expected to
+_MOST_TURNS = 12  # of a loop's slowest driven angle, after which a motion that has not come back is not expected to
 _SAME = 1e-9  # rad, mm: a configuration that has come back
 
 
@@ -22,8 +24,9 @@ class Period(NamedTuple):
     """How a motion repeats itself.
 
     Attributes:
-        length: Travel of the driver [rad].
-        advance: What one repetition adds to the coordinates: whole turns `(columns,)`.
+        length: Travel of the driver [rad, mm].
+        advance: What one repetition adds to the coordinates `(columns,)`: whole turns of those in loops, what follows from it of
+            those that couplings tie to them.
     """
 
     length: float
@@ -80,10 +83,9 @@ class Track:
         return max((float(self.follower.tube(a, np.asarray(b.s - a.s))) for a, b in steps), default=0.0)
 
     def direction(self, sign: int) -> FloatArray:
-        """Return the scaled velocity of the driver towards growing (+1) or falling (−1) values."""
-        direction = np.zeros(self.follower.system.layout.n_freedoms)
-        direction[self.follower.system.layout.freedom_of(self.column)] = float(sign)
-        return direction
+        """Return the scaled velocity of the driver, and of all that is tied to it, towards growing (+1) or falling (−1) values."""
+        system = self.follower.system
+        return sign * system.ties.images(system.layout.freedom_of(self.column))
 
     def value(self, sign: int, s: float) -> float:
         """Return the driver's value at the parameter s of a side."""
@@ -110,21 +112,52 @@ class Track:
             if advance is not None:
                 Q[mine] += turns[:, None] * advance
                 Q[mine, self.column] = values[mine]
+                Q[mine] = self.follower.system.ties.fitted(Q[mine], ~self.follower.dependent)
         return Q, reached, proved
 
     def period(self, sign: int) -> Period | None:
-        """Return after which travel of a turning driver the configuration comes back; None if it does not within 12 turns."""
+        """Return after which travel of the driver everything has come back, but for whole turns; None if it does not.
+
+        That is a number of times, up to 12, that the loops come back: what couplings tie to them may take longer, or never do.
+        """
+        once = self.repeat(sign)
+        if once is None:
+            return None
+        angles = np.array([c.unit == "rad" for c in self.follower.system.layout.coordinates])
+        for times in range(1, _MOST_TURNS + 1):
+            advance = times * once.advance
+            whole = np.where(angles, 2 * math.pi * np.round(advance / (2 * math.pi)), 0.0)
+            if np.abs(advance - whole).max() < _SAME:
+                return Period(times * once.length, whole)
+        return None
+
+    def repeat(self, sign: int) -> Period | None:
+        """Return after which travel of the driver all loops come back; None if they do not within 12 turns of what it drives."""
         if sign not in self._periods:
             self._periods[sign] = self._found_period(sign)
         return self._periods[sign]
 
-    def _found_period(self, sign: int) -> Period | None:
-        layout = self.follower.system.layout
-        if layout.coordinates[self.column].unit != "rad":
+    @cached_property
+    def turn(self) -> float | None:
+        """Travel [rad, mm] of the driver in which the slowest angle that it drives in a loop turns once.
+
+        None where it moves no loop, or moves one by a travel.
+        """
+        system = self.follower.system
+        rates = np.abs(self.direction(1) * system.scale / self._unit) * system.in_loops
+        if rates[system.layout.is_length].any() or not rates.any():
             return None
-        angles = np.array([c.unit == "rad" for c in layout.coordinates])
+        return 2 * math.pi / float(rates[rates > 0].min())
+
+    def _found_period(self, sign: int) -> Period | None:
+        system, turn = self.follower.system, self.turn
+        if turn is None:
+            return None
+        layout = system.layout
+        looped = np.array([system.in_loops[layout.freedom_of(i)] for i in range(layout.n_columns)])
+        angles = looped & np.array([c.unit == "rad" for c in layout.coordinates])
         for turns in range(1, _MOST_TURNS + 1):
-            value = self.start + sign * 2 * math.pi * turns
+            value = self.start + sign * turn * turns
             trace = self.side(value)
             if trace.stop is not Stop.ARRIVED:
                 return None
@@ -133,14 +166,15 @@ class Track:
                 return None
             change = Q[0] - self.Q
             advance = np.where(angles, 2 * math.pi * np.round(change / (2 * math.pi)), 0.0)
-            if np.abs(change - advance).max() < _SAME:
-                return Period(2 * math.pi * turns, advance)
+            if np.abs(change - advance)[looped].max() < _SAME:
+                advance = np.where(looped, advance, change)
+                return Period(turn * turns, system.ties.spread(advance, looped))
         return None
 
     def _reduced(self, values: FloatArray, sign: int) -> tuple[FloatArray, FloatArray, FloatArray | None]:
         """Return values within the first period, how many periods were left out, and what one adds to the coordinates."""
         away = np.abs(values - self.start)
-        period = self.period(sign) if away.max() > 2 * math.pi * (1 + 1e-9) else None
+        period = self.repeat(sign) if self.turn is not None and away.max() > self.turn * (1 + 1e-9) else None
         if period is None:
             return values, np.zeros(len(values)), None
         turns = np.floor(away / period.length)
@@ -189,7 +223,7 @@ class Track:
             node = trace.nodes[int(k)]
             h = s[i] - node.s
             predicted = self.follower.system.move(node.Q, h * node.rate)
-            distance = np.linalg.norm(self.follower.system.step_between(predicted, Q[i]))
+            distance = np.linalg.norm(self.follower.system.step_between(predicted, Q[i])[self.follower.system.in_loops])
             inside[i] = distance <= self.follower.tube(node, np.asarray(h)) + ROUNDING and h <= self.follower.certified_step(node) * (
                 1 + 1e-12
             )

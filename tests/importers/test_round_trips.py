@@ -105,9 +105,10 @@ def there_and_back(assembly: Assembly, folder: Path, ways: Sequence[str] = ("urd
 
 def closed(mechanism: Mechanism, seed: int) -> FloatArray:
     """Return a thousand configurations that close: in a box around rest, the smaller the nearer another branch is."""
-    follower = mechanism.branch.follower
-    sigma = follower.linearized(mechanism.branch.Q).s[: follower.rank]
-    share = min(1.0, SHARE_OF_SIGMA * float(sigma.min() / sigma.max())) if len(sigma) else 1.0
+    share = 1.0
+    for group in mechanism.branch.groups:
+        sigma = group.follower.linearized(group.Q).s[: group.follower.rank]
+        share = min(share, SHARE_OF_SIGMA * float(sigma.min() / sigma.max())) if len(sigma) else share
     far = np.array([FARTHEST_MM if driver.unit == "mm" else FARTHEST_RAD for driver in mechanism.drivers])
     away = far * np.random.default_rng(seed).uniform(-1, 1, (CONFIGURATIONS, len(far)))
     for _ in range(TIMES_HALVED):

@@ -368,12 +368,12 @@ def test_couplings_and_large_linkages_have_the_equations_of_a_batch_too(make: ob
 @settings(max_examples=25)
 @given(closable_loops(), st.integers(0, 2**16))
 def test_one_start_closes_where_it_closes_in_a_batch(mechanism: Mechanism, seed: int) -> None:
-    branch = mechanism.branch
-    system, dependent = branch.system, branch.dependent
-    if branch.follower.rank < dependent.sum() or branch.follower.linearized(branch.Q).s.min() < 0.1:
+    (group,) = mechanism.branch.groups
+    system, dependent = group.system, group.dependent
+    if group.follower.rank < dependent.sum() or group.follower.linearized(group.Q).s.min() < 0.1:
         return  # with an idle part, or beside a dead point, the place is not determined to rounding
     rng = np.random.default_rng(seed)
-    starts = system.move(branch.Q, 0.02 * dependent * rng.standard_normal((4, system.layout.n_freedoms)))
+    starts = system.move(group.Q, 0.02 * dependent * rng.standard_normal((4, system.layout.n_freedoms)))
     together, norms = system.close_many(starts, dependent)
     assert norms.max() <= CLOSED
     for start, Q in zip(starts, together, strict=True):
@@ -385,8 +385,8 @@ def test_one_start_closes_where_it_closes_in_a_batch(mechanism: Mechanism, seed:
 @settings(max_examples=25)
 @given(closable_loops())
 def test_the_jacobian_of_a_loop_is_the_derivative_of_its_poses(mechanism: Mechanism) -> None:
-    branch = mechanism.branch
-    if any(c.unit == "1" for c in mechanism.drivers) or branch.follower.linearized(branch.Q).s.min() < 0.1:
+    (group,) = mechanism.branch.groups
+    if any(c.unit == "1" for c in mechanism.drivers) or group.follower.linearized(group.Q).s.min() < 0.1:
         return  # beside a dead point differences show the curvature instead
     part, h = mechanism.parts[-1], 1e-5
     J = mechanism.jacobian(mechanism.rest, part, at(5, 6, 7))

@@ -69,7 +69,7 @@ def test_a_certified_full_turn_takes_few_hundred_steps_and_its_tube_holds_the_mo
     sweep = mechanism.sweep("crank", 1.0, 1.0 + 2 * math.pi, 100, certify=True)
     assert sweep.strength == "certified"
     assert sweep.tube < 0.034
-    track = mechanism.branch.track(0, certify=True)
+    track = mechanism.branch.groups[0].track(0, certify=True)
     nodes = track.side(1.0 + 2 * math.pi).nodes
     assert 150 < len(nodes) < 400
     for a, b in zip(nodes[:-1:10], nodes[1::10], strict=False):
@@ -103,7 +103,7 @@ def test_either_guard_alone_keeps_the_branch_and_none_loses_it(
 
 
 def test_a_step_whose_corrector_is_as_long_as_its_predictor_is_refused() -> None:
-    follower = four_bar(60, 50, 50, 100, crank=0.3).branch.track(0).follower
+    follower = four_bar(60, 50, 50, 100, crank=0.3).branch.groups[0].track(0).follower
     start = follower.system.layout.rest
     direction = np.array([1.0, 0, 0, 0])
     lin = follower.linearized(start)
@@ -123,8 +123,8 @@ def test_many_turns_repeat_the_first_and_angles_go_on_counting() -> None:
     assert mechanism.poses([-far]).allclose(mechanism.poses([-1.3]), mm=1e-6, rad=1e-9)
     geared = geared_four_bar()
     assert geared.poses([0.4 + 40 * math.pi]).allclose(geared.poses([0.4]), mm=1e-9, rad=1e-11)
-    assert geared.branch.track(0).period(1).length == pytest.approx(4 * math.pi)  # type: ignore[union-attr]
-    assert four_bar(60, 50, 50, 100, crank=0.3).branch.track(0).period(1) is None
+    assert geared.branch.groups[0].track(0).period(1).length == pytest.approx(4 * math.pi)  # type: ignore[union-attr]
+    assert four_bar(60, 50, 50, 100, crank=0.3).branch.groups[0].track(0).period(1) is None
 
 
 def test_a_driver_traced_over_many_turns_first_follows_the_same_ratio_as_one_traced_turn_by_turn() -> None:
@@ -165,7 +165,7 @@ def test_values_next_to_a_dead_point_are_on_the_side_of_the_rest_pose() -> None:
 
 def test_near_the_dead_point_the_proof_ends_and_says_why() -> None:
     mechanism = four_bar(60, 50, 50, 100, crank=0.3)
-    trace = mechanism.branch.track(0, certify=True).side(2.0)
+    trace = mechanism.branch.groups[0].track(0, certify=True).side(2.0)
     sweep = mechanism.sweep("crank", 0.3, 0.3 + (trace.nodes[-1].s + trace.end) / 2, 20, certify=True)
     assert sweep.strength == "sampled"
     assert "it holds up to 72.54" in sweep.reason
@@ -297,13 +297,66 @@ def test_an_unlimited_slider_is_followed_to_its_dead_point() -> None:
     assert reached.lower == pytest.approx(math.sqrt(60**2 - 10**2), abs=1e-9)
 
 
-def test_a_rack_without_limits_is_followed_for_a_while() -> None:
+def test_couplings_alone_are_endless_and_the_limits_of_what_they_tie_are_exact() -> None:
+    """They are linear: nothing bars the way but a limit, and that needs no steps, however far it is."""
     plain = gear_train()
     driven = Mechanism(plain.parts, "frame", [replace(j, driver=j.name == "rack") for j in plain.joints], plain.couplings)
-    reached = driven.feasible_range("rack")
+    assert driven.feasible_range("rack").upper_reason == "endless"
+    assert plain.feasible_range("gear_a").lower == -math.inf
+    far = 1e6
+    limited = [replace(j, limits=JointLimits((-math.inf,), (far,))) if j.name == "rack" else j for j in plain.joints]
+    reached = Mechanism(plain.parts, "frame", limited, plain.couplings).feasible_range("gear_a")
+    assert reached.upper == math.inf
+    assert reached.lower_reason == "limit of rack"
+    assert reached.lower == pytest.approx(((far + 3) / 30 - 0.1) / (-20 / 30), rel=1e-12)  # the rack moves against gear_a
+
+
+def test_what_comes_back_is_everything_not_the_loop_alone() -> None:
+    """The crank turns twice per turn of the motor: the loop is back after half a turn, the motor's own arm is not."""
+    plain = geared_four_bar()
+    track = Mechanism(plain.parts, "frame", plain.joints, [replace(plain.couplings[0], ratio=2.0)]).branch.groups[0].track(0)
+    assert track.repeat(1).length == pytest.approx(math.pi)  # type: ignore[union-attr]
+    assert track.period(1).length == pytest.approx(2 * math.pi)  # type: ignore[union-attr]
+    never = Mechanism(plain.parts, "frame", plain.joints, [replace(plain.couplings[0], ratio=math.sqrt(2))]).branch.groups[0].track(0)
+    assert never.repeat(1).length == pytest.approx(math.sqrt(2) * math.pi)  # type: ignore[union-attr]
+    assert never.period(1) is None
+
+
+def test_a_loop_behind_an_irrational_gear_turns_for_ever() -> None:
+    plain = geared_four_bar()
+    geared = Mechanism(plain.parts, "frame", plain.joints, [replace(plain.couplings[0], ratio=math.sqrt(2))])
+    reached = geared.feasible_range("motor")
+    assert (reached.lower, reached.upper, reached.upper_reason) == (-math.inf, math.inf, "endless")
+    motor = 2 * math.pi * 2000
+    crank = math.sqrt(2) * motor + math.radians(60)
+    rocker = four_bar_angles(30, 90, 70, 100, crank)[1]
+    turn = geared.poses([motor])[geared.part_index("rocker")]
+    assert turn.matrix[0, 0] == pytest.approx(math.cos(rocker), abs=1e-9)
+    assert max(mismatch(geared, np.array([motor]))) < 1e-9
+
+
+@pytest.mark.parametrize("small", [5e-2, 5e-3, 5e-5])
+def test_a_small_loop_among_large_ones_turns_for_ever(small: float) -> None:
+    """Links of 6 to 20 m, and a latch of millimetres on the same frame: each loop has its own length."""
+    large, latch = four_bar(6000, 18000, 14000, 20000), four_bar(30 * small, 90 * small, 70 * small, 100 * small)
+    names = {"crank": "latch_crank", "coupler": "latch_coupler", "rocker": "latch_rocker", "frame": "frame"}
+    joints = [replace(j, name=f"latch_{j.name}", parent=names[j.parent], child=names[j.child]) for j in latch.joints]
+    both = Mechanism((*large.parts, *(names[p] for p in latch.parts[1:])), "frame", [*large.joints, *joints])
+    assert both.mobility == 2
+    for driver in ("crank", "latch_crank"):
+        assert both.feasible_range(driver).upper_reason == "endless"
+    assert len(both.branch.groups[1].track(0).side(6.0).nodes) < 100
+
+
+def test_running_out_of_steps_is_no_singularity(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("articad.kinematics.continuation._MOST_STEPS", 3)
+    mechanism = four_bar(limits=(-3.0, 3.0))
+    reached = mechanism.feasible_range("crank")
     assert reached.upper_reason == "not followed further"
-    geared = gear_train().feasible_range("gear_a")
-    assert geared.upper_reason == "not followed further"  # the rack never comes back
+    assert {f.code for f in reached.findings} == {"E_NOT_FOLLOWED"}
+    with pytest.raises(KinematicsError, match=r"E_NOT_FOLLOWED.*not further") as caught:
+        mechanism.poses([3.0])
+    assert "singular" not in str(caught.value)
 
 
 # --- findings

@@ -24,6 +24,7 @@ from articad.kinematics import declare
 from articad.plan.schema import AssemblyPlan
 from articad.report import Documents, report_page
 from tests.assemblies import all_joint_kinds, four_bar, geared_pair
+from tests.moving_bases import excavator, four_bar_on_turntable, gripper_arm
 from tests.report.conftest import Opened
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -109,7 +110,9 @@ def test_dragging_each_slider_moves_exactly_its_parts_to_the_poses_of_the_assemb
     assert_silent(opened)
 
 
-@pytest.mark.parametrize("make", [all_joint_kinds, geared_pair, four_bar], ids=lambda make: make.__name__)
+@pytest.mark.parametrize(
+    "make", [all_joint_kinds, geared_pair, four_bar, gripper_arm, four_bar_on_turntable, excavator], ids=lambda make: make.__name__
+)
 def test_every_kind_of_joint_moves_as_the_assembly_does(open_page: Open, make: Callable[[], Assembly]) -> None:
     assembly = make()
     opened = open_page(report_page(assembly))

@@ -1,0 +1,194 @@
+"""Couplings, solved once: coordinates that they tie are linear in one of them, so they need no iteration and no steps."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from articad.connectors import FloatArray
+from articad.kinematics.joints import Coupling
+from articad.kinematics.layout import IndexArray, Layout
+
+BoolArray = npt.NDArray[np.bool_]
+
+_SAME_RATIO = 1e-7  # relative: two ways round that agree so far say the same, as RANK_TOLERANCE has it of equations
+_ROUNDING = 1e-13  # of the largest coordinate: what couplings miss by rounding alone
+
+
+@dataclass(frozen=True, eq=False)
+class Tie:
+    """Coordinates that couplings make linear in one number m: q = factor · m + offset.
+
+    Attributes:
+        columns: Of the coordinates.
+        freedoms: Of the same coordinates.
+        factor: One per coordinate, in its own unit per unit of the first one.
+        offset: Likewise.
+        fixed: m, where couplings round a ring leave one value only; None where m is free.
+    """
+
+    columns: IndexArray
+    freedoms: IndexArray
+    factor: FloatArray
+    offset: FloatArray
+    fixed: float | None
+
+
+class Basis:
+    """Independent motions of freedoms: of what is not tied each by itself, of a tie all its members together.
+
+    Args:
+        matrix: `(freedoms, n)`, scaled.
+        alone: The freedoms themselves, in order, where none is tied.
+    """
+
+    def __init__(self, matrix: FloatArray, alone: IndexArray | None) -> None:
+        self.matrix, self._alone = matrix, alone
+
+    @property
+    def size(self) -> int:
+        """How many motions there are."""
+        return int(self.matrix.shape[1])
+
+    def of(self, J: FloatArray) -> FloatArray:
+        """Return the derivatives `(*batch, rows, n)` by the motions, of those by freedoms `(*batch, rows, freedoms)`."""
+        derivatives: FloatArray = J @ self.matrix if self._alone is None else J[..., self._alone]
+        return derivatives
+
+    def step(self, z: FloatArray) -> FloatArray:
+        """Return the step `(*batch, freedoms)` of freedoms that motions `(*batch, n)` make."""
+        if self._alone is None:
+            return z @ self.matrix.T
+        y = np.zeros((*z.shape[:-1], len(self.matrix)))
+        y[..., self._alone] = z
+        return y
+
+
+class Ties:
+    """All couplings of a system.
+
+    Args:
+        couplings: Relations between coordinates.
+        layout: Of the coordinates.
+        scale: What one scaled unit of each freedom is [rad, mm].
+        in_loops: Freedoms that move loops: a tie's own number is measured by one of them, so that equations are well scaled.
+    """
+
+    def __init__(self, couplings: Sequence[Coupling], layout: Layout, scale: FloatArray, in_loops: BoolArray) -> None:
+        self._scale, self._n = scale, layout.n_freedoms
+        self.all = tuple(_ties(couplings, layout, in_loops))
+        self._of = {int(freedom): tie for tie in self.all for freedom in tie.freedoms}
+        self._tied = np.zeros(layout.n_freedoms, dtype=bool)
+        self._tied[list(self._of)] = True
+        self._in_loops = in_loops
+        self._bases: dict[bytes, Basis] = {}
+
+    def basis(self, free: BoolArray) -> Basis:
+        """Return the independent motions of the free freedoms; a tie moves where all its members are free.
+
+        The largest component of each motion that moves a loop is 1.
+        """
+        key = free.tobytes()
+        if key not in self._bases:
+            alone = np.eye(self._n)[:, free & ~self._tied]
+            moving = [tie for tie in self.all if tie.fixed is None and free[tie.freedoms].all()]
+            matrix = np.column_stack([alone, *(self._motion(tie) for tie in moving)])
+            self._bases[key] = Basis(matrix, None if moving else np.flatnonzero(free & ~self._tied))
+        return self._bases[key]
+
+    def _motion(self, tie: Tie) -> FloatArray:
+        motion = np.zeros(self._n)
+        motion[tie.freedoms] = tie.factor / self._scale[tie.freedoms]
+        largest = float(np.abs(motion[self._in_loops]).max(initial=0.0))
+        return motion / (largest or float(np.abs(motion).max()))
+
+    def images(self, freedom: int) -> FloatArray:
+        """Return the scaled motion `(freedoms,)` of everything tied to a freedom while that one moves by 1."""
+        motion = np.zeros(self._n)
+        motion[freedom] = 1.0
+        tie = self._of.get(freedom)
+        if tie is not None and tie.fixed is None:
+            whole = self._motion(tie)
+            motion = whole / whole[freedom]
+        return motion
+
+    def fitted(self, Q: FloatArray, held: BoolArray) -> FloatArray:
+        """Return coordinates `(*batch, columns)` that obey the couplings; of each tie a held member keeps its value, or the first one."""
+        if not self.all:
+            return Q
+        Q = Q.copy()
+        for tie in self.all:
+            first = int(np.argmax(held[tie.freedoms]))
+            if tie.fixed is not None:
+                free = ~held[tie.freedoms]
+                Q[..., tie.columns[free]] = (tie.factor * tie.fixed + tie.offset)[free]
+                continue
+            m = (Q[..., tie.columns[first]] - tie.offset[first]) / tie.factor[first]
+            others = np.arange(len(tie.columns)) != first
+            Q[..., tie.columns[others]] = m[..., None] * tie.factor[others] + tie.offset[others]
+        return Q
+
+    def spread(self, change: FloatArray, known: BoolArray) -> FloatArray:
+        """Return changes of coordinates `(columns,)` in which the members of each tie change as a known one of theirs does."""
+        change = change.copy()
+        for tie in self.all:
+            first = int(np.argmax(known[tie.columns]))
+            if known[tie.columns[first]]:
+                others = np.arange(len(tie.columns)) != first
+                change[tie.columns[others]] = change[tie.columns[first]] / tie.factor[first] * tie.factor[others]
+        return change
+
+    def tied_to(self, column: int) -> tuple[tuple[int, float, float], ...]:
+        """Return the other coordinates tied to one as (column, ratio, offset): their value is ratio · q + offset."""
+        for tie in self.all:
+            at = np.flatnonzero(tie.columns == column)
+            if at.size and tie.fixed is None:
+                ratio = tie.factor / tie.factor[at[0]]
+                offset = tie.offset - ratio * tie.offset[at[0]]
+                return tuple((int(c), float(k), float(o)) for c, k, o in zip(tie.columns, ratio, offset, strict=True) if c != column)
+        return ()
+
+
+def missed(residual: FloatArray, Q: FloatArray) -> FloatArray:
+    """Return |r| `(*batch,)` of couplings' residuals `(*batch, couplings)`; what rounding of Q `(*batch, columns)` explains is none."""
+    allowed = _ROUNDING * (1.0 + np.abs(Q).max(axis=-1, keepdims=True, initial=0.0))
+    norm: FloatArray = np.sqrt((np.where(np.abs(residual) > allowed, residual, 0.0) ** 2).sum(axis=-1))
+    return norm
+
+
+def _ties(couplings: Sequence[Coupling], layout: Layout, in_loops: BoolArray) -> list[Tie]:
+    """Walk every connected set of coupled coordinates from its first member: q_b = k q_a + c either way."""
+    beside: dict[int, list[tuple[int, float, float]]] = {}
+    for coupling in couplings:
+        a, b = layout.column_of[coupling.a], layout.column_of[coupling.b]
+        beside.setdefault(a, []).append((b, coupling.ratio, coupling.offset))
+        beside.setdefault(b, []).append((a, 1.0 / coupling.ratio, -coupling.offset / coupling.ratio))
+    order = sorted(beside, key=lambda column: (not in_loops[layout.freedom_of(column)], not _is_marked(layout, column), column))
+    found: dict[int, tuple[float, float]] = {}
+    ties = []
+    for root in order:
+        if root in found:
+            continue
+        members, fixed = [root], None
+        found[root] = (1.0, 0.0)
+        for at in members:  # grows while it is walked
+            k, c = found[at]
+            for other, ratio, offset in beside[at]:
+                there = (ratio * k, ratio * c + offset)
+                if other not in found:
+                    found[other] = there
+                    members.append(other)
+                elif fixed is None and abs(there[0] - found[other][0]) > _SAME_RATIO * abs(there[0]):
+                    fixed = (found[other][1] - there[1]) / (there[0] - found[other][0])
+        columns = np.array(members, dtype=np.intp)
+        freedoms = np.array([layout.freedom_of(column) for column in members], dtype=np.intp)
+        factor, shift = (np.array([found[column][i] for column in members]) for i in (0, 1))
+        ties.append(Tie(columns, freedoms, factor, shift, fixed))
+    return ties
+
+
+def _is_marked(layout: Layout, column: int) -> bool:
+    return layout.joint(layout.coordinates[column].joint).driver
