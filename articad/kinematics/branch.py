@@ -373,6 +373,8 @@ class Branch:
             self.system.to_system(Q_all),
             freedoms / np.maximum(np.linalg.norm(freedoms, axis=0), 1e-300),
             min((group.analysis.near for group in self.groups), default=1.0),
+            max((group.analysis.obstruction for group in self.groups), default=0.0),
+            sum(group.analysis.multiple for group in self.groups),
         )
 
     def group_of(self, joint: str) -> Group | None:

@@ -475,8 +475,8 @@ def _is_doubtful(linkage: _Linkage, *, noise: bool = True) -> bool:
     """
     if linkage.branch is None:
         return bool(linkage.compiled.loop_joints) and isinstance(linkage.error, LoopError)
-    analysis = linkage.branch.analysis
-    return REALISED < analysis.obstruction < NEARLY_FREE or (noise and analysis.near < NOISE)
+    found = [group.analysis for group in linkage.branch.groups]
+    return any(REALISED < one.obstruction < NEARLY_FREE or (noise and one.near < NOISE) for one in found)
 
 
 def _coupling_findings(mechanism: Mechanism) -> list[Finding]:
