@@ -260,8 +260,8 @@ class _Problem:
                 for k, P in enumerate(frames):
                     sign = side if k == 0 else -side
                     arms = np.cross(P[:3, :3].T, B[:3, 3] - P[:3, 3])  # of a turn about each axis
-                    out[:3, place[joint.name], k, :3] = sign * (B[:3, :3].T @ P[:3, :3]) * (self._system.length / system.length)
-                    out[:3, place[joint.name], k, 3:] = sign * (B[:3, :3].T @ arms.T) / system.length
+                    out[:3, place[joint.name], k, :3] = sign * (B[:3, :3].T @ P[:3, :3]) * (self._system.length / system.lengths[i])
+                    out[:3, place[joint.name], k, 3:] = sign * (B[:3, :3].T @ arms.T) / system.lengths[i]
                     out[3:, place[joint.name], k, 3:] = sign * (B[:3, :3].T @ P[:3, :3])
         return D.reshape(system.n_rows, -1)
 
