@@ -175,10 +175,10 @@ class Garden:
 
     def _gear(self, carrier: str, place: Place, size: float) -> None:
         """A joint that is coupled to any coordinate there is, as driver or as follower: a gear, a belt, a rack, a mimic joint."""
-        source = self._coordinate(lambda joint: len(joint.column_names) == 1)
+        source = self._coordinate(lambda joint: True)
         if source is None:
             return
-        kind, at = str(self.rng.choice(["revolute", "revolute", "slider", "screw"])), place(np.eye(4))
+        kind, at = str(self.rng.choice(["revolute", "revolute", "slider", "screw", "cylindrical"])), place(np.eye(4))
         name = self.join(kind, carrier, self.sprout(at, size), at, size, free=self.rng.random() < 0.7)
         self._couple(source, str(self.rng.choice(self.joints[name].column_names)), size)
         old = source.split(".")[0]

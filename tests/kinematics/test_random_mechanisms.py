@@ -103,3 +103,14 @@ def reach(case: Case) -> float:
 def mechanism_size(case: Case) -> float:
     """Return how far the parts are from the origin [mm]."""
     return max(1.0, float(np.abs(case.equations.rest.X[:, :3, 3]).max()), float(case.equations.L_part.max()))
+
+
+@pytest.mark.parametrize("seed", seeds(some=10))
+def test_a_range_holds_what_a_driver_reaches(seed: int) -> None:
+    case = case_of(seed)
+    for way in case.ways:
+        for at in way.solutions[-1:]:
+            if len(way.drivers) == 1 and way.drivers[0] in case.freedoms:
+                value = at.s[case.equations.place[way.drivers[0]]]
+                feasible = case.mechanism.feasible_range(way.drivers[0])
+                assert feasible.lower - 1e-9 <= value <= feasible.upper + 1e-9, (feasible, case.specimen.story)
