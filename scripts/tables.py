@@ -55,7 +55,7 @@ KEPT_URDF = (
 )
 KEPT_MJCF = (
     "MuJoCo's compiler resolves defaults, classes, frames, includes and copies first. Everything else is a row of the losses of every format, "
-    "MJCF too: its names refer to geoms, sites and tendons that an assembly does not have."
+    "MJCF too, but for the rotor and the spring of a joint: its names refer to geoms, sites and tendons that an assembly does not have."
 )
 
 

@@ -38,7 +38,7 @@ from articad.kernels.cache import BuildCache
 from articad.kinematics.joints import JointType
 
 if TYPE_CHECKING:
-    from articad.assembly import Assembly
+    from articad.assembly import Assembly, Kept
 
 RESERVED = ("world",)  # the name of MuJoCo's own root body
 FAR_RAD = 1e6  # stands for an open end of a range that has another end
@@ -87,7 +87,7 @@ def write_mjcf(
     model, contacts = collide(assembly, lower(assembly, RESERVED), collision, _skipped(assembly), cache)
     zero = [row.joint.name for row in model.joints if any(_no_force(freedom) for freedom in row.freedoms)]
     features = [*model.features, *map(contact_feature, contacts), *(Feature("effort.zero", f"joints.{name}") for name in zero)]
-    losses = (*losses_of("mjcf", features), *kept_losses("mjcf", assembly.kept))
+    losses = (*losses_of("mjcf", features), *kept_losses("mjcf", assembly.kept, _kept_of_joints(assembly, model).values()))
     if strict:
         refuse(losses)
     writer = _Writer(assembly, model, MeshFiles(meshes))
@@ -117,6 +117,9 @@ class _Writer:
         self._materials()
         world = child(root, "worldbody")
         self._bodies(world)
+        places = {joint.get("name"): joint for joint in world.iter("joint")}
+        for name, kept in _kept_of_joints(self.assembly, self.model).items():
+            places[name].attrib.update(etree.fromstring(kept.xml).attrib)
         self._exclusions(root, contacts)
         self._equalities(root)
         servos = self._actuators(root, world) if actuators else []
@@ -269,7 +272,8 @@ class _Writer:
             actuator = child(root, "actuator")
             joints = {joint.get("name"): joint for joint in world.iter("joint")}
             for freedom in freedoms:
-                joints[freedom.name].set("armature", number(ROTOR_SHARE * freedom.load.carried))
+                if joints[freedom.name].get("armature") is None:
+                    joints[freedom.name].set("armature", number(ROTOR_SHARE * freedom.load.carried))
                 child(actuator, "position", _servo(freedom))
         return freedoms
 
@@ -302,6 +306,12 @@ def _inertial(body: Any, inertial: Inertial) -> None:
     I = inertial.inertia
     moments = [I[0, 0], I[1, 1], I[2, 2], I[0, 1], I[0, 2], I[1, 2]]
     child(body, "inertial", {"pos": numbers(inertial.com), "mass": number(inertial.mass), "fullinertia": numbers(moments)})
+
+
+def _kept_of_joints(assembly: Assembly, model: LoweredModel) -> dict[str, Kept]:
+    """Return what an MJCF file said of joints that are one joint again, by the name in what is written."""
+    names = {f"joints.{row.joint.name}": row.name for row in model.joints if len(row.freedoms) == 1 or row.joint.type is JointType.BALL}
+    return {names[item.where]: item for item in assembly.kept if item.format == "mjcf" and item.xml and item.where in names}
 
 
 def _half_sizes(form: Primitive) -> list[float]:

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from lxml import etree
 from numpy.typing import NDArray
 
 from articad import processes
@@ -261,8 +262,21 @@ class _Reader:
                 self.raw.kept.append(
                     Kept("mjcf", f"joints.{name}", f"actuatorfrcrange {low:.6g} {high:.6g}: the larger end holds both ways")
                 )
+        self._keep_spring(index)
         damping, friction = float(m.dof_damping[at]) * force / length, float(m.dof_frictionloss[at]) * force
         return {"effort": (effort,), "damping": (damping,), "friction": (friction,)}
+
+    def _keep_spring(self, index: int) -> None:
+        """Keep a joint's rotor and spring, for which an assembly has no field, as attributes that `write_mjcf` puts back."""
+        m, at = self.m, self.m.jnt_dofadr[index]
+        numbers = {"armature": float(m.dof_armature[at]), "stiffness": float(m.jnt_stiffness[index])}
+        if m.jnt_type[index] != self.mujoco.mjtJoint.mjJNT_BALL and numbers["stiffness"]:
+            numbers["springref"] = float(m.qpos_spring[m.jnt_qposadr[index]])
+        said = {name: repr(value) for name, value in numbers.items() if value}
+        if said:
+            words = ", ".join(f"{name} {value}" for name, value in said.items())
+            xml = etree.tostring(etree.Element("joint", said), encoding="unicode")
+            self.raw.kept.append(Kept("mjcf", f"joints.{self.joints[index]}", words, xml))
 
     def _bare_link(self, wanted: str) -> str:
         while wanted in self.raw.links:

@@ -21,7 +21,7 @@ _PLACE = frozenset({"pos", "quat", "axisangle", "xyaxes", "zaxis", "euler"})
 _BODY = _PLACE | {"name", "childclass"}
 _JOINT = frozenset(
     {"name", "class", "type", "pos", "axis", "limited", "range", "ref", "damping", "frictionloss", "actuatorfrclimited", "actuatorfrcrange"}
-)
+) | {"armature", "stiffness", "springref"}  # these three are kept joint by joint
 _GEOM = _PLACE | {"name", "class", "type", "size", "fromto", "mesh", "fitscale", "mass", "density", "shellinertia", "rgba", "material"}
 _TIE = frozenset({"name", "class", "active"})
 
@@ -59,7 +59,7 @@ _SECTIONS = frozenset({"default", "asset", "equality", "keyframe"})
 _COLLIDES = frozenset({"contype", "conaffinity"})  # 0 and 1 say whether it collides, which is read
 _NAMES = 6  # that a row lists
 _PREFIX = "articad."  # of our own records
-_GRAVITY = ("0", "0", "-9.81")
+_WRITTEN = {"gravity": ("0", "0", "-9.81"), "timestep": ("0.002",), "integrator": ("implicitfast",)}
 
 
 def kept_attributes(document: Any, path: Path) -> list[Kept]:
@@ -144,4 +144,4 @@ def _own_record(element: Any) -> bool:
 
 def _ours(attribute: str, value: str) -> bool:
     """True for a setting that `write_mjcf` writes as well."""
-    return attribute == "gravity" and tuple(value.split()) == _GRAVITY
+    return tuple(value.split()) == _WRITTEN.get(attribute)

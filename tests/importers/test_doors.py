@@ -383,13 +383,22 @@ def test_dynamics_of_mjcf_stay_as_they_came(tmp_path: Path) -> None:
     import mujoco
 
     text = """<mujoco><compiler angle="radian"/><default><joint damping="0.3" frictionloss="0.1"/></default><worldbody>
-      <body name="a"><joint name="j" axis="0 1 0" actuatorfrcrange="-33 33"/><geom type="capsule" size=".1 .2"/>
+      <body name="a"><joint name="j" axis="0 1 0" actuatorfrcrange="-33 33" armature="0.02" stiffness="3" springref="0.2"/><geom type="capsule" size=".1 .2"/>
        <body name="b" pos="0 0 .5"><joint name="k" type="slide" damping="7" frictionloss="0" range="0 .1"/><geom type="ellipsoid" size=".1 .2 .3"/>
        </body></body></worldbody></mujoco>"""
     source, copy, _ = converted(text, "mjcf", tmp_path, suffix=".xml")
     one, other = (mujoco.MjModel.from_xml_path(str(path)) for path in (source, copy))
 
-    for name in ("dof_damping", "dof_frictionloss", "jnt_actfrclimited", "jnt_actfrcrange", "jnt_range"):
+    for name in (
+        "dof_damping",
+        "dof_frictionloss",
+        "jnt_actfrclimited",
+        "jnt_actfrcrange",
+        "jnt_range",
+        "dof_armature",
+        "jnt_stiffness",
+        "qpos_spring",
+    ):
         assert np.allclose(getattr(one, name), getattr(other, name)), name
     assert sorted(one.geom_type) == sorted(other.geom_type)
     assert sum(one.geom_size.ravel()) == pytest.approx(sum(other.geom_size.ravel()))
@@ -400,7 +409,7 @@ def test_mujoco_moves_the_copy_as_the_original(tmp_path: Path) -> None:
     import mujoco
 
     text = """<mujoco><option timestep="0.002" integrator="implicitfast"/><worldbody>
-      <body name="a" euler="0 80 0"><joint name="j" axis="0 1 0" damping="0.02"/><geom type="capsule" fromto="0 0 0 0 0 -.4" size=".02"/>
+      <body name="a" euler="0 80 0"><joint name="j" axis="0 1 0" damping="0.02" armature="0.01" stiffness="0.3" springref="10"/><geom type="capsule" fromto="0 0 0 0 0 -.4" size=".02"/>
        <body name="b" pos="0 0 -.4"><joint name="k" type="slide" axis="0 0 1" damping="0.4"/><geom size=".05"/>
        </body></body></worldbody></mujoco>"""
     source, copy, _ = converted(text, "mjcf", tmp_path, suffix=".xml")
