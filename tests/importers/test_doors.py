@@ -18,6 +18,7 @@ from articad.importers.mjcf import read_mjcf
 from articad.importers.mjcf_kept import READ as READ_MJCF
 from articad.importers.urdf import read_urdf
 from articad.importers.urdf_kept import READ as READ_URDF
+from tests.assemblies import geared_pair
 
 pytestmark = pytest.mark.engines
 
@@ -193,6 +194,27 @@ def test_three_joints_stay_three_unless_fusing_is_asked_for(tmp_path: Path) -> N
         if not fuse:
             assert list(one["inertias"]) == list(other["inertias"]) == ["universe", "roll", "pitch", "yaw"]
             assert_same(one["frames"], other["frames"])
+
+
+def test_a_chain_that_could_be_fused_is_a_note_and_a_fused_one_another(tmp_path: Path) -> None:
+    path = tmp_path / "a.urdf"
+    path.write_text(three((-1, 1), (-1, 1), (-1, 1)))
+
+    assert [finding.code for finding in read_urdf(path).findings] == ["I_IMPORT_CHAIN"]
+    assert [finding.code for finding in read_urdf(path, fuse=True).findings] == ["I_IMPORT_FUSED"]
+
+
+@pytest.mark.parametrize("target", ["urdf", "mjcf", "sdf"])
+def test_efforts_that_nobody_states_are_named(target: str, tmp_path: Path) -> None:
+    """An assembly of our own gets efforts that carry its load; a file gets them only where the format demands one."""
+    (assumed,) = WRITERS[target](geared_pair()).findings.of("I_EFFORT_ASSUMED")
+    assert "Effort" in assumed.message
+    text = '<mujoco><worldbody><body name="a"><joint name="j" axis="0 1 0" range="-9 9"/><geom size=".1"/></body></worldbody></mujoco>'
+    _, copy, bundle = converted(text, target, tmp_path, suffix=".xml")
+
+    assert bool(bundle.findings.of("I_EFFORT_ASSUMED")) == (target == "urdf")
+    assert bool([loss for loss in bundle.losses if "effort" in loss.kept]) == (target == "urdf")
+    assert (" effort=" in re.sub("<(articad|text).*", "", copy.read_text())) == (target == "urdf")
 
 
 @pytest.mark.parametrize("seed", range(6))
