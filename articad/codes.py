@@ -399,6 +399,9 @@ CODES: dict[str, Code] = {
         "Repair the mesh; every edge must belong to two triangles.",
     ),
     "I_WAIVED": Code("interference", None, "An overlap is allowed by a waiver of the plan.", "Nothing, while the reason holds."),
+    "E_CERTIFICATE_REFUTED": Code(
+        "interference", None, "The independent checker refutes a certificate that the prover calls ok.", "Report it with the plan."
+    ),
     "E_NOT_CHECKED": Code("interference", None, "A check that was asked for was not done.", "Give it a larger budget, or what it needs."),
     "W_NOT_INSERTABLE": Code(
         "interference",

@@ -194,7 +194,7 @@ def run_report(run: Run) -> Report:
     proven: dict[str, Report] = (
         {}
         if certificate is None
-        else {"certificate": {key: certificate[key] for key in ("schema", "ok", "findings", "epsilon_mm", "pairs", "ranges")}}
+        else {"certificate": {key: certificate[key] for key in ("schema", "ok", "covers", "findings", "epsilon_mm", "pairs", "ranges")}}
     )
     verdict = run.verdict()
     if verdict is not None:

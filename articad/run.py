@@ -440,7 +440,7 @@ class Run:
         self._write_json(_REVIEW, report)
 
     def certificate(self) -> Json | None:
-        """Return the report `articad.certificate/1`, or None."""
+        """Return the report `articad.certificate/2`, or None."""
         return self._read_json(_CERTIFICATE)
 
     def save_certificate(self, report: Json, meshes: Mapping[str, bytes]) -> Path:

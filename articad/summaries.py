@@ -79,7 +79,8 @@ def print_certificate(report: Report, terminal: Terminal) -> None:
     """Print what is proven, what is not, and how far each joint may move freely."""
     known = _counts(pair["strength"]["kind"].replace("_", " ") for pair in report["pairs"])
     verdict = "ok" if report["ok"] else "NOT ok"
-    terminal.say(f"Motion: {verdict}; {counted_things(len(report['pairs']), 'case', 'cases')} ({known or 'nothing moves'}).")
+    terminal.say(f"Motion: {verdict}; {report['covers']}")
+    terminal.say(f"{counted_things(len(report['pairs']), 'case', 'cases').capitalize()} ({known or 'nothing moves'}).")
     for free in report["ranges"]:
         if free["free"] != free["declared"]:
             terminal.say(

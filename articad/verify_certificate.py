@@ -12,6 +12,7 @@ import hashlib
 import itertools
 import json
 import math
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -53,7 +54,7 @@ def verify_file(file: Path, folder: Path) -> list[str]:
         for name in [*certificate["meshes"], PROOF]:
             need(Path(name).name == name, "a mesh bears the name of no file")
             with (folder / f"{name}.npz").open("rb") as stream, np.load(stream, allow_pickle=False) as found:
-                arrays[name] = {key: array.astype(TYPES[array.dtype.kind]) for key, array in found.items()}
+                arrays[name] = {key: widened(array) for key, array in found.items()}
         left = sorted({found.stem for found in folder.glob("*.npz")} - set(arrays))
         need(not left, f"it says nothing of {', '.join(left)}")
         Checker(certificate, arrays).check()
@@ -62,6 +63,11 @@ def verify_file(file: Path, folder: Path) -> list[str]:
     except Exception as error:  # noqa: BLE001 - what breaks its checker, in whatever way, proves nothing
         return [f"it cannot be read: {error!r}"[:500]]
     return []
+
+
+def widened(array: Any) -> Any:
+    """Return numbers such that they do not overflow; refuse other kinds."""
+    return array.astype(TYPES[array.dtype.kind])
 
 
 def digest(vertices: Any, triangles: Any) -> str:
@@ -246,6 +252,18 @@ def motion(u: Any, p: Any, spins: Any, v: Any, along: Any, aside: Any, turned: A
     return moved
 
 
+def covered(certificate: dict[str, Any]) -> str:
+    """Return, in a sentence, what moves at once in the claims of a certificate that calls itself ok, and what does not."""
+    asked = ", ".join(certificate["asked"]) or "none"
+    left = [f"{a}/{b}" for a, b, _ in Checker(certificate, {PROOF: {}}).missing()]
+    some = f"{', '.join(left[:4])}{f' and {len(left) - 4} more' if len(left) > 4 else ''}"
+    if not left:
+        return f"proven while all of these joints move at once, each over its whole range: {asked}."
+    if not certificate["together"]:
+        return f"proven for every joint alone, the others at rest: {asked}; two or more at once: not covered for {some}."
+    return f"proven for every joint alone and every two together: {asked}; three or more at once: not covered for {some}."
+
+
 class Checker:
     """A certificate, its meshes and its proof."""
 
@@ -276,37 +294,41 @@ class Checker:
             except Refuted as reason:
                 raise Refuted(f"{'/'.join(claim['parts'])} over {', '.join(sorted(claim['vary']))}: {reason}") from None
         if whole["ok"]:
-            self.check_complete(claims)
+            self.check_complete()
 
-    def check_complete(self, claims: Any) -> None:
+    def check_complete(self) -> None:
         """Refute a certificate without a claim for each two parts over each joint, and each two joints, by which they can move."""
+        whole = self.certificate
+        for group in self.groups:
+            driving, moving = ({self.freedoms[name]["joint"] for name in group if not few or name in self.drivers} for few in (True, False))
+            need(
+                {*whole["asked"]} & moving <= driving or driving <= {*whole["asked"]},
+                f"not all that drives {', '.join(group)} is asked for",
+            )
+            need(driving or not {*whole["asked"]} & moving or self.is_rigid(group), f"nothing drives {', '.join(group)}, yet they may move")
+        for count in (1, 2) if whole["together"] else (1,):
+            for a, b, over in self.missing(count):
+                raise Refuted(f"{a}/{b} over {over}: no claim, yet the certificate calls itself ok")
+
+    def missing(self, count: int | None = None) -> Iterator[tuple[str, str, str]]:
+        """Yield two parts, and the joints of which so many, or all, can move them together without a claim that says so."""
         whole, fixed = self.certificate, {name for name, joint in self.joints.items() if not joint["freedoms"]}
         waived = [{*pair["parts"]} for pair in whole["pairs"] if pair["strength"]["kind"] == "waived"]
-        said = [
-            ({*claim["parts"]}, {*claim["vary"]}, {f["name"] for j in claim["via"] for f in self.joints[j]["freedoms"]}) for claim in claims
-        ]
-        for name in {*whole["asked"]} & {*whole["linkage"]}:
-            (group,) = (group for group in self.groups if {f["name"] for f in self.joints[name]["freedoms"]} & {*group})
-            driving = {self.freedoms[driver]["joint"] for driver in self.drivers if driver in group}
-            need(name in driving or driving <= {*whole["asked"]}, f"{name} moves, but not all that drives it is asked for")
+        ways = [{f["name"] for name in claim["via"] for f in self.joints[name]["freedoms"]} for claim in whole["claims"]]
+        said = [({*claim["parts"]}, {*claim["vary"]}, via) for claim, via in zip(whole["claims"], ways, strict=True)]
         for a, b in itertools.combinations(whole["meshes"], 2):
             if {a, b} in waived or self.way(a, b, fixed, whole=False) is not None:
                 continue
-            way = [joint for joint, _ in self.way(a, b)]
-            own = {f["name"] for joint in way for f in joint["freedoms"]}
-            free = [j for j in way if j["freedoms"] and j["name"] in whole["asked"] and j["name"] not in whole["linkage"]]
+            joints = [joint for joint, _ in self.way(a, b) if joint["freedoms"]]
+            own, mine = {f["name"] for joint in joints for f in joint["freedoms"]}, [said for said in said if said[0] == {a, b}]
+            free = [joint for joint in joints if joint["name"] in whole["asked"] and joint["name"] not in whole["linkage"]]
             units: list[Any] = [({f["name"] for f in joint["freedoms"]},) * 2 for joint in free]
             for group in (group for group in self.groups if own & {*group}):
-                movers = [name for name in self.drivers if name in group]
-                units += [({name}, {*group}) for name in movers if self.freedoms[name]["joint"] in whole["asked"]]
-                is_asked = any(self.freedoms[name]["joint"] in whole["asked"] for name in group)
-                need(movers or not is_asked or self.is_rigid(group), f"nothing drives {', '.join(group)}, yet they may move")
-            mine = [(vary, via) for parts, vary, via in said if parts == {a, b}]
-            for some in [*((one,) for one in units), *(itertools.combinations(units, 2) if whole["together"] else ())]:
+                units += [({name}, {*group}) for name in self.drivers if name in group and self.freedoms[name]["joint"] in whole["asked"]]
+            for some in itertools.combinations(units, count or len(units)):
                 # what is not on the way of a claim does not move its two parts
-                is_found = any(all(names <= vary or not whose & via for names, whose in some) for vary, via in mine)
-                over = ", ".join(sorted(name for names, _ in some for name in names))
-                need(is_found, f"{a}/{b} over {over}: no claim, yet the certificate calls itself ok")
+                if not any(all(names <= vary or not whose & via for names, whose in some) for _, vary, via in mine) and some:
+                    yield a, b, ", ".join(sorted(name for names, _ in some for name in names))
 
     def check_joints(self, parts: Any, joints: Any, couplings: Any) -> None:
         """Refute what is no mechanism, or is said to move otherwise than its loops and couplings let it."""

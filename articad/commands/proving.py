@@ -65,15 +65,15 @@ def _verify_certificate(options: argparse.Namespace, terminal: Terminal) -> Repo
 
 def _stated(certificate: Report) -> list[str]:
     """Return what an accepted certificate is about: its author chose that, and no proof tells whether it is enough."""
+    from articad.verify_certificate import covered
+
     moving = [joint["name"] for joint in certificate["mechanism"]["joints"] if joint["freedoms"]]
-    asked, still = certificate["asked"], [name for name in moving if name not in certificate["asked"]]
-    lines = [
-        f"Proven while these move{', also two at a time' if certificate['together'] else ', one at a time'}: {', '.join(asked) or 'none'}."
-    ]
+    still = [name for name in moving if name not in certificate["asked"]]
+    sentence = covered(certificate)
+    refused = "It does not call itself ok: what it claims holds, but something that was asked for is not proven."
+    lines = [sentence[0].upper() + sentence[1:] if certificate["ok"] else refused]
     if still:
         lines.append(f"These joints are not asked for: {', '.join(still)}.")
     waived = {"/".join(pair["parts"]): pair["strength"] for pair in certificate["pairs"] if pair["strength"]["kind"] == "waived"}
     lines += [f"Waived, so not looked at: {parts} ({how.get('reason') or 'no reason given'})." for parts, how in waived.items()]
-    if not certificate["ok"]:
-        lines.append("It does not call itself ok: what it claims holds, but something that was asked for is not proven.")
     return lines

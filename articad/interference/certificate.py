@@ -8,6 +8,7 @@ range that is free, or it was not checked, and then the certificate is not ok.
 from __future__ import annotations
 
 import io
+import json
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -37,7 +38,7 @@ from articad.interference.verdict import judge
 from articad.interference.work import PIECE, Budget
 from articad.kinematics.joints import Joint, JointType
 from articad.kinematics.mechanism import Mechanism
-from articad.verify_certificate import PROOF, Checker, Refuted
+from articad.verify_certificate import PROOF, Checker, Refuted, covered, widened
 
 DEFAULT_EPSILON_MM = 1e-3
 DEFAULT_BUDGET_S = 600.0
@@ -120,9 +121,13 @@ class Certificate:
         return self.findings.ok and not self.findings.of("W_NOT_CERTIFIED")
 
     def to_json(self) -> dict[str, Any]:
-        """Return the report `articad.certificate/1`."""
+        """Return the report `articad.certificate/2`."""
+        report = self._report()
+        return {**report, "covers": covered(report) if self.ok else "not all that was asked for is proven; see the findings."}
+
+    def _report(self) -> dict[str, Any]:
         return {
-            "schema": "articad.certificate/1",
+            "schema": "articad.certificate/2",
             "ok": self.ok,
             "findings": [finding.to_json() for finding in self.findings],
             "epsilon_mm": self.epsilon,
@@ -146,6 +151,16 @@ class Certificate:
         """Return the meshes that a checker needs, as `<part>.npz`; the same meshes give the same bytes."""
         meshes = {f"{name}.npz": _npz(vertices=mesh.vertices, triangles=mesh.triangles) for name, mesh in self.meshes.items()}
         return {**meshes, f"{PROOF}.npz": _npz(compress=True, **self.proof)}
+
+    def refutation(self) -> str | None:
+        """Return why the independent checker refutes what would be written, None if it accepts it."""
+        meshes = {name: {"vertices": mesh.vertices, "triangles": mesh.triangles} for name, mesh in self.meshes.items()}
+        arrays = {name: {key: widened(array) for key, array in of.items()} for name, of in {**meshes, PROOF: self.proof}.items()}
+        try:
+            Checker(json.loads(json.dumps(self._report())), arrays).check()
+        except Refuted as reason:
+            return str(reason)
+        return None
 
     @property
     def proof(self) -> dict[str, Any]:
@@ -184,7 +199,10 @@ def certify(
     waivers: Sequence[WaiverLike] = (),
     fits: Mapping[str, FitLike] | None = None,
 ) -> Certificate:
-    """Prove that parts do not meet while joints move over their whole ranges; endless ones over a full turn.
+    """Prove that parts do not meet while joints move over their whole ranges, and check the proof by the independent checker.
+
+    A joint without limits is proven over a full turn, or over what it takes until all that follows it has come back. A certificate is ok
+    if there is a proof for each joint and for each two that move together, and the checker accepts it.
 
     Args:
         meshes: By part, in the part's frame; parts without geometry are left out.
@@ -199,7 +217,14 @@ def certify(
         fits: By joint name.
     """
     scene = Scene.of(meshes, mechanism.joints, waivers=waivers, deflection=deflection, fits=fits)
-    return _Certifying(scene, mechanism, joints, pairs, epsilon, Budget(budget)).run()
+    found = _Certifying(scene, mechanism, joints, pairs, epsilon, Budget(budget)).run()
+    reason = found.refutation() if found.ok else None
+    if reason is None:
+        return found
+    message = f"The checker of certificates refutes what was proven: {reason}."
+    hint = "Report this with the plan: prover and checker disagree, so that nothing is certified."
+    refuted = Finding(code="E_CERTIFICATE_REFUTED", where="certificate", message=message, hint=hint)
+    return replace(found, findings=Findings([*found.findings, refuted]))
 
 
 @dataclass

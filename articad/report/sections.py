@@ -29,7 +29,7 @@ class Documents:
     Attributes:
         prompt: What was asked for.
         checks: Report `articad.checks/1`.
-        certificate: Report `articad.certificate/1`.
+        certificate: Report `articad.certificate/2`.
         verdict: Report `articad.verdict/1`.
         audit: Report `articad.audit/1`.
         exports: Reports `articad.losses/1` by format.
