@@ -26,7 +26,7 @@ ENDLESS: dict[str, Any] = {"lower": (-math.inf,), "upper": (math.inf,)}
 Meshes = dict[str, TriMesh]
 
 
-def pinned(name: str, parent: str, child: str, place: Sequence[float], *, driver: bool = False, **options: Any) -> Joint:
+def pinned(name: str, parent: str, child: str, place: Sequence[float] | np.ndarray, *, driver: bool = False, **options: Any) -> Joint:
     """Return a hinge about z; all parts' frames are the ground's at rest."""
     hinge = joint(name, "revolute", parent, child, at_parent=at(*place), at_child=at(*place), **options)
     return replace(hinge, driver=driver)
