@@ -11,7 +11,9 @@ import numpy as np
 import pytest
 from lxml import etree
 
+from articad import cli
 from articad.convert import WRITERS
+from articad.errors import ReadError
 from articad.export.bundle import Bundle
 from articad.geometry.shapes import capsule
 from articad.importers.mjcf import read_mjcf
@@ -472,3 +474,32 @@ def test_mujoco_reads_from_the_mjcf_what_pinocchio_reads_from_the_urdf(seed: int
             assert model.jnt_range[joint] == pytest.approx([there.lowerPositionLimit[q], there.upperPositionLimit[q]])
         if model.jnt_actfrclimited[joint]:
             assert model.jnt_actfrcrange[joint][1] == pytest.approx(there.effortLimit[at])
+
+
+XACRO = '<robot name="x" xmlns:xacro="http://www.ros.org/wiki/xacro"><link name="a"/><xacro:include filename="b.xacro"/></robot>'
+
+
+@pytest.mark.parametrize("name", ["missing.urdf", "empty", "robot.urdf.xacro"])
+def test_what_cannot_be_audited_ends_with_exit_code_3_and_a_word(name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "empty").mkdir()
+    (tmp_path / "robot.urdf.xacro").write_text(XACRO)
+
+    assert cli.main(["audit", str(tmp_path / name), "--no-engines"]) == 3
+    said = " ".join(capsys.readouterr().err.split())
+    assert {"missing.urdf": "There is no", "empty": "no model below", "robot.urdf.xacro": "xacro FILE"}[name] in said
+    assert "JSON" not in said
+
+
+def test_instructions_of_xacro_in_a_urdf_are_refused_by_name(tmp_path: Path) -> None:
+    path = tmp_path / "a.urdf"
+    path.write_text(XACRO)
+
+    with pytest.raises(ReadError, match=r"line 1: <xacro:include filename=\"b.xacro\"> is not expanded"):
+        read_urdf(path)
+
+
+def test_a_negative_effort_is_said(tmp_path: Path) -> None:
+    path = tmp_path / "a.urdf"
+    path.write_text(three((-1, 1), (-1, 1), (-1, 1), efforts=(5, -6, 5)))
+
+    assert [finding.where for finding in read_urdf(path).findings.of("W_IMPORT_LIMITS")] == ["joints.pitch"]
