@@ -7,6 +7,7 @@ fit is called broken only beyond that. Definitions: `docs/reference/plan.md`.
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -18,7 +19,7 @@ import numpy as np
 from articad.findings import Finding, Findings
 from articad.interference.claims import Claim
 from articad.interference.gauge import Gauge
-from articad.interference.motion import ENDLESS_SLIDE_MM, Freedom, Route, freedoms, scattered
+from articad.interference.motion import ENDLESS_SLIDE_MM, Freedom, Route, freedoms, radians_per_mm, scattered, travels
 from articad.interference.overlap import NOTHING
 from articad.interference.proof import NO_SHRINK, Prover, Shrink
 from articad.interference.relations import FitLike
@@ -201,7 +202,8 @@ class _Held:
         self.scene, self.joint, self.fit, self.budget = scene, joint, fit, budget
         self.gauge = Gauge(scene, joint, fit)
         self.slack = self.gauge.slack
-        self.moving = freedoms(joint)
+        self.moving = travels(joint)
+        self.per_mm = radians_per_mm(joint) if joint.type is JointType.SCREW and joint.lead else 1.0  # coordinate per travel
         self.claims: tuple[Claim, ...] = ()
 
     @property
@@ -275,12 +277,15 @@ class _Held:
     def _over(self, row: FitCheck, moving: tuple[Freedom, ...]) -> FitCheck:
         """Hold the lower bound over a range: by samples, which find what is plainly wrong, then by a proof."""
         poses = 0
-        for values in _samples(moving):
+        endless = any(_is_endless(freedom, self.per_mm) for freedom in moving)
+        ranges = [_bounded(freedom, self.per_mm) for freedom in moving]
+        near = freedoms(self.joint) if endless and self.joint.type is JointType.SCREW else ()  # one turn, in finer steps
+        for values in itertools.chain(_samples(near), _samples(ranges)):
             poses += 1
             row = self._nearer(row, values, moving)
             if self._in_motion(row.least)[0] != "ok":
                 return replace(row, verdict=self._in_motion(row.least)[0], strength=Strength.sampled(poses))
-        if any(freedom.upper - freedom.lower >= ENDLESS_SLIDE_MM for freedom in moving):
+        if endless:
             return replace(row, strength=Strength.sampled(poses))
         found = self._proven(row, moving)
         return replace(row, strength=Strength.sampled(poses)) if found is None else found
@@ -334,7 +339,7 @@ class _Held:
         code, message, hint = {
             "tight": (
                 "E_FIT_TIGHT",
-                f"{measured}, less than {limit:g} mm",
+                f"{measured}, less than {limit:g} mm" if value >= 0 else f"{measured}, but the least gap is {limit:g} mm",
                 f"Widen the gap by {limit - value:.4g} mm: enlarge the bore or thin the pin.",
             ),
             "loose": (
@@ -385,26 +390,30 @@ def _within(moving: tuple[Freedom, ...], spans: Span) -> tuple[Freedom, ...]:
     )
 
 
-def _samples(moving: Sequence[Freedom]) -> Iterator[list[float]]:
+def _samples(ranges: Sequence[Freedom]) -> Iterator[list[float]]:
     """Yield poses of a joint: each coordinate through its range, the others at rest, then all together."""
-    ranges = [_bounded(freedom) for freedom in moving]
-    rest = [freedom.rest for freedom in moving]
+    rest = [freedom.rest for freedom in ranges]
     for column, freedom in enumerate(ranges):
         for value in np.linspace(freedom.lower, freedom.upper, STEPS).tolist():
             yield [*rest[:column], value, *rest[column + 1 :]]
     if len(ranges) > 1:
-        swings = moving[0].name.endswith(".sx")
+        swings = ranges[0].name.endswith(".sx")
         for point in scattered(ranges, STEPS):
-            if not swings or math.hypot(point[0], point[1]) <= moving[0].upper:
+            if not swings or math.hypot(point[0], point[1]) <= ranges[0].upper:
                 yield list(point)
 
 
-def _bounded(freedom: Freedom) -> Freedom:
+def _is_endless(freedom: Freedom, per_mm: float) -> bool:
+    """Return whether a range stands for a travel without limits."""
+    return freedom.upper - freedom.lower >= ENDLESS_SLIDE_MM * per_mm
+
+
+def _bounded(freedom: Freedom, per_mm: float) -> Freedom:
     """Return a range that can be sampled: a piece about rest of what slides without limits."""
-    if freedom.upper - freedom.lower < ENDLESS_SLIDE_MM:
+    if not _is_endless(freedom, per_mm):
         return freedom
-    near = freedom.rest - ENDLESS_SAMPLED_MM, freedom.rest + ENDLESS_SAMPLED_MM
-    return freedom._replace(lower=max(freedom.lower, near[0]), upper=min(freedom.upper, near[1]))
+    far = ENDLESS_SAMPLED_MM * per_mm
+    return freedom._replace(lower=max(freedom.lower, freedom.rest - far), upper=min(freedom.upper, freedom.rest + far))
 
 
 def _named(moving: Sequence[Freedom], values: Sequence[float]) -> dict[str, float] | None:
@@ -420,7 +429,7 @@ def _unproven(row: FitCheck) -> Finding:
         parts=row.parts,
         message=f"The fit of joint {row.joint!r} is not proven over its motion: at {row.strength.poses} poses the gap is {row.least:.4g} mm "
         f"or more{where}.",
-        hint="Declare a smaller least gap, or make the gap wider than that.",
+        hint="Give a joint that slides without limits some, raise the budget, declare a smaller least gap, or widen the gap.",
         value=row.least,
         limit=row.declared.gap_min,
         unit="mm",

@@ -22,7 +22,7 @@ from articad.connectors.se3 import SE3
 from articad.errors import InvalidSolidError
 from articad.geometry.mesh import TriMesh
 from articad.interference.meridian import meeting, outline
-from articad.interference.motion import freedoms, motion_matrix
+from articad.interference.motion import freedoms, motion_matrix, travels
 from articad.interference.overlap import VOLUME_NOISE_MM3, overlap
 from articad.interference.relations import FitLike
 from articad.interference.scene import Scene
@@ -175,7 +175,7 @@ class Gauge:
 
     def _travel(self) -> tuple[float, float]:
         """Return how far the joint carries its child along its axis [mm]."""
-        moving = freedoms(self.joint)
+        moving = travels(self.joint)
         match self.joint.type:
             case JointType.CYLINDRICAL:
                 return moving[0].lower, moving[0].upper

@@ -70,6 +70,24 @@ def freedoms(joint: Joint) -> tuple[Freedom, ...]:
     return tuple(found)
 
 
+def travels(joint: Joint) -> tuple[Freedom, ...]:
+    """Return the coordinates along which a joint moves, of a screw without limits over as much travel as of a slide without limits."""
+    if joint.type is not JointType.SCREW or not slides_endlessly(joint):
+        return freedoms(joint)
+    (column,), far = joint.columns, 2 * ENDLESS_SLIDE_MM * radians_per_mm(joint)
+    lower, upper = column.rest - far / 2, column.rest + far / 2
+    if math.isfinite(column.lower):
+        lower, upper = column.lower, column.lower + far
+    elif math.isfinite(column.upper):
+        lower, upper = column.upper - far, column.upper
+    return (Freedom(column.name, lower, upper, column.rest),)
+
+
+def radians_per_mm(joint: Joint) -> float:
+    """Return by how much a screw turns while it travels 1 mm [rad/mm]."""
+    return 2 * math.pi / abs(joint.lead)
+
+
 def slides_endlessly(joint: Joint) -> bool:
     """Return whether a joint without limits takes its part ever further, so that no turn covers all of its poses."""
     endless = any(math.isinf(column.lower) or math.isinf(column.upper) for column in joint.columns if column.unit == "mm")

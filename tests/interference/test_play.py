@@ -211,3 +211,22 @@ def test_a_fit_that_only_samples_speak_for_is_not_certified() -> None:
     from articad.interference.fits import certified_fits
 
     assert certified_fits(report).findings.codes == ("W_NOT_CERTIFIED",)
+
+
+@pytest.mark.parametrize("limits", [(-math.inf, math.inf), (-1.0, math.inf), (-math.inf, 2.0)])
+@pytest.mark.parametrize("lead", [-10.0, 3.0, 25.0])
+def test_a_screw_without_limits_is_followed_beyond_one_turn(lead: float, limits: tuple[float, float]) -> None:
+    """A collar stands further away than one turn carries it, on the side that the screw is free to go to."""
+    up = 1.0 if (lead > 0) == math.isinf(limits[0]) else -1.0
+    start = up * (abs(lead) + 12.0)
+    block = block_with_bore(40, 10, 6.0, 64)
+    spindle = m3.Manifold.cylinder(400, 5, 5, 64, center=True)
+    link = joint("j", "screw", "a", "b", lead=lead, lower=limits[:1], upper=limits[1:])
+
+    collar = m3.Manifold.cylinder(12, 9, 9, 64, center=True).translate([0, 0, start])
+    scene = Scene.of({"a": block, "b": manifold_mesh(spindle + collar)}, [link], fits={"j": Fit(0.5)})
+    assert check_fits(scene).findings.codes == ("E_FIT_TIGHT",)
+
+    scene = Scene.of({"a": block, "b": manifold_mesh(spindle)}, [link], fits={"j": Fit(0.5)})
+    (row,) = check_fits(scene).rows
+    assert (row.verdict, row.strength.kind) == ("ok", "sampled")
