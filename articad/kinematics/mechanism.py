@@ -193,7 +193,7 @@ class Mechanism:
 
     @property
     def mobility(self) -> int:
-        """How many independent motions the mechanism has: rank of the constraints in general position, not a count."""
+        """How many independent motions the mechanism has: the dimension of its closed configurations round rest, not a count of joints."""
         if self.is_tree:
             return self.layout.n_freedoms
         passive = self.layout.n_freedoms - int(self.branch.system.active.sum())
@@ -208,12 +208,16 @@ class Mechanism:
         """Return what there is to say about a mechanism that could be made.
 
         Of a tree only warnings about its joints; of loops and couplings also whether they close and move (E_LOOP_OPEN,
-        E_LOOP_LOCKED, E_DRIVER, W_LOOP_INEXACT, W_SHAKY, W_NEAR_SINGULAR, W_IDLE_FREEDOM, I_REDUNDANT). Ranges: `motion_findings`.
+        E_LOOP_LOCKED, E_COUPLING_LOCKED, E_DRIVER, W_LOOP_INEXACT, W_SHAKY, W_NEAR_SINGULAR, W_IDLE_FREEDOM, I_REDUNDANT).
+        Ranges: `motion_findings`.
         """
         return self._structure if self.is_tree else self._structure + loop_findings(self)
 
     def motion_findings(self) -> Findings:
-        """Return where a driver's declared range is larger than what loops allow: E_DEAD_POINT, E_LOOP_LIMIT, E_SINGULAR."""
+        """Return where a driver's declared range is larger than what loops allow.
+
+        E_DEAD_POINT, E_LOOP_LIMIT, E_SINGULAR, or E_NOT_FOLLOWED where the way takes too many steps.
+        """
         if self.is_tree:
             return Findings()
         ranges = [self.feasible_range(c.name) for c in self.drivers if c.unit != "1"]

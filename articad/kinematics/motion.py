@@ -37,7 +37,7 @@ class FeasibleRange:
         upper: Largest value.
         lower_reason: What ends it: "declared limit", "dead point", "singular", "limit of <coordinate>", "endless", "not followed further".
         upper_reason: Likewise.
-        findings: E_DEAD_POINT, E_LOOP_LIMIT or E_SINGULAR where the declared range is larger.
+        findings: E_DEAD_POINT, E_LOOP_LIMIT, E_SINGULAR or E_NOT_FOLLOWED where the declared range is larger.
     """
 
     driver: Coordinate
@@ -101,6 +101,8 @@ def sweep(mechanism: Mechanism, driver: str, lo: float, hi: float, steps: int, a
     found = [] if reached.all() else [_stop_finding(track, coordinate, float(v)) for v in (lo, hi)]
     base = mechanism.configuration(q).columns
     configuration = Configuration(mechanism.joints, track.follower.system.into_all(base, Q[reached]))
+    if not reached.all() and not any(found):
+        found = [_gap_finding(coordinate, values[~reached], steps)]
     found += _limit_findings(coordinate, configuration, values[reached])
     certified = bool(certify and proved[reached].all() and reached.any())
     tube = track.largest_tube() if certified else 0.0
@@ -267,9 +269,14 @@ def _range_findings(c: Coordinate, lower: float, upper: float, lower_reason: str
             continue
         declared = f"[{shown(c.lower, c.unit)}, {shown(c.upper, c.unit)}]"
         reached = f"[{shown(lower, c.unit)}, {shown(upper, c.unit)}]"
-        whys = {"E_DEAD_POINT": "a dead point", "E_SINGULAR": "a singular configuration", "E_NOT_FOLLOWED": "it was not followed beyond"}
+        whys = {
+            "E_DEAD_POINT": "a dead point",
+            "E_SINGULAR": "a singular configuration",
+            "E_NOT_FOLLOWED": "the way beyond takes too many steps,",
+        }
         why = whys.get(code, f"the {reason}")
-        message = f"driver {c.name!r} declared {declared} but the loop reaches only {reached}: {why} at {shown(value, c.unit)}."
+        how = "was followed over" if code == "E_NOT_FOLLOWED" else "reaches"
+        message = f"driver {c.name!r} declared {declared} but the loop {how} only {reached}: {why} at {shown(value, c.unit)}."
         hint = f"Set these limits: {reached}."
         found.append(Finding(code=code, where=f"joints.{c.joint}", message=message, hint=hint, value=value, unit=c.unit))
     return found
@@ -282,8 +289,17 @@ def _stop_finding(track: Track, c: Coordinate, asked: float) -> Finding | None:
     if trace.stop is Stop.ARRIVED or sign * (end - asked) >= 0:
         return None
     code = {Stop.DEAD_POINT: "E_DEAD_POINT", Stop.STEPS: "E_NOT_FOLLOWED"}.get(trace.stop, "E_SINGULAR")
-    message = f"driver {c.name!r} was asked for {shown(asked, c.unit)} but the loop reaches only {shown(end, c.unit)}."
+    how = "was followed to" if code == "E_NOT_FOLLOWED" else "reaches"
+    message = f"driver {c.name!r} was asked for {shown(asked, c.unit)} but the loop {how} only {shown(end, c.unit)}."
     return Finding(code=code, where=f"joints.{c.joint}", message=message, hint="Stay on this side of it.", value=end, unit=c.unit)
+
+
+def _gap_finding(c: Coordinate, missed: FloatArray, steps: int) -> Finding:
+    """Return the finding about values that are not reached although the linkage was followed past them."""
+    first = float(missed[0])
+    message = f"{len(missed)} of {steps} values of driver {c.name!r} were not solved, the first at {shown(first, c.unit)}."
+    hint = "Ask for values beside it: the linkage is near-singular there."
+    return Finding(code="E_NOT_FOLLOWED", where=f"joints.{c.joint}", message=message, hint=hint, value=first, unit=c.unit)
 
 
 def _limit_findings(c: Coordinate, configuration: Configuration, values: FloatArray) -> list[Finding]:

@@ -10,6 +10,7 @@ from articad.connectors import SE3
 from articad.errors import KinematicsError, UnknownJointError
 from articad.kinematics import Coupling, Joint, JointLimits, JointType, Mechanism, continuation
 from articad.kinematics.continuation import Follower
+from articad.kinematics.track import Track
 from tests.kinematics.linkages import (
     at,
     bennett,
@@ -521,3 +522,19 @@ def test_a_nut_is_followed_however_often_its_screw_turns(lead: float) -> None:
     assert (free.lower, free.upper, free.findings.codes) == (0.0, 80.0, ())
     configuration = mechanism.configuration(np.array([[0.0], [33.0], [80.0]]))
     assert configuration["turn"][:, 0] == pytest.approx(np.array([0.0, 33.0, 80.0]) * 2 * math.pi / lead, rel=1e-12)
+
+
+def test_a_sweep_that_misses_a_value_is_not_ok(monkeypatch: pytest.MonkeyPatch) -> None:
+    def evaluate(track: Track, values: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        Q, reached, proved = whole(track, values)
+        reached[3] = False
+        return Q, reached, proved
+
+    whole = Track.evaluate
+    monkeypatch.setattr(Track, "evaluate", evaluate)
+    mechanism = four_bar()
+    driver = mechanism.drivers[0].name
+    found = mechanism.sweep(driver, float(mechanism.rest[0]), float(mechanism.rest[0]) + 0.3, 8)
+    assert len(found.values) == 7
+    assert found.findings.codes == ("E_NOT_FOLLOWED",)
+    assert not found.ok
