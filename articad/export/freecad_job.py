@@ -212,11 +212,8 @@ class Job:
             form = self._joint(joint)
             yield form
             if joint.type is JointType.UNIVERSAL:
-                turned = {
-                    "type": "Perpendicular",
-                    "offset_1": _seven(_TURNED["x"]),
-                    "offset_2": _seven(_flip(joint) @ _TURNED["y"]),
-                }
+                near, far = self._offsets(joint)
+                turned = {"type": "Perpendicular", "offset_1": _seven(near @ _TURNED["x"]), "offset_2": _seven(far @ _TURNED["y"])}
                 yield form | turned | {"object": self.names.claim(f"{joint.name}__axes"), "label": f"{joint.name} axes", "limits": {}}
             if joint.type is JointType.SCREW:
                 yield (
@@ -230,7 +227,7 @@ class Job:
                 )
 
     def _joint(self, joint: Joint) -> Json:
-        turned = self._limit_expressions(joint)
+        turned, (near, far) = self._limit_expressions(joint), self._offsets(joint)
         return {
             "name": joint.name,
             "object": self.names.claim(joint.name),
@@ -241,12 +238,21 @@ class Job:
             "parent_connector": joint.parent_connector,
             "child": joint.child,
             "child_connector": joint.child_connector,
-            "offset_1": _seven(SE3.identity()),
-            "offset_2": _seven(_flip(joint)),
+            "offset_1": _seven(near),
+            "offset_2": _seven(far),
             "limits": _limits(joint),
             "distances": {"Distance": 0.0} if joint.type is JointType.PLANAR else {},
             "expressions": turned,
         }
+
+    def _offsets(self, joint: Joint) -> tuple[SE3, SE3]:
+        """Return where a joint's two frames stand in the coordinate systems of its connectors: loops may have moved them."""
+        used = (
+            (joint.parent, joint.parent_connector, joint.T_parent_connector),
+            (joint.child, joint.child_connector, joint.T_child_connector),
+        )
+        near, far = (_offset(self.assembly.parts[part].connectors[name].frame, frame) for part, name, frame in used)
+        return near, far @ _flip(joint)
 
     def _shown(self, name: str) -> str:
         """Return the label of a joint: FreeCAD would number one that a part bears already."""
@@ -344,6 +350,11 @@ def _plane(S: np.ndarray[Any, np.dtype[np.float64]]) -> tuple[list[float], list[
     normal = np.where(np.abs(normal) < 1e-12, 0.0, normal)
     normal /= np.linalg.norm(normal)
     return (S[:3, 3] / 2).tolist(), normal.tolist()
+
+
+def _offset(given: SE3, used: SE3) -> SE3:
+    """Return the pose of a frame in another one; exactly none where they are the same but for rounding."""
+    return SE3.identity() if given.allclose(used, mm=1e-9, rad=1e-12) else given.inverse() @ used
 
 
 def _seven(T: SE3) -> list[float]:
