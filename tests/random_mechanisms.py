@@ -175,7 +175,7 @@ class Garden:
 
     def _gear(self, carrier: str, place: Place, size: float) -> None:
         """A joint that is coupled to any coordinate there is, as driver or as follower: a gear, a belt, a rack, a mimic joint."""
-        source = self._coordinate(lambda joint: True)
+        source = self._coordinate(lambda _: True)
         if source is None:
             return
         kind, at = str(self.rng.choice(["revolute", "revolute", "slider", "screw", "cylindrical"])), place(np.eye(4))
