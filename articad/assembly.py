@@ -97,7 +97,7 @@ class Assembly:
         waivers: Overlaps that the plan allows.
         resolved: The plan with its numbers; None when made in Python or imported.
         realised: How each part was built; empty when made in Python or imported.
-        findings: What the plan's check and the builds had to say, warnings and notes.
+        findings: Warnings of the plan's check, and what the builds had to say.
         deflection: Largest distance of meshes from their solids [mm].
         foreign: True when it was read from a file that articad did not write: where its base stands and its joints rest is what that
             file happened to have.
@@ -173,7 +173,8 @@ class Assembly:
             scripts = find_scripts(Path(parts), resolved, kernel.name)
         cache = cache or BuildCache()
         realised = build_parts(resolved, scripts, kernel=kernel, cache=cache, deflection=deflection, jobs=jobs, progress=progress)
-        return cls.from_realised(resolved, realised, kernel=kernel, cache=cache, deflection=deflection, findings=findings)
+        warnings = Findings(finding for finding in findings if finding.severity == "warning")  # notes are what `check_plan` is asked for
+        return cls.from_realised(resolved, realised, kernel=kernel, cache=cache, deflection=deflection, findings=warnings)
 
     @classmethod
     def from_realised(
@@ -194,7 +195,7 @@ class Assembly:
             kernel: Builds parts anew when parameters change.
             cache: Holds their files, and those of parts that are built anew.
             deflection: Largest distance of their meshes from the solids [mm].
-            findings: Warnings and notes about the plan.
+            findings: What is to be known of the plan.
         """
         mechanism = resolved.mechanism
         return cls(
