@@ -46,6 +46,7 @@ FIRST_PAIRS = 40_000  # of pieces, spent on each pair along drivers before those
 WIDE_PAIRS = 60_000  # of pieces, spent on all joints at once before they are taken one by one
 TIED_PAIRS = 8_000  # of pieces, spent on whatever a linkage does before its drivers are followed: that is cheap
 FOLLOWED_PAIRS = 400_000  # of pieces, spent on whatever a linkage does that cannot be followed
+MOST_EXPECTED = 1000  # boxes of several drivers of one group, as the pieces of each alone suggest, beyond which they are not followed
 MOST_TOGETHER = 2  # drivers of one group followed all at once before they are taken two at a time
 _END_SLACK = 1e-6  # rad or mm: by which a driver may end before its limit
 _ENTRY_MM = 1e-6  # distance at which meshes are said to touch
@@ -464,6 +465,9 @@ class _Certifying:
         bad = [way for way in ways if isinstance(way, str)]
         if bad:
             return bad[0]
+        expected = math.prod(way.count for way in ways if not isinstance(way, str))
+        if expected > MOST_EXPECTED:
+            return f"{' and '.join(drivers)} together would take about {expected} boxes, more than {MOST_EXPECTED}"
         way = Way(self._checker, drivers, tuple(way.whole.ends[0] for way in ways if not isinstance(way, str) and way.whole))
         found = way.whole
         self.budget.spend(PIECE * way.count)
