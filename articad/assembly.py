@@ -484,6 +484,7 @@ class Assembly:
             pairs: Whether joints are also moved two at a time.
             epsilon: Distances up to here are contact [mm].
             budget: Nominal seconds of work, the same work on every machine; what is not proven by then is "not checked", which is not ok.
+                Each declared fit has as much again for itself.
         """
         certificate = certify(
             self._meshes(),
