@@ -654,7 +654,8 @@ class Checker:
                         values[n] = value, along, near
                 first += len(drivers)
             T, steps = self.place(way, {**self.rest, **{name: value for name, (value, *_) in values.items()}})
-            w, v, along, aside = map(np.array, zip(*((*steps[name], *values[name][1:]) for name in steps if name in values), strict=True))
+            moved = [(*steps[name], *values[name][1:]) for name in steps if name in values] or [(*np.zeros((2, 3)), np.zeros(count), 0.0)]
+            w, v, along, aside = map(np.array, zip(*moved, strict=True))
             turned, loose = (np.abs(along).sum(1) + aside) * w.any(1), np.abs(np.cross(w, w[w.any(1).argmax()])).max() > ALIGNED
             off = [(v + np.cross(w, centre)) @ across, np.cross(w, axis), across @ across - across]  # none about one axis or point
             steady.append((box, max(np.abs(part).max() for part in off) < ROUNDING))

@@ -357,9 +357,14 @@ class _Certifying:
         bad = {name: way for name, way in ways.items() if isinstance(way, str)}
         if not any(slides_endlessly(self._joint(name)) for name in tied):
             also = driver_names(self.mechanism, self._constrained)
-            most = FOLLOWED_PAIRS if bad else TIED_PAIRS
-            if self._prove(route, (*tied, *wanted), most=most, tentative=True, also=also):
+            if self._prove(route, (*tied, *wanted), most=TIED_PAIRS, tentative=True, also=also):
                 return  # whatever the linkage does
+            both = (
+                [two for two in combinations(drivers, 2) if any(set(two) <= set(group) for group in self._groups)] if self.together else []
+            )
+            is_blocked = bool(bad) or any(isinstance(self._way(two), str) for two in both)
+            if is_blocked and self._prove(route, (*tied, *wanted), most=FOLLOWED_PAIRS, tentative=True, also=also):
+                return
         for name, reason in bad.items():
             self._refuse(parts, (self._joint_of(name),), f"the linkage cannot be followed: {reason}")
         followed = [name for name in drivers if name not in bad]

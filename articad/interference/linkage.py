@@ -475,6 +475,8 @@ class LinkageProver(Prover):
         self.drivers = tuple(name for way in ways for name in way.drivers)
         mine = np.array([any(freedom.name in way.names for way in ways) for freedom in self.chain.freedoms], dtype=bool)
         self.others = np.where(mine[:, None], np.nan, self.bounds)
+        if self.axis is not None and self.axis.dimensions == 3:
+            self.axis = None  # a ball that follows is not held within its cone: nothing proves that it keeps to it
         self._last: Steps | None = None
 
     @property

@@ -303,6 +303,16 @@ def test_a_tampered_box_of_two_drivers_is_refuted(beside: Certificate, change: C
     assert tampered(beside, change)
 
 
+def test_a_pair_that_another_driver_of_its_group_does_not_move_is_accepted(beside: Certificate) -> None:
+    """A hub and its crank: the crank is a driver, and stands while the other driver moves."""
+    meshes, mechanism = five_bar(cylinder(4, 10, 12))
+    meshes["l1"] = box(6, 40, 4).transformed(at(0, 30, 20))
+    meshes["base"] = box(40, 6, 4).transformed(at(-40, 0, 20))
+    certificate = certify(meshes, mechanism, pairs=False)
+    assert certificate.ok, str(certificate.findings)
+    assert verified(stated(certificate), certificate) == []
+
+
 # --- a joint above a linkage
 
 
