@@ -496,12 +496,13 @@ class Assembly:
             deflection=self._deflections(),
             waivers=self.waivers,
             fits=self.fits,
+            check=not self.fits,
         )
         if not self.fits:
             return certificate
         fits = certified_fits(self._held_fits(joints, certificate.spans, seconds=budget))
         claims = (*certificate.claims, *fits.claims)
-        return replace(certificate, findings=certificate.findings + fits.findings, claims=claims, fits=fits.rows)
+        return replace(certificate, findings=certificate.findings + fits.findings, claims=claims, fits=fits.rows).checked()
 
     def mass(self, q: ArrayLike | None = None) -> MassProperties:
         """Return mass, centre of mass and inertia of the whole in the ground frame; parts without mass count as massless.

@@ -371,13 +371,13 @@ class Checker:
         return ways.get(b)
 
     def grouped(self, couplings: Any) -> list[list[str]]:
-        """Return the coordinates that loops and couplings tie, those that move together in one list."""
+        """Return the coordinates that loops and couplings tie, those that move together in one list: a coupling ties two, not two joints."""
         found: list[set[str]] = []
-        ties = [{joint["name"] for joint, _ in way if joint["freedoms"]} for way in self.loops]
-        for tie in [*ties, *({self.freedoms[c[end]]["joint"] for end in ("a", "b")} for c in couplings)]:
+        ties = [{f["name"] for joint, _ in way for f in joint["freedoms"]} for way in self.loops]
+        for tie in [*ties, *({c["a"], c["b"]} for c in couplings), *({name} for name in self.linked)]:
             apart = [group for group in found if not group & tie]
             found = [*apart, tie.union(*(group for group in found if group & tie))]
-        return [[name for name in self.linked if self.freedoms[name]["joint"] in group] for group in found if group]
+        return [[name for name in self.linked if name in group] for group in found if group]
 
     def place(self, way: list[Any], values: dict[str, float]) -> tuple[Any, dict[str, Any]]:
         """Return T_a_b, and of each freedom on the way its axis and its speed at a's origin, as a sees them."""
