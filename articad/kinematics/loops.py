@@ -379,5 +379,5 @@ def characteristic_length(joints: Sequence[Joint]) -> float:
         origins.setdefault(joint.child, []).append(joint.T_child_connector.translation)
     lengths = [float(np.linalg.norm(p - points[0])) for points in origins.values() for p in points[1:]]
     least = _COINCIDENT * max(lengths, default=0.0)  # connectors nearer to each other are one place, rounded
-    lengths = [length for length in lengths if length > max(1e-6, least)]
+    lengths = [length for length in lengths if length >= max(1e-6, least)]
     return float(np.median(lengths)) if lengths else _FALLBACK_LENGTH
