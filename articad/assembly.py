@@ -354,7 +354,7 @@ class Assembly:
 
         Args:
             start: Values of the drivers `(nq,)` [rad, mm].
-            goal: Likewise.
+            goal: Values of the drivers `(nq,)` [rad, mm].
             clear: Whether parts must not meet on the way either: poses every 0.1 rad or lengths of a link are looked at, which
                 is sampled; `certify` proves.
 

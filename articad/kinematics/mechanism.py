@@ -156,6 +156,7 @@ class Mechanism:
 
         Raises:
             LoopError: E_LOOP_OPEN if the loops cannot be closed from the rest pose.
+            KinematicsError: If the mechanism is a tree.
         """
         if self._linkage.error is not None:
             raise self._linkage.error.with_traceback(None)
