@@ -383,7 +383,7 @@ class Mechanism:
             target: A pose in the ground frame, or a point `(3,)` [mm], which leaves the orientation free.
             T_part_frame: The frame in the part; the part's own frame by default.
             starts: How many random configurations within limits to try besides the rest pose, until the target is reached.
-            accept: Tells of drivers' values `(nq,)` that reach the target whether they will do; others are looked for where not.
+            accept: Decides whether drivers' values `(nq,)` [rad, mm] that reach the target will do; where not, others are tried.
 
         Raises:
             KinematicsError: E_REACH_BARRED if the target is reached, but never as `accept` wants it.
