@@ -398,7 +398,7 @@ class Mechanism:
 
         Args:
             start: Values of the drivers `(nq,)` [rad, mm].
-            goal: Likewise; the way ends in the configuration that `poses` has there.
+            goal: The same [rad, mm]; the way ends in the configuration that `poses` has there.
             accept: Tells of drivers' values `(nq,)` on the way whether they will do, such as that no parts meet.
 
         Returns:
