@@ -399,7 +399,7 @@ class Mechanism:
         Args:
             start: Values of the drivers `(nq,)` [rad, mm].
             goal: The same [rad, mm]; the way ends in the configuration that `poses` has there.
-            accept: Tells of drivers' values `(nq,)` on the way whether they will do, such as that no parts meet.
+            accept: Decides whether drivers' values `(nq,)` [rad, mm] on the way will do, such as that no parts meet.
 
         Returns:
             `(n, nq)`, start and goal included.
