@@ -267,7 +267,7 @@ CODES: dict[str, Code] = {
     "E_NOT_FOLLOWED": Code(
         "motion",
         "design",
-        "A linkage was followed over as many steps as there may be; nothing is known to bar the way beyond.",
+        "A linkage was followed over as many steps as there may be, or its constraints have a multiple root; nothing is known to bar the way.",
         "Ask for a value nearer to rest, or give the driver limits.",
     ),
     "W_NEAR_SINGULAR": Code(

@@ -17,6 +17,7 @@ from articad.connectors import FloatArray
 from articad.errors import DeadPointError, KinematicsError, LoopError
 from articad.findings import Finding
 from articad.kinematics.continuation import Follower, Stop, Trace
+from articad.kinematics.deflation import regularized
 from articad.kinematics.factors import least_squares
 from articad.kinematics.inexact import shown_gap
 from articad.kinematics.joints import Coordinate, Coupling, Joint, JointType
@@ -78,6 +79,11 @@ class Group:
         own = self.system.layout
         Q = self._closed_at_rest()
         self.analysis = mobility_of(self.system, Q)
+        regular = regularized(self.system, self.analysis)
+        if regular is not None and regular is not self.system:
+            self.system = regular
+            closed = regular.close(Q, regular.active)  # rest itself may lie on another set, where more is free
+            Q = closed.Q if closed.ok else Q
         self._places, self.refused = choose_drivers(self.system, self.analysis.freedoms)
         self.columns: IndexArray = self.system.written
         self.joints: tuple[Joint, ...] = own.joints
@@ -90,7 +96,7 @@ class Group:
         # the drivers stay where the plan has them, if the rest can be closed there
         exact = self.system.close(self._with_rest_drivers(Q), self.dependent)
         self.Q = exact.Q if exact.ok else Q
-        self.follower = Follower(self.system, self.dependent)
+        self.follower = Follower(self.system, self.dependent, simple=regular is not None)
         self.follower.start(self.analysis.Q)
         self._follows: BoolArray = (self.follower.basis.matrix != 0).any(axis=1) | ~self.system.active
         self._tracks: dict[tuple[int, bool], Track] = {}
@@ -487,6 +493,9 @@ def failure(trace: Trace, coordinate: Coordinate, end: float, asked: float, row:
     if trace.stop is Stop.SINGULAR:
         what = f"the mechanism is singular at {coordinate.name} = {there}: its branch is not determined beyond."
         code, hint = "E_SINGULAR", "Keep the driver away from there."
+    elif trace.stop is Stop.MULTIPLE:
+        what = f"the mechanism is not followed beyond {coordinate.name} = {there}: its constraints have a multiple root."
+        code, hint = "E_NOT_FOLLOWED", "Use fewer links, or links that are not parallel or equal; nothing is known to bar the way beyond."
     else:
         what = f"the mechanism was followed to {coordinate.name} = {there} and not further: the way takes too many steps."
         code, hint = "E_NOT_FOLLOWED", f"Ask for a value nearer than {there}; nothing is known to bar the way beyond."

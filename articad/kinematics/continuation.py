@@ -33,12 +33,16 @@ _FIRST_ARC = 0.01  # rad, or lengths L: first step of the search for a dead poin
 
 
 class Stop(StrEnum):
-    """Why a trace ended; STEPS is no property of the linkage: the follower took as many steps as it may."""
+    """Why a trace ended; STEPS is no property of the linkage: the follower took as many steps as it may.
+
+    Nor is MULTIPLE: at a multiple root no singular value tells where a branch ends, so the linkage may well go on.
+    """
 
     ARRIVED = "arrived"
     DEAD_POINT = "dead point"
     SINGULAR = "singular"
     STEPS = "not followed further"
+    MULTIPLE = "not followed: the constraints have a multiple root"
 
 
 class Node(NamedTuple):
@@ -93,21 +97,23 @@ class Follower:
     Args:
         system: The equations.
         dependent: Freedoms that follow; the others are drivers.
+        simple: Whether the equations have a simple root in general position, so that a singular value says where a branch ends.
 
     Attributes:
         basis: Independent motions of the dependent freedoms; what is tied to a driver is none of them.
         rank: How many of them the loops determine.
     """
 
-    def __init__(self, system: ClosureSystem, dependent: BoolArray) -> None:
-        self.system, self.dependent = system, dependent
+    def __init__(self, system: ClosureSystem, dependent: BoolArray, *, simple: bool = True) -> None:
+        self.system, self.dependent, self.simple = system, dependent, simple
+        self.certifiable = simple and system.smooth_rows  # the bound of second derivatives holds for loops alone
         self.basis = system.ties.basis(dependent)
         self._c = max(
             (math.hypot(reach / length, 1.0) for reach, length in zip(_reaches(system), system.lengths, strict=True)), default=1.0
         )
         self.rank = self.basis.size
         self._looped = np.flatnonzero(system.in_loops)
-        self._n_rows = 6 * len(system.loops)
+        self._n_rows = system.n_loop_rows
         # (Σ|y|)² ≤ n |z|² for steps z of drivers and independent motions, y of all freedoms that move loops
         driven = int((self.basis.matrix[self._looped] == 0).all(axis=1).sum())
         self._n = max(1.0, driven + float((np.abs(self.basis.matrix[self._looped]).sum(axis=0) ** 2).sum()))
@@ -145,6 +151,7 @@ class Follower:
         Returns:
             The nodes and why they end.
         """
+        certify = certify and self.certifiable
         lin = self.linearized(Q)
         node = self.node(0.0, Q, lin, direction)
         nodes, basis, sign, h = [node], lin.U[:, : self.rank], 0.0, length
@@ -204,7 +211,7 @@ class Follower:
         """Return the constraints' basis, carried along from the last one, and the sign of their determinant in it (0: none)."""
         k = self.rank
         U = lin.U[:, :k].copy()
-        if not k or k < self.basis.size:
+        if not k or k < self.basis.size or not self.system.smooth_rows:
             return U, 0.0
         if np.linalg.det(basis.T @ U) < 0:
             U[:, 0] *= -1.0
@@ -214,6 +221,8 @@ class Follower:
 
     def _stopped(self, nodes: list[Node], direction: FloatArray, *, certify: bool) -> Trace:
         node = nodes[-1]
+        if not self.simple:
+            return Trace(tuple(nodes), Stop.MULTIPLE, node.s, node.Q, certify)
         if self._fastest(node.rate) > _FOLD_RATE * self._fastest(direction):
             fold = self._fold(node, direction)
             if fold is not None:

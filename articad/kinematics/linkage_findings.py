@@ -180,7 +180,9 @@ def _mobility_findings(group: Group) -> list[Finding]:
             f"The linkage has {analysis.first_order} freedoms to first order at rest and {analysis.mobility} in truth: nearby, "
             f"{analysis.multiple} more stay(s) free to first order, though no finite motion follows. Play of the joints lets parts move there."
         )
-        hint = "Use fewer links, or links that are not parallel or equal; feasible ranges may end early at such poses."
+        hint = "Use fewer links, or links that are not parallel or equal."
+        if not group.follower.simple:
+            message += " The drivers are followed only as far as poses of reduced accuracy allow."
         found.append(Finding(code="W_NEAR_SINGULAR", where=where, message=message, hint=hint, parts=parts, value=0.0, limit=NEAR_SINGULAR))
     elif analysis.first_order > analysis.mobility:
         message = f"The rest pose is singular: {analysis.first_order} freedoms to first order, {analysis.mobility} in general position."

@@ -102,6 +102,8 @@ class ClosureSystem:
         KinematicsError: E_NONFINITE if joints are farther apart than numbers reach.
     """
 
+    smooth_rows = True  # the same row is the same equation everywhere, so the orientation of all rows tells branches apart
+
     def __init__(self, tree: KinematicTree, layout: Layout, loop_joints: Sequence[Joint], couplings: Sequence[Coupling]) -> None:
         self.couplings = tuple(couplings)
         coupled = {layout.coordinates[layout.column_of[name]].joint for c in couplings for name in (c.a, c.b)}
@@ -121,8 +123,8 @@ class ClosureSystem:
         self.scale: FloatArray = np.where(self.layout.is_length, self._travels(), 1.0)
         self._closures = closures(self.arrays, loop_joints, self.scale, self.lengths)
         self._many, self._tied = BatchEquations(self._closures), CouplingEquations(self.couplings, self.layout, self.scale, self.length)
-        self._n_loop_rows = 6 * len(self.loops)
-        self._linear = np.concatenate([np.zeros((self._n_loop_rows, self.layout.n_freedoms)), self._tied.J])
+        self.n_loop_rows = 6 * len(self.loops)
+        self._linear = np.concatenate([np.zeros((self.n_loop_rows, self.layout.n_freedoms)), self._tied.J])
         self.n_rows = len(self._linear)
         self.in_loops: BoolArray = (np.concatenate([self._closures.spin, self._closures.slide]) != 0).any(axis=0)
         self.active: BoolArray = self.in_loops | (self._tied.J != 0).any(axis=0)
@@ -247,12 +249,12 @@ class ClosureSystem:
     def _loops_at(self, Q: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return the residuals of the loops alone and their Jacobian."""
         r, J = self.evaluate_one(Q)
-        return r[: self._n_loop_rows], J[: self._n_loop_rows]
+        return r[: self.n_loop_rows], J[: self.n_loop_rows]
 
     def _polished(self, Q: FloatArray, r: FloatArray, J: FloatArray, B: Basis) -> tuple[FloatArray, float]:
         U, s, Vt = svd(B.of(J))
         trial = self.move(Q, B.step(damped_step(s, U.T @ r, Vt, 0.0, RANK_TOLERANCE)))
-        norm, norm_trial = _norm(r), _norm(self.residual_one(trial)[: self._n_loop_rows])
+        norm, norm_trial = _norm(r), _norm(self.residual_one(trial)[: self.n_loop_rows])
         return (trial, norm_trial) if norm_trial <= max(norm, RESIDUAL_TARGET) else (Q, norm)
 
     def close_many(self, Q: FloatArray, free: BoolArray, *, iterations: int = 40) -> tuple[FloatArray, FloatArray]:
@@ -298,7 +300,7 @@ class ClosureSystem:
 
     def _loops_of(self, Q: FloatArray) -> tuple[FloatArray, FloatArray]:
         r, J = self.evaluate(Q)
-        return r[:, : self._n_loop_rows], J[:, : self._n_loop_rows]
+        return r[:, : self.n_loop_rows], J[:, : self.n_loop_rows]
 
     def to_system(self, Q_all: FloatArray) -> FloatArray:
         """Return this system's columns of the coordinates of all joints."""

@@ -35,7 +35,8 @@ class FeasibleRange:
         driver: Which coordinate.
         lower: Smallest value [rad, mm]; −inf where it turns for ever.
         upper: Largest value.
-        lower_reason: What ends it: "declared limit", "dead point", "singular", "limit of <coordinate>", "endless", "not followed further".
+        lower_reason: What ends it: "declared limit", "dead point", "singular", "limit of <coordinate>", "endless",
+            "not followed further", "not followed: the constraints have a multiple root".
         upper_reason: Likewise.
         findings: E_DEAD_POINT, E_LOOP_LIMIT, E_SINGULAR or E_NOT_FOLLOWED where the declared range is larger.
     """
@@ -116,6 +117,8 @@ def _reason(track: Track, coordinate: Coordinate, values: FloatArray, *, certify
         return "Kantorovich: each step has one solution near its predictor; implied constraints of a loop are checked at the nodes"
     if not certify:
         return "followed by predictor and corrector with three guards; certify=True proves the branch"
+    if not track.follower.certifiable:
+        return "the constraints have a multiple root, for which there is no proof of the branch"
     if not values.size:
         return "no value was reached"
     ends = [track.value(sign, track.side(float(v)).nodes[-1].s) for sign, v in ((1, values.max()), (-1, values.min()))]
@@ -260,12 +263,12 @@ def _margins(track: Track, sign: int, s: FloatArray, coordinate: Coordinate) -> 
 
 def _range_findings(c: Coordinate, lower: float, upper: float, lower_reason: str, upper_reason: str) -> list[Finding]:
     """Say where the declared range is larger than what the loop allows."""
-    codes = {"dead point": "E_DEAD_POINT", "singular": "E_SINGULAR", str(Stop.STEPS): "E_NOT_FOLLOWED"}
+    codes = {"dead point": "E_DEAD_POINT", "singular": "E_SINGULAR"} | {str(s): "E_NOT_FOLLOWED" for s in (Stop.STEPS, Stop.MULTIPLE)}
     found = []
     for reason, value in ((lower_reason, lower), (upper_reason, upper)):
         code = codes.get(reason, "E_LOOP_LIMIT" if reason.startswith("limit of ") else None)
         bounded = math.isfinite(c.lower) or math.isfinite(c.upper)
-        if code is None or (not bounded and code in {"E_DEAD_POINT", "E_NOT_FOLLOWED"}):  # an endless driver follows as far as it can
+        if code is None or (not bounded and reason in {"dead point", str(Stop.STEPS)}):  # an endless driver follows as far as it can
             continue
         declared = f"[{shown(c.lower, c.unit)}, {shown(c.upper, c.unit)}]"
         reached = f"[{shown(lower, c.unit)}, {shown(upper, c.unit)}]"
@@ -274,6 +277,8 @@ def _range_findings(c: Coordinate, lower: float, upper: float, lower_reason: str
             "E_SINGULAR": "a singular configuration",
             "E_NOT_FOLLOWED": "the way beyond takes too many steps,",
         }
+        if reason == Stop.MULTIPLE:
+            whys["E_NOT_FOLLOWED"] = "the constraints have a multiple root,"
         why = whys.get(code, f"the {reason}")
         how = "was followed over" if code == "E_NOT_FOLLOWED" else "reaches"
         message = f"driver {c.name!r} declared {declared} but the loop {how} only {reached}: {why} at {shown(value, c.unit)}."
@@ -288,7 +293,7 @@ def _stop_finding(track: Track, c: Coordinate, asked: float) -> Finding | None:
     end = track.value(sign, trace.end)
     if trace.stop is Stop.ARRIVED or sign * (end - asked) >= 0:
         return None
-    code = {Stop.DEAD_POINT: "E_DEAD_POINT", Stop.STEPS: "E_NOT_FOLLOWED"}.get(trace.stop, "E_SINGULAR")
+    code = {Stop.DEAD_POINT: "E_DEAD_POINT", Stop.STEPS: "E_NOT_FOLLOWED", Stop.MULTIPLE: "E_NOT_FOLLOWED"}.get(trace.stop, "E_SINGULAR")
     how = "was followed to" if code == "E_NOT_FOLLOWED" else "reaches"
     message = f"driver {c.name!r} was asked for {shown(asked, c.unit)} but the loop {how} only {shown(end, c.unit)}."
     return Finding(code=code, where=f"joints.{c.joint}", message=message, hint="Stay on this side of it.", value=end, unit=c.unit)
