@@ -89,7 +89,8 @@ class DeflatedSystem(ClosureSystem):
 
     def residual_one(self, Q: FloatArray) -> FloatArray:
         """Return the residuals alone `(rows,)`."""
-        return self.residual(Q[None])[0]
+        r: FloatArray = self.residual(Q[None])[0]
+        return r
 
     def _joined(self, r: FloatArray, S: FloatArray) -> FloatArray:
         loops = self._plain.n_loop_rows
