@@ -208,6 +208,11 @@ time.sleep(300)
 """
 
 
+def _heeds_interrupts() -> None:
+    """Undo what a shell does to its background jobs: they ignore SIGINT, and so would all that they start."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
 @pytest.mark.skipif(sys.platform != "linux", reason="the kernel's signal for a parent's end is Linux's")
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGKILL, signal.SIGINT])
 @pytest.mark.parametrize("work", [ENGINE, SCRIPT], ids=["engines", "kernel"])
@@ -215,7 +220,14 @@ def test_no_process_outlives_its_parent_and_no_folder_the_next_start(work: str, 
     temporary = tmp_path / "temporary"
     temporary.mkdir()
     environment = os.environ | {"TMPDIR": str(temporary)}
-    with subprocess.Popen([sys.executable, "-c", work], cwd=tmp_path, env=environment, stdout=subprocess.PIPE, text=True) as parent:
+    with subprocess.Popen(
+        [sys.executable, "-c", work],
+        cwd=tmp_path,
+        env=environment,
+        stdout=subprocess.PIPE,
+        text=True,
+        preexec_fn=_heeds_interrupts,  # noqa: PLW1509 - this process starts no thread before
+    ) as parent:
         assert parent.stdout is not None
         children = [int(word) for _ in range(2 if work is ENGINE else 1) for word in parent.stdout.readline().split()]
         assert all(map(alive, children))
