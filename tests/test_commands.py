@@ -68,15 +68,19 @@ def cache(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
         yield
 
 
-@pytest.fixture
-def chest(tmp_path: Path) -> Path:
-    """The folder of a plan with its scripts."""
-    folder = tmp_path / "chest"
+def write_chest(folder: Path) -> Path:
+    """Write the plan with its part scripts into a new folder."""
     (folder / "parts").mkdir(parents=True)
     (folder / "plan.json").write_text(json.dumps(PLAN))
     (folder / "parts" / "box.py").write_text(BOX)
     (folder / "parts" / "lid.py").write_text(LID)
     return folder
+
+
+@pytest.fixture
+def chest(tmp_path: Path) -> Path:
+    """The folder of a plan with its scripts."""
+    return write_chest(tmp_path / "chest")
 
 
 @pytest.fixture

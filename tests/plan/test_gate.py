@@ -18,6 +18,7 @@ from articad.plan.check import admitted, check_plan
 from articad.plan.schema import AssemblyPlan
 from tests.plan.samples import Json
 from tests.plan.test_check import CASES, Case
+from tests.test_commands import write_chest
 
 
 class NoKernel:
@@ -83,16 +84,9 @@ FAULTS: list[Callable[[Json], str]] = [lid_off, wrong_freedoms, metres, contradi
 
 @pytest.fixture
 def chest(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """The plan that `articad new` writes, and an empty cache: what is built leaves something there."""
+    """A plan with its scripts, and an empty cache: what is built leaves something there."""
     monkeypatch.setenv("ARTICAD_CACHE", str(tmp_path / "cache"))
-    from tests.test_commands import BOX, LID, PLAN
-
-    folder = tmp_path / "chest"
-    (folder / "parts").mkdir(parents=True)
-    (folder / "plan.json").write_text(json.dumps(PLAN))
-    (folder / "parts" / "box.py").write_text(BOX)
-    (folder / "parts" / "lid.py").write_text(LID)
-    return folder
+    return write_chest(tmp_path / "chest")
 
 
 def spoilt(folder: Path, fault: Callable[[Json], str]) -> str:
