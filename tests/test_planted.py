@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 import json
 import os
 import subprocess
@@ -17,6 +16,7 @@ from mcp.client.stdio import stdio_client
 
 from articad.commands.command import COMMANDS
 from tests.agents.openai_stub import Canned, openai_stub
+from tests.coroutines import finish
 from tests.planting import planted
 
 # As the console script starts: without the working folder on the path.
@@ -142,4 +142,4 @@ def test_no_tool_runs_what_a_stranger_planted_in_the_root(stranger: Path) -> Non
                 assert marks(stranger) == "", name
                 assert not answer.is_error, (name, answer.content)
 
-    asyncio.run(session())
+    finish(session())

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 import json
 import os
 import shutil
@@ -20,6 +19,7 @@ from mcp.client.stdio import stdio_client
 from articad import examples
 from articad.mcp.server import make_server
 from articad.mcp.workbench import BRIEF_BYTES, FULL_BYTES, SHOWN_FINDINGS, condensed
+from tests.coroutines import finish
 
 Json = dict[str, Any]
 Work = Callable[["Agent"], Awaitable[None]]
@@ -57,7 +57,7 @@ def over_stdio(root: Path, work: Work) -> None:
         async with Client(stdio_client(server)) as client:
             await work(Agent(client))
 
-    asyncio.run(session())
+    finish(session())
 
 
 @pytest.mark.slow
@@ -148,7 +148,7 @@ def test_hostile_arguments_are_refused_in_words(tmp_path: Path, tool: str, argum
         async with Client(tools) as client:
             return await Agent(client).refused(tool, **arguments)
 
-    assert words in asyncio.run(call())
+    assert words in finish(call())
 
 
 def test_a_million_findings_are_cut_with_a_note() -> None:
@@ -169,7 +169,7 @@ def test_the_pages_of_the_schema_are_short() -> None:
             agent = Agent(client)
             return {topic: len(await agent.call("schema", topic=topic)) for topic in ("plan", "part_script", "room", "findings", "Joint")}
 
-    assert max(asyncio.run(pages()).values()) < 9000
+    assert max(finish(pages()).values()) < 9000
 
 
 LID = """from build123d import Align, Box

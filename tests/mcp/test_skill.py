@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 import json
 import math
 import re
@@ -20,6 +19,7 @@ from articad.plan.check import check_plan
 from articad.plan.json_schema import json_schema
 from articad.plan.resolve import resolve
 from articad.plan.schema import AssemblyPlan
+from tests.coroutines import finish
 
 BLOCKS = re.findall(r"```json\n(.*?)```", skill(), re.DOTALL)
 PLANS = [AssemblyPlan.loads(text) for text in BLOCKS if '"schema"' in text]
@@ -88,7 +88,7 @@ def test_its_commands_exist_with_their_flags(capsys: pytest.CaptureFixture[str])
 
 
 def test_its_tools_exist_with_their_arguments(tmp_path: Path) -> None:
-    tools = {tool.name: set(tool.input_schema["properties"]) for tool in asyncio.run(make_server(tmp_path).list_tools())}
+    tools = {tool.name: set(tool.input_schema["properties"]) for tool in finish(make_server(tmp_path).list_tools())}
     calls = re.findall(r"`(\w+)\(([^`]*)\)`", skill().split("## The plan")[0])
     assert {name for name, _ in calls} <= set(tools)
     assert len(tools) == 14
