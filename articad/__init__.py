@@ -28,7 +28,7 @@ _MODULE_OF = {
     "Mechanism": "kinematics.mechanism",
     "Part": "geometry.part",
     "Replay": "agents.llm",
-    "Run": "run",
+    "Run": "runs.run",
     "SE3": "connectors.se3",
     "Scripted": "agents.llm",
     "TriMesh": "geometry.mesh",
@@ -106,4 +106,4 @@ if TYPE_CHECKING:
     from articad.kinematics.mechanism import Mechanism as Mechanism
     from articad.plan.check import check_plan as check_plan
     from articad.plan.schema import AssemblyPlan as AssemblyPlan
-    from articad.run import Run as Run
+    from articad.runs.run import Run as Run

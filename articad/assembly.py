@@ -12,14 +12,14 @@ from typing import TYPE_CHECKING, Any, Literal, Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from articad.certificates.certificate import DEFAULT_BUDGET_S, DEFAULT_EPSILON_MM, Certificate, certify, constrained_joints
+from articad.certificates.fits import PROOF_SECONDS, FitReport, certified_fits, check_fits, followed
 from articad.connectors.se3 import SE3
 from articad.errors import LimitError, PlanError, UnknownJointError
 from articad.findings import Findings
 from articad.geometry.mesh import TriMesh
 from articad.geometry.part import MassProperties, Part
-from articad.interference.certificate import DEFAULT_BUDGET_S, DEFAULT_EPSILON_MM, Certificate, certify, constrained_joints
 from articad.interference.check import Checks, check_pose
-from articad.interference.fits import PROOF_SECONDS, FitReport, certified_fits, check_fits, followed
 from articad.interference.scene import Scene
 from articad.interference.sweep import sweep
 from articad.kernels.build123d import Build123dKernel

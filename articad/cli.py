@@ -18,7 +18,7 @@ from articad import __version__
 from articad.commands.command import COMMANDS, Command, closest
 
 if TYPE_CHECKING:
-    from articad.terminal import Terminal
+    from articad.commands.terminal import Terminal
 
 OK: Final = 0
 FINDINGS: Final = 1
@@ -94,8 +94,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # more wait for each other by turning: on busy processors 100 times as long
     options = _parsed(arguments)
 
-    from articad.processes import safe_path
-    from articad.terminal import Terminal
+    from articad.commands.terminal import Terminal
+    from articad.processes.launcher import safe_path
 
     terminal = Terminal(as_json=options.as_json, quiet=options.quiet, verbose=options.verbose, color=not options.colorless)
     try:
@@ -136,9 +136,9 @@ def _prompt_interrupts(terminal: Terminal) -> Iterator[None]:
 
 
 def _run(command: Command, options: argparse.Namespace, terminal: Terminal) -> int:
-    from articad import scratch
-    from articad.doctor import require_libraries
+    from articad.commands.doctor import require_libraries
     from articad.errors import ArticadError
+    from articad.processes import scratch
 
     scratch.sweep()
     try:

@@ -27,7 +27,7 @@ from typing import Any
 import psutil
 from distributed import Client, LocalCluster
 
-from articad.bench.batch import read_batch, run_dask, run_local, summary
+from articad.batches.batch import read_batch, run_dask, run_local, summary
 from articad.plan.brief import brief
 from articad.plan.resolve import resolve
 from articad.plan.schema import AssemblyPlan

@@ -20,16 +20,16 @@ from pathlib import Path
 import manifold3d as m3
 import numpy as np
 
+from articad.certificates.certificate import Certificate, certify
+from articad.certificates.verifier import verify_file
 from articad.connectors import SE3
 from articad.geometry import TriMesh, box, cylinder, tube
-from articad.interference.certificate import Certificate, certify
 from articad.interference.check import check_pose
 from articad.interference.cover import Budget, cover_line
 from articad.interference.motion import Chain, Route
 from articad.interference.surface import Surface, surface_distance
 from articad.kinematics.joints import Joint, JointLimits, JointType
 from articad.kinematics.mechanism import Mechanism
-from articad.verify_certificate import verify_file
 
 GIB = 2**30
 RATIO = 1.3  # of queries to the least that could be: the goal

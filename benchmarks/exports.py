@@ -14,7 +14,6 @@ from articad.assembly import Assembly
 from articad.connectors.attachment import Attachment
 from articad.connectors.connector import Connector
 from articad.connectors.se3 import SE3
-from articad.convert import read
 from articad.export.bundle import Bundle
 from articad.export.freecad import write_freecad_alone
 from articad.export.gltf import write_glb
@@ -24,6 +23,7 @@ from articad.export.sdf import write_sdf
 from articad.export.threemf import write_3mf
 from articad.export.urdf import write_urdf
 from articad.export.usd import write_usd
+from articad.formats import read
 from articad.geometry.part import Part
 from articad.geometry.shapes import box, tube
 from articad.kinematics import declare

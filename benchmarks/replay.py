@@ -19,9 +19,9 @@ from typing import Any
 
 from articad.agents.pipeline import replay
 from articad.examples import folder
+from articad.kernels.choice import kernel_named
 from articad.kernels.kernel import BuildCache
-from articad.record import kernel_named
-from articad.run import Run
+from articad.runs.run import Run
 
 GOAL = 0.25
 

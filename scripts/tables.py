@@ -10,9 +10,9 @@ from pathlib import Path
 from typing import get_args
 
 import articad.commands
-from articad.codes import CODES
 from articad.commands.command import COMMANDS
 from articad.export.losses import TABLE, Format
+from articad.findings.codes import CODES
 from articad.importers.mjcf_kept import READ as READ_MJCF
 from articad.importers.urdf_kept import READ as READ_URDF
 

@@ -155,10 +155,10 @@ def test_every_import_is_declared() -> None:
 @pytest.mark.parametrize(
     ("module", "owner"),
     [
-        ("pinocchio", ("kinematics/forward.py", "simulate/loading.py")),  # the latter only asks whether it loads a file
+        ("pinocchio", ("kinematics/forward.py", "simulation/loading.py")),  # the latter only asks whether it loads a file
         ("fcl", ("interference/",)),
         ("litellm", ("agents/live.py",)),
-        ("mujoco", ("simulate/", "importers/mjcf.py")),  # its MjSpec is the reader of MJCF
+        ("mujoco", ("simulation/", "importers/mjcf.py")),  # its MjSpec is the reader of MJCF
     ],
 )
 def test_one_place_each_imports_the_engines(module: str, owner: tuple[str, ...]) -> None:

@@ -15,10 +15,10 @@ import pytest
 from articad import __version__, cli
 from articad.commands.command import COMMANDS, Command
 from articad.commands.options import FORMATS
+from articad.commands.terminal import Report, Terminal
 from articad.errors import PlanError
 from articad.findings import Finding
-from articad.record import WRITERS
-from articad.terminal import Report, Terminal
+from articad.runs.record import WRITERS
 
 FINDING = Finding(code="E_DUP_NAME", where="parts[1]", message="'lid' is used twice.", hint="Rename one.")
 

@@ -16,8 +16,8 @@ import pytest
 
 from articad import cli, examples
 from articad.commands import models
-from articad.record import kernel_named
-from articad.run import Run
+from articad.kernels.choice import kernel_named
+from articad.runs.run import Run
 from tests.agents import stories
 
 PLAN: dict[str, Any] = {
@@ -90,7 +90,7 @@ def report(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) 
     def shared(name: str, **options: Any) -> Any:
         return stories.kernel() if name == "build123d" else kernel_named(name, **options)
 
-    monkeypatch.setattr("articad.record.kernel_named", shared)
+    monkeypatch.setattr("articad.runs.record.kernel_named", shared)
     monkeypatch.setattr("articad.agents.pipeline.kernel_named", shared)
 
     def run(*arguments: object) -> tuple[int, dict[str, Any]]:

@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from articad.convert import FORMAT_OF, READERS, WRITERS, convert, read
 from articad.errors import ExportError, ReadError, UnrepresentableError
+from articad.formats import FORMAT_OF, READERS, WRITERS, convert, read
 from tests.assemblies import geared_pair
 
 # FreeCAD writes its documents itself, which tests/freecad holds to more than this

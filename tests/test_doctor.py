@@ -10,8 +10,8 @@ from pathlib import Path
 
 import pytest
 
-from articad import doctor
 from articad.agents.llm import Reply, Scripted
+from articad.commands import doctor
 from articad.errors import KernelUnavailableError
 
 COMMANDS = (["doctor"], ["build", "nowhere"], ["check", "nowhere"], ["export", "nowhere", "--to", "urdf"], ["replay", "nowhere"])

@@ -14,15 +14,15 @@ import pytest
 from numpy.typing import NDArray
 
 from articad.assembly import Assembly
+from articad.certificates.certificate import constrained_joints, driver_names, mechanism_json
+from articad.certificates.linkage import Way
+from articad.certificates.verifier import PROOF, Checker
 from articad.connectors.se3 import SE3
 from articad.export.gltf import FAR_RAD, FRAMES, write_glb
 from articad.interference import sweep as sampled
-from articad.interference.certificate import constrained_joints, driver_names, mechanism_json
-from articad.interference.linkage import Way
 from articad.render.pictures import motion_frames
-from articad.simulate import film
-from articad.simulate.verdict import Frame
-from articad.verify_certificate import PROOF, Checker
+from articad.simulation import film
+from articad.simulation.verdict import Frame
 from tests import moving_bases
 from tests.engines import disagreement
 from tests.export.test_gltf import parts_of, values

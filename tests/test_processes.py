@@ -15,8 +15,8 @@ from pathlib import Path
 import pytest
 
 import articad
-from articad import processes, scratch
-from articad.processes import Limits
+from articad.processes import launcher, scratch
+from articad.processes.launcher import Limits
 from tests.planting import planted
 
 PACKAGE = Path(articad.__file__).parent
@@ -27,11 +27,11 @@ CALLS = ("system", "popen", "fork", "posix_spawn", "startfile", "exec", "spawn",
 MODULES = {"os", "posix", "asyncio"}
 CLASSES = {"ProcessPoolExecutor", "LocalCluster"}
 ALLOWED = {
-    ("processes.py", "subprocess"): "the launcher",
-    ("child.py", "execve"): "the launcher's other end",
+    ("processes/launcher.py", "subprocess"): "the launcher",
+    ("processes/child.py", "execve"): "the launcher's other end",
     ("kernels/worker.py", "fork"): "the zygote, which forks a confined process for each part script",
 }
-SOURCES = sorted(path for path in PACKAGE.rglob("*.py") if "shipped_examples" not in path.parts and path.parent.name != "parts")
+SOURCES = sorted(path for path in PACKAGE.rglob("*.py") if "examples" not in path.parts and path.parent.name != "parts")
 
 
 def starters_in(source: str) -> Iterator[str]:
@@ -94,26 +94,26 @@ def test_a_child_imports_nothing_from_where_it_was_started(module: str, tmp_path
     mark = planted(folder)
     code = f"""
 import sys
-from articad import processes
-processes.run(["--version"], module={module!r}, limits=processes.Limits(seconds=100), environment=processes.environment(*processes.OWN))
+from articad.processes import launcher
+launcher.run(["--version"], module={module!r}, limits=launcher.Limits(seconds=100), environment=launcher.environment(*launcher.OWN))
 """
     environment = os.environ | {"HOME": str(folder), "TMPDIR": str(folder), "PYTHONPATH": ""}
     subprocess.run([sys.executable, "-P", "-c", code], cwd=folder, env=environment, check=True, timeout=200)
     assert not mark.exists(), mark.read_text()
 
 
-def in_child(code: str, **options: object) -> processes.Ended:
+def in_child(code: str, **options: object) -> launcher.Ended:
     """Run Python in a child that the launcher starts."""
-    return processes.run([sys.executable, "-I", "-S", "-c", code], limits=Limits(seconds=30), **options)  # type: ignore[arg-type]
+    return launcher.run([sys.executable, "-I", "-S", "-c", code], limits=Limits(seconds=30), **options)  # type: ignore[arg-type]
 
 
 def test_a_child_runs_the_articad_of_its_parent(tmp_path: Path) -> None:
     copy = tmp_path / "elsewhere" / "articad"
-    copy.mkdir(parents=True)
-    for name in ("__init__.py", "child.py", "processes.py", "scratch.py"):
+    (copy / "processes").mkdir(parents=True)
+    for name in ("__init__.py", *(f"processes/{module}.py" for module in ("__init__", "child", "launcher", "scratch"))):
         (copy / name).write_bytes((PACKAGE / name).read_bytes())
     (copy / "probe.py").write_text("import articad, sys; print(articad.__file__, *sys.argv[1:])")
-    code = "from articad import processes as p; print(p.run(['word'], module='articad.probe', limits=p.Limits(seconds=60)).out.decode())"
+    code = "from articad.processes import launcher as p; print(p.run(['word'], module='articad.probe', limits=p.Limits(seconds=60)).out.decode())"
 
     done = subprocess.run([sys.executable, "-c", code], cwd=copy.parent, capture_output=True, text=True, check=True)
 
@@ -134,28 +134,28 @@ def test_a_child_gets_no_key_and_no_setting_of_python(monkeypatch: pytest.Monkey
     for name in ("OPENAI_API_KEY", "AWS_SECRET_ACCESS_KEY", "SOME_TOKEN", "PYTHONPATH", "HTTPS_PROXY", "OPENAI_BASE_URL"):
         monkeypatch.setenv(name, "secret")
     monkeypatch.setenv("ARTICAD_CACHE", "kept")
-    for given in (None, processes.environment(), processes.environment(*processes.OWN)):
+    for given in (None, launcher.environment(), launcher.environment(*launcher.OWN)):
         seen = json.loads(in_child("import json, os; print(json.dumps(dict(os.environ)))", environment=given).out)
         assert "secret" not in seen.values()
     assert seen["ARTICAD_CACHE"] == "kept"
     assert in_child("import os; print(dict(os.environ))", environment={"ONE": "1"}).out.split()[:2] == [b"{'ONE':", b"'1',"]
-    assert processes.environment_with_keys()["OPENAI_API_KEY"] == "secret"
-    assert "PYTHONPATH" not in processes.environment_with_keys()
+    assert launcher.environment_with_keys()["OPENAI_API_KEY"] == "secret"
+    assert "PYTHONPATH" not in launcher.environment_with_keys()
 
 
 def test_a_program_gets_the_environment_as_it_was_given() -> None:
-    assert processes.run(["/usr/bin/env"], limits=Limits(seconds=30), environment={}).out == b""
+    assert launcher.run(["/usr/bin/env"], limits=Limits(seconds=30), environment={}).out == b""
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="limits of data are Linux's")
 def test_memory_files_and_output_are_bounded() -> None:
-    def tried(code: str, limits: Limits) -> processes.Ended:
-        return processes.run([sys.executable, "-I", "-S", "-c", code], limits=limits)
+    def tried(code: str, limits: Limits) -> launcher.Ended:
+        return launcher.run([sys.executable, "-I", "-S", "-c", code], limits=limits)
 
     assert b"MemoryError" in tried("x = bytearray(2**30)", Limits(seconds=30, memory=2**28)).err
     assert tried("open('file', 'wb').write(bytes(2**22))", Limits(seconds=30, file_size=2**20)).code != 0
     out = tried("import os\nfor _ in range(70): os.write(1, b'x' * 2**20)\nos.write(1, b'end')", Limits(seconds=60)).out
-    assert len(out) == processes.OUTPUT
+    assert len(out) == launcher.OUTPUT
     assert out.endswith(b"end")
 
 
@@ -177,8 +177,8 @@ def gone(pids: list[int], seconds: float = 5.0) -> bool:
 
 
 def test_the_whole_group_is_killed_when_time_is_up_and_when_the_leader_ends() -> None:
-    late = processes.run(["/bin/sh", "-c", "sleep 300 & echo $!; sleep 300"], limits=Limits(seconds=1))
-    early = processes.run(["/bin/sh", "-c", "sleep 300 & echo $!"], limits=Limits(seconds=200))
+    late = launcher.run(["/bin/sh", "-c", "sleep 300 & echo $!; sleep 300"], limits=Limits(seconds=1))
+    early = launcher.run(["/bin/sh", "-c", "sleep 300 & echo $!"], limits=Limits(seconds=200))
     assert (late.late, early.late, early.code) == (True, False, 0)
     assert gone([int(late.out), int(early.out)])
 
@@ -187,15 +187,15 @@ def test_the_whole_group_is_killed_when_time_is_up_and_when_the_leader_ends() ->
 ENGINE = """
 import os, sys
 from pathlib import Path
-from articad import processes
-from articad.simulate import loading
+from articad.processes import launcher
+from articad.simulation import loading
 os.mkfifo("model.urdf")
-start = processes.start
+start = launcher.start
 def told(*words, **options):
     child = start(*words, **options)
     print(child.pid, flush=True)
     return child
-processes.start = told
+launcher.start = told
 loading.load_in_all(Path("model.urdf").resolve(), ("mujoco", "pinocchio"))
 """
 SCRIPT = """
@@ -235,13 +235,13 @@ def test_no_process_outlives_its_parent_and_no_folder_the_next_start(work: str, 
         parent.wait(30)
 
     assert gone(children)
-    subprocess.run([sys.executable, "-c", "from articad import scratch; scratch.folder('x')"], env=environment, check=True)
+    subprocess.run([sys.executable, "-c", "from articad.processes import scratch; scratch.folder('x')"], env=environment, check=True)
     assert list(temporary.iterdir()) == []
 
 
 def test_the_sweep_leaves_what_is_in_use_or_not_ours(tmp_path: Path) -> None:
     environment = os.environ | {"TMPDIR": str(tmp_path)}
-    code = "from articad import scratch; kept = scratch.folder('x'); print(kept.name, flush=True); input()"
+    code = "from articad.processes import scratch; kept = scratch.folder('x'); print(kept.name, flush=True); input()"
     with subprocess.Popen([sys.executable, "-c", code], env=environment, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as other:
         assert other.stdout is not None
         used = Path(other.stdout.readline().strip())
@@ -249,7 +249,7 @@ def test_the_sweep_leaves_what_is_in_use_or_not_ours(tmp_path: Path) -> None:
         (tmp_path / "target" / "file").write_text("")
         (tmp_path / f"{scratch.PREFIX}link").symlink_to(tmp_path / "target")
         (tmp_path / f"{scratch.PREFIX}dead").mkdir()
-        subprocess.run([sys.executable, "-c", "from articad import scratch; scratch.sweep()"], env=environment, check=True)
+        subprocess.run([sys.executable, "-c", "from articad.processes import scratch; scratch.sweep()"], env=environment, check=True)
         assert used.is_dir()
         other.communicate("\n")
     assert (tmp_path / "target" / "file").exists()
@@ -261,9 +261,9 @@ def test_a_program_is_never_taken_from_the_working_folder(tmp_path: Path, monkey
     (tmp_path / "bwrap").write_text("#!/bin/sh\n")
     (tmp_path / "bwrap").chmod(0o755)
     monkeypatch.chdir(tmp_path)
-    assert processes.which("bwrap", "") is None
-    assert processes.which("bwrap", ":.:relative") is None
-    assert processes.which("bwrap", f":{tmp_path}") == str(tmp_path / "bwrap")
+    assert launcher.which("bwrap", "") is None
+    assert launcher.which("bwrap", ":.:relative") is None
+    assert launcher.which("bwrap", f":{tmp_path}") == str(tmp_path / "bwrap")
 
 
 @pytest.mark.parametrize(
@@ -271,7 +271,7 @@ def test_a_program_is_never_taken_from_the_working_folder(tmp_path: Path, monkey
     [
         "from articad.importers.mjcf import read_mjcf; read_mjcf('foreign.xml')",
         "from articad.cli import main; main(['convert', 'foreign.xml', 'out.urdf'])",
-        "from articad import processes; processes.run([], module='articad.simulate.loading', limits=processes.Limits(seconds=50))",
+        "from articad.processes import launcher; launcher.run([], module='articad.simulation.loading', limits=launcher.Limits(seconds=50))",
     ],
 )
 def test_no_library_starts_python_in_the_working_folder(statement: str, tmp_path: Path) -> None:

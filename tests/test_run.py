@@ -16,7 +16,7 @@ from pathlib import Path
 import pytest
 
 from articad.errors import ArticadError, ReadError, RunError, WriteError
-from articad.run import Run, RunRequest, UserImage, canonical_json, differences, digest, open_or_create, write_atomically
+from articad.runs.run import Run, RunRequest, UserImage, canonical_json, differences, digest, open_or_create, write_atomically
 
 PNG = b"\x89PNG\r\n\x1a\n" + bytes(16)
 
@@ -128,7 +128,7 @@ def test_a_second_answer_to_a_step_does_not_lose_the_first(tmp_path: Path) -> No
 
 def test_two_writers_are_refused_and_readers_are_not(tmp_path: Path) -> None:
     with Run.create(request(), out=tmp_path / "r"):
-        script = f"from articad.run import Run; Run.view({str(tmp_path / 'r')!r}); Run.open({str(tmp_path / 'r')!r})"
+        script = f"from articad.runs.run import Run; Run.view({str(tmp_path / 'r')!r}); Run.open({str(tmp_path / 'r')!r})"
         second = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=False)
         assert "RunError: Another process works in" in second.stderr
         with pytest.raises(RunError, match="Another process"):
@@ -246,7 +246,7 @@ def test_equal_work_gives_equal_files_and_a_difference_is_named(tmp_path: Path) 
 
 def test_kill_nine_leaves_the_old_file_or_the_new_one(tmp_path: Path) -> None:
     script = """
-import sys; from pathlib import Path; from articad.run import write_atomically
+import sys; from pathlib import Path; from articad.runs.run import write_atomically
 n = 0
 while True:
     n += 1

@@ -9,10 +9,10 @@ from typing import Any
 
 import pytest
 
+from articad.commands.summaries import print_findings
+from articad.commands.terminal import Terminal
 from articad.errors import BuildError, PlanError
 from articad.findings import Finding, Findings
-from articad.summaries import print_findings
-from articad.terminal import Terminal
 
 ERROR = Finding(code="E_DUP_NAME", where="parts[1]", message="'lid' is used twice.", hint="Rename one.")
 WARNING = Finding(code="W_CONNECTOR_UNUSED", where="parts.lid", message="No joint uses 'rim'.", hint="Remove it.")

@@ -15,7 +15,7 @@ from articad.agents.prompts import prompt
 from articad.agents.requirements import pictures_of, slug
 from articad.errors import OutputError
 from articad.findings import Finding, Findings
-from articad.run import RunRequest
+from articad.runs.run import RunRequest
 
 SCHEMA: Final = "articad.alternatives/1"
 ROLE: Final = "brainstorm"

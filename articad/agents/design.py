@@ -15,7 +15,7 @@ from articad.errors import OutputError, PlanError
 from articad.findings import Finding, Findings
 from articad.plan.check import check_plan
 from articad.plan.schema import AssemblyPlan
-from articad.run import RunRequest
+from articad.runs.run import RunRequest
 
 TRIES: Final = 5  # answers until a plan validates; the findings of each go back
 SHOWN_FINDINGS: Final = 40  # more at once is not read; the next answer brings the rest

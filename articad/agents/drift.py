@@ -11,7 +11,7 @@ import numpy as np
 from articad.findings import Finding, Findings
 from articad.kernels.kernel import PartKernel
 from articad.kernels.results import PoisonedError, read_mesh
-from articad.run import Run
+from articad.runs.run import Run
 
 SAME_MM = 1e-6  # by which geometry may differ that another kernel or platform made
 _NOTE = "made_with"

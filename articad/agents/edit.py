@@ -29,13 +29,13 @@ from articad.agents.workshop import Progress, Workshop
 from articad.assembly import Assembly
 from articad.errors import AgentError, OutputError, PlanError, ReadError, did_you_mean
 from articad.findings import Finding, Findings
+from articad.kernels.choice import kernel_named
 from articad.kernels.kernel import BuildCache, PartKernel
 from articad.plan.amending import amended
 from articad.plan.check import check_plan
 from articad.plan.resolve import resolve
 from articad.plan.schema import AssemblyPlan
-from articad.record import kernel_named
-from articad.run import Run, RunRequest, UserImage, open_or_create
+from articad.runs.run import Run, RunRequest, UserImage, open_or_create
 
 ROLE: Final = "edit"
 _RULES: Final = ("# 1. Units", "# 7. Example")  # the sections of the design prompt that are rules of every plan, from and to

@@ -17,7 +17,7 @@ from articad.kinematics.joints import Coupling, Joint
 from articad.plan.amending import amended
 from articad.plan.resolve import ResolvedPlan, resolve
 from articad.plan.schema import AssemblyPlan
-from articad.run import Run, digest
+from articad.runs.run import Run, digest
 
 Json = dict[str, Any]
 Pair = tuple[str, str]

@@ -18,7 +18,7 @@ from articad.interference.check import Checks
 from articad.plan.brief import brief, brief_digest
 from articad.plan.resolve import ResolvedPart, ResolvedPlan
 from articad.plan.schema import AssemblyPlan
-from articad.run import Run
+from articad.runs.run import Run
 
 Json = dict[str, Any]
 Reach = Literal["new", "removed", "described anew", "other numbers", "follows its source", "mirrored anew"]

@@ -23,7 +23,7 @@ from articad.kernels.kernel import PartKernel
 from articad.kernels.parts import RealisedPart
 from articad.plan.brief import brief, build_digest
 from articad.plan.resolve import ResolvedPlan
-from articad.run import Run
+from articad.runs.run import Run
 
 ROLE: Final = "part"
 REPAIRS: Final = 3

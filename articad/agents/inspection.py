@@ -28,7 +28,7 @@ from articad.findings import Finding, Findings
 from articad.kernels.parts import RealisedPart
 from articad.kinematics.joints import Coupling
 from articad.plan.resolve import ResolvedPart, ResolvedPlan
-from articad.run import RunRequest
+from articad.runs.run import RunRequest
 
 VERDICT_SCHEMA: Final = "articad.verdict/1"
 MOTIONS: Final = 6  # keyframe sheets for one observer: more pictures at once are not looked at closely

@@ -25,7 +25,7 @@ from articad.assembly import Assembly
 from articad.findings import Finding, Findings
 from articad.plan.resolve import resolve
 from articad.plan.schema import AssemblyPlan
-from articad.record import record_assembly, record_checks, record_export
+from articad.runs.record import record_assembly, record_checks, record_export
 
 ROUNDS: Final = 3
 FORMATS: Final = ("urdf", "mjcf")

@@ -23,7 +23,7 @@ from typing import Any, Final, Literal, Protocol
 
 from articad.errors import BudgetError, ReadError, ReplayMissError, TransportError
 from articad.findings import Finding, Findings
-from articad.run import Run, canonical_json, digest
+from articad.runs.run import Run, canonical_json, digest
 
 Json = dict[str, Any]
 Speaker = Literal["system", "user", "assistant"]

@@ -20,7 +20,7 @@ from articad.findings import Finding
 from articad.geometry.part import Part
 from articad.interference.motion import driver_values, freedoms
 from articad.kernels.results import PoisonedError, read_mesh
-from articad.run import digest
+from articad.runs.run import digest
 
 if TYPE_CHECKING:
     from PIL.Image import Image as Picture

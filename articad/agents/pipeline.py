@@ -27,9 +27,9 @@ from articad.agents.single import SingleLine
 from articad.agents.workshop import Progress, Workshop
 from articad.errors import AgentError, RunError
 from articad.findings import Findings
+from articad.kernels.choice import kernel_named
 from articad.kernels.kernel import BuildCache, PartKernel
-from articad.record import kernel_named
-from articad.run import Run, RunRequest, UserImage, differences, open_or_create
+from articad.runs.run import Run, RunRequest, UserImage, differences, open_or_create
 
 Variant = Literal["full", "late", "no-rollback", "no-memory", "single-loop"]
 Brainstorm = Literal["auto", "always", "never"]
@@ -93,7 +93,7 @@ def generate(
         progress: Told of each stage and part.
 
     Returns:
-        The run, closed: `run.path`, `run.checks()`, `articad.record.assembly_of(run)`.
+        The run, closed: `run.path`, `run.checks()`, `articad.runs.record.assembly_of(run)`.
 
     Raises:
         PlanError: If no valid plan came of all tries.

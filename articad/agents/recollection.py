@@ -25,7 +25,7 @@ from articad.memory.documentation import DocumentationStore
 from articad.memory.experience import ExperienceStore
 from articad.plan.resolve import resolve
 from articad.plan.schema import AssemblyPlan
-from articad.run import Run
+from articad.runs.run import Run
 
 Json = dict[str, Any]
 

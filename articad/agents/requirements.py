@@ -11,7 +11,7 @@ from pydantic import BaseModel, BeforeValidator, Field
 from articad.agents.forms import Form, ask, reader, schema_of
 from articad.agents.llm import LLM, Image, system, user
 from articad.agents.prompts import prompt
-from articad.run import RunRequest
+from articad.runs.run import RunRequest
 
 SCHEMA: Final = "articad.requirements/1"
 

@@ -20,7 +20,7 @@ from articad.agents.prompts import prompt
 from articad.agents.requirements import Requirements
 from articad.assembly import Assembly
 from articad.errors import OutputError
-from articad.run import Run, RunRequest
+from articad.runs.run import Run, RunRequest
 
 SCHEMA: Final = "articad.review/1"
 PARTS: Final = 8  # parts that a reviewer sees one by one: more pictures at once are not looked at closely

@@ -27,7 +27,7 @@ from articad.findings import Findings
 from articad.plan.check import check_plan
 from articad.plan.resolve import resolve
 from articad.plan.schema import AssemblyPlan
-from articad.record import record_assembly, record_checks
+from articad.runs.record import record_assembly, record_checks
 
 Json = dict[str, Any]
 

@@ -15,15 +15,15 @@ from articad.agents.llm import LLM, Image, closed_port
 from articad.agents.retrieval import Documentation, Memory
 from articad.agents.rollback import Fate
 from articad.assembly import DEFLECTION_MM, Assembly
-from articad.codes import CODES
 from articad.errors import AgentError, ArticadError, ContractError, KernelError, OutputError
 from articad.findings import Finding, Findings
+from articad.findings.codes import CODES
 from articad.kernels.kernel import BuildCache, PartKernel
 from articad.kernels.parts import RealisedPart, build_parts, build_source
 from articad.plan.brief import brief_digest
 from articad.plan.resolve import ResolvedPlan, resolve
 from articad.plan.schema import AssemblyPlan
-from articad.run import Run
+from articad.runs.run import Run
 
 CALLS_AT_ONCE: Final = 8  # parts that are asked for side by side; a model's answer takes minutes, and providers limit the rate
 

@@ -29,7 +29,7 @@ from articad.interference.gauge import Gauge
 from articad.kinematics.joints import Joint, JointType
 from articad.plan.fields import Form
 from articad.plan.resolve import Fit
-from articad.simulate.examine import simulate_assembly, simulate_file
+from articad.simulation.examine import simulate_assembly, simulate_file
 
 AXIS_RAD: Final = math.radians(5)  # by which an axis may lean from the one asked for
 STROKE: Final = 9  # values of a driver at which what follows it is measured

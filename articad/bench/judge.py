@@ -25,7 +25,7 @@ from articad.bench.scoring import model_of, subject_of
 from articad.bench.subject import Subject
 from articad.bench.task import Task
 from articad.errors import ArticadError, OutputError, TransportError
-from articad.run import digest, write_atomically
+from articad.runs.run import digest, write_atomically
 
 SCHEMA: Final = "articad.bench-opinion/1"
 DIMENSIONS: Final = ("geometry", "detail", "motion")

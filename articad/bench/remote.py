@@ -9,15 +9,15 @@ from typing import Any
 from articad.agents.live import LiteLLM
 from articad.agents.llm import Budget
 from articad.agents.recollection import StoredMemory, remember
-from articad.bench.pool import Call
+from articad.batches.pool import Call
 from articad.bench.row import Row
 from articad.bench.runner import run_tasks
 from articad.bench.scoring import score_files
 from articad.bench.task import Task, read_task
+from articad.kernels.choice import kernel_named
 from articad.kernels.kernel import BuildCache
 from articad.memory.experience import ExperienceStore
-from articad.record import kernel_named
-from articad.run import digest
+from articad.runs.run import digest
 
 Json = dict[str, Any]
 

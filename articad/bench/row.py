@@ -10,7 +10,7 @@ from typing import Any, Final
 
 from articad.bench.checks import Judgement
 from articad.bench.task import Task
-from articad.run import write_atomically
+from articad.runs.run import write_atomically
 
 SCHEMA: Final = "articad.bench-row/1"
 ROW: Final = "row.json"

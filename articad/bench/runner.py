@@ -26,8 +26,8 @@ from articad.bench.subject import Subject
 from articad.bench.task import Task
 from articad.errors import TransportError
 from articad.kernels.kernel import BuildCache, PartKernel
-from articad.record import assembly_of
-from articad.run import Run, digest
+from articad.runs.record import assembly_of
+from articad.runs.run import Run, digest
 
 Ask = Callable[[Task], LLM]
 """Who answers a task's requests."""

@@ -8,14 +8,14 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Final
 
-from articad import convert
+from articad import formats
 from articad.assembly import Assembly
 from articad.bench.row import Row
 from articad.bench.subject import Subject
 from articad.bench.task import Task
 from articad.errors import ArticadError, ReadError
-from articad.record import assembly_of
-from articad.run import Run
+from articad.runs.record import assembly_of
+from articad.runs.run import Run
 
 EDITED: Final = "_edited"  # what is appended to a task's name where a tool's edited model is
 _SIMULATED: Final = frozenset({".urdf", ".xml", ".mjcf"})
@@ -59,7 +59,7 @@ def model_of(name: str, folder: Path) -> Path:
     Raises:
         ReadError: If there is none.
     """
-    for suffix in convert.READERS:
+    for suffix in formats.READERS:
         if (file := folder / f"{name}{suffix}").is_file():
             return file
     place = folder / name
@@ -67,7 +67,7 @@ def model_of(name: str, folder: Path) -> Path:
     for run in (place, *sorted(ours.glob(kind))):
         if (run / "request.json").is_file():
             return run
-    files = [file for suffix in convert.READERS for file in sorted(place.rglob(f"*{suffix}"))]
+    files = [file for suffix in formats.READERS for file in sorted(place.rglob(f"*{suffix}"))]
     if not files:
         message = f"There is no model of {name} in {folder}."
         raise ReadError.told(folder, message, f"Write {name}.urdf there, for instance.", said=message)
@@ -84,7 +84,7 @@ def subject_of(found: Path) -> Subject:
     """
     if found.is_dir():
         return Subject(assembly_of(Run.view(found)))
-    return Subject(_solid(convert.read(found)), file=found if found.suffix.lower() in _SIMULATED else None)
+    return Subject(_solid(formats.read(found)), file=found if found.suffix.lower() in _SIMULATED else None)
 
 
 def _solid(assembly: Assembly) -> Assembly:

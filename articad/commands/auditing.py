@@ -13,11 +13,11 @@ from articad.commands.steps import loaded
 
 if TYPE_CHECKING:
     from articad.assembly import Assembly
-    from articad.audit.examine import Choices
-    from articad.audit.mend import Mended
-    from articad.audit.report import Audit, Scoreboard
-    from articad.simulate.verdict import Outcome
-    from articad.terminal import Report, Terminal
+    from articad.auditing.examine import Choices
+    from articad.auditing.mend import Mended
+    from articad.auditing.report import Audit, Scoreboard
+    from articad.commands.terminal import Report, Terminal
+    from articad.simulation.verdict import Outcome
 
 
 @command(
@@ -47,7 +47,7 @@ if TYPE_CHECKING:
     SANDBOX,
 )
 def _audit(options: argparse.Namespace, terminal: Terminal) -> Report:
-    from articad.audit.examine import Choices
+    from articad.auditing.examine import Choices
     from articad.errors import ReadError
 
     root = None if options.root is None else Path(options.root)
@@ -59,7 +59,7 @@ def _audit(options: argparse.Namespace, terminal: Terminal) -> Report:
         return _audit_folder(options, terminal, choices)
     audit = _audit_one(options, terminal, choices)
     if options.report:
-        from articad.audit.page import audit_page
+        from articad.auditing.page import audit_page
 
         _write_page(Path(options.report), audit_page(audit))
     _print_audit(audit, terminal, findings=not options.table)
@@ -81,7 +81,7 @@ def _audit(options: argparse.Namespace, terminal: Terminal) -> Report:
     SANDBOX,
 )
 def _sim(options: argparse.Namespace, terminal: Terminal) -> Report:
-    from articad.simulate.examine import ENGINES, SUFFIXES, readable, simulate_assembly, simulate_file
+    from articad.simulation.examine import ENGINES, SUFFIXES, readable, simulate_assembly, simulate_file
 
     engines = tuple(options.engine or ENGINES)
     target = Path(options.target)
@@ -120,7 +120,7 @@ def _sim(options: argparse.Namespace, terminal: Terminal) -> Report:
 
 def _film(assembly: Assembly, outcomes: Sequence[Outcome]) -> bytes | None:
     """Return the filmstrip of the engine that kept frames."""
-    from articad.simulate.film import film
+    from articad.simulation.film import film
 
     shown = next((outcome for outcome in outcomes if outcome.frames), None)
     return None if shown is None else film(assembly, shown)
@@ -128,7 +128,7 @@ def _film(assembly: Assembly, outcomes: Sequence[Outcome]) -> bytes | None:
 
 def _audit_one(options: argparse.Namespace, terminal: Terminal, choices: Choices) -> Audit:
     """Audit a file, or what a plan or a run makes, with its exports."""
-    from articad.audit.examine import FORMATS, asked, audit, audit_assembly
+    from articad.auditing.examine import FORMATS, asked, audit, audit_assembly
 
     target = Path(options.target)
     if target.suffix.lower() in FORMATS:
@@ -140,7 +140,7 @@ def _audit_one(options: argparse.Namespace, terminal: Terminal, choices: Choices
 
 
 def _audit_folder(options: argparse.Namespace, terminal: Terminal, choices: Choices) -> Report:
-    from articad.audit.many import audit_folder, models_below
+    from articad.auditing.many import audit_folder, models_below
     from articad.errors import ReadError
 
     folder = Path(options.target)
@@ -150,7 +150,7 @@ def _audit_folder(options: argparse.Namespace, terminal: Terminal, choices: Choi
     with terminal.progress("Auditing", total=count) as tell:
         board = audit_folder(folder, choices, progress=tell)
     if options.report:
-        from articad.audit.page import scoreboard_page
+        from articad.auditing.page import scoreboard_page
 
         _write_page(Path(options.report), scoreboard_page(board))
     if not options.table:
@@ -161,7 +161,7 @@ def _audit_folder(options: argparse.Namespace, terminal: Terminal, choices: Choi
 
 
 def _mend(options: argparse.Namespace, terminal: Terminal, choices: Choices) -> Mended:
-    from articad.audit.mend import mend, mend_assembly
+    from articad.auditing.mend import mend, mend_assembly
 
     if Path(options.target).suffix.lower() == ".urdf":
         return mend(options.target, options.fix, density=options.density, choices=choices)
@@ -169,8 +169,8 @@ def _mend(options: argparse.Namespace, terminal: Terminal, choices: Choices) -> 
 
 
 def _print_audit(audit: Audit, terminal: Terminal, *, findings: bool) -> None:
-    from articad import summaries
-    from articad.audit.page import loaded as loaded_in
+    from articad.auditing.page import loaded as loaded_in
+    from articad.commands import summaries
 
     if findings:
         terminal.findings(audit.findings)
@@ -184,7 +184,7 @@ def _print_audit(audit: Audit, terminal: Terminal, *, findings: bool) -> None:
 
 
 def _print_board(board: Scoreboard, terminal: Terminal) -> None:
-    from articad.audit.page import loaded as loaded_in
+    from articad.auditing.page import loaded as loaded_in
 
     rows = [
         (a.file, a.format, a.links, a.joints, a.count("error"), a.count("warning"), a.count("info"), loaded_in(a), f"{a.seconds:.1f}")

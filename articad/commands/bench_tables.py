@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, Final
 
 if TYPE_CHECKING:
-    from articad.terminal import Report, Terminal
+    from articad.commands.terminal import Report, Terminal
 
 _WORDS: Final = 44  # characters of what failed
 

@@ -14,12 +14,12 @@ from articad.commands.steps import build_cache, sandbox_level
 
 if TYPE_CHECKING:
     from articad.agents.llm import Budget
+    from articad.batches.pool import Call
     from articad.bench.judge import Judged
-    from articad.bench.pool import Call
     from articad.bench.public_scores import Sampled
     from articad.bench.row import Row
     from articad.bench.task import Task
-    from articad.terminal import Report, Terminal
+    from articad.commands.terminal import Report, Terminal
 
 
 @command(
@@ -101,7 +101,7 @@ def _table(options: argparse.Namespace, terminal: Terminal) -> Report:
     argument("--memory", metavar="GB", type=amount, default=4.0, help="data of each worker process (4)"),
 )
 def _batch(options: argparse.Namespace, terminal: Terminal) -> Report:
-    from articad.bench.batch import read_batch, run_dask, run_local, summary
+    from articad.batches.batch import read_batch, run_dask, run_local, summary
 
     items = read_batch(options.spec)
     with terminal.progress("Items", total=len(items)) as tell:
@@ -156,7 +156,7 @@ def _run(options: argparse.Namespace, terminal: Terminal) -> Report:
 def _run_again(tasks: list[tuple[Path, Task]], options: argparse.Namespace, terminal: Terminal) -> list[Row]:
     from articad.bench.recorded import RecordedAnswers
     from articad.bench.runner import run_tasks
-    from articad.record import kernel_named
+    from articad.kernels.choice import kernel_named
 
     answers = RecordedAnswers(options.recorded)
     with terminal.progress("Tasks", total=len(tasks)) as tell:
@@ -181,8 +181,8 @@ def _run_here(tasks: list[tuple[Path, Task]], options: argparse.Namespace, termi
     from articad.agents.recollection import StoredMemory, remember
     from articad.bench.runner import run_tasks
     from articad.commands.models import asked_model, model_name
+    from articad.kernels.choice import kernel_named
     from articad.memory.experience import ExperienceStore
-    from articad.record import kernel_named
 
     store = ExperienceStore(options.memory)
     with terminal.progress("Tasks", total=len(tasks)) as tell:
@@ -205,7 +205,7 @@ def _run_here(tasks: list[tuple[Path, Task]], options: argparse.Namespace, termi
 
 def _spread(calls: list[Call], options: argparse.Namespace, terminal: Terminal) -> list[Report]:
     """Make calls in processes, here or on a Dask cluster."""
-    from articad.bench.pool import run_dask, run_local
+    from articad.batches.pool import run_dask, run_local
 
     with terminal.progress("Tasks", total=len(calls)) as tell:
 

@@ -11,14 +11,14 @@ from articad.commands.options import BUILD_ARGUMENTS
 from articad.commands.steps import assembled, reported, stage
 
 if TYPE_CHECKING:
-    from articad.terminal import Report, Terminal
+    from articad.commands.terminal import Report, Terminal
 
 
 @command("build", "Build a plan's parts, assemble, check and export them.", argument("plan", metavar="PLAN_DIR"), *BUILD_ARGUMENTS)
 def _build(options: argparse.Namespace, terminal: Terminal) -> Report:
     from articad.plan.schema import AssemblyPlan
-    from articad.record import record_assembly, record_certificate, record_checks, record_export, record_page, record_pictures
-    from articad.run import RunRequest, open_or_create
+    from articad.runs.record import record_assembly, record_certificate, record_checks, record_export, record_page, record_pictures
+    from articad.runs.run import RunRequest, open_or_create
 
     plan = AssemblyPlan.load(options.plan)
     folder = Path(options.plan)
@@ -50,7 +50,7 @@ def _build(options: argparse.Namespace, terminal: Terminal) -> Report:
 
 @command("check", "Check a plan, or the plan and the geometry of a finished run.", argument("target", metavar="PLAN_DIR|RUN|FILE"))
 def _check(options: argparse.Namespace, terminal: Terminal) -> Report:
-    from articad import summaries
+    from articad.commands import summaries
     from articad.errors import PlanError
     from articad.plan.check import check_plan
     from articad.plan.schema import AssemblyPlan
@@ -68,8 +68,8 @@ def _check(options: argparse.Namespace, terminal: Terminal) -> Report:
     if not findings.ok or not (Path(options.target) / "request.json").is_file():
         return findings.to_json()
 
-    from articad.record import assembly_of
-    from articad.run import Run
+    from articad.runs.record import assembly_of
+    from articad.runs.run import Run
 
     with Run.view(options.target) as run, terminal.progress("Reading") as tell:
         checks = assembly_of(run, progress=tell).check()

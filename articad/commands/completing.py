@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from articad.commands.command import COMMANDS, argument, command
 
 if TYPE_CHECKING:
-    from articad.terminal import Report, Terminal
+    from articad.commands.terminal import Report, Terminal
 
 _GLOBAL = ("--json", "--quiet", "--verbose", "--no-color", "--help")
 _BASH = """\

@@ -10,7 +10,7 @@ from articad.commands.command import argument, command
 from articad.commands.options import FORMATS, formats
 
 if TYPE_CHECKING:
-    from articad.terminal import Report, Terminal
+    from articad.commands.terminal import Report, Terminal
 
 
 @command(
@@ -32,9 +32,9 @@ if TYPE_CHECKING:
     argument("--process", choices=["fdm", "sla", "sls"], default="fdm", help="how 3MF will be printed: gaps are held to it (fdm)"),
 )
 def _export(options: argparse.Namespace, terminal: Terminal) -> Report:
-    from articad import summaries
-    from articad.record import assembly_of, record_export, written
-    from articad.run import Run
+    from articad.commands import summaries
+    from articad.runs.record import assembly_of, record_export, written
+    from articad.runs.run import Run
 
     with Run.view(options.run) as run, terminal.progress("Reading") as tell:
         assembly = assembly_of(run, progress=tell)
@@ -72,8 +72,8 @@ def _export(options: argparse.Namespace, terminal: Terminal) -> Report:
 def _convert(options: argparse.Namespace, terminal: Terminal) -> Report:
     from dataclasses import replace
 
-    from articad import summaries
-    from articad.convert import FORMAT_OF, convert
+    from articad.commands import summaries
+    from articad.formats import FORMAT_OF, convert
 
     target = Path(options.target)
     assembly, bundle = convert(options.source, target, strict=options.strict, fuse=options.fuse)
@@ -99,9 +99,9 @@ def _adopt(options: argparse.Namespace, terminal: Terminal) -> Report:
     import json
     import shutil
 
-    from articad import summaries
-    from articad.adopt import adopt
+    from articad.commands import summaries
     from articad.errors import WriteError
+    from articad.runs.adopt import adopt
 
     source, folder = Path(options.source), Path(options.out)
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
@@ -127,7 +127,7 @@ def _adopt(options: argparse.Namespace, terminal: Terminal) -> Report:
 
 def _audit_of(source: Path, root: str | None, terminal: Terminal) -> Report:
     """Audit the file that was adopted; what is wrong with it does not keep it from being adopted."""
-    from articad.audit.examine import Choices, audit
+    from articad.auditing.examine import Choices, audit
 
     found = audit(source, Choices(root=None if root is None else Path(root)))
     terminal.say(f"What is wrong with {source.name}: {'nothing found' if found.ok else ''}")

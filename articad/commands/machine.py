@@ -9,7 +9,7 @@ from articad import __version__
 from articad.commands.command import argument, command
 
 if TYPE_CHECKING:
-    from articad.terminal import Report, Terminal
+    from articad.commands.terminal import Report, Terminal
 
 
 @command(
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     needs_libraries=False,
 )
 def _doctor(options: argparse.Namespace, terminal: Terminal) -> Report:
-    from articad import doctor
+    from articad.commands import doctor
 
     missing = doctor.missing_libraries()
     items = doctor.examine()

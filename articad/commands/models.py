@@ -15,8 +15,8 @@ from articad.commands.steps import build_cache, draw, experience, reported, sand
 if TYPE_CHECKING:
     from articad.agents.brainstorm import Alternative, Choose
     from articad.agents.llm import Budget
-    from articad.run import Run
-    from articad.terminal import Report, Terminal
+    from articad.commands.terminal import Report, Terminal
+    from articad.runs.run import Run
 
 
 @command(
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 def _generate(options: argparse.Namespace, terminal: Terminal) -> Report:
     from articad.agents.pipeline import generate
     from articad.agents.recollection import StoredDocumentation, StoredMemory
-    from articad.record import kernel_named
+    from articad.kernels.choice import kernel_named
 
     budget, sees = asked_model(options, terminal)
     store = experience(options)
@@ -124,7 +124,7 @@ def _edit(options: argparse.Namespace, terminal: Terminal) -> Report:
 def _resume(options: argparse.Namespace, terminal: Terminal) -> Report:
     from articad.agents.pipeline import resume
     from articad.agents.recollection import StoredDocumentation, StoredMemory
-    from articad.run import Run
+    from articad.runs.run import Run
 
     asked = Run.view(options.run).request.options
     options.look, options.inspection = bool(asked.get("look")), bool(asked.get("inspection"))
@@ -178,7 +178,7 @@ def _told(run: Run, options: argparse.Namespace, terminal: Terminal, budget: Bud
     """Remember a finished run that a model had a part in, draw it, print it and return its report."""
     from articad.agents.pipeline import recalls
     from articad.agents.recollection import remember
-    from articad.summaries import print_edit, print_review
+    from articad.commands.summaries import print_edit, print_review
 
     store = experience(options)
     remembered = budget is not None and recalls(run.request.options.get("variant", "full"))
@@ -237,7 +237,7 @@ def _asking(terminal: Terminal) -> Choose:
 def _replay(options: argparse.Namespace, terminal: Terminal) -> Report:
     from articad.agents.pipeline import replay
     from articad.errors import ReadError
-    from articad.run import Run
+    from articad.runs.run import Run
 
     recorded = Run.view(options.run)
     if not recorded.replies() and recorded.base() is None:

@@ -12,7 +12,7 @@ from articad.commands.options import FORCE, SANDBOX
 from articad.commands.steps import build_cache, sandbox_level
 
 if TYPE_CHECKING:
-    from articad.terminal import Report, Terminal
+    from articad.commands.terminal import Report, Terminal
 
 
 @command(
@@ -27,10 +27,10 @@ if TYPE_CHECKING:
 def _part(options: argparse.Namespace, terminal: Terminal) -> Report:
     from articad.assembly import DEFLECTION_MM
     from articad.errors import ReadError, did_you_mean
+    from articad.kernels.choice import kernel_named
     from articad.kernels.parts import SCRIPT_SUFFIX, build_source
     from articad.plan.resolve import resolve
     from articad.plan.schema import AssemblyPlan
-    from articad.record import kernel_named
 
     plan = AssemblyPlan.load(options.plan)
     resolved = resolve(plan)

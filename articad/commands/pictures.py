@@ -11,7 +11,7 @@ from articad.commands.options import SANDBOX, positive
 from articad.commands.steps import loaded
 
 if TYPE_CHECKING:
-    from articad.terminal import Report, Terminal
+    from articad.commands.terminal import Report, Terminal
 
 
 @command(

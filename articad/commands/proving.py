@@ -11,7 +11,7 @@ from articad.commands.command import argument, command
 from articad.commands.options import amount, names
 
 if TYPE_CHECKING:
-    from articad.terminal import Report, Terminal
+    from articad.commands.terminal import Report, Terminal
 
 
 @command(
@@ -30,9 +30,9 @@ if TYPE_CHECKING:
     argument("--epsilon", metavar="MM", type=amount, default=0.001, help="distances up to here are contact (0.001)"),
 )
 def _certify(options: argparse.Namespace, terminal: Terminal) -> Report:
-    from articad import summaries
-    from articad.record import assembly_of, record_certificate
-    from articad.run import Run
+    from articad.commands import summaries
+    from articad.runs.record import assembly_of, record_certificate
+    from articad.runs.run import Run
 
     with Run.open(options.run) as run:
         with terminal.progress("Reading") as tell:
@@ -52,7 +52,7 @@ def _certify(options: argparse.Namespace, terminal: Terminal) -> Report:
     argument("--meshes", metavar="DIR", help="the meshes it is about, <part>.npz (the folder certificate/ beside it)"),
 )
 def _verify_certificate(options: argparse.Namespace, terminal: Terminal) -> Report:
-    from articad.verify_certificate import verify_file
+    from articad.certificates.verifier import verify_file
 
     file = Path(options.file)
     faults = verify_file(file, Path(options.meshes) if options.meshes else file.parent / "certificate")
@@ -65,7 +65,7 @@ def _verify_certificate(options: argparse.Namespace, terminal: Terminal) -> Repo
 
 def _stated(certificate: Report) -> list[str]:
     """Return what an accepted certificate is about: its author chose that, and no proof tells whether it is enough."""
-    from articad.verify_certificate import covered
+    from articad.certificates.verifier import covered
 
     moving = [joint["name"] for joint in certificate["mechanism"]["joints"] if joint["freedoms"]]
     still = [name for name in moving if name not in certificate["asked"]]

@@ -12,9 +12,9 @@ from articad.commands.options import API_BASE, EMBEDDINGS, MEMORY, positive
 from articad.commands.steps import experience
 
 if TYPE_CHECKING:
+    from articad.commands.terminal import Report, Terminal
     from articad.memory.case import Case
     from articad.memory.experience import ExperienceStore
-    from articad.terminal import Report, Terminal
 
 _WHAT: Final = {  # each action, and what it needs beside itself
     "list": "",
@@ -89,7 +89,7 @@ def _seed(store: ExperienceStore, _options: argparse.Namespace, terminal: Termin
 
 
 def _export(store: ExperienceStore, options: argparse.Namespace, terminal: Terminal) -> Report:
-    from articad.run import write_atomically
+    from articad.runs.run import write_atomically
 
     lines = list(store.export())
     write_atomically(Path(options.what), "".join(f"{line}\n" for line in lines).encode())

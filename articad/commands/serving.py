@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from articad.commands.command import argument, command
 
 if TYPE_CHECKING:
-    from articad.terminal import Report, Terminal
+    from articad.commands.terminal import Report, Terminal
 
 _SKILLS = Path(".claude") / "skills" / "articad"
 
@@ -38,7 +38,7 @@ def _mcp(options: argparse.Namespace, _terminal: Terminal) -> Report:
 )
 def _skill(options: argparse.Namespace, terminal: Terminal) -> Report:
     from articad.mcp.skill import skill
-    from articad.run import write_atomically
+    from articad.runs.run import write_atomically
 
     if options.action == "print":
         terminal.say(skill())

@@ -15,7 +15,7 @@ from articad.commands.options import FORCE, JOBS, SANDBOX, parameter
 from articad.commands.steps import loaded
 
 if TYPE_CHECKING:
-    from articad.terminal import Report, Terminal
+    from articad.commands.terminal import Report, Terminal
 
 _STARTER: Final = Path(__file__).parents[1] / "starter"
 _NAME: Final = re.compile(r"[a-z][a-z0-9]*(_[a-z0-9]+)*")
@@ -34,9 +34,9 @@ _BROWSER = argument("--no-browser", dest="browser", action="store_false", help="
 def _show(options: argparse.Namespace, terminal: Terminal) -> Report:
     import webbrowser
 
-    from articad.record import assembly_of, documents_of, record_page
     from articad.report import Documents, report_page
-    from articad.run import Run
+    from articad.runs.record import assembly_of, documents_of, record_page
+    from articad.runs.run import Run
 
     if (Path(options.target) / "request.json").is_file():
         with Run.view(options.target) as run, terminal.progress("Reading") as tell:

@@ -11,17 +11,17 @@ from typing import TYPE_CHECKING, Literal
 
 if TYPE_CHECKING:
     from articad.assembly import Assembly
+    from articad.commands.terminal import Progress, Report, Terminal
     from articad.kernels.kernel import BuildCache
     from articad.memory.experience import ExperienceStore
     from articad.plan.schema import AssemblyPlan
-    from articad.run import Run
-    from articad.terminal import Progress, Report, Terminal
+    from articad.runs.run import Run
 
 
 def assembled(plan: AssemblyPlan, scripts: Path, options: argparse.Namespace, terminal: Terminal) -> Assembly:
     """Build the parts with progress, and assemble them."""
     from articad.assembly import Assembly
-    from articad.record import kernel_named
+    from articad.kernels.choice import kernel_named
 
     with terminal.progress("Building", total=len(plan.parts)) as tell:
         return Assembly.from_plan(
@@ -45,8 +45,8 @@ def stage(tell: Progress, name: str) -> Iterator[None]:
 
 def reported(run: Run, terminal: Terminal) -> Report:
     """Print what a finished run holds, and return its report."""
-    from articad.record import run_report
-    from articad.summaries import print_run
+    from articad.commands.summaries import print_run
+    from articad.runs.record import run_report
 
     report = run_report(run)
     print_run(report, terminal)
@@ -76,17 +76,18 @@ def loaded(target: str, options: argparse.Namespace, terminal: Terminal) -> Asse
 
     What the cache of parts holds is not built again.
     """
-    from articad import convert
+    from articad import formats
     from articad.assembly import Assembly
+    from articad.kernels.choice import kernel_named
     from articad.plan.schema import AssemblyPlan
-    from articad.record import assembly_of, kernel_named
-    from articad.run import Run
+    from articad.runs.record import assembly_of
+    from articad.runs.run import Run
 
     if (Path(target) / "request.json").is_file():
         with Run.view(target) as run, terminal.progress("Reading") as tell:
             return assembly_of(run, progress=tell)
-    if Path(target).suffix.lower() in {*convert.READERS, ".xacro"}:
-        return convert.read(target)
+    if Path(target).suffix.lower() in {*formats.READERS, ".xacro"}:
+        return formats.read(target)
     plan = AssemblyPlan.load(target)
     folder = Path(target) if Path(target).is_dir() else Path(target).parent
     with terminal.progress("Building", total=len(plan.parts)) as tell:
@@ -95,8 +96,8 @@ def loaded(target: str, options: argparse.Namespace, terminal: Terminal) -> Asse
 
 def draw(run: Run, terminal: Terminal) -> None:
     """Draw what a finished run has made; its parts come from the cache."""
-    from articad.record import assembly_of, record_page, record_pictures
-    from articad.run import Run
+    from articad.runs.record import assembly_of, record_page, record_pictures
+    from articad.runs.run import Run
 
     with Run.open(run.path) as opened, terminal.progress("Finishing") as tell:
         assembly = assembly_of(opened)

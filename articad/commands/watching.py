@@ -15,7 +15,7 @@ from types import TracebackType
 from typing import TYPE_CHECKING, Final, Self
 
 if TYPE_CHECKING:
-    from articad.terminal import Terminal
+    from articad.commands.terminal import Terminal
 
 _LOOK_S: Final = 0.3  # between two looks at the files
 _WAITING: Final = "<!doctype html><meta charset=utf-8><meta http-equiv=refresh content=1><title>articad</title><p>Building …"

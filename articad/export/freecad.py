@@ -14,7 +14,6 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from articad import scratch
 from articad.errors import ExportError, KernelUnavailableError
 from articad.export.bundle import Bundle
 from articad.export.freecad_file import Look, normalised
@@ -24,6 +23,7 @@ from articad.export.losses import refuse
 from articad.findings import Finding, Findings
 from articad.kernels import freecad_install
 from articad.kernels.freecad_install import FreeCAD, Limits
+from articad.processes import scratch
 
 if TYPE_CHECKING:
     from articad.assembly import Assembly

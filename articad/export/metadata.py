@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING, Any
 
 from articad.connectors.connector import Connector
 from articad.connectors.se3 import SE3
+from articad.export.fingerprint import fingerprint
 from articad.export.lowering import Link, LoweredModel
-from articad.fingerprint import fingerprint
 from articad.geometry.part import Part
 from articad.kinematics.joints import Coupling, Joint
 

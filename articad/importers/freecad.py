@@ -15,7 +15,6 @@ from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
-from articad import scratch
 from articad.assembly import Assembly
 from articad.connectors.connector import Connector
 from articad.connectors.mate import FLIP, Mate
@@ -30,6 +29,7 @@ from articad.kernels.archive import Archive, BadArchiveError
 from articad.kernels.freecad import BrepReader
 from articad.kinematics.joints import Joint, JointLimits, JointType
 from articad.kinematics.mechanism import Mechanism
+from articad.processes import scratch
 
 MAX_BYTES, MAX_UNPACKED, MAX_ENTRIES = 512 * 2**20, 2**31, 100_000
 SAME_MM, SAME_RAD = 1e-9, 1e-12  # a frame this close to its record is the record's

@@ -13,7 +13,6 @@ import numpy as np
 from lxml import etree
 from numpy.typing import NDArray
 
-from articad import processes
 from articad.assembly import Assembly, Kept
 from articad.connectors.se3 import SE3
 from articad.findings import Finding
@@ -28,6 +27,7 @@ from articad.importers.raw import ENDLESS, IDENTITY, RawJoint, RawLink, RawModel
 from articad.importers.reading import MM_PER_M, Folder, color_text, read_xml, unreadable
 from articad.importers.records import assembly_of, read_records, stale
 from articad.kinematics.joints import JointType
+from articad.processes import launcher
 
 FloatArray = NDArray[np.float64]
 
@@ -77,7 +77,7 @@ def read_mjcf(path: str | Path, *, root: str | Path | None = None, metadata: boo
 @contextmanager
 def _warnings() -> Iterator[list[str]]:
     """Collect what MuJoCo warns of; left alone, it prints that and writes it into a log in the folder where the process stands."""
-    with processes.safe_path():
+    with launcher.safe_path():
         import mujoco  # noqa: PLC0415 - only readers of MJCF need it
 
     said: list[str] = []

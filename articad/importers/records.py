@@ -15,8 +15,8 @@ from articad.connectors.connector import Connector
 from articad.connectors.mate import Mate
 from articad.connectors.se3 import SE3
 from articad.errors import ArticadError
+from articad.export.fingerprint import fingerprint
 from articad.findings import Finding
-from articad.fingerprint import fingerprint
 from articad.geometry.mass import MassProperties
 from articad.geometry.mesh import TriMesh
 from articad.geometry.part import Part, Primitive, Shape, Solid

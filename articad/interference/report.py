@@ -7,7 +7,6 @@ from dataclasses import dataclass, field
 from typing import Any, Literal, Protocol, Self
 
 from articad.findings import Findings
-from articad.html_tables import html_table
 from articad.interference.relations import Relation
 
 Verdict = Literal["clear", "contact", "overlap", "unknown"]
@@ -174,6 +173,8 @@ class Checks:
 
     def _repr_html_(self) -> str:
         """Return the tables by which a notebook shows the report."""
+        from articad.report.tables import html_table  # noqa: PLC0415 - what a notebook shows, loaded when it is shown
+
         rows = [(" – ".join(p.parts), ", ".join(_names(p.over)), p.verdict, str(p.strength), p.depth, p.gap) for p in self.pairs]
         pairs = html_table(["parts", "over", "verdict", "how that is known", "depth mm", "gap mm"], rows, numbers=(4, 5))
         return f"<p>{'ok' if self.ok else 'NOT ok'}</p>{self.findings._repr_html_() if len(self.findings) else ''}{pairs}"

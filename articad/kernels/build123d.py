@@ -19,7 +19,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from articad import scratch
 from articad.connectors.connector import Connector
 from articad.connectors.se3 import SE3
 from articad.errors import BuildError, ContractError, KernelError, ReadError, SandboxError
@@ -32,6 +31,7 @@ from articad.kernels.failures import poisoned, script_failure, unconfined
 from articad.kernels.kernel import BuildCache, BuiltPart, Inspect
 from articad.kernels.results import PoisonedError, number, numbers, read_bytes, read_lines, read_mesh
 from articad.kernels.zygote import Outcome, Zygote, ZygoteDiedError, ends_by
+from articad.processes import scratch
 
 ANGLE_DEG = 5.0  # of the mesh, where the deflection allows more
 WORKER = 5  # raised when the worker measures or meshes otherwise, so that what it built before is built again

@@ -12,8 +12,8 @@ import time
 from collections.abc import Iterator
 from pathlib import Path
 
-from articad import scratch
 from articad.errors import KernelError
+from articad.processes import scratch
 
 _SEAL = "seal.json"  # sha256 of every other file of the folder
 _TEMPORARY = ".building-"

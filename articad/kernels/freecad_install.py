@@ -16,10 +16,10 @@ from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
 
-from articad import processes
 from articad.errors import KernelUnavailableError
 from articad.findings import Finding
 from articad.kernels import landlock, sandbox, seccomp
+from articad.processes import launcher
 
 OLDEST = (1, 0)  # the first FreeCAD with assemblies of its own
 HOW_TO_GET = "Run scripts/install-freecad as root (2.3 GB, about 3 minutes), or set ARTICAD_FREECAD to FreeCAD 1.0 or later"
@@ -277,7 +277,7 @@ def _candidates(asked: str, path: str, conda: str, data: str) -> Iterator[tuple[
     if asked:
         yield f"$ARTICAD_FREECAD ({asked})", _at(Path(asked).absolute())
     for name in _NAMES:
-        found = processes.which(name, path=path)
+        found = launcher.which(name, path=path)
         if found:
             yield f"{name} on the PATH", _program(Path(found))
     yield data, _at(Path(data))
@@ -327,14 +327,14 @@ def _steady() -> list[str]:
 
     What a sketch is solved to then differs in the last bits from one process to the next, and so do all files made of it.
     """
-    setarch = processes.which("setarch")
+    setarch = launcher.which("setarch")
     if setarch is None or _ran([setarch, "-R", "true"], {"PATH": "/usr/bin:/bin"}, None, (), _SECONDS).code != 0:
         return []
     return [setarch, "-R"]
 
 
 def _limited(limits: Limits) -> list[str]:
-    prlimit = processes.which("prlimit")
+    prlimit = launcher.which("prlimit")
     if prlimit is None:
         return []
     bounds = {"as": limits.memory, "fsize": limits.file_size, "cpu": _cpu(limits), "nofile": _OPEN_FILES, "core": 0}
@@ -352,6 +352,6 @@ def _confinement_files() -> dict[str, Path]:
 
 
 def _ran(command: Sequence[str], environment: dict[str, str], folder: Path | None, files: Collection[int], seconds: float) -> Ended:
-    limits, place = processes.Limits(seconds=seconds), None if folder is None else str(folder)
-    ended = processes.run(command, environment=environment, folder=place, files=files, limits=limits, merged=True)
+    limits, place = launcher.Limits(seconds=seconds), None if folder is None else str(folder)
+    ended = launcher.run(command, environment=environment, folder=place, files=files, limits=limits, merged=True)
     return Ended(ended.code, ended.late, ended.out[-_TAIL:].decode(errors="replace"))

@@ -21,8 +21,8 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
-from articad import processes
 from articad.kernels import landlock, seccomp
+from articad.processes import launcher
 
 LAYERS = ("bwrap", "landlock", "seccomp")
 WEAK = "weak"
@@ -47,7 +47,7 @@ _LOADER = ("/etc/ld.so.cache", "/etc/ld.so.conf", "/etc/ld.so.conf.d", "/etc/alt
 _PR_SET_PDEATHSIG, _PR_CAPBSET_DROP, _PR_SET_NO_NEW_PRIVS = 1, 24, 38
 _CAPABILITY_VERSION = 0x20080522
 _CAPSET = {"x86_64": 126, "aarch64": 91}
-_PROBE = processes.Limits(seconds=20.0)  # bubblewrap answers in 0.02 s; a machine that swaps may need longer
+_PROBE = launcher.Limits(seconds=20.0)  # bubblewrap answers in 0.02 s; a machine that swaps may need longer
 
 
 @dataclass(frozen=True)
@@ -109,10 +109,10 @@ def missing() -> tuple[str, ...]:
 @cache
 def bubblewrap_problem() -> str | None:
     """Return why bubblewrap does not work here, or None if it does."""
-    if processes.which("bwrap") is None:
+    if launcher.which("bwrap") is None:
         return "not installed"
     try:
-        tried = processes.run(bubblewrap_command([sys.executable, "-I", "-S", "-c", "pass"]), environment={}, limits=_PROBE)
+        tried = launcher.run(bubblewrap_command([sys.executable, "-I", "-S", "-c", "pass"]), environment={}, limits=_PROBE)
     except OSError as error:
         return type(error).__name__
     if tried.late:
@@ -141,13 +141,13 @@ def bubblewrap_command(command: list[str]) -> list[str]:
 
 def bubblewrap() -> str:
     """Return the path of bubblewrap; where there is none, one that cannot be started."""
-    return processes.which("bwrap") or "/nonexistent/bwrap"
+    return launcher.which("bwrap") or "/nonexistent/bwrap"
 
 
 @cache
 def disable_user_namespaces() -> tuple[str, ...]:
     """Return bubblewrap's flag against user namespaces inside, which 0.8.0 and later have."""
-    shown = processes.run([bubblewrap(), "--help"], environment={}, limits=_PROBE, merged=True)
+    shown = launcher.run([bubblewrap(), "--help"], environment={}, limits=_PROBE, merged=True)
     return ("--disable-userns",) if b"--disable-userns" in shown.out else ()
 
 

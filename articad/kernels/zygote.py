@@ -18,11 +18,11 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any, ClassVar
 
-from articad import processes
 from articad.errors import KernelUnavailableError
 from articad.findings import Finding
 from articad.kernels import sandbox
 from articad.kernels.libraries import install_line, missing_libraries
+from articad.processes import launcher
 
 START_SECONDS = 180.0  # the import takes 2 s, on a cold and busy disk 10 s
 SILENCE_SECONDS = 30.0  # after which a zygote that should have killed a job is taken for dead
@@ -82,7 +82,7 @@ class Zygote:
         self._numbers = itertools.count(1)
         self._waiting: dict[int, Future[Outcome]] = {}
         self._control: socket.socket | None = None
-        self._process: processes.Child | None = None
+        self._process: launcher.Child | None = None
         self._owner = 0
 
     def run(self, task: str, files: Mapping[str, int], limits: sandbox.Limits) -> Outcome:
@@ -194,12 +194,12 @@ class Zygote:
             if not future.done():
                 future.set_exception(ZygoteDiedError("the worker's process ended"))
 
-    def _spawn(self, control: socket.socket) -> processes.Child:
+    def _spawn(self, control: socket.socket) -> launcher.Child:
         command = [sys.executable, "-P", "-s", "-B", "-c", _BOOT]
         if "bwrap" in self._layers:
             command = sandbox.bubblewrap_command(command)
-        nowhere = processes.NOWHERE
-        return processes.start(command, environment=sandbox.ENVIRONMENT, folder="/", stdin=control.fileno(), stdout=nowhere, stderr=nowhere)
+        nowhere = launcher.NOWHERE
+        return launcher.start(command, environment=sandbox.ENVIRONMENT, folder="/", stdin=control.fileno(), stdout=nowhere, stderr=nowhere)
 
 
 def _outcome(answer: dict[str, Any]) -> Outcome:

@@ -14,12 +14,13 @@ from mcp.server.mcpserver import Context, Image, MCPServer
 from mcp.server.mcpserver.exceptions import ToolError
 from pydantic import Field
 
-from articad import __version__, scratch
-from articad.codes import CODES
+from articad import __version__
 from articad.errors import ArticadError, did_you_mean
+from articad.findings.codes import CODES
 from articad.mcp import answers
 from articad.mcp.skill import section
 from articad.mcp.workbench import BRIEF_BYTES, Json, Tell, Workbench, condensed
+from articad.processes import scratch
 
 Tool = Callable[..., Awaitable[Any]]
 Dialect = Literal["build123d", "freecad"]

@@ -14,10 +14,10 @@ from collections.abc import Awaitable, Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, Final
 
-from articad import processes
 from articad.errors import ReadError
 from articad.plan.amending import amended
-from articad.run import write_atomically
+from articad.processes import launcher
+from articad.runs.run import write_atomically
 
 Json = dict[str, Any]
 Tell = Callable[[float, str], Awaitable[None]]
@@ -138,11 +138,11 @@ class Workbench:
         Raises:
             ReadError: If it takes too long or leaves no report.
         """
-        child = processes.start(
+        child = launcher.start(
             [*arguments, "--json"],
             module="articad.cli",
-            limits=processes.Limits(seconds=seconds, file_size=_FILE_BYTES),
-            environment=processes.environment(*processes.OWN),
+            limits=launcher.Limits(seconds=seconds, file_size=_FILE_BYTES),
+            environment=launcher.environment(*launcher.OWN),
         )
         try:
             ended = await self._finished(child, arguments[0], tell)
@@ -157,7 +157,7 @@ class Workbench:
             last = ended.err.decode(errors="replace").strip()[-400:]
             raise ReadError.told(arguments[0], f"`articad {arguments[0]}` left no report: {last}", "Try it with fewer parts.") from error
 
-    async def _finished(self, child: processes.Child, command: str, tell: Tell | None) -> processes.Ended:
+    async def _finished(self, child: launcher.Child, command: str, tell: Tell | None) -> launcher.Ended:
         """Wait in a thread for the end of a command, and tell from time to time that it goes on."""
         work = asyncio.ensure_future(asyncio.to_thread(child.finish))
         waited = 0.0

@@ -19,13 +19,13 @@ from typing import Any, Final, Literal
 
 import numpy as np
 
-from articad import processes, scratch
 from articad.errors import KernelUnavailableError, ReadError
 from articad.findings import Finding
 from articad.kernels import freecad_install
 from articad.kernels.cache import default_root
 from articad.memory.embedding import Embedder, FloatArray, WordLlamaEmbedder
-from articad.run import write_atomically
+from articad.processes import launcher, scratch
+from articad.runs.run import write_atomically
 
 Dialect = Literal["build123d", "freecad"]
 
@@ -182,8 +182,8 @@ class DocumentationStore:
                 said, content = ended.said, (folder / "catalogue.json")
                 text = content.read_text(encoding="utf-8") if content.is_file() else ""
             else:
-                limits = processes.Limits(seconds=_SECONDS)
-                done = processes.run([], module="articad.memory.catalogue_build123d", limits=limits)
+                limits = launcher.Limits(seconds=_SECONDS)
+                done = launcher.run([], module="articad.memory.catalogue_build123d", limits=limits)
                 said, text = done.err.decode(errors="replace"), done.out.decode(errors="replace")
         try:
             return dict(json.loads(text))

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from articad.errors import ReadError
 from articad.findings import Finding
 from articad.memory.embedding import FloatArray
-from articad.run import write_atomically
+from articad.runs.run import write_atomically
 
 
 def load(folder: Path, label: str, stamp: str) -> Any | None:

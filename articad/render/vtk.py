@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from articad import processes
+from articad.processes import launcher
 from articad.render.camera import Camera
 from articad.render.scene import Item, Scene
 from articad.render.shade import INK, PAPER
@@ -27,8 +27,8 @@ def available() -> bool:
     """True when PyVista is installed and can draw here; found out once, in a process of its own."""
     if importlib.util.find_spec("pyvista") is None:
         return False
-    limits = processes.Limits(seconds=_PROBE_SECONDS)
-    return processes.run([], module="articad.render.vtk", limits=limits, environment=processes.environment(*processes.SCREEN)).code == 0
+    limits = launcher.Limits(seconds=_PROBE_SECONDS)
+    return launcher.run([], module="articad.render.vtk", limits=limits, environment=launcher.environment(*launcher.SCREEN)).code == 0
 
 
 def _draws() -> bool:

@@ -13,7 +13,7 @@ from urllib.parse import quote
 
 from articad.assembly import Assembly
 from articad.findings import measured_against
-from articad.html_tables import Cell, Html, html_table
+from articad.report.tables import Cell, Html, html_table
 
 Json = dict[str, Any]
 

@@ -12,7 +12,7 @@ from articad.agents.brainstorm import Alternative, problems, propose, same_struc
 from articad.agents.llm import Scripted
 from articad.agents.pipeline import generate, replay
 from articad.errors import AgentError, OutputError
-from articad.run import Run, RunRequest
+from articad.runs.run import Run, RunRequest
 from tests.agents import stories
 from tests.agents.stories import flap
 

@@ -17,7 +17,7 @@ from articad.agents.rollback import Router
 from articad.findings import Finding
 from articad.plan.resolve import resolve
 from articad.plan.schema import AssemblyPlan
-from articad.run import Run
+from articad.runs.run import Run
 from tests.agents import stories
 from tests.agents.stories import fenced, judged, watched
 

@@ -13,7 +13,7 @@ from articad.agents.pipeline import Replayed, generate, replay
 from articad.findings import Findings
 from articad.kernels.kernel import BuildCache
 from articad.kernels.results import read_mesh
-from articad.run import Run
+from articad.runs.run import Run
 from tests.agents import stories
 from tests.crash.stand_in import FixedKernel
 

@@ -20,8 +20,8 @@ from articad.errors import AgentError, PlanError, ReadError
 from articad.kernels.kernel import BuildCache
 from articad.plan.resolve import resolve
 from articad.plan.schema import AssemblyPlan
-from articad.record import assembly_of, run_report
-from articad.run import Run, differences
+from articad.runs.record import assembly_of, run_report
+from articad.runs.run import Run, differences
 from tests.agents import stories
 from tests.agents.stories import FLAP_PLAN, FLAP_SCRIPTS, fenced, flap
 

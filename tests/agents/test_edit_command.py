@@ -11,7 +11,7 @@ import pytest
 from articad import cli
 from articad.agents.llm import Scripted
 from articad.agents.pipeline import generate
-from articad.run import Run
+from articad.runs.run import Run
 from tests.agents import stories
 
 THICKER = {"summary": "A thicker flap.", "touches": ["flap"], "changes": {"parts.flap.dimensions.thickness": 3}}
@@ -22,7 +22,7 @@ REVIEWED = json.dumps({aspect: {"score": 4, "reason": "as asked"} for aspect in 
 def quiet(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("ARTICAD_MEMORY", str(tmp_path / "memory"))
     monkeypatch.setenv("ARTICAD_CACHE", str(stories.shared_cache().root))
-    for place in ("articad.record.kernel_named", "articad.agents.edit.kernel_named"):
+    for place in ("articad.runs.record.kernel_named", "articad.agents.edit.kernel_named"):
         monkeypatch.setattr(place, lambda *_, **__: stories.kernel())
 
 

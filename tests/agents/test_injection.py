@@ -13,7 +13,7 @@ from articad.agents.pipeline import generate
 from articad.agents.prompts import prompt
 from articad.errors import ArticadError, BudgetError
 from articad.kernels import sandbox
-from articad.run import Run
+from articad.runs.run import Run
 from tests.agents import stories
 
 ORDER = (

@@ -18,7 +18,7 @@ from articad.agents.llm import Image, Recorded, Request, closed_port, system, us
 from articad.errors import TransportError
 from articad.memory.case import Case
 from articad.memory.experience import ExperienceStore
-from articad.run import Run, RunRequest
+from articad.runs.run import Run, RunRequest
 from tests.agents.openai_stub import Canned, openai_stub
 
 SECRET = "sk-test-0123456789abcdefSECRET"

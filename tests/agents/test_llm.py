@@ -10,7 +10,7 @@ import pytest
 
 from articad.agents.llm import Budget, Image, Recorded, Replay, Reply, Request, Scripted, Usage, assistant, system, user
 from articad.errors import BudgetError, ReadError, ReplayMissError
-from articad.run import Run, RunRequest, canonical_json
+from articad.runs.run import Run, RunRequest, canonical_json
 
 
 def request(step: str = "design/1", *parts: str | Image) -> Request:

@@ -17,7 +17,7 @@ from articad.agents import design as design_module
 from articad.agents.llm import Budget, Replay, Reply, Request, Scripted, transport_error
 from articad.agents.pipeline import generate, replay, resume
 from articad.errors import BudgetError, ContractError, OutputError, PlanError, ReplayMissError, RunError, TransportError
-from articad.run import Run, differences
+from articad.runs.run import Run, differences
 from tests.agents import stories
 from tests.agents.stories import FLAP_PLAN, FLAP_PROMPT, FLAP_SCRIPTS, SEWING_BOX_PROMPT, fenced, flap
 

@@ -14,7 +14,7 @@ from articad.agents.recollection import StoredDocumentation, StoredMemory, remem
 from articad.agents.review import scores
 from articad.memory.case import Case, PartExample
 from articad.memory.experience import ExperienceStore
-from articad.run import Run
+from articad.runs.run import Run
 from tests.agents import stories
 
 PROMPT = "a steel plate with a flap that opens upwards"

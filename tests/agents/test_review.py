@@ -10,7 +10,7 @@ from articad.agents.llm import Image, Scripted
 from articad.agents.pipeline import generate, replay
 from articad.agents.recollection import StoredMemory, remember
 from articad.memory.experience import ExperienceStore
-from articad.run import Run
+from articad.runs.run import Run
 from tests.agents import stories
 
 SCORES: dict[str, Any] = {

@@ -19,7 +19,7 @@ from articad.agents.requirements import Requirements
 from articad.errors import ContractError, TransportError
 from articad.plan.schema import AssemblyPlan
 from articad.render.pictures import RECIPE
-from articad.run import Run, differences
+from articad.runs.run import Run, differences
 from tests.agents import stories
 from tests.agents.stories import FLAP_PLAN, FLAP_SCRIPTS, LOOKS_RIGHT, fenced, flap, judged, looks, observed, watched
 

@@ -21,7 +21,7 @@ from articad.commands.command import COMMANDS
 from articad.errors import ContractError
 from articad.memory.case import Case
 from articad.memory.experience import ExperienceStore
-from articad.run import Run
+from articad.runs.run import Run
 from tests.agents import stories
 from tests.agents.stories import FLAP_PLAN, FLAP_SCRIPTS, fenced, judged, watched
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from articad.audit.examine import Choices, audit
+from articad.auditing.examine import Choices, audit
 from articad.findings import Findings
 from tests.audit import defects
 from tests.audit.defects import DEFECTS, Defect

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from articad.assembly import Assembly
-from articad.audit.examine import Choices, audit, audit_assembly
+from articad.auditing.examine import Choices, audit, audit_assembly
 from articad.export.mjcf import write_mjcf
 from articad.export.urdf import write_urdf
 from articad.importers.urdf import read_urdf

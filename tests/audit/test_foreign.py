@@ -14,9 +14,9 @@ from typing import Any, NamedTuple
 import pytest
 from lxml import etree
 
-from articad.audit.examine import Choices, audit
-from articad.codes import CODES
+from articad.auditing.examine import Choices, audit
 from articad.findings import Finding
+from articad.findings.codes import CODES
 from articad.geometry.shapes import box, cylinder
 from tests.audit import defects
 

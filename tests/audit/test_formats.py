@@ -8,8 +8,8 @@ from typing import Any
 
 import pytest
 
-from articad.audit.examine import Choices, audit, audit_assembly
-from articad.audit.many import audit_folder, models_below
+from articad.auditing.examine import Choices, audit, audit_assembly
+from articad.auditing.many import audit_folder, models_below
 from articad.export.freecad import write_freecad
 from articad.export.mjcf import write_mjcf
 from articad.export.urdf import write_urdf

@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from articad.audit import contact
-from articad.audit.examine import Choices, audit
+from articad.auditing import contact
+from articad.auditing.examine import Choices, audit
 from articad.importers import reading
 
 COUNT = 4000

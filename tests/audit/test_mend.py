@@ -10,15 +10,15 @@ import numpy as np
 import pytest
 from lxml import etree
 
-from articad.audit.examine import Choices, audit
-from articad.audit.mend import Mended, mend
+from articad.auditing.examine import Choices, audit
+from articad.auditing.mend import Mended, mend
 from articad.export.urdf import write_urdf
 from articad.geometry.mesh import TriMesh, merged
 from articad.geometry.mesh_files import read_mesh, write_glb, write_stl
 from articad.geometry.shapes import box
-from articad.simulate.loading import load
-from articad.simulate.trial import try_out
-from articad.simulate.verdict import Verdict
+from articad.simulation.loading import load
+from articad.simulation.trial import try_out
+from articad.simulation.verdict import Verdict
 from tests.assemblies import all_joint_kinds
 from tests.audit import defects
 

@@ -19,9 +19,9 @@ import mujoco
 import pytest
 
 from articad import __version__
-from articad.bench.batch import calls_of, read_batch, run_dask, run_local, summary
-from articad.bench.items import ITEM, Item, Json, make
-from articad.bench.pool import Worker
+from articad.batches.batch import calls_of, read_batch, run_dask, run_local, summary
+from articad.batches.items import ITEM, Item, Json, make
+from articad.batches.pool import Worker
 from articad.cli import main
 from articad.errors import ReadError
 from tests.agents import stories
@@ -124,7 +124,9 @@ def test_an_item_that_kills_its_worker_each_time_is_told(tmp_path: Path, plan: P
 
 def children_of(process: int) -> list[int]:
     """Return the workers that a process has started."""
-    found = subprocess.run(["pgrep", "-P", str(process), "-f", "articad.bench.worker"], capture_output=True, text=True, check=False).stdout
+    found = subprocess.run(
+        ["pgrep", "-P", str(process), "-f", "articad.batches.worker"], capture_output=True, text=True, check=False
+    ).stdout
     return [int(line) for line in found.split()]
 
 
@@ -180,11 +182,11 @@ def test_a_worker_has_no_more_memory_than_it_was_given(plan: Path, tmp_path: Pat
 def test_a_worker_ends_with_whoever_started_it(plan: Path, tmp_path: Path) -> None:
     code = f"""
 import os
-from articad.bench.batch import run_local
-from articad.bench.items import Item
+from articad.batches.batch import run_local
+from articad.batches.items import Item
 
 def tell(record):
-    children = os.popen(f"pgrep -P {{os.getpid()}} -f articad.bench.worker").read()
+    children = os.popen(f"pgrep -P {{os.getpid()}} -f articad.batches.worker").read()
     print(children, flush=True)
     os.kill(os.getpid(), 9)
 

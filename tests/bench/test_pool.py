@@ -6,17 +6,17 @@ import sys
 
 import pytest
 
-from articad import processes
-from articad.bench.pool import Call, Worker
+from articad.batches.pool import Call, Worker
+from articad.processes import launcher
 
 CALL = Call("score", {}, "k")
 
 
 @pytest.mark.parametrize("said", ["", "{", '{"ok": true'])
 def test_a_worker_that_dies_within_its_answer_has_not_answered(said: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    def dying(worker: Worker, _call: Call) -> processes.Child:
+    def dying(worker: Worker, _call: Call) -> launcher.Child:
         words = [sys.executable, "-c", f"import sys; sys.stdin.readline(); sys.stdout.write({said!r})"]
-        worker._process = processes.start(words, stdin=processes.PIPE)  # kept as the real one is, so that it is waited for
+        worker._process = launcher.start(words, stdin=launcher.PIPE)  # kept as the real one is, so that it is waited for
         return worker._process
 
     monkeypatch.setattr(Worker, "_running", dying)

@@ -11,7 +11,7 @@ from articad.agents.edit import edit
 from articad.agents.llm import Scripted
 from articad.agents.pipeline import generate
 from articad.cli import main
-from articad.record import assembly_of
+from articad.runs.record import assembly_of
 from tests.agents import stories
 
 HERE = Path(__file__).parent

@@ -17,7 +17,7 @@ from pathlib import Path
 import pytest
 
 from articad.errors import ArticadError, RunError, WriteError
-from articad.run import Run, RunRequest
+from articad.runs.run import Run, RunRequest
 from tests.crash import killing, works
 from tests.crash.killing import Point, Work
 

@@ -22,8 +22,8 @@ from articad.kernels.kernel import BuildCache, PartKernel
 from articad.memory.case import Case
 from articad.memory.experience import ExperienceStore
 from articad.plan.schema import AssemblyPlan
-from articad.record import record_assembly, record_checks, record_export
-from articad.run import Run, RunRequest, open_or_create
+from articad.runs.record import record_assembly, record_checks, record_export
+from articad.runs.run import Run, RunRequest, open_or_create
 from tests.agents import stories
 from tests.crash.stand_in import FixedKernel
 

@@ -20,8 +20,8 @@ from articad.agents.pipeline import replay
 from articad.assembly import Assembly
 from articad.connectors import FloatArray
 from articad.export.threemf import lying, write_3mf
-from articad.record import assembly_of
-from articad.run import Run
+from articad.runs.record import assembly_of
+from articad.runs.run import Run
 
 ASKED = Path(__file__).resolve().parents[1] / "recordings" / "asked"
 REQUESTS: dict[str, dict[str, Any]] = json.loads((ASKED / "requests.json").read_text(encoding="utf-8"))

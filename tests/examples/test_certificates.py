@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 from articad.assembly import Assembly
+from articad.certificates.verifier import verify_file
 from articad.plan.schema import AssemblyPlan
-from articad.verify_certificate import verify_file
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 QUICK = ("four_bar",)

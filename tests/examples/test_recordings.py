@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from articad.agents.pipeline import replay
-from articad.run import Run
+from articad.runs.run import Run
 from tests.freecad.opened import needs_freecad
 
 RECORDINGS = sorted(path.parent for path in (Path(__file__).resolve().parents[2] / "examples").glob("*/recording/request.json"))

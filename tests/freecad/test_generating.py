@@ -10,7 +10,7 @@ import pytest
 
 from articad import cli
 from articad.agents.llm import Scripted
-from articad.run import Run
+from articad.runs.run import Run
 from tests.agents import stories
 from tests.freecad import opened
 

@@ -30,6 +30,7 @@ from articad.agents.llm import Replay, Request
 from articad.agents.replies import object_text, parse_script
 from articad.agents.requirements import Requirements
 from articad.agents.rollback import Decisions
+from articad.certificates.verifier import verify_file
 from articad.errors import ArticadError, ReadError
 from articad.findings import Finding, Findings
 from articad.geometry.mesh_files import read_mesh
@@ -48,8 +49,7 @@ from articad.plan.check import check_plan
 from articad.plan.expressions import parse
 from articad.plan.resolve import resolve
 from articad.plan.schema import AssemblyPlan
-from articad.run import Run
-from articad.verify_certificate import verify_file
+from articad.runs.run import Run
 
 CORPUS = Path(__file__).parent / "corpus"
 NAMES = {"a": 1.5, "width": 40.0, "inset": -2.0, "zero": 0.0}

@@ -11,18 +11,18 @@ import numpy as np
 import pytest
 
 from articad import cli
-from articad.adopt import MOST_FACETS, adopt, few_facets, recognised
 from articad.assembly import Assembly
 from articad.connectors.se3 import SE3
-from articad.convert import read
 from articad.errors import ReadError
 from articad.export.mjcf import write_mjcf
 from articad.export.urdf import write_urdf
+from articad.formats import read
 from articad.geometry.mesh import TriMesh
 from articad.geometry.shapes import box, capsule, cylinder, sphere, tube
 from articad.plan.check import check_plan
 from articad.plan.resolve import resolve
 from articad.plan.schema import AssemblyPlan
+from articad.runs.adopt import MOST_FACETS, adopt, few_facets, recognised
 from tests.agents import stories
 from tests.assemblies import all_joint_kinds, geared_pair
 from tests.foreign import TOLERANCE, configurations, difference, mujoco_poses

@@ -12,9 +12,9 @@ import pytest
 from lxml import etree
 
 from articad import cli
-from articad.convert import WRITERS
 from articad.errors import ReadError
 from articad.export.bundle import Bundle
+from articad.formats import WRITERS
 from articad.geometry.shapes import capsule
 from articad.importers.mjcf import read_mjcf
 from articad.importers.mjcf_kept import READ as READ_MJCF

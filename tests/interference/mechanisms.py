@@ -14,11 +14,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from articad.certificates.certificate import Certificate
+from articad.certificates.verifier import PROOF, verify_file
 from articad.connectors import SE3
 from articad.geometry import TriMesh
-from articad.interference.certificate import Certificate
 from articad.kinematics.joints import Joint, JointLimits, JointType
-from articad.verify_certificate import PROOF, verify_file
 
 IDENTITY = SE3.identity()
 

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from articad.certificates.certificate import certify
 from articad.connectors import SE3
 from articad.geometry import TriMesh, box
-from articad.interference.certificate import certify
 from articad.interference.motion import driver_values, freedoms, proven_freedoms, turned
 from articad.interference.sweep import sweep
 from articad.kinematics.joints import Joint

@@ -17,24 +17,24 @@ import manifold3d as m3
 import numpy as np
 import pytest
 
-from articad import verify_certificate
+from articad.certificates import verifier
+from articad.certificates.certificate import Certificate, certify
+from articad.certificates.clearing import shortest_between
+from articad.certificates.spread import Spread
+from articad.certificates.verifier import PROOF, verify_file
 from articad.connectors import SE3
 from articad.geometry import TriMesh, box, cylinder, merged, sphere, tube
 from articad.interference.body import body_of
 from articad.interference.boxtree import BoxTree
-from articad.interference.certificate import Certificate, certify
 from articad.interference.check import check_pose
-from articad.interference.clearing import shortest_between
 from articad.interference.cover import cover_line
 from articad.interference.meridian import leaning, meeting, outline
 from articad.interference.motion import Chain, Route, motion_matrix, swing_and_twist
 from articad.interference.overlap import overlap
-from articad.interference.spread import Spread
 from articad.interference.surface import Core, Surface, surface_distance
 from articad.interference.work import Budget
 from articad.kinematics.joints import Joint, JointType
 from articad.kinematics.mechanism import Mechanism
-from articad.verify_certificate import PROOF, verify_file
 from tests.interference.mechanisms import (
     IDENTITY,
     Waiver,
@@ -818,7 +818,7 @@ MOST_LINES = 512  # of code: what a person can read
 
 
 def test_the_checker_is_one_short_file_that_knows_only_numpy() -> None:
-    source = Path(verify_certificate.__file__).read_text()
+    source = Path(verifier.__file__).read_text()
     tree = ast.parse(source)
     imported = {alias.name.split(".")[0] for node in ast.walk(tree) if isinstance(node, ast.Import) for alias in node.names}
     imported |= {str(node.module) for node in ast.walk(tree) if isinstance(node, ast.ImportFrom)}

@@ -12,12 +12,12 @@ import manifold3d as m3
 import numpy as np
 import pytest
 
+from articad.certificates.certificate import Certificate, certify
+from articad.certificates.verifier import PROOF
 from articad.connectors import SE3
 from articad.geometry import TriMesh, box, cylinder
-from articad.interference.certificate import Certificate, certify
 from articad.kinematics.joints import Coupling, Joint
 from articad.kinematics.mechanism import Mechanism
-from articad.verify_certificate import PROOF
 from tests.interference.mechanisms import at, joint, proof_of, saved, verified
 
 HEIGHT = 6.0

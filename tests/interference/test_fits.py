@@ -7,9 +7,9 @@ import math
 
 import pytest
 
+from articad.certificates.fits import FitReport, check_fits
 from articad.connectors import SE3
 from articad.geometry import TriMesh, box, cylinder, merged, sphere
-from articad.interference.fits import FitReport, check_fits
 from articad.interference.scene import Scene
 from articad.kinematics.joints import Joint
 from tests.interference.mechanisms import Fit, at, block_with_bore, fixed, joint, without_triangle

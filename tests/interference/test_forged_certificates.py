@@ -11,11 +11,11 @@ from typing import Any
 import numpy as np
 import pytest
 
+from articad.certificates.certificate import Certificate, certify, mechanism_json
+from articad.certificates.verifier import PROOF, Checker, Refuted
 from articad.geometry import TriMesh, box, cylinder, sphere
-from articad.interference.certificate import Certificate, certify, mechanism_json
 from articad.kinematics.joints import Coupling, Joint
 from articad.kinematics.mechanism import Mechanism
-from articad.verify_certificate import PROOF, Checker, Refuted
 from tests.interference.mechanisms import Waiver, at, block_with_bore, joint, proof_of, saved, verified, without_triangle
 from tests.interference.test_certificate import ball_and_socket
 from tests.interference.test_linkage import ALONG_X, four_bar

@@ -11,17 +11,16 @@ from typing import Any
 import numpy as np
 import pytest
 
-from articad import verify_certificate
+from articad.certificates import linkage, verifier
+from articad.certificates.certificate import Certificate, certify, constrained_joints, driver_names, mechanism_json
+from articad.certificates.linkage import Piece, Way, driven_range
+from articad.certificates.verifier import PROOF, Checker
 from articad.connectors import SE3
 from articad.geometry import TriMesh, box, cylinder, merged
-from articad.interference import linkage
-from articad.interference.certificate import Certificate, certify, constrained_joints, driver_names, mechanism_json
-from articad.interference.linkage import Piece, Way, driven_range
 from articad.interference.overlap import overlap
 from articad.interference.scene import Scene
 from articad.kinematics.joints import Coupling, Joint
 from articad.kinematics.mechanism import Mechanism
-from articad.verify_certificate import PROOF, Checker
 from tests.interference.mechanisms import at, joint, proof_of, saved, verified
 
 CRANK, COUPLER, ROCKER, SPAN = 30.0, 90.0, 70.0, 100.0
@@ -103,7 +102,7 @@ def slider_crank() -> Mechanism:
 
 @pytest.mark.parametrize("half", [0.01, 0.1, 0.5])
 def test_no_loop_bends_more_than_the_lever_that_the_checker_takes(half: float, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(verify_certificate, "HALF", math.inf)  # by which a loop may be open
+    monkeypatch.setattr(verifier, "HALF", math.inf)  # by which a loop may be open
     mechanism = slider_crank()
     checker = checker_of(mechanism)
     names = checker.followers(("crank",))

@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 import articad
+from articad.certificates.fits import FitReport, check_fits
 from articad.connectors import SE3
 from articad.geometry import TriMesh, box, cylinder, merged, sphere
-from articad.interference.fits import FitReport, check_fits
 from articad.interference.gauge import Gauge
 from articad.interference.scene import Scene
 from articad.kinematics.joints import Joint
@@ -208,7 +208,7 @@ def test_a_fit_that_only_samples_speak_for_is_not_certified() -> None:
     report: FitReport = check_fits(scene)
     assert report.ok
     assert report.rows[0].strength.kind == "sampled"
-    from articad.interference.fits import certified_fits
+    from articad.certificates.fits import certified_fits
 
     assert certified_fits(report).findings.codes == ("W_NOT_CERTIFIED",)
 

@@ -9,15 +9,15 @@ import manifold3d as m3
 import numpy as np
 import pytest
 
+from articad.certificates.certificate import certify
+from articad.certificates.clearing import Ranges, Slides, clear
+from articad.certificates.profile import Forest
+from articad.certificates.proof import NO_SHRINK, Prover
+from articad.certificates.spread import Spread
 from articad.connectors import SE3
 from articad.geometry import TriMesh
-from articad.interference.certificate import certify
-from articad.interference.clearing import Ranges, Slides, clear
 from articad.interference.motion import Chain, Route
-from articad.interference.profile import Forest
-from articad.interference.proof import NO_SHRINK, Prover
 from articad.interference.scene import Scene
-from articad.interference.spread import Spread
 from articad.interference.surface import whole_surface
 from articad.interference.work import PIECES_PER_SECOND, Budget
 from articad.kinematics.joints import Joint

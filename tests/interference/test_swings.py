@@ -8,10 +8,10 @@ import manifold3d as m3
 import numpy as np
 import pytest
 
-from articad import verify_certificate
+from articad.certificates import verifier
+from articad.certificates.certificate import Certificate, certify
 from articad.connectors import SE3
 from articad.geometry import TriMesh
-from articad.interference.certificate import Certificate, certify
 from articad.interference.meridian import swung
 from articad.interference.surface import Core
 from articad.interference.work import PIECES_PER_SECOND
@@ -65,7 +65,7 @@ def test_a_checker_refuses_a_cone_that_pieces_do_not_keep_to(monkeypatch: pytest
     assert verified(document, honest) == []
     ball["cone"] += 0.01
     assert verified(document, honest) != []
-    monkeypatch.setattr(verify_certificate, "BESIDE", verify_certificate.BESIDE[:1] - 0.3)  # one cone, and that elsewhere
+    monkeypatch.setattr(verifier, "BESIDE", verifier.BESIDE[:1] - 0.3)  # one cone, and that elsewhere
     assert verified(honest.to_json(), honest) != []
 
 
@@ -80,7 +80,7 @@ def test_swung_triangles_keep_to_their_cones(seed: int) -> None:
     )
     corners = own @ frame[:3, :3].T + frame[:3, 3]
     low, high = swung(Core(frame, 3), corners, cone)
-    checked = verify_certificate.swung(corners - frame[:3, 3], frame[:3, 2], cone)
+    checked = verifier.swung(corners - frame[:3, 3], frame[:3, 2], cone)
     for mine, theirs in ((low, checked[0]), (high, checked[1])):  # the same numbers, in an order of their own
         assert np.allclose(np.sort(mine, axis=1), np.sort(theirs, axis=1), atol=1e-9)
     share = rng.dirichlet(np.ones(3), size=(40, 200))

@@ -13,11 +13,11 @@ from typing import Any
 
 import pytest
 
-from articad.audit import contact_motion
-from articad.audit.examine import Choices, audit
+from articad.auditing import contact_motion
+from articad.auditing.examine import Choices, audit
+from articad.certificates import certificate as certifying
+from articad.certificates.certificate import Certificate, certify
 from articad.geometry import box, cylinder
-from articad.interference import certificate as certifying
-from articad.interference.certificate import Certificate, certify
 from articad.interference.work import BRAKE, BRAKE_SECONDS, PIECES_PER_SECOND, Budget, look_price
 from articad.kinematics.mechanism import Mechanism
 from tests.audit import defects

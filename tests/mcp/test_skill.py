@@ -11,8 +11,8 @@ import pytest
 
 from articad import cli
 from articad.assembly import Assembly
-from articad.codes import CODES
 from articad.commands.command import COMMANDS
+from articad.findings.codes import CODES
 from articad.mcp.server import make_server
 from articad.mcp.skill import section, skill
 from articad.plan.check import check_plan

@@ -10,9 +10,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from articad.codes import CODES
 from articad.errors import KinematicsError, LoopError, PlanError
 from articad.findings import Finding, Findings
+from articad.findings.codes import CODES
 from articad.kinematics import Mechanism
 from articad.plan.check import check_plan
 from articad.plan.schema import AssemblyPlan

@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 from pydantic import TypeAdapter, ValidationError
 
-from articad.codes import CODES
+from articad.findings.codes import CODES
 from articad.plan.check import check_plan
 from articad.plan.joint_forms import COUPLING_TYPES, JOINT_TYPES, AnyJoint, CouplingSpec
 from articad.plan.schema import Allow, AnyPart, AssemblyPlan, Material, Parameter

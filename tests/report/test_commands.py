@@ -17,12 +17,12 @@ import pytest
 from articad import cli, examples
 from articad.assembly import Assembly
 from articad.commands.command import COMMANDS
+from articad.commands.terminal import Terminal
 from articad.commands.watching import PageServer, fingerprint, watch
 from articad.plan.check import check_plan
 from articad.plan.schema import AssemblyPlan
-from articad.record import record_assembly, record_checks, record_page
-from articad.run import Run, RunRequest
-from articad.terminal import Terminal
+from articad.runs.record import record_assembly, record_checks, record_page
+from articad.runs.run import Run, RunRequest
 
 URDF = """<robot name="arm"><link name="base"><visual><geometry><box size="0.1 0.1 0.1"/></geometry></visual></link>
 <link name="hand"><visual><geometry><box size="0.2 0.03 0.03"/></geometry></visual></link>

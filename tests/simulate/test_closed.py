@@ -9,14 +9,14 @@ from pathlib import Path
 import pytest
 import trimesh
 
-from articad.audit.examine import Choices, audit
+from articad.auditing.examine import Choices, audit
 from articad.errors import ReadError
 from articad.importers.closure import require_closed
 from articad.importers.mjcf import read_mjcf
 from articad.kernels import landlock
-from articad.simulate.examine import simulate_file
-from articad.simulate.loading import load
-from articad.simulate.trial import try_out
+from articad.simulation.examine import simulate_file
+from articad.simulation.loading import load
+from articad.simulation.trial import try_out
 
 BODY = '<worldbody><body><joint/><geom type="mesh" mesh="m" mass="1"/></body></worldbody>'
 DISC = '<worldbody><body><joint/><geom size="1" mass="1"/></body></worldbody>'
@@ -109,7 +109,7 @@ def test_a_file_that_names_a_file_outside_is_refused_before_any_engine_has_it(
     def never(*_words: object, **_options: object) -> None:
         raise AssertionError("an engine was started")
 
-    monkeypatch.setattr("articad.processes.start", never)
+    monkeypatch.setattr("articad.processes.launcher.start", never)
     monkeypatch.setattr("mujoco.MjModel.from_xml_path", never)
     folder = tmp_path / "a" / "robot"
     folder.mkdir()

@@ -12,10 +12,10 @@ from PIL import Image
 from articad.assembly import Assembly
 from articad.importers.mjcf import read_mjcf
 from articad.plan.schema import AssemblyPlan
-from articad.simulate.examine import simulate_assembly, simulate_file
-from articad.simulate.film import film
-from articad.simulate.trial import try_out
-from articad.simulate.verdict import SHARE, Verdict
+from articad.simulation.examine import simulate_assembly, simulate_file
+from articad.simulation.film import film
+from articad.simulation.trial import try_out
+from articad.simulation.verdict import SHARE, Verdict
 from tests.assemblies import all_joint_kinds, four_bar
 
 pytestmark = pytest.mark.engines

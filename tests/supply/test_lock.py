@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from articad import doctor
+from articad.commands import doctor
 
 ROOT = Path(__file__).resolve().parents[2]
 LOCK = (ROOT / "requirements.lock").read_text()

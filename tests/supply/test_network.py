@@ -26,7 +26,7 @@ import articad, importlib
 failed = {}
 names = [module.name for module in pkgutil.walk_packages(articad.__path__, "articad.")]
 for name in names if len(sys.argv) == 1 else ():
-    if ".inside_freecad" in name or name.endswith("__main__") or "shipped_examples" in name or ".starter" in name or ".snippets" in name:
+    if ".inside_freecad" in name or name.endswith("__main__") or ".examples." in name or ".starter" in name or ".snippets" in name:
         continue
     try:
         importlib.import_module(name)

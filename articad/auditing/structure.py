@@ -1,0 +1,146 @@
+"""Is the file a mechanism at all: names that are there once, joints between links that exist, one root, no circle."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from articad.auditing.declared import MOVING, Declared
+from articad.auditing.wording import counted, listed
+from articad.errors import did_you_mean
+from articad.findings import Finding
+
+MOST_GUESSES = 20  # of what a wrong name may have meant: each looks at all that there are
+
+
+def repeated_names(declared: Declared) -> Iterator[Finding]:
+    """Two links or two joints of one name."""
+    for kind, items in (("links", declared.links), ("joints", declared.joints)):
+        places: dict[str, list[str]] = {}
+        for item in items:
+            places.setdefault(item.name, []).append(item.where)
+        for name, found in places.items():
+            if (count := len(found)) > 1:
+                yield Finding(
+                    code="E_AUDIT_NAME_TWICE",
+                    where=f"{kind}.{name}",
+                    parts=(name,),
+                    message=f"{count} {kind} have the name {name!r}: {', '.join(found)}.",
+                    hint="Rename all but one, and what refers to them.",
+                    value=count,
+                    limit=1,
+                )
+
+
+def unknown_links(declared: Declared) -> Iterator[Finding]:
+    """A joint that names a link that is not there."""
+    asked = 0
+    for joint in declared.joints:
+        for side, link in (("parent", joint.parent), ("child", joint.child)):
+            if link not in declared.by_name:
+                asked += 1
+                meant = did_you_mean(link, declared.by_name) if asked <= MOST_GUESSES else ""
+                yield Finding(
+                    code="E_AUDIT_LINK_UNKNOWN",
+                    where=joint.where,
+                    parts=(link,),
+                    message=f"The {side} of joint {joint.name!r} is {link!r}, but no link has this name.{meant}",
+                    hint=f"Name one of the {len(declared.by_name)} links, or declare {link!r}.",
+                )
+
+
+def unknown_kinds(declared: Declared) -> Iterator[Finding]:
+    """A joint of a type that the format does not have."""
+    for joint in declared.joints:
+        if joint.type not in {"fixed", *MOVING} - {"screw"}:
+            yield Finding(
+                code="E_AUDIT_JOINT_TYPE",
+                where=joint.where,
+                message=f"Joint {joint.name!r} is of type {joint.type!r}.{did_you_mean(joint.type, MOVING)}",
+                hint="Use fixed, revolute, continuous, prismatic, planar or floating.",
+            )
+
+
+def carried_twice(declared: Declared) -> Iterator[Finding]:
+    """A link that two joints carry: a closed loop, which URDF cannot hold."""
+    carried: dict[str, list[str]] = {}
+    for joint in declared.joints:
+        carried.setdefault(joint.child, []).append(joint.name)
+    for link, carriers in carried.items():
+        if (count := len(carriers)) > 1 and link in declared.by_name:
+            yield Finding(
+                code="E_AUDIT_TWO_PARENTS",
+                where=f"links.{link}",
+                parts=(link,),
+                message=f"Link {link!r} is the child of {counted(count, 'joint')}: {listed(carriers)}.",
+                hint="Keep one of them; a closed loop needs a format that holds loops, such as MJCF.",
+                value=count,
+                limit=1,
+            )
+
+
+def roots(declared: Declared) -> Iterator[Finding]:
+    """None or several links that no joint carries."""
+    found = declared.roots
+    if len(found) == 1 or not declared.links:
+        return
+    if not found:
+        message = f"Every one of the {len(declared.by_name)} links is the child of a joint: the joints go round in a circle."
+        hint = "Remove the joint that closes the circle."
+    else:
+        message = f"{len(found)} links are no joint's child: {listed(found)}. All but one of them are not connected."
+        hint = "Connect each of them with a joint, or remove it."
+    yield Finding(
+        code="E_AUDIT_ROOTS",
+        where="joints",
+        parts=found if len(found) < 50 else found[:50],
+        message=message,
+        hint=hint,
+        value=len(found),
+        limit=1,
+    )
+
+
+def circles(declared: Declared) -> Iterator[Finding]:
+    """Joints that go round in a circle beside a root."""
+    parents = {joint.child: joint for joint in declared.joints if joint.parent in declared.by_name}
+    if not declared.roots:
+        return  # `roots` says so
+    done: set[str] = set(declared.roots)
+    for start in parents:
+        path: list[str] = []
+        link = start
+        while link not in done and link in parents:
+            done.add(link)
+            path.append(link)
+            link = parents[link].parent
+        if link in path:
+            circle = path[path.index(link) :]
+            yield Finding(
+                code="E_AUDIT_CIRCLE",
+                where=parents[link].where,
+                parts=tuple(circle),
+                message=f"The links {listed(circle)} carry each other in a circle.",
+                hint="Remove one of the joints between them.",
+                value=len(circle),
+                limit=0,
+            )
+
+
+def unknown_leaders(declared: Declared) -> Iterator[Finding]:
+    """A mimic of a joint that is not there, or does not move."""
+    moving = {joint.name for joint in declared.joints if joint.moves}
+    asked = 0
+    for joint in declared.joints:
+        if joint.mimics is not None and (joint.mimics not in moving or joint.mimics == joint.name):
+            asked += 1
+            meant = did_you_mean(joint.mimics, moving - {joint.name}) if asked <= MOST_GUESSES else ""
+            what = "itself" if joint.mimics == joint.name else f"{joint.mimics!r}, which is no joint that moves"
+            yield Finding(
+                code="E_AUDIT_MIMIC",
+                where=joint.where,
+                message=f"Joint {joint.name!r} mimics {what}.{meant}",
+                hint="Name a joint that moves, or remove the mimic.",
+            )
+
+
+CHECKS = (repeated_names, unknown_links, unknown_kinds, carried_twice, roots, circles, unknown_leaders)

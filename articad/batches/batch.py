@@ -1,0 +1,159 @@
+"""Batches: many items side by side, on this machine or on a Dask cluster; a worker that dies loses its own item alone."""
+
+from __future__ import annotations
+
+import itertools
+import json
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from scipy.stats import qmc
+
+from articad.batches import pool
+from articad.batches.items import Item, Json
+from articad.batches.pool import MEMORY_GB, RETRIES, Told
+from articad.errors import ReadError
+from articad.plan.schema import AssemblyPlan
+
+
+def read_batch(path: str | Path) -> list[Item]:
+    """Read a specification `articad.batch/1`: `items`, `sample`, or both.
+
+    A sample names a `plan`, a `count` and a `seed`, and for each of its `parameters` the range to draw from; where there are
+    none, every parameter that the plan gives `min` and `max`. Values fill the ranges evenly (Latin hypercube). Paths are
+    relative to the file.
+
+    Raises:
+        ReadError: If it is not of the form.
+    """
+    file = Path(path)
+    try:
+        stored = json.loads(file.read_text(encoding="utf-8"))
+        rows = [
+            *stored.get("items", []),
+            *itertools.chain.from_iterable(_sampled(sample, file.parent) for sample in stored.get("sample", [])),
+        ]
+        return [Item.from_json(row | {"plan": str((file.parent / row["plan"]).resolve())}) for row in rows]
+    except OSError as error:
+        raise _refused(file, f"It cannot be read: {error.strerror}.") from error
+    except (ValueError, KeyError, TypeError, AttributeError) as error:
+        raise _refused(file, f"It is no batch: {error!r}.") from error
+
+
+def _sampled(sample: Mapping[str, Any], folder: Path) -> Iterator[Json]:
+    plan = AssemblyPlan.load(folder / sample["plan"])
+    ranges = sample.get("parameters") or {
+        parameter.name: (parameter.min, parameter.max)
+        for parameter in plan.parameters
+        if parameter.min is not None and parameter.max is not None
+    }
+    if not ranges:
+        raise ValueError("the plan gives no parameter a min and a max, so `parameters` must name ranges")
+    low, high = (np.array([float(bounds[end]) for bounds in ranges.values()]) for end in (0, 1))
+    points = low + qmc.LatinHypercube(len(ranges), rng=np.random.default_rng(int(sample.get("seed", 0)))).random(int(sample["count"])) * (
+        high - low
+    )
+    common = {name: sample[name] for name in ("gates", "formats", "kernel") if name in sample}
+    for point in points:
+        yield {"plan": sample["plan"], "values": {name: round(float(x), 4) for name, x in zip(ranges, point, strict=True)}} | common
+
+
+def run_local(
+    items: Sequence[Item],
+    out: str | Path,
+    *,
+    workers: int | None = None,
+    retries: int = RETRIES,
+    memory_gb: float = MEMORY_GB,
+    told: Told | None = None,
+) -> list[Json]:
+    """Make items in processes of this machine; see `articad.batches.pool.run_local`.
+
+    Args:
+        items: What to make.
+        out: Folder of the batch.
+        workers: How many at once.
+        retries: How often an item is tried again whose worker died.
+        memory_gb: Data of a worker beyond which its allocations fail.
+        told: Called with each record, from several threads.
+
+    Returns:
+        The items' records, in order.
+    """
+    calls = calls_of(items, out)
+    return _with_items(items, pool.run_local(calls, workers=workers, retries=retries, memory_gb=memory_gb, told=told))
+
+
+def run_dask(
+    items: Sequence[Item],
+    out: str | Path,
+    *,
+    scheduler: str | None = None,
+    retries: int = RETRIES,
+    memory_gb: float = MEMORY_GB,
+    told: Told | None = None,
+    client: Any = None,
+) -> list[Json]:
+    """Make items on a Dask cluster; `out` must be a folder that all of its workers see.
+
+    Args:
+        items: What to make.
+        out: Folder of the batch.
+        scheduler: Its address.
+        retries: How often an item is tried again; items of a Dask worker that died go to another one by themselves.
+        memory_gb: Data of a worker process beyond which its allocations fail.
+        told: Called with each record as it comes.
+        client: A client to use instead of a new one.
+
+    Raises:
+        ReadError: If Dask is not installed.
+    """
+    calls = calls_of(items, out)
+    found = pool.run_dask(calls, scheduler=scheduler, retries=retries, memory_gb=memory_gb, told=told, client=client)
+    return _with_items(items, found)
+
+
+def calls_of(items: Sequence[Item], out: str | Path) -> list[pool.Call]:
+    """Return what workers are told of items."""
+    rows = [item.to_json() | {"plan": str(Path(item.plan).resolve())} for item in items]
+    return [pool.Call("item", {"item": row, "out": str(Path(out).resolve())}, item.digest) for row, item in zip(rows, items, strict=True)]
+
+
+def _with_items(items: Sequence[Item], records: Sequence[Json]) -> list[Json]:
+    """Return records with what each was to be, also where none was made."""
+    return [item.to_json() | record for item, record in zip(items, records, strict=True)]
+
+
+def summary(records: Iterable[Json]) -> Json:
+    """Return the report `articad.batch-report/1`: how many passed, what was built and kept, and where the time went.
+
+    An item that a check refuses is a result. The batch is `ok` if every item was made and at least one passed.
+    """
+    rows = list(records)
+    spent: dict[str, float] = {}
+    for row in rows:
+        for stage, seconds in row.get("seconds", {}).items() if row.get("made") == "now" else ():
+            spent[stage] = spent.get(stage, 0.0) + seconds
+    codes: dict[str, int] = {}
+    for row in rows:
+        for code in {finding["code"] for finding in row.get("findings", []) if finding.get("severity") == "error"}:
+            codes[code] = codes.get(code, 0) + 1
+    return {
+        "schema": "articad.batch-report/1",
+        "ok": all(row.get("made") != "never" for row in rows) and any(row.get("ok") for row in rows),
+        "findings": [],
+        "items": len(rows),
+        "passed": sum(bool(row.get("ok")) for row in rows),
+        "made_before": sum(row.get("made") == "before" for row in rows),
+        "never_made": [row["digest"] for row in rows if row.get("made") == "never"],
+        "refused_by": dict(sorted(codes.items(), key=lambda pair: -pair[1])),
+        "parts_built": sum(row.get("parts_built", 0) for row in rows if row.get("made") == "now"),
+        "parts_kept": sum(row.get("parts_kept", 0) for row in rows if row.get("made") == "now"),
+        "seconds": {stage: round(seconds, 2) for stage, seconds in spent.items()},
+    }
+
+
+def _refused(path: Path, message: str) -> ReadError:
+    return ReadError.told(path, message, "See `articad batch --help`.", said=message)

@@ -1,0 +1,196 @@
+"""Items of a batch: one assembly each, from a plan with values for its parameters to checked exports in a folder of its own.
+
+An item is known by its digest: plan, scripts, values, gates, formats and version. Its folder appears whole or not at all, so
+any number of processes may work on the same batch, a killed one leaves nothing half done, and a rerun makes nothing twice.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+import json
+import shutil
+import tempfile
+import time
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from functools import cache, cached_property
+from pathlib import Path
+from typing import Any, Final, Literal
+
+from articad import __version__
+from articad.assembly import Assembly
+from articad.errors import ArticadError, ReadError
+from articad.findings import Findings
+from articad.kernels.choice import kernel_named
+from articad.kernels.kernel import BuildCache, PartKernel
+from articad.plan.schema import AssemblyPlan
+from articad.runs.record import WRITERS
+from articad.runs.run import digest
+
+Json = dict[str, Any]
+Gate = Literal["rest", "motion", "certified"]
+
+SCHEMA: Final = "articad.item/1"
+ITEM: Final = "item.json"
+STEPS: Final = 24  # poses of each driver at the gate "motion"
+BUDGET_S: Final = 60.0  # of the gate "certified"
+
+
+@dataclass(frozen=True)
+class Item:
+    """One assembly to be made.
+
+    Attributes:
+        plan: Folder with `plan.json` and `parts/`.
+        values: Of its parameters, in their own units; the others are the plan's.
+        gates: What must hold for it to be exported: "rest", "motion" (sampled), "certified".
+        formats: What is written.
+        kernel: Builds the scripts; the plan's own by default.
+    """
+
+    plan: str
+    values: Mapping[str, float] = field(default_factory=dict)
+    gates: tuple[Gate, ...] = ("rest",)
+    formats: tuple[str, ...] = ("urdf", "mjcf")
+    kernel: str | None = None
+
+    @cached_property
+    def digest(self) -> str:
+        """What the item is known by."""
+        folder = Path(self.plan)
+        try:
+            scripts = {file.name: file.read_text(encoding="utf-8") for file in sorted((folder / "parts").glob("*.py"))}
+            text = (folder / "plan.json").read_text(encoding="utf-8")
+        except OSError as error:
+            raise _refused(folder, f"It cannot be read: {error}.") from error
+        key = {"plan": text, "scripts": scripts, "values": dict(sorted(self.values.items())), "gates": list(self.gates)}
+        return digest(key | {"formats": list(self.formats), "kernel": self.kernel, "articad": __version__})
+
+    def to_json(self) -> Json:
+        """Return the item as it goes to other processes."""
+        return {
+            "plan": self.plan,
+            "values": dict(self.values),
+            "gates": list(self.gates),
+            "formats": list(self.formats),
+            "kernel": self.kernel,
+        }
+
+    @classmethod
+    def from_json(cls, stored: Mapping[str, Any]) -> Item:
+        """Read an item.
+
+        Raises:
+            ReadError: If it is not of the form; says what is wrong.
+        """
+        try:
+            item = cls(
+                plan=str(stored["plan"]),
+                values={str(name): float(value) for name, value in stored.get("values", {}).items()},
+                gates=tuple(stored.get("gates", ("rest",))),
+                formats=tuple(stored.get("formats", ("urdf", "mjcf"))),
+                kernel=stored.get("kernel"),
+            )
+        except (KeyError, TypeError, ValueError, AttributeError) as error:
+            raise _refused(
+                Path("items"), f"An item needs `plan`, and may have `values`, `gates`, `formats`, `kernel`: {error!r}."
+            ) from error
+        unknown = [*(gate for gate in item.gates if gate not in ("rest", "motion", "certified")), *(set(item.formats) - set(WRITERS))]
+        if unknown:
+            raise _refused(Path("items"), f"There is no {unknown[0]!r}; gates are rest, motion, certified; formats {', '.join(WRITERS)}.")
+        return item
+
+
+def make(item: Item, out: str | Path, *, cache_root: str | Path | None = None) -> Json:
+    """Make one item, unless it is there already.
+
+    Args:
+        item: What to make.
+        out: Folder of the batch; the item's own is `<first two of its digest>/<digest>`.
+        cache_root: Keeps built parts; the user's own by default.
+
+    Returns:
+        Its record `articad.item/1`: provenance, whether it passed, findings, files with the sha256 of each, how long each stage took,
+        and `made`, which is "now" or "before".
+    """
+    folder = Path(out) / item.digest[:2] / item.digest
+    with contextlib.suppress(OSError, ValueError):
+        return {**json.loads((folder / ITEM).read_text(encoding="utf-8")), "made": "before"}
+    folder.parent.mkdir(parents=True, exist_ok=True)
+    scratch = Path(tempfile.mkdtemp(prefix=".item-", dir=folder.parent))
+    try:
+        record = _made(item, scratch, cache_root)
+        (scratch / ITEM).write_text(json.dumps(record, indent=1, ensure_ascii=False, sort_keys=True) + "\n", encoding="utf-8")
+        scratch.chmod(0o755)
+        with contextlib.suppress(OSError):  # another process was first: its folder is the same
+            scratch.rename(folder)
+    finally:
+        shutil.rmtree(scratch, ignore_errors=True)
+    return {**record, "made": "now"}
+
+
+def make_stored(item: Json, out: str) -> Json:
+    """Make an item as it came from another process."""
+    return make(Item.from_json(item), out)
+
+
+def _made(item: Item, folder: Path, cache_root: str | Path | None) -> Json:
+    clock = _Clock()
+    record: Json = {"schema": SCHEMA, "digest": item.digest, "articad": __version__, **item.to_json()}
+    built: dict[str, int] = {}
+    try:
+        with clock.on("plan"):
+            plan = AssemblyPlan.load(item.plan)
+        with clock.on("kernel"):
+            kernel = _kernel(item.kernel or plan.kernel)
+            store = BuildCache() if cache_root is None else BuildCache(Path(cache_root))
+            assembly = Assembly.from_plan(plan, Path(item.plan) / "parts", kernel=kernel, cache=store, jobs=1, parameters=item.values)
+        record |= {"kernel": kernel.name, "kernel_version": kernel.version}
+        sources = [part for part in assembly.realised.values() if part.derived_from is None]
+        built = {"parts_built": sum(not part.cached for part in sources), "parts_kept": sum(part.cached for part in sources)}
+        with clock.on("checks"):
+            findings = _gated(item, assembly)
+        if findings.ok:
+            with clock.on("exports"):
+                written = [path for name in item.formats for path in WRITERS[name](assembly).write(folder / name)]
+            files = {str(path.relative_to(folder)): hashlib.sha256(path.read_bytes()).hexdigest() for path in written}
+            record |= {"files": files, "mass_kg": assembly.mass().mass, "freedoms": assembly.mechanism.mobility}
+        record |= {"ok": findings.ok, "findings": [finding.to_json() for finding in findings]}
+    except ArticadError as error:
+        record |= {"ok": False, "error": str(error), "findings": [finding.to_json() for finding in error.findings]}
+    return record | built | {"seconds": {name: round(spent, 4) for name, spent in clock.spent.items()}}
+
+
+def _gated(item: Item, assembly: Assembly) -> Findings:
+    found = assembly.check().findings
+    if found.ok and "motion" in item.gates:
+        found += assembly.sweep(steps=STEPS).findings
+    if found.ok and "certified" in item.gates:
+        found += assembly.certify(budget=BUDGET_S).findings
+    return found
+
+
+@cache
+def _kernel(name: str) -> PartKernel:
+    """One kernel a process: its start takes as long as ten parts."""
+    return kernel_named(name)
+
+
+class _Clock:
+    """Seconds by stage."""
+
+    def __init__(self) -> None:
+        self.spent: dict[str, float] = {}
+
+    @contextlib.contextmanager
+    def on(self, stage: str) -> Iterator[None]:
+        start = time.perf_counter()
+        try:
+            yield
+        finally:
+            self.spent[stage] = self.spent.get(stage, 0.0) + time.perf_counter() - start
+
+
+def _refused(path: Path, message: str) -> ReadError:
+    return ReadError.told(path, message, "Correct the batch's specification.", said=message)

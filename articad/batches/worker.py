@@ -1,0 +1,51 @@
+"""A worker: reads a call a line, does it, answers with a line.
+
+It ends when there are no more lines, or when nobody has called it for long. Its one argument is how long [s].
+"""
+
+from __future__ import annotations
+
+import importlib
+import json
+import os
+import select
+import sys
+from collections.abc import Callable, Mapping
+from typing import Any, Final
+
+from articad.errors import ArticadError
+
+Json = dict[str, Any]
+
+CALLS: Final[Mapping[str, str]] = {
+    "item": "articad.batches.items:make_stored",
+    "task": "articad.bench.remote:run_stored",
+    "score": "articad.bench.remote:score_stored",
+}
+"""Calls that a worker knows, and where each is written."""
+
+
+def main() -> int:
+    """Serve; return the exit code."""
+    idle = float(sys.argv[1])
+    answers = os.fdopen(os.dup(1), "w")
+    os.dup2(2, 1)  # whatever else is printed goes to the terminal, not between the answers
+    # A call comes when the one before is answered, so that no second line is read ahead.
+    while select.select([sys.stdin], [], [], idle)[0] and (line := sys.stdin.readline()):
+        answers.write(json.dumps(_answer(json.loads(line))) + "\n")
+        answers.flush()
+    return 0
+
+
+def _answer(stored: Json) -> Json:
+    """Return the answer to a call; an error is one, so that the next call finds a worker."""
+    module, name = CALLS[stored["call"]].split(":")
+    function: Callable[..., Json] = getattr(importlib.import_module(module), name)
+    try:
+        return function(**stored["arguments"])
+    except (ArticadError, MemoryError) as error:
+        return {"ok": False, "digest": stored["key"], "made": "never", "error": f"{type(error).__name__}: {error}"}
+
+
+if __name__ == "__main__":
+    sys.exit(main())

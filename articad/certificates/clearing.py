@@ -1,0 +1,506 @@
+"""Keeping two surfaces apart over boxes of motion: pieces of both, and of the range, are cut where that helps.
+
+The search begins with the two whole surfaces over the whole range. What a direction separates, with the motion along it taken
+off, is settled; else the larger of two pieces is cut, or the range once the motion is what matters. So material near an axis is
+not charged with the speed of what is far out, and what is far apart is settled at once.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from articad.certificates.profile import Forest
+from articad.certificates.spread import Spread
+from articad.certificates.trail import CUT_A, CUT_B, CUT_RANGE, LEAN, OF_A, OF_B, ROUND, SWUNG, Trail
+from articad.interference.surface import Core
+from articad.interference.work import BOX, STEP, Budget
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.signedinteger[Any]]
+
+ROUNDING_MM = 1e-9  # what a distance must be above what it needs, for the arithmetic of poses
+CHUNK = 4096  # pairs of pieces looked at together
+MOTION_SHARE = 1.0  # of the pieces' size: when the motion is larger, the range is cut before the pieces
+LEAST_SHARE = 1e-3  # of the motion in any direction: along the normal of faces in one plane there is nothing to cut
+MOST_PAIRS = 4_000_000  # of pieces, after which a search is given up
+NEARLY_STILL = 1e-3  # of the largest motion: what is less does not choose directions, though it counts in every bound
+MOST_WAYS = 2  # lines along which something slides, that directions are sought across
+_EYE = np.eye(3)
+_COARSE = 64.0  # directions between boxes are rounded to so many parts: any direction is a proof, and few of them take less room
+
+
+class CannotCut(Exception):  # noqa: N818 - it is no error
+    """A box of which no halves are to be had."""
+
+
+class Boxes(Protocol):
+    """Boxes that can be cut in two.
+
+    Attributes:
+        spread: What moves in each.
+        price: Units of work that one costs.
+        outside: Whether no joint goes there, for each.
+        columns: Which of the claim's coordinates each was cut across, −1 for those that were not.
+        places: Where.
+        halves: Numbers of what it was cut into.
+    """
+
+    spread: Spread
+    price: int
+    outside: list[bool]
+    columns: list[int]
+    places: list[float]
+    halves: list[tuple[int, int]]
+
+    def root(self) -> IntArray:
+        """Add the whole range, and return its number."""
+
+    def cut(self, boxes: IntArray, share: FloatArray) -> IntArray:
+        """Cut boxes `(k,)` where `share (k, G)` of the motion is largest; return their halves `(k, 2)`."""
+
+    def is_reached(self, box: int) -> bool:
+        """Return whether the centre of a box is a pose of the mechanism."""
+
+    def contact(self, box: int) -> tuple[float, ...] | None:
+        """Return the centre of a box as coordinates to report, or None when it lies outside what joints allow."""
+
+
+@dataclass
+class Cleared:
+    """What a search came to.
+
+    Attributes:
+        contact: Centre of a box at which the surfaces are not apart, if one was met.
+        box: Its number, −1 if there is none.
+        out_of_budget: True when it was given up.
+        pairs: Pairs of pieces that were looked at.
+        boxes: Boxes that were looked at.
+        trail: What was done, for a checker to follow.
+        course: The boxes it was done in.
+    """
+
+    contact: tuple[float, ...] | None = None
+    box: int = -1
+    out_of_budget: bool = False
+    pairs: int = 0
+    boxes: int = 0
+    trail: Trail | None = None
+    course: Boxes | None = None
+
+    @property
+    def is_complete(self) -> bool:
+        """True when the surfaces keep apart over the whole range."""
+        return self.contact is None and not self.out_of_budget
+
+
+@dataclass
+class _Pairs:
+    """Rows: a node of each tree, a box, and the row's number in the trail."""
+
+    a: IntArray
+    b: IntArray
+    box: IntArray
+    number: IntArray
+
+    def __len__(self) -> int:
+        return len(self.a)
+
+    @classmethod
+    def of_all(cls, some: Sequence[_Pairs]) -> _Pairs:
+        return cls(*(np.concatenate(column) for column in zip(*((p.a, p.b, p.box, p.number) for p in some), strict=True)))
+
+    def of(self, rows: NDArray[np.bool_] | IntArray) -> _Pairs:
+        return _Pairs(self.a[rows], self.b[rows], self.box[rows], self.number[rows])
+
+
+def clear(
+    a: Forest,
+    b: Forest,
+    boxes: Boxes,
+    needed: float,
+    *,
+    axis: Core | None = None,
+    epsilon: float,
+    budget: Budget,
+    most: int = MOST_PAIRS,
+) -> Cleared:
+    """Prove that two surfaces stay further apart than `needed` [mm] over boxes of motion.
+
+    Args:
+        a: Of the part that stands.
+        b: Of the part that moves.
+        boxes: Of the motion.
+        needed: Distance that proves nothing, such as the deflection of both meshes [mm].
+        axis: The axis or point about which the outlines are, in the frame of a; None if there are none.
+        epsilon: What is closer by no more is contact [mm].
+        budget: Of work: the pairs looked at, the rounds of the search and the boxes placed are spent from it.
+        most: Pairs of pieces.
+    """
+    search = _Search(a, b, boxes, needed + ROUNDING_MM, epsilon, axis)
+    stack, outcome = [search.roots()], search.outcome
+    while stack and outcome.contact is None:
+        if budget.is_spent or outcome.pairs > most:
+            outcome.out_of_budget = True
+            break
+        rows = stack.pop()
+        while stack and len(rows) < CHUNK:
+            rows = _Pairs.of_all([stack.pop(), rows])
+        if len(rows) > CHUNK:
+            stack.append(rows.of(np.arange(len(rows)) < len(rows) - CHUNK))
+            rows = rows.of(np.arange(len(rows)) >= len(rows) - CHUNK)
+        outcome.pairs += len(rows)
+        placed = len(boxes.spread)
+        try:
+            stack += [found for found in search.step(rows) if len(found)]
+        except CannotCut:
+            outcome.out_of_budget = True
+            break
+        finally:
+            budget.spend(len(rows) + STEP + boxes.price * (len(boxes.spread) - placed), queries=len(rows))
+    outcome.boxes = len(boxes.spread)
+    if outcome.is_complete:
+        outcome.trail = search.trail
+    return outcome
+
+
+class _Search:
+    def __init__(self, a: Forest, b: Forest, boxes: Boxes, needed: float, epsilon: float, axis: Core | None) -> None:
+        self.forests, self.a, self.b = (a, b), a.tree, b.tree
+        self.boxes, self.needed, self.epsilon, self.axis = boxes, needed, epsilon, axis
+        self.spread, self.trail = boxes.spread, Trail()
+        self.outcome = Cleared()
+        self.size_a, self.size_b = np.linalg.norm(self.a.half, axis=1), np.linalg.norm(self.b.half, axis=1)
+        self.slides: Slides | None = None
+
+    def roots(self) -> _Pairs:
+        """Return each two trees over the whole range."""
+        both = np.array(list(itertools.product(self.forests[0].roots, self.forests[1].roots)))
+        root = int(self.boxes.root()[0])
+        self.slides = Slides.of(self.spread, root)
+        return _Pairs(both[:, 0], both[:, 1], np.full(len(both), root), self.trail.begin(len(both)))
+
+    def step(self, rows: _Pairs) -> list[_Pairs]:
+        """Settle what is settled and cut the rest."""
+        outside = np.array([self.boxes.outside[box] for box in rows.box.tolist()])
+        if outside.any():
+            rows = rows.of(~outside)
+        out: list[_Pairs] = []
+        if self.axis is not None:
+            rows = self._outlines(rows, out)
+        single = (self.a.triangle[rows.a] >= 0) & (self.b.triangle[rows.b] >= 0)
+        if not single.all():
+            out += self._nodes(rows.of(~single))
+        if single.any():
+            out += self._triangles(rows.of(single))
+        return out
+
+    def _outlines(self, rows: _Pairs, out: list[_Pairs]) -> _Pairs:
+        """Settle what is apart in coordinates that the joint keeps, cut what is made of such pieces; return the rest."""
+        assert self.axis is not None
+        a, b = self.forests
+        ahead, behind = b.low[rows.b] - a.high[rows.a], a.low[rows.a] - b.high[rows.b]
+        gap = np.maximum(ahead, behind)
+        ball = self.axis.dimensions == 3
+        limit = np.full(gap.shape[1], self.needed)
+        if ball:
+            limit[1] = 0.0  # angles tell of that
+        far = gap > limit
+        apart, best = np.asarray(far.any(axis=1)), np.argmax(far, axis=1)
+        for k, code in enumerate((ROUND, LEAN, SWUNG) if ball else (ROUND,)):
+            self.trail.keep(rows.number[apart & (np.minimum(best, 2) == k if ball else best == k)], code)
+        axes = self.axis.frame[:3, 3 - gap.shape[1] + 1 : 3].T
+        for k in () if ball else range(1, gap.shape[1]):
+            for side, sign in ((ahead, 1.0), (behind, -1.0)):
+                which = rows.number[apart & (best == k) & (side[:, k] > self.needed)]
+                self.trail.settle(which, OF_A, np.tile(sign * axes[k - 1], (len(which), 1)))
+        rows = rows.of(~apart)
+        whole_a, whole_b = self.a.children[rows.a, 0] < 0, self.b.children[rows.b, 0] < 0
+        never = ~(a.meets[rows.a] & b.meets[rows.b]) & ~(whole_a & whole_b)
+        first = ((a.high - a.low)[rows.a].max(axis=1) >= (b.high - b.low)[rows.b].max(axis=1)) & ~whole_a | whole_b
+        out += [self._cut_a(rows.of(never & first)), self._cut_b(rows.of(never & ~first))]
+        return rows.of(~never)
+
+    def _nodes(self, rows: _Pairs) -> list[_Pairs]:
+        T, box = self.spread.T[rows.box], rows.box
+        R = T[:, :3, :3]
+        centre = (R @ self.b.centre[rows.b][..., None])[..., 0] + T[:, :3, 3]
+        extent = R.transpose(0, 2, 1) * self.b.half[rows.b][..., None]  # rows: half axes of b's box in a's frame
+        apart = centre - self.a.centre[rows.a]
+        coarse = (_coarse(apart) if self.slides is None else self.slides.across(apart))[:, None]
+        if self.axis is not None and self.slides is None:
+            coarse = np.concatenate([coarse, self._turning(self.a.centre[rows.a], centre)[:, None]], axis=1)
+        u = np.concatenate([np.broadcast_to(_EYE, (len(rows), 3, 3)), R.transpose(0, 2, 1), unit(coarse)], axis=1)
+        thick = (np.abs(u) @ self.a.half[rows.a][..., None])[..., 0] + np.abs(u @ extent.transpose(0, 2, 1)).sum(axis=2)
+        ahead = (u @ apart[..., None])[..., 0]
+        still = np.abs(ahead) - thick
+        shares = self.spread.first_order(box, u, centre, extent)
+        motion = shares.sum(axis=2) + self.spread.second_order(box, u, centre, self.size_b[rows.b])
+        clear = still - motion > self.needed
+        left = ~clear.any(axis=1)
+        self._settle(rows.of(~left), np.argmax(clear[~left], axis=1), np.sign(ahead[~left]), coarse[~left])
+        rows, best = rows.of(left), np.argmax(still[left], axis=1)
+        at = np.arange(len(rows))
+        along, most = motion[left][at, best], motion[left].max(axis=1)
+        moving = (along > MOTION_SHARE * thick[left][at, best]) & (along > LEAST_SHARE * most)
+        if self.slides is not None:  # a pair of triangles then needs no part of the range for itself: see `Slides`
+            moving[:] = False
+        shares = shares[left]
+        return [*self._cut_range(rows.of(moving), shares[at, best][moving]), *self._cut_pieces(rows.of(~moving))]
+
+    def _settle(self, rows: _Pairs, best: IntArray, sign: FloatArray, coarse: FloatArray) -> None:
+        """Note the directions that settled pieces: axes of a, of b, or what is between the two."""
+        axis = np.tile(_EYE, (2, 1))
+        for which, kind in ((best < 3, OF_A), ((best >= 3) & (best < 6), OF_B)):
+            chosen = best[which]
+            self.trail.settle(rows.number[which], kind, axis[chosen] * sign[which, chosen][:, None])
+        between = best >= 6
+        self.trail.settle(rows.number[between], OF_A, coarse[between, best[between] - 6] * sign[between, best[between]][:, None])
+
+    def _turning(self, p: FloatArray | NDArray[np.float32], q: FloatArray) -> FloatArray:
+        """Return the directions in which places of a and b lie apart as seen from the axis, `(n, 3)`: that in which a turn brings them."""
+        assert self.axis is not None
+        core = self.axis
+        return _coarse((unit(core.local(q)) - unit(core.local(np.asarray(p, dtype=np.float64)))) @ core.frame[:3, : core.dimensions].T)
+
+    def _cut_pieces(self, rows: _Pairs) -> list[_Pairs]:
+        """Cut the larger piece of each pair that has any to cut."""
+        whole_a, whole_b = self.a.children[rows.a, 0] < 0, self.b.children[rows.b, 0] < 0
+        first = ~whole_a & (whole_b | (self.size_a[rows.a] >= self.size_b[rows.b]))
+        return [self._cut_a(rows.of(first)), self._cut_b(rows.of(~first))]
+
+    def _cut_a(self, rows: _Pairs) -> _Pairs:
+        numbers = self.trail.cut(rows.number, CUT_A)
+        return _Pairs(self.a.children[rows.a].ravel(), np.repeat(rows.b, 2), np.repeat(rows.box, 2), numbers)
+
+    def _cut_b(self, rows: _Pairs) -> _Pairs:
+        numbers = self.trail.cut(rows.number, CUT_B)
+        return _Pairs(np.repeat(rows.a, 2), self.b.children[rows.b].ravel(), np.repeat(rows.box, 2), numbers)
+
+    def _cut_range(self, rows: _Pairs, shares: FloatArray) -> list[_Pairs]:
+        if not len(rows):
+            return []
+        boxes, where = np.unique(rows.box, return_inverse=True)
+        new = np.array([self.boxes.columns[box] < 0 for box in boxes.tolist()])
+        if new.any():
+            total = np.zeros((len(boxes), shares.shape[1]))
+            np.add.at(total, where, shares / np.maximum(shares.sum(axis=1, keepdims=True), 1e-300))
+            self.boxes.cut(boxes[new], total[new])
+        halves = np.array([self.boxes.halves[box] for box in boxes.tolist()])[where]
+        numbers = self.trail.cut(rows.number, CUT_RANGE)
+        return [_Pairs(np.repeat(rows.a, 2), np.repeat(rows.b, 2), halves.ravel(), numbers)]
+
+    def _triangles(self, rows: _Pairs) -> list[_Pairs]:
+        T, box = self.spread.T[rows.box], rows.box
+        p = self.a.corners[self.a.triangle[rows.a]]
+        q = self.b.corners[self.b.triangle[rows.b]] @ T[:, :3, :3].transpose(0, 2, 1) + T[:, None, :3, 3]
+        nearest, towards = shortest_between(p, q)
+        u = np.stack([_normals(p), _normals(q), towards], axis=1)
+        if self.slides is not None:
+            u = np.concatenate([u, self.slides.directions(box, p, q)], axis=1)
+        elif self.axis is not None:
+            u = np.concatenate([u, unit(self._turning(p.mean(axis=1), q.mean(axis=1)))[:, None]], axis=1)
+        mine, theirs = u @ p.transpose(0, 2, 1), u @ q.transpose(0, 2, 1)  # (n, D, 3 corners)
+        ahead = theirs.min(axis=2) - mine.max(axis=2) > mine.min(axis=2) - theirs.max(axis=2)
+        u = np.where(ahead[..., None], u, -u)
+        mine, theirs = np.where(ahead[..., None], mine, -mine), np.where(ahead[..., None], theirs, -theirs)
+        nothing = np.zeros(len(rows))
+        shares = [self.spread.first_order(box, u, q[:, k], None) for k in range(3)]
+        motion = np.stack([shares[k].sum(axis=2) + self.spread.second_order(box, u, q[:, k], nothing) for k in range(3)], axis=2)
+        gap = (theirs - motion).min(axis=2) - mine.max(axis=2)
+        clear = gap > self.needed
+        first = np.argmax(clear, axis=1)
+        done = clear.any(axis=1)
+        for which, kind in ((done & (first != 1), OF_A), (done & (first == 1), OF_B)):
+            chosen = u[which, first[which]]
+            if kind == OF_B:  # as b sees it, so that a face has one direction wherever it is
+                chosen = _normals(self.b.corners[self.b.triangle[rows.b[which]]]) * np.where(ahead[which, 1], 1.0, -1.0)[:, None]
+            self.trail.settle(rows.number[which], kind, chosen)
+        left = np.flatnonzero(~done)
+        touching = left[nearest[left] <= self.needed + self.epsilon]
+        for row in touching:
+            contact = self.boxes.contact(int(box[row]))
+            if contact is not None:
+                self.outcome.contact, self.outcome.box = contact, int(box[row])
+                return []
+        best = np.argmax((theirs.min(axis=2) - mine.max(axis=2))[left], axis=1)
+        share = np.max([found[left, best] for found in shares], axis=0)
+        # what does not move and yet is not apart pierces the other: there the distance is none
+        stuck = motion[left].max(axis=(1, 2)) < self.epsilon / 4
+        stuck[stuck] = [self.boxes.is_reached(box) for box in box[left][stuck].tolist()]
+        if stuck.any():
+            row = int(left[np.argmax(stuck)])
+            self.outcome.box = int(box[row])
+            self.outcome.contact = self.boxes.contact(self.outcome.box) or ()
+            return []
+        return self._cut_range(rows.of(left), share + 1e-300)
+
+
+def unit(v: FloatArray) -> FloatArray:
+    """Return vectors `(…, k)` made one long; what is none stays 0."""
+    return np.asarray(v / np.maximum(np.linalg.norm(v, axis=-1, keepdims=True), 1e-300))
+
+
+def _coarse(u: FloatArray) -> FloatArray:
+    """Return directions rounded so that few different ones remain."""
+    return np.asarray(np.round(u / np.maximum(np.abs(u).max(axis=1, keepdims=True), 1e-300) * _COARSE) / _COARSE)
+
+
+def _normals(p: FloatArray) -> FloatArray:
+    n = np.cross(p[:, 1] - p[:, 0], p[:, 2] - p[:, 0])
+    length = np.linalg.norm(n, axis=1)
+    return np.asarray(n / np.where(length > 0, length, 1.0)[:, None])
+
+
+def shortest_between(p: FloatArray, q: FloatArray, *, flat: bool = False) -> tuple[FloatArray, FloatArray]:
+    """Return the distance of triangles `(n, 3, 3)` each that do not pierce one another, and the direction in which it is measured.
+
+    Of `flat` triangles, all in parallel planes or lines, edges alone are looked at: their outlines decide there.
+
+    It is reached between two edges, or between a corner and the inside of the other triangle (Ericson, Real-time collision
+    detection, 5.1). Any direction proves its own gap, so nothing rests on this being exact.
+    """
+    d, e = np.roll(p, -1, axis=1) - p, np.roll(q, -1, axis=1) - q
+    between = p[:, :, None] - q[:, None]  # (n, 3, 3, 3): of edge i of p and edge j of q
+    a, f = (d * d).sum(axis=2)[:, :, None], (e * e).sum(axis=2)[:, None]
+    b, c, g = d @ e.transpose(0, 2, 1), (d[:, :, None] * between).sum(axis=3), (e[:, None] * between).sum(axis=3)
+    below = a * f - b * b
+    s = np.clip((b * g - c * f) / np.where(below > 1e-12 * a * f, below, np.inf), 0.0, 1.0)
+    t = np.clip((b * s + g) / np.maximum(f, 1e-300), 0.0, 1.0)
+    s = np.clip((b * t - c) / np.maximum(a, 1e-300), 0.0, 1.0)
+    edges = t[..., None] * e[:, None] - s[..., None] * d[:, :, None] - between
+    found = edges.reshape(-1, 9, 3)
+    if not flat:
+        found = np.concatenate([found, _over(p, q), -_over(q, p)], axis=1)
+    squares = (found * found).sum(axis=2)
+    nearest = np.argmin(squares, axis=1)
+    rows = np.arange(len(p))
+    length = np.sqrt(squares[rows, nearest])
+    finite = np.isfinite(length) & (length > 0)
+    return length, np.asarray(found[rows, nearest] / np.where(finite, length, 1.0)[:, None])
+
+
+def _over(p: FloatArray, q: FloatArray) -> FloatArray:
+    """Return the vectors from the inside of p straight up to the corners of q, `(n, 3, 3)`; far where these are not over it."""
+    n = _normals(p)
+    up = q - p[:, None, 0]
+    inside = np.ones(up.shape[:2], dtype=bool)
+    for k in range(3):
+        edge = p[:, (k + 1) % 3] - p[:, k]
+        inside &= ((q - p[:, None, k]) @ np.cross(n, edge)[..., None])[..., 0] >= 0
+    return np.asarray(np.where(inside[..., None], (up @ n[..., None]) * n[:, None], 1e150))
+
+
+class Slides:
+    """Directions that keep two triangles apart while one of them slides along one line, or in one plane, without turning.
+
+    The displacements of a box are Σ tₖ gₖ with |tₖ| ≤ 1 for one or two vectors g. The distance of two convex bodies is a convex
+    function of t, so it is least where each tₖ is −1, or 1, or where the direction of the distance is across gₖ. One direction for
+    each of these cases is therefore all that can keep two triangles apart, and the range need not be cut for them: with one g, that
+    between their shadows along g, and those at both ends.
+
+    Args:
+        spread: Of boxes.
+        ways: Unit vectors along g, `(k, 3)`.
+        groups: Which generators of first order go along each of them, `(k, G)`: what goes along the same line adds up.
+    """
+
+    def __init__(self, spread: Spread, ways: FloatArray, groups: NDArray[np.bool_]) -> None:
+        self.spread, self.ways, self.groups = spread, ways, groups
+        self._basis = _complement(ways)
+
+    @classmethod
+    def of(cls, spread: Spread, root: int) -> Slides | None:
+        """Return it for boxes cut from `root`; None where something turns, or slides along more than two lines."""
+        flow = spread.flow[root]
+        size = np.linalg.norm(flow, axis=1)
+        left = size > NEARLY_STILL * size.max(initial=0.0)
+        if spread.turns.any() or not left.any():
+            return None
+        ways, groups = list[FloatArray](), list[NDArray[np.bool_]]()
+        while left.any():
+            ways.append(unit(flow[np.argmax(size * left)]))
+            groups.append(left & (np.linalg.norm(flow - np.outer(flow @ ways[-1], ways[-1]), axis=1) <= NEARLY_STILL * size))
+            left = left & ~groups[-1]
+        return cls(spread, np.array(ways), np.array(groups)) if len(ways) <= MOST_WAYS else None
+
+    def across(self, apart: FloatArray) -> FloatArray:
+        """Return the directions of vectors `(n, 3)` across all slides, rounded so that few different ones remain."""
+        return np.asarray(_coarse(apart @ self._basis.T) @ self._basis)
+
+    def directions(self, box: IntArray, p: FloatArray, q: FloatArray) -> FloatArray:
+        """Return directions `(n, D, 3)`, one of which keeps triangles `(n, 3, 3)` apart over their boxes if any does."""
+        far = np.linalg.norm(self.spread.flow[box], axis=2) @ self.groups.T
+        found = []
+        for signs in itertools.product((0, -1, 1), repeat=len(self.ways)):
+            there = q + ((far * signs) @ self.ways)[:, None]
+            basis = _complement(self.ways[np.array(signs) == 0])
+            found.append(shortest_between(p @ basis.T @ basis, there @ basis.T @ basis, flat=len(basis) < 3)[1])
+        return np.stack(found, axis=1)
+
+
+def _complement(ways: FloatArray) -> FloatArray:
+    """Return unit vectors across some, `(3 - k, 3)`, and across each other."""
+    return np.asarray(np.linalg.svd(ways)[2][len(ways) :]) if len(ways) else _EYE
+
+
+class Ranges:
+    """Boxes of a chain's own coordinates, from bounds of each.
+
+    Args:
+        spread: Empty, of the chain.
+        bounds: Of each coordinate.
+        left_out: Whether a box (lower ends, upper ends) lies outside what the joints allow.
+    """
+
+    price = BOX
+
+    def __init__(self, spread: Spread, bounds: FloatArray, left_out: Callable[[FloatArray, FloatArray], bool] | None = None) -> None:
+        self.spread, self.bounds, self.left_out = spread, bounds, left_out
+        self.ends = np.empty((0, len(bounds), 2))
+        self.outside, self.columns, self.places, self.halves = list[bool](), list[int](), list[float](), list[tuple[int, int]]()
+
+    def root(self) -> IntArray:
+        """Add the whole range."""
+        return self._add(self.bounds[None])
+
+    def _add(self, ends: FloatArray) -> IntArray:
+        self.ends = np.concatenate([self.ends, ends])
+        self.outside += [self.left_out is not None and self.left_out(*box.T) for box in ends]
+        self.columns += [-1] * len(ends)
+        self.places += [math.nan] * len(ends)
+        self.halves += [(-1, -1)] * len(ends)
+        columns = [factor.column for _, factor in self.spread.factors]
+        return self.spread.add((ends[..., 0] + ends[..., 1]) / 2, np.diff(ends, axis=2)[:, columns, 0] / 2)
+
+    def cut(self, boxes: IntArray, share: FloatArray) -> IntArray:
+        """Cut each box across the coordinate that has the largest share."""
+        by_column = np.full((len(boxes), len(self.bounds)), -1.0)
+        for f, (_, factor) in enumerate(self.spread.factors):
+            by_column[:, factor.column] = share[:, f]
+        by_column[self.ends[boxes, :, 0] >= self.ends[boxes, :, 1]] = -1.0
+        at = np.argmax(by_column, axis=1)
+        rows = np.arange(len(boxes))
+        low, high = self.ends[boxes].copy(), self.ends[boxes].copy()
+        low[rows, at, 1] = high[rows, at, 0] = (low[rows, at, 0] + low[rows, at, 1]) / 2
+        numbers = self._add(np.stack([low, high], axis=1).reshape(-1, *low.shape[1:])).reshape(-1, 2)
+        for box, column, place, halves in zip(boxes.tolist(), at.tolist(), low[rows, at, 1].tolist(), numbers.tolist(), strict=True):
+            self.columns[box], self.places[box], self.halves[box] = column, place, (halves[0], halves[1])
+        return numbers
+
+    def is_reached(self, box: int) -> bool:  # noqa: ARG002 - a chain's coordinates are free
+        """Return whether the middle of a box is a pose of the mechanism: always."""
+        return True
+
+    def contact(self, box: int) -> tuple[float, ...] | None:
+        """Return the centre of a box."""
+        centre = self.ends[box].mean(axis=1)
+        if self.left_out is not None and self.left_out(centre, centre):
+            return None
+        return tuple(centre.tolist())

@@ -1,0 +1,448 @@
+"""Fits: what a joint declares about the gap between its two parts, held against what is measured.
+
+The lower bound holds over the whole motion of the joint. It is proven where that succeeds, and sampled elsewhere; each row says which.
+The upper bound is held against the play at rest (`articad.interference.gauge`). Meshes may be off by their deflection either way, so a
+fit is called broken only beyond that. Definitions: `docs/reference/plan.md`.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import partial
+from typing import Any, Literal
+
+import numpy as np
+
+from articad.certificates.claims import Claim
+from articad.certificates.proof import NO_SHRINK, Prover, Shrink
+from articad.findings import Finding, Findings
+from articad.interference.gauge import Gauge
+from articad.interference.motion import ENDLESS_SLIDE_MM, Freedom, Route, freedoms, radians_per_mm, scattered, travels
+from articad.interference.overlap import NOTHING
+from articad.interference.relations import FitLike
+from articad.interference.report import Strength, rounded
+from articad.interference.scene import Scene
+from articad.interference.surface import Surface
+from articad.interference.work import Budget
+from articad.kinematics.joints import Joint, JointType
+from articad.kinematics.mechanism import Mechanism
+
+__all__ = [
+    "CONTACT_MM",
+    "PROOF_SECONDS",
+    "FitCheck",
+    "FitReport",
+    "FitVerdict",
+    "Gauge",
+    "certified_fits",
+    "check_fits",
+    "followed",
+]
+
+STEPS = 24  # poses per coordinate at which the gap is measured in motion
+CONTACT_MM = 0.02  # surfaces this close touch, beyond the deflection of their meshes
+EPSILON_MM = 1e-4  # a gap that exceeds what is to be proven by no more counts as contact in the search
+PROOF_SECONDS = 1.2  # nominal, for the proof of each fit
+ENDLESS_SAMPLED_MM = 100.0  # either way of rest, of what slides without limits
+_FOLLOWED = 61  # poses of each driver's range: a turn in steps of 6°, its half included
+
+FitVerdict = Literal["ok", "tight", "loose", "contact", "apart", "not_checked"]
+Span = Mapping[str, tuple[float, float]]
+
+
+@dataclass(frozen=True)
+class FitCheck:
+    """One row: declared against measured.
+
+    Attributes:
+        joint: Its name.
+        parts: Its two parts.
+        declared: The fit.
+        rest: Gap at rest [mm]; negative is the depth of an overlap. None when it could not be measured.
+        least: Smallest gap that was measured over the motion [mm].
+        at: Where the smallest gap is [rad, mm]; None at rest.
+        verdict: "ok"; "tight" or "loose"; "contact" where it is forbidden; "apart" where contact is required; or "not_checked".
+        play: At rest, whatever the place of the pin in its hole [mm]; None where nothing stops the child, or where it is not asked for.
+        tolerance: How far both meshes together may be from their solids [mm].
+        strength: How the lower bound is known over the motion.
+    """
+
+    joint: str
+    parts: tuple[str, str]
+    declared: FitLike
+    rest: float | None
+    least: float | None
+    at: Mapping[str, float] | None
+    verdict: FitVerdict
+    play: float | None = None
+    tolerance: float = 0.0
+    strength: Strength = field(default_factory=partial(Strength.sampled, 1))
+
+    def to_json(self) -> dict[str, Any]:
+        """Return a row of the table."""
+        fit = self.declared
+        return {
+            "joint": self.joint,
+            "parts": list(self.parts),
+            "declared": {"gap_mm": [fit.gap_min, fit.gap_max], "within_mm": fit.within, "contact": fit.contact},
+            "rest_mm": rounded(self.rest),
+            "least_mm": rounded(self.least),
+            "at": None if self.at is None else {name: rounded(value) for name, value in self.at.items()},
+            "play_mm": rounded(self.play),
+            "tolerance_mm": rounded(self.tolerance),
+            "strength": self.strength.to_json(),
+            "verdict": self.verdict,
+        }
+
+
+@dataclass(frozen=True)
+class FitReport:
+    """All fits of an assembly.
+
+    Attributes:
+        findings: One per broken fit.
+        rows: One per declared fit, in order.
+        claims: What is proven of them, for a certificate.
+    """
+
+    findings: Findings
+    rows: tuple[FitCheck, ...]
+    claims: tuple[Claim, ...] = ()
+
+    @property
+    def ok(self) -> bool:
+        """True when every fit is kept."""
+        return self.findings.ok
+
+    def to_json(self) -> dict[str, Any]:
+        """Return the table with its findings."""
+        return {
+            "schema": "articad.fits/1",
+            "ok": self.ok,
+            "findings": [finding.to_json() for finding in self.findings],
+            "rows": [row.to_json() for row in self.rows],
+        }
+
+
+def check_fits(
+    scene: Scene,
+    reached: Span | Callable[[], Span] | None = None,
+    *,
+    proven: Span | None = None,
+    joints: Sequence[str] | None = None,
+    seconds: float = PROOF_SECONDS,
+) -> FitReport:
+    """Hold every declared fit of a scene against its parts, at rest and over the motion of its joint.
+
+    Args:
+        scene: Bodies and relations.
+        reached: How far coordinates go that follow others, by name [rad, mm], or a function that finds it: a joint of a linkage need
+            not reach its own limits.
+        proven: The same, where it is proven that they go no further; asked before `reached`.
+        joints: Names of those to be held; all by default.
+        seconds: Nominal seconds of work for each fit; see `articad.interference.work`.
+    """
+    rows: list[FitCheck] = []
+    findings: list[Finding] = []
+    claims: list[Claim] = []
+    for joint in scene.relations.joints:
+        fit = scene.fits.get(joint.name)
+        if fit is None or (joints is not None and joint.name not in joints):
+            continue
+        unable = [name for name in (joint.parent, joint.child) if name not in scene.bodies or name in scene.broken]
+        if unable:
+            reason = f"{' and '.join(unable)} {'have' if len(unable) > 1 else 'has'} no closed mesh"
+            strength = Strength.not_checked(reason)
+            rows.append(FitCheck(joint.name, (joint.parent, joint.child), fit, None, None, None, "not_checked", strength=strength))
+            findings.append(_unmeasured(joint, reason))
+            continue
+        held = _Held(scene, joint, fit, Budget(seconds))
+        row, finding = held.check(reached, proven or {})
+        rows.append(row)
+        findings += finding
+        claims += held.claims
+    return FitReport(Findings(findings), tuple(rows), tuple(claims))
+
+
+def certified_fits(report: FitReport) -> FitReport:
+    """Return a report that also names the fits for whose motion only samples speak."""
+    open_rows = [row for row in report.rows if row.verdict == "ok" and row.strength.kind == "sampled" and (row.strength.poses or 0) > 1]
+    return replace(report, findings=report.findings + Findings(_unproven(row) for row in open_rows))
+
+
+def followed(mechanism: Mechanism) -> dict[str, tuple[float, float]]:
+    """Return how far each coordinate of a linkage goes while its drivers move, one at a time [rad, mm]; nothing for a tree.
+
+    These are samples of each driver's range.
+    """
+    if mechanism.is_tree:
+        return {}
+    rows = [mechanism.configuration(mechanism.rest).columns[None]]
+    for column, driver in enumerate(mechanism.drivers):
+        found = mechanism.feasible_range(driver.name)
+        q = np.repeat(np.array(mechanism.rest, dtype=np.float64)[None], _FOLLOWED, axis=0)
+        endless = ENDLESS_SAMPLED_MM if driver.unit == "mm" else math.pi
+        low = found.lower if math.isfinite(found.lower) else driver.rest - endless
+        high = found.upper if math.isfinite(found.upper) else driver.rest + endless
+        q[:, column] = np.linspace(low, high, _FOLLOWED)
+        rows.append(mechanism.configuration(q).columns)
+    every = np.concatenate(rows)
+    return {
+        c.name: (float(low), float(high)) for c, low, high in zip(mechanism.coordinates, every.min(axis=0), every.max(axis=0), strict=True)
+    }
+
+
+class _Held:
+    """One fit, held against its two parts."""
+
+    def __init__(self, scene: Scene, joint: Joint, fit: FitLike, budget: Budget) -> None:
+        self.scene, self.joint, self.fit, self.budget = scene, joint, fit, budget
+        self.gauge = Gauge(scene, joint, fit)
+        self.slack = self.gauge.slack
+        self.moving = travels(joint)
+        self.per_mm = radians_per_mm(joint) if joint.type is JointType.SCREW and joint.lead else 1.0  # coordinate per travel
+        self.claims: tuple[Claim, ...] = ()
+
+    @property
+    def touches(self) -> float:
+        """The gap up to which two parts are said to touch [mm]."""
+        return CONTACT_MM + self.slack
+
+    @property
+    def may_touch(self) -> bool:
+        """True when the fit lets the parts touch, so that the gap has no lower bound but that of an overlap."""
+        return self.fit.contact in ("allowed", "required")
+
+    @property
+    def least_allowed(self) -> float | None:
+        """The gap below which the fit is broken over the motion [mm]; None where it says nothing. Negative is a depth."""
+        if self.may_touch:
+            return None if self.fit.gap_min is None else -self.touches
+        bounds = [] if self.fit.gap_min is None else [self.fit.gap_min - self.slack]
+        bounds += [self.slack] if self.fit.contact == "forbidden" else []
+        return max(bounds, default=None)
+
+    def check(self, reached: Span | Callable[[], Span] | None, proven: Span) -> tuple[FitCheck, list[Finding]]:
+        """Return the row, and the finding if the fit is broken."""
+        rest = self.gauge.rest()
+        asked = self.fit.gap_max is not None or (self.fit.gap_min is not None and self.may_touch)
+        play = self.gauge.play() if asked and rest > -self.touches else None
+        row = FitCheck(self.joint.name, (self.joint.parent, self.joint.child), self.fit, rest, rest, None, "ok", play, self.slack)
+        verdict, value, limit = self._at_rest(rest, play)
+        if verdict != "ok":
+            return replace(row, verdict=verdict), [self._finding(verdict, value, limit, None, is_play=value == play)]
+        if self.least_allowed is None or not self.moving:
+            return row, []
+        seen = self._over(row, self.moving)
+        if not _is_proven(seen) and (inside := _within(self.moving, proven)) != self.moving:
+            seen, self.claims = self._over(row, inside), ()  # a claim is about all of a joint's range
+        if seen.verdict != "ok" and reached is not None:  # it may be where the linkage never brings it
+            inside = _within(self.moving, reached() if callable(reached) else reached)
+            if inside != self.moving:
+                seen, self.claims = self._over(row, inside), ()
+                if _is_proven(seen):  # over a range that samples have shown
+                    seen = replace(seen, strength=Strength.sampled(_FOLLOWED))
+        if seen.verdict == "ok":
+            return seen, []
+        verdict, value, limit = self._in_motion(seen.least)
+        return seen, [self._finding(verdict, value, limit, seen.at)]
+
+    def _at_rest(self, rest: float, play: float | None) -> tuple[FitVerdict, float, float]:
+        """Return the verdict on the rest pose, with the number and the bound that decide."""
+        fit = self.fit
+        if fit.contact == "required" and rest > self.touches:
+            return "apart", rest, self.touches
+        verdict, value, limit = self._in_motion(rest)
+        if verdict != "ok":
+            return verdict, value, limit
+        if self.may_touch and fit.gap_min is not None and play is not None and play < fit.gap_min - self.slack:
+            return "tight", play, fit.gap_min
+        wide = rest if play is None else play
+        if fit.gap_max is not None and wide > fit.gap_max + self.slack:
+            return "loose", wide, fit.gap_max
+        return "ok", rest, 0.0
+
+    def _in_motion(self, gap: float | None) -> tuple[FitVerdict, float, float]:
+        assert gap is not None
+        fit = self.fit
+        if fit.contact == "forbidden" and gap <= self.slack:
+            return "contact", gap, 0.0
+        if fit.gap_min is not None and gap < (-self.touches if self.may_touch else fit.gap_min - self.slack):
+            return "tight", gap, 0.0 if self.may_touch else fit.gap_min
+        return "ok", gap, 0.0
+
+    def _over(self, row: FitCheck, moving: tuple[Freedom, ...]) -> FitCheck:
+        """Hold the lower bound over a range: by samples, which find what is plainly wrong, then by a proof."""
+        poses = 0
+        endless = any(_is_endless(freedom, self.per_mm) for freedom in moving)
+        ranges = [_bounded(freedom, self.per_mm) for freedom in moving]
+        near = freedoms(self.joint) if endless and self.joint.type is JointType.SCREW else ()  # one turn, in finer steps
+        for values in itertools.chain(_samples(near), _samples(ranges)):
+            poses += 1
+            row = self._nearer(row, values, moving)
+            if self._in_motion(row.least)[0] != "ok":
+                return replace(row, verdict=self._in_motion(row.least)[0], strength=Strength.sampled(poses))
+        if endless:
+            return replace(row, strength=Strength.sampled(poses))
+        found = self._proven(row, moving)
+        return replace(row, strength=Strength.sampled(poses)) if found is None else found
+
+    def _nearer(self, row: FitCheck, values: Sequence[float], moving: tuple[Freedom, ...]) -> FitCheck:
+        assert row.rest is not None
+        assert row.least is not None
+        gap = self.gauge.nearer_than(max(row.rest - self.slack, self.least_allowed or 0.0, 0.0), list(values))
+        return replace(row, least=gap, at=_named(moving, values)) if gap < row.least else row
+
+    def _proven(self, row: FitCheck, moving: tuple[Freedom, ...]) -> FitCheck | None:
+        """Return the row with a proof or a pose where the fit is broken; None where neither was found."""
+        least = self.least_allowed
+        assert least is not None
+        for needed, off in ((least + 2 * self.slack, self.slack), (least, 2 * self.slack)) if self.slack else ((least, 0.0),):
+            prover = _FitProver(self, moving, max(needed, 0.0))
+            shrink = NO_SHRINK if needed > 0 else Shrink(max(-needed, EPSILON_MM))
+            if shrink.depth and self.fit.within is not None:
+                return None  # a cut surface has no inside to move it to
+            outcome = prover.search(prover.bounds, shrink)
+            if outcome.is_complete:
+                if self.fit.within is None and needed >= self.slack:
+                    self.claims = (prover.claim(NOTHING, prover.vary(prover.bounds), shrink, outcome),)
+                return replace(row, strength=Strength.certified(off))
+            if outcome.out_of_budget:
+                return None
+            if outcome.contact is not None and self._is_within(prover, outcome.contact):
+                gap = self.gauge.between(prover.chain.matrix(outcome.contact))
+                pose = prover.pose(outcome.contact)
+                if gap < (math.inf if row.least is None else row.least):
+                    row = replace(row, least=gap, at=pose)
+                verdict = self._in_motion(gap)[0]
+                if verdict != "ok":
+                    return replace(row, verdict=verdict, strength=Strength.sampled(1))
+        return None
+
+    def _is_within(self, prover: _FitProver, values: Sequence[float]) -> bool:
+        """Return whether a pose of the search is one of the joint: a ball is proven over a little more than its limits."""
+        if self.joint.type is not JointType.BALL:
+            return True
+        sx, sy, twist = prover.pose(values).values()
+        cone, last = self.moving[0].upper, self.moving[2]
+        return math.hypot(sx, sy) <= cone and last.lower <= twist <= last.upper
+
+    def _finding(
+        self, verdict: FitVerdict, value: float, limit: float, where: Mapping[str, float] | None, *, is_play: bool = False
+    ) -> Finding:
+        a, b = self.joint.parent, self.joint.child
+        kind = "play" if is_play else "gap"
+        measured = f"the {kind} of {a} and {b} is {value:.4g} mm" if value >= 0 else f"{a} and {b} overlap {-value:.4g} mm deep"
+        code, message, hint = {
+            "tight": (
+                "E_FIT_TIGHT",
+                f"{measured}, less than {limit:g} mm" if value >= 0 else f"{measured}, but the least gap is {limit:g} mm",
+                f"Widen the gap by {limit - value:.4g} mm: enlarge the bore or thin the pin.",
+            ),
+            "loose": (
+                "E_FIT_LOOSE",
+                f"{measured} at rest, more than {limit:g} mm",
+                f"Narrow the gap by {value - limit:.4g} mm: narrow the bore or thicken the pin.",
+            ),
+            "contact": ("E_FIT_CONTACT", f"{measured}, but contact is forbidden", "Move the two surfaces apart."),
+            "apart": ("E_FIT_CONTACT", f"{measured}, but contact is required", f"Bring the two surfaces {value:.4g} mm closer."),
+        }[verdict]
+        place = "" if not where else " at " + ", ".join(f"{name} = {q:.4g}" for name, q in where.items())
+        return Finding(
+            code=code,
+            where=f"joints.{self.joint.name}.fit",
+            parts=(a, b),
+            message=f"Joint {self.joint.name!r}: {message}{place}.",
+            hint=hint,
+            value=value,
+            limit=limit,
+            unit="mm",
+            pose=where,
+        )
+
+
+class _FitProver(Prover):
+    """Proves that the two parts of a joint keep a gap while that joint moves."""
+
+    def __init__(self, held: _Held, moving: tuple[Freedom, ...], gap: float) -> None:
+        joint = held.joint
+        super().__init__(held.scene, Route((joint.parent, joint.child), (joint,)), (joint.name,), epsilon=EPSILON_MM, budget=held.budget)
+        self.margin = gap
+        if joint.type is not JointType.BALL:
+            self.bounds = np.array([(freedom.lower, freedom.upper) for freedom in moving]).reshape(-1, 2)
+        self.within = None if held.fit.within is None else held.gauge.surfaces
+
+    def _sides(self, shrink: Shrink) -> tuple[Surface, Surface]:
+        return super()._sides(shrink) if self.within is None else self.within
+
+
+def _is_proven(row: FitCheck) -> bool:
+    return row.verdict == "ok" and row.strength.kind == "certified"
+
+
+def _within(moving: tuple[Freedom, ...], spans: Span) -> tuple[Freedom, ...]:
+    """Return freedoms over the part of their ranges that lies within spans."""
+    return tuple(
+        f._replace(lower=max(f.lower, spans[f.name][0]), upper=min(f.upper, spans[f.name][1])) if f.name in spans else f for f in moving
+    )
+
+
+def _samples(ranges: Sequence[Freedom]) -> Iterator[list[float]]:
+    """Yield poses of a joint: each coordinate through its range, the others at rest, then all together."""
+    rest = [freedom.rest for freedom in ranges]
+    for column, freedom in enumerate(ranges):
+        for value in np.linspace(freedom.lower, freedom.upper, STEPS).tolist():
+            yield [*rest[:column], value, *rest[column + 1 :]]
+    if len(ranges) > 1:
+        swings = ranges[0].name.endswith(".sx")
+        for point in scattered(ranges, STEPS):
+            if not swings or math.hypot(point[0], point[1]) <= ranges[0].upper:
+                yield list(point)
+
+
+def _is_endless(freedom: Freedom, per_mm: float) -> bool:
+    """Return whether a range stands for a travel without limits."""
+    return freedom.upper - freedom.lower >= ENDLESS_SLIDE_MM * per_mm
+
+
+def _bounded(freedom: Freedom, per_mm: float) -> Freedom:
+    """Return a range that can be sampled: a piece about rest of what slides without limits."""
+    if not _is_endless(freedom, per_mm):
+        return freedom
+    far = ENDLESS_SAMPLED_MM * per_mm
+    return freedom._replace(lower=max(freedom.lower, freedom.rest - far), upper=min(freedom.upper, freedom.rest + far))
+
+
+def _named(moving: Sequence[Freedom], values: Sequence[float]) -> dict[str, float] | None:
+    """Return the coordinates that are not at rest, by name."""
+    return {freedom.name: value for freedom, value in zip(moving, values, strict=True) if value != freedom.rest} or None
+
+
+def _unproven(row: FitCheck) -> Finding:
+    where = "" if row.at is None else " at " + ", ".join(f"{name} = {value:.4g}" for name, value in row.at.items())
+    return Finding(
+        code="W_NOT_CERTIFIED",
+        where=f"joints.{row.joint}.fit",
+        parts=row.parts,
+        message=f"The fit of joint {row.joint!r} is not proven over its motion: at {row.strength.poses} poses the gap is {row.least:.4g} mm "
+        f"or more{where}.",
+        hint="Give a joint that slides without limits some, raise the budget, declare a smaller least gap, or widen the gap.",
+        value=row.least,
+        limit=row.declared.gap_min,
+        unit="mm",
+        stage="fit",
+    )
+
+
+def _unmeasured(joint: Joint, reason: str) -> Finding:
+    return Finding(
+        code="E_NOT_CHECKED",
+        where=f"joints.{joint.name}.fit",
+        parts=(joint.parent, joint.child),
+        message=f"The fit of joint {joint.name!r} is not measured: {reason}.",
+        hint="Give the part geometry, or leave the fit out.",
+        stage="fit",
+    )

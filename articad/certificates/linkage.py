@@ -1,0 +1,603 @@
+"""Proof along drivers of loops or couplings: the joints that follow stay near lines that the checker of certificates can verify.
+
+Joints that loops and couplings tie together form groups; each group has drivers, and what follows them is the same whatever the other
+groups do. Over a small box of the ranges of some drivers of one group, every coordinate is the only solution near a linear predictor
+(Brouwer, Banach). So it stays in a box with one long side for each driver, on which the bounds of `spread` hold. Where that does not
+suffice, the box is halved about a solution of its own, and its tube shrinks fourfold. Drivers of several groups, and coordinates that
+move by themselves, move together in products of such boxes. The inequalities are the checker's own: what it would refute is not used.
+Most pairs need no small boxes: all of them lie in one wider tube, which is tried first and then parted.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import itertools
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from articad.certificates.clearing import Boxes, CannotCut, Cleared
+from articad.certificates.proof import Proof, Prover, Shrink
+from articad.certificates.spread import Spread
+from articad.certificates.verifier import FLOAT, Checker, Refuted, corners_of, joined
+from articad.connectors.se3 import SE3
+from articad.interference.motion import Chain, Freedom, Route, scattered
+from articad.interference.overlap import Overlap, overlap
+from articad.interference.scene import Scene
+from articad.interference.verdict import UNRELATED_VOLUME_MM3
+from articad.interference.work import PIECE, Budget
+from articad.kinematics.mechanism import Mechanism
+from articad.kinematics.motion import track_of
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+Ends = tuple[tuple[float, float], ...]  # of each driver
+
+SMALLEST_STEP = 1e-6  # of the driver's range, below which it is not followed further
+FIRST_STEP = 1 / 32  # of the way to a bound
+SMALLEST_BOX = 1 / 256  # of the ranges of several drivers, below which they are not followed together
+MOST_BOXES = 3000  # of several drivers
+WIDER = 1.2  # than the distance within which there is a solution: that within which there is no other one
+ROOM = (2e-4, 2e-6)  # rad or mm: of a tube beside what it must hold; much of it lets pieces be long, where many joints follow little holds
+SMALLEST_PIECE = 1e-4  # rad or mm: to which the end of what is free along a driver is found
+LOOKS = 24  # poses looked at beyond contact
+MOST_TURNS = 64  # of a driver of couplings alone, after which what follows is taken never to come back
+_CLOSED = 1e-10  # of loops and couplings
+_STILL = 1e-14  # of a Newton step: rounding
+
+
+@dataclass(frozen=True, eq=False)
+class Piece:
+    """A box of the ranges of a group's drivers, or several that make up one.
+
+    Attributes:
+        ends: Of each driver [rad or mm].
+        numbers: Among all boxes of the way, of those it consists of.
+        line: Of each coordinate of the group: its value in the middle, its rate by each driver `(drivers,)`, and how far it is from that.
+    """
+
+    ends: Ends
+    numbers: tuple[int, ...]
+    line: Mapping[str, tuple[float, FloatArray, float]]
+
+    @property
+    def half(self) -> FloatArray:
+        """Half of the range of each driver."""
+        return np.array([(high - low) / 2 for low, high in self.ends])
+
+    @property
+    def middle(self) -> FloatArray:
+        """Value of each driver in the middle."""
+        return np.array([(high + low) / 2 for low, high in self.ends])
+
+
+class Way:
+    """What follows some drivers of one group over their ranges, in boxes that are halved when asked for; shared by all pairs.
+
+    Args:
+        checker: Of a certificate without claims: it knows joints, groups and drivers.
+        drivers: Coordinates of one group; its other drivers stand.
+        bounds: Of each driver, to be covered as far as it can be followed.
+
+    Raises:
+        Refuted: If a loop is open at rest.
+    """
+
+    def __init__(self, checker: Checker, drivers: tuple[str, ...], bounds: Ends) -> None:
+        self.drivers, self.bounds = drivers, bounds
+        self.names: list[str] = checker.followers(drivers)
+        self._checker, self.rest = checker, np.array([checker.rest[name] for name in drivers])
+        self._found = checker.begin(self.names, len(drivers))
+        self._others: list[int] = []
+        self._number: dict[Ends, int] = {}
+        self._cuts: dict[Ends, tuple[int, float, Ends, Ends]] = {}
+        self._pieces: dict[Ends, Piece] = {}
+        self._steps: dict[int, list[Piece]] = {}
+
+    @property
+    def count(self) -> int:
+        """How many pieces have been found so far."""
+        return len(self._number)
+
+    # --- one driver
+
+    def steps(self, sign: int) -> list[Piece]:
+        """Return the pieces of a single driver's range from rest towards one end, as far as it can be followed."""
+        if sign not in self._steps:
+            at, end = float(self.rest[0]), self.bounds[0][1 if sign > 0 else 0]
+            step, last, found = (end - at) * FIRST_STEP, 0, list[Piece]()
+            least = abs(end - at) * SMALLEST_STEP
+            while at != end and abs(step) > least:
+                there = end if abs(end - at) <= abs(step) * 1.5 else at + step
+                piece = self._piece(((min(at, there), max(at, there)),), last)
+                if piece is None:
+                    step /= 2
+                    continue
+                found.append(piece)
+                at, last, step = there, piece.numbers[0], step * 1.5
+            self._steps[sign] = found
+        return self._steps[sign]
+
+    def reached(self, sign: int) -> float:
+        """Return how far the pieces of a single driver go towards one end."""
+        steps = self.steps(sign)
+        return steps[-1].ends[0][1 if sign > 0 else 0] if steps else float(self.rest[0])
+
+    def _tree(self, ends: list[Ends]) -> Ends:
+        """Note how pieces in a row are to be parted, half of them to each side; return the ends of all."""
+        if len(ends) == 1:
+            return ends[0]
+        at = (len(ends) + 1) // 2
+        low, high = self._tree(ends[:at]), self._tree(ends[at:])
+        whole = ((low[0][0], high[0][1]),)
+        self._cuts[whole] = 0, low[0][1], low, high
+        return whole
+
+    # --- all that can be followed
+
+    @cached_property
+    def whole(self) -> Piece | None:
+        """All that can be followed, as one; None if that is nothing, or with several drivers not all."""
+        if len(self.drivers) == 1:
+            steps = [*self.steps(-1)[::-1], *self.steps(1)]
+            return self.piece(self._tree([step.ends for step in steps])) if steps else None
+        grown = self._grown(self.bounds)
+        return None if grown is None else self.piece(grown)
+
+    def spans(self) -> dict[str, tuple[float, float]]:
+        """Return between which values each coordinate stays over all that could be followed [rad or mm]."""
+        found: dict[str, tuple[float, float]] = {}
+        for number in () if self.whole is None else self.whole.numbers:
+            ends, *line = self._found[number][:4]
+            middle, slopes, near = joined(np.array([ends]), [tuple(line)])
+            far = np.abs(slopes).T @ (np.ptp(np.array(ends), axis=1) / 2) + near
+            for name, low, high in zip(self.names, (middle - far).tolist(), (middle + far).tolist(), strict=True):
+                known = found.get(name, (low, high))
+                found[name] = min(low, known[0]), max(high, known[1])
+        return found
+
+    def _grown(self, ends: Ends) -> Ends | None:
+        """Follow several drivers over a box, in parts where it is too large: what is nearer to rest first."""
+        for at, (low, high) in enumerate(ends):
+            if low < self.rest[at] < high:
+                return self._parted(ends, at, float(self.rest[at]))
+        beside = self._beside(ends)
+        if beside is None or len(self._number) > MOST_BOXES:
+            return None
+        if self._piece(ends, beside) is not None:
+            return ends
+        share = np.array([(high - low) / (most - least) for (low, high), (least, most) in zip(ends, self.bounds, strict=True)])
+        if share.max() < SMALLEST_BOX:
+            return None
+        _, _, slopes, _, _ = self._found[beside]
+        reach = np.abs(slopes[:, len(ends) :]).max(axis=1, initial=0.0) * [high - low for low, high in ends]
+        at = int(np.argmax(reach)) if reach.any() else int(np.argmax(share))
+        return self._parted(ends, at, sum(ends[at]) / 2)
+
+    def _parted(self, ends: Ends, at: int, place: float) -> Ends | None:
+        low, high = ((*ends[:at], half, *ends[at + 1 :]) for half in ((ends[at][0], place), (place, ends[at][1])))
+        order = (low, high) if place >= self.rest[at] else (high, low)
+        if any(self._grown(part) is None for part in order):
+            return None
+        self._cuts[ends] = at, place, low, high
+        return ends
+
+    def _beside(self, ends: Ends) -> int | None:
+        """Return the number of the piece found so far that touches a box and is nearest to its middle, or of the rest pose."""
+        (low, high), spans = np.array(ends).T, np.array([row[0] for row in self._found])
+        touches = ((spans[..., 0] <= high) & (spans[..., 1] >= low)).all(axis=1)
+        if not touches.any():
+            return None
+        middle = (low + high) / 2
+        off = np.linalg.norm(np.clip(middle, spans[..., 0], spans[..., 1]) - middle, axis=1)
+        return int(np.argmin(np.where(touches, off, np.inf)))
+
+    # --- pieces
+
+    def piece(self, ends: Ends) -> Piece:
+        """Return what is known over a box of the drivers that has been followed."""
+        if ends not in self._pieces:
+            numbers = tuple(self._leaves(ends))
+            rows = [self._found[number] for number in numbers]
+            middle, slopes, near = joined(np.array([row[0] for row in rows]), [row[1:4] for row in rows])
+            named = zip(self.names, zip(middle.tolist(), slopes.T, near.tolist(), strict=True), strict=True)
+            self._pieces[ends] = Piece(ends, numbers, dict(named))
+        return self._pieces[ends]
+
+    def _leaves(self, ends: Ends) -> Iterator[int]:
+        todo = [ends]
+        while todo:
+            one = todo.pop()
+            if one in self._number:
+                yield self._number[one]
+            else:
+                todo += self._cuts[one][2:]
+
+    def halves(self, piece: Piece, shares: FloatArray) -> tuple[int, float, Piece, Piece] | None:
+        """Return across which driver a piece is cut, where, and its halves, each about a solution of its own; None if there are none.
+
+        Args:
+            piece: Of this way.
+            shares: Of the motion that each driver causes `(drivers,)`: a piece that was not cut before is cut across the largest.
+        """
+        if piece.ends not in self._cuts:
+            at, (number,) = int(np.argmax(shares)), piece.numbers
+            (low, high) = piece.ends[at]
+            place = (low + high) / 2
+            parts = [(*piece.ends[:at], half, *piece.ends[at + 1 :]) for half in ((low, place), (place, high))]
+            if not low < place < high or any(self._piece(part, number) is None for part in parts):
+                return None
+            self._cuts[piece.ends] = at, place, parts[0], parts[1]
+        at, place, first, second = self._cuts[piece.ends]
+        return at, place, self.piece(first), self.piece(second)
+
+    def _piece(self, ends: Ends, beside: int) -> Piece | None:
+        """Return a piece on the branch of another one if the checker would believe it."""
+        if ends in self._number:
+            return self.piece(ends)
+        span = np.array(ends)
+        guess = self.solved(span.mean(axis=1), beside)
+        if guess is None:
+            return None
+        for room in ROOM:
+            with contextlib.suppress(Refuted):
+                self._checker.join(self._found, self.names, span, guess, self._tube(span, guess, room), beside)
+                self._others.append(beside)
+                self._number[ends] = len(self._found) - 1
+                return self.piece(ends)
+        return None
+
+    def _tube(self, ends: FloatArray, guess: FloatArray, room: float) -> FloatArray:
+        """Return distances within which there should be no other solution."""
+        count, half = len(ends), (ends[:, 1] - ends[:, 0]) / 2
+        _, J, share = self._checker.closure(self.names, guess, guess)
+        A, wide, rates = np.linalg.pinv(J[:, count:], rcond=1e-7), np.zeros(len(self.names)), np.eye(count, len(self.names))
+        rates[:, count:] = -(A @ J[:, :count]).T
+        far, off, bend = half @ np.abs(rates), np.zeros(len(A)), np.zeros((len(A), len(A)))
+        for signs in corners_of(count):
+            there, slope, _ = self._checker.closure(self.names, guess + (signs * half) @ rates, guess)
+            off, bend = np.maximum(off, np.abs(A @ there)), np.maximum(bend, np.abs(A @ (slope - J)[:, count:]))
+        third = np.minimum(share @ far, 1.0) ** 3 / 15
+        off, bend = off * 1.25**count + np.abs(A) @ third, bend * 1.25**count + np.abs(A) @ (third[:, None] * share[:, count:])
+        for _ in range(6):
+            wide[count:] = WIDER * (off + room + bend @ wide[count:] + np.abs(A) @ np.minimum(share @ wide, 1.0) ** 2)
+        return wide
+
+    def solved(self, values: FloatArray, beside: int) -> FloatArray | None:
+        """Return all coordinates of the group at values of the drivers, by Newton's method from what a piece predicts."""
+        ends, value, rates, *_ = self._found[beside]
+        x = value + (values - ends.mean(axis=1)) @ rates
+        x[: len(values)] = values
+        with contextlib.suppress(Refuted):
+            for _ in range(10):
+                r, J, _ = self._checker.closure(self.names, x, x)
+                step = np.linalg.pinv(J[:, len(values) :], rcond=1e-7) @ r
+                x[len(values) :] -= step
+                if np.abs(step).max(initial=0.0) < _STILL * (1 + np.abs(x).max()):
+                    break
+            return x if np.abs(self._checker.closure(self.names, x, x)[0]).max(initial=0.0) < _CLOSED else None
+        return None
+
+    def at(self, values: FloatArray) -> dict[str, float] | None:
+        """Return the coordinates of the group at values of the drivers; None where these have not been followed."""
+        spans = np.array([row[0] for row in self._found])
+        holding = np.flatnonzero(np.all((spans[..., 0] <= values) & (spans[..., 1] >= values), axis=1))
+        x = self.solved(values, int(holding[-1])) if len(holding) else None
+        return None if x is None else dict(zip(self.names, x.tolist(), strict=True))
+
+    def arrays(self) -> dict[str, FloatArray | IntArray]:
+        """Return all pieces as a checker reads them."""
+        rows, key, count = self._found[1:], "+".join(self.drivers), len(self.drivers)
+        cuts = list(self._cuts.items())
+        return {
+            f"{key}.ends": np.array([row[0] for row in rows]).reshape(-1, count, 2),
+            f"{key}.values": np.array([row[1] for row in rows]).reshape(-1, len(self.names)),
+            f"{key}.wide": np.array([row[4] for row in rows]).reshape(-1, len(self.names)),
+            f"{key}.other": np.array(self._others, dtype=np.int64),
+            f"{key}.boxes": np.array([ends for ends, _ in cuts]).reshape(-1, count, 2),
+            f"{key}.cuts": np.array([cut[0] for _, cut in cuts], dtype=np.int64),
+            f"{key}.at": np.array([cut[1] for _, cut in cuts], dtype=np.float64),
+        }
+
+
+def driven_range(mechanism: Mechanism, checker: Checker, index: int) -> tuple[tuple[float, float], tuple[str, str]]:
+    """Return the range over which a driver is to be followed, and what ends it below and above.
+
+    Without limits that is the travel after which all that follows has come back: about rest, or from the one limit there is.
+
+    Args:
+        mechanism: With loops or couplings.
+        checker: Of its certificate.
+        index: Of the driver among the mechanism's.
+
+    Raises:
+        ValueError: If it does not come back.
+    """
+    driver = mechanism.drivers[index]
+    feasible, rest = mechanism.feasible_range(driver.name), float(checker.rest[driver.name])
+    reasons = feasible.lower_reason, feasible.upper_reason
+    ends, declared = (feasible.lower, feasible.upper), (driver.lower, driver.upper)
+    open_ends = [
+        math.isinf(limit) and (math.isinf(end) or reason in ("endless", "not followed further"))
+        for limit, end, reason in zip(declared, ends, reasons, strict=True)
+    ]
+    if not any(open_ends):
+        return ends, reasons
+    length = _period(mechanism, checker, index, 1 if open_ends[1] else -1)
+    if all(open_ends):
+        return (rest - length / 2, rest + length / 2), reasons
+    turns = max(1, math.ceil((ends[1] - rest if open_ends[0] else rest - ends[0]) / length))
+    return ((ends[1] - turns * length, ends[1]) if open_ends[0] else (ends[0], ends[0] + turns * length)), reasons
+
+
+def _period(mechanism: Mechanism, checker: Checker, index: int, sign: int) -> float:
+    """Return the travel of a driver after which all that follows it has come back but for whole turns [rad]."""
+    driver = mechanism.drivers[index]
+    names = checker.followers((driver.name,))
+    rest = np.array([checker.rest[name] for name in names])
+    _, J, share = checker.closure(names, rest, rest)
+    turns = np.array([checker.turns[name][2] and not checker.turns[name][3] for name in names])
+    if not turns[0]:
+        raise ValueError(f"{driver.name} slides without limits")
+    if not share.any():  # couplings alone: each follower turns at its own fixed rate
+        rates = np.append(1.0, -np.linalg.pinv(J[:, 1:], rcond=1e-7) @ J[:, 0])
+        for count in range(1, MOST_TURNS + 1):
+            whole = np.where(turns, np.round(count * rates), 0.0)
+            if (np.abs(count * rates - whole) <= FLOAT / 2 * np.maximum(1.0, np.abs(whole))).all():
+                return 2 * math.pi * count
+        raise ValueError(f"what follows {driver.name} does not come back within {MOST_TURNS} of its turns")
+    track = track_of(mechanism, index, mechanism.rest)
+    period = None if track is None else track.period(sign)
+    if period is None:
+        raise ValueError(f"what follows {driver.name} is not known to come back after some of its turns")
+    return period.length
+
+
+class Steps:
+    """Boxes along ways, and of further coordinates that move by themselves.
+
+    Args:
+        ways: Of drivers of different groups.
+        chain: Between two parts.
+        others: Bounds of the chain's coordinates that do not follow; NaN for those that do.
+        pieces: To be covered, one of each way; by default all of it.
+    """
+
+    price = PIECE
+
+    def __init__(self, ways: Sequence[Way], chain: Chain, others: FloatArray, pieces: Sequence[Piece] | None = None) -> None:
+        self.ways, self.chain, self.spread = tuple(ways), chain, Spread(chain)
+        self.free = np.flatnonzero(~np.isnan(others[:, 0]))
+        self.others = others
+        self.pieces = tuple(whole for way in ways if (whole := way.whole) is not None) if pieces is None else tuple(pieces)
+        self.first = np.cumsum([0, *(len(way.drivers) for way in ways)]).tolist()
+        names = [chain.freedoms[factor.column].name for _, factor in self.spread.factors]
+        self._follow = [np.array([name in way.names for name in names], dtype=bool) for way in ways]
+        self._columns = np.array([factor.column for _, factor in self.spread.factors], dtype=np.intp)
+        self._names = names
+        self.rows: list[tuple[tuple[Piece, ...], FloatArray]] = []
+        self.outside, self.columns, self.places, self.halves = list[bool](), list[int](), list[float](), list[tuple[int, int]]()
+
+    def root(self) -> IntArray:
+        """Add all of it, with the whole range of the other coordinates."""
+        return self._add([(self.pieces, self.others)])
+
+    def _add(self, rows: list[tuple[tuple[Piece, ...], FloatArray]]) -> IntArray:
+        centres, lines, tubes = (np.array(part) for part in zip(*(self._placed(*row) for row in rows), strict=True))
+        generators = np.concatenate([lines, tubes[:, :, None] * np.eye(tubes.shape[1])], axis=1)
+        self.rows += rows
+        self.outside += [False] * len(rows)
+        self.columns += [-1] * len(rows)
+        self.places += [math.nan] * len(rows)
+        self.halves += [(-1, -1)] * len(rows)
+        return self.spread.add(centres, np.abs(lines).sum(axis=1) + tubes, generators)
+
+    def _placed(self, pieces: tuple[Piece, ...], ends: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Return the chain's coordinates; how far each factor goes with each driver `(drivers, F)`, and aside of that `(F,)`."""
+        values = np.where(np.isnan(ends[:, 0]), self.chain.rest, ends.mean(axis=1))  # what no driver here moves stands
+        lines, aside = np.zeros((self.first[-1], len(self._names))), np.zeros(len(self._names))
+        for f, name in enumerate(self._names):
+            column = self._columns[f]
+            for way, piece in enumerate(pieces):
+                if name in piece.line:
+                    values[column], rates, aside[f] = piece.line[name]
+                    lines[self.first[way] : self.first[way + 1], f] = rates * piece.half
+            if column in self.free:
+                aside[f] = (ends[column, 1] - ends[column, 0]) / 2
+        return values, lines, aside
+
+    def cut(self, boxes: IntArray, share: FloatArray) -> IntArray:
+        """Halve a piece of a way, or the range of a coordinate that moves by itself, whichever has the largest share."""
+        pairs = [self._cut(int(box), share[row]) for row, box in enumerate(boxes.tolist())]
+        numbers = self._add([half for pair in pairs for half in pair]).reshape(-1, 2)
+        for box, halves in zip(boxes.tolist(), numbers.tolist(), strict=True):
+            self.halves[box] = halves[0], halves[1]
+        return numbers
+
+    def _cut(self, box: int, share: FloatArray) -> list[tuple[tuple[Piece, ...], FloatArray]]:
+        pieces, ends = self.rows[box]
+        count = self.first[-1]
+        by_driver, aside = share[:count], share[count:]
+        wide = [column for column in self.free.tolist() if ends[column, 1] > ends[column, 0]]
+        choices = [(float(aside[self._columns == column].sum()), -1, column) for column in wide]  # share, of a way or -1, column
+        for way, follows in enumerate(self._follow):
+            own = float(by_driver[self.first[way] : self.first[way + 1]].sum() + aside[follows].sum())
+            choices.append((own, way, -1))
+        for _, way, column in sorted(choices, reverse=True):
+            if way < 0:
+                self.columns[box] = count + int(np.searchsorted(self.free, column))
+                low, high = ends.copy(), ends.copy()
+                low[column, 1] = high[column, 0] = self.places[box] = (ends[column, 0] + ends[column, 1]) / 2
+                return [(pieces, low), (pieces, high)]
+            found = self.ways[way].halves(pieces[way], by_driver[self.first[way] : self.first[way + 1]])
+            if found is not None:
+                at, self.places[box], *parts = found
+                self.columns[box] = self.first[way] + at
+                return [((*pieces[:way], part, *pieces[way + 1 :]), ends) for part in parts]
+        raise CannotCut
+
+    def is_reached(self, box: int) -> bool:
+        """Return whether the middle of a box is a pose of the mechanism: in a box of several pieces loops need not close."""
+        return all(len(piece.numbers) == 1 for piece in self.rows[box][0])
+
+    def contact(self, box: int) -> tuple[float, ...] | None:
+        """Return the chain's coordinates at the middle of a box; none if the mechanism does not reach it."""
+        return tuple(self._placed(*self.rows[box])[0].tolist()) if self.is_reached(box) else None
+
+    def driven(self, box: int) -> dict[str, float]:
+        """Return the drivers' values at the middle of a box."""
+        pairs = zip(self.ways, self.rows[box][0], strict=True)
+        return {name: float(value) for way, piece in pairs for name, value in zip(way.drivers, piece.middle, strict=True)}
+
+
+class LinkageProver(Prover):
+    """Proves one pair of parts while drivers move the loops and couplings between them.
+
+    Args:
+        scene: Bodies and relations.
+        route: Joints from the one part to the other.
+        joints: Names of those that move: all that follow, and those that move by themselves.
+        ways: Of the drivers, one for each group that moves.
+        epsilon: What is closer by no more is contact [mm].
+        budget: Shared by all proofs.
+    """
+
+    def __init__(
+        self, scene: Scene, route: Route, joints: Sequence[str], ways: Sequence[Way], *, epsilon: float = 1e-3, budget: Budget | None = None
+    ) -> None:
+        super().__init__(scene, route, joints, epsilon=epsilon, budget=budget)
+        self.ways = tuple(ways)
+        self.drivers = tuple(name for way in ways for name in way.drivers)
+        mine = np.array([any(freedom.name in way.names for way in ways) for freedom in self.chain.freedoms], dtype=bool)
+        self.others = np.where(mine[:, None], np.nan, self.bounds)
+        if self.axis is not None and self.axis.dimensions == 3:
+            self.axis = None  # a ball that follows is not held within its cone: nothing proves that it keeps to it
+        self._last: Steps | None = None
+
+    @property
+    def is_line(self) -> bool:
+        """False: what is found of a range is found along the driver."""
+        return False
+
+    @property
+    def is_single(self) -> bool:
+        """True when one driver moves, and nothing by itself."""
+        return len(self.drivers) == 1 and bool(np.isnan(self.others[:, 0]).all())
+
+    def ends(self, column: int) -> tuple[float, float]:
+        """Return between which values a coordinate of the chain stays: those that follow stay near the line over the whole way."""
+        name = self.chain.freedoms[column].name
+        for way in self.ways:
+            if way.whole is not None and name in way.whole.line:
+                value, rates, near = way.whole.line[name]
+                far = float(np.abs(rates) @ way.whole.half) + near
+                return value - far, value + far
+        return super().ends(column)
+
+    def boxes(self, bounds: FloatArray) -> Boxes:  # noqa: ARG002  ways know their ranges
+        """Return the steps along the drivers."""
+        self._last = Steps(self.ways, self.chain, self.others)
+        return self._last
+
+    def vary(self, bounds: FloatArray) -> dict[str, tuple[float, float]]:  # noqa: ARG002
+        """Return the drivers' ranges that were cleared, and those of the coordinates that move by themselves."""
+        driven = {name: ends for way in self.ways if way.whole for name, ends in zip(way.drivers, way.whole.ends, strict=True)}
+        return {**driven, **{freedom.name: (freedom.lower, freedom.upper) for freedom in self._own()}}
+
+    def _own(self) -> list[Freedom]:
+        return [freedom for freedom, (low, _) in zip(self.chain.freedoms, self.others, strict=True) if not math.isnan(low)]
+
+    def _rest(self) -> dict[str, float]:
+        return {name: float(value) for way in self.ways for name, value in zip(way.drivers, way.rest, strict=True)}
+
+    def _proof(self, begun: Proof, shrink: Shrink, most: int) -> Proof:
+        outcome: Cleared = self.search(self.bounds, shrink, most)
+        found = replace(begun, out_of_budget=outcome.out_of_budget, shrink=shrink, epsilon=shrink.depth or self.epsilon)
+        if outcome.is_complete:
+            vary = self.vary(self.bounds)
+            lower, upper = vary[self.drivers[0]] if self.is_single else (None, None)
+            claim = replace(self.claim(begun.overlap, vary, shrink, outcome), start=self._rest())
+            return replace(found, claims=(claim,), lower=lower, upper=upper)
+        if outcome.contact is None or self._last is None:
+            return found
+        return replace(found, contacts=({**self.named(outcome.contact), **self._last.driven(outcome.box)},))
+
+    def seen(self, begun: Proof) -> dict[str, Any]:
+        """Return where the two overlap beyond what is allowed at one of a few values of what moves, if they do."""
+        whole = [
+            Freedom(name, *ends, 0.0) for way in self.ways if way.whole for name, ends in zip(way.drivers, way.whole.ends, strict=True)
+        ]
+        moving = [*whole, *self._own()]
+        corners = itertools.islice(itertools.product(*((f.lower, f.upper) for f in moving)), LOOKS)
+        places = [{f.name: value for f, value in zip(moving, place, strict=True)} for place in [*corners, *scattered(moving, 2 * LOOKS)]]
+        if len(moving) == 1:
+            places = [{moving[0].name: value} for value in np.linspace(moving[0].lower, moving[0].upper, 2 * LOOKS).tolist()]
+        found = [(self.depth(values), place) for place in places if (values := self.placed(place)) is not None]
+        depth, place = max(found, key=lambda one: one[0], default=(0.0, {}))
+        if depth <= max(self.allowed, begun.overlap.depth):
+            return {}
+        known = dict(zip([freedom.name for freedom in self.chain.freedoms], self.placed(place) or (), strict=True))
+        return {"contacts": ({**known, **place},)}
+
+    def collides(self, proof: Proof) -> bool:
+        """Return whether the two overlap beyond what is allowed near where a proof stopped, or further on."""
+        worst, _ = self.worst(proof)
+        return worst.depth > self.allowed and worst.volume > UNRELATED_VOLUME_MM3
+
+    def free_range(self, shrink: Shrink) -> tuple[float, float]:
+        """Return how far from rest a single driver may go either way."""
+        (way,) = self.ways
+        rest = float(next(iter(self._rest().values())))
+        ends = [rest, rest]
+        for end, sign in enumerate((-1, 1)):
+            todo = list(way.steps(sign)[::-1])
+            while todo:
+                step = todo.pop()
+                if self.search_over(Steps(self.ways, self.chain, self.others, [step]), shrink).is_complete:
+                    ends[end] = step.ends[0][end]
+                    continue
+                halves = way.halves(step, np.ones(1)) if step.half[0] > SMALLEST_PIECE / 2 else None
+                if halves is None:
+                    break
+                todo += halves[2:][::-sign]
+        return ends[0], ends[1]
+
+    def worst(self, proof: Proof) -> tuple[Overlap, dict[str, float] | None]:
+        """Return the deepest overlap from where a proof stopped to the ends of what moves, and the values of drivers and others there."""
+        worst, where = proof.overlap, None
+        for contact in proof.contacts:
+            for place in self._beyond(contact):
+                values = self.placed(place)
+                if values is None:
+                    continue
+                self.budget.spend(self.look_price)
+                found = overlap(self.body_a, self.body_b, SE3.from_matrix(self.chain.matrix(values)))
+                if found.depth > worst.depth:
+                    worst, where = found, place
+        return worst, where
+
+    def _beyond(self, contact: Mapping[str, float]) -> Iterator[dict[str, float]]:
+        """Yield values from a contact on, closely at first: each driver to its end away from rest, and all to theirs together."""
+        own = {freedom.name: contact[freedom.name] for freedom in self._own()}
+        rest, start = self._rest(), {name: contact.get(name, value) for name, value in self._rest().items()}
+        bounds = {name: ends for way in self.ways if way.whole for name, ends in zip(way.drivers, way.whole.ends, strict=True)}
+        end = {name: bounds[name][1 if start[name] >= rest[name] else 0] for name in start}
+        ways: list[set[str]] = [{name} for name in start]
+        for moving in [*ways, set(start)] if len(ways) > 1 else ways:
+            for share in (np.linspace(0.0, 1.0, LOOKS) ** 3).tolist():
+                yield {**own, **{name: start[name] + (end[name] - start[name]) * share * (name in moving) for name in start}}
+
+    def placed(self, place: Mapping[str, float]) -> list[float] | None:
+        """Return the chain's coordinates at values of the drivers and of what moves by itself; None where drivers were not followed."""
+        known = dict(place)
+        for way in self.ways:
+            found = way.at(np.array([place[name] for name in way.drivers]))
+            if found is None:
+                return None
+            known |= found
+        return [known.get(freedom.name, freedom.rest) for freedom in self.chain.freedoms]

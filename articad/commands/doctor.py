@@ -1,0 +1,293 @@
+"""What this machine has of what articad needs, and the line that installs the rest.
+
+The probe for shared libraries runs before anything that is linked against them: without libGL the B-rep kernel, and
+without libgomp Pinocchio, end in an ImportError that tells a user nothing, and some renderers in a segmentation fault.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import importlib.util
+import io
+import json
+import os
+import platform
+import shutil
+import sys
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass
+from importlib import metadata
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+
+from articad.errors import KernelUnavailableError, TransportError
+from articad.findings import Finding
+from articad.kernels.libraries import PACKAGES
+from articad.processes import launcher
+
+if TYPE_CHECKING:
+    from articad.agents.llm import LLM
+
+Status = Literal["ok", "missing", "optional"]
+Loader = Callable[[str], object]
+
+
+class Library(NamedTuple):
+    """A shared library of the system: the name the loader knows, the Debian package, and who needs it."""
+
+    soname: str
+    package: str
+    needed_by: str
+
+
+_NEEDED_BY = {"libgomp.so.1": "Pinocchio"}  # the others by the B-rep kernel
+LIBRARIES = tuple(Library(soname, package, _NEEDED_BY.get(soname, "the B-rep kernel")) for soname, package in PACKAGES.items())
+
+# Distribution -> what it does for articad. Reported with versions; all of them come with `pip install articad`.
+_PACKAGES = {
+    "numpy": "everything",
+    "scipy": "pieces of meshes",
+    "pin": "kinematics",
+    "yourdfpy": "URDF read back",
+    "trimesh": "foreign meshes",
+    "python-fcl": "interference: candidates, distances",
+    "manifold3d": "interference: volumes, depths",
+    "pydantic": "plans, typed replies",
+    "litellm": "models",
+    "build123d": "part scripts",
+    "mujoco": "simulation",
+    "lxml": "URDF, MJCF",
+}
+_COMPROMISED = {("litellm", "1.82.7"), ("litellm", "1.82.8")}  # releases that stole credentials (MAL-2026-2144)
+_KEYS = ("OPENAI_API_KEY", "ANTHROPIC_API_KEY", "GEMINI_API_KEY", "OPENROUTER_API_KEY", "MISTRAL_API_KEY", "AZURE_API_KEY")
+_KERNEL_SECONDS = 120  # a cold disk needs 5 s for the kernel's 400 MB; beyond this something hangs
+_GIB = 2**30
+
+
+@dataclass(frozen=True)
+class Item:
+    """One line of the report: what was looked for, whether it is there, and what to do if not."""
+
+    name: str
+    status: Status
+    detail: str
+    remedy: str = ""
+
+    def to_json(self) -> dict[str, str]:
+        """Return the JSON object of the report."""
+        return {"name": self.name, "status": self.status, "detail": self.detail, "remedy": self.remedy}
+
+
+def _load_lazily(soname: str) -> object:
+    return ctypes.CDLL(soname, mode=os.RTLD_LAZY)
+
+
+def missing_libraries(load: Loader = _load_lazily) -> tuple[Library, ...]:
+    """Return the shared libraries that the dynamic loader does not find; none on systems other than Linux.
+
+    Args:
+        load: Opens a library by its name or raises OSError.
+    """
+    if sys.platform != "linux":
+        return ()
+    missing = []
+    for library in LIBRARIES:
+        try:
+            load(library.soname)
+        except OSError:
+            missing.append(library)
+    return tuple(missing)
+
+
+def install_line(missing: Iterable[Library]) -> str:
+    """Return the command that installs these libraries on Debian and Ubuntu."""
+    packages = sorted({library.package for library in missing})
+    return f"apt-get update && apt-get install --no-install-recommends {' '.join(packages)}"
+
+
+def unavailable(missing: Iterable[Library]) -> KernelUnavailableError:
+    """Return the error that names each missing library, who needs it, and the line that installs them."""
+    missing = tuple(missing)
+    names = ", ".join(f"{library.soname} (for {library.needed_by})" for library in missing)
+    line = install_line(missing)
+    finding = Finding(code="E_KERNEL_UNAVAILABLE", where="system", message=f"Missing: {names}.", hint=f"As root: {line}")
+    return KernelUnavailableError(
+        f"This machine lacks shared libraries that articad needs: {', '.join(library.soname for library in missing)}.",
+        findings=[finding],
+        looked_in=["the dynamic loader's paths"],
+        how_to_get=line,
+    )
+
+
+def require_libraries(load: Loader = _load_lazily) -> None:
+    """Refuse to go on without the shared libraries that later imports are linked against.
+
+    Raises:
+        KernelUnavailableError: If there is one that the dynamic loader does not find.
+    """
+    if missing := missing_libraries(load):
+        raise unavailable(missing)
+
+
+def examine(load: Loader = _load_lazily) -> tuple[Item, ...]:
+    """Look at everything articad needs or can use on this machine. Takes some seconds: it starts the B-rep kernel."""
+    libraries = missing_libraries(load)
+    return (
+        Item("articad", "ok", metadata.version("articad")),
+        Item("python", "ok", f"{platform.python_version()} at {sys.executable}"),
+        Item("machine", "ok", f"{platform.system()} {platform.machine()}, {os.cpu_count()} processors, {_disk_free()} free here"),
+        *_libraries(libraries),
+        *_packages(),
+        _kernel() if not libraries else Item("build123d starts", "missing", "not tried: shared libraries are missing"),
+        _freecad(),
+        _sandbox(),
+        _renderer(),
+        _cache(),
+        _keys(),
+    )
+
+
+def examine_model(name: str, *, api_base: str | None = None) -> tuple[Item, ...]:
+    """Say of a model whether its key is there and works, whether it keeps to forms and sees pictures, and what that costs."""
+    from articad.agents.live import LiteLLM
+
+    try:
+        return ask_once(LiteLLM(name, api_base=api_base, tries=2))
+    except TransportError as error:
+        (finding,) = error.findings
+        return (Item(f"model {name}", "missing", finding.message, finding.hint),)
+
+
+def ask_once(llm: LLM) -> tuple[Item, ...]:
+    """Ask a model one tiny question, with a picture and a form for the answer.
+
+    Raises:
+        TransportError: If it cannot be asked.
+    """
+    from articad.agents.llm import Image, Request, system, user
+
+    schema = {"type": "object", "properties": {"color": {"type": "string"}}, "required": ["color"], "additionalProperties": False}
+    messages = (system("Answer with one JSON object."), user("Which colour is this square? One English word.", Image(_red_square())))
+    reply = llm.complete(Request(role="doctor", step="doctor", messages=messages, response_schema=schema))
+    answers = Item(
+        f"model {reply.model}", "ok", f"answers; {reply.usage.total} tokens{f', {reply.fingerprint}' if reply.fingerprint else ''}"
+    )
+    known = (
+        "price unknown: limit calls or tokens, --max-cost cannot be held" if reply.cost is None else f"${reply.cost:.6f} for this question"
+    )
+    price = Item("model's price", "optional" if reply.cost is None else "ok", known)
+    try:
+        color = str(json.loads(reply.text)["color"])
+    except (ValueError, KeyError, TypeError):
+        return (answers, Item("model's forms", "missing", f"not in the form asked for: {reply.text[:80]!r}", "Try another model."), price)
+    by_provider = getattr(llm, "takes_schemas", None)
+    held = "" if by_provider is None else ", held to the schema by its provider" if by_provider() else ", asked for in words"
+    forms = Item("model's forms", "ok", f"keeps to the form{held}")
+    if "red" in color.lower():
+        return (answers, forms, Item("model's sight", "ok", "sees"), price)
+    blind = f"does not see well: it took a red square for {color!r}"
+    return (answers, forms, Item("model's sight", "optional", blind, "Use --vision-model, or --no-look --no-inspection."), price)
+
+
+def report(items: Iterable[Item]) -> dict[str, Any]:
+    """Return the report `articad.doctor/1`."""
+    rows = tuple(items)
+    return {
+        "schema": "articad.doctor/1",
+        "ok": all(item.status != "missing" for item in rows),
+        "items": [item.to_json() for item in rows],
+        "findings": [],
+    }
+
+
+def _libraries(missing: tuple[Library, ...]) -> Iterator[Item]:
+    if sys.platform != "linux":
+        return
+    for library in LIBRARIES:
+        if library in missing:
+            yield Item(library.soname, "missing", f"needed by {library.needed_by}", install_line([library]))
+        else:
+            yield Item(library.soname, "ok", f"for {library.needed_by}")
+
+
+def _packages() -> Iterator[Item]:
+    for name, purpose in _PACKAGES.items():
+        try:
+            version = metadata.version(name)
+        except metadata.PackageNotFoundError:
+            yield Item(name, "missing", f"for {purpose}", f"pip install {name}")
+            continue
+        if (name, version) in _COMPROMISED:
+            yield Item(name, "missing", f"{version} is a compromised release", f"pip install --upgrade {name}, and change your keys")
+        else:
+            yield Item(name, "ok", f"{version}, for {purpose}")
+
+
+def _kernel() -> Item:
+    """Start the B-rep kernel in a process of its own, where a crash is only a line of the report."""
+    name = "build123d starts"
+    ended = launcher.run([], module="articad.kernels.trial_start", limits=launcher.Limits(seconds=_KERNEL_SECONDS))
+    if ended.late:
+        return Item(name, "missing", f"no answer in {_KERNEL_SECONDS} s", "Look at the machine's load and disk.")
+    if ended.code == 0:
+        return Item(name, "ok", "a box has its volume; Pinocchio imports beside it")
+    return Item(name, "missing", ended.last_line, "Run ./scripts/setup, or pip install --force-reinstall build123d pin")
+
+
+def _freecad() -> Item:
+    from articad.kernels import freecad_install
+
+    try:
+        freecad = freecad_install.find()
+    except KernelUnavailableError as error:
+        return Item("FreeCAD", "optional", f"{error.findings[0].message} Only needed for FreeCAD's own feature trees.", error.how_to_get)
+    return Item("FreeCAD", "ok", f"{freecad.version_text} at {freecad.where}")
+
+
+def _sandbox() -> Item:
+    from articad.kernels import sandbox
+
+    level, problems = sandbox.level(), "; ".join(sandbox.missing())
+    if level == sandbox.WEAK:
+        remedy = "apt-get install --no-install-recommends bubblewrap, or a kernel with Landlock; else --sandbox weak"
+        return Item("sandbox", "missing", f"part scripts are refused here: {problems}", remedy)
+    return Item("sandbox", "ok", f"{level} ({problems})" if problems else level)
+
+
+def _renderer() -> Item:
+    if not _installed("embreex"):
+        return Item("renderer", "missing", "embreex, which casts the rays, is not installed", "pip install embreex")
+    nicer = "VTK is installed too" if _installed("pyvista") else "pip install 'articad[render]' for VTK's"
+    return Item("renderer", "ok", f"articad's own, on embreex {metadata.version('embreex')}; {nicer}")
+
+
+def _installed(name: str) -> bool:
+    return importlib.util.find_spec(name) is not None
+
+
+def _cache() -> Item:
+    folder = Path(os.environ.get("ARTICAD_CACHE") or Path.home() / ".cache" / "articad")
+    existing = next(path for path in (folder, *folder.absolute().parents) if path.exists())
+    if os.access(existing, os.W_OK):
+        return Item("cache", "ok", str(folder))
+    return Item("cache", "missing", f"{folder} cannot be written", "Set ARTICAD_CACHE to a folder of your own.")
+
+
+def _keys() -> Item:
+    present = [name for name in _KEYS if os.environ.get(name)]
+    if present:
+        return Item("model keys", "ok", ", ".join(f"{name} is set" for name in present))
+    return Item("model keys", "optional", "none set; only generate and edit need one", "Set your provider's variable, say GEMINI_API_KEY.")
+
+
+def _red_square() -> bytes:
+    """Return a PNG of 32 x 32 red pixels."""
+    from PIL import Image as Picture
+
+    stream = io.BytesIO()
+    Picture.new("RGB", (32, 32), (220, 20, 20)).save(stream, "PNG")
+    return stream.getvalue()
+
+
+def _disk_free() -> str:
+    return f"{shutil.disk_usage(Path.cwd()).free / _GIB:.0f} GiB"

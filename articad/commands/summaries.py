@@ -1,0 +1,178 @@
+"""Summaries: what commands print of their reports, for people to read."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from articad.commands.terminal import Report, Terminal
+    from articad.findings import Findings
+
+_CELL = 60  # characters of a value in a table
+
+
+def print_run(report: Report, terminal: Terminal) -> None:
+    """Print what a finished run made, how it was judged, and where it is."""
+    print_assembly(report["assembly"], terminal)
+    print_checks(report["checks"], terminal)
+    print_findings([*report["assembly"]["findings"], *report["checks"]["findings"], *report["findings"]], terminal)
+    if "certificate" in report:
+        print_certificate(report["certificate"], terminal)
+    if "verdict" in report:
+        print_verdict(report["verdict"], report["checks"], terminal)
+    print_exports(report["exports"], terminal)
+    terminal.say(f"Run: {report['run']}")
+
+
+def print_assembly(report: Report, terminal: Terminal) -> None:
+    """Print the parts with their measures, the joints, and what moves."""
+    parts, joints = report["parts"], report["joints"]
+    rows = [
+        (name, part["material"] or "", _number(part["volume_mm3"], ".1f"), _number(part["mass_kg"], ".4g"), part["derived_from"] or "")
+        for name, part in parts.items()
+    ]
+    terminal.table(["part", "material", "volume mm³", "mass kg", "derived from"], rows, right=(2, 3))
+    terminal.say()
+    terminal.table(["joint", "type", "parent", "child"], [(name, j["type"], j["parent"], j["child"]) for name, j in joints.items()])
+    terminal.say()
+    terminal.say(
+        f"{report['name']}: {counted_things(len(parts), 'part', 'parts')}, {counted_things(len(joints), 'joint', 'joints')}, "
+        f"{counted_things(report['freedoms'], 'freedom', 'freedoms')}, {report['mass_kg']:.4g} kg."
+    )
+
+
+def print_checks(report: Report, terminal: Terminal) -> None:
+    """Print how the pairs of parts fared, how that is known, and the deepest overlap."""
+    pairs = report["pairs"]
+    told = _counts(pair["verdict"] for pair in pairs)
+    known = _counts(pair["strength"]["kind"].replace("_", " ") for pair in pairs)
+    near = (
+        f"{counted_things(len(pairs), 'pair', 'pairs')} of parts near each other ({told}; {known})"
+        if pairs
+        else "no two parts are near each other"
+    )
+    terminal.say(f"Interference: {'ok' if report['ok'] else 'NOT ok'}; {near}.")
+    deepest = max(pairs, key=lambda pair: pair["depth_mm"], default=None)
+    if deepest is not None and deepest["depth_mm"] > 0:
+        terminal.say(
+            f"Largest overlap depth: {deepest['depth_mm']:.6g} mm ({' and '.join(deepest['parts'])}; {deepest['allowed_mm']:.6g} mm allowed)."
+        )
+    else:
+        terminal.say("Largest overlap depth: 0 mm.")
+    print_fits(report, terminal)
+
+
+def print_fits(report: Report, terminal: Terminal) -> None:
+    """Print how the declared fits fared, and how that is known over the motion."""
+    rows = report.get("fits", [])
+    if rows:
+        verdicts, known = (
+            _counts(row["verdict"].replace("_", " ") for row in rows),
+            _counts(row["strength"]["kind"].replace("_", " ") for row in rows),
+        )
+        terminal.say(f"Fits: {counted_things(len(rows), 'fit', 'fits')} ({verdicts}; over the motion {known}).")
+
+
+def print_certificate(report: Report, terminal: Terminal) -> None:
+    """Print what is proven, what is not, and how far each joint may move freely."""
+    known = _counts(pair["strength"]["kind"].replace("_", " ") for pair in report["pairs"])
+    verdict = "ok" if report["ok"] else "NOT ok"
+    terminal.say(f"Motion: {verdict}; {report['covers']}")
+    terminal.say(f"{counted_things(len(report['pairs']), 'case', 'cases').capitalize()} ({known or 'nothing moves'}).")
+    for free in report["ranges"]:
+        if free["free"] != free["declared"]:
+            terminal.say(
+                f"  {free['joint']}: free in [{free['free'][0]:.6g}, {free['free'][1]:.6g}], declared {free['declared']} (rad, mm)"
+            )
+    print_fits(report, terminal)
+    print_findings(report["findings"], terminal)
+
+
+def print_verdict(report: Report, checks: Report, terminal: Terminal) -> None:
+    """Print what the judge ruled, and what of its findings the checks have not said already."""
+    known = {finding["message"] for finding in checks["findings"]}
+    terminal.say(f"Inspection, round {report['round']}: {'ok' if report['ok'] else 'NOT ok'}, decided by {report['by']}.")
+    for aspect, ruling in report["rulings"].items():
+        terminal.say(f"  {aspect}: {'ok' if ruling['ok'] else 'NOT ok'}. {ruling['reason']}")
+    print_findings([finding for finding in report["findings"] if finding["message"] not in known], terminal)
+
+
+def print_edit(report: Report, terminal: Terminal) -> None:
+    """Print what an edit has changed, and what became of each part."""
+    terminal.say()
+    terminal.say(f"Edit: {report['summary']}" if report["summary"] else "Edit:")
+    changed = [(change["where"], _shortly(change["before"]), _shortly(change["after"])) for change in report["changes"]]
+    terminal.table(["in the plan", "before", "after"], changed)
+    terminal.say()
+    rows = [
+        (name, row["fate"], row["why"], f"{row['equal']} of {row['files']}", ", ".join(row["different"]))
+        for name, row in report["parts"].items()
+    ]
+    terminal.table(["part", "fate", "why", "files equal", "files that differ"], rows)
+    untouched = [row for row in report["parts"].values() if row["fate"] == "untouched"]
+    terminal.say(
+        f"Untouched: {counted_things(len(untouched), 'part', 'parts')}, {counted_things(sum(row['files'] for row in untouched), 'file', 'files')} "
+        f"equal by sha256. Pairs of parts: {report['pairs']['checked']} checked, {report['pairs']['carried']} carried over."
+    )
+
+
+def print_review(report: Report, terminal: Terminal) -> None:
+    """Print the scores of a review."""
+    rules = ", ".join(f"{name.replace('_', ' ')} {score:.2f}" for name, score in report["rules"].items())
+    terminal.say(f"Review by rules (0 to 1): {rules}.")
+    for aspect, scored in (report["model"] or {}).items():
+        terminal.say(f"  {aspect}: {scored['score']} of 5. {scored['reason']}")
+
+
+def print_exports(exports: Mapping[str, Report], terminal: Terminal) -> None:
+    """Print each export's main file, everything that was lost in it, and what else its writer had to say."""
+    for name, export in exports.items():
+        losses = counted_things(len(export["rows"]), "loss", "losses")
+        terminal.say(f"{name.upper()}: {export['main']} ({counted_things(len(export['files']), 'file', 'files')}, {losses})")
+        alike: dict[str, list[Report]] = {}
+        for row in export["rows"]:
+            alike.setdefault(row["lost"], []).append(row)
+        for lost, rows in alike.items():
+            others = f" and {len(rows) - 1} more" if len(rows) > 1 else ""
+            terminal.say(f"  {rows[0]['where']}{others}: written as {rows[0]['kept']}; lost: {lost}")
+        print_findings(export.get("findings", []), terminal)
+
+
+def print_findings(findings: list[Report], terminal: Terminal) -> None:
+    """Print the findings of a report; of the same fault of the same parts at several poses the worst, unless all are asked for."""
+    groups: dict[tuple[Any, ...], list[Report]] = {}
+    for number, finding in enumerate(findings):
+        parts = tuple(finding.get("parts") or ())
+        groups.setdefault((finding["code"], parts) if parts and not terminal.verbose else (number,), []).append(finding)
+    for group in groups.values():
+        terminal.finding(max(group, key=lambda finding: abs(finding.get("value") or 0.0)))
+        if len(group) > 1 and not (terminal.quiet and group[0]["severity"] != "error"):
+            terminal.say(f"    … and {len(group) - 1} more of these parts (-v lists them)")
+
+
+def counted(findings: Findings) -> str:
+    """Return `2 errors, 1 warning`, or `no findings`."""
+    count = Counter(str(finding.severity) for finding in findings)
+    names = {"error": ("error", "errors"), "warning": ("warning", "warnings"), "info": ("note", "notes")}
+    return ", ".join(counted_things(count[severity], *words) for severity, words in names.items() if count[severity]) or "no findings"
+
+
+def counted_things(count: int, one: str, many: str) -> str:
+    """Return `1 loss`, `2 losses`."""
+    return f"{count} {one if count == 1 else many}"
+
+
+def _counts(words: Iterable[str]) -> str:
+    counter = Counter(words)
+    return ", ".join(f"{count} {word}" for word, count in sorted(counter.items()))
+
+
+def _shortly(value: object) -> str:
+    text = "" if value is None else str(value.get("name", "an entry")) if isinstance(value, dict) else str(value)
+    return text if len(text) <= _CELL else f"{text[: _CELL - 1]}…"
+
+
+def _number(value: float | None, form: str) -> str:
+    return "" if value is None else format(value, form)

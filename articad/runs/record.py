@@ -1,0 +1,260 @@
+"""Record: what an assembly leaves in a run directory, and how it is made again from there."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any, Final
+
+from articad import formats
+from articad.assembly import Assembly
+from articad.certificates.certificate import Certificate
+from articad.connectors.connector import Connector
+from articad.errors import ReadError
+from articad.export.bundle import Bundle
+from articad.export.freecad import write_freecad
+from articad.geometry.mesh_files import write_stl
+from articad.geometry.part import Solid
+from articad.interference.check import Checks
+from articad.kernels.choice import Sandbox, kernel_named
+from articad.kernels.kernel import BuildCache
+from articad.kernels.parts import Progress, RealisedPart
+from articad.plan.brief import brief
+from articad.plan.schema import AssemblyPlan
+from articad.report import Documents, report_page
+from articad.runs.run import Run
+
+Report = dict[str, Any]
+
+WRITERS: Final[Mapping[str, Callable[..., Bundle]]] = {**formats.WRITERS, "freecad": write_freecad}
+_PICTURE_PIXELS: Final = 256  # of a picture kept in a run: enough to recognise, cheap enough to draw each time
+HURRIED: Final = {"W_BUILD_UNCHECKED"}  # found where the machine was too slow: in the trace alone, or no replay would be equal
+_KERNEL_FILES: Final = ("part.npz", "part.brep", "part.step", "part.FCStd", "seat.json")
+
+
+def record_assembly(run: Run, assembly: Assembly) -> None:
+    """Keep every part with its script, files and measures, and the assembly's report."""
+    for name, realised in assembly.realised.items():
+        _record_part(run, assembly, name, realised)
+    for stranger in sorted(set(run.part_names()) - set(assembly.parts)):
+        run.remove_part(stranger)
+    for finding in assembly.findings.of(*HURRIED):
+        run.trace_finding(finding)
+    run.save_assembly(assembly_report(assembly))
+
+
+def assembly_report(assembly: Assembly) -> Report:
+    """Return the report `articad.assembly/1`: parts, joints, freedoms, drivers and mass at rest, numbers in mm, rad and kg."""
+    rest = assembly.at()
+    parts = {
+        name: {
+            "material": part.material,
+            "volume_mm3": None if part.solid is None else part.solid.volume,
+            "mass_kg": None if part.mass is None else part.mass.mass,
+            "rest": rest[name].data.tolist(),
+            "derived_from": assembly.realised[name].derived_from if name in assembly.realised else None,
+        }
+        for name, part in assembly.parts.items()
+    }
+    drivers = [
+        {"name": driver.name, "unit": driver.unit, "lower": _finite(driver.lower), "upper": _finite(driver.upper), "rest": driver.rest}
+        for driver in assembly.drivers
+    ]
+    return {
+        "schema": "articad.assembly/1",
+        "ok": assembly.findings.ok,
+        "name": assembly.name,
+        "ground": assembly.ground,
+        "freedoms": assembly.mechanism.mobility,
+        "mass_kg": sum(part.mass.mass for part in assembly.parts.values() if part.mass is not None),
+        "parts": parts,
+        "joints": {joint.name: {"type": str(joint.type), "parent": joint.parent, "child": joint.child} for joint in assembly.joints},
+        "drivers": drivers,
+        "findings": [finding.to_json() for finding in assembly.findings if finding.code not in HURRIED],
+    }
+
+
+def record_checks(run: Run, checks: Checks) -> None:
+    """Keep the checks, and tell the trace of each finding."""
+    run.save_checks(checks.to_json())
+    for finding in checks.findings:
+        run.trace_finding(finding)
+
+
+def record_pictures(run: Run, assembly: Assembly) -> None:
+    """Keep views of every part that has a script, and the motion of every joint that drives; nothing that is drawn here is a result."""
+    from articad.render import filmstrip, motion_gif, png, render_motion, render_part  # noqa: PLC0415 - only where pictures are drawn
+
+    for name, realised in assembly.realised.items():
+        if realised.derived_from is None:
+            run.save_views(name, {view: png(image) for view, image in render_part(assembly.parts[name], size=_PICTURE_PIXELS).items()})
+    for joint in dict.fromkeys(driver.joint for driver in assembly.drivers):
+        frames = render_motion(assembly, joint, size=_PICTURE_PIXELS, supersample=1)
+        run.save_motion(joint, png(filmstrip(frames)), motion_gif(frames))
+
+
+def documents_of(run: Run) -> Documents:
+    """Return what a run knows beside its assembly, for its page; paths are those in the run."""
+    exports = {name: report | {"main": Path(report["main"]).relative_to(run.path).as_posix()} for name, report in run.exports().items()}
+    return Documents(
+        prompt=run.prompt if run.request.options.get("task") != "build" else "",
+        checks=run.checks(),
+        certificate=run.certificate(),
+        verdict=run.verdict(),
+        exports=exports,
+        replies=tuple(record for step in run.replies() if (record := run.reply(step)) is not None),
+        plan=run.plan_text(),
+        files=run.results(),
+    )
+
+
+def record_page(run: Run, assembly: Assembly) -> Path:
+    """Keep the page that shows a run; return its file."""
+    return run.save_page(report_page(assembly, documents_of(run)))
+
+
+def record_certificate(run: Run, certificate: Certificate) -> Report:
+    """Keep a certificate and its meshes; return its report."""
+    report = certificate.to_json()
+    run.save_certificate(report, certificate.mesh_files())
+    for finding in certificate.findings:
+        run.trace_finding(finding)
+    return report
+
+
+def _hurried(run: Run) -> list[Report]:
+    """Return the findings that stand in the trace alone, each once."""
+    found = {event["where"]: event for event in run.events() if event.get("event") == "finding" and event.get("code") in HURRIED}
+    return [{key: value for key, value in event.items() if key not in {"t", "event"}} for event in found.values()]
+
+
+_CHOICES: Final[Mapping[str, tuple[str, ...]]] = {
+    "urdf": ("loops", "collision", "package", "srdf", "ros2_control"),
+    "mjcf": ("collision", "actuators"),
+    "3mf": ("process",),
+}
+
+
+def written(assembly: Assembly, format_name: str, *, strict: bool = False, **choices: Any) -> Bundle:
+    """Return the assembly in a format of `WRITERS`.
+
+    Args:
+        assembly: What to write.
+        format_name: Key of `WRITERS`.
+        strict: Refuse losses of motion, mass or shape.
+        choices: Arguments of `write_urdf`, `write_mjcf` and `write_3mf`, such as `loops` or `collision`; each format takes those that it knows.
+
+    Raises:
+        UnrepresentableError: If `strict` and the format cannot hold it.
+    """
+    known = _CHOICES.get(format_name, ())
+    return WRITERS[format_name](assembly, strict=strict, **{key: value for key, value in choices.items() if key in known})
+
+
+def record_export(run: Run, assembly: Assembly, format_name: str, *, strict: bool = False, **choices: Any) -> Report:
+    """Keep an export; return its report `articad.losses/1`, with the folder. For `choices` see `written`."""
+    bundle = written(assembly, format_name, strict=strict, **choices)
+    run.save_export(format_name, bundle.files, bundle.to_json())
+    run.trace("artifact", kind=format_name, file=f"export/{format_name}/{bundle.main}")
+    return run.exports()[format_name]
+
+
+def run_report(run: Run) -> Report:
+    """Return the report `articad.build/1` of a finished run: its assembly's, its checks' and its exports'.
+
+    Raises:
+        ReadError: If the run is not finished.
+    """
+    assembly, checks, exports = run.assembly(), run.checks(), run.exports()
+    if assembly is None or checks is None:
+        raise ReadError(f"{run.path} is not finished: it has no {'assembly' if assembly is None else 'checks'} yet.", path=str(run.path))
+    certificate = run.certificate()
+    proven: dict[str, Report] = (
+        {}
+        if certificate is None
+        else {"certificate": {key: certificate[key] for key in ("schema", "ok", "covers", "findings", "epsilon_mm", "pairs", "ranges")}}
+    )
+    verdict = run.verdict()
+    if verdict is not None:
+        proven["verdict"] = {key: verdict[key] for key in ("schema", "ok", "findings", "by", "round", "rulings")}
+    if (edit := run.edit()) is not None:
+        proven["edit"] = edit
+    if (review := run.review()) is not None:
+        proven["review"] = review
+    return {
+        "schema": "articad.build/1",
+        "ok": all(report["ok"] for report in (assembly, checks, *proven.values(), *exports.values())),
+        "run": str(run.path),
+        "assembly": assembly,
+        "checks": checks,
+        "exports": exports,
+        "findings": _hurried(run),
+    } | proven
+
+
+def assembly_of(run: Run, *, cache: BuildCache | None = None, sandbox: Sandbox = "strict", progress: Progress | None = None) -> Assembly:
+    """Make a run's assembly again from its plan and part scripts; what the cache holds is not built again.
+
+    Raises:
+        ReadError: If the run has no plan, or not all parts.
+        ArticadError: As building does.
+    """
+    text = run.plan_text()
+    if text is None:
+        raise ReadError(f"{run.path} has no plan yet.", path=str(run.path), where="plan.json")
+    plan = AssemblyPlan.loads(text)
+    scripts = {name: script for name in run.part_names() if (script := run.script(name)) is not None}
+    parameters: Mapping[str, float] = run.request.options.get("parameters", {})
+    kernel = kernel_named(str(run.request.options.get("kernel", plan.kernel)), sandbox=sandbox)
+    return Assembly.from_plan(plan, scripts, kernel=kernel, cache=cache, progress=progress, parameters=parameters)
+
+
+def _record_part(run: Run, assembly: Assembly, name: str, realised: RealisedPart) -> None:
+    assert assembly.resolved is not None
+    built = realised.built
+    # What depends on the machine and not on the part stands in the trace, so that a replay elsewhere compares equal.
+    run.trace("build", part=name, sandbox=built.sandbox, cached=realised.cached, derived_from=realised.derived_from)
+    kernel = run.request.options.get("kernel", assembly.resolved.plan.kernel)
+    record: Report = {"kernel": kernel, "editable": realised.derived_from is None, "shape": _shape_json(built.solid)}
+    if realised.derived_from is not None:
+        run.save_part(name, record=record | {"derived_from": realised.derived_from})
+        return
+    planned = assembly.resolved.parts[name].connectors
+    run.save_part(
+        name,
+        record=record | {"digests": dict(realised.digests)},
+        brief=brief(assembly.resolved, name),
+        script=realised.script,
+        connectors={connector: _connector_json(realised_one, planned[connector]) for connector, realised_one in built.connectors.items()},
+        stl=write_stl(built.solid.mesh),
+        files={file: built.folder / file for file in _KERNEL_FILES if (built.folder / file).is_file()},
+    )
+
+
+def _shape_json(solid: Solid) -> Report:
+    return {
+        "volume_mm3": solid.volume,
+        "area_mm2": solid.area,
+        "bbox_mm": solid.bbox.tolist(),
+        "com_mm": solid.com.tolist(),
+        "inertia_mm5": solid.inertia_mm5.tolist(),
+        "triangles": len(solid.mesh.triangles),
+        "mesh_sha256": solid.mesh.digest,
+        "deflection_mm": solid.deflection,
+    }
+
+
+def _connector_json(realised: Connector, planned: Connector) -> Report:
+    """Where the script has a connector, and how far that is from the plan's."""
+    frame, drift = realised.frame, planned.drift(realised.frame)
+    return {
+        "o": frame.translation.tolist(),
+        "z": frame.z_axis.tolist(),
+        "x": frame.x_axis.tolist(),
+        "drift": {"radial_mm": drift.radial, "along_mm": drift.along, "axis_rad": drift.axis, "roll_rad": drift.roll},
+    }
+
+
+def _finite(bound: float) -> float | None:
+    """A bound that JSON can hold; None where there is none."""
+    return bound if abs(bound) < float("inf") else None

@@ -1,0 +1,137 @@
+"""A model in PyBullet: loaded with a fixed base, held by position motors, then driven joint by joint over its ranges."""
+
+from __future__ import annotations
+
+import importlib
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from articad.simulation.strokes import FREE_SLIDE_M, MOST_JOINTS, MOST_SPEED, PACE_M_S, PACE_RAD_S, STROKE_S, strokes
+from articad.simulation.verdict import Outcome, Reach, covered
+
+STEPS_PER_S = 240
+HOLD_S = 1.0
+HOLD_FORCE = 1e5  # N or N·m: whatever it takes
+
+
+@dataclass(frozen=True)
+class _Joint:
+    """A hinge or slide of a loaded body, driven between two values [rad or m] from where it starts."""
+
+    body: int
+    index: int
+    name: str
+    unit: str
+    lower: float
+    upper: float
+    start: float
+
+
+@dataclass
+class _Trial:
+    """One model under test."""
+
+    bullet: Any
+    client: int
+    outcome: Outcome
+    bodies: list[int]
+
+    def run(self) -> Outcome:
+        """Hold, then drive; return what was measured."""
+        joints = list(self._joints())
+        self._reset(joints)
+        steps = int(HOLD_S * STEPS_PER_S)
+        seen: dict[_Joint, list[float]] = {joint: [] for joint in joints}
+        for step in range(steps):
+            self._step({joint: joint.start for joint in joints})
+            if self.outcome.exploded:
+                return self.outcome
+            if step >= 0.9 * steps:
+                for joint, values in seen.items():
+                    values.append(self._value(joint))
+        # by way over time: a motor at a stop reports a speed for ever, against which the stop sets it back in each step
+        ways = (max(values) - min(values) for values in seen.values())
+        self.outcome.speed_at_rest = max(ways, default=0.0) / (0.1 * HOLD_S)
+        away = (abs(self._value(joint) - joint.start) for joint in joints)
+        self.outcome.moved_at_rest = max(away, default=0.0)
+        self.outcome.untried = max(0, len(joints) - MOST_JOINTS)
+        for joint in joints[:MOST_JOINTS]:
+            self.outcome.reaches.append(self._stroke(joint, joints))
+            if self.outcome.exploded:
+                break
+        return self.outcome
+
+    def _stroke(self, joint: _Joint, joints: list[_Joint]) -> Reach:
+        """Drive one joint over its range and hold the others."""
+        self._reset(joints)
+        targets = {other: other.start for other in joints}
+        low = high = joint.start
+        pace = PACE_RAD_S if joint.unit == "rad" else PACE_M_S
+        steps = round(max(STROKE_S, (joint.upper - joint.lower) / pace) * STEPS_PER_S)
+        for value in strokes(joint.start, joint.lower, joint.upper, steps):
+            self._step(targets | {joint: value})
+            if self.outcome.exploded:
+                break
+            here = self._value(joint)
+            low, high = min(low, here), max(high, here)
+        return Reach(joint.name, joint.lower, joint.upper, low, high, covered(low, high, joint.lower, joint.upper), joint.unit)
+
+    def _joints(self) -> Iterator[_Joint]:
+        """Yield hinges and slides; what is unlimited is driven through one turn or a little travel."""
+        bullet = self.bullet
+        for body in self.bodies:
+            for index in range(bullet.getNumJoints(body, physicsClientId=self.client)):
+                row = bullet.getJointInfo(body, index, physicsClientId=self.client)
+                kind, lower, upper = row[2], float(row[8]), float(row[9])
+                if kind not in {bullet.JOINT_REVOLUTE, bullet.JOINT_PRISMATIC}:
+                    continue
+                turns = kind == bullet.JOINT_REVOLUTE
+                if lower > upper:  # PyBullet's word for an endless joint
+                    lower, upper = (0.0, math.tau) if turns else (-FREE_SLIDE_M, FREE_SLIDE_M)
+                elif turns and upper - lower > 2 * math.tau:
+                    lower, upper = max(lower, -math.tau), min(upper, math.tau)
+                name = row[1].decode(errors="replace")
+                yield _Joint(body, index, name, "rad" if turns else "m", lower, upper, min(max(0.0, lower), upper))
+
+    def _reset(self, joints: list[_Joint]) -> None:
+        for joint in joints:
+            self.bullet.resetJointState(joint.body, joint.index, joint.start, 0.0, physicsClientId=self.client)
+
+    def _value(self, joint: _Joint) -> float:
+        return float(self.bullet.getJointState(joint.body, joint.index, physicsClientId=self.client)[0])
+
+    def _step(self, targets: dict[_Joint, float]) -> float:
+        """Step once with the motors at their targets; return the largest speed."""
+        for joint, value in targets.items():
+            self.bullet.setJointMotorControl2(
+                joint.body,
+                joint.index,
+                self.bullet.POSITION_CONTROL,
+                targetPosition=value,
+                force=HOLD_FORCE,
+                physicsClientId=self.client,
+            )
+        self.bullet.stepSimulation(physicsClientId=self.client)
+        speeds = [abs(self.bullet.getJointState(joint.body, joint.index, physicsClientId=self.client)[1]) for joint in targets]
+        fastest = max(speeds, default=0.0)
+        self.outcome.top_speed = max(self.outcome.top_speed, fastest)
+        self.outcome.exploded = not math.isfinite(fastest) or fastest > MOST_SPEED
+        return fastest
+
+
+def run(path: Path) -> Outcome:
+    """Load, hold and drive a model; parts of one body do not collide, for PyBullet is asked as most people ask it."""
+    bullet: Any = importlib.import_module("pybullet")
+    client = bullet.connect(bullet.DIRECT)
+    try:
+        bullet.setGravity(0, 0, -9.81, physicsClientId=client)
+        if path.suffix.lower() == ".urdf":
+            bodies = [bullet.loadURDF(str(path), useFixedBase=True, physicsClientId=client)]
+        else:
+            bodies = list(bullet.loadMJCF(str(path), physicsClientId=client))
+        return _Trial(bullet, client, Outcome("pybullet", str(bullet.getAPIVersion(client))), bodies).run()
+    finally:
+        bullet.disconnect(client)

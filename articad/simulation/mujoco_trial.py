@@ -1,0 +1,300 @@
+"""A model in MuJoCo: held at rest, driven joint by joint over its ranges, then let go.
+
+The hand that holds and drives is computed torque: `τ = M (ω² e - 2 ω v) + bias`, with e clamped so that what is in the way is
+pushed but not pushed through. A model's own actuators are switched off. Everything runs in a process of its own
+(`articad.simulation.trial`), for files come from anybody.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from articad.simulation.strokes import FREE_SLIDE_M, MOST_JOINTS, MOST_SPEED, PACE_M_S, PACE_RAD_S, STROKE_S, strokes
+from articad.simulation.verdict import Frame, Outcome, Reach, Role, covered
+
+FloatArray = NDArray[np.float64]
+
+STIFFNESS = 20.0  # ω of the hand [1/s]: a tenth of a second to arrive
+MOST_ERROR = 0.2  # rad or m that the hand acts on
+HOLD_S = 1.0
+FREE_S = 1.0
+PUSH = 0.2  # rad/s or m/s at which a model is let go
+FRAMES_OF_JOINT = 3
+
+
+class Stroke(NamedTuple):
+    """Least and greatest `qpos` while a joint was driven, and who was in its way."""
+
+    low: FloatArray
+    high: FloatArray
+    blocker: str
+
+
+@dataclass
+class Trial:
+    """One model under test.
+
+    Attributes:
+        model: As MuJoCo compiled it.
+        data: Its state.
+        outcome: What was measured.
+    """
+
+    model: Any
+    data: Any
+    outcome: Outcome
+    start: FloatArray = field(default_factory=lambda: np.zeros(0))
+
+    @classmethod
+    def of(cls, path: Path) -> Trial:
+        """Load a model.
+
+        Raises:
+            ValueError: If MuJoCo does not take it.
+        """
+        model = mujoco.MjModel.from_xml_path(str(path))
+        model.opt.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_ACTUATION)
+        trial = cls(model, mujoco.MjData(model), Outcome("mujoco", str(mujoco.__version__)))
+        trial.reset()
+        trial.start = np.array(trial.data.qpos)
+        return trial
+
+    def run(self, drivers: tuple[str, ...] | None = None) -> Outcome:
+        """Hold, drive and let go; return what was measured.
+
+        Args:
+            drivers: Joints that drive closed loops; None where nobody knows, so that each joint is driven.
+        """
+        self._hold()
+        if not self.outcome.exploded:
+            self._drive(drivers)
+            self._let_go()
+        return self.outcome
+
+    def reset(self) -> None:
+        """Return to the key `home`, or to the model's own pose."""
+        home = mujoco.mj_name2id(self.model, mujoco.mjtObj.mjOBJ_KEY, "home")
+        if home >= 0:
+            mujoco.mj_resetDataKeyframe(self.model, self.data, home)
+        else:
+            mujoco.mj_resetData(self.model, self.data)
+        self.data.qvel[:] = 0.0
+        mujoco.mj_forward(self.model, self.data)
+
+    # ------------------------------------------------------------------ phases
+
+    def _hold(self) -> None:
+        """Hold every joint where it rests, against gravity and contact."""
+        steps, calm = self._steps(HOLD_S), 0.0
+        held = self._hinged_dofs()
+        for step in range(steps):
+            if not self._step(self.start, held):
+                return
+            if step >= 0.9 * steps and len(held):
+                calm = max(calm, float(np.abs(self.data.qvel[held]).max()))
+        self.outcome.speed_at_rest = calm
+        moved = self._error(self.start)[held]
+        self.outcome.moved_at_rest = float(np.abs(moved).max(initial=0.0))
+        rows = self.data.efc_type[: self.data.nefc] == int(mujoco.mjtConstraint.mjCNSTR_EQUALITY)
+        self.outcome.residual = float(np.abs(self.data.efc_pos[: self.data.nefc][rows]).max(initial=0.0)) if self.model.neq else 0.0
+
+    def _drive(self, drivers: tuple[str, ...] | None) -> None:
+        """Drive each hinge and slide over its range, of a loop its drivers, with the rest of the loop free to follow."""
+        single, count = list(self._single_joints()), 0
+        for number, loop in enumerate(self._loops(single)):
+            inside = [joint for joint in single if joint in loop]
+            leading = [joint for joint in inside if drivers is not None and self._name(joint) in drivers]
+            driven = leading or inside
+            taken = driven[: max(0, MOST_JOINTS - count)]
+            count += len(taken)
+            self.outcome.untried += len(driven) - len(taken)
+            strokes_made: dict[int, Stroke] = {}
+            for joint in taken:
+                strokes_made[joint] = self._stroke(joint, loop - {joint} - set(leading))  # the other drivers are held
+                if self.outcome.exploded:
+                    return
+            for joint in inside if len(taken) == len(driven) else taken:
+                role: Role = "free" if len(loop) == 1 else "tied" if not leading else "driver" if joint in taken else "follower"
+                self.outcome.reaches.append(self._reach(joint, number, role, strokes_made))
+
+    def _reach(self, joint: int, number: int, role: Role, made: dict[int, Stroke]) -> Reach:
+        """Return how far a joint came in any stroke of its loop."""
+        lower, upper, unit = self._range(joint)
+        at = self.model.jnt_qposadr[joint]
+        low, high = min(float(stroke.low[at]) for stroke in made.values()), max(float(stroke.high[at]) for stroke in made.values())
+        share = covered(low, high, lower, upper)
+        blocker = made[joint].blocker if joint in made and share < 1 else ""
+        return Reach(self._name(joint), lower, upper, low, high, share, unit, blocker, role, None if role == "free" else number)
+
+    def _stroke(self, joint: int, following: frozenset[int]) -> Stroke:
+        """Drive one joint over its range, those that follow carried along, all others held."""
+        lower, upper, unit = self._range(joint)
+        self.reset()
+        at, target = self.model.jnt_qposadr[joint], np.array(self.start)
+        free = set(np.flatnonzero(np.isin(self.model.dof_jntid, list(following))).tolist())
+        held = np.array([dof for dof in self._hinged_dofs() if dof not in free], dtype=int)
+        rest = float(self.start[at])
+        low, high, blocker, lag = np.array(self.start), np.array(self.start), "", 0.0
+        steps = self._steps(max(STROKE_S, (upper - lower) / (PACE_RAD_S if unit == "rad" else PACE_M_S)))
+        shown = {steps, 2 * steps, 3 * steps - 1}
+        before = rest
+        for step, value in enumerate(strokes(rest, lower, upper, steps)):
+            target[at] = value
+            pace = np.zeros(self.model.nv)
+            pace[self.model.jnt_dofadr[joint]] = (value - before) / self.model.opt.timestep
+            before = value
+            if not self._step(target, held, free, pace):
+                break
+            np.minimum(low, self.data.qpos, out=low)
+            np.maximum(high, self.data.qpos, out=high)
+            here = float(self.data.qpos[at])
+            if abs(value - here) > lag:
+                lag, blocker = abs(value - here), self._contact(joint)
+            if step in shown:
+                self.outcome.frames.append(Frame(self._name(joint), self._values()))
+        return Stroke(low, high, blocker)
+
+    def _let_go(self) -> None:
+        """Let the model go with a push, without contact or limits; its energy may only fall."""
+        model = self.model
+        model.opt.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_CONTACT) | int(mujoco.mjtDisableBit.mjDSBL_LIMIT)
+        model.opt.enableflags |= int(mujoco.mjtEnableBit.mjENBL_ENERGY)
+        self.reset()
+        if not model.nv:
+            return
+        rng = np.random.default_rng(0)
+        self.data.qvel[:] = PUSH * rng.uniform(-1, 1, model.nv)
+        if model.neq:  # a push that a loop cannot follow is a blow: let it die out first
+            for _ in range(self._steps(FREE_S / 10)):
+                if not self._step(None, np.zeros(0, dtype=int)):
+                    return
+        mujoco.mj_forward(model, self.data)
+        first, most, kinetic = float(self.data.energy.sum()), -math.inf, abs(float(self.data.energy[1]))
+        for _ in range(self._steps(FREE_S)):
+            if not self._step(None, np.zeros(0, dtype=int)):
+                return
+            most, kinetic = max(most, float(self.data.energy.sum())), max(kinetic, float(self.data.energy[1]))
+        self.outcome.energy_growth = (most - first) / kinetic if kinetic > 1e-12 else 0.0
+
+    # ------------------------------------------------------------------ one step
+
+    def _step(
+        self, target: FloatArray | None, held: NDArray[np.int_], free: set[int] | None = None, pace: FloatArray | None = None
+    ) -> bool:
+        """Step once with the hand at `target`, moving at `pace`; False when the numbers have gone wild."""
+        model, data = self.model, self.data
+        mujoco.mj_step1(model, data)
+        data.qfrc_applied[:] = 0.0
+        if target is not None:
+            wanted = np.zeros(model.nv)
+            error = np.clip(self._error(target), -MOST_ERROR, MOST_ERROR)
+            late = (0.0 if pace is None else pace) - data.qvel
+            wanted[held] = STIFFNESS**2 * error[held] + 2 * STIFFNESS * late[held]
+            torque = np.zeros(model.nv)
+            mujoco.mj_mulM(model, data, torque, wanted)
+            weight = data.qfrc_bias - data.qfrc_passive
+            data.qfrc_applied[held] = torque[held] + weight[held]
+            following = sorted(free or ())  # joints of the same loop are carried, not led
+            data.qfrc_applied[following] = weight[following]
+        mujoco.mj_step2(model, data)
+        bad = data.warning[int(mujoco.mjtWarning.mjWARN_BADQACC)].number or data.warning[int(mujoco.mjtWarning.mjWARN_BADQPOS)].number
+        hinged = self._hinged_dofs() if target is not None else np.zeros(0, dtype=int)
+        speed = float(np.abs(data.qvel[hinged]).max(initial=0.0)) if len(hinged) else 0.0
+        self.outcome.top_speed = max(self.outcome.top_speed, speed)
+        if bad or not np.isfinite(data.qpos).all() or speed > MOST_SPEED:
+            self.outcome.exploded = True
+            return False
+        return True
+
+    def _error(self, target: FloatArray) -> FloatArray:
+        """Return the way to a pose, per degree of freedom."""
+        error = np.zeros(self.model.nv)
+        mujoco.mj_differentiatePos(self.model, error, 1.0, self.data.qpos, target)
+        return error
+
+    # ------------------------------------------------------------------ what there is
+
+    def _steps(self, seconds: float) -> int:
+        return max(1, min(round(seconds / float(self.model.opt.timestep)), 20_000))
+
+    def _hinged_dofs(self) -> NDArray[np.int_]:
+        """Return the degrees of freedom that are not those of free bodies."""
+        kinds = self.model.jnt_type[self.model.dof_jntid] if self.model.nv else np.zeros(0, dtype=int)
+        return np.flatnonzero(kinds != int(mujoco.mjtJoint.mjJNT_FREE))
+
+    def _single_joints(self) -> Iterator[int]:
+        for joint in range(self.model.njnt):
+            if self.model.jnt_type[joint] in {int(mujoco.mjtJoint.mjJNT_HINGE), int(mujoco.mjtJoint.mjJNT_SLIDE)}:
+                yield joint
+
+    def _range(self, joint: int) -> tuple[float, float, str]:
+        """Return what a joint is driven over: its limits, else one turn or a little travel."""
+        turns = self.model.jnt_type[joint] == int(mujoco.mjtJoint.mjJNT_HINGE)
+        unit, rest = "rad" if turns else "m", float(self.start[self.model.jnt_qposadr[joint]])
+        lower, upper = (float(bound) for bound in self.model.jnt_range[joint])
+        if not self.model.jnt_limited[joint]:
+            lower, upper = (rest, rest + math.tau) if turns else (rest - FREE_SLIDE_M, rest + FREE_SLIDE_M)
+        elif turns and upper - lower > 2 * math.tau:
+            lower, upper = max(lower, rest - math.tau), min(upper, rest + math.tau)
+        return lower, upper, unit
+
+    def _loops(self, single: list[int]) -> list[frozenset[int]]:
+        """Return the sets of joints that move together, in the order of their first; a joint outside of loops is one of its own."""
+        tied = self._tied()
+        return list(dict.fromkeys(next((group for group in tied if joint in group), frozenset({joint})) for joint in single))
+
+    def _tied(self) -> list[frozenset[int]]:
+        """Return the sets of joints that equality constraints make move together."""
+        sets: list[set[int]] = []
+        for row in range(self.model.neq):
+            kind, first, second = self.model.eq_type[row], int(self.model.eq_obj1id[row]), int(self.model.eq_obj2id[row])
+            if not self.model.eq_active0[row]:
+                continue
+            if kind == int(mujoco.mjtEq.mjEQ_JOINT):
+                sets.append({first, *([second] if second >= 0 else [])})
+            elif kind in {int(mujoco.mjtEq.mjEQ_CONNECT), int(mujoco.mjtEq.mjEQ_WELD)}:
+                if self.model.eq_objtype[row] == int(mujoco.mjtObj.mjOBJ_SITE):
+                    first, second = int(self.model.site_bodyid[first]), int(self.model.site_bodyid[second])
+                sets.append(self._joints_above(first) ^ self._joints_above(second))
+        merged: list[set[int]] = []
+        for one in sets:
+            touching = [other for other in merged if other & one]
+            merged = [other for other in merged if not other & one]
+            merged.append(one.union(*touching))
+        return [frozenset(one) for one in merged]
+
+    def _joints_above(self, body: int) -> set[int]:
+        found: set[int] = set()
+        while body > 0:
+            first, count = int(self.model.body_jntadr[body]), int(self.model.body_jntnum[body])
+            found |= set(range(first, first + count)) if count else set()
+            body = int(self.model.body_parentid[body])
+        return found
+
+    def _contact(self, joint: int) -> str:
+        """Return the two bodies whose contact pushes hardest, one of them moved by the joint; "" when nothing touches."""
+        best, found = 0.0, ""
+        force = np.zeros(6)
+        for index in range(self.data.ncon):
+            bodies = [int(self.model.geom_bodyid[geom]) for geom in self.data.contact[index].geom]
+            if not any(joint in self._joints_above(body) for body in bodies):
+                continue
+            mujoco.mj_contactForce(self.model, self.data, index, force)
+            if abs(force[0]) > best:
+                best, found = abs(float(force[0])), " and ".join(self.model.body(body).name or f"body_{body}" for body in bodies)
+        return found
+
+    def _values(self) -> dict[str, float]:
+        """Return the values of hinges and slides by name [rad, m]."""
+        return {self._name(joint): float(self.data.qpos[self.model.jnt_qposadr[joint]]) for joint in self._single_joints()}
+
+    def _name(self, joint: int) -> str:
+        return self.model.joint(joint).name or f"joint_{joint}"
