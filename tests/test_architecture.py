@@ -52,14 +52,13 @@ def imported_by(path: Path) -> set[str]:
 
 
 def third_party(modules: set[str]) -> set[str]:
-    return {name for name in modules if name not in sys.stdlib_module_names and not name.startswith("_")} - {"articad"}
+    return {name for name in modules if name not in sys.stdlib_module_names and not name.startswith("_")} - {"articad", "articad_bench"}
 
 
 SOURCES = sorted(
     path
     for path in PACKAGE.rglob("*.py")
     if path.parent.name != "inside_freecad"  # those run in FreeCAD's own Python
-    and PACKAGE / "bench" / "tasks" not in path.parents  # part scripts, as those of the examples
 )
 
 

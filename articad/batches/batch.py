@@ -6,7 +6,7 @@ import itertools
 import json
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 from scipy.stats import qmc
@@ -16,6 +16,9 @@ from articad.batches.items import Item, Json
 from articad.batches.pool import MEMORY_GB, RETRIES, Told
 from articad.errors import ReadError
 from articad.plan.schema import AssemblyPlan
+
+MAKE_ITEM: Final = "articad.batches.items:make_stored"
+"""What a worker calls for an item."""
 
 
 def read_batch(path: str | Path) -> list[Item]:
@@ -118,7 +121,9 @@ def run_dask(
 def calls_of(items: Sequence[Item], out: str | Path) -> list[pool.Call]:
     """Return what workers are told of items."""
     rows = [item.to_json() | {"plan": str(Path(item.plan).resolve())} for item in items]
-    return [pool.Call("item", {"item": row, "out": str(Path(out).resolve())}, item.digest) for row, item in zip(rows, items, strict=True)]
+    return [
+        pool.Call(MAKE_ITEM, {"item": row, "out": str(Path(out).resolve())}, item.digest) for row, item in zip(rows, items, strict=True)
+    ]
 
 
 def _with_items(items: Sequence[Item], records: Sequence[Json]) -> list[Json]:

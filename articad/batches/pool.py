@@ -33,23 +33,20 @@ class Call:
     """What a worker is to do.
 
     Attributes:
-        name: A key of `articad.batches.worker.CALLS`.
+        function: `module:name` of what takes the arguments and returns JSON.
         arguments: JSON.
         key: What the call is known by: the same key is the same work.
+        needs_keys: Whether it calls models.
     """
 
-    name: str
+    function: str
     arguments: Mapping[str, Any]
     key: str
-
-    @property
-    def needs_keys(self) -> bool:
-        """Whether it calls models."""
-        return self.name == "task"
+    needs_keys: bool = False
 
     def to_json(self) -> Json:
         """Return the line that a worker reads."""
-        return {"call": self.name, "arguments": dict(self.arguments), "key": self.key}
+        return {"function": self.function, "arguments": dict(self.arguments), "key": self.key, "needs_keys": self.needs_keys}
 
 
 def run_local(
@@ -143,7 +140,7 @@ def _remote(stored: Json, memory_gb: float, retries: int) -> Json:
     worker = getattr(_MINE, "worker", None)
     if worker is None:
         worker = _MINE.worker = Worker(memory_gb)
-    return worker.tried(Call(stored["call"], stored["arguments"], stored["key"]), retries)
+    return worker.tried(Call(stored["function"], stored["arguments"], stored["key"], stored["needs_keys"]), retries)
 
 
 def _answer(future: Any) -> Json:

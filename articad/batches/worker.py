@@ -10,19 +10,12 @@ import json
 import os
 import select
 import sys
-from collections.abc import Callable, Mapping
-from typing import Any, Final
+from collections.abc import Callable
+from typing import Any
 
 from articad.errors import ArticadError
 
 Json = dict[str, Any]
-
-CALLS: Final[Mapping[str, str]] = {
-    "item": "articad.batches.items:make_stored",
-    "task": "articad.bench.remote:run_stored",
-    "score": "articad.bench.remote:score_stored",
-}
-"""Calls that a worker knows, and where each is written."""
 
 
 def main() -> int:
@@ -39,7 +32,7 @@ def main() -> int:
 
 def _answer(stored: Json) -> Json:
     """Return the answer to a call; an error is one, so that the next call finds a worker."""
-    module, name = CALLS[stored["call"]].split(":")
+    module, name = stored["function"].split(":")
     function: Callable[..., Json] = getattr(importlib.import_module(module), name)
     try:
         return function(**stored["arguments"])

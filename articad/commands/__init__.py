@@ -1,13 +1,16 @@
 """The commands of `articad`, one module for each kind; a command imports what it needs when it runs.
 
-Importing this package registers them all.
+Importing this package registers them all. The distribution `articad-bench` adds its own where it is installed.
 """
 
 from __future__ import annotations
 
+from importlib import import_module
+from importlib.util import find_spec
+
 from articad.commands import (  # noqa: F401 - registers them
     auditing,
-    benchmarking,
+    batching,
     building,
     completing,
     files,
@@ -20,3 +23,6 @@ from articad.commands import (  # noqa: F401 - registers them
     serving,
     showing,
 )
+
+if find_spec("articad_bench"):
+    import_module("articad_bench.commands")

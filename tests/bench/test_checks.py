@@ -10,12 +10,12 @@ from pydantic import TypeAdapter
 
 from articad import examples
 from articad.assembly import Assembly
-from articad.bench.checks import AnyCheck, Check
-from articad.bench.reference import reference
-from articad.bench.subject import Subject
-from articad.bench.task import TASKS, tasks_in
 from articad.geometry import Part, box
 from articad.plan.schema import AssemblyPlan
+from articad_bench.checks import AnyCheck, Check
+from articad_bench.reference import reference
+from articad_bench.subject import Subject
+from articad_bench.task import TASKS, tasks_in
 from tests.bench.wrong import VARIANTS, wrong_for
 
 pytestmark = pytest.mark.slow

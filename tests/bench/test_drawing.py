@@ -11,12 +11,12 @@ from PIL import Image
 
 from articad import examples
 from articad.assembly import Assembly
-from articad.bench import drawing
-from articad.bench.drawing import COLORS, PANE, draw_task
-from articad.bench.reference import reference
-from articad.bench.subject import Subject
-from articad.bench.task import TASKS, Drawing, tasks_in
 from articad.plan.schema import AssemblyPlan
+from articad_bench import drawing
+from articad_bench.drawing import COLORS, PANE, draw_task
+from articad_bench.reference import reference
+from articad_bench.subject import Subject
+from articad_bench.task import TASKS, Drawing, tasks_in
 
 pytestmark = pytest.mark.slow
 

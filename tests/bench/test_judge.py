@@ -9,12 +9,12 @@ from typing import Any
 import pytest
 
 from articad.agents.llm import Image, Reply, Request, Scripted, Usage
-from articad.bench.judge import Judged, Opinion, judge_files, opinions_in
-from articad.bench.judged_table import judged_table
-from articad.bench.runner import run_tasks
-from articad.bench.task import Task, tasks_in
 from articad.cli import main
 from articad.errors import TransportError
+from articad_bench.judge import Judged, Opinion, judge_files, opinions_in
+from articad_bench.judged_table import judged_table
+from articad_bench.runner import run_tasks
+from articad_bench.task import Task, tasks_in
 from tests.agents import stories
 
 CHECKS: list[dict[str, Any]] = [{"kind": "parts", "number": [2, 2]}, {"kind": "freedoms", "number": 1}, {"kind": "solids"}]

@@ -8,9 +8,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from articad.bench import metrics
-from articad.bench.agreement import bootstrap_interval, icc_2k, krippendorff_alpha
-from articad.bench.metrics import (
+from articad.connectors import SE3
+from articad.geometry import TriMesh, box, cylinder, merged, tube
+from articad_bench import metrics
+from articad_bench.agreement import bootstrap_interval, icc_2k, krippendorff_alpha
+from articad_bench.metrics import (
     FAILED,
     MovingJoint,
     articulated_score,
@@ -22,8 +24,6 @@ from articad.bench.metrics import (
     shape_score,
     surface_points,
 )
-from articad.connectors import SE3
-from articad.geometry import TriMesh, box, cylinder, merged, tube
 
 CUBE = box(10, 10, 10)
 GRID = np.stack(np.meshgrid(*[np.linspace(0, 1, 6)] * 3), axis=-1).reshape(-1, 3)

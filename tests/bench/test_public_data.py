@@ -10,14 +10,14 @@ from typing import Any
 import numpy as np
 import pytest
 
-from articad.bench.metrics import FAILED, FAILED_OBJECT
-from articad.bench.public_data import objects_in, shapes_in
-from articad.bench.public_scores import score_objects, score_shapes
 from articad.cli import main
 from articad.connectors import SE3
 from articad.errors import ReadError
 from articad.geometry import TriMesh, box, merged, tube, write_stl
 from articad.geometry.mesh_files import write_glb, write_obj
+from articad_bench.metrics import FAILED, FAILED_OBJECT
+from articad_bench.public_data import objects_in, shapes_in
+from articad_bench.public_scores import score_objects, score_shapes
 from tests.agents.openai_stub import Canned, openai_stub
 
 PROMPT = "Natural_Language_Descriptions_Prompt.txt"

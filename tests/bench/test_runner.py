@@ -10,14 +10,14 @@ import pytest
 
 from articad.agents.llm import LLM, Reply, Request, Scripted
 from articad.agents.recollection import StoredMemory, remember
-from articad.bench.row import Row, rows_in
-from articad.bench.runner import run_tasks
-from articad.bench.scoring import score_files
-from articad.bench.table import table
-from articad.bench.task import Task, read_task, tasks_in
 from articad.cli import main
 from articad.errors import ReadError, TransportError
 from articad.memory.experience import ExperienceStore
+from articad_bench.row import Row, rows_in
+from articad_bench.runner import run_tasks
+from articad_bench.scoring import score_files
+from articad_bench.table import table
+from articad_bench.task import Task, read_task, tasks_in
 from tests.agents import stories
 from tests.agents.openai_stub import Canned, openai_stub
 

@@ -7,10 +7,10 @@ import math
 import numpy as np
 import pytest
 
-from articad.bench.solids import Round, asymmetry, held_volume, occupied, rounds, tipping_angle, wall_thickness
 from articad.connectors import SE3, FloatArray
 from articad.geometry import TriMesh, box, cylinder, merged
 from articad.geometry.shapes import sphere, tube
+from articad_bench.solids import Round, asymmetry, held_volume, occupied, rounds, tipping_angle, wall_thickness
 
 TURNS = [SE3.identity(), SE3.from_axis_angle(np.array([0.3, 0.5, 0.8]), 1.1) @ SE3.from_translation(np.array([40.0, -7.0, 3.0]))]
 

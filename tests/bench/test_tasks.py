@@ -9,13 +9,13 @@ from functools import cache
 import pytest
 
 from articad.assembly import Assembly
-from articad.bench.checks import Joints
-from articad.bench.reference import edited_reference, reference, reference_folder
-from articad.bench.subject import Subject
-from articad.bench.task import TASKS, Task, tasks_in
 from articad.kinematics import Mechanism
 from articad.plan.resolve import resolve
 from articad.plan.schema import AssemblyPlan
+from articad_bench.checks import Joints
+from articad_bench.reference import edited_reference, reference, reference_folder
+from articad_bench.subject import Subject
+from articad_bench.task import TASKS, Task, tasks_in
 from tests.bench.wrong import wrong_for
 from tests.kinematics.linkages import at, joint
 

@@ -13,13 +13,13 @@ from pathlib import Path
 import numpy as np
 
 from articad.assembly import Assembly
-from articad.bench.checks import Check, Joints, Ratio
-from articad.bench.subject import Subject
 from articad.connectors import SE3, FloatArray
 from articad.export.urdf import write_urdf
 from articad.geometry import MassProperties, Part, TriMesh, box, merged
 from articad.geometry.part import Solid
 from articad.kinematics.joints import Coordinate, Joint, JointLimits, JointType
+from articad_bench.checks import Check, Joints, Ratio
+from articad_bench.subject import Subject
 
 
 def wrong_for(check: Check, assembly: Assembly) -> Subject:

@@ -16,8 +16,6 @@ import numpy as np
 from PIL import Image, ImageDraw
 
 from articad.assembly import Assembly
-from articad.bench.subject import Subject
-from articad.bench.task import Drawing
 from articad.connectors import FloatArray
 from articad.kinematics.joints import Joint, JointType
 from articad.render.annotate import font
@@ -25,6 +23,8 @@ from articad.render.camera import Camera
 from articad.render.raycast import cast
 from articad.render.scene import Item, Scene, scene_of
 from articad.render.shade import reduced, shade
+from articad_bench.subject import Subject
+from articad_bench.task import Drawing
 
 DRAWING: Final = "drawing.png"
 PANE: Final = 320  # pixels of a view's sides; there are two side by side

@@ -8,10 +8,10 @@ from typing import Final, Literal
 
 import numpy as np
 
-from articad.bench.check import Bounds, Check, in_words
-from articad.bench.subject import Subject
 from articad.connectors import SE3, FloatArray
 from articad.kinematics.joints import JointType
+from articad_bench.check import Bounds, Check, in_words
+from articad_bench.subject import Subject
 
 PATH: Final = 121  # values of a driver at which a path is measured
 SPEEDS: Final = 7  # values of a driver at which speeds are compared

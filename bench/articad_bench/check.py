@@ -6,9 +6,9 @@ from abc import abstractmethod
 from dataclasses import dataclass
 from typing import Any
 
-from articad.bench.subject import Subject
 from articad.errors import ArticadError
 from articad.plan.fields import Form
+from articad_bench.subject import Subject
 
 Bounds = tuple[float, float]
 Vector = tuple[float, float, float]

@@ -21,11 +21,11 @@ from articad.agents.inspection import MOTIONS
 from articad.agents.llm import LLM, Image, Message, Reply, Request, system, user
 from articad.agents.pictures import assembly_picture, motion_picture, part_picture
 from articad.agents.prompts import prompt
-from articad.bench.scoring import model_of, subject_of
-from articad.bench.subject import Subject
-from articad.bench.task import Task
 from articad.errors import ArticadError, OutputError, TransportError
 from articad.runs.run import digest, write_atomically
+from articad_bench.scoring import model_of, subject_of
+from articad_bench.subject import Subject
+from articad_bench.task import Task
 
 SCHEMA: Final = "articad.bench-opinion/1"
 DIMENSIONS: Final = ("geometry", "detail", "motion")

@@ -5,9 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 
 from articad.agents.llm import LLM, Replay
-from articad.bench.scoring import EDITED, model_of
-from articad.bench.task import Task
 from articad.errors import ReadError
+from articad_bench.scoring import EDITED, model_of
+from articad_bench.task import Task
 
 
 class RecordedAnswers:

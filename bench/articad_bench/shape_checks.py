@@ -6,11 +6,11 @@ from typing import Final, Literal
 
 import numpy as np
 
-from articad.bench.check import Bounds, Check, Vector, in_words
-from articad.bench.solids import Round, asymmetry, held_volume, occupied, rounds, tipping_angle, wall_thickness
-from articad.bench.subject import Subject
 from articad.connectors import FloatArray
 from articad.geometry import TriMesh
+from articad_bench.check import Bounds, Check, Vector, in_words
+from articad_bench.solids import Round, asymmetry, held_volume, occupied, rounds, tipping_angle, wall_thickness
+from articad_bench.subject import Subject
 
 LEAN: Final = 0.996  # cosine of the 5° by which an axis may lean from the one asked for
 

@@ -11,10 +11,10 @@ from typing import Any, Final
 
 import numpy as np
 
-from articad.bench.agreement import bootstrap_items, icc_2k, krippendorff_alpha
-from articad.bench.judge import DIMENSIONS, Judged, judges_of
-from articad.bench.numbers import mean_of, rounded, share_of
 from articad.connectors import FloatArray
+from articad_bench.agreement import bootstrap_items, icc_2k, krippendorff_alpha
+from articad_bench.judge import DIMENSIONS, Judged, judges_of
+from articad_bench.numbers import mean_of, rounded, share_of
 
 SCHEMA: Final = "articad.bench-judged/1"
 STILL: Final = 5.0  # motion of a task of which nothing is to move, where such tasks are counted

@@ -8,13 +8,13 @@ from typing import Final
 
 from articad import examples
 from articad.assembly import Assembly
-from articad.bench.task import Task
 from articad.errors import ReadError
 from articad.kernels.choice import kernel_named
 from articad.kernels.kernel import BuildCache, PartKernel
 from articad.kernels.parts import SCRIPT_SUFFIX
 from articad.plan.resolve import resolve
 from articad.plan.schema import AssemblyPlan
+from articad_bench.task import Task
 
 _EXAMPLE: Final = "example:"
 

@@ -19,14 +19,14 @@ from typing import Any, Final
 import numpy as np
 
 from articad.assembly import Assembly
-from articad.bench.metrics import MovingJoint
-from articad.bench.scoring import subject_of
-from articad.bench.subject import Subject
-from articad.bench.task import Task
 from articad.connectors import SE3, FloatArray
 from articad.errors import ReadError
 from articad.geometry import TriMesh, merged, read_mesh
 from articad.kinematics.joints import Joint, JointType
+from articad_bench.metrics import MovingJoint
+from articad_bench.scoring import subject_of
+from articad_bench.subject import Subject
+from articad_bench.task import Task
 
 MM_PER_CM: Final = 10.0
 SAME_LINE: Final = 1e-3  # by which two axes that are one may differ: of their directions, and of the bodies' size
@@ -279,4 +279,4 @@ def _beside(file: Path) -> tuple[str, ...]:
 
 
 def _refused(path: Path, message: str) -> ReadError:
-    return ReadError.told(path, message, "See `articad.bench.public_data` for the layouts that are known.", said=message)
+    return ReadError.told(path, message, "See `articad_bench.public_data` for the layouts that are known.", said=message)

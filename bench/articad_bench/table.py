@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any, Final
 
-from articad.bench.check import Judgement
-from articad.bench.numbers import mean_of, share_of
-from articad.bench.row import Row
+from articad_bench.check import Judgement
+from articad_bench.numbers import mean_of, share_of
+from articad_bench.row import Row
 
 SCHEMA: Final = "articad.bench/1"
 

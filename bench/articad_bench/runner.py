@@ -21,13 +21,13 @@ from articad.agents.llm import LLM
 from articad.agents.pipeline import Variant, generate
 from articad.agents.retrieval import Memory
 from articad.agents.review import trajectory
-from articad.bench.row import Row, keep_row, kept_row
-from articad.bench.subject import Subject
-from articad.bench.task import Task
 from articad.errors import TransportError
 from articad.kernels.kernel import BuildCache, PartKernel
 from articad.runs.record import assembly_of
 from articad.runs.run import Run, digest
+from articad_bench.row import Row, keep_row, kept_row
+from articad_bench.subject import Subject
+from articad_bench.task import Task
 
 Ask = Callable[[Task], LLM]
 """Who answers a task's requests."""

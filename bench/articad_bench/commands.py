@@ -1,4 +1,4 @@
-"""Run the benchmark with a model, or score what any tool has made; make assemblies by the thousand."""
+"""The command `articad bench`: run the benchmark with a model, or score what any tool has made."""
 
 from __future__ import annotations
 
@@ -7,19 +7,19 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-from articad.commands.bench_tables import print_data, print_judged, print_table
 from articad.commands.command import argument, command
-from articad.commands.options import ASKING, ENGINE, FORCE, SANDBOX, amount, positive
+from articad.commands.options import ASKING, ENGINE, FORCE, SANDBOX, positive
 from articad.commands.steps import build_cache, sandbox_level
+from articad_bench.terminal_tables import print_data, print_judged, print_table
 
 if TYPE_CHECKING:
     from articad.agents.llm import Budget
     from articad.batches.pool import Call
-    from articad.bench.judge import Judged
-    from articad.bench.public_scores import Sampled
-    from articad.bench.row import Row
-    from articad.bench.task import Task
     from articad.commands.terminal import Report, Terminal
+    from articad_bench.judge import Judged
+    from articad_bench.public_scores import Sampled
+    from articad_bench.row import Row
+    from articad_bench.task import Task
 
 
 @command(
@@ -69,7 +69,7 @@ def _bench(options: argparse.Namespace, terminal: Terminal) -> Report:
 
 def _tasks(options: argparse.Namespace) -> list[tuple[Path, Task]]:
     """Return the tasks that are meant: the project's own, a folder's, or public data's."""
-    from articad.bench.task import TASKS, tasks_in
+    from articad_bench.task import TASKS, tasks_in
 
     return _asked_by_data(options) if options.data else tasks_in(options.tasks or TASKS, names=options.names, kind=options.kind)
 
@@ -85,48 +85,16 @@ def _needed(options: argparse.Namespace, *, data: bool = False) -> str:
 
 
 def _table(options: argparse.Namespace, terminal: Terminal) -> Report:
-    from articad.bench.row import rows_in
-    from articad.bench.table import table
+    from articad_bench.row import rows_in
+    from articad_bench.table import table
 
     return print_table(table(rows_in(options.what or options.out, options.names)), terminal)
 
 
-@command(
-    "batch",
-    "Make many assemblies: plans with values for their parameters, checked, exported and kept with their provenance.",
-    argument("spec", metavar="BATCH.json", help="items, or samples of plans' parameters"),
-    argument("--out", metavar="DIR", default="batch", help="a folder for each item; what is there is not made again (batch)"),
-    *ENGINE,
-    argument("--jobs", metavar="N", type=positive, default=None, help="workers of this machine (one a processor)"),
-    argument("--memory", metavar="GB", type=amount, default=4.0, help="data of each worker process (4)"),
-)
-def _batch(options: argparse.Namespace, terminal: Terminal) -> Report:
-    from articad.batches.batch import read_batch, run_dask, run_local, summary
-
-    items = read_batch(options.spec)
-    with terminal.progress("Items", total=len(items)) as tell:
-
-        def told(record: Report) -> None:
-            tell(record["digest"][:12], "built" if record["ok"] else "failed")
-
-        if options.engine == "dask":
-            records = run_dask(items, options.out, scheduler=options.scheduler, memory_gb=options.memory, told=told)
-        else:
-            records = run_local(items, options.out, workers=options.jobs, memory_gb=options.memory, told=told)
-    report = summary(records)
-    terminal.say(f"{report['passed']} of {report['items']} passed; {report['made_before']} were there already.")
-    for code, count in report["refused_by"].items():
-        terminal.say(f"  {code}: {count}")
-    spent = ", ".join(f"{stage} {seconds:.1f} s" for stage, seconds in report["seconds"].items())
-    terminal.say(f"Parts: {report['parts_built']} built, {report['parts_kept']} kept. Time: {spent or 'none'}.")
-    terminal.say(f"Items: {options.out}")
-    return report
-
-
 def _score(options: argparse.Namespace, terminal: Terminal) -> Report:
-    from articad.bench.remote import rows_of, score_calls
-    from articad.bench.scoring import score_files
-    from articad.bench.table import table
+    from articad_bench.remote import rows_of, score_calls
+    from articad_bench.scoring import score_files
+    from articad_bench.table import table
 
     models, tasks = _needed(options), _tasks(options)
     if options.engine == "local" and options.at_once == 1:
@@ -135,9 +103,9 @@ def _score(options: argparse.Namespace, terminal: Terminal) -> Report:
 
 
 def _run(options: argparse.Namespace, terminal: Terminal) -> Report:
-    from articad.bench.remote import rows_of, run_calls
-    from articad.bench.table import table
     from articad.commands.models import asked_model, limits, model_name
+    from articad_bench.remote import rows_of, run_calls
+    from articad_bench.table import table
 
     if options.refine is not None:
         options.rounds, options.repairs = options.refine + 1, options.refine
@@ -154,9 +122,9 @@ def _run(options: argparse.Namespace, terminal: Terminal) -> Report:
 
 
 def _run_again(tasks: list[tuple[Path, Task]], options: argparse.Namespace, terminal: Terminal) -> list[Row]:
-    from articad.bench.recorded import RecordedAnswers
-    from articad.bench.runner import run_tasks
     from articad.kernels.choice import kernel_named
+    from articad_bench.recorded import RecordedAnswers
+    from articad_bench.runner import run_tasks
 
     answers = RecordedAnswers(options.recorded)
     with terminal.progress("Tasks", total=len(tasks)) as tell:
@@ -179,10 +147,10 @@ def _run_again(tasks: list[tuple[Path, Task]], options: argparse.Namespace, term
 
 def _run_here(tasks: list[tuple[Path, Task]], options: argparse.Namespace, terminal: Terminal, *, look: bool) -> list[Row]:
     from articad.agents.recollection import StoredMemory, remember
-    from articad.bench.runner import run_tasks
     from articad.commands.models import asked_model, model_name
     from articad.kernels.choice import kernel_named
     from articad.memory.experience import ExperienceStore
+    from articad_bench.runner import run_tasks
 
     store = ExperienceStore(options.memory)
     with terminal.progress("Tasks", total=len(tasks)) as tell:
@@ -226,8 +194,8 @@ def _list(options: argparse.Namespace, terminal: Terminal) -> Report:
 
 
 def _on_data(options: argparse.Namespace, terminal: Terminal) -> Report:
-    from articad.bench.public_data import objects_in, shapes_in
-    from articad.bench.public_scores import score_objects, score_shapes
+    from articad_bench.public_data import objects_in, shapes_in
+    from articad_bench.public_scores import score_objects, score_shapes
 
     models = _needed(options, data=True)
 
@@ -248,9 +216,9 @@ def _on_data(options: argparse.Namespace, terminal: Terminal) -> Report:
 
 def _asked_by_data(options: argparse.Namespace) -> list[tuple[Path, Task]]:
     """Return public data as tasks, each in a folder of its own, so that workers can read them."""
-    from articad.bench.public_data import objects_in, shapes_in
-    from articad.bench.task import write_task
     from articad.errors import ReadError
+    from articad_bench.public_data import objects_in, shapes_in
+    from articad_bench.task import write_task
 
     samples: list[Any]
     try:
@@ -262,9 +230,9 @@ def _asked_by_data(options: argparse.Namespace) -> list[tuple[Path, Task]]:
 
 
 def _judge(options: argparse.Namespace, terminal: Terminal) -> Report:
-    from articad.bench.judge import judge_files
-    from articad.bench.judged_table import judged_table
     from articad.commands.models import asked_model, model_name
+    from articad_bench.judge import judge_files
+    from articad_bench.judged_table import judged_table
 
     models, tasks = _needed(options), _tasks(options)
 
@@ -284,8 +252,8 @@ def _judge(options: argparse.Namespace, terminal: Terminal) -> Report:
 
 
 def _draw(options: argparse.Namespace, terminal: Terminal) -> Report:
-    from articad.bench.drawing import DRAWING, draw_task
-    from articad.bench.reference import reference
+    from articad_bench.drawing import DRAWING, draw_task
+    from articad_bench.reference import reference
 
     files = []
     for folder, task in _tasks(options):

@@ -14,7 +14,9 @@ from functools import partial
 from pathlib import Path
 from typing import Any, Final, TypeVar
 
-from articad.bench.metrics import (
+from articad.errors import ArticadError
+from articad.geometry import TriMesh, read_mesh
+from articad_bench.metrics import (
     FAILED,
     FAILED_OBJECT,
     ArticulatedScore,
@@ -25,12 +27,10 @@ from articad.bench.metrics import (
     floor_score,
     shape_score,
 )
-from articad.bench.numbers import mean_of, median_of, share_of
-from articad.bench.public_data import ObjectSample, ShapeSample, TrueObject, object_of
-from articad.bench.row import ROW
-from articad.bench.scoring import model_of, subject_of
-from articad.errors import ArticadError
-from articad.geometry import TriMesh, read_mesh
+from articad_bench.numbers import mean_of, median_of, share_of
+from articad_bench.public_data import ObjectSample, ShapeSample, TrueObject, object_of
+from articad_bench.row import ROW
+from articad_bench.scoring import model_of, subject_of
 
 SCHEMA: Final = "articad.bench-data/1"
 _MESHES: Final = (".stl", ".obj", ".ply", ".glb")

@@ -36,10 +36,10 @@ from typing import Any, Final, Literal
 
 from pydantic import Field, ValidationError
 
-from articad.bench.checks import AnyCheck, Judgement
-from articad.bench.subject import Subject
 from articad.errors import ReadError, did_you_mean
 from articad.plan.fields import Form
+from articad_bench.checks import AnyCheck, Judgement
+from articad_bench.subject import Subject
 
 TASKS: Final = Path(__file__).with_name("tasks")
 """The project's own tasks, a folder each."""

@@ -10,12 +10,12 @@ from typing import Final
 
 from articad import formats
 from articad.assembly import Assembly
-from articad.bench.row import Row
-from articad.bench.subject import Subject
-from articad.bench.task import Task
 from articad.errors import ArticadError, ReadError
 from articad.runs.record import assembly_of
 from articad.runs.run import Run
+from articad_bench.row import Row
+from articad_bench.subject import Subject
+from articad_bench.task import Task
 
 EDITED: Final = "_edited"  # what is appended to a task's name where a tool's edited model is
 _SIMULATED: Final = frozenset({".urdf", ".xml", ".mjcf"})

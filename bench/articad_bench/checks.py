@@ -17,12 +17,6 @@ import numpy as np
 from pydantic import Field
 
 from articad.assembly import Assembly
-from articad.bench.check import Bounds, Vector, in_words
-from articad.bench.check import Check as Check  # noqa: PLC0414  (others take them from here)
-from articad.bench.check import Judgement as Judgement  # noqa: PLC0414
-from articad.bench.path_checks import PATH, Level, Straight, Turns
-from articad.bench.shape_checks import Holds, Holes, Stands, Studs, Symmetric, Volume, Wall
-from articad.bench.subject import Subject
 from articad.connectors import FloatArray
 from articad.interference.captivity import escapes
 from articad.interference.gauge import Gauge
@@ -30,6 +24,12 @@ from articad.kinematics.joints import Joint, JointType
 from articad.plan.fields import Form
 from articad.plan.resolve import Fit
 from articad.simulation.examine import simulate_assembly, simulate_file
+from articad_bench.check import Bounds, Vector, in_words
+from articad_bench.check import Check as Check  # noqa: PLC0414  (others take them from here)
+from articad_bench.check import Judgement as Judgement  # noqa: PLC0414
+from articad_bench.path_checks import PATH, Level, Straight, Turns
+from articad_bench.shape_checks import Holds, Holes, Stands, Studs, Symmetric, Volume, Wall
+from articad_bench.subject import Subject
 
 AXIS_RAD: Final = math.radians(5)  # by which an axis may lean from the one asked for
 STROKE: Final = 9  # values of a driver at which what follows it is measured

@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from articad.bench.agreement import bootstrap_interval
 from articad.connectors import FloatArray
+from articad_bench.agreement import bootstrap_interval
 
 
 def mean_of(values: Sequence[float]) -> dict[str, Any]:

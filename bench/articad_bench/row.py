@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
-from articad.bench.checks import Judgement
-from articad.bench.task import Task
 from articad.runs.run import write_atomically
+from articad_bench.checks import Judgement
+from articad_bench.task import Task
 
 SCHEMA: Final = "articad.bench-row/1"
 ROW: Final = "row.json"

@@ -10,14 +10,14 @@ from articad.agents.live import LiteLLM
 from articad.agents.llm import Budget
 from articad.agents.recollection import StoredMemory, remember
 from articad.batches.pool import Call
-from articad.bench.row import Row
-from articad.bench.runner import run_tasks
-from articad.bench.scoring import score_files
-from articad.bench.task import Task, read_task
 from articad.kernels.choice import kernel_named
 from articad.kernels.kernel import BuildCache
 from articad.memory.experience import ExperienceStore
 from articad.runs.run import digest
+from articad_bench.row import Row
+from articad_bench.runner import run_tasks
+from articad_bench.scoring import score_files
+from articad_bench.task import Task, read_task
 
 Json = dict[str, Any]
 
@@ -25,14 +25,22 @@ Json = dict[str, Any]
 def score_calls(tasks: Iterable[tuple[Path, Task]], models: str | Path) -> list[Call]:
     """Return what workers are told to score: each task's files in a folder."""
     folder = str(Path(models).resolve())
-    return [Call("score", {"folder": str(place.resolve()), "models": folder}, f"score-{task.name}") for place, task in tasks]
+    return [
+        Call("articad_bench.remote:score_stored", {"folder": str(place.resolve()), "models": folder}, f"score-{task.name}")
+        for place, task in tasks
+    ]
 
 
 def run_calls(tasks: Iterable[tuple[Path, Task]], out: str | Path, options: Mapping[str, Any]) -> list[Call]:
     """Return what workers are told to run; see `run_stored`."""
     said = dict(options)
     return [
-        Call("task", {"folder": str(place.resolve()), "out": str(Path(out).resolve()), "options": said}, digest([task.name, said]))
+        Call(
+            "articad_bench.remote:run_stored",
+            {"folder": str(place.resolve()), "out": str(Path(out).resolve()), "options": said},
+            digest([task.name, said]),
+            needs_keys=True,
+        )
         for place, task in tasks
     ]
 
