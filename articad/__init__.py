@@ -13,6 +13,7 @@ __version__ = "0.1.0"
 _MODULE_OF = {
     "ArticadError": "errors",
     "Assembly": "assembly",
+    "AuditOptions": "auditing.examine",
     "AssemblyPlan": "plan.schema",
     "Attachment": "connectors.attachment",
     "Budget": "agents.llm",
@@ -22,9 +23,11 @@ _MODULE_OF = {
     "Coupling": "kinematics.joints",
     "Finding": "findings",
     "Findings": "findings",
+    "Fit": "plan.resolve",
     "Joint": "kinematics.joints",
     "LiteLLM": "agents.live",
-    "MassProperties": "geometry.part",
+    "MassProperties": "geometry.mass",
+    "Material": "plan.resolve",
     "Mechanism": "kinematics.mechanism",
     "Part": "geometry.part",
     "Replay": "agents.llm",
@@ -32,22 +35,35 @@ _MODULE_OF = {
     "SE3": "connectors.se3",
     "Scripted": "agents.llm",
     "TriMesh": "geometry.mesh",
+    "Waiver": "plan.resolve",
     "ball": "kinematics.declare",
+    "audit": "entry",
     "build": "assembly",
+    "certify": "entry",
     "check_plan": "plan.check",
+    "convert": "formats",
     "cylindrical": "kinematics.declare",
     "edit": "agents.edit",
     "fixed": "kinematics.declare",
     "generate": "agents.pipeline",
     "planar": "kinematics.declare",
+    "read": "entry",
     "replay": "agents.pipeline",
     "revolute": "kinematics.declare",
     "screw": "kinematics.declare",
+    "simulate": "entry",
     "slider": "kinematics.declare",
     "universal": "kinematics.declare",
+    "write": "formats",
+    "write_3mf": "export.threemf",
     "write_freecad": "export.freecad",
+    "write_glb": "export.gltf",
     "write_mjcf": "export.mjcf",
+    "write_plan": "export.plan",
+    "write_sdf": "export.sdf",
+    "write_step": "export.step",
     "write_urdf": "export.urdf",
+    "write_usd": "export.usd",
 }
 
 __all__ = [  # noqa: PLE0604, RUF100 - the table above is the list
@@ -79,18 +95,31 @@ if TYPE_CHECKING:
     from articad.agents.pipeline import replay as replay
     from articad.assembly import Assembly as Assembly
     from articad.assembly import build as build
+    from articad.auditing.examine import AuditOptions as AuditOptions
     from articad.connectors.attachment import Attachment as Attachment
     from articad.connectors.connector import Connector as Connector
     from articad.connectors.se3 import SE3 as SE3
+    from articad.entry import audit as audit
+    from articad.entry import certify as certify
+    from articad.entry import read as read
+    from articad.entry import simulate as simulate
     from articad.errors import ArticadError as ArticadError
     from articad.export.bundle import Bundle as Bundle
     from articad.export.freecad import write_freecad as write_freecad
+    from articad.export.gltf import write_glb as write_glb
     from articad.export.mjcf import write_mjcf as write_mjcf
+    from articad.export.plan import write_plan as write_plan
+    from articad.export.sdf import write_sdf as write_sdf
+    from articad.export.step import write_step as write_step
+    from articad.export.threemf import write_3mf as write_3mf
     from articad.export.urdf import write_urdf as write_urdf
+    from articad.export.usd import write_usd as write_usd
     from articad.findings import Finding as Finding
     from articad.findings import Findings as Findings
+    from articad.formats import convert as convert
+    from articad.formats import write as write
+    from articad.geometry.mass import MassProperties as MassProperties
     from articad.geometry.mesh import TriMesh as TriMesh
-    from articad.geometry.part import MassProperties as MassProperties
     from articad.geometry.part import Part as Part
     from articad.interference.check import Checks as Checks
     from articad.kinematics.declare import ball as ball
@@ -105,5 +134,8 @@ if TYPE_CHECKING:
     from articad.kinematics.joints import Joint as Joint
     from articad.kinematics.mechanism import Mechanism as Mechanism
     from articad.plan.check import check_plan as check_plan
+    from articad.plan.resolve import Fit as Fit
+    from articad.plan.resolve import Material as Material
+    from articad.plan.resolve import Waiver as Waiver
     from articad.plan.schema import AssemblyPlan as AssemblyPlan
     from articad.runs.run import Run as Run

@@ -22,7 +22,7 @@ from articad.geometry.part import MassProperties, Part
 from articad.interference.check import Checks, check_pose
 from articad.interference.scene import Scene
 from articad.interference.sweep import sweep
-from articad.kernels.build123d import Build123dKernel
+from articad.kernels.choice import kernel_named
 from articad.kernels.kernel import BuildCache, PartKernel
 from articad.kernels.parts import Progress, RealisedPart, build_parts, find_scripts
 from articad.kinematics.joints import Coordinate, Coupling, Joint, JointType
@@ -152,7 +152,7 @@ class Assembly:
         Args:
             plan: A valid plan.
             parts: Folder of part scripts, or source by part name.
-            kernel: Builds the scripts; build123d by default.
+            kernel: Builds the scripts; the plan's own choice by default.
             sandbox: "weak" accepts less isolation than landlock or bwrap give.
             jobs: How many parts at once; by default the number of processors.
             deflection: Largest distance of a mesh from its solid [mm].
@@ -166,7 +166,7 @@ class Assembly:
             SandboxError: If the isolation asked for is not available.
         """
         resolved, findings = admitted(plan, **dict(parameters or {}))
-        kernel = kernel or Build123dKernel(sandbox=sandbox)
+        kernel = kernel or kernel_named(resolved.plan.kernel, sandbox=sandbox)
         if isinstance(parts, Mapping):
             scripts = {name: text.encode() if isinstance(text, str) else text for name, text in parts.items()}
         else:

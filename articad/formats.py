@@ -1,10 +1,12 @@
-"""One file in, another out: every reader with every writer, and what is lost on the way."""
+"""The file formats: one row each, with its reader, its writer and their options; `read`, `write` and `convert`."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+import inspect
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Final
+from typing import Any, Final
 
 from articad.assembly import Assembly
 from articad.errors import ExportError, ReadError
@@ -25,61 +27,76 @@ from articad.importers.step import read_step
 from articad.importers.urdf import EXPAND, read_urdf
 from articad.plan.schema import AssemblyPlan
 
-WRITERS: Final[Mapping[str, Callable[..., Bundle]]] = {
-    "urdf": write_urdf,
-    "mjcf": write_mjcf,
-    "freecad": write_freecad,
-    "sdf": write_sdf,
-    "usd": write_usd,
-    "step": write_step,
-    "glb": write_glb,
-    "3mf": write_3mf,
-    "plan": write_plan,
-}
-"""Writer of each format: `write(assembly, *, strict=False) -> Bundle`."""
 
+def read_plan(path: str | Path) -> Assembly:
+    """Build the plan of a file with the part scripts in the folder `parts` beside it.
 
-def read_plan(path: str | Path, *, root: str | Path | None = None) -> Assembly:
-    """Build the plan of a file, with the part scripts in the folder `parts` beside it.
-
-    Args:
-        path: The file, `.json`.
-        root: Unused: a plan names no files.
+    Raises:
+        ReadError: If the file cannot be read.
+        PlanError: If the plan is refused by `check_plan`.
+        BuildError: If a part script fails.
     """
-    del root
     path = Path(path)
     return Assembly.from_plan(AssemblyPlan.load(path), path.parent / "parts")
 
 
-READERS: Final[Mapping[str, Callable[..., Assembly]]] = {
-    ".urdf": read_urdf,
-    ".xml": read_mjcf,
-    ".mjcf": read_mjcf,
-    ".fcstd": read_freecad,
-    ".step": read_step,
-    ".stp": read_step,
-    ".json": read_plan,
-}
-"""Reader of each file name's ending."""
+@dataclass(frozen=True)
+class Format:
+    """A file format.
 
-FORMAT_OF: Final[Mapping[str, str]] = {
-    ".urdf": "urdf",
-    ".xml": "mjcf",
-    ".mjcf": "mjcf",
-    ".sdf": "sdf",
-    ".fcstd": "freecad",
-    ".usda": "usd",
-    ".step": "step",
-    ".stp": "step",
-    ".glb": "glb",
-    ".3mf": "3mf",
-    ".json": "plan",
-}
-"""Format that a file name's ending asks for."""
+    Attributes:
+        name: Word for it on the command line and in reports.
+        suffixes: Endings of its files, lower case; the first one is written.
+        writer: `writer(assembly, *, strict=False, **options) -> Bundle`.
+        reader: `reader(path, **options) -> Assembly`; None where the format is only written.
+    """
+
+    name: str
+    suffixes: tuple[str, ...]
+    writer: Callable[..., Bundle]
+    reader: Callable[..., Assembly] | None = None
+
+    def write(self, assembly: Assembly, *, strict: bool = False, **options: Any) -> Bundle:
+        """Return the files of an assembly; options that this format does not know are left out."""
+        return self.writer(assembly, strict=strict, **_known(self.writer, options))
+
+    def read(self, path: Path, **options: Any) -> Assembly:
+        """Return the assembly of a file; options that this format does not know are left out.
+
+        Raises:
+            ReadError: If the format is only written, or the file cannot be read.
+        """
+        if self.reader is None:
+            raise _not_read(path)
+        return self.reader(path, **_known(self.reader, options))
 
 
-FUSING: Final = frozenset({".urdf", ".xml", ".mjcf"})
-"""Endings whose readers can fuse chains of joints."""
+FORMATS: Final = (
+    Format("urdf", (".urdf",), write_urdf, read_urdf),
+    Format("mjcf", (".xml", ".mjcf"), write_mjcf, read_mjcf),
+    Format("freecad", (".fcstd",), write_freecad, read_freecad),
+    Format("step", (".step", ".stp"), write_step, read_step),
+    Format("glb", (".glb",), write_glb),
+    Format("3mf", (".3mf",), write_3mf),
+    Format("sdf", (".sdf",), write_sdf),
+    Format("usd", (".usda",), write_usd),
+    Format("plan", (".json",), write_plan, read_plan),
+)
+"""All formats, in the order in which they are listed."""
+
+NAMED: Final = {row.name: row for row in FORMATS}
+"""Format by its name."""
+
+
+def readable() -> Iterator[str]:
+    """Yield the endings of files that can be read."""
+    return (suffix for row in FORMATS if row.reader for suffix in row.suffixes)
+
+
+def format_of(path: str | Path) -> Format | None:
+    """Return the format that a file's ending means, or None."""
+    suffix = Path(path).suffix.lower()
+    return next((row for row in FORMATS if suffix in row.suffixes), None)
 
 
 def read(path: str | Path, *, root: str | Path | None = None, fuse: bool = False) -> Assembly:
@@ -94,40 +111,86 @@ def read(path: str | Path, *, root: str | Path | None = None, fuse: bool = False
         ReadError: If the format is not read, or the file cannot be.
     """
     path = Path(path)
-    reader = READERS.get(path.suffix.lower())
     if path.suffix.lower() == ".xacro":
         message = f"{path}: a xacro file is a program that writes a URDF; it is not run here."
         raise ReadError(
             f"{message} {EXPAND}", path=str(path), findings=[Finding(code="E_READ", where=str(path), message=message, hint=EXPAND)]
         )
-    if reader is None:
-        message = f"{path}: {path.suffix or 'no'} extension is not one of {', '.join(READERS)}."
-        finding = Finding(code="E_READ", where=str(path), message=message, hint="Convert it first, or correct its name.")
-        raise ReadError(message, path=str(path), findings=[finding])
-    return reader(path, root=root, fuse=True) if fuse and path.suffix.lower() in FUSING else reader(path, root=root)
+    found = format_of(path)
+    if found is None:
+        raise _not_read(path)
+    return found.read(path, root=root, fuse=fuse)
+
+
+def write(assembly: Assembly, path: str | Path, *, strict: bool = False, **options: Any) -> Bundle:
+    """Write an assembly to a file; meshes and other files that it needs go beside it.
+
+    Args:
+        assembly: What to write.
+        path: The file; its ending says the format.
+        strict: Refuse losses of motion, mass or shape.
+        options: Of the format's writer, such as `collision="decompose"` for `write_urdf`.
+
+    Returns:
+        What was written, with the losses.
+
+    Raises:
+        ExportError: If the format is not written, an option is unknown to its writer, or `strict` refuses a loss.
+    """
+    path, found = Path(path), _written_as(path)
+    if unknown := set(options) - set(_known(found.writer, options)):
+        raise ExportError(f"{found.name} has no option {', '.join(sorted(unknown))}; it has {', '.join(_options(found.writer)) or 'none'}.")
+    bundle = found.write(assembly, strict=strict, **options)
+    bundle = replace(bundle, files={path.name if name == bundle.main else name: content for name, content in bundle.files.items()})
+    bundle.write(path.parent)
+    return bundle
 
 
 def convert(
-    source: str | Path, target: str | Path, *, strict: bool = False, root: str | Path | None = None, fuse: bool = False
+    source: str | Path, target: str | Path, *, strict: bool = False, root: str | Path | None = None, fuse: bool = False, **options: Any
 ) -> tuple[Assembly, Bundle]:
-    """Convert a file; nothing is written yet.
+    """Read a file and write it in another format.
 
     Args:
         source: The file to read.
-        target: The file to write; its ending says the format, its folder is where `bundle.write(...)` should put the rest.
+        target: The file to write; its ending says the format.
         strict: Refuse losses of motion, mass or shape.
-        root: Folder that meshes may be read from.
+        root: Folder that meshes may be read from; the source's own by default.
         fuse: As for `read`.
+        options: As for `write`.
 
     Returns:
-        What was read, with its findings, and what is to be written, with its losses.
+        What was read, with its findings, and what was written, with its losses.
 
     Raises:
         ReadError: If the source cannot be read.
-        ExportError: If the target's format is not written, or `strict` refuses it.
+        ExportError: As for `write`; the source is not read if the target's format is unknown.
     """
-    suffix = Path(target).suffix.lower()
-    if suffix not in FORMAT_OF:
-        raise ExportError(f"{target}: {suffix or 'no'} extension is not one of {', '.join(FORMAT_OF)}.")
+    _written_as(target)
     assembly = read(source, root=root, fuse=fuse)
-    return assembly, WRITERS[FORMAT_OF[suffix]](assembly, strict=strict)
+    return assembly, write(assembly, target, strict=strict, **options)
+
+
+def _written_as(path: str | Path) -> Format:
+    """Return the format that a file to be written has, or refuse it."""
+    found = format_of(path)
+    if found is None:
+        known = ", ".join(suffix for row in FORMATS for suffix in row.suffixes)
+        raise ExportError(f"{path}: {Path(path).suffix or 'no'} extension is not one of {known}.")
+    return found
+
+
+def _options(function: Callable[..., object]) -> tuple[str, ...]:
+    """Return the names of a reader's or writer's own options."""
+    named = (parameter for parameter in inspect.signature(function).parameters.values() if parameter.kind is parameter.KEYWORD_ONLY)
+    return tuple(parameter.name for parameter in named if parameter.name != "strict")
+
+
+def _known(function: Callable[..., object], options: dict[str, Any]) -> dict[str, Any]:
+    return {name: value for name, value in options.items() if name in _options(function)}
+
+
+def _not_read(path: Path) -> ReadError:
+    message = f"{path}: {path.suffix or 'no'} extension is not one of {', '.join(readable())}."
+    finding = Finding(code="E_READ", where=str(path), message=message, hint="Convert it first, or correct its name.")
+    return ReadError(message, path=str(path), findings=[finding])

@@ -18,7 +18,7 @@ from articad.commands.options import FORMATS
 from articad.commands.terminal import Report, Terminal
 from articad.errors import PlanError
 from articad.findings import Finding
-from articad.runs.record import WRITERS
+from articad.formats import NAMED
 
 FINDING = Finding(code="E_DUP_NAME", where="parts[1]", message="'lid' is used twice.", hint="Rename one.")
 
@@ -112,7 +112,7 @@ def test_wrong_usage_ends_with_2_and_says_what_was_meant(capsys: pytest.CaptureF
 
 
 def test_the_formats_are_those_that_can_be_written() -> None:
-    assert set(FORMATS) == set(WRITERS)
+    assert tuple(NAMED) == FORMATS
 
 
 def test_the_version_is_the_package_s(capsys: pytest.CaptureFixture[str]) -> None:

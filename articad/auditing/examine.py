@@ -26,10 +26,11 @@ from articad.importers.freecad import read_freecad
 from articad.importers.mjcf import read_mjcf
 from articad.importers.reading import MAX_LINKS, Folder, read_xml, unreadable
 from articad.importers.urdf import read_urdf
+from articad.runs.run import REQUEST_FILE
 from articad.simulation.loading import ENGINES, Loading, load_in_all
 
 BUDGET_S: Final = 12.0  # of sampling the motion
-FORMATS: Final = {".urdf": "urdf", ".xml": "mjcf", ".mjcf": "mjcf", ".fcstd": "freecad", ".step": "step", ".stp": "step"}
+AUDITED: Final = {".urdf": "urdf", ".xml": "mjcf", ".mjcf": "mjcf", ".fcstd": "freecad", ".step": "step", ".stp": "step"}
 """Format that a file name's ending stands for."""
 
 CHECKS: Final[tuple[Callable[[Declared], Iterator[Finding]], ...]] = (
@@ -43,7 +44,7 @@ _CAD_NAMES: Final = {"freecad", "plan", "run"}  # names of labels are free there
 
 
 @dataclass
-class Choices:
+class AuditOptions:
     """What an audit is asked to do.
 
     Attributes:
@@ -73,7 +74,7 @@ class _Found:
     certificate: Certificate | None = None
 
 
-def audit(path: str | Path, choices: Choices | None = None) -> Audit:
+def audit_file(path: str | Path, choices: AuditOptions | None = None) -> Audit:
     """Audit a URDF, MJCF, FreeCAD or STEP file; whatever is wrong with it becomes a finding.
 
     Args:
@@ -81,12 +82,14 @@ def audit(path: str | Path, choices: Choices | None = None) -> Audit:
         choices: What to do; everything but proofs by default.
 
     Raises:
-        ReadError: If its ending is none of those.
+        ReadError: If its ending is none of those, or there is no such file.
     """
-    path, choices = Path(path), choices or Choices()
-    kind = FORMATS.get(path.suffix.lower())
+    path, choices = Path(path), choices or AuditOptions()
+    kind = AUDITED.get(path.suffix.lower())
     if kind is None:
-        raise ReadError(f"{path}: {path.suffix or 'no'} extension is not one of {', '.join(FORMATS)}.", path=str(path))
+        raise ReadError(f"{path}: {path.suffix or 'no'} extension is not one of {', '.join(AUDITED)}.", path=str(path))
+    if not path.is_file():
+        raise ReadError(f"There is no file {path}.", path=str(path))
     start, found = time.monotonic(), _Found()
     try:
         _AUDITORS[kind](path, choices, found)
@@ -95,20 +98,28 @@ def audit(path: str | Path, choices: Choices | None = None) -> Audit:
     return _report(str(path), kind, found, start)
 
 
-def audit_assembly(assembly: Assembly, file: str, kind: str, choices: Choices | None = None) -> Audit:
+def audit_assembly(assembly: Assembly, file: str, kind: str, choices: AuditOptions | None = None) -> Audit:
     """Audit an assembly that is there already: of a plan or a run."""
-    choices, start, found = choices or Choices(), time.monotonic(), _Found()
+    choices, start, found = choices or AuditOptions(), time.monotonic(), _Found()
     found.declared = from_assembly(assembly, kind, states_inertia=False, states_collision=False)
     found.findings += assembly.findings
     _look(found, assembly, choices)
     return _report(file, kind, found, start)
 
 
-def asked(found: Audit, exports: Sequence[Path]) -> Audit:
-    """Return an audit with what engines say of its exports; what else a reader meets in them, an audit of the file tells."""
+def audit_made(assembly: Assembly, folder: str | Path, choices: AuditOptions | None = None) -> Audit:
+    """Audit what a plan or a run makes; engines load the exports of the run."""
+    is_run = (Path(folder) / REQUEST_FILE).is_file()
+    found = audit_assembly(assembly, str(folder), "run" if is_run else "plan", choices)
+    exports = sorted(path for path in Path(folder).glob("export/*/*") if path.suffix.lower() in AUDITED) if is_run else []
+    return _with_engines(found, exports) if (choices or AuditOptions()).engines else found
+
+
+def _with_engines(found: Audit, exports: Sequence[Path]) -> Audit:
+    """Return an audit with the verdicts of engines on exports; `audit_file` says what else a reader meets in them."""
     start, engines, findings = time.monotonic(), [*found.engines], [*found.findings]
     for path in exports:
-        names = ENGINES.get(FORMATS.get(path.suffix.lower(), ""), ())
+        names = ENGINES.get(AUDITED.get(path.suffix.lower(), ""), ())
         try:
             require_closed(path)
         except ArticadError as error:
@@ -141,7 +152,7 @@ def _report(file: str, kind: str, found: _Found, start: float) -> Audit:
 # ---------------------------------------------------------------------- one a format
 
 
-def _urdf(path: Path, choices: Choices, found: _Found) -> None:
+def _urdf(path: Path, choices: AuditOptions, found: _Found) -> None:
     document = read_xml(path)
     if document.tag != "robot":
         raise ReadError(f"{path}: The root element is <{document.tag}>, not <robot>.", path=str(path), findings=[_no_robot(path, document)])
@@ -161,7 +172,7 @@ def _urdf(path: Path, choices: Choices, found: _Found) -> None:
     _read_and_look(found, lambda: read_urdf(path, root=root), choices, path)
 
 
-def _mjcf(path: Path, choices: Choices, found: _Found) -> None:
+def _mjcf(path: Path, choices: AuditOptions, found: _Found) -> None:
     root = choices.root or package_of(path)
     require_closed(path, root)
     found.engines = load_in_all(path, ENGINES["mjcf"], root=root) if choices.engines else ()
@@ -172,27 +183,32 @@ def _mjcf(path: Path, choices: Choices, found: _Found) -> None:
     _look(found, assembly, choices)
 
 
-def _freecad(path: Path, choices: Choices, found: _Found) -> None:
+def _freecad(path: Path, choices: AuditOptions, found: _Found) -> None:
     assembly = read_freecad(path)
     found.declared = from_assembly(assembly, "freecad", states_inertia=False, states_collision=False)
     found.findings += assembly.findings
     _look(found, assembly, choices)
 
 
-def _step(path: Path, choices: Choices, found: _Found) -> None:
+def _step(path: Path, choices: AuditOptions, found: _Found) -> None:
     del choices
     found.declared, findings, undone = audit_step(path)
     found.findings += findings
     found.undone += undone
 
 
-_AUDITORS: Final[dict[str, Callable[[Path, Choices, _Found], None]]] = {"urdf": _urdf, "mjcf": _mjcf, "freecad": _freecad, "step": _step}
+_AUDITORS: Final[dict[str, Callable[[Path, AuditOptions, _Found], None]]] = {
+    "urdf": _urdf,
+    "mjcf": _mjcf,
+    "freecad": _freecad,
+    "step": _step,
+}
 
 
 # ---------------------------------------------------------------------- looking
 
 
-def _read_and_look(found: _Found, read: Callable[[], Assembly], choices: Choices, path: Path) -> None:
+def _read_and_look(found: _Found, read: Callable[[], Assembly], choices: AuditOptions, path: Path) -> None:
     """Look at the text; look at the mechanism, if it is one."""
     try:
         assembly = read()
@@ -206,7 +222,7 @@ def _read_and_look(found: _Found, read: Callable[[], Assembly], choices: Choices
     _look(found, assembly, choices)
 
 
-def _look(found: _Found, assembly: Assembly, choices: Choices) -> None:
+def _look(found: _Found, assembly: Assembly, choices: AuditOptions) -> None:
     assert found.declared is not None
     _check_text(found)
     found.findings += _carriers(found.declared, assembly)

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
 
-from articad.auditing.examine import FORMATS, Choices, audit
+from articad.auditing.examine import AUDITED, AuditOptions, audit_file
 from articad.auditing.report import Audit, Scoreboard
 from articad.errors import ArticadError
 from articad.findings import Finding, Findings
@@ -17,11 +17,11 @@ Progress = Callable[[str, str], None]
 
 def models_below(folder: Path) -> Iterator[Path]:
     """Yield the URDF, MJCF, FreeCAD and STEP files below a folder; XML that is no MJCF, or that another MJCF includes, is passed over."""
-    files = sorted(path for path in folder.rglob("*") if path.suffix.lower() in FORMATS and path.is_file())
+    files = sorted(path for path in folder.rglob("*") if path.suffix.lower() in AUDITED and path.is_file())
     included: set[Path] = set()
     mjcf: set[Path] = set()
     for path in files:
-        if FORMATS[path.suffix.lower()] != "mjcf":
+        if AUDITED[path.suffix.lower()] != "mjcf":
             continue
         try:
             document = read_xml(path)
@@ -31,11 +31,11 @@ def models_below(folder: Path) -> Iterator[Path]:
             mjcf.add(path)
             included |= {(path.parent / element.get("file", "")).resolve() for element in document.iter("include")}
     for path in files:
-        if FORMATS[path.suffix.lower()] != "mjcf" or (path in mjcf and path.resolve() not in included):
+        if AUDITED[path.suffix.lower()] != "mjcf" or (path in mjcf and path.resolve() not in included):
             yield path
 
 
-def audit_folder(folder: str | Path, choices: Choices | None = None, *, progress: Progress | None = None) -> Scoreboard:
+def audit_folder(folder: str | Path, choices: AuditOptions | None = None, *, progress: Progress | None = None) -> Scoreboard:
     """Audit every model below a folder; a file that defeats the auditor itself is told as such and the others go on.
 
     Args:
@@ -43,15 +43,15 @@ def audit_folder(folder: str | Path, choices: Choices | None = None, *, progress
         choices: As for one file; meshes may be anywhere below the folder unless a root is given.
         progress: Told of each file's fate.
     """
-    folder, choices = Path(folder), choices or Choices()
+    folder, choices = Path(folder), choices or AuditOptions()
     choices = replace(choices, root=choices.root or folder.resolve())
     audits = []
     for path in models_below(folder):
         name = path.relative_to(folder).as_posix()
         try:
-            found = replace(audit(path, choices), file=name)
+            found = replace(audit_file(path, choices), file=name)
         except Exception as error:  # noqa: BLE001 - one file among hundreds must not end the audit of the others
-            found = Audit(name, FORMATS[path.suffix.lower()], findings=Findings([_defect(name, error)]))
+            found = Audit(name, AUDITED[path.suffix.lower()], findings=Findings([_defect(name, error)]))
         audits.append(found)
         if progress is not None:
             progress(name, "ok" if found.ok else f"{found.count('error')} errors, {found.count('warning')} warnings")

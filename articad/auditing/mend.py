@@ -17,7 +17,7 @@ from articad.assembly import Assembly
 from articad.auditing import limits, masses, shapes
 from articad.auditing.contact import united
 from articad.auditing.declared import Declared, DeclaredLink
-from articad.auditing.examine import Choices, audit
+from articad.auditing.examine import AuditOptions, audit_file
 from articad.auditing.mesh_references import MeshReferences
 from articad.auditing.names import MOST_CHARACTERS
 from articad.auditing.report import Audit
@@ -63,7 +63,7 @@ class Mended:
         }
 
 
-def mend(path: str | Path, out: str | Path, *, density: float | None = None, choices: Choices | None = None) -> Mended:
+def mend(path: str | Path, out: str | Path, *, density: float | None = None, choices: AuditOptions | None = None) -> Mended:
     """Write a mended copy of a URDF file and the meshes that it needs.
 
     Args:
@@ -75,7 +75,7 @@ def mend(path: str | Path, out: str | Path, *, density: float | None = None, cho
     Raises:
         ReadError: If the file is not URDF.
     """
-    path, out, choices = Path(path), Path(out), choices or Choices()
+    path, out, choices = Path(path), Path(out), choices or AuditOptions()
     root = read_xml(path)
     if root.tag != "robot":
         raise ReadError(f"{path}: --fix mends URDF, and this is <{root.tag}>; convert it first.", path=str(path))
@@ -91,13 +91,13 @@ def mend(path: str | Path, out: str | Path, *, density: float | None = None, cho
     for name, content in files.items():
         (out / name).write_bytes(content)
     mended.file.write_bytes(document(root))
-    mended.rest = audit(mended.file, replace(choices, root=out))
+    mended.rest = audit_file(mended.file, replace(choices, root=out))
     return mended
 
 
-def mend_assembly(assembly: Assembly, out: str | Path, *, density: float | None = None, choices: Choices | None = None) -> Mended:
+def mend_assembly(assembly: Assembly, out: str | Path, *, density: float | None = None, choices: AuditOptions | None = None) -> Mended:
     """Write an assembly as URDF, with masses from its solids where it has none."""
-    out, choices = Path(out), choices or Choices()
+    out, choices = Path(out), choices or AuditOptions()
     weighed: dict[str, float] = {}
     parts = dict(assembly.parts)
     for name, part in parts.items():
@@ -109,7 +109,7 @@ def mend_assembly(assembly: Assembly, out: str | Path, *, density: float | None 
     done = [f"weighed {counted(len(weighed), 'part')} at {density:g} kg/m³: {listed(list(weighed))}"] if weighed else []
     done.append("written as URDF")
     mended = Mended(out / bundle.main, done, weighed)
-    mended.rest = audit(mended.file, replace(choices, root=out))
+    mended.rest = audit_file(mended.file, replace(choices, root=out))
     return mended
 
 

@@ -22,10 +22,10 @@ from articad import __version__
 from articad.assembly import Assembly
 from articad.errors import ArticadError, ReadError
 from articad.findings import Findings
+from articad.formats import NAMED
 from articad.kernels.choice import kernel_named
 from articad.kernels.kernel import BuildCache, PartKernel
 from articad.plan.schema import AssemblyPlan
-from articad.runs.record import WRITERS
 from articad.runs.run import digest
 
 Json = dict[str, Any]
@@ -96,9 +96,9 @@ class Item:
             raise _refused(
                 Path("items"), f"An item needs `plan`, and may have `values`, `gates`, `formats`, `kernel`: {error!r}."
             ) from error
-        unknown = [*(gate for gate in item.gates if gate not in ("rest", "motion", "certified")), *(set(item.formats) - set(WRITERS))]
+        unknown = [*(gate for gate in item.gates if gate not in ("rest", "motion", "certified")), *(set(item.formats) - set(NAMED))]
         if unknown:
-            raise _refused(Path("items"), f"There is no {unknown[0]!r}; gates are rest, motion, certified; formats {', '.join(WRITERS)}.")
+            raise _refused(Path("items"), f"There is no {unknown[0]!r}; gates are rest, motion, certified; formats {', '.join(NAMED)}.")
         return item
 
 
@@ -153,7 +153,7 @@ def _made(item: Item, folder: Path, cache_root: str | Path | None) -> Json:
             findings = _gated(item, assembly)
         if findings.ok:
             with clock.on("exports"):
-                written = [path for name in item.formats for path in WRITERS[name](assembly).write(folder / name)]
+                written = [path for name in item.formats for path in NAMED[name].write(assembly).write(folder / name)]
             files = {str(path.relative_to(folder)): hashlib.sha256(path.read_bytes()).hexdigest() for path in written}
             record |= {"files": files, "mass_kg": assembly.mass().mass, "freedoms": assembly.mechanism.mobility}
         record |= {"ok": findings.ok, "findings": [finding.to_json() for finding in findings]}

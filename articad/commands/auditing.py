@@ -13,7 +13,7 @@ from articad.commands.steps import loaded
 
 if TYPE_CHECKING:
     from articad.assembly import Assembly
-    from articad.auditing.examine import Choices
+    from articad.auditing.examine import AuditOptions
     from articad.auditing.mend import Mended
     from articad.auditing.report import Audit, Scoreboard
     from articad.commands.terminal import Report, Terminal
@@ -47,11 +47,11 @@ if TYPE_CHECKING:
     SANDBOX,
 )
 def _audit(options: argparse.Namespace, terminal: Terminal) -> Report:
-    from articad.auditing.examine import Choices
+    from articad.auditing.examine import AuditOptions
     from articad.errors import ReadError
 
     root = None if options.root is None else Path(options.root)
-    choices = Choices(root=root, budget=options.budget, certified=options.certify, engines=options.engines)
+    choices = AuditOptions(root=root, budget=options.budget, certified=options.certify, engines=options.engines)
     target = Path(options.target)
     if not target.exists():
         raise ReadError(f"There is no {target}.", path=str(target))
@@ -81,11 +81,11 @@ def _audit(options: argparse.Namespace, terminal: Terminal) -> Report:
     SANDBOX,
 )
 def _sim(options: argparse.Namespace, terminal: Terminal) -> Report:
-    from articad.simulation.examine import ENGINES, SUFFIXES, readable, simulate_assembly, simulate_file
+    from articad.simulation.examine import ENGINES, SIMULATED, readable, simulate_assembly, simulate_file
 
     engines = tuple(options.engine or ENGINES)
     target = Path(options.target)
-    if target.suffix.lower() in SUFFIXES:
+    if target.suffix.lower() in SIMULATED:
         verdict, assembly = simulate_file(target, engines=engines, seconds=options.seconds), readable(target) if options.film else None
     else:
         assembly = loaded(options.target, options, terminal)
@@ -126,20 +126,16 @@ def _film(assembly: Assembly, outcomes: Sequence[Outcome]) -> bytes | None:
     return None if shown is None else film(assembly, shown)
 
 
-def _audit_one(options: argparse.Namespace, terminal: Terminal, choices: Choices) -> Audit:
+def _audit_one(options: argparse.Namespace, terminal: Terminal, choices: AuditOptions) -> Audit:
     """Audit a file, or what a plan or a run makes, with its exports."""
-    from articad.auditing.examine import FORMATS, asked, audit, audit_assembly
+    from articad.auditing.examine import AUDITED, audit_file, audit_made
 
-    target = Path(options.target)
-    if target.suffix.lower() in FORMATS:
-        return audit(target, choices)
-    kind = "run" if (target / "request.json").is_file() else "plan"
-    found = audit_assembly(loaded(options.target, options, terminal), options.target, kind, choices)
-    exports = sorted(path for path in (target / "export").glob("*/*") if path.suffix.lower() in FORMATS) if kind == "run" else []
-    return asked(found, exports) if options.engines else found
+    if Path(options.target).suffix.lower() in AUDITED:
+        return audit_file(options.target, choices)
+    return audit_made(loaded(options.target, options, terminal), options.target, choices)
 
 
-def _audit_folder(options: argparse.Namespace, terminal: Terminal, choices: Choices) -> Report:
+def _audit_folder(options: argparse.Namespace, terminal: Terminal, choices: AuditOptions) -> Report:
     from articad.auditing.many import audit_folder, models_below
     from articad.errors import ReadError
 
@@ -160,7 +156,7 @@ def _audit_folder(options: argparse.Namespace, terminal: Terminal, choices: Choi
     return board.to_json()
 
 
-def _mend(options: argparse.Namespace, terminal: Terminal, choices: Choices) -> Mended:
+def _mend(options: argparse.Namespace, terminal: Terminal, choices: AuditOptions) -> Mended:
     from articad.auditing.mend import mend, mend_assembly
 
     if Path(options.target).suffix.lower() == ".urdf":

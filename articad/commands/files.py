@@ -33,7 +33,8 @@ if TYPE_CHECKING:
 )
 def _export(options: argparse.Namespace, terminal: Terminal) -> Report:
     from articad.commands import summaries
-    from articad.runs.record import assembly_of, record_export, written
+    from articad.formats import NAMED
+    from articad.runs.record import assembly_of, record_export
     from articad.runs.run import Run
 
     with Run.view(options.run) as run, terminal.progress("Reading") as tell:
@@ -54,7 +55,7 @@ def _export(options: argparse.Namespace, terminal: Terminal) -> Report:
             exports = {name: record_export(run, assembly, name, strict=options.strict, **choices) for name in options.formats}
     else:
         for name in options.formats:
-            bundle = written(assembly, name, strict=options.strict, **choices)
+            bundle = NAMED[name].write(assembly, strict=options.strict, **choices)
             main = bundle.write(Path(options.out) / name)[0]
             exports[name] = bundle.to_json() | {"folder": str(main.parent), "main": str(main)}
     summaries.print_exports(exports, terminal)
@@ -70,18 +71,14 @@ def _export(options: argparse.Namespace, terminal: Terminal) -> Report:
     argument("--fuse", action="store_true", help="of a URDF or MJCF file: make chains of joints over bare links one joint, such as a ball"),
 )
 def _convert(options: argparse.Namespace, terminal: Terminal) -> Report:
-    from dataclasses import replace
-
     from articad.commands import summaries
-    from articad.formats import FORMAT_OF, convert
+    from articad.formats import convert, format_of
 
     target = Path(options.target)
     assembly, bundle = convert(options.source, target, strict=options.strict, fuse=options.fuse)
-    bundle = replace(bundle, files={target.name if path == bundle.main else path: content for path, content in bundle.files.items()})
-    bundle.write(target.parent)
     report = bundle.to_json() | {"folder": str(target.parent), "main": str(target)}
     terminal.findings(assembly.findings)
-    summaries.print_exports({FORMAT_OF[target.suffix.lower()]: report}, terminal)
+    summaries.print_exports({getattr(format_of(target), "name", ""): report}, terminal)
     return report | {"findings": [finding.to_json() for finding in assembly.findings + bundle.findings]}
 
 
@@ -127,9 +124,9 @@ def _adopt(options: argparse.Namespace, terminal: Terminal) -> Report:
 
 def _audit_of(source: Path, root: str | None, terminal: Terminal) -> Report:
     """Audit the file that was adopted; what is wrong with it does not keep it from being adopted."""
-    from articad.auditing.examine import Choices, audit
+    from articad.auditing.examine import AuditOptions, audit_file
 
-    found = audit(source, Choices(root=None if root is None else Path(root)))
+    found = audit_file(source, AuditOptions(root=None if root is None else Path(root)))
     terminal.say(f"What is wrong with {source.name}: {'nothing found' if found.ok else ''}")
     terminal.findings(found.findings)
     return found.to_json()

@@ -7,7 +7,7 @@ from typing import Final
 
 from articad.commands.command import argument, closest
 
-# The keys of `articad.runs.record.WRITERS`, which --help must not load.
+# The names of `articad.formats.FORMATS`, which --help must not load.
 FORMATS: Final = ("urdf", "mjcf", "freecad", "step", "glb", "3mf", "sdf", "usd", "plan")
 USUAL: Final = ("urdf", "mjcf")
 

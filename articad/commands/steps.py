@@ -72,26 +72,11 @@ def build_cache(options: argparse.Namespace) -> BuildCache:
 
 
 def loaded(target: str, options: argparse.Namespace, terminal: Terminal) -> Assembly:
-    """Return the assembly of a run, of a URDF, MJCF or FreeCAD file, or of a plan with its part scripts.
+    """Return the assembly of a run, a file or a plan, and show progress; see `articad.read`."""
+    from articad.entry import read
 
-    What the cache of parts holds is not built again.
-    """
-    from articad import formats
-    from articad.assembly import Assembly
-    from articad.kernels.choice import kernel_named
-    from articad.plan.schema import AssemblyPlan
-    from articad.runs.record import assembly_of
-    from articad.runs.run import Run
-
-    if (Path(target) / "request.json").is_file():
-        with Run.view(target) as run, terminal.progress("Reading") as tell:
-            return assembly_of(run, progress=tell)
-    if Path(target).suffix.lower() in {*formats.READERS, ".xacro"}:
-        return formats.read(target)
-    plan = AssemblyPlan.load(target)
-    folder = Path(target) if Path(target).is_dir() else Path(target).parent
-    with terminal.progress("Building", total=len(plan.parts)) as tell:
-        return Assembly.from_plan(plan, folder / "parts", kernel=kernel_named(plan.kernel, sandbox=sandbox_level(options)), progress=tell)
+    with terminal.progress("Reading") as tell:
+        return read(target, sandbox=sandbox_level(options), progress=tell)
 
 
 def draw(run: Run, terminal: Terminal) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, Final
 
@@ -11,8 +11,6 @@ from articad.assembly import Assembly
 from articad.certificates.certificate import Certificate
 from articad.connectors.connector import Connector
 from articad.errors import ReadError
-from articad.export.bundle import Bundle
-from articad.export.freecad import write_freecad
 from articad.geometry.mesh_files import write_stl
 from articad.geometry.part import Solid
 from articad.interference.check import Checks
@@ -26,7 +24,6 @@ from articad.runs.run import Run
 
 Report = dict[str, Any]
 
-WRITERS: Final[Mapping[str, Callable[..., Bundle]]] = {**formats.WRITERS, "freecad": write_freecad}
 _PICTURE_PIXELS: Final = 256  # of a picture kept in a run: enough to recognise, cheap enough to draw each time
 HURRIED: Final = {"W_BUILD_UNCHECKED"}  # found where the machine was too slow: in the trace alone, or no replay would be equal
 _KERNEL_FILES: Final = ("part.npz", "part.brep", "part.step", "part.FCStd", "seat.json")
@@ -128,32 +125,9 @@ def _hurried(run: Run) -> list[Report]:
     return [{key: value for key, value in event.items() if key not in {"t", "event"}} for event in found.values()]
 
 
-_CHOICES: Final[Mapping[str, tuple[str, ...]]] = {
-    "urdf": ("loops", "collision", "package", "srdf", "ros2_control"),
-    "mjcf": ("collision", "actuators"),
-    "3mf": ("process",),
-}
-
-
-def written(assembly: Assembly, format_name: str, *, strict: bool = False, **choices: Any) -> Bundle:
-    """Return the assembly in a format of `WRITERS`.
-
-    Args:
-        assembly: What to write.
-        format_name: Key of `WRITERS`.
-        strict: Refuse losses of motion, mass or shape.
-        choices: Arguments of `write_urdf`, `write_mjcf` and `write_3mf`, such as `loops` or `collision`; each format takes those that it knows.
-
-    Raises:
-        UnrepresentableError: If `strict` and the format cannot hold it.
-    """
-    known = _CHOICES.get(format_name, ())
-    return WRITERS[format_name](assembly, strict=strict, **{key: value for key, value in choices.items() if key in known})
-
-
 def record_export(run: Run, assembly: Assembly, format_name: str, *, strict: bool = False, **choices: Any) -> Report:
-    """Keep an export; return its report `articad.losses/1`, with the folder. For `choices` see `written`."""
-    bundle = written(assembly, format_name, strict=strict, **choices)
+    """Keep an export; return its report `articad.losses/1`, with the folder. For `choices` see `articad.formats.write`."""
+    bundle = formats.NAMED[format_name].write(assembly, strict=strict, **choices)
     run.save_export(format_name, bundle.files, bundle.to_json())
     run.trace("artifact", kind=format_name, file=f"export/{format_name}/{bundle.main}")
     return run.exports()[format_name]

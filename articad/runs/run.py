@@ -40,8 +40,10 @@ REQUEST_SCHEMA: Final = "articad.request/1"
 PART_SCHEMA: Final = "articad.part/1"
 DEFAULT_ROOT: Final = Path("runs")
 
-_REQUEST, _REQUIREMENTS, _PLAN, _ASSEMBLY, _CHECKS, _TRACE = (
-    "request.json",
+REQUEST_FILE: Final = "request.json"
+"""File that makes a folder a run."""
+
+_REQUIREMENTS, _PLAN, _ASSEMBLY, _CHECKS, _TRACE = (
     "requirements.json",
     "plan.json",
     "assembly.json",
@@ -191,7 +193,7 @@ class Run:
         described = request.to_json(_version() if version is None else version)
         for image, entry in zip(request.images, described["images"], strict=True):
             run._write(entry["file"], image.content)
-        run._write_json(_REQUEST, described)  # last: a directory without it is not a run yet
+        run._write_json(REQUEST_FILE, described)  # last: a directory without it is not a run yet
         return run
 
     @classmethod
@@ -247,7 +249,7 @@ class Run:
     @property
     def version(self) -> str:
         """Version of articad that made the run."""
-        return str((self._read_json(_REQUEST) or {}).get("articad", ""))
+        return str((self._read_json(REQUEST_FILE) or {}).get("articad", ""))
 
     def requirements(self) -> Json | None:
         """Return what was understood of the request, or None."""
@@ -601,7 +603,7 @@ def open_or_create(request: RunRequest, out: str | Path | None) -> Run:
     Raises:
         RunError: If `out` holds another request's run, or something else.
     """
-    if out is None or not (Path(out) / _REQUEST).exists():
+    if out is None or not (Path(out) / REQUEST_FILE).exists():
         return Run.create(request, out=out)
     run = Run.open(out)
     if run.request.same_as(request):
@@ -660,20 +662,20 @@ def _require_plain(path: Path) -> None:
 
 def _read_request(path: Path) -> RunRequest:
     run = Run(path, RunRequest(prompt=""), None)
-    stored = run._read_json(_REQUEST)  # noqa: SLF001 - the same class, before it is whole
+    stored = run._read_json(REQUEST_FILE)  # noqa: SLF001 - the same class, before it is whole
     if stored is None or stored.get("schema") != REQUEST_SCHEMA:
-        raise RunError.told(path, f"{path} is not a run: it has no {_REQUEST} of the form {REQUEST_SCHEMA}.", "Name a run directory.")
+        raise RunError.told(path, f"{path} is not a run: it has no {REQUEST_FILE} of the form {REQUEST_SCHEMA}.", "Name a run directory.")
     try:
         prompt, options, named = stored["prompt"], stored["options"], [(image["file"], image.get("part")) for image in stored["images"]]
         whole = isinstance(prompt, str) and isinstance(options, dict) and all(isinstance(name, str) for name, _ in named)
     except (KeyError, TypeError, AttributeError):
         whole = False
     if not whole:
-        raise RunError.told(path, f"{path / _REQUEST} is incomplete.", "Name another run directory.")
+        raise RunError.told(path, f"{path / REQUEST_FILE} is incomplete.", "Name another run directory.")
     for name, _ in named:  # a run may be a stranger's, and its pictures are sent to a model
         if not _IMAGE_FILE.fullmatch(name):
             raise RunError.told(
-                path, f"{path / _REQUEST} names the picture {name[:100]!r}, which is none of the run.", "Do not use this run."
+                path, f"{path / REQUEST_FILE} names the picture {name[:100]!r}, which is none of the run.", "Do not use this run."
             )
     images = tuple(UserImage.read(path / name, None if part is None else str(part)) for name, part in named)
     return RunRequest(prompt=prompt, images=images, options=options)

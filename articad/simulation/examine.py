@@ -17,7 +17,7 @@ from articad.simulation.trial import SECONDS, try_out
 from articad.simulation.verdict import Verdict
 
 ENGINES: tuple[Engine, ...] = ("mujoco", "pybullet")
-SUFFIXES = (".urdf", ".xml", ".mjcf")
+SIMULATED = (".urdf", ".xml", ".mjcf")
 
 
 def simulate_file(path: str | Path, *, engines: tuple[Engine, ...] = ENGINES, seconds: float = SECONDS) -> Verdict:
@@ -32,8 +32,8 @@ def simulate_file(path: str | Path, *, engines: tuple[Engine, ...] = ENGINES, se
         ReadError: If its ending is neither; E_UNSAFE_PATH if it names files outside its ROS package, or outside its folder without one.
     """
     path = Path(path)
-    if path.suffix.lower() not in SUFFIXES:
-        raise ReadError(f"{path}: simulators load {', '.join(SUFFIXES)}; convert it first.", path=str(path))
+    if path.suffix.lower() not in SIMULATED:
+        raise ReadError(f"{path}: simulators load {', '.join(SIMULATED)}; convert it first.", path=str(path))
     if not path.is_file():
         raise ReadError(f"{path}: there is no such file.", path=str(path))
     root = package_of(path)

@@ -59,7 +59,7 @@ def model_of(name: str, folder: Path) -> Path:
     Raises:
         ReadError: If there is none.
     """
-    for suffix in formats.READERS:
+    for suffix in formats.readable():
         if (file := folder / f"{name}{suffix}").is_file():
             return file
     place = folder / name
@@ -67,7 +67,7 @@ def model_of(name: str, folder: Path) -> Path:
     for run in (place, *sorted(ours.glob(kind))):
         if (run / "request.json").is_file():
             return run
-    files = [file for suffix in formats.READERS for file in sorted(place.rglob(f"*{suffix}"))]
+    files = [file for suffix in formats.readable() for file in sorted(place.rglob(f"*{suffix}"))]
     if not files:
         message = f"There is no model of {name} in {folder}."
         raise ReadError.told(folder, message, f"Write {name}.urdf there, for instance.", said=message)

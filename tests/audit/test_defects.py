@@ -7,16 +7,16 @@ from typing import Any
 
 import pytest
 
-from articad.auditing.examine import Choices, audit
+from articad.auditing.examine import AuditOptions, audit_file
 from articad.findings import Findings
 from tests.audit import defects
 from tests.audit.defects import DEFECTS, Defect
 
-QUICK = Choices(engines=False, budget=5.0)
+QUICK = AuditOptions(engines=False, budget=5.0)
 
 
 def findings(root: Any, folder: Path) -> Findings:
-    return audit(defects.write(root, folder), QUICK).findings
+    return audit_file(defects.write(root, folder), QUICK).findings
 
 
 def test_there_are_enough_defects() -> None:

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from articad.assembly import Assembly
-from articad.auditing.examine import Choices, audit, audit_assembly
+from articad.auditing.examine import AuditOptions, audit_assembly, audit_file
 from articad.export.mjcf import write_mjcf
 from articad.export.urdf import write_urdf
 from articad.importers.urdf import read_urdf
@@ -36,7 +36,7 @@ def test_an_example_has_no_finding(folder: Path, tmp_path: Path) -> None:
 
     for bundle in (write_urdf(assembly), write_mjcf(assembly)):
         bundle.write(tmp_path)
-        exported = audit(tmp_path / bundle.main)
+        exported = audit_file(tmp_path / bundle.main)
         assert str(exported.findings) == "no findings"
         assert exported.motion == "sampled"
         assert all(loading.loads in {True, None} for loading in exported.engines)
@@ -45,7 +45,7 @@ def test_an_example_has_no_finding(folder: Path, tmp_path: Path) -> None:
 # ---------------------------------------------------------------------- frames that are stated, and frames that are not
 
 NOTES = {"I_AUDIT_BASE", "I_AUDIT_ZERO_OUTSIDE"}
-STILL = Choices(engines=False, motion=False)
+STILL = AuditOptions(engines=False, motion=False)
 
 
 def lid(folder: Path) -> Path:
@@ -58,7 +58,7 @@ def lid(folder: Path) -> Path:
 
 
 def notes(path: Path) -> set[str]:
-    return set(audit(path, STILL).findings.codes) & NOTES
+    return set(audit_file(path, STILL).findings.codes) & NOTES
 
 
 def test_an_export_states_its_frames(tmp_path: Path) -> None:

@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 import pytest
 from lxml import etree
 
-from articad.auditing.examine import Choices, audit
+from articad.auditing.examine import AuditOptions, audit_file
 from articad.findings import Finding
 from articad.findings.codes import CODES
 from articad.geometry.shapes import box, cylinder
@@ -45,7 +45,7 @@ def spent() -> float:
 
 def assert_comes_to_an_end(path: Path) -> None:
     before = spent()
-    found = audit(path, Choices(root=ROOT))
+    found = audit_file(path, AuditOptions(root=ROOT))
 
     assert spent() - before < LONGEST_S
     assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024 < MOST_MB
@@ -96,7 +96,7 @@ def test_a_robot_of_fifty_links_takes_less_than_twenty_seconds(tmp_path: Path) -
     path = chain(tmp_path)
     before, start = spent(), time.monotonic()
 
-    found = audit(path)
+    found = audit_file(path)
 
     assert (found.links, found.joints) == (50, 49)
     assert not [finding for finding in found.findings if finding.code != "W_AUDIT_NOT_CHECKED"]
@@ -142,7 +142,7 @@ MENDED = [  # false alarms that were drawn
 
 def told(file: str, code: str, part: str) -> list[Finding]:
     """What is told of a file at rest."""
-    found = audit(ROOT / file, Choices(root=ROOT, engines=file.endswith(".xml"), budget=0.0)).findings.of(code)
+    found = audit_file(ROOT / file, AuditOptions(root=ROOT, engines=file.endswith(".xml"), budget=0.0)).findings.of(code)
     return [finding for finding in found if not part or part in finding.parts]
 
 

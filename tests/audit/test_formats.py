@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from articad.auditing.examine import Choices, audit, audit_assembly
+from articad.auditing.examine import AuditOptions, audit_assembly, audit_file
 from articad.auditing.many import audit_folder, models_below
 from articad.export.freecad import write_freecad
 from articad.export.mjcf import write_mjcf
@@ -16,8 +16,8 @@ from articad.export.urdf import write_urdf
 from tests.assemblies import all_joint_kinds
 from tests.audit import defects
 
-QUICK = Choices(engines=False, budget=5.0)
-FULL = Choices(budget=5.0)
+QUICK = AuditOptions(engines=False, budget=5.0)
+FULL = AuditOptions(budget=5.0)
 
 MJCF = """<mujoco><compiler angle="radian" autolimits="true"/><worldbody>
 <body name="a" pos="0 0 0.1"><joint name="slide" type="slide" axis="1 0 0" range="-0.01 0.01"/><geom name="box" type="box" size="0.05 0.05 0.05"/></body>
@@ -33,9 +33,9 @@ def mjcf(folder: Path, *, x: float, mask: str = "", rest: str = "") -> Path:
 
 
 def test_mjcf_overlap_is_found_and_its_sound_twin_is_clean(tmp_path: Path) -> None:
-    assert not audit(mjcf(tmp_path, x=0.115), FULL).findings
+    assert not audit_file(mjcf(tmp_path, x=0.115), FULL).findings
 
-    (finding,) = audit(mjcf(tmp_path, x=0.08), FULL).findings
+    (finding,) = audit_file(mjcf(tmp_path, x=0.08), FULL).findings
 
     assert finding.code == "E_OVERLAP"
     assert finding.parts == ("a", "b")
@@ -44,12 +44,12 @@ def test_mjcf_overlap_is_found_and_its_sound_twin_is_clean(tmp_path: Path) -> No
 
 def test_what_overlaps_at_rest_is_told_of_motion_only_where_that_makes_it_much_deeper(tmp_path: Path) -> None:
     """The slide drives the ball 10 mm further in: from 20 mm to 30 mm in one model, from 4 mm to 14 mm in the other."""
-    assert audit(mjcf(tmp_path, x=0.08), FULL).findings.codes == ("E_OVERLAP",)
-    assert set(audit(mjcf(tmp_path, x=0.096), FULL).findings.codes) == {"E_OVERLAP", "E_MOTION_COLLISION"}
+    assert audit_file(mjcf(tmp_path, x=0.08), FULL).findings.codes == ("E_OVERLAP",)
+    assert set(audit_file(mjcf(tmp_path, x=0.096), FULL).findings.codes) == {"E_OVERLAP", "E_MOTION_COLLISION"}
 
 
 def test_mjcf_first_contact_along_a_slide(tmp_path: Path) -> None:
-    found = audit(mjcf(tmp_path, x=0.105), FULL).findings
+    found = audit_file(mjcf(tmp_path, x=0.105), FULL).findings
 
     assert found.codes == ("E_MOTION_COLLISION",)
     assert found[0].value == pytest.approx(5.0, abs=0.2)  # the ball stands 5 mm off; it is drawn with facets
@@ -60,7 +60,7 @@ def test_mjcf_first_contact_along_a_slide(tmp_path: Path) -> None:
     "how", [{"mask": 'contype="2" conaffinity="4"'}, {"rest": '<contact><exclude body1="a" body2="b"/></contact>'}], ids=["mask", "exclude"]
 )
 def test_what_mjcf_never_lets_collide_is_a_note(how: dict[str, str], tmp_path: Path) -> None:
-    found = audit(mjcf(tmp_path, x=0.09, **how), FULL)
+    found = audit_file(mjcf(tmp_path, x=0.09, **how), FULL)
 
     assert found.ok
     assert set(found.findings.codes) <= {"I_AUDIT_SHARED"}
@@ -70,7 +70,7 @@ def test_mjcf_that_mujoco_refuses_says_so_in_its_words(tmp_path: Path) -> None:
     path = tmp_path / "model.xml"
     path.write_text('<mujoco><worldbody><body name="bare"><joint/></body></worldbody></mujoco>')
 
-    (finding,) = audit(path, FULL).findings
+    (finding,) = audit_file(path, FULL).findings
 
     assert finding.code == "E_READ"
     assert "mass and inertia" in finding.message
@@ -80,7 +80,7 @@ def test_an_engine_that_refuses_a_urdf_is_quoted_with_the_cause(tmp_path: Path) 
     root = defects.stand(tmp_path)
     defects.removing("link[@name='arm']/inertial", "link[@name='arm']/collision", "link[@name='arm']/visual")(root, tmp_path)
 
-    found = audit(defects.write(root, tmp_path), FULL).findings
+    found = audit_file(defects.write(root, tmp_path), FULL).findings
 
     (refusal,) = [finding for finding in found.of("W_AUDIT_ENGINE") if finding.where == "mujoco"]
     assert refusal.cause == "no_inertia"
@@ -98,13 +98,13 @@ def test_balls_stand_for_limbs_and_need_not_touch(shape: str, floats: bool, tmp_
     path = tmp_path / "figure.urdf"
     path.write_text(BALLS.format(f"<visual><geometry>{shape}</geometry></visual><collision><geometry>{shape}</geometry></collision>"))
 
-    found = audit(path, QUICK).findings
+    found = audit_file(path, QUICK).findings
 
     assert ("E_NOT_TOUCHING" in found.codes) == floats
 
 
 def test_time_that_runs_out_is_told(tmp_path: Path) -> None:
-    found = audit(defects.write(defects.stand(tmp_path), tmp_path), Choices(engines=False, budget=0.0))
+    found = audit_file(defects.write(defects.stand(tmp_path), tmp_path), AuditOptions(engines=False, budget=0.0))
 
     (finding,) = found.findings
     assert finding.code == "W_AUDIT_NOT_CHECKED"
@@ -113,14 +113,14 @@ def test_time_that_runs_out_is_told(tmp_path: Path) -> None:
 
 
 def test_a_proof_replaces_the_samples(tmp_path: Path) -> None:
-    sound = audit(defects.write(defects.stand(tmp_path), tmp_path), Choices(engines=False, certified=30.0))
+    sound = audit_file(defects.write(defects.stand(tmp_path), tmp_path), AuditOptions(engines=False, certified=30.0))
 
     assert sound.motion == "certified"
     assert not sound.findings
 
     root = defects.with_post(tmp_path)
     defects.post_in_the_way(root, tmp_path)
-    spoiled = audit(defects.write(root, tmp_path), Choices(engines=False, certified=30.0))
+    spoiled = audit_file(defects.write(root, tmp_path), AuditOptions(engines=False, certified=30.0))
 
     assert "E_MOTION_COLLISION" in spoiled.findings.codes
     free = {r.joint: r for r in spoiled_ranges(spoiled)}
@@ -128,7 +128,7 @@ def test_a_proof_replaces_the_samples(tmp_path: Path) -> None:
 
 
 def test_a_proof_that_is_not_finished_is_told_once(tmp_path: Path) -> None:
-    found = audit(defects.write(defects.stand(tmp_path), tmp_path), Choices(engines=False, certified=1e-9))
+    found = audit_file(defects.write(defects.stand(tmp_path), tmp_path), AuditOptions(engines=False, certified=1e-9))
 
     (finding,) = found.findings
     assert finding.code == "W_AUDIT_NOT_CHECKED"
@@ -146,7 +146,7 @@ def test_what_is_no_urdf_is_told(text: str, tmp_path: Path) -> None:
     path = tmp_path / "model.urdf"
     path.write_text(text)
 
-    (finding,) = audit(path, FULL).findings
+    (finding,) = audit_file(path, FULL).findings
 
     assert finding.code == "E_READ"
 
@@ -177,7 +177,7 @@ TABLE = {"top": ((100.0, 60.0, 10.0), (0.0, 0.0, 45.0)), "leg": ((10.0, 10.0, 40
 
 
 def test_a_sound_step_assembly_gives_nothing_and_keeps_its_names(tmp_path: Path) -> None:
-    found = audit(step_file(tmp_path, TABLE), QUICK)
+    found = audit_file(step_file(tmp_path, TABLE), QUICK)
 
     assert not found.findings
     assert found.links == 2
@@ -188,10 +188,10 @@ def test_step_overlap_floating_names_and_surfaces(tmp_path: Path) -> None:
     floating = TABLE | {"leg": ((10.0, 10.0, 40.0), (0.0, 0.0, -20.0))}
     unnamed = {"SOLID": TABLE["top"], "leg": TABLE["leg"]}
 
-    (overlap,) = audit(step_file(tmp_path, overlapping), QUICK).findings
-    (loose,) = audit(step_file(tmp_path, floating), QUICK).findings
-    (name,) = audit(step_file(tmp_path, unnamed), QUICK).findings
-    sheet = audit(step_file(tmp_path, TABLE, surface=True), QUICK).findings
+    (overlap,) = audit_file(step_file(tmp_path, overlapping), QUICK).findings
+    (loose,) = audit_file(step_file(tmp_path, floating), QUICK).findings
+    (name,) = audit_file(step_file(tmp_path, unnamed), QUICK).findings
+    sheet = audit_file(step_file(tmp_path, TABLE, surface=True), QUICK).findings
 
     assert overlap.code == "E_OVERLAP"
     assert overlap.value == pytest.approx(3.0)
@@ -205,7 +205,7 @@ def test_step_overlap_floating_names_and_surfaces(tmp_path: Path) -> None:
 def test_a_step_file_that_is_none_is_told(tmp_path: Path) -> None:
     (tmp_path / "thing.step").write_text("ISO-10303-21;\nnonsense")
 
-    (finding,) = audit(tmp_path / "thing.step", QUICK).findings
+    (finding,) = audit_file(tmp_path / "thing.step", QUICK).findings
 
     assert finding.code == "E_READ"
 
@@ -220,7 +220,7 @@ def test_our_own_files_are_judged_like_what_they_were_made_of(write: Any, tmp_pa
     bundle.write(tmp_path)
 
     direct = audit_assembly(assembly, "kinds", "plan", QUICK).findings
-    read = audit(tmp_path / bundle.main, QUICK).findings
+    read = audit_file(tmp_path / bundle.main, QUICK).findings
 
     contact = {"E_OVERLAP", "E_STATIC_OVERLAP", "E_FLOATING"}
     pairs = {(finding.code, finding.parts) for finding in direct if finding.code in contact}

@@ -10,12 +10,12 @@ from pathlib import Path
 import pytest
 
 from articad.auditing import contact
-from articad.auditing.examine import Choices, audit
+from articad.auditing.examine import AuditOptions, audit_file
 from articad.importers import reading
 
 COUNT = 4000
 LONGEST_S = 15.0  # of the processor; whatever grows with the square of COUNT takes minutes
-QUIET = Choices(engines=False, budget=1.0)
+QUIET = AuditOptions(engines=False, budget=1.0)
 
 
 def joint(name: int | str, parent: int | str, child: int | str, kind: str = "revolute", more: str = "") -> str:
@@ -50,7 +50,7 @@ def test_an_audit_of_thousands_of_links_ends_soon(name: str, tmp_path: Path) -> 
     (tmp_path / "a.urdf").write_text(make())
     before = time.process_time()
 
-    found = audit(tmp_path / "a.urdf", QUIET)
+    found = audit_file(tmp_path / "a.urdf", QUIET)
 
     assert time.process_time() - before < LONGEST_S
     assert found.links == COUNT
@@ -66,7 +66,7 @@ def test_pairs_at_rest_that_there_is_no_time_for_are_told(tmp_path: Path, monkey
     monkeypatch.setattr(contact, "REST_S", 0.0)
     (tmp_path / "a.urdf").write_text(piled(30))
 
-    left = audit(tmp_path / "a.urdf", QUIET).findings.of("W_AUDIT_NOT_CHECKED")
+    left = audit_file(tmp_path / "a.urdf", QUIET).findings.of("W_AUDIT_NOT_CHECKED")
     assert [finding.value for finding in left if "Overlap at rest" in finding.message] == [30 * 29 / 2]
 
 
@@ -74,7 +74,7 @@ def test_of_too_many_shapes_no_pair_is_looked_at(tmp_path: Path, monkeypatch: py
     monkeypatch.setattr(contact, "MOST_BODIES", 20)
     (tmp_path / "a.urdf").write_text(piled(30))
 
-    found = audit(tmp_path / "a.urdf", QUIET)
+    found = audit_file(tmp_path / "a.urdf", QUIET)
     assert "E_OVERLAP" not in found.findings.codes
     assert found.findings.of("W_AUDIT_NOT_CHECKED")[0].limit == 20
     assert found.motion == "none"
@@ -83,6 +83,6 @@ def test_of_too_many_shapes_no_pair_is_looked_at(tmp_path: Path, monkeypatch: py
 def test_more_links_than_are_read_are_one_finding(tmp_path: Path) -> None:
     (tmp_path / "a.urdf").write_text(robot([], reading.MAX_LINKS + 1))
 
-    (finding,) = audit(tmp_path / "a.urdf", QUIET).findings
+    (finding,) = audit_file(tmp_path / "a.urdf", QUIET).findings
     assert finding.code == "E_READ"
     assert "are the most" in finding.message

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from lxml import etree
 
-from articad.auditing.examine import Choices, audit
+from articad.auditing.examine import AuditOptions, audit_file
 from articad.auditing.mend import Mended, mend
 from articad.export.urdf import write_urdf
 from articad.geometry.mesh import TriMesh, merged
@@ -22,7 +22,7 @@ from articad.simulation.verdict import Verdict
 from tests.assemblies import all_joint_kinds
 from tests.audit import defects
 
-QUICK = Choices(engines=False)
+QUICK = AuditOptions(engines=False)
 DENSITY = 640.0
 
 
@@ -144,7 +144,7 @@ def test_a_sound_file_is_left_as_it_is(tmp_path: Path) -> None:
 
     assert result.masses == {}
     assert result.done == ["told MuJoCo to keep folders in mesh names"]
-    assert audit(result.file, QUICK).ok
+    assert audit_file(result.file, QUICK).ok
 
 
 def test_an_impossible_inertia_keeps_its_stated_mass(tmp_path: Path) -> None:

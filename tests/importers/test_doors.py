@@ -14,7 +14,7 @@ from lxml import etree
 from articad import cli
 from articad.errors import ReadError
 from articad.export.bundle import Bundle
-from articad.formats import WRITERS
+from articad.formats import NAMED
 from articad.geometry.shapes import capsule
 from articad.importers.mjcf import read_mjcf
 from articad.importers.mjcf_kept import READ as READ_MJCF
@@ -52,7 +52,7 @@ def converted(text: str, target: str, folder: Path, *, suffix: str = ".urdf", **
     """Write a text, read it, and write it in another format; return both files."""
     source = folder / f"source{suffix}"
     source.write_text(text)
-    bundle = WRITERS[target]((read_urdf if suffix == ".urdf" else read_mjcf)(source, **options))
+    bundle = NAMED[target].write((read_urdf if suffix == ".urdf" else read_mjcf)(source, **options))
     bundle.write(folder / "out")
     return source, folder / "out" / bundle.main, bundle
 
@@ -209,7 +209,7 @@ def test_a_chain_that_could_be_fused_is_a_note_and_a_fused_one_another(tmp_path:
 @pytest.mark.parametrize("target", ["urdf", "mjcf", "sdf"])
 def test_efforts_that_nobody_states_are_named(target: str, tmp_path: Path) -> None:
     """An assembly of our own gets efforts that carry its load; a file gets them only where the format demands one."""
-    (assumed,) = WRITERS[target](geared_pair()).findings.of("I_EFFORT_ASSUMED")
+    (assumed,) = NAMED[target].write(geared_pair()).findings.of("I_EFFORT_ASSUMED")
     assert "Effort" in assumed.message
     text = '<mujoco><worldbody><body name="a"><joint name="j" axis="0 1 0" range="-9 9"/><geom size=".1"/></body></worldbody></mujoco>'
     _, copy, bundle = converted(text, target, tmp_path, suffix=".xml")

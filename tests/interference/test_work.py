@@ -14,7 +14,7 @@ from typing import Any
 import pytest
 
 from articad.auditing import contact_motion
-from articad.auditing.examine import Choices, audit
+from articad.auditing.examine import AuditOptions, audit_file
 from articad.certificates import certificate as certifying
 from articad.certificates.certificate import Certificate, certify
 from articad.geometry import box, cylinder
@@ -113,10 +113,10 @@ def test_a_look_costs_more_the_larger_the_meshes_are() -> None:
 
 def test_an_audit_looks_at_the_same_motion_whatever_the_clock_shows(tmp_path: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     path = defects.write(defects.stand(tmp_path), tmp_path)
-    choices = Choices(engines=False, budget=1e-4)
-    alone = [finding.to_json() for finding in audit(path, choices).findings]
+    choices = AuditOptions(engines=False, budget=1e-4)
+    alone = [finding.to_json() for finding in audit_file(path, choices).findings]
     assert "W_AUDIT_NOT_CHECKED" in str(alone)
     monkeypatch.setattr(contact_motion, "Budget", partial(Budget, clock=jumping(0.01)))
-    assert [finding.to_json() for finding in audit(path, choices).findings] == alone
+    assert [finding.to_json() for finding in audit_file(path, choices).findings] == alone
     with busy(BUSY):
-        assert [finding.to_json() for finding in audit(path, choices).findings] == alone
+        assert [finding.to_json() for finding in audit_file(path, choices).findings] == alone

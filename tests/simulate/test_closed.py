@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 import trimesh
 
-from articad.auditing.examine import Choices, audit
+from articad.auditing.examine import AuditOptions, audit_file
 from articad.errors import ReadError
 from articad.importers.closure import require_closed
 from articad.importers.mjcf import read_mjcf
@@ -115,7 +115,7 @@ def test_a_file_that_names_a_file_outside_is_refused_before_any_engine_has_it(
     folder.mkdir()
     path = written(folder, WAYS[way], out(folder, secret))
 
-    found = audit(path, Choices(motion=False))
+    found = audit_file(path, AuditOptions(motion=False))
     assert found.findings.of("E_UNSAFE_PATH") or found.findings.of("W_AUDIT_MESH_OUTSIDE"), found.findings
     assert found.engines == ()
     for reader in (simulate_file, require_closed) if path.suffix == ".urdf" else (simulate_file, require_closed, read_mjcf):

@@ -1,0 +1,113 @@
+"""What a user does with a file, a folder or an assembly: read it, audit it, certify it, simulate it.
+
+Each function takes an assembly, a file in any format that is read, a plan folder, or a run folder.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Literal
+
+from articad import formats
+from articad.assembly import Assembly
+from articad.auditing.examine import AUDITED, AuditOptions, audit_assembly, audit_file, audit_made
+from articad.auditing.report import Audit
+from articad.certificates.certificate import DEFAULT_BUDGET_S, DEFAULT_EPSILON_MM, Certificate
+from articad.kernels.choice import kernel_named
+from articad.kernels.parts import Progress
+from articad.plan.schema import AssemblyPlan
+from articad.runs.record import assembly_of
+from articad.runs.run import REQUEST_FILE, Run
+from articad.simulation.examine import ENGINES, SIMULATED, simulate_assembly, simulate_file
+from articad.simulation.loading import Engine
+from articad.simulation.trial import SECONDS
+from articad.simulation.verdict import Verdict
+
+__all__ = ["audit", "certify", "read", "simulate"]
+
+
+def read(
+    source: str | Path,
+    *,
+    root: str | Path | None = None,
+    fuse: bool = False,
+    sandbox: Literal["strict", "weak"] = "strict",
+    progress: Progress | None = None,
+) -> Assembly:
+    """Read an assembly. Parts that the cache holds are not built again.
+
+    Args:
+        source: A URDF, MJCF, FreeCAD or STEP file; a plan, `plan.json` or its folder, with part scripts beside it; or a run folder.
+        root: Folder that meshes of a file may be read from; the file's own by default.
+        fuse: Of URDF and MJCF: make chains of joints over bare links the one joint that they stand for, such as a ball.
+        sandbox: "weak" runs part scripts with less isolation than Landlock or bubblewrap give.
+        progress: Called with the fate of each part that is built.
+
+    Raises:
+        ReadError: If the source cannot be read.
+        PlanError: If the plan has errors.
+        ContractError: If a part cannot be built.
+    """
+    path = Path(source)
+    if (path / REQUEST_FILE).is_file():
+        with Run.view(path) as run:
+            return assembly_of(run, sandbox=sandbox, progress=progress)
+    if path.is_dir() or path.suffix.lower() == ".json":
+        plan = AssemblyPlan.load(path)
+        folder = path if path.is_dir() else path.parent
+        return Assembly.from_plan(plan, folder / "parts", kernel=kernel_named(plan.kernel, sandbox=sandbox), progress=progress)
+    return formats.read(path, root=root, fuse=fuse)
+
+
+def audit(target: str | Path | Assembly, options: AuditOptions | None = None) -> Audit:
+    """Find what is wrong with a model; every fault is a finding.
+
+    Args:
+        target: As for `read`, or an assembly.
+        options: What to look at; everything but proofs by default.
+
+    Raises:
+        ReadError: If it is no file, plan or run.
+    """
+    if isinstance(target, Assembly):
+        return audit_assembly(target, target.name, "plan", options)
+    if Path(target).suffix.lower() in AUDITED:
+        return audit_file(target, options)
+    return audit_made(read(target), target, options)
+
+
+def certify(
+    target: str | Path | Assembly,
+    joints: Sequence[str] | None = None,
+    *,
+    pairs: bool = True,
+    epsilon: float = DEFAULT_EPSILON_MM,
+    budget: float = DEFAULT_BUDGET_S,
+) -> Certificate:
+    """Prove that no parts meet while joints move over their whole ranges; see `Assembly.certify`.
+
+    Args:
+        target: As for `read`, or an assembly.
+        joints: Names of the joints to be proven; all that move by default.
+        pairs: Whether joints are also moved two at a time.
+        epsilon: Distances up to here are contact [mm].
+        budget: Nominal seconds of work, the same work on every machine.
+    """
+    assembly = target if isinstance(target, Assembly) else read(target)
+    return assembly.certify(joints, pairs=pairs, epsilon=epsilon, budget=budget)
+
+
+def simulate(target: str | Path | Assembly, *, engines: tuple[Engine, ...] = ENGINES, seconds: float = SECONDS) -> Verdict:
+    """Hold, drive and let go a model in simulators.
+
+    Args:
+        target: As for `read`, or an assembly. A URDF or MJCF file is simulated as it stands; anything else as it is exported.
+        engines: Which to ask; those that are not installed are passed over.
+        seconds: Time limit of each engine.
+    """
+    if isinstance(target, Assembly):
+        return simulate_assembly(target, target.name, engines=engines, seconds=seconds)
+    if Path(target).suffix.lower() in SIMULATED:
+        return simulate_file(target, engines=engines, seconds=seconds)
+    return simulate_assembly(read(target), str(target), engines=engines, seconds=seconds)
