@@ -13,7 +13,9 @@ moved along it by a finite amount:
 3. At each neighbour that stays away, repeat step 1. If it fails again the equations have a multiple root there: the
    displacements that survive closing span the tangent space, and their rank is the dimension.
 
-The mobility is the largest dimension that two neighbours agree on.
+Several sets may meet at rest, such as the translations and the screw of a platform on rods round a circle. Random directions
+may all fall onto the smaller one, so further ones are taken across the secants of those. The mobility is the largest dimension
+that a second point of the same set confirms.
 """
 
 from __future__ import annotations
@@ -39,7 +41,8 @@ NEARLY_FREE = 1e-3  # |r| below which an obstruction may be noise of the data; a
 _SLICE = 0.05  # rad, or lengths L: a finite motion; an obstruction of order m leaves a residual of 0.05ᵐ
 _SLICE_SHARE = 0.3  # of the smallest singular value: beyond it the linear model is worth nothing
 _SHORTEST_SLICE = 2e-4  # a shorter one cannot tell an obstruction from rounding
-_NEIGHBOURS = 5  # random neighbours of a singular rest pose
+_NEIGHBOURS, _ACROSS = 5, 3  # random neighbours of a singular rest pose, and those across their secants
+_SPANNED = 0.3  # σ/σ₁ of the secants: directions below it lead to no set found so far
 _BESIDE = 0.05  # rad, or lengths L: how far away they are
 _NEARER, _FARTHER = 0.005, 0.3  # for linkages that move by thousandths only; for obstructions of high order
 _FAINT = 1e-8  # |r| of an obstruction at rest so small that it is of order four or more
@@ -96,10 +99,8 @@ def mobility_of(system: ClosureSystem, Q: FloatArray) -> Mobility:
     if obstruction <= REALISED:
         return regular
     found = _near(system, Q, N, obstruction, rng)
-    dimensions = [one.T.shape[1] for one in found]
-    seen_twice = [d for d in dimensions if dimensions.count(d) > 1]  # at single ones an obstruction of high order is too faint
-    mobility = max(seen_twice or dimensions, default=0)
-    best = next((one for one in found if one.T.shape[1] == mobility), _Neighbour(Q, N[:, :0], 0))
+    best = _largest(system, found, rng) or _Neighbour(Q, N[:, :0], 0, 0.0)
+    mobility = best.T.shape[1]
     return Mobility(mobility, first, n_active - mobility, best.Q, best.T, near, obstruction, best.multiple)
 
 
@@ -176,11 +177,19 @@ def _smallest(system: ClosureSystem, Q: FloatArray, rank: int) -> float:
 
 
 class _Neighbour(NamedTuple):
-    """A closed configuration near rest: its tangent space `(freedoms, dimension)`, and how many of its null vectors are no motions."""
+    """A closed configuration near rest.
+
+    Attributes:
+        Q: Coordinates `(columns,)`.
+        T: Tangent space `(freedoms, dimension)`.
+        multiple: Null vectors of the constraints there that are no motions.
+        size: Length of the steps [rad, or lengths L] with which T was found.
+    """
 
     Q: FloatArray
     T: FloatArray
     multiple: int
+    size: float
 
 
 def _near(system: ClosureSystem, Q: FloatArray, N: FloatArray, obstruction: float, rng: np.random.Generator) -> list[_Neighbour]:
@@ -190,14 +199,40 @@ def _near(system: ClosureSystem, Q: FloatArray, N: FloatArray, obstruction: floa
 
 
 def _neighbours(system: ClosureSystem, Q: FloatArray, N: FloatArray, scale: float, rng: np.random.Generator) -> list[_Neighbour]:
-    """Return closed neighbours at a distance from rest."""
-    found = []
-    for _ in range(_NEIGHBOURS):
-        c = rng.standard_normal(N.shape[1])
-        closed = _closed_beside(system, system.move(Q, scale * (N @ (c / np.linalg.norm(c)))))
-        if closed.residual <= CLOSED and np.linalg.norm(system.step_between(Q, closed.Q)) > _STUCK * scale:
-            found.append(_tangent_space(system, closed.Q, 0.2 * scale, rng))
+    """Return closed neighbours at a distance from rest: in random directions first, then across the secants found so far."""
+    found, secants = list[_Neighbour](), list[FloatArray]()
+    basis, n = np.eye(N.shape[1]), _NEIGHBOURS
+    while n and basis.size:
+        for _ in range(n):
+            c = basis @ rng.standard_normal(basis.shape[1])
+            closed = _closed_beside(system, system.move(Q, scale * (N @ (c / np.linalg.norm(c)))))
+            secant = system.step_between(Q, closed.Q)
+            if closed.residual <= CLOSED and np.linalg.norm(secant) > _STUCK * scale:
+                found.append(_tangent_space(system, closed.Q, 0.2 * scale, rng))
+                secants.append(secant @ N / float(np.linalg.norm(secant)))
+        n = _ACROSS if secants and n == _NEIGHBOURS else 0
+        if n:
+            _, s, Vt = svd(np.array(secants), full=True)
+            basis = Vt[int((s > _SPANNED * s[0]).sum()) :].T
     return found
+
+
+def _largest(system: ClosureSystem, found: Sequence[_Neighbour], rng: np.random.Generator) -> _Neighbour | None:
+    """Return a neighbour on a set of the largest dimension; None without neighbours.
+
+    At a single point an obstruction of high order may be too faint. So the dimension counts if two neighbours have it, or if a
+    step along the tangent space of the only one leads to a point that has it.
+    """
+    dimensions = [one.T.shape[1] for one in found]
+    for dimension in sorted(set(dimensions), reverse=True):
+        one = found[dimensions.index(dimension)]
+        if dimensions.count(dimension) > 1 or not dimension:
+            return one
+        c = rng.standard_normal(dimension)
+        closed = _closed_beside(system, system.move(one.Q, one.size * (one.T @ (c / np.linalg.norm(c)))))
+        if closed.residual <= CLOSED and _tangent_space(system, closed.Q, one.size, rng).T.shape[1] == dimension:
+            return one
+    return found[int(np.argmax(dimensions))] if found else None
 
 
 def _closed_beside(system: ClosureSystem, Q: FloatArray) -> Settled:
@@ -211,7 +246,7 @@ def _tangent_space(system: ClosureSystem, Q: FloatArray, scale: float, rng: np.r
     k = N.shape[1]
     rank = int(system.active.sum()) - k
     if not k or rank == system.n_rows or _obstruction(system, Q, N, rank, rng, scale) <= REALISED:
-        return _Neighbour(Q, N, 0)
+        return _Neighbour(Q, N, 0, scale)
     tried, left = [], []
     for _ in range(k + 2):
         c = rng.standard_normal(k)
@@ -221,11 +256,11 @@ def _tangent_space(system: ClosureSystem, Q: FloatArray, scale: float, rng: np.r
             tried.append(c)
             left.append(0.5 * system.step_between(ends[1].Q, ends[0].Q) @ N)
     if len(tried) < k:
-        return _Neighbour(Q, N[:, :0], k)
+        return _Neighbour(Q, N[:, :0], k, scale)
     projection = least_squares(np.array(tried), np.array(left), RANK_TOLERANCE)  # c ↦ what is left of it: 1 on the tangent space, else 0
     _, s, Vt = svd(projection, full=True)
     dimension = int((s > _SURVIVES).sum())
-    return _Neighbour(Q, N @ Vt[:dimension].T, k - dimension)
+    return _Neighbour(Q, N @ Vt[:dimension].T, k - dimension, scale)
 
 
 def motions(system: ClosureSystem, Q: FloatArray, tolerance: float = RANK_TOLERANCE) -> tuple[FloatArray, FloatArray]:

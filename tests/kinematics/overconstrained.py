@@ -21,10 +21,18 @@ def screw(a: float, alpha: float, d: float, theta: float) -> np.ndarray:
     return np.array([[ct, -sn * ca, sn * sa, a * ct], [sn, ct * ca, -ct * sa, a * sn], [0, sa, ca, d], [0, 0, 0, 1]])
 
 
+def ring_gap(rows: Sequence[Row], angles: np.ndarray) -> np.ndarray:
+    """Return the twelve numbers by which a ring is open: of the rotation, and of the place over the longest link."""
+    size = max(max(abs(a), abs(d)) for a, _, d in rows)
+    T = np.eye(4)
+    for (a, alpha, d), theta in zip(rows, angles, strict=True):
+        T = T @ screw(a, alpha, d, theta)
+    return np.concatenate([(T[:3, :3] - np.eye(3)).ravel(), T[:3, 3] / size])
+
+
 def closing_angles(rows: Sequence[Row], guess: Sequence[float] | np.ndarray, fixed: dict[int, float]) -> tuple[np.ndarray, float]:
     """Return the joint angles that close a ring with some of them given, and the residual that is left, by least squares."""
     free = [i for i in range(len(rows)) if i not in fixed]
-    size = max(max(abs(a), abs(d)) for a, _, d in rows)
 
     def angles(x: np.ndarray) -> np.ndarray:
         full = np.empty(len(rows))
@@ -33,13 +41,7 @@ def closing_angles(rows: Sequence[Row], guess: Sequence[float] | np.ndarray, fix
             full[i] = value
         return full
 
-    def residual(x: np.ndarray) -> np.ndarray:
-        T = np.eye(4)
-        for (a, alpha, d), theta in zip(rows, angles(x), strict=True):
-            T = T @ screw(a, alpha, d, theta)
-        return np.concatenate([(T[:3, :3] - np.eye(3)).ravel(), T[:3, 3] / size])
-
-    best = least_squares(residual, [guess[i] for i in free], xtol=1e-15, ftol=1e-15, gtol=1e-15, max_nfev=500)
+    best = least_squares(lambda x: ring_gap(rows, angles(x)), [guess[i] for i in free], xtol=1e-15, ftol=1e-15, gtol=1e-15, max_nfev=500)
     return angles(best.x), math.sqrt(2 * best.cost)
 
 
@@ -93,9 +95,38 @@ def bricard_plane_symmetric() -> Mechanism:
     return closed_ring(rows, first=1.0)
 
 
+def tetrahedra(n: int) -> list[Row]:
+    """Return the links of a ring of n tetrahedra: equal lengths, α = ±90° in turn, no offsets."""
+    return [(50.0, math.pi / 2 * (-1) ** i, 0.0) for i in range(n)]
+
+
 def kaleidocycle(n: int = 6) -> Mechanism:
-    """A ring of n tetrahedra: equal links, α = ±90°, no offsets; mobility 1 for six of them, n − 6 in general."""
-    return closed_ring([(50.0, math.pi / 2 * (-1) ** i, 0.0) for i in range(n)], first=1.1)
+    """A ring of n tetrahedra, n even, in its symmetric shape: every second joint angle is the same.
+
+    For n ≥ 6 the symmetric ring has n − 5 mechanisms of first order and one state of self-stress (Fowler and Guest 2005); six
+    tetrahedra move with mobility 1, n ≥ 8 with n − 6.
+    """
+    rows = tetrahedra(n)
+    for guess in np.random.default_rng(5).uniform(-math.pi, math.pi, (60, 2)):
+        angles, left = alternating(rows, guess)
+        if left < 1e-12 and np.abs(np.cos(angles)).max() < 0.95:  # no link folded onto the one beside it
+            return ring(rows, angles)
+    raise AssertionError("no symmetric configuration was found")
+
+
+def alternating(rows: Sequence[Row], guess: Sequence[float] | np.ndarray) -> tuple[np.ndarray, float]:
+    """Return joint angles u, v, u, v, … that close a ring, from a guess of u and v, and the residual that is left."""
+    half = len(rows) // 2
+    best = least_squares(lambda z: ring_gap(rows, np.tile(z, half)), guess, xtol=1e-15, ftol=1e-15, gtol=1e-15)
+    return np.tile(best.x, half), math.sqrt(2 * best.cost)
+
+
+def goldberg_six_bar() -> Mechanism:
+    """Goldberg 1943: three Bennett loops in a row that share links b, which are taken away: six revolutes, mobility 1."""
+    alpha, beta, gamma, delta_ = 1.0, 0.6, 0.45, 0.3
+    a, b, c, d = (100.0 * math.sin(x) for x in (alpha, beta, gamma, delta_))
+    rows = [(a, alpha, 0.0), (b, beta, 0.0), (a + c + d, alpha + gamma + delta_, 0.0), (b, beta, 0.0), (d, delta_, 0.0), (c, gamma, 0.0)]
+    return closed_ring(rows, first=1.0)
 
 
 def goldberg_five_bar() -> Mechanism:
@@ -219,6 +250,17 @@ def dixon_first() -> Mechanism:
     return planar(links, "bar00")
 
 
+def dixon_second() -> Mechanism:
+    """Dixon's second mechanism, K₄,₄: the corners (±a, ±b) of one rectangle tied to the corners (±c, ±d) of another.
+
+    The sixteen squared lengths are a² + b² + c² + d² ± 2ac ± 2bd: three numbers that four unknowns keep constant. Mobility 1.
+    """
+    signs = [(x, y) for x in (1, -1) for y in (1, -1)]
+    inner, outer = ([(x * w, y * h) for x, y in signs] for w, h in ((50.0, 30.0), (20.0, 70.0)))
+    links = {f"bar{i}{k}": {f"p{i}": p, f"q{k}": q} for i, p in enumerate(inner) for k, q in enumerate(outer)}
+    return planar(links, "bar00")
+
+
 def klann() -> Mechanism:
     """Klann's walking leg: a Stephenson six-bar, mobility 1 (its published proportions, closed at 0.6 rad of crank by circles)."""
     crank, lower, upper = (0.0, 0.0), (-0.8 * 100, -0.6 * 50), (-0.6 * 100, 1.1 * 100)
@@ -283,11 +325,13 @@ SINGLE: dict[str, Callable[[], Mechanism]] = {
     "bricard_plane_symmetric": bricard_plane_symmetric,
     "kaleidocycle": kaleidocycle,
     "goldberg": goldberg_five_bar,
+    "goldberg_six": goldberg_six_bar,
     "myard": myard_five_bar,
     "schatz": schatz,
     "sarrus": sarrus,
     "stephenson": stephenson,
     "double_parallelogram": double_parallelogram,
     "dixon": dixon_first,
+    "dixon_second": dixon_second,
     "klann": klann,
 }

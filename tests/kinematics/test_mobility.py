@@ -11,14 +11,25 @@ from scipy.spatial.transform import Rotation
 
 from articad.kinematics import Mechanism
 from tests.kinematics.linkages import mismatch, stewart, watt
-from tests.kinematics.overconstrained import SINGLE, delta, gear_triangle, parallel_rods, similar_hexagons, slack_bars
+from tests.kinematics.overconstrained import (
+    SINGLE,
+    closed_ring,
+    closing_angles,
+    delta,
+    gear_triangle,
+    kaleidocycle,
+    parallel_rods,
+    similar_hexagons,
+    slack_bars,
+    tetrahedra,
+)
 
 
 def moves_by(mechanism: Mechanism, step: float) -> None:
     """Check that the first driver really moves by a step: the parts meet in their joints there, in the test's own arithmetic."""
     q = mechanism.rest.copy()
     q[0] += step
-    assert max(mismatch(mechanism, q)) < 1e-7
+    assert max(mismatch(mechanism, q)) < 1e-9
     assert mechanism.poses(q).distance_to(mechanism.poses(mechanism.rest)).max() > 0.1 * abs(step)
 
 
@@ -30,6 +41,39 @@ def test_a_linkage_of_the_literature_has_mobility_one(name: str) -> None:
     assert mechanism.nq == 1
     moves_by(mechanism, 0.05)
     assert mechanism.branch.analysis.first_order == 1
+
+
+def rings_close(mechanism: Mechanism, n: int, forced: int) -> float:
+    """Return by how much a ring of n tetrahedra stays open when its drivers and further joints are forced by 0.05 rad: the oracle."""
+    rest = mechanism.configuration(mechanism.rest)
+    angles = np.array([rest[f"j{i}"][0] for i in range(n)])
+    driving = [int(c.name[1:]) for c in mechanism.drivers]
+    chosen = (driving + [i for i in range(n) if i not in driving])[:forced]
+    rng, left = np.random.default_rng(n), []
+    for _ in range(6):
+        size = 0.05 * rng.choice([-1.0, 1.0], forced) * rng.uniform(0.5, 1.0, forced)
+        fixed = {i: float(angles[i] + step) for i, step in zip(chosen, size, strict=True)}
+        left.append(closing_angles(tetrahedra(n), angles + rng.normal(0, 0.02, n), fixed)[1])
+    return min(left)
+
+
+@pytest.mark.parametrize("n", [6, 8, 10])
+def test_a_ring_of_tetrahedra_has_a_freedom_of_first_order_more_than_it_moves_with(n: int) -> None:
+    mechanism = kaleidocycle(n)
+    analysis = mechanism.branch.analysis
+    assert (analysis.first_order, mechanism.mobility) == (n - 5, max(1, n - 6))  # Fowler and Guest 2005
+    assert rings_close(mechanism, n, mechanism.mobility) < 1e-9
+    assert rings_close(mechanism, n, mechanism.mobility + 1) > 1e-6
+
+
+def test_eight_tetrahedra_folded_onto_each_other_have_a_freedom_more() -> None:
+    """Where a joint stands at 180° its two links are one, and the ring is another mechanism."""
+    folded = closed_ring(tetrahedra(8), first=1.1)
+    rest = folded.configuration(folded.rest)
+    assert min(abs(math.cos(rest[f"j{i}"][0]) + 1.0) for i in range(8)) < 1e-9
+    assert folded.mobility == 3
+    assert rings_close(folded, 8, 3) < 1e-9
+    assert rings_close(folded, 8, 4) > 1e-6
 
 
 def test_platforms_robots_and_six_bars_have_their_mobility() -> None:
@@ -73,11 +117,23 @@ def test_a_platform_on_parallel_rods_translates_and_turns_only_on_three(n: int, 
         (found,) = mechanism.findings().of("W_NEAR_SINGULAR")
         assert "3 freedoms to first order at rest and 2 in truth" in found.message
         platform = mechanism.poses([0.1, 0.0])[1]  # the driver moves the platform, and does not turn it
-        assert platform.angle_to(mechanism.poses(mechanism.rest)[1]) < 1e-4
+        assert platform.angle_to(mechanism.poses(mechanism.rest)[1]) < 1e-8
 
 
-def test_balls_at_both_ends_let_every_rod_spin_besides() -> None:
-    assert parallel_rods(4, "ball").mobility == 2 + 4
+@pytest.mark.parametrize("n", [5, 6, pytest.param(7, marks=pytest.mark.soak), pytest.param(8, marks=pytest.mark.soak)])
+def test_a_platform_on_rods_round_a_circle_translates_or_screws(n: int) -> None:
+    """|(R − 1)p + t| is the same for all p of a circle where R = 1, or where R turns about the axis and t lies along it."""
+    mechanism = parallel_rods(n, circle=True)
+    assert (mechanism.branch.analysis.first_order, mechanism.mobility) == (3, 2)
+    points = np.array([joint.T_parent_connector.translation for joint in mechanism.joints if joint.name.startswith("foot")])
+    assert rods_close(points, {0: 0.3, 1: 0.2}, n) < 1e-9  # two translations
+    assert rods_close(points, {0: 0.0, 1: 0.0, 5: 0.3}, n) < 1e-9  # a screw
+    assert rods_close(points, {0: 0.3, 1: 0.2, 5: 0.3}, n) > 1e-4  # not both
+
+
+@pytest.mark.parametrize("n", [4, pytest.param(5, marks=pytest.mark.soak)])
+def test_balls_at_both_ends_let_every_rod_spin_besides(n: int) -> None:
+    assert parallel_rods(n, "ball").mobility == 2 + n
 
 
 def test_rods_between_similar_hexagons_screw_the_platform() -> None:
@@ -92,9 +148,13 @@ def test_long_bars_with_little_slack_move(slack: float, scale: float) -> None:
     assert mechanism.mobility == 1
     assert "W_SHAKY" not in mechanism.findings().codes
     reach = mechanism.feasible_range("pin0")
-    # pin0 turns from the bow upwards to the bow downwards, past both: bars a, b at angles with cos a + cos(b) + cos(c) = 3 − slack/bar
-    swing = math.sqrt(slack / 30_000.0)
-    assert swing < reach.upper - reach.lower < 4 * swing
+    # pin0 turns as far as the two other bars are in line: a triangle of 30 m, 60 m and the span, on either side
+    ground = 90_000.0 - slack
+    most = math.acos((30_000.0**2 + ground**2 - 60_000.0**2) / (2 * 30_000.0 * ground))
+    rest = math.acos((ground - 30_000.0) / 2 / 30_000.0)
+    assert (reach.lower_reason, reach.upper_reason) == ("dead point", "dead point")
+    assert abs(reach.lower + most + rest) < 1e-4 * most
+    assert abs(reach.upper - most + rest) < 1e-4 * most
 
 
 def test_bars_exactly_in_line_are_shaky() -> None:
