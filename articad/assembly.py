@@ -15,11 +15,12 @@ from numpy.typing import ArrayLike, NDArray
 from articad.certificates.certificate import DEFAULT_BUDGET_S, DEFAULT_EPSILON_MM, Certificate, certify, constrained_joints
 from articad.certificates.fits import PROOF_SECONDS, FitReport, certified_fits, check_fits, followed
 from articad.connectors.se3 import SE3
-from articad.errors import LimitError, PlanError, UnknownJointError
+from articad.errors import KinematicsError, LimitError, PlanError, UnknownJointError
 from articad.findings import Findings
 from articad.geometry.mesh import TriMesh
 from articad.geometry.part import MassProperties, Part
-from articad.interference.check import Checks, check_pose
+from articad.interference.check import Checks, check_scene
+from articad.interference.report import PairCheck
 from articad.interference.scene import Scene
 from articad.interference.sweep import sweep
 from articad.kernels.choice import kernel_named
@@ -423,24 +424,16 @@ class Assembly:
 
     # ------------------------------------------------------------------ what is true of it
 
-    def check(self, q: ArrayLike | None = None) -> Checks:
+    def check(self, q: ArrayLike | None = None, *, known: Mapping[tuple[str, str], PairCheck] | None = None) -> Checks:
         """Check one pose for overlap, floating parts and broken meshes; at rest the declared fits, too, also over their motion.
 
         Args:
             q: Configuration `(nq,)` [rad, mm]; the rest pose by default.
+            known: Verdicts of an earlier check by pair of parts: they are taken over without measuring, and without findings.
         """
         at_rest = q is None
-        poses = self.poses(self.mechanism.rest if q is None else q)
-        checks = check_pose(
-            self._meshes(),
-            dict(Poses(self.mechanism.parts, poses)),
-            joints=self.joints,
-            waivers=self.waivers,
-            deflection=self._deflections(),
-            over="rest" if at_rest else "pose",
-            fits=self.fits,
-            ground=self.ground,
-        )
+        poses = Poses(self.mechanism.parts, self.poses(self.mechanism.rest if q is None else q))
+        checks = check_scene(self.scene(), poses, over="rest" if at_rest else "pose", ground=self.ground, known=known)
         return self._with_fits(checks) if at_rest else checks
 
     def sweep(self, joints: Sequence[str] | None = None, *, steps: int = 60, together: bool = False, samples: int = 0) -> Checks:
@@ -598,7 +591,10 @@ class Assembly:
         others = {
             c.name: float(v) for c, v in zip(self.drivers, q, strict=True) if c.joint in set(names) - {driver.joint} and c.unit != "1"
         }
-        feasible = self.mechanism.feasible_range(driver.name, at=others)
+        try:
+            feasible = self.mechanism.feasible_range(driver.name, at=others)
+        except KinematicsError:  # the drivers set beside it are out of reach without it
+            return f"It follows {driver.name!r}."
         return f"It follows {driver.name!r}, which may go from {feasible.lower:.6g} to {feasible.upper:.6g} {driver.unit} there."
 
     def _refuse_outside_limits(self, q: FloatArray, names: Iterable[str]) -> None:

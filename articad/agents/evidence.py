@@ -12,7 +12,7 @@ from dataclasses import dataclass, field, replace
 from typing import Final
 
 from articad.agents.numbers import placed, short
-from articad.agents.travel import reached, travels
+from articad.agents.travel import travels
 from articad.assembly import Assembly, FloatArray, Poses
 from articad.certificates.fits import FitReport, check_fits
 from articad.findings import Finding, Findings
@@ -32,12 +32,11 @@ class Evidence:
     """What was measured.
 
     Attributes:
-        checks: The rest pose and, if that holds, samples of each joint's range; the findings of fits are among theirs.
-        fits: Declared gaps against measured ones; None when the rest pose does not hold.
+        checks: The rest pose with the declared fits and, if nothing overlaps there, samples of each joint's range.
+        sizes: Least and greatest corner of each part at rest, in the assembly's frame [mm].
     """
 
     checks: Checks
-    fits: FitReport | None = None
     sizes: Mapping[str, tuple[FloatArray, FloatArray]] = field(default_factory=dict)
 
     @property
@@ -75,15 +74,12 @@ def examine(assembly: Assembly, known: Known | None = None) -> Evidence:
         The checks of the rest pose, and with them a sampled verdict for every pair that meets in motion.
     """
     scene = assembly.scene()
-    checks = assembly.check() if known is None else check_scene(scene, assembly.at(), ground=assembly.ground, known=known.rest)
-    fits = None
-    if checks.ok:  # what overlaps at rest overlaps in motion too: one thing at a time
-        fits = check_fits(scene, reached(assembly))
+    checks = assembly.check(known=None if known is None else known.rest)
+    if all(finding.stage == "fit" for finding in checks.findings.errors):  # what overlaps at rest overlaps in motion too
         for joint in dict.fromkeys(driver.joint for driver in assembly.drivers):
             checks = _with_motion(checks, assembly, joint, scene, {} if known is None else known.motion.get(joint, {}))
-        checks = replace(checks, findings=checks.findings + fits.findings)
     checks = replace(checks, findings=diagnose(scene, assembly.mechanism.tree, checks.findings))
-    return Evidence(checks, fits, _sizes(assembly))
+    return Evidence(checks, _sizes(assembly))
 
 
 def told(assembly: Assembly, evidence: Evidence) -> str:
@@ -103,9 +99,9 @@ def told(assembly: Assembly, evidence: Evidence) -> str:
     lines += travels(assembly)
     lines += ["", "Bounding boxes at rest, in the assembly's frame (mm):"]
     lines += [f"- {name}: from {placed(low)} to {placed(high)}" for name, (low, high) in evidence.sizes.items()]
-    if evidence.fits is not None and evidence.fits.rows:
+    if evidence.checks.fits:
         lines += ["", "Declared fits:"]
-        for row in evidence.fits.rows:
+        for row in evidence.checks.fits:
             gaps = (
                 "not measured"
                 if row.rest is None or row.least is None

@@ -5,25 +5,12 @@ from __future__ import annotations
 import math
 from typing import Final
 
-import numpy as np
-
 from articad.assembly import Assembly, FloatArray
 from articad.kinematics.joints import Joint, JointType, swing, twist
 from articad.render.pictures import motion_frames
 
 FOLLOWED: Final = 61  # poses of each driver's range: a turn in steps of 6°, its half included
 _STILL: Final = 1e-6  # rad, mm: what moves less stands still
-
-
-def reached(assembly: Assembly) -> dict[str, tuple[float, float]]:
-    """Return how far each coordinate of a linkage goes while its drivers move, one joint at a time [rad, mm]; of a tree nothing."""
-    mechanism = assembly.mechanism
-    if mechanism.is_tree:
-        return {}
-    rows = np.concatenate(_sweeps(assembly))
-    return {
-        c.name: (float(low), float(high)) for c, low, high in zip(mechanism.coordinates, rows.min(axis=0), rows.max(axis=0), strict=True)
-    }
 
 
 def travels(assembly: Assembly) -> list[str]:

@@ -141,6 +141,8 @@ class Mechanism:
             if corrected.branch is not None and not _is_doubtful(corrected, noise=False):
                 return corrected
         if isinstance(given.error, LoopError):
+            if given.error.findings[0].code != "E_LOOP_OPEN":  # couplings that contradict each other: no frame is to blame
+                return given
             cause = nearest(self.parts, self.ground, self.given_joints, self.couplings, coarse=True) or found
             return given if cause is None else given._replace(error=askew_error(given.error, cause))
         return given._replace(beyond=found)

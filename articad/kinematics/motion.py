@@ -282,9 +282,15 @@ def _range_findings(c: Coordinate, lower: float, upper: float, lower_reason: str
         why = whys.get(code, f"the {reason}")
         how = "was followed over" if code == "E_NOT_FOLLOWED" else "reaches"
         message = f"driver {c.name!r} declared {declared} but the loop {how} only {reached}: {why} at {shown(value, c.unit)}."
-        hint = f"Set these limits: {reached}."
+        hint = f"Set these limits: {reached}." if math.isfinite(lower) and math.isfinite(upper) else _one_limit(lower, upper, c.unit)
         found.append(Finding(code=code, where=f"joints.{c.joint}", message=message, hint=hint, value=value, unit=c.unit))
     return found
+
+
+def _one_limit(lower: float, upper: float, unit: str) -> str:
+    """Return the advice to bound a driver on the one side where its way ends."""
+    side, value = ("upper", upper) if math.isinf(lower) else ("lower", lower)
+    return f"Set the {side} limit to {shown(value, unit)}."
 
 
 def _stop_finding(track: Track, c: Coordinate, asked: float) -> Finding | None:

@@ -15,7 +15,9 @@ Contact = Literal["allowed", "required", "forbidden"]
 class Fit(Form):
     """How closely the two parts of a joint fit."""
 
-    gap_mm: Interval | None = Field(None, description="Smallest surface distance: at least min over the motion, at most max at rest")
+    gap_mm: Interval | None = Field(
+        None, description="Surface distance at least min over the motion; play (half the difference of diameters) at most max at rest"
+    )
     within_mm: Number | None = Field(None, description="Only surface closer than this to the joint's axis counts")
     contact: Contact | None = None
 

@@ -44,6 +44,19 @@ def test_a_pose_in_which_a_follower_leaves_its_limits_is_refused_with_the_range_
     assert assembly.poses([1.0, feasible.upper + 0.1]).batch_shape == (5,)  # unlimited, as it says
 
 
+def test_a_follower_beyond_its_limits_is_refused_also_where_its_driver_has_no_range_of_its_own() -> None:
+    """Two cranks of a five-bar that reach a pose together only: the second alone would pull the linkage apart."""
+    s = Sketch()
+    s.add("revolute", "left", "base", "l1", (0, 0, 0), limits="endless", driver=True)
+    s.add("revolute", "right", "base", "r1", (100, 0, 0), limits="endless", driver=True)
+    s.add("revolute", "elbow", "l1", "l2", (0, 60, 0), limits=(-1.0, 1.0))
+    s.add("revolute", "hand", "r1", "r2", (100, 60, 0), limits="endless")
+    s.add("revolute", "tip", "l2", "r2", (50, 60 + math.sqrt(60**2 - 50**2), 0), limits="endless")
+    assembly = s.assembly("five_bar", "base")
+    with pytest.raises(LimitError, match=r"'elbow' is at .* It follows 'left'"):
+        assembly.at(left=-math.pi / 2, right=-math.pi / 2)
+
+
 def test_a_coupled_joint_beyond_its_limits_is_refused() -> None:
     base = block("base", a=frame(), b=frame(at=(60, 0, 0)))
     wheels = [block(name, (20, 20, 5), axis=frame()) for name in ("p", "q")]

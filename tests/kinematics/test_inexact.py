@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from articad.connectors import SE3
 from articad.errors import LoopError
-from articad.kinematics import Joint, Mechanism
+from articad.kinematics import Coupling, Joint, Mechanism
 from articad.kinematics.inexact import ANGLE_TOLERANCE, POSITION_TOLERANCE
 from tests.kinematics.linkages import at, bennett, four_bar, from_rest, misaligned, mismatch, scissor, slider_crank, stewart, watt
 from tests.strategies import random_pose
@@ -170,3 +170,22 @@ def test_a_pin_out_of_the_plane_beyond_the_tolerance_is_named_with_its_distance(
     assert "would have to move by 0.100 mm" in found.message
     joints = [replace(j, T_child_connector=j.T_child_connector @ at(0, 0, 0.001)) if j.name == "pin_b" else j for j in plain.joints]
     assert Mechanism(plain.parts, plain.ground, joints).mobility == 1
+
+
+@pytest.mark.parametrize("offset", [1e-3, 0.01, 0.3])
+def test_couplings_that_contradict_each_other_are_no_matter_of_axes(offset: float) -> None:
+    linkage = four_bar()
+    joints = [
+        *linkage.joints,
+        from_rest("motor", "revolute", "frame", "pinion", at(-60)),
+        from_rest("second", "revolute", "frame", "wheel", at(-90)),
+    ]
+    couplings = [
+        Coupling("mesh", "gear", "motor", "crank", 0.5, math.radians(60)),
+        Coupling("one", "gear", "motor", "second", -2.0),
+        Coupling("two", "gear", "motor", "second", -2.0, offset),
+    ]
+    (found,) = Mechanism((*linkage.parts, "pinion", "wheel"), "frame", joints, couplings).findings()
+    assert found.code == "E_COUPLING_REST"
+    assert found.message == "Couplings contradict each other."
+    assert found.hint == "Set their offsets from the rest values."

@@ -247,6 +247,18 @@ def test_an_endless_crank_with_dead_points_just_follows_the_loop() -> None:
     assert reached.findings.ok
 
 
+def test_a_driver_that_ends_on_one_side_only_is_advised_no_infinite_limit() -> None:
+    free, bounded = math.inf, 3.0
+    joints = [
+        joint("motor", "revolute", ("frame", at(0)), ("wheel", at(0)), driver=True, limits=[(-free, 10.0)]),
+        joint("arm", "revolute", ("frame", at(50)), ("lever", at(0)), limits=[(-free, bounded)]),
+    ]
+    pair = Mechanism(("frame", "wheel", "lever"), "frame", joints, [Coupling("belt", "belt", "motor", "arm", 1.0)])
+    (found,) = pair.feasible_range("motor").findings
+    assert found.hint == "Set the upper limit to 171.887°."
+    assert "inf" not in found.hint
+
+
 def test_a_limit_of_a_following_joint_ends_the_range_where_it_is_met() -> None:
     mechanism = slider_crank(travel=(80.0, 150.0))
     reached = mechanism.feasible_range("crank")
