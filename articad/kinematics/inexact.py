@@ -217,19 +217,20 @@ class _Problem:
         return best
 
     def alone(self, samples: Sequence[Settled]) -> FloatArray | None:
-        """Return the smallest δ that moves one frame alone and explains nearly all that is wrong; None where none does."""
+        """Return the δ that moves one frame alone and explains best what is wrong, the smallest of equals; None where none explains it."""
         A, b = self._linear(
             self._system, samples, [len(one.Vt) - self._freedoms(one) for one in samples], np.zeros((len(self._names), 2, 6))
         )
-        found: list[tuple[float, int, FloatArray]] = []
+        found: list[tuple[float, float, int, FloatArray]] = []
         for frame in range(2 * len(self._names)):
             columns = A[:, 6 * frame : 6 * frame + 6]
             twist = least_squares(columns, b, _CUTS[0])
-            if np.linalg.norm(columns @ twist - b) < _EXPLAINED * np.linalg.norm(b):
-                found.append((round(float(np.linalg.norm(twist)), 6), frame, twist))
+            left = float(np.linalg.norm(columns @ twist - b) / np.linalg.norm(b))
+            if left < _EXPLAINED:
+                found.append((round(left, 2), round(float(np.linalg.norm(twist)), 6), frame, twist))
         if not found:
             return None
-        _, frame, twist = min(found, key=lambda one: one[:2])
+        *_, frame, twist = min(found, key=lambda one: one[:3])
         delta = np.zeros((2 * len(self._names), 6))
         delta[frame] = twist
         return delta.reshape(-1, 2, 6)

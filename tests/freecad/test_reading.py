@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import json
+import zipfile
 from functools import cache
 from pathlib import Path
 
 import numpy as np
 import pytest
+from lxml import etree
+from scipy.spatial.transform import Rotation
 
 import articad as ac
 from articad.errors import ReadError
@@ -80,6 +83,34 @@ def test_a_document_without_our_records_has_the_same_poses(tmp_path: Path) -> No
     mm, rad = opened.moved(dict(made.at()), dict(foreign.at()))
     assert mm < 1e-9
     assert rad < 1e-9
+
+
+def with_axis_askew(path: Path, frame: str, degrees: float) -> Path:
+    """Write a copy of a document with a coordinate system turned about its own x axis, changed where the file stores it."""
+    copy = path.with_name("askew.FCStd")
+    with zipfile.ZipFile(path) as before, zipfile.ZipFile(copy, "w") as after:
+        for entry in before.infolist():
+            content = before.read(entry)
+            if entry.filename == "Document.xml":
+                document = etree.fromstring(content)
+                (placement,) = document.xpath(f"//Object[@name='{frame}']//Property[@name='Placement']/PropertyPlacement")
+                stored = Rotation.from_quat([float(placement.get(f"Q{i}")) for i in range(4)])
+                for i, number in enumerate((stored * Rotation.from_euler("x", degrees, degrees=True)).as_quat()):
+                    placement.set(f"Q{i}", repr(float(number)))
+                content = etree.tostring(document)
+            after.writestr(entry, content)
+    return copy
+
+
+@pytest.mark.freecad
+@opened.needs_freecad
+@pytest.mark.parametrize("frame", ["rod__big_end", "rod__small_end"])
+def test_a_crank_slider_with_an_axis_askew_is_refused_with_the_angle(frame: str, tmp_path: Path) -> None:
+    (path,) = write_freecad(assembly("slider_crank")).write(tmp_path)
+    (found,) = read_freecad(with_axis_askew(path, frame, 1.206), metadata=False).mechanism.findings().of("E_LOOP_OPEN")
+    assert "1.206° askew" in found.message
+    assert "Turn one of the two axes by 1.206°" in str(found.hint)
+    assert "Lengthen" not in str(found)
 
 
 @pytest.mark.freecad
