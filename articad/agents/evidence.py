@@ -18,6 +18,7 @@ from articad.certificates.fits import FitReport, check_fits
 from articad.findings import Finding, Findings
 from articad.interference.check import check_scene
 from articad.interference.diagnosis import diagnose
+from articad.interference.fits import FitCheck
 from articad.interference.motion import freedoms
 from articad.interference.report import Checks, PairCheck, Strength
 from articad.interference.scene import Scene
@@ -99,9 +100,10 @@ def told(assembly: Assembly, evidence: Evidence) -> str:
     lines += travels(assembly)
     lines += ["", "Bounding boxes at rest, in the assembly's frame (mm):"]
     lines += [f"- {name}: from {placed(low)} to {placed(high)}" for name, (low, high) in evidence.sizes.items()]
-    if evidence.checks.fits:
+    fits = [row for row in evidence.checks.fits if isinstance(row, FitCheck)]
+    if fits:
         lines += ["", "Declared fits:"]
-        for row in evidence.checks.fits:
+        for row in fits:
             gaps = (
                 "not measured"
                 if row.rest is None or row.least is None
