@@ -14,11 +14,10 @@ from typing import Final
 from articad.agents.numbers import placed, short
 from articad.agents.travel import travels
 from articad.assembly import Assembly, FloatArray, Poses
-from articad.certificates.fits import FitReport, check_fits
+from articad.certificates.fits import FitCheck
 from articad.findings import Finding, Findings
 from articad.interference.check import check_scene
 from articad.interference.diagnosis import diagnose
-from articad.interference.fits import FitCheck
 from articad.interference.motion import freedoms
 from articad.interference.report import Checks, PairCheck, Strength
 from articad.interference.scene import Scene
