@@ -77,7 +77,7 @@ def check_rounding(name: str, seed: int, places: int, axis_places: int) -> None:
     assert correction.within
     if off < 1e-8:
         return
-    assert max(correction.distance, 30 * correction.angle) > 1e-3 * off
+    assert max(correction.distance, 30 * correction.angle) > 1e-4 * off  # digits that fit by luck: once in a few hundred roundings 6e-4
 
 
 @pytest.mark.parametrize("name", MAKERS)
