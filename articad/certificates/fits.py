@@ -162,7 +162,7 @@ def check_fits(
         held = _Held(scene, joint, fit, Budget(seconds))
         row, finding = held.check(reached, proven or {})
         rows.append(row)
-        findings += finding
+        findings += finding or _unresolved(row)
         claims += held.claims
     return FitReport(Findings(findings), tuple(rows), tuple(claims))
 
@@ -435,6 +435,28 @@ def _unproven(row: FitCheck) -> Finding:
         unit="mm",
         stage="fit",
     )
+
+
+def _unresolved(row: FitCheck) -> list[Finding]:
+    """Return a finding if the meshes may be off by more than half the range of a fit that seems kept: it is not known to be."""
+    fit, off = row.declared, row.tolerance
+    if fit.gap_max is None or fit.gap_max - (fit.gap_min or 0.0) >= 2 * off:
+        return []
+    measured = row.rest if row.play is None else row.play
+    return [
+        Finding(
+            code="W_FIT_UNRESOLVED",
+            where=f"joints.{row.joint}.fit",
+            parts=row.parts,
+            message=f"Joint {row.joint!r}: {measured:.4g} mm were measured on meshes that may be off by {off:.4g} mm together; that does not "
+            f"tell whether the gap is between {fit.gap_min or 0:g} and {fit.gap_max:g} mm.",
+            hint=f"Mesh the two parts with a deflection of {(fit.gap_max - (fit.gap_min or 0.0)) / 8:.2g} mm or less.",
+            value=off,
+            limit=(fit.gap_max - (fit.gap_min or 0.0)) / 2,
+            unit="mm",
+            stage="fit",
+        )
+    ]
 
 
 def _unmeasured(joint: Joint, reason: str) -> Finding:

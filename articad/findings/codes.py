@@ -414,6 +414,9 @@ CODES: dict[str, Code] = {
     ),
     "E_FIT_TIGHT": Code("fit", "code", "A joint's gap is smaller than its fit.", "Enlarge the bore or thin the pin by the named amount."),
     "E_FIT_LOOSE": Code("fit", "code", "A joint's gap is larger than its fit.", "Narrow the bore or thicken the pin by the named amount."),
+    "W_FIT_UNRESOLVED": Code(
+        "fit", "design", "The meshes are too coarse to tell whether a fit is kept.", "Mesh the two parts with a smaller deflection."
+    ),
     "E_FIT_CONTACT": Code(
         "fit", "design", "Contact is forbidden but found, or required but absent.", "Move the surfaces by the named amount."
     ),

@@ -9,8 +9,8 @@ import numpy as np
 
 from articad.connectors import FloatArray, quaternion
 from articad.kinematics.batch import TreeArrays
-from articad.kinematics.joints import Coupling, Joint
-from articad.kinematics.layout import IndexArray, Layout
+from articad.kinematics.joints import Joint
+from articad.kinematics.layout import IndexArray
 
 NEAR_PI = -0.9  # cos θ below which the logarithm is taken by quaternions instead of the sine
 _STRAIGHT = 1e-8  # rad: a mismatch so small that the square term of the logarithm's Jacobian is below rounding
@@ -102,37 +102,6 @@ class BatchEquations:
     def _residual(self, t: FloatArray, phi: FloatArray) -> FloatArray:
         r: FloatArray = np.concatenate([t / self._lengths, phi], axis=-1).swapaxes(0, 1).reshape(t.shape[1], 6 * len(t))
         return r
-
-
-class CouplingEquations:
-    """The rows q_b − k q_a − c, in rad and L: linear, so their Jacobian is constant.
-
-    Args:
-        couplings: Relations between coordinates.
-        layout: Of the coordinates.
-        scale: What one scaled unit of each freedom is [rad, mm].
-        length: L [mm].
-
-    Attributes:
-        J: `(couplings, freedoms)`, scaled.
-    """
-
-    def __init__(self, couplings: Sequence[Coupling], layout: Layout, scale: FloatArray, length: float) -> None:
-        n = len(couplings)
-        by_column, by_freedom, unit = np.zeros((n, layout.n_columns)), np.zeros((n, layout.n_freedoms)), np.ones(n)
-        for i, c in enumerate(couplings):
-            a, b = layout.column_of[c.a], layout.column_of[c.b]
-            by_column[i, b], by_column[i, a] = 1.0, -c.ratio
-            by_freedom[i, layout.freedom_of(b)], by_freedom[i, layout.freedom_of(a)] = 1.0, -c.ratio
-            if layout.coordinates[b].unit == "mm":
-                unit[i] = length
-        self._columns, self._offset, self._unit = by_column.T, np.array([c.offset for c in couplings]), unit
-        self.J: FloatArray = by_freedom * scale / unit[:, None]
-
-    def residual(self, Q: FloatArray) -> FloatArray:
-        """Return the residuals `(*batch, couplings)` at `Q` `(*batch, columns)`."""
-        residual: FloatArray = (Q @ self._columns - self._offset) / self._unit
-        return residual
 
 
 def _rotation_log(R: FloatArray) -> FloatArray:

@@ -19,13 +19,12 @@ import numpy as np
 from articad.connectors import SE3, FloatArray
 from articad.errors import KinematicsError
 from articad.kinematics.batch import TreeArrays
-from articad.kinematics.equations import BatchEquations, CouplingEquations, closures
+from articad.kinematics.equations import BatchEquations, closures
 from articad.kinematics.factors import one_thread, singular_values, svd
 from articad.kinematics.joints import Coupling, Joint, JointLimits, JointType
 from articad.kinematics.layout import IndexArray, Layout
 from articad.kinematics.single import SingleEquations
 from articad.kinematics.ties import Basis, BoolArray, Ties
-from articad.kinematics.ties import missed as tie_errors
 from articad.kinematics.tree import KinematicTree
 
 CLOSED = 1e-10  # |t|/L and rad: a loop with a smaller residual is closed
@@ -122,13 +121,13 @@ class ClosureSystem:
         self.arrays = TreeArrays(subtree.parts, subtree, self.layout, SE3.identity(), loop_joints)
         self.scale: FloatArray = np.where(self.layout.is_length, self._travels(), 1.0)
         self._closures = closures(self.arrays, loop_joints, self.scale, self.lengths)
-        self._many, self._tied = BatchEquations(self._closures), CouplingEquations(self.couplings, self.layout, self.scale, self.length)
-        self.n_loop_rows = 6 * len(self.loops)
-        self._linear = np.concatenate([np.zeros((self.n_loop_rows, self.layout.n_freedoms)), self._tied.J])
-        self.n_rows = len(self._linear)
+        self._many = BatchEquations(self._closures)
         self.in_loops: BoolArray = (np.concatenate([self._closures.spin, self._closures.slide]) != 0).any(axis=0)
-        self.active: BoolArray = self.in_loops | (self._tied.J != 0).any(axis=0)
-        self.ties = Ties(self.couplings, self.layout, self.scale, self.in_loops)
+        self.ties = Ties(self.couplings, self.layout, self.scale, self.length, self.in_loops)
+        self.n_loop_rows = 6 * len(self.loops)
+        self._linear = np.concatenate([np.zeros((self.n_loop_rows, self.layout.n_freedoms)), self.ties.J])
+        self.n_rows = len(self._linear)
+        self.active: BoolArray = self.in_loops | (self.ties.J != 0).any(axis=0)
         columns = range(self.layout.n_columns)
         self._written = np.array([c for c in columns if self.active[self.layout.freedom_of(c)]], dtype=np.intp)
 
@@ -156,16 +155,16 @@ class ClosureSystem:
     @property
     def coupling_rows(self) -> FloatArray:
         """The last rows of the Jacobian, which never change `(couplings, freedoms)`."""
-        return self._tied.J
+        return self.ties.J
 
     def evaluate(self, Q: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return residuals `(batch, rows)` and their Jacobian `(batch, rows, freedoms)`, scaled, at `Q` `(batch, columns)`."""
         J = np.tile(self._linear, (len(Q), 1, 1))
-        return np.concatenate([self._many.fill(Q, J), self._tied.residual(Q)], axis=1), J
+        return np.concatenate([self._many.fill(Q, J), self.ties.residual(Q)], axis=1), J
 
     def residual(self, Q: FloatArray) -> FloatArray:
         """Return the residuals alone `(batch, rows)`."""
-        return np.concatenate([self._many.residual(Q), self._tied.residual(Q)], axis=1)
+        return np.concatenate([self._many.residual(Q), self.ties.residual(Q)], axis=1)
 
     def evaluate_one(self, Q: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return residuals `(rows,)` and their Jacobian `(rows, freedoms)`, scaled, at one configuration `(columns,)`."""
@@ -180,7 +179,7 @@ class ClosureSystem:
         return self.residual(Q[None])[0] if self._one is None else self._with_couplings(self._one.residual(Q), Q)
 
     def _with_couplings(self, loops: list[float], Q: FloatArray) -> FloatArray:
-        return np.array([*loops, *self._tied.residual(Q)] if self.couplings else loops)
+        return np.array([*loops, *self.ties.residual(Q)] if self.couplings else loops)
 
     def gaps(self, Q: FloatArray) -> FloatArray:
         """Return the distance `(loops,)` [mm] between each ghost and its connector at `Q` `(columns,)`."""
@@ -191,7 +190,7 @@ class ClosureSystem:
     def contradiction(self, Q: FloatArray) -> float:
         """Return by how much couplings contradict each other at `Q` `(columns,)`: what no value of the tied coordinates mends."""
         Q = self.ties.fitted(Q, np.zeros(self.layout.n_freedoms, dtype=bool))
-        return float(tie_errors(self._tied.residual(Q), Q))
+        return float(self.ties.missed(Q))
 
     def move(self, Q: FloatArray, y: FloatArray) -> FloatArray:
         """Return coordinates after the scaled step `y` `(*batch, freedoms)`."""
@@ -224,7 +223,7 @@ class ClosureSystem:
 
     def _closed(self, Q: FloatArray, free: BoolArray, iterations: int, *, polish: bool) -> Closed:
         Q, B = self.ties.fitted(Q, ~free), self.ties.basis(free)
-        missed = float(tie_errors(self._tied.residual(Q), Q))  # what no step changes: every step obeys the couplings
+        missed = float(self.ties.missed(Q))  # what no step changes: every step obeys the couplings
         r, J = self._loops_at(Q)
         norm, mu = _norm(r), _DAMPING_START
         done = 0
@@ -270,7 +269,7 @@ class ClosureSystem:
         """
         with one_thread(self.n_rows * self.layout.n_freedoms):
             Q = self.ties.fitted(Q, ~free)
-            missed = tie_errors(self._tied.residual(Q), Q)
+            missed = self.ties.missed(Q)
             closed, norm = self._closed_many(Q.copy(), self.ties.basis(free), iterations)
             return self.ties.fitted(closed, ~free), norm + missed
 

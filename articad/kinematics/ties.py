@@ -68,23 +68,50 @@ class Basis:
 
 
 class Ties:
-    """All couplings of a system.
+    """All couplings of a system: the rows q_b − k q_a − c in rad and L, and the motions that they leave.
 
     Args:
         couplings: Relations between coordinates.
         layout: Of the coordinates.
         scale: What one scaled unit of each freedom is [rad, mm].
+        length: L [mm].
         in_loops: Freedoms that move loops: a tie's own number is measured by one of them, so that equations are well scaled.
+
+    Attributes:
+        all: The ties.
+        J: Jacobian of the rows `(couplings, freedoms)`, scaled; constant, because they are linear.
     """
 
-    def __init__(self, couplings: Sequence[Coupling], layout: Layout, scale: FloatArray, in_loops: BoolArray) -> None:
+    def __init__(self, couplings: Sequence[Coupling], layout: Layout, scale: FloatArray, length: float, in_loops: BoolArray) -> None:
         self._scale, self._n = scale, layout.n_freedoms
+        n = len(couplings)
+        by_column, by_freedom, unit = np.zeros((n, layout.n_columns)), np.zeros((n, layout.n_freedoms)), np.ones(n)
+        for i, c in enumerate(couplings):
+            a, b = layout.column_of[c.a], layout.column_of[c.b]
+            by_column[i, b], by_column[i, a] = 1.0, -c.ratio
+            by_freedom[i, layout.freedom_of(b)], by_freedom[i, layout.freedom_of(a)] = 1.0, -c.ratio
+            if layout.coordinates[b].unit == "mm":
+                unit[i] = length
+        self._columns, self._offset, self._unit = by_column.T, np.array([c.offset for c in couplings]), unit
+        self.J: FloatArray = by_freedom * scale / unit[:, None]
         self.all = tuple(_ties(couplings, layout, in_loops))
         self._of = {int(freedom): tie for tie in self.all for freedom in tie.freedoms}
         self._tied = np.zeros(layout.n_freedoms, dtype=bool)
         self._tied[list(self._of)] = True
         self._in_loops = in_loops
         self._bases: dict[bytes, Basis] = {}
+
+    def residual(self, Q: FloatArray) -> FloatArray:
+        """Return the residuals `(*batch, couplings)` of the rows at `Q` `(*batch, columns)`."""
+        residual: FloatArray = (Q @ self._columns - self._offset) / self._unit
+        return residual
+
+    def missed(self, Q: FloatArray) -> FloatArray:
+        """Return |r| `(*batch,)` of the rows at `Q` `(*batch, columns)`, without what rounding of the largest coordinate explains."""
+        residual = self.residual(Q)
+        allowed = _ROUNDING * (1.0 + np.abs(Q).max(axis=-1, keepdims=True, initial=0.0))
+        norm: FloatArray = np.sqrt((np.where(np.abs(residual) > allowed, residual, 0.0) ** 2).sum(axis=-1))
+        return norm
 
     def basis(self, free: BoolArray) -> Basis:
         """Return the independent motions of the free freedoms; a tie moves where all its members are free.
@@ -150,13 +177,6 @@ class Ties:
                 offset = tie.offset - ratio * tie.offset[at[0]]
                 return tuple((int(c), float(k), float(o)) for c, k, o in zip(tie.columns, ratio, offset, strict=True) if c != column)
         return ()
-
-
-def missed(residual: FloatArray, Q: FloatArray) -> FloatArray:
-    """Return |r| `(*batch,)` of couplings' residuals `(*batch, couplings)`; what rounding of Q `(*batch, columns)` explains is none."""
-    allowed = _ROUNDING * (1.0 + np.abs(Q).max(axis=-1, keepdims=True, initial=0.0))
-    norm: FloatArray = np.sqrt((np.where(np.abs(residual) > allowed, residual, 0.0) ** 2).sum(axis=-1))
-    return norm
 
 
 def _ties(couplings: Sequence[Coupling], layout: Layout, in_loops: BoolArray) -> list[Tie]:

@@ -77,6 +77,23 @@ def test_deflection_is_no_breach() -> None:
     assert not fits(*pin_in_bore(0.05), HINGE, Fit(0.1, 0.4), deflection=0.0125).ok
 
 
+@pytest.mark.parametrize("segments", [16, 24, 48, 96, 384])
+def test_a_close_fit_on_coarse_meshes_is_measured_to_their_tolerance_and_said_to_be_unresolved(segments: int) -> None:
+    """A true gap of 0.05 mm. Facets of the bore stand into it by r (1 − cos(π/n)), those of the pin fall back by as much."""
+    sagitta = 10.05 * (1 - math.cos(math.pi / segments))
+    turned = cylinder(10.0, 20, segments, phase=0.4)
+    hinge = joint("hinge", "revolute", "block", "pin", lower=(-1e-3,), upper=(1e-3,))
+    report = fits(block_with_bore(40, 10, 10.05, segments), turned, hinge, Fit(0.04, 0.06, contact="allowed"), deflection=sagitta)
+    (row,) = report.rows
+    if row.play is not None:  # the pin's corners may stand in the bore's facets
+        assert abs(row.play - 0.05) <= 2 * sagitta + 1e-3
+    assert row.tolerance == pytest.approx(2 * sagitta)
+    assert ("W_FIT_UNRESOLVED" in report.findings.codes) == (row.verdict == "ok" and 2 * sagitta > 0.01)
+    if segments == 384:
+        assert row.verdict == "ok"
+        assert report.findings.codes == ()
+
+
 def test_only_surface_near_the_axis_counts_when_the_fit_says_so() -> None:
     block, pin = pin_in_bore(0.2)
     far_touch = merged([pin, box(5, 5, 10).transformed(at(22.5))])  # touches the block's side, 20 mm from the axis
