@@ -29,6 +29,7 @@ CLASSES = {"ProcessPoolExecutor", "LocalCluster"}
 ALLOWED = {
     ("processes/launcher.py", "subprocess"): "the launcher",
     ("processes/child.py", "execve"): "the launcher's other end",
+    ("agents/provider.py", "fork"): "a bounded process for each call of a model",
     ("kernels/worker.py", "fork"): "the zygote, which forks a confined process for each part script",
 }
 SOURCES = sorted(path for path in PACKAGE.rglob("*.py") if "examples" not in path.parts and path.parent.name != "parts")

@@ -1,7 +1,7 @@
 """LiteLLM: real models, of any provider that litellm knows, and any OpenAI-compatible endpoint.
 
-The only `import litellm` of the package, done in the constructor: it takes seconds. Keys come from the provider's
-environment variables; no key enters a request, a record, the trace or an error.
+Each call runs in a process of its own (`calls.py`), with a deadline and a bound on memory: an endpoint may be hostile. Keys come
+from the provider's environment variables; no key enters a request, a record, the trace or an error.
 """
 
 from __future__ import annotations
@@ -13,17 +13,15 @@ import random
 import re
 import time
 from collections.abc import Callable, Mapping, Sequence
-from functools import partial
-from typing import Any, Final, TypeVar
+from typing import Any, Final
 from urllib.parse import urlsplit
 
 import numpy as np
 
-from articad.agents.llm import Image, Message, Reply, Request, Text, Usage, require_open_port, transport_error
+from articad.agents.calls import DESCRIBE_S, Calls
+from articad.agents.llm import Image, Message, Meter, Reply, Request, Text, Usage, require_open_port, transport_error
 from articad.errors import TransportError
 from articad.memory.embedding import FloatArray, normalised
-
-_Answer = TypeVar("_Answer")
 
 Json = dict[str, Any]
 
@@ -33,6 +31,7 @@ TRIES: Final = 6
 FIRST_WAIT_S: Final = 1.0  # doubled after each try: 31 s in all
 LONGEST_WAIT_S: Final = 60.0
 _RETRIED_STATUS: Final = frozenset({408, 409, 425, 429, 500, 502, 503, 504, 529})
+_RETRIED_KINDS: Final = frozenset({"late", "unreachable", "empty", "lost"})
 _LOOKING: Final = frozenset({"look", "observe"})  # roles that are nothing without sight
 _LONGEST_ANSWER: Final = 4_000_000  # characters; the plan of a thousand parts has a tenth of that
 _BATCH: Final = 64  # texts that are embedded at once; providers take about a hundred
@@ -52,10 +51,6 @@ _FORM = (
 _SIGHT = "Name one that does with --vision-model, or do without: --no-look --no-inspection."
 
 
-class _EmptyAnswerError(ValueError):
-    """A completion without text: models do that now and then."""
-
-
 class LiteLLM:
     """A model behind litellm.
 
@@ -66,12 +61,13 @@ class LiteLLM:
         vision_model: Model for requests with pictures; `model` by default.
         judge_model: Model for the role "judge"; the same as `models={"judge": …}`.
         temperature: Left to the provider by default.
-        timeout: Longest wait for one answer [s].
+        timeout: Longest time of one call, from its start to the last byte of its answer [s].
         tries: How often to ask when the provider is busy or out of reach.
         sleep: Waits; for tests.
 
     Raises:
-        TransportError: `E_KEY_MISSING`, naming the environment variable, if the provider needs one that is not set.
+        TransportError: `E_KEY_MISSING`, naming the environment variable, if the provider needs one that is not set;
+            `E_TRANSPORT`, if models cannot be called on this machine.
     """
 
     def __init__(
@@ -87,16 +83,10 @@ class LiteLLM:
         tries: int = TRIES,
         sleep: Callable[[float], None] = time.sleep,
     ) -> None:
-        os.environ.setdefault("LITELLM_LOCAL_MODEL_COST_MAP", "True")  # else the import fetches a price list
-        os.environ.setdefault("LITELLM_LOG", "ERROR")
-        os.environ["LITELLM_MODE"] = "PRODUCTION"  # else the import loads the nearest .env, which may name another host for the user's key
-        import litellm  # noqa: PLC0415 - seconds, and only for those who call a model
-
-        litellm.suppress_debug_info = True
-        litellm.telemetry = False
-        self._litellm: Any = litellm
+        self._calls = Calls.shared()
         self._api_base = api_base
         self._is_local = api_base is not None and urlsplit(api_base).hostname in _LOCAL_HOSTS
+        self._known: dict[str, Json] = {}  # what litellm knows of each model, by qualified name
         self._model = self._qualified(model)
         self._models = {
             role: self._qualified(name) for role, name in (dict(models or {}) | ({"judge": judge_model} if judge_model else {})).items()
@@ -106,7 +96,8 @@ class LiteLLM:
         self._takes_no_schema: set[str] = set()
         self._blind: set[str] = set()
         for name in {self._model, *self._models.values(), *filter(None, [self._vision_model])}:
-            self._require_key(name)
+            if not self._is_local and not self._known[name]["has_key"]:
+                raise self._key_error(name, "is not set")
 
     def __repr__(self) -> str:
         return f"LiteLLM({self._model!r})"
@@ -123,65 +114,87 @@ class LiteLLM:
         Raises:
             TransportError: If it cannot be reached, refuses, or its answer is no completion.
         """
-        require_open_port()
-        model = self.model_for(request)
-        return self._patiently(model, lambda: self._asked(model, request))
+        return self.complete_within(request, Meter())
 
-    def vectors(self, texts: Sequence[str]) -> list[list[float]]:
-        """Return the vector of each text, from a model for embeddings; the port may be closed: nothing is decided by them.
+    def complete_within(self, request: Request, meter: Meter) -> Reply:
+        """Ask as `complete` does, each try within the limits of a meter.
 
         Raises:
             TransportError: As `complete`.
+            BudgetError: If nothing is left for another try.
         """
-        batches = (list(texts[start : start + _BATCH]) for start in range(0, len(texts), _BATCH))
-        return [vector for batch in batches for vector in self._patiently(self._model, partial(self._embedded, batch))]
+        require_open_port()
+        model = self.model_for(request)
+        while True:
+            blind = model in self._blind or (self._api_base is None and request.has_images and not self._known[model]["sees"])
+            if blind and request.role in _LOOKING:
+                raise transport_error("E_TRANSPORT", f"{model} cannot see, and {request.step} is about pictures.", _SIGHT)
+            arguments = self._conversation(model, request, blind=blind)
+            answer = self._patiently("complete", model, arguments, meter)
+            if "error" not in answer:
+                return self._read(answer, model)
+            if not self._learned(model, answer["error"]["text"], arguments, request, blind=blind):
+                raise self._failure(answer["error"], model, 1)
 
-    def _patiently(self, model: str, call: Callable[[], _Answer]) -> _Answer:
-        """Call, again after a pause when the provider is busy."""
-        for number in range(1, self._tries + 1):
-            try:
-                return call()
-            except Exception as error:  # noqa: BLE001 - litellm raises what its providers raise
-                failure = self._translated(error, model, number)
-                if failure is not None:
-                    raise failure from None  # the cause may hold the key in its text or its request
-                self._sleep(_pause(error, number))
-        raise AssertionError("the last try either answers or raises")
+    def vectors(self, texts: Sequence[str], meter: Meter | None = None) -> list[list[float]]:
+        """Return the vector of each text, from a model for embeddings; the port may be closed: nothing is decided by them.
+
+        Args:
+            texts: What is embedded.
+            meter: Counts the calls and limits their time.
+
+        Raises:
+            TransportError: As `complete`.
+            BudgetError: If nothing is left for another call.
+        """
+        rows: list[list[float]] = []
+        for start in range(0, len(texts), _BATCH):
+            answer = self._patiently("embed", self._model, {}, meter or Meter(), texts=list(texts[start : start + _BATCH]))
+            if "error" in answer:
+                raise self._failure(answer["error"], self._model, 1)
+            rows += answer["rows"]
+        return rows
 
     @property
     def sees(self) -> bool:
         """Whether the model that gets pictures is known, or may be hoped, to see; an endpoint of one's own is asked."""
-        return self._api_base is not None or self._sees(self._vision_model or self._model)
+        return self._api_base is not None or bool(self._known[self._vision_model or self._model]["sees"])
 
     def takes_schemas(self, model: str | None = None) -> bool:
         """Whether a model is held to a schema by its provider, rather than asked for the form in words."""
         name = self._qualified(model) if model else self._model
-        return name not in self._takes_no_schema and (self._api_base is not None or self._supports_schema(name))
+        return name not in self._takes_no_schema and (self._api_base is not None or bool(self._known[name]["takes_schemas"]))
 
     # ------------------------------------------------------------------ one call
 
-    def _arguments(self, model: str) -> Json:
-        """Return what every call says."""
-        arguments: Json = {"model": model, "timeout": self._timeout, "num_retries": 0, "max_retries": 0}
-        if self._api_base is not None:
-            arguments["api_base"] = self._api_base
-        if self._is_local and not self._key_is_set(model):
-            arguments["api_key"] = "local"  # the client library insists on one; a local endpoint reads none
-        return arguments
+    def _patiently(self, do: str, model: str, arguments: Json, meter: Meter, **more: Any) -> Json:
+        """Call, again after a pause when the provider is busy; return the answer, or the error of a form that is refused.
 
-    def _embedded(self, texts: list[str]) -> list[list[float]]:
-        response = self._litellm.embedding(input=texts, **self._arguments(self._model))
-        rows = sorted((dict(row) for row in response.data), key=lambda row: int(row["index"]))
-        if len(rows) != len(texts):
-            raise _EmptyAnswerError
-        return [[float(number) for number in row["embedding"]] for row in rows]
+        Raises:
+            TransportError: If it fails, or stays busy.
+            BudgetError: If the meter has nothing left.
+        """
+        arguments = {"model": model} | arguments | ({} if self._api_base is None else {"api_base": self._api_base})
+        for number in range(1, self._tries + 1):
+            seconds = min(self._timeout, meter.begin())
+            try:
+                answer = self._calls.ask(do, seconds, arguments=arguments, is_local=self._is_local, **more)
+            except OSError as error:
+                raise _no_calls(error) from None
+            failure = answer.get("error")
+            if failure is None or failure["kind"] == "form":
+                return answer
+            is_passing = failure["kind"] != "key" and (failure["kind"] in _RETRIED_KINDS or failure["status"] in _RETRIED_STATUS)
+            pause = _pause(failure, number) if is_passing and number < self._tries else 0.0
+            meter.require(pause)  # a call that was ended by the budget is told as such
+            if not is_passing or number == self._tries:
+                raise self._failure(failure, model, number)
+            self._sleep(pause)
+        raise AssertionError("the last try either answers or raises")
 
-    def _asked(self, model: str, request: Request) -> Reply:
-        blind = model in self._blind or (self._api_base is None and request.has_images and not self._sees(model))
-        if blind and request.role in _LOOKING:
-            raise transport_error("E_TRANSPORT", f"{model} cannot see, and {request.step} is about pictures.", _SIGHT)
-        arguments = self._arguments(model)
-        arguments["messages"] = [_as_chat(_in_words(message) if blind else message) for message in request.messages]
+    def _conversation(self, model: str, request: Request, *, blind: bool) -> Json:
+        """Return what a request says, in the form of chats."""
+        arguments: Json = {"messages": [_as_chat(_in_words(message) if blind else message) for message in request.messages]}
         if self._temperature is not None:
             arguments["temperature"] = self._temperature
         if request.response_schema is not None:
@@ -191,13 +204,7 @@ class LiteLLM:
                 arguments["response_format"] = {"type": "json_schema", "json_schema": form}
             else:
                 arguments["messages"] = _with_form(arguments["messages"], schema)
-        try:
-            response = self._litellm.completion(**arguments)
-        except self._litellm.BadRequestError as error:
-            if not self._learned(model, str(error), arguments, request, blind=blind):
-                raise
-            return self._asked(model, request)
-        return self._read(response, model)
+        return arguments
 
     def _learned(self, model: str, said: str, arguments: Json, request: Request, *, blind: bool) -> bool:
         """Note what a model does not take, from how it refused; return whether to ask again without it."""
@@ -210,72 +217,48 @@ class LiteLLM:
             return True
         return False
 
-    def _sees(self, model: str) -> bool:
-        try:
-            return bool(self._litellm.supports_vision(model=model))
-        except Exception:  # noqa: BLE001 - an unknown model
-            return False
-
-    def _read(self, response: Any, model: str) -> Reply:
-        text = response.choices[0].message.content
-        if not isinstance(text, str) or not text.strip():
-            raise _EmptyAnswerError
+    def _read(self, answer: Json, model: str) -> Reply:
+        text: str = answer["text"]
         if len(text) > _LONGEST_ANSWER:
             message = f"{model} answered with {len(text)} characters; {_LONGEST_ANSWER} are the most that are read."
             raise transport_error("E_TRANSPORT", message, "Name another model; no plan and no script is as long.")
-        used = getattr(response, "usage", None)
-        usage = Usage(*(max(int(getattr(used, name, 0) or 0), 0) for name in ("prompt_tokens", "completion_tokens")))
-        marks = (getattr(response, "system_fingerprint", None), getattr(response, "model", None))  # the second says which version it was
-        fingerprint = next((mark for mark in marks if isinstance(mark, str) and mark), None)
-        return Reply(text, model, usage, self._cost(response, model), fingerprint and fingerprint[:_LONGEST_MARK])
-
-    def _cost(self, response: Any, model: str) -> float | None:
-        if self._api_base is not None:
-            return None  # the endpoint's owner sets the price, whatever the model is called
-        try:
-            cost = self._litellm.completion_cost(completion_response=response, model=model)
-        except Exception:  # noqa: BLE001 - of many kinds, and each means that the price is unknown
-            return None
-        return float(cost) if cost else None
-
-    def _supports_schema(self, model: str) -> bool:
-        try:
-            return bool(self._litellm.supports_response_schema(model=model))
-        except Exception:  # noqa: BLE001 - an unknown model
-            return False
+        cost = None if self._api_base is not None else answer["cost"]  # the endpoint's owner sets the price, whatever it calls the model
+        fingerprint = answer["fingerprint"]
+        return Reply(text, model, Usage(*answer["usage"]), cost, fingerprint and fingerprint[:_LONGEST_MARK])
 
     # ------------------------------------------------------------------ names and keys
 
     def _qualified(self, model: str) -> str:
-        """Return the model with its provider; behind `api_base` an unknown name is the endpoint's own."""
+        """Return the model with its provider; behind `api_base` an unknown name is the endpoint's own.
+
+        Raises:
+            TransportError: If litellm knows no such provider and there is no endpoint of one's own, or cannot be asked.
+        """
+        if model not in self._known and f"openai/{model}" in self._known:
+            return f"openai/{model}"
+        if model in self._known:
+            return model
         try:
-            self._litellm.get_llm_provider(model)
-        except Exception:  # noqa: BLE001 - litellm's way to say that it does not know the provider
+            told = self._calls.ask("describe", DESCRIBE_S, models=[model, f"openai/{model}"])
+        except OSError as error:
+            raise _no_calls(error) from None
+        if "error" in told:
+            raise _no_calls(told["error"]["text"] or "it does not answer")
+        name = model
+        if told["models"][model]["provider"] is None:
             if self._api_base is None:
                 known = "openai/…, anthropic/…, gemini/…, mistral/…, ollama/…"
                 message = f"Model {model!r} names no provider that litellm knows."
-                raise transport_error("E_TRANSPORT", message, f"Write provider/model ({known}), or give --api-base.") from None
-            return f"openai/{model}"
-        return model
+                raise transport_error("E_TRANSPORT", message, f"Write provider/model ({known}), or give --api-base.")
+            name = f"openai/{model}"
+        self._known[name] = told["models"][name]
+        return name
 
     def _variables(self, model: str) -> list[str]:
         """Return the environment variables that may hold the provider's key."""
-        try:
-            missing = self._litellm.validate_environment(model)["missing_keys"]
-        except Exception:  # noqa: BLE001 - an unknown provider
-            missing = []
-        provider = model.split("/", maxsplit=1)[0] if "/" in model else self._litellm.get_llm_provider(model)[1]
-        return list(missing) or [f"{provider.upper().replace('-', '_')}_API_KEY"]
-
-    def _key_is_set(self, model: str) -> bool:
-        try:
-            return bool(self._litellm.validate_environment(model)["keys_in_environment"])
-        except Exception:  # noqa: BLE001 - an unknown provider: its own answer will tell
-            return True
-
-    def _require_key(self, model: str) -> None:
-        if not self._is_local and not self._key_is_set(model):
-            raise self._key_error(model, "is not set")
+        known = self._known[model]
+        provider = model.split("/", maxsplit=1)[0] if "/" in model else known["provider"]
+        return list(known["missing"]) or [f"{provider.upper().replace('-', '_')}_API_KEY"]
 
     def _key_error(self, model: str, what: str) -> TransportError:
         names = " or ".join(self._variables(model))
@@ -283,26 +266,27 @@ class LiteLLM:
 
     # ------------------------------------------------------------------ failures
 
-    def _translated(self, error: Exception, model: str, number: int) -> TransportError | None:
-        """Return the error to raise, or None to try again."""
-        status = getattr(error, "status_code", None)
-        if isinstance(error, TransportError):
-            return error
-        if isinstance(error, (self._litellm.AuthenticationError, self._litellm.PermissionDeniedError)) or status in (401, 403):
+    def _failure(self, failure: Json, model: str, number: int) -> TransportError:
+        """Return the error of a call that failed."""
+        kind, status = failure["kind"], failure["status"]
+        if kind == "key":
             return self._key_error(model, "was refused by the provider")
-        out_of_reach = (self._litellm.APIConnectionError, self._litellm.Timeout, _EmptyAnswerError)
-        if (status in _RETRIED_STATUS or isinstance(error, out_of_reach)) and number < self._tries:
-            return None
-        if isinstance(error, self._litellm.Timeout):
+        if kind == "late":
             what = f"did not answer within {self._timeout:g} s"
-        elif isinstance(error, _EmptyAnswerError):
+        elif kind == "empty":
             what = "gave an empty answer"
+        elif kind == "redirect":
+            what = "sent the request on to another address, which is not followed"
+        elif kind == "body":
+            what = "gave an answer that is not read"
+        elif kind == "memory":
+            what = "gave an answer that takes too much memory"
         elif status is not None:
             what = f"failed with status {status}"
         else:
             what = "gave no usable answer"
-        shown = without_secrets(str(error)).strip().splitlines() or [type(error).__name__]
-        message = f"{model} {what}, asked {number} times: {shown[0][:_SHOWN_CHARACTERS]}"
+        shown = next(iter(without_secrets(failure["text"]).strip().splitlines()), "")[:_SHOWN_CHARACTERS].rstrip(".")
+        message = f"{model} {what}, asked {number} times{f': {shown}' if shown else ''}."
         hint = "Check --api-base and the network." if self._api_base else "Check the network, the model's name and the provider's status."
         return transport_error("E_TRANSPORT", message, hint)
 
@@ -313,10 +297,11 @@ class LiteLLMEmbedder:
     Args:
         model: A model for embeddings in litellm's spelling, such as `gemini/gemini-embedding-001`.
         api_base: As for `LiteLLM`.
+        meter: Counts the calls and limits their time.
     """
 
-    def __init__(self, model: str, *, api_base: str | None = None) -> None:
-        self._llm = LiteLLM(model, api_base=api_base)
+    def __init__(self, model: str, *, api_base: str | None = None, meter: Meter | None = None) -> None:
+        self._llm, self._meter = LiteLLM(model, api_base=api_base), meter
         self.name = f"litellm {model}"
 
     def embed(self, texts: Sequence[str]) -> FloatArray:
@@ -324,8 +309,14 @@ class LiteLLMEmbedder:
 
         Raises:
             TransportError: If the provider cannot be reached.
+            BudgetError: If the meter has nothing left.
         """
-        return normalised(self._llm.vectors(texts) if texts else np.zeros((0, 1)))
+        return normalised(self._llm.vectors(texts, self._meter) if texts else np.zeros((0, 1)))
+
+
+def _no_calls(problem: object) -> TransportError:
+    """Return the error of a machine on which no model can be called."""
+    return transport_error("E_TRANSPORT", f"No model can be called here: {problem}.", "Run articad doctor.")
 
 
 def without_secrets(text: str) -> str:
@@ -336,10 +327,9 @@ def without_secrets(text: str) -> str:
     return _SECRET_SHAPE.sub("[key]", text)
 
 
-def _pause(error: Exception, number: int) -> float:
+def _pause(failure: Json, number: int) -> float:
     """Return how long to wait after a failed try [s]: what the provider asks for, else twice the last time."""
-    headers = getattr(error, "litellm_response_headers", None) or {}
-    asked = str(headers.get("retry-after", ""))
+    asked = failure["retry_after"]
     if re.fullmatch(r"\d+(\.\d+)?", asked):
         return min(float(asked), LONGEST_WAIT_S)
     wait: float = FIRST_WAIT_S * 2 ** (number - 1) * random.uniform(0.8, 1.2)  # noqa: S311 - spreads parallel retries

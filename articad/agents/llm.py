@@ -19,7 +19,7 @@ from contextvars import ContextVar
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
-from typing import Any, Final, Literal, Protocol
+from typing import Any, Final, Literal, Protocol, runtime_checkable
 
 from articad.errors import BudgetError, ReadError, ReplayMissError, TransportError
 from articad.findings import Finding, Findings
@@ -208,6 +208,41 @@ class LLM(Protocol):
         ...
 
 
+class Meter:
+    """What a request may still use. This one counts nothing and has no limit; that of a `Budget` does and has."""
+
+    def begin(self) -> float:
+        """Count one call that is about to be made, and return how long it may take [s].
+
+        Raises:
+            BudgetError: If nothing is left for it.
+        """
+        return math.inf
+
+    def require(self, seconds: float) -> None:
+        """Check that a pause and a call after it are within the limits.
+
+        Args:
+            seconds: The length of the pause.
+
+        Raises:
+            BudgetError: If they are not.
+        """
+
+
+@runtime_checkable
+class MeteredLLM(LLM, Protocol):
+    """A model that may make several calls for one request, and asks the meter before each."""
+
+    def complete_within(self, request: Request, meter: Meter) -> Reply:
+        """Answer within the limits of a meter.
+
+        Raises:
+            AgentError: If there is no answer to be had.
+        """
+        ...
+
+
 # ---------------------------------------------------------------------- the kill switch
 
 
@@ -364,6 +399,8 @@ class Replay:
 class Budget:
     """Asks until a budget is spent; checked before each call, so that it ends in time rather than too late.
 
+    A `MeteredLLM` is counted by each of its tries, and each try may take what is left of the minutes.
+
     Args:
         llm: Who answers.
         calls: Most calls.
@@ -399,13 +436,12 @@ class Budget:
         Raises:
             BudgetError: If nothing is.
         """
-        with self._guard:
-            spent = self._spent()
-            if spent is not None:
-                finding = Finding(code="E_BUDGET", where=f"llm.{request.step}", message=spent, hint="Raise the limit and resume the run.")
-                raise BudgetError(f"{spent} {request.step!r} was not asked.", spent=spent, findings=[finding])
-            self.calls += 1
-        reply = self._llm.complete(request)
+        meter = self.meter(request.step)
+        if isinstance(self._llm, MeteredLLM):
+            reply = self._llm.complete_within(request, meter)
+        else:
+            meter.begin()
+            reply = self._llm.complete(request)
         with self._guard:
             # what an endpoint says of itself may be wrong, but gives nothing back
             self.tokens += max(reply.usage.input_tokens, 0) + max(reply.usage.output_tokens, 0)
@@ -415,9 +451,45 @@ class Budget:
                 self.cost += max(reply.cost, 0.0)
         return reply
 
-    def _spent(self) -> str | None:
+    def meter(self, step: str) -> Meter:
+        """Return the meter of a request.
+
+        Args:
+            step: The request's address, for the error.
+        """
+        return _BudgetMeter(self, step)
+
+    def begin(self, step: str) -> float:
+        """Count one call and return how long it may take [s]; see `Meter.begin`."""
+        left = self._left()
+        with self._guard:
+            spent = self._spent(left)
+            if spent is not None:
+                raise self._error(spent, step)
+            self.calls += 1
+        return left
+
+    def require(self, seconds: float, step: str) -> None:
+        """Check that a pause and a call after it are within the limits; see `Meter.require`."""
+        left = self._left()
+        with self._guard:
+            spent = self._spent(left)
+        if spent is None and seconds >= left:
+            spent = f"The budget of {self._limits[3]:g} minutes has {left:.0f} s left, and the provider is to be asked again in {seconds:.0f} s."
+        if spent is not None:
+            raise self._error(spent, step)
+
+    def _left(self) -> float:
+        minutes = self._limits[3]
+        return math.inf if minutes is None else 60 * minutes - (self._clock() - self._began)
+
+    @staticmethod
+    def _error(spent: str, step: str) -> BudgetError:
+        finding = Finding(code="E_BUDGET", where=f"llm.{step}", message=spent, hint="Raise the limit and resume the run.")
+        return BudgetError(f"{spent} {step!r} was not answered.", spent=spent, findings=[finding])
+
+    def _spent(self, left: float) -> str | None:
         calls, tokens, cost, minutes = self._limits
-        passed = (self._clock() - self._began) / 60
         if calls is not None and self.calls >= calls:
             return f"The budget of {calls} calls is spent."
         if tokens is not None and self.tokens >= tokens:
@@ -428,9 +500,23 @@ class Budget:
             return (
                 f"The price of {self.cost_unknown_of} is unknown, so a budget of ${cost:g} cannot be held; limit calls or tokens instead."
             )
-        if minutes is not None and passed >= minutes:
+        if left <= 0:
             return f"The budget of {minutes:g} minutes is spent."
         return None
+
+
+@dataclass(frozen=True)
+class _BudgetMeter(Meter):
+    """The meter of one request under a budget."""
+
+    budget: Budget
+    step: str
+
+    def begin(self) -> float:
+        return self.budget.begin(self.step)
+
+    def require(self, seconds: float) -> None:
+        self.budget.require(seconds, self.step)
 
 
 def _count(value: object) -> int:

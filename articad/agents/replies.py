@@ -9,10 +9,12 @@ from typing import Any, Final
 
 from articad.errors import OutputError
 from articad.findings import Finding
+from articad.plan.reading import MOST_LEVELS, is_nested_deeper
 
 _FENCED: Final = re.compile(r"^[ \t]*```[ \t]*([\w+-]*)[^\n]*\n(.*?)^[ \t]*```[ \t]*$", re.DOTALL | re.MULTILINE)
 _OPEN_FENCE: Final = re.compile(r"\A\s*```[ \t]*[\w+-]*[^\n]*\n")
 _SHOWN = 60  # characters of a reply that an error quotes
+_TOO_DEEP: Final = f"it is nested deeper than {MOST_LEVELS} levels"
 
 
 def object_text(text: str, *, step: str) -> str:
@@ -25,12 +27,15 @@ def object_text(text: str, *, step: str) -> str:
     for candidate in _candidates(text):
         try:
             value = json.loads(candidate)
-        except ValueError as error:
-            first_problem = first_problem or error
+        except (ValueError, RecursionError) as error:
+            first_problem = first_problem or (error if isinstance(error, ValueError) else ValueError(_TOO_DEEP))
             continue
-        if isinstance(value, dict):
+        if is_nested_deeper(value, MOST_LEVELS):
+            first_problem = first_problem or ValueError(_TOO_DEEP)
+        elif isinstance(value, dict):
             return candidate
-        first_problem = first_problem or ValueError(f"it is a JSON {_kind(value)}, not an object")
+        else:
+            first_problem = first_problem or ValueError(f"it is a JSON {_kind(value)}, not an object")
     raise unusable(f"it is not one JSON object: {first_problem}.", text, step=step)
 
 

@@ -178,7 +178,7 @@ def ask_once(llm: LLM) -> tuple[Item, ...]:
     price = Item("model's price", "optional" if reply.cost is None else "ok", known)
     try:
         color = str(json.loads(reply.text)["color"])
-    except (ValueError, KeyError, TypeError):
+    except (ValueError, KeyError, TypeError, RecursionError):
         return (answers, Item("model's forms", "missing", f"not in the form asked for: {reply.text[:80]!r}", "Try another model."), price)
     by_provider = getattr(llm, "takes_schemas", None)
     held = "" if by_provider is None else ", held to the schema by its provider" if by_provider() else ", asked for in words"

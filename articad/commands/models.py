@@ -38,7 +38,7 @@ def _generate(options: argparse.Namespace, terminal: Terminal) -> Report:
     from articad.kernels.choice import kernel_named
 
     budget, sees = asked_model(options, terminal)
-    store = experience(options)
+    store = experience(options, budget)
     with terminal.progress("Generating", note=lambda: _spent(budget)) as tell:
         run = generate(
             options.text,
@@ -101,7 +101,7 @@ def _edit(options: argparse.Namespace, terminal: Terminal) -> Report:
             look=options.look and sees,
             inspection=options.inspection and sees,
             review=_review(options, sees=sees),
-            memory=StoredMemory(experience(options)),
+            memory=StoredMemory(experience(options, budget)),
             documentation=StoredDocumentation() if options.docs else None,
             jobs=options.jobs,
             progress=tell,
@@ -136,7 +136,7 @@ def _resume(options: argparse.Namespace, terminal: Terminal) -> Report:
             sandbox=sandbox_level(options),
             cache=build_cache(options),
             choose=_asking(terminal) if _is_asked(options) else None,
-            memory=StoredMemory(experience(options)),
+            memory=StoredMemory(experience(options, budget)),
             documentation=StoredDocumentation() if options.docs else None,
             jobs=options.jobs,
             progress=tell,
@@ -179,11 +179,15 @@ def _told(run: Run, options: argparse.Namespace, terminal: Terminal, budget: Bud
     from articad.agents.pipeline import recalls
     from articad.agents.recollection import remember
     from articad.commands.summaries import print_edit, print_review
+    from articad.errors import BudgetError
 
-    store = experience(options)
+    store = experience(options, budget)
     remembered = budget is not None and recalls(run.request.options.get("variant", "full"))
-    if remembered and (case := remember(run, store)) is not None:
-        terminal.detail(f"Remembered as {case.id[:8]}, {case.kind}, in {store.folder}.")
+    try:
+        if remembered and (case := remember(run, store)) is not None:
+            terminal.detail(f"Remembered as {case.id[:8]}, {case.kind}, in {store.folder}.")
+    except BudgetError as error:  # the run is finished; only the vectors of a provider are missing
+        terminal.say(f"Not remembered: {error.spent}")
     if options.pictures:
         draw(run, terminal)
     report = reported(run, terminal)

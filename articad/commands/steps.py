@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 if TYPE_CHECKING:
+    from articad.agents.llm import Budget
     from articad.assembly import Assembly
     from articad.commands.terminal import Progress, Report, Terminal
     from articad.kernels.kernel import BuildCache
@@ -53,15 +54,18 @@ def reported(run: Run, terminal: Terminal) -> Report:
     return report
 
 
-def experience(options: argparse.Namespace) -> ExperienceStore:
-    """Return the store of earlier runs, by the vectors that were asked for."""
+def experience(options: argparse.Namespace, budget: Budget | None = None) -> ExperienceStore:
+    """Return the store of earlier runs, by the vectors that were asked for; a provider's are calls of the budget too."""
     from articad.memory.experience import ExperienceStore
 
     if not options.embeddings:
         return ExperienceStore(options.memory)
     from articad.agents.live import LiteLLMEmbedder
 
-    return ExperienceStore(options.memory, LiteLLMEmbedder(options.embeddings, api_base=options.api_base))
+    return ExperienceStore(
+        options.memory,
+        LiteLLMEmbedder(options.embeddings, api_base=options.api_base, meter=None if budget is None else budget.meter("embeddings")),
+    )
 
 
 def build_cache(options: argparse.Namespace) -> BuildCache:

@@ -6,7 +6,7 @@ import json
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from types import UnionType
-from typing import Annotated, Any, TypeVar, Union, get_args, get_origin
+from typing import Annotated, Any, Final, TypeVar, Union, get_args, get_origin
 
 from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails
@@ -19,6 +19,7 @@ from articad.plan.joint_forms import JOINT_TYPES, JointForm
 F = TypeVar("F", bound=Form)
 Location = tuple[str | int, ...]
 
+MOST_LEVELS: Final = 100  # of lists and objects within each other; a plan has ten
 _SHOWN = 60  # characters of a wrong value that are quoted
 _LISTED_ERRORS = 5  # findings that an exception's own text shows; all of them are in `.findings`
 _CONTAINERS = {
@@ -75,7 +76,22 @@ def loads(form: type[F], text: str | bytes) -> F:
     except (UnicodeDecodeError, RecursionError, ValueError) as error:
         reason = {RecursionError: "it is nested too deeply", UnicodeDecodeError: "it is not UTF-8"}.get(type(error), str(error))
         raise _refused([_finding("E_SCHEMA", "plan", f"This is not JSON: {reason}.", "Give one JSON object in UTF-8.")]) from None
+    if is_nested_deeper(document, MOST_LEVELS):
+        problem = f"This plan is nested deeper than {MOST_LEVELS} levels."
+        raise _refused([_finding("E_SCHEMA", "plan", problem, "Give one JSON object in UTF-8.")])
     return from_json(form, document)
+
+
+def is_nested_deeper(value: Any, most: int) -> bool:
+    """Return whether JSON has more levels of lists and objects within each other than a number; no recursion."""
+    level = [value]
+    for _ in range(most + 1):
+        level = [
+            item for outer in level if isinstance(outer, (list, dict)) for item in (outer if isinstance(outer, list) else outer.values())
+        ]
+        if not level:
+            return False
+    return True
 
 
 def from_json(form: type[F], document: Any) -> F:

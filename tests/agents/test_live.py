@@ -274,11 +274,25 @@ import os, dotenv
 loads, before = [], dict(os.environ)
 load = dotenv.load_dotenv
 dotenv.load_dotenv = lambda *words, **options: (loads.append(words), load(*words, **options))
-from articad.agents.live import LiteLLM
-LiteLLM("openai/gpt-x")
+from articad.agents import provider
+provider.load()
 print(loads, [name for name in ("OPENAI_BASE_URL", "HTTPS_PROXY") if os.environ.get(name) != before.get(name)])
 """
     environment = os.environ | {"OPENAI_API_KEY": "key"} | ({} if mode is None else {"LITELLM_MODE": mode})
     done = subprocess.run([sys.executable, "-c", code], cwd=here, env=environment, capture_output=True, text=True, check=False)
 
     assert done.stdout.strip() == "[] []", done.stderr
+
+
+def test_an_env_file_does_not_name_another_host_for_the_key(tmp_path: Path) -> None:
+    with openai_stub([Canned()]) as stub, openai_stub([Canned()]) as planted:
+        (tmp_path / ".env").write_text(
+            f"OPENAI_BASE_URL={planted.address}\nOPENAI_API_BASE={planted.address}\nHTTP_PROXY={planted.address}\n"
+        )
+        code = "from articad.agents.live import LiteLLM; from articad.agents.llm import *\n"
+        code += "print(LiteLLM('openai/x').complete(Request('design', 'design/1', (user('why?'),))).text)"
+        environment = os.environ | {"OPENAI_API_KEY": SECRET, "OPENAI_BASE_URL": stub.address}
+        done = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, env=environment, capture_output=True, text=True, check=False)
+
+        assert done.stdout.strip() == "hello", done.stderr
+        assert (len(stub.received), len(planted.received)) == (1, 0)

@@ -59,7 +59,9 @@ def test_importing_every_module_asks_no_network() -> None:
 
 def test_making_a_model_asks_no_network_and_turns_telemetry_off() -> None:
     program = (
+        "from articad.agents import provider\n"
         "from articad.agents.live import LiteLLM\n"
+        "assert provider._describe(provider.load(), {'models': ['openai/gpt-5.2']})['models']['openai/gpt-5.2']['has_key']\n"
         "LiteLLM('openai/gpt-5.2')\n"
         "import litellm, os\n"
         "assert litellm.telemetry is False\n"
