@@ -16,7 +16,7 @@ import time
 from concurrent.futures import Future
 from typing import Any, ClassVar, Final
 
-from articad import processes
+from articad.processes import launcher
 
 Json = dict[str, Any]
 
@@ -44,7 +44,7 @@ class Calls:
 
     def __init__(self) -> None:
         self._lock = threading.Lock()
-        self._process: processes.Child | None = None
+        self._process: launcher.Child | None = None
         self._control: socket.socket | None = None
         self._owner = 0
 
@@ -64,7 +64,7 @@ class Calls:
         Raises:
             OSError: If no process can be started, or LiteLLM cannot be imported there.
         """
-        order = {"do": do, "seconds": max(seconds, 0.01), "environment": processes.environment_with_keys()} | words
+        order = {"do": do, "seconds": max(seconds, 0.01), "environment": launcher.environment_with_keys()} | words
         ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_STREAM)
         with ours:
             with theirs:
@@ -121,13 +121,13 @@ class Calls:
         ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         try:
             with theirs:
-                process = processes.start(
+                process = launcher.start(
                     [],
                     module="articad.agents.provider",
-                    environment=processes.environment_with_keys(),
+                    environment=launcher.environment_with_keys(),
                     stdin=theirs.fileno(),
-                    stdout=processes.NOWHERE,
-                    stderr=processes.NOWHERE,
+                    stdout=launcher.NOWHERE,
+                    stderr=launcher.NOWHERE,
                 )
             self._process = process
             ours.settimeout(START_S)
