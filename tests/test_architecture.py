@@ -156,7 +156,7 @@ def test_every_import_is_declared() -> None:
     [
         ("pinocchio", ("kinematics/forward.py", "simulation/loading.py")),  # the latter only asks whether it loads a file
         ("fcl", ("interference/",)),
-        ("litellm", ("agents/live.py",)),
+        ("litellm", ("agents/provider.py",)),
         ("mujoco", ("simulation/", "importers/mjcf.py")),  # its MjSpec is the reader of MJCF
     ],
 )
