@@ -9,15 +9,19 @@ from __future__ import annotations
 
 import functools
 import hashlib
+import io
 import itertools
 import json
 import math
+import os
+import stat
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+BYTES = 2**29  # of a file, at most
 PROOF = "_proof"  # no part bears such a name
 ROUNDING = 1e-9  # of ranges, distances, and what a driver moves
 HALF = 0.5  # of entries of a rotation, by which a loop may be open: with a turn of less than 1 rad more it is not half a turn
@@ -50,10 +54,10 @@ def need(condition: Any, reason: str) -> None:
 def verify_file(file: Path, folder: Path) -> list[str]:
     """Return why a certificate file is refuted, nothing if it is accepted; `folder` holds `<part>.npz` of every part, and the proof."""
     try:
-        certificate, arrays = json.loads(file.read_bytes()), dict[str, Any]()
+        certificate, arrays = json.loads(content(file)), dict[str, Any]()
         for name in [*certificate["meshes"], PROOF]:
             need(Path(name).name == name, "a mesh bears the name of no file")
-            with (folder / f"{name}.npz").open("rb") as stream, np.load(stream, allow_pickle=False) as found:
+            with io.BytesIO(content(folder / f"{name}.npz")) as stream, np.load(stream, allow_pickle=False) as found:
                 arrays[name] = {key: widened(array) for key, array in found.items()}
         left = sorted({found.stem for found in folder.glob("*.npz")} - set(arrays))
         need(not left, f"it says nothing of {', '.join(left)}")
@@ -63,6 +67,15 @@ def verify_file(file: Path, folder: Path) -> list[str]:
     except Exception as error:  # noqa: BLE001 - what breaks its checker, in whatever way, proves nothing
         return [f"it cannot be read: {error!r}"[:500]]
     return []
+
+
+def content(file: Path) -> bytes:
+    """Return what a file holds; a pipe or a device would never end."""
+    handle = os.open(file, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
+    with os.fdopen(handle, "rb") as stream:
+        need(stat.S_ISREG(os.fstat(handle).st_mode), f"{file.name} is no file")
+        need(os.fstat(handle).st_size <= BYTES, f"{file.name} is larger than {BYTES} bytes")
+        return stream.read(BYTES)
 
 
 def widened(array: Any) -> Any:

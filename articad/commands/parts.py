@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from articad.commands.command import argument, command
 from articad.commands.options import FORCE, SANDBOX
 from articad.commands.steps import build_cache, sandbox_level
+from articad.files import SCRIPT_BYTES, read_file
 
 if TYPE_CHECKING:
     from articad.commands.terminal import Report, Terminal
@@ -44,7 +45,10 @@ def _part(options: argparse.Namespace, terminal: Terminal) -> Report:
     folder = Path(options.plan)
     name = options.kernel or plan.kernel
     file = (folder if folder.is_dir() else folder.parent) / "parts" / f"{options.name}{SCRIPT_SUFFIX[name]}"
-    script = file.read_bytes()
+    try:
+        script = read_file(file, SCRIPT_BYTES, root=file.parent.parent)
+    except OSError as error:
+        raise ReadError.told(file, f"{file} cannot be read: {error.strerror}.", "Write the script there.") from None
     kernel = kernel_named(name, sandbox=sandbox_level(options))
     with terminal.progress("Building", total=1) as tell:
         made = build_source(resolved, options.name, script, kernel=kernel, cache=build_cache(options), deflection=DEFLECTION_MM)

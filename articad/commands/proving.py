@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from articad.commands.command import argument, command
 from articad.commands.options import amount, names
+from articad.files import RECORD_BYTES, read_file
 
 if TYPE_CHECKING:
     from articad.commands.terminal import Report, Terminal
@@ -56,7 +57,7 @@ def _verify_certificate(options: argparse.Namespace, terminal: Terminal) -> Repo
 
     file = Path(options.file)
     faults = verify_file(file, Path(options.meshes) if options.meshes else file.parent / "certificate")
-    stated = [] if faults else _stated(json.loads(file.read_bytes()))
+    stated = [] if faults else _stated(json.loads(read_file(file, RECORD_BYTES)))
     for line in [*faults, *stated]:
         terminal.say(f"  {line}")
     terminal.say(f"{file}: {'refuted' if faults else 'accepted'}.")

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Final
 from articad.commands.command import argument, command
 from articad.commands.options import API_BASE, EMBEDDINGS, MEMORY, positive
 from articad.commands.steps import experience
+from articad.files import RECORD_BYTES, read_file
 
 if TYPE_CHECKING:
     from articad.commands.terminal import Report, Terminal
@@ -97,8 +98,18 @@ def _export(store: ExperienceStore, options: argparse.Namespace, terminal: Termi
     return {"file": options.what, "count": len(lines)}
 
 
+def _text(path: Path) -> str:
+    from articad.errors import ReadError
+
+    try:
+        return read_file(path, RECORD_BYTES).decode()
+    except (OSError, UnicodeDecodeError) as error:
+        reason = error.strerror if isinstance(error, OSError) else "it is not UTF-8"
+        raise ReadError.told(path, f"{path} cannot be read: {reason}.", "Name a file that `articad memory export` wrote.") from None
+
+
 def _import(store: ExperienceStore, options: argparse.Namespace, terminal: Terminal) -> Report:
-    return _added(store, store.import_lines(Path(options.what).read_text(encoding="utf-8").splitlines()), terminal)
+    return _added(store, store.import_lines(_text(Path(options.what)).splitlines()), terminal)
 
 
 def _remove(store: ExperienceStore, options: argparse.Namespace, terminal: Terminal) -> Report:

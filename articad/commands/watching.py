@@ -14,6 +14,8 @@ from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Final, Self
 
+from articad.files import PLAN_BYTES, read_file
+
 if TYPE_CHECKING:
     from articad.commands.terminal import Terminal
 
@@ -123,7 +125,7 @@ def fingerprint(folder: Path) -> str:
     total = hashlib.sha256()
     for file in [folder / "plan.json", *sorted((folder / "parts").glob("*.py"))]:
         try:
-            content = file.read_bytes()
+            content = read_file(file, PLAN_BYTES)
         except OSError:  # deleted, or just being replaced: the next look tells
             continue
         total.update(f"{file.name}\0{len(content)}\0".encode() + content)

@@ -56,10 +56,11 @@ def collide(assembly: Assembly, model: LoweredModel, collision: Collision, skip:
     at_rest = assembly.poses(assembly.mechanism.rest)[None].matrix
 
     def begun() -> ContactSearch:
-        poses = once(assembly, "poses in motion", lambda: poses_in_motion(assembly.mechanism)) if asked else at_rest
-        search = ContactSearch(assembly.mechanism.parts, poses, own)
+        search = ContactSearch(assembly.mechanism.parts, at_rest, own)
         for name, one in shaped.items():
             search.update(name, one.shapes)
+        if asked and not search.is_convex:  # in motion, where convex pieces meet the solids do
+            search.poses = once(assembly, "poses in motion", lambda: poses_in_motion(assembly.mechanism))
         return search
 
     # The solids never change, so that what one format has found is known to the next.

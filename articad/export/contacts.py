@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
-from itertools import combinations
+from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
 import manifold3d
@@ -92,6 +92,10 @@ class ContactSearch:
     _found: dict[Pair, HullOverlap | None] = field(default_factory=dict)
     _solids: dict[str, list[_Placed]] = field(default_factory=dict)
 
+    @cached_property
+    def _place(self) -> dict[str, int]:
+        return {part: index for index, part in enumerate(self.order)}
+
     def update(self, part: str, pieces: Iterable[Shape]) -> None:
         """Give a part other pieces."""
         self._pieces[part] = self._placed(pieces, convex=True)
@@ -103,29 +107,39 @@ class ContactSearch:
         Args:
             skip: Pairs that engines do not check.
         """
-        boxes = {part: self._boxes(part) for part, pieces in self._pieces.items() if pieces}
-        for a, b in combinations([part for part in self.order if part in boxes], 2):
+        parts = [part for part in self.order if self._pieces.get(part)]
+        boxes = [self._boxes(part) for part in parts]
+        # Boxes about all poses of a part: only parts whose boxes meet can meet in a pose.
+        whole = np.array([[low.min(axis=0), high.max(axis=0)] for low, high in boxes]).reshape(-1, 2, 3)
+        for i, j in meeting_boxes(whole[:, 0], whole[:, 1]):
+            a, b = parts[i], parts[j]
             if (a, b) in skip or (b, a) in skip or (a, b) in self._found:
                 continue
-            low, high = (np.maximum(boxes[a][0], boxes[b][0]), np.minimum(boxes[a][1], boxes[b][1]))
+            low, high = (np.maximum(boxes[i][0], boxes[j][0]), np.minimum(boxes[i][1], boxes[j][1]))
             near = np.flatnonzero((low < high).all(axis=1))
             if self._is_convex(a) and self._is_convex(b):
                 near = near[near == 0]  # in motion, where such pieces meet the solids do
             self._found[a, b] = self._first_contact(a, b, near)
-        found = (self._found.get((a, b)) for a, b in combinations(self.order, 2) if (a, b) not in skip and (b, a) not in skip)
-        return [contact for contact in found if contact is not None]
+        found = sorted(self._found, key=lambda pair: (self._place[pair[0]], self._place[pair[1]]))
+        contacts = (self._found[a, b] for a, b in found if (a, b) not in skip and (b, a) not in skip)
+        return [contact for contact in contacts if contact is not None]
+
+    @property
+    def is_convex(self) -> bool:
+        """Whether one piece is all of the one solid of each part that has any."""
+        return all(self._is_convex(part) for part, pieces in self._pieces.items() if pieces)
 
     def _boxes(self, part: str) -> tuple[FloatArray, FloatArray]:
         """Return the corners of the part's bounding box in every pose, `(n, 3)` each."""
         lows, highs = zip(*((piece.low, piece.high) for piece in self._pieces[part]), strict=True)
         low, high = np.min(lows, axis=0), np.max(highs, axis=0)
-        T = self.poses[:, self.order.index(part)]
+        T = self.poses[:, self._place[part]]
         centre = T[:, :3, :3] @ ((low + high) / 2) + T[:, :3, 3]
         half = np.abs(T[:, :3, :3]) @ ((high - low) / 2)
         return centre - half, centre + half
 
     def _first_contact(self, a: str, b: str, near: NDArray[np.intp]) -> HullOverlap | None:
-        first, second = (self.poses[near, self.order.index(part)] for part in (a, b))
+        first, second = (self.poses[near, self._place[part]] for part in (a, b))
         relative = _inverse(first) @ second
         seen: set[bytes] = set()
         for index, T in zip(near.tolist(), relative, strict=True):
@@ -170,6 +184,28 @@ class ContactSearch:
             hull = manifold3d.Manifold.hull_points(mesh.vertices).simplify(HULL_DEPTH_MM / 10) if convex else None
             self._bodies[key] = manifold(mesh) if hull is None else hull
         return self._bodies[key]
+
+
+def meeting_boxes(low: FloatArray, high: FloatArray) -> Iterator[tuple[int, int]]:
+    """Yield the pairs (i, j), i < j, of boxes that share more than a face, in order.
+
+    The boxes are sorted along the axis on which they lie furthest apart; each is compared with those that begin before it ends.
+
+    Args:
+        low: Lowest corners `(n, 3)`.
+        high: Highest corners `(n, 3)`.
+    """
+    if len(low) < 2:
+        return
+    axis = int(np.argmax(np.ptp(low, axis=0) / np.maximum((high - low).mean(axis=0), np.finfo(float).tiny)))
+    order = np.argsort(low[:, axis], kind="stable")
+    starts = low[order, axis]
+    found = []
+    for position, i in enumerate(order.tolist()):
+        later = order[position + 1 : np.searchsorted(starts, high[i, axis])]
+        meet = later[((low[later] < high[i]) & (low[i] < high[later])).all(axis=1)]
+        found += [(min(i, j), max(i, j)) for j in meet.tolist()]
+    yield from sorted(found)
 
 
 def _overlap(first: list[_Placed], second: list[_Placed], T: FloatArray) -> tuple[float, float]:

@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from articad.errors import ArticadError, ReadError
+from articad.files import read_file
 from articad.findings import Finding
 from articad.geometry.mesh import TriMesh, merged
 
@@ -41,12 +42,13 @@ _STL_NUMBERS = (8, 9, 10, 12, 13, 14, 16, 17, 18)
 _STL_TOKENS = 21  # facet normal n n n outer loop (vertex x y z) x 3 endloop endfacet
 
 
-def read_mesh(path: str | Path, scale: float = 1.0) -> TriMesh:
+def read_mesh(path: str | Path, scale: float = 1.0, root: Path | None = None) -> TriMesh:
     """Read a mesh file; exactly equal vertices are merged, collapsed triangles dropped.
 
     Args:
         path: A file whose name ends in .stl, .obj, .glb, .gltf or .ply.
         scale: Millimetres per unit of the file.
+        root: A folder above the file; no component below it may be a link.
 
     Raises:
         ReadError: If the file is missing, too large, of another form, truncated or holds no triangle.
@@ -56,10 +58,7 @@ def read_mesh(path: str | Path, scale: float = 1.0) -> TriMesh:
     if reader is None:
         raise _unreadable(path, "name", f"{path.suffix or 'no'} extension is not one of {', '.join(_READERS)}")
     try:
-        size = path.stat().st_size
-        if size > MAX_FILE_BYTES:
-            raise _unreadable(path, f"{size} bytes", f"the file is larger than {MAX_FILE_BYTES} bytes")
-        content = path.read_bytes()
+        content = read_file(path, MAX_FILE_BYTES, root=root)
     except OSError as error:
         raise _unreadable(path, "file", error.strerror or str(error)) from error
     mesh = _checked(path, lambda: reader(path, content))

@@ -17,7 +17,8 @@ from articad.errors import ReadError
 from articad.importers.reading import MAX_LINKS, Folder, read_xml, unreadable
 
 MAX_FILES = 100  # that include each other
-MAX_COPIES = 1000  # of <replicate>, <composite> and the like
+MAX_COPIES = 1000  # of <replicate>, <composite> and the like, within each other too
+MAX_COPIED = 200_000  # elements of all copies
 MAX_NAMES = 100_000  # places where a file may lie that is named
 _FOLDERS = ("meshdir", "texturedir", "assetdir")
 
@@ -53,13 +54,14 @@ class _Closure:
     def __init__(self, folder: Folder) -> None:
         self._folder = folder
         self._seen: list[Path] = []
+        self._copied = 0  # elements, each as often as it is copied
 
     def follow(self, path: Path) -> None:
         """Read a model with everything that it includes, check its names, then do the same for the models that it names."""
         named: Named = []
         folders: dict[str, None] = {"": None}
         models: Named = []
-        self._collect(path, path.parent, named, folders, models)
+        self._collect(path, path.parent, named, folders, models, 1)
         if len(named) * len(folders) > MAX_NAMES:
             raise unreadable(path, "", f"It names {len(named)} files in {len(folders)} folders; that is more than {MAX_NAMES} places.")
         for (name, file, line), base in product(named, folders):
@@ -69,16 +71,19 @@ class _Closure:
             if target.is_file() and target not in self._seen:
                 self.follow(target)
 
-    def _collect(self, path: Path, here: Path, named: Named, folders: dict[str, None], models: Named) -> None:
-        """Gather what a file and its includes name; `here` is the folder of the model that includes them."""
+    def _collect(self, path: Path, here: Path, named: Named, folders: dict[str, None], models: Named, times: int) -> None:
+        """Gather what a file and its includes name; `here` is the folder of the model that includes them, `times` how often they are copied."""
         if len(self._seen) >= MAX_FILES:
             raise unreadable(path, "", f"More than {MAX_FILES} files include each other.")
         self._seen.append(path)
         document = read_xml(path)
         if (bodies := sum(1 for _ in document.iter("body"))) > MAX_LINKS:
             raise unreadable(path, "", f"It has {bodies} bodies; {MAX_LINKS} are the most.")
+        copies = _copies(document, path, times)
+        self._copied += sum(copies.values())
+        if self._copied > MAX_COPIED:
+            raise unreadable(path, "", f"With all copies it has {self._copied} elements; {MAX_COPIED} are the most.")
         for element in _read_by_engines(document):
-            _require_few_copies(element, path)
             names = [(value, path, element.sourceline) for name, value in element.attrib.items() if name.startswith("file") and value]
             named += names
             if element.tag == "compiler":
@@ -86,15 +91,15 @@ class _Closure:
             elif element.tag == "model":
                 models += names
         for element in document.iter("include"):
-            self._include(element, path, here, named, folders, models)
+            self._include(element, path, here, named, folders, models, copies.get(element, times))
 
-    def _include(self, element: Any, path: Path, here: Path, named: Named, folders: dict[str, None], models: Named) -> None:
+    def _include(self, element: Any, path: Path, here: Path, named: Named, folders: dict[str, None], models: Named, times: int) -> None:
         """Follow an include; engines start its name at the file or at the model, so that both are followed."""
         name = element.get("file", "")
         places = dict.fromkeys(self._checked(base, name, path, element.sourceline) for base in (path.parent, here))
         for number, target in enumerate(place for place in places if place.is_file()):
             if target not in self._seen:
-                self._collect(target, here, named, folders, models)
+                self._collect(target, here, named, folders, models, times)
             elif number == 0:
                 raise unreadable(path, f"line {element.sourceline}", f"{name!r} is included again; includes must not go round.")
 
@@ -130,7 +135,28 @@ def _read_by_engines(document: Any) -> Iterator[Any]:
         yield from block.iter()
 
 
-def _require_few_copies(element: Any, path: Path) -> None:
-    counts = [int(word) for word in element.get("count", "1").split() if word.isdigit()]
-    if math.prod(counts) > MAX_COPIES:
-        raise unreadable(path, f"line {element.sourceline}", f"It asks for {math.prod(counts)} copies; {MAX_COPIES} are the most.")
+def _copies(document: Any, path: Path, times: int) -> dict[Any, int]:
+    """Return how often each element that engines read is copied, by the counts of what it lies in; `times` those of the file itself.
+
+    Raises:
+        ReadError: If a count is no number, or the product of counts within each other is too large.
+    """
+    if document.tag == "robot" and document.find("mujoco") is None:
+        return {}
+    copies: dict[Any, int] = {}
+    for element in document.iter():  # parents come before their children
+        above = copies.get(element.getparent(), times)
+        copies[element] = count = above * (_count(element, path) if "count" in element.attrib else 1)
+        if count > MAX_COPIES:
+            raise unreadable(path, f"line {element.sourceline}", f"It asks for {count} copies; {MAX_COPIES} are the most.")
+    return copies
+
+
+def _count(element: Any, path: Path) -> int:
+    """Return the product of the numbers of a count; what engines may read as a number counts as one."""
+    try:
+        numbers = [float(word) for word in element.get("count").split()]
+        return math.prod(max(math.ceil(number), 1) for number in numbers)
+    except (ValueError, OverflowError):
+        text = element.get("count")[:40]
+        raise unreadable(path, f"line {element.sourceline}", f"{text!r} is no count of copies.") from None

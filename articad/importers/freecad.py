@@ -20,10 +20,11 @@ from articad.connectors.connector import Connector
 from articad.connectors.mate import FLIP, Mate
 from articad.connectors.se3 import SE3
 from articad.errors import ArticadError
+from articad.files import read_file
 from articad.findings import Finding, Findings
 from articad.geometry.part import DEFAULT_COLOR, Part, Shape, Solid
 from articad.importers.freecad_mesh import read_mesh_kernel
-from articad.importers.reading import LARGEST_MM, Folder, parse_xml, unreadable
+from articad.importers.reading import LARGEST_MM, MAX_XML_BYTES, Folder, parse_xml, unreadable
 from articad.importers.records import assembly_of, read_records
 from articad.kernels.archive import Archive, BadArchiveError
 from articad.kernels.freecad import BrepReader
@@ -31,7 +32,7 @@ from articad.kinematics.joints import Joint, JointLimits, JointType
 from articad.kinematics.mechanism import Mechanism
 from articad.processes import scratch
 
-MAX_BYTES, MAX_UNPACKED, MAX_ENTRIES = 512 * 2**20, 2**31, 100_000
+MAX_BYTES, MAX_UNPACKED, MAX_ENTRIES = 256 * 2**20, 384 * 2**20, 20_000
 SAME_MM, SAME_RAD = 1e-9, 1e-12  # a frame this close to its record is the record's
 _TYPES = {
     "Fixed": JointType.FIXED,
@@ -86,10 +87,8 @@ class _Document:
     def __init__(self, path: Path) -> None:
         self.path = path
         try:
-            if path.stat().st_size > MAX_BYTES:
-                raise unreadable(path, "", "It is too large.")
-            self.archive = Archive(path.read_bytes(), entries=MAX_ENTRIES, unpacked=MAX_UNPACKED)
-            self.root = parse_xml(self.archive.read("Document.xml"), path)
+            self.archive = Archive(read_file(path, MAX_BYTES), entries=MAX_ENTRIES, unpacked=MAX_UNPACKED)
+            self.root = parse_xml(self.archive.read("Document.xml", MAX_XML_BYTES), path)
         except OSError as error:
             raise unreadable(path, "", f"It cannot be read: {error.strerror}.") from None
         except BadArchiveError as error:

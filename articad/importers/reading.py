@@ -7,18 +7,23 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from itertools import islice
 from pathlib import Path
-from stat import S_ISREG
 from typing import Any
+from xml.parsers import expat
 
 from lxml import etree
 
 from articad.errors import ArticadError, ReadError
+from articad.files import read_file
 from articad.findings import Finding
 from articad.geometry.mesh import TriMesh
 from articad.geometry.mesh_files import read_mesh
 
 MAX_XML_BYTES = 64 << 20  # a robot of 10,000 links is 20 MB; more is a mistake or an attack
 MAX_LINKS = 20_000
+MAX_ELEMENTS = 1_000_000  # of a file; a robot of 10,000 links has 200,000
+MAX_ATTRIBUTES = 200  # of one element; the parser compares each with each
+MAX_DEPTH = 50_000  # of elements within elements: a chain of MAX_LINKS bodies, twice
+_FEW = 20_000  # equals signs, up to which a file is parsed without being counted before: half a second at worst
 MM_PER_M = 1000.0
 LARGEST_MM = 1e12  # of a frame's place: with more, doubles no longer tell a millimetre
 
@@ -44,12 +49,7 @@ def read_xml(path: Path) -> Any:
         ReadError: If it is missing, too large, not XML, or declares entities.
     """
     try:
-        state = path.stat()
-        if not S_ISREG(state.st_mode):
-            raise unreadable(path, "", "It is not a file but a folder, a pipe, a socket or a device.")
-        if state.st_size > MAX_XML_BYTES:
-            raise unreadable(path, "", f"The file is larger than {MAX_XML_BYTES >> 20} MiB.")
-        content = path.read_bytes()
+        content = read_file(path, MAX_XML_BYTES)
     except OSError as error:
         raise unreadable(path, "", f"It cannot be read: {error.strerror}.") from None
     return parse_xml(content, path)
@@ -61,6 +61,7 @@ def parse_xml(content: bytes, path: Path) -> Any:
     parser = etree.XMLParser(resolve_entities=False, no_network=True, load_dtd=False, huge_tree=True, remove_comments=True, remove_pis=True)
     # slips that are widespread, and that other readers forgive: version 0.0, a zero byte at the end
     content = re.sub(rb"^\s*<\?xml[^>]*?version\s*=\s*[\"']0\.\d[\"'][^>]*\?>", b"", content.rstrip(b"\0\r\n\t "))
+    _require_bounded(content, path)
     try:
         root = etree.fromstring(content, parser)
     except (etree.XMLSyntaxError, ValueError) as error:
@@ -70,6 +71,54 @@ def parse_xml(content: bytes, path: Path) -> Any:
     if root.getroottree().docinfo.internalDTD is not None and root.getroottree().docinfo.internalDTD.entities():
         raise unreadable(path, "line 1", "It declares entities, which are not expanded.")
     return root
+
+
+def _require_bounded(content: bytes, path: Path) -> None:
+    """Count elements, attributes and levels by a parser that builds nothing, before the one that builds a tree sees the text.
+
+    Raises:
+        ReadError: If there are too many.
+    """
+    counter = _Counter(path)
+    try:
+        counter.count(content)
+    except (expat.ExpatError, ValueError, LookupError) as error:  # the latter two: encodings that it does not know
+        if content.count(b"=") > _FEW:  # a text that only the other parser would take, in whatever time
+            raise unreadable(path, f"line {getattr(error, 'lineno', 1)}", f"It is not XML: {error}.") from None
+
+
+class _Counter:
+    """Counts what an XML text holds."""
+
+    def __init__(self, path: Path) -> None:
+        self._path, self._elements, self._depth = path, 0, 0
+        self._parser = expat.ParserCreate()
+        self._parser.ordered_attributes = True
+        self._parser.StartElementHandler = self._start
+        self._parser.EndElementHandler = self._end
+        self._parser.EntityDeclHandler = self._entity
+
+    def count(self, content: bytes) -> None:
+        self._parser.Parse(content, True)  # noqa: FBT003 - the parser takes no names
+
+    def _start(self, _name: str, attributes: list[str]) -> None:
+        self._elements += 1
+        self._depth += 1
+        if len(attributes) > 2 * MAX_ATTRIBUTES:
+            self._refuse(f"An element has {len(attributes) // 2} attributes; {MAX_ATTRIBUTES} are the most.")
+        if self._elements > MAX_ELEMENTS:
+            self._refuse(f"It has more than {MAX_ELEMENTS} elements.")
+        if self._depth > MAX_DEPTH:
+            self._refuse(f"Its elements are nested deeper than {MAX_DEPTH}.")
+
+    def _end(self, _name: str) -> None:
+        self._depth -= 1
+
+    def _entity(self, *_words: Any) -> None:
+        raise unreadable(self._path, "line 1", "It declares entities, which are not expanded.")
+
+    def _refuse(self, reason: str) -> None:
+        raise unreadable(self._path, f"line {self._parser.CurrentLineNumber}", reason)
 
 
 @dataclass
@@ -136,7 +185,7 @@ class Folder:
             key = (path, uniform)
             if key not in self._meshes:
                 self._meshes[key] = None
-                self._meshes[key] = read_mesh(path, scale=uniform)
+                self._meshes[key] = read_mesh(path, scale=uniform, root=self.root)
             mesh = self._meshes[key]
         except ArticadError as error:
             if any(finding.code == "E_UNSAFE_PATH" for finding in error.findings):

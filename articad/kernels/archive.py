@@ -7,6 +7,7 @@ import zipfile
 from collections.abc import Mapping
 
 _CHUNK = 1 << 20  # bytes unpacked at once
+_ENTRY = b"PK\x01\x02"  # with which each entry of the table begins
 _TIME = (2000, 1, 1, 0, 0, 0)  # of every entry that is written: equal content gives equal bytes
 
 
@@ -32,6 +33,8 @@ class Archive:
         Raises:
             BadArchiveError: If it is no zip, or states to be larger.
         """
+        if content.count(_ENTRY) > entries:  # before a list of them is made
+            raise BadArchiveError("it is too large")
         try:
             self._zip = zipfile.ZipFile(io.BytesIO(content))
         except Exception as error:  # noqa: BLE001 - zipfile raises whatever it stumbles over: struct.error, ValueError, IndexError
@@ -43,23 +46,27 @@ class Archive:
             raise BadArchiveError("it holds two entries of one name")
         self._left = unpacked
 
-    def read(self, name: str) -> bytes:
+    def read(self, name: str, most: int | None = None) -> bytes:
         """Return the content of an entry, unpacked piece by piece: a bomb is noticed before it fills memory.
+
+        Args:
+            name: Of the entry.
+            most: Its largest size [bytes]; by default what is left of the allowance.
 
         Raises:
             BadArchiveError: If there is none of this name, it is spoiled, or the allowance is used up.
         """
-        pieces = []
+        content, left = bytearray(), self._left if most is None else min(most, self._left)
         try:
             with self._zip.open(name) as stream:
-                while self._left >= 0 and (piece := stream.read(_CHUNK)):
-                    self._left -= len(piece)
-                    pieces.append(piece)
+                while len(content) <= left and (piece := stream.read(_CHUNK)):
+                    content += piece
         except Exception as error:  # noqa: BLE001 - as above, and zlib.error, EOFError, NotImplementedError
             raise BadArchiveError(f"{name} cannot be unpacked: {error}") from None
-        if self._left < 0:
-            raise BadArchiveError("it is too large")
-        return b"".join(pieces)
+        self._left -= len(content)
+        if len(content) > left:
+            raise BadArchiveError(f"{name} is too large")
+        return bytes(content)
 
 
 def packed(entries: Mapping[str, bytes]) -> bytes:

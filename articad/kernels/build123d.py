@@ -22,6 +22,7 @@ from numpy.typing import ArrayLike
 from articad.connectors.connector import Connector
 from articad.connectors.se3 import SE3
 from articad.errors import BuildError, ContractError, KernelError, ReadError, SandboxError
+from articad.files import RECORD_BYTES, read_file
 from articad.findings import Finding, Findings
 from articad.geometry.mesh import TriMesh
 from articad.geometry.part import Solid
@@ -196,7 +197,7 @@ class Build123dKernel:
         self._require_sandbox()
         cache = cache or BuildCache()
         try:
-            content = path.read_bytes()
+            content = read_file(path, RECORD_BYTES)
             digest = hashlib.sha256(f"{self.version} {deflection!r} ".encode() + content).hexdigest()
             if (folder := cache.get(digest)) is None:
                 with cache.writing(digest) as empty:

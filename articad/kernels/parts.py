@@ -11,7 +11,8 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from articad.errors import ContractError, KernelError, did_you_mean
+from articad.errors import ContractError, KernelError, ReadError, did_you_mean
+from articad.files import SCRIPT_BYTES, read_file
 from articad.findings import Finding, Findings
 from articad.geometry.part import Part
 from articad.kernels.kernel import BuildCache, BuiltPart, PartKernel, build_part, mirror_part, realise
@@ -62,13 +63,25 @@ def find_scripts(folder: Path, resolved: ResolvedPlan, kernel: str) -> dict[str,
         if part.derivation is not None:
             continue
         path = folder / f"{name}{suffix}"
-        if path.is_file():
-            scripts[name] = path.read_bytes()
+        if path.is_symlink() or path.exists():
+            scripts[name] = _script(path)
         else:
             missing.append(_script_missing(name, path.name, present))
     if missing:
         raise ContractError("\n".join(map(str, missing)), findings=missing)
     return scripts
+
+
+def _script(path: Path) -> bytes:
+    """Return a part's script.
+
+    Raises:
+        ReadError: If it is no file of a script's size, or a link.
+    """
+    try:
+        return read_file(path, SCRIPT_BYTES, root=path.parent.parent)
+    except OSError as error:
+        raise ReadError.told(path, f"{path} cannot be read: {error.strerror}.", "Write the script there.") from None
 
 
 def build_parts(

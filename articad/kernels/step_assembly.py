@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from articad.errors import InvalidSolidError, ReadError
+from articad.files import read_file
 from articad.geometry.mesh import TriMesh
 from articad.kernels.build123d import ANGLE_DEG, Build123dKernel
 from articad.kernels.results import PoisonedError, read_bytes, read_mesh
@@ -59,9 +60,7 @@ class StepReader(Build123dKernel):
         """
         self._require_sandbox()
         try:
-            if path.stat().st_size > MAX_BYTES:
-                raise ReadError(f"{path.name} is larger than {MAX_BYTES >> 20} MiB.", path=str(path))
-            content = path.read_bytes()
+            content = read_file(path, MAX_BYTES)
         except OSError as error:
             raise ReadError(f"{path.name} cannot be read: {error.strerror}.", path=str(path)) from error
         try:

@@ -15,12 +15,13 @@ from mcp.server.mcpserver.exceptions import ToolError
 from pydantic import Field
 
 from articad import __version__
-from articad.errors import ArticadError, did_you_mean
+from articad.errors import ArticadError, ReadError, did_you_mean
 from articad.findings.codes import CODES
 from articad.mcp import answers
 from articad.mcp.skill import section
 from articad.mcp.workbench import BRIEF_BYTES, Json, Tell, Workbench, condensed
 from articad.processes import scratch
+from articad.runs.run import write_atomically
 
 Tool = Callable[..., Awaitable[Any]]
 Dialect = Literal["build123d", "freecad"]
@@ -174,19 +175,20 @@ class Tools:
     async def edit_parameters(self, context: Context, design: Design, values: dict[str, float], kernel: Dialect = "build123d") -> Json:
         """Change parameters of the plan, build again, and say which parts changed and which are provably the same."""
         folder = self.bench.design(design)
-        plan = json.loads((folder / "plan.json").read_bytes())
+        kept = self.bench.read(f"{design}/plan.json")
+        plan = json.loads(kept)
         known = {entry["name"]: entry for entry in plan.get("parameters", ())}
         for name, value in values.items():
             if name not in known:
                 raise ToolError(f"There is no parameter {name!r}.{did_you_mean(name, known)} There are {', '.join(known) or 'none'}.")
             known[name]["value"] = value
-        before, kept = _shapes(folder), (folder / "plan.json").read_bytes()
+        before = self._shapes(design)
         self.bench.write_plan(design, plan)
         report = await self._built(context, folder, kernel)
         if "error" in report:  # nothing was built: the design stays what it was
-            (folder / "plan.json").write_bytes(kept)
+            write_atomically(folder / "plan.json", kept)
             return condensed(report, detail=False)
-        after = _shapes(folder)
+        after = self._shapes(design)
         changed = sorted(name for name in after if after[name] != before.get(name))
         report |= {"changed": changed, "same": sorted(set(after) - set(changed)), "removed": sorted(set(before) - set(after))}
         return condensed(report, detail=False, keep=("changed", "same", "removed", "freedoms"))
@@ -217,6 +219,8 @@ class Tools:
 
     async def _built(self, context: Context, folder: Path, kernel: str) -> Json:
         out = folder / "run"
+        if out.is_symlink():
+            raise ReadError.told(out, f"{out.name} of {folder.name} is a link.", "Remove the link; a build makes the folder.")
         if out.exists():
             shutil.rmtree(out)  # the design is the truth; its run is made of it
         words = ["--out", str(out), "--kernel", kernel, "--no-pictures"]
@@ -230,6 +234,14 @@ class Tools:
             "deepest_overlap_mm": max(depths, default=0.0),
             "files": {name: self._shown(entry["main"]) for name, entry in report.get("exports", {}).items()},
         }
+
+    def _shapes(self, design: str) -> dict[str, str]:
+        """Return the digest of each built part's mesh and where it came from."""
+        found = {}
+        for file in sorted((self.bench.root / design / "run" / "parts").glob("*/part.json")):
+            record = json.loads(self.bench.read(str(file.relative_to(self.bench.root))))
+            found[file.parent.name] = str(record["shape"]["mesh_sha256"])
+        return found
 
     def _shown(self, file: str) -> str:
         """Return a file's name as the tools take it: relative to the root."""
@@ -260,6 +272,8 @@ def _told(method: Tool) -> Tool:
             answer = await method(*arguments, **named)
         except ArticadError as error:
             raise ToolError("\n".join(map(str, error.findings)) or str(error)) from error
+        except OSError as error:
+            raise ToolError(f"{error.filename or 'A file'} cannot be read or written: {error.strerror}.") from None
         return answers.compact(answer) if isinstance(answer, dict) else answer
 
     return told
@@ -272,15 +286,6 @@ def _teller(context: Context) -> Tell:
         await context.report_progress(seconds, None, message)
 
     return tell
-
-
-def _shapes(folder: Path) -> dict[str, str]:
-    """Return the digest of each built part's mesh and where it came from."""
-    found = {}
-    for file in sorted((folder / "run" / "parts").glob("*/part.json")):
-        record = json.loads(file.read_bytes())
-        found[file.parent.name] = str(record["shape"]["mesh_sha256"])
-    return found
 
 
 def _json_schema(topic: str) -> str:

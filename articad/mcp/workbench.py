@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from articad.errors import ReadError
+from articad.files import RECORD_BYTES, ROOT_VARIABLE, is_file, read_file
 from articad.plan.amending import amended
 from articad.processes import launcher
 from articad.runs.run import write_atomically
@@ -58,6 +59,17 @@ class Workbench:
             raise ReadError.told(name, f"{name} is outside the root.", "Name a file under it, relative to it.")
         return path
 
+    def read(self, name: str) -> bytes:
+        """Return the content of a file under the root.
+
+        Raises:
+            ReadError: If it is missing, is no file, is too large, or a link leads to it.
+        """
+        try:
+            return read_file(self.root / name, RECORD_BYTES, root=self.root)
+        except OSError as error:
+            raise ReadError.told(name, f"{name} cannot be read: {error.strerror}.", "Name a file under the root that is no link.") from None
+
     def design(self, name: str, *, new: bool = False) -> Path:
         """Return the folder of a design.
 
@@ -67,8 +79,10 @@ class Workbench:
         if not _NAME.match(name):
             raise ReadError.told(name, f"{name!r} is no name of a design.", "Use letters, digits, - and _, at most 60.")
         folder = self.path(name)
-        if not new and not (folder / "plan.json").is_file():
-            known = sorted(file.parent.name for file in self.root.glob("*/plan.json"))
+        if folder != self.root / name:
+            raise ReadError.told(name, f"The design {name!r} is a link.", "Copy the folder to the root.")
+        if not new and not is_file(folder / "plan.json", root=self.root):
+            known = sorted(file.parent.name for file in self.root.glob("*/plan.json") if is_file(file, root=self.root))
             raise ReadError.told(
                 name, f"There is no design {name!r}; there are {', '.join(known) or 'none'}.", "Start one with check_plan."
             )
@@ -94,7 +108,8 @@ class Workbench:
             ReadError: If an address leads nowhere, or the plan is no JSON; it is left as it was.
         """
         try:
-            plan = dict(json.loads((self.design(name) / "plan.json").read_text(encoding="utf-8")))
+            self.design(name)
+            plan = dict(json.loads(self.read(f"{name}/plan.json")))
         except ValueError as error:
             raise ReadError.told(name, f"The plan of {name!r} cannot be read: {error}.", "Give the whole plan.") from error
         return self.write_plan(name, amended(plan, changes))
@@ -111,7 +126,7 @@ class Workbench:
         if not _NAME.match(part):
             raise ReadError.told(part, f"{part!r} is no name of a part.", "Use the name that the plan gives it.")
         file = self.design(design) / "parts" / f"{part}{'.freecad.py' if kernel == 'freecad' else '.py'}"
-        if not file.resolve().is_relative_to(self.root):
+        if file.parent.is_symlink() or file.is_symlink():
             raise ReadError.told(part, f"{file} leads out of the root.", "Remove the link.")
         write_atomically(file, content)
         return file
@@ -119,7 +134,7 @@ class Workbench:
     def target(self, name: str) -> Path:
         """Return what a name stands for: the run of a design if it was built, else the design, else a file under the root."""
         path = self.path(name)
-        if (path / "run" / "request.json").is_file():
+        if is_file(path / "run" / "request.json", root=self.root):
             return path / "run"
         if not path.exists():
             raise ReadError.told(name, f"There is no {name} under the root.", "Name a design, or a file relative to the root.")
@@ -142,7 +157,7 @@ class Workbench:
             [*arguments, "--json"],
             module="articad.cli",
             limits=launcher.Limits(seconds=seconds, file_size=_FILE_BYTES),
-            environment=launcher.environment(*launcher.OWN),
+            environment=launcher.environment(*launcher.OWN) | {ROOT_VARIABLE: str(self.root)},
         )
         try:
             ended = await self._finished(child, arguments[0], tell)

@@ -12,6 +12,7 @@ from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails
 
 from articad.errors import PlanError, ReadError, did_you_mean
+from articad.files import PLAN_BYTES, read_file
 from articad.findings import Finding, Findings
 from articad.plan.fields import NAME_RULE, Form, is_name
 from articad.plan.joint_forms import JOINT_TYPES, JointForm
@@ -50,7 +51,7 @@ def load(form: type[F], path: Path, default_name: str) -> F:
     """
     file = path / default_name if path.is_dir() else path
     try:
-        text = file.read_bytes()
+        text = read_file(file, PLAN_BYTES, root=path if path.is_dir() else None)
     except OSError as error:
         raise ReadError(f"{file} cannot be read: {error.strerror}.", path=str(file)) from None
     return loads(form, text)

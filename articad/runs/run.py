@@ -26,6 +26,7 @@ from pathlib import Path
 from typing import Any, Final, Literal, Self
 
 from articad.errors import ReadError, RunError, WriteError
+from articad.files import RECORD_BYTES, read_file
 from articad.findings import Finding
 
 try:
@@ -96,7 +97,7 @@ class UserImage:
     part: str | None = None
 
     @classmethod
-    def read(cls, source: str | Path | bytes, part: str | None = None) -> Self:
+    def read(cls, source: str | Path | bytes, part: str | None = None, root: Path | None = None) -> Self:
         """Read a PNG, JPEG, GIF or WebP picture.
 
         Raises:
@@ -104,7 +105,7 @@ class UserImage:
         """
         name = "an image" if isinstance(source, bytes) else str(source)
         try:
-            content = source if isinstance(source, bytes) else Path(source).read_bytes()
+            content = source if isinstance(source, bytes) else read_file(source, _IMAGE_LIMIT, root=root)
         except OSError as error:
             raise _unreadable(name, f"Cannot read {name}: {error.strerror}.") from error
         if len(content) > _IMAGE_LIMIT:
@@ -326,8 +327,7 @@ class Run:
 
     def part_files(self, name: str) -> dict[str, str]:
         """Return the sha256 of each file of a part by its name, pictures left out."""
-        files = (file for file in sorted((self.path / _PARTS / name).iterdir()) if file.is_file())
-        return {file.name: hashlib.sha256(file.read_bytes()).hexdigest() for file in files}
+        return {file.name: self._sha256(file) for file in sorted((self.path / _PARTS / name).iterdir()) if file.is_file()}
 
     def save_part(
         self,
@@ -516,19 +516,23 @@ class Run:
 
     def hashes(self) -> dict[str, str]:
         """Return the sha256 of every file by its path in the run, but for the trace, and pictures and page, which are drawn from the rest."""
-        files = (file for file in sorted(self.path.rglob("*")) if file.is_file() and file.name != _TRACE)
-        files = (file for file in files if file.parent.name != _VIEWS and file.parent != self.path / _MOTION and file.name != _PAGE)
-        return {file.relative_to(self.path).as_posix(): hashlib.sha256(file.read_bytes()).hexdigest() for file in files}
+        found = (file for file in sorted(self.path.rglob("*")) if file.is_file() and file.name != _TRACE)
+        found = (file for file in found if file.parent.name != _VIEWS and file.parent != self.path / _MOTION and file.name != _PAGE)
+        return {file.relative_to(self.path).as_posix(): self._sha256(file) for file in found}
 
     # ------------------------------------------------------------------ reading and writing
 
     def _read(self, name: str) -> bytes | None:
         try:
-            return (self.path / name).read_bytes()
+            return read_file(self.path / name, RECORD_BYTES, root=self.path)
         except (FileNotFoundError, NotADirectoryError):
             return None
         except OSError as error:
             raise _unreadable(str(self.path / name), f"Cannot read {self.path / name}: {error.strerror}.") from error
+
+    def _sha256(self, file: Path) -> str:
+        content = self._read(file.relative_to(self.path).as_posix())
+        return hashlib.sha256(content or b"").hexdigest()
 
     def _read_json(self, name: str) -> Json | None:
         content = self._read(name)
@@ -677,7 +681,7 @@ def _read_request(path: Path) -> RunRequest:
             raise RunError.told(
                 path, f"{path / REQUEST_FILE} names the picture {name[:100]!r}, which is none of the run.", "Do not use this run."
             )
-    images = tuple(UserImage.read(path / name, None if part is None else str(part)) for name, part in named)
+    images = tuple(UserImage.read(path / name, None if part is None else str(part), path) for name, part in named)
     return RunRequest(prompt=prompt, images=images, options=options)
 
 

@@ -1,0 +1,126 @@
+"""Bounds before work: what a file asks for is counted before a parser or an engine does it."""
+
+from __future__ import annotations
+
+import zipfile
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from articad.errors import ReadError
+from articad.importers import reading
+from articad.importers.freecad import read_freecad
+from articad.importers.mjcf import read_mjcf
+from articad.importers.urdf import read_urdf
+
+WORLD = "<mujoco><worldbody>{}</worldbody></mujoco>"
+GEOM = '<geom size="0.1"/>'
+
+
+def never(*_words: object, **_more: object) -> None:
+    raise AssertionError("the work was begun")
+
+
+@pytest.fixture
+def idle(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Have the parser of trees and the compiler of MuJoCo fail the test."""
+    monkeypatch.setattr(reading.etree, "fromstring", never)
+
+
+MANY = " ".join(f'a{number}="1"' for number in range(30_000))
+XMLS = {
+    "attributes": (f"<robot {MANY}/>", "30000 attributes"),
+    "attributes, one twice": (f'<robot {MANY} a1="2"/>', "duplicate attribute"),
+    "attributes with brackets": ("<robot " + MANY.replace('"1"', '">"') + "/>", "30000 attributes"),
+    "attributes in an encoding of several bytes": (f'<?xml version="1.0" encoding="gb18030"?><robot {MANY}/>', "multi-byte"),
+    "attributes in no encoding": (f'<?xml version="1.0" encoding="none"?><robot {MANY}/>', "unknown encoding"),
+    "levels": ("<a>" * 60_000, "nested deeper than 50000"),
+    "elements": ("<a>" + "<b/>" * 1_000_001 + "</a>", "more than 1000000 elements"),
+    "entities": ('<!DOCTYPE r [<!ENTITY a "b">]><robot name="&a;"/>', "declares entities"),
+}
+
+
+@pytest.mark.usefixtures("idle")
+@pytest.mark.parametrize("name", XMLS)
+def test_xml_is_counted_before_a_tree_is_built(name: str, tmp_path: Path) -> None:
+    text, reason = XMLS[name]
+    path = tmp_path / "a.urdf"
+    path.write_text(text)
+    with pytest.raises(ReadError, match=reason):
+        read_urdf(path)
+
+
+def test_an_encoding_of_several_bytes_is_read(tmp_path: Path) -> None:
+    path = tmp_path / "a.urdf"
+    path.write_bytes('<?xml version="1.0" encoding="gb18030"?><robot name="r"><link name="手臂"/></robot>'.encode("gb18030"))
+    assert "手臂" in read_urdf(path).parts
+
+
+@pytest.mark.parametrize("count", ["1000000000", "1e9", "1001", "-5 1e9", "40 40", "nan", "inf", "0x7fffffff", "9" * 5000, "many"])
+@pytest.mark.parametrize("tag", ["replicate", "composite", "flexcomp"])
+def test_copies_are_counted_before_they_are_made(tag: str, count: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("articad.importers.mjcf._compiled", never)
+    path = tmp_path / "a.xml"
+    path.write_text(WORLD.format(f'<{tag} count="{count}">{GEOM}</{tag}>'))
+    with pytest.raises(ReadError, match=r"copies; 1000 are the most|no count of copies"):
+        read_mjcf(path)
+
+
+def nested(depth: int, count: int) -> str:
+    return WORLD.format(f'<replicate count="{count}">' * depth + GEOM + "</replicate>" * depth)
+
+
+def beside(number: int, count: int) -> str:
+    return WORLD.format(f'<replicate count="{count}">{GEOM * 10}</replicate>' * number)
+
+
+@pytest.mark.parametrize(
+    ("text", "reason"), [(nested(2, 40), "1600 copies"), (nested(40, 2), "copies"), (beside(30, 1000), "330031 elements|elements")]
+)
+def test_products_and_sums_of_copies_are_bounded(text: str, reason: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("articad.importers.mjcf._compiled", never)
+    path = tmp_path / "a.xml"
+    path.write_text(text)
+    with pytest.raises(ReadError, match=reason):
+        read_mjcf(path)
+
+
+def test_copies_of_an_include_count_with_those_around_it(tmp_path: Path) -> None:
+    (tmp_path / "inner.xml").write_text(f'<mujoco><replicate count="40">{GEOM}</replicate></mujoco>')
+    path = tmp_path / "a.xml"
+    path.write_text(WORLD.format('<replicate count="40"><include file="inner.xml"/></replicate>'))
+    with pytest.raises(ReadError, match="1600 copies"):
+        read_mjcf(path)
+
+
+def test_a_few_copies_are_read(tmp_path: Path) -> None:
+    path = tmp_path / "a.xml"
+    path.write_text(WORLD.format(f'<replicate count="5" offset="1 0 0"><body><joint/>{GEOM}</body></replicate>'))
+    assert len(read_mjcf(path).parts) == 6
+
+
+def stored(path: Path) -> None:
+    with zipfile.ZipFile(path, "w") as archive:
+        for number in range(20_001):
+            archive.writestr(str(number), "")
+
+
+def bomb(path: Path) -> None:
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
+        archive.writestr("Document.xml", bytes(65 << 20))
+
+
+def boasting(path: Path) -> None:
+    """Write a bomb whose header says that it is small."""
+    bomb(path)
+    content = path.read_bytes()
+    path.write_bytes(content.replace((65 << 20).to_bytes(4, "little"), (100).to_bytes(4, "little")))
+
+
+@pytest.mark.parametrize("write", [stored, bomb, boasting])
+def test_archives_are_unpacked_within_bounds(write: Callable[[Path], None], tmp_path: Path) -> None:
+    path = tmp_path / "a.FCStd"
+    write(path)
+    with pytest.raises(ReadError, match=r"too large|cannot be unpacked|not XML"):
+        read_freecad(path)

@@ -1,0 +1,94 @@
+"""Links inside the root of the tools: nothing outside is read or written, and no first words of it come back."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+from mcp.server.mcpserver.exceptions import ToolError
+
+from articad import examples
+from articad.errors import ReadError
+from articad.mcp.server import Tools, _told
+from articad.mcp.workbench import Workbench
+from tests.coroutines import finish
+
+SECRET = "the-first-word-of-a-secret 1 2 3"
+
+
+@pytest.fixture
+def root(tmp_path: Path) -> Path:
+    """Return a root with one sound design, and a secret beside it."""
+    (tmp_path / "secret").write_text(SECRET)
+    folder = tmp_path / "root" / "box"
+    (folder / "parts").mkdir(parents=True)
+    (folder / "plan.json").write_bytes((examples.folder("wardrobe") / "plan.json").read_bytes())
+    return tmp_path / "root"
+
+
+def told(root: Path, tool: str, **arguments: Any) -> str:
+    """Return all that a tool says, an error or not."""
+    try:
+        return str(finish(_told(getattr(Tools(root), tool))(**arguments)))
+    except ToolError as error:
+        return str(error)
+
+
+@pytest.mark.parametrize("tool", ["check_plan", "check", "audit", "sim"])
+@pytest.mark.parametrize("link", ["plan.json", "folder", "run"])
+def test_a_linked_design_is_refused_and_tells_nothing(tool: str, link: str, root: Path) -> None:
+    secret = root.parent / "secret"
+    if link == "folder":
+        away = root.parent / "away"
+        away.mkdir()
+        (away / "plan.json").write_text(SECRET)
+        (root / "bad").symlink_to(away)
+    else:
+        (root / "bad").mkdir()
+        (root / "bad" / "plan.json").symlink_to(secret)
+        if link == "run":
+            (root / "bad" / "run").symlink_to(root.parent)
+    answer = told(root, tool, design="bad")
+    assert "the-first-word" not in answer
+    assert "Traceback" not in answer
+
+
+def test_a_linked_script_is_not_read(root: Path) -> None:
+    plan = json.loads((root / "box" / "plan.json").read_text())
+    part = next(name for name, entry in ((part["name"], part) for part in plan["parts"]) if "derived" not in entry)
+    (root / "box" / "parts" / f"{part}.py").symlink_to(root.parent / "secret")
+
+    async def build() -> Any:
+        tools = Tools(root)
+        return await tools.bench.run("part", str(root / "box"), part, seconds=60.0)
+
+    assert "the-first-word" not in json.dumps(finish(build()))
+
+
+@pytest.mark.parametrize("name", ["check", "audit", "convert", "render", "certify", "export", "sim"])
+def test_every_command_of_the_tools_keeps_to_the_root(name: str, root: Path) -> None:
+    """As if a link was put in place between the server's look and the command's read."""
+    secret = root.parent / "secret"
+    (root / "late.urdf").symlink_to(secret)
+    (root / "late").mkdir()
+    (root / "late" / "plan.json").symlink_to(secret)
+    (root / "late" / "request.json").symlink_to(secret)
+    words = {"convert": [str(root / "x.xml")], "export": ["--to", "urdf"]}.get(name, [])
+    for target in (root / "late.urdf", root / "late", root / "late" / "plan.json", secret):
+        try:
+            answer = json.dumps(finish(Workbench(root).run(name, str(target), *words, seconds=60.0)))
+        except ReadError as error:
+            answer = str(error)
+        assert "the-first-word" not in answer
+        assert "Traceback" not in answer
+        assert '"ok": true' not in answer
+
+
+def test_a_script_is_not_written_through_a_link(root: Path) -> None:
+    bench, secret = Workbench(root), root.parent / "secret"
+    (root / "box" / "parts" / "lid.py").symlink_to(secret)
+    with pytest.raises(ReadError):
+        bench.write_script("box", "lid", "x = 1", "build123d")
+    assert secret.read_text() == SECRET
