@@ -20,6 +20,7 @@ def chain(count: int) -> Assembly:
     connectors = {name: Connector(name, place) for name, place in ends.items()}
     parts = [Part.from_solid(f"link{number}", solid, density=1000.0, connectors=connectors) for number in range(count)]
     joints = [
-        declare.revolute(f"hinge{number}", parts[number]["low"], parts[number - 1]["high"], limits=(-0.02, 0.02)) for number in range(1, count)
+        declare.revolute(f"hinge{number}", parts[number]["low"], parts[number - 1]["high"], limits=(-0.02, 0.02))
+        for number in range(1, count)
     ]
     return Assembly.from_parts("chain", parts=parts, joints=joints, ground="link0")

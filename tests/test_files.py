@@ -77,7 +77,7 @@ def test_a_file_that_grows_is_read_to_the_bound(tmp_path: Path, monkeypatch: pyt
             stream.write(b"y" * 100)
         return read(file, count)
 
-    monkeypatch.setattr(files.os, "read", growing)
+    monkeypatch.setattr(os, "read", growing)
     with pytest.raises(UnsafeFileError, match="larger than 1000"):
         read_file(path, 1000)
 

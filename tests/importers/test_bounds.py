@@ -9,7 +9,6 @@ from pathlib import Path
 import pytest
 
 from articad.errors import ReadError
-from articad.importers import reading
 from articad.importers.freecad import read_freecad
 from articad.importers.mjcf import read_mjcf
 from articad.importers.urdf import read_urdf
@@ -25,7 +24,7 @@ def never(*_words: object, **_more: object) -> None:
 @pytest.fixture
 def idle(monkeypatch: pytest.MonkeyPatch) -> None:
     """Have the parser of trees and the compiler of MuJoCo fail the test."""
-    monkeypatch.setattr(reading.etree, "fromstring", never)
+    monkeypatch.setattr("articad.importers.reading.etree.fromstring", never)
 
 
 MANY = " ".join(f'a{number}="1"' for number in range(30_000))

@@ -28,10 +28,14 @@ def root(tmp_path: Path) -> Path:
     return tmp_path / "root"
 
 
+async def asked(root: Path, tool: str, arguments: dict[str, Any]) -> Any:
+    return await _told(getattr(Tools(root), tool))(**arguments)
+
+
 def told(root: Path, tool: str, **arguments: Any) -> str:
     """Return all that a tool says, an error or not."""
     try:
-        return str(finish(_told(getattr(Tools(root), tool))(**arguments)))
+        return str(finish(asked(root, tool, arguments)))
     except ToolError as error:
         return str(error)
 
