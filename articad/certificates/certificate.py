@@ -768,18 +768,6 @@ def mechanism_json(mechanism: Mechanism) -> dict[str, Any]:
 
 
 def _freedoms_json(joint: Joint) -> list[dict[str, Any]]:
-    X, Y, Z, none = [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.0, 0.0, 0.0]
-    rise = [0.0, 0.0, joint.lead / (2 * math.pi)]
-    steps: dict[JointType, list[tuple[list[float], list[float]]]] = {
-        JointType.FIXED: [],
-        JointType.REVOLUTE: [(none, Z)],
-        JointType.SLIDER: [(Z, none)],
-        JointType.CYLINDRICAL: [(Z, none), (none, Z)],
-        JointType.SCREW: [(rise, Z)],
-        JointType.PLANAR: [(X, none), (Y, none), (none, Z)],
-        JointType.UNIVERSAL: [(none, X), (none, Y)],
-        JointType.BALL: [(none, X), (none, Y), (none, Z)],
-    }
     open_ends = [(None if math.isinf(c.lower) else c.lower, None if math.isinf(c.upper) else c.upper) for c in joint.columns]
     found = proven_freedoms(joint)
     bounds = [[f.lower, f.upper] for f in found] if joint.type is JointType.BALL else [list(ends) for ends in open_ends]
@@ -790,10 +778,10 @@ def _freedoms_json(joint: Joint) -> list[dict[str, Any]]:
             "range": [freedom.lower, freedom.upper],
             "limits": limits,
             "rest": freedom.rest,
-            "slide": slide,
-            "turn": turn,
+            "slide": list(slide),
+            "turn": list(turn),
         }
-        for freedom, limits, (slide, turn) in zip(found, bounds, steps[joint.type], strict=True)
+        for freedom, limits, (turn, slide) in zip(found, bounds, joint.type.factors(joint.lead), strict=True)
     ]
 
 

@@ -15,13 +15,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from articad.interference.motion import Chain, Mover
-from articad.kinematics.joints import JointType
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
 _PARALLEL = 1e-12  # |sine| of axes that are declared parallel, after the arithmetic of a few frames
-_X, _Y, _Z, _NONE = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0), (0.0, 0.0, 0.0)
 
 
 class Factor(NamedTuple):
@@ -42,18 +40,8 @@ class Factor(NamedTuple):
 
 def factors_of(mover: Mover) -> list[Factor]:
     """Return the motions of a joint in the order in which the chain passes them."""
-    rise = (0.0, 0.0, mover.joint.lead / (2 * np.pi))
-    steps: dict[JointType, list[tuple[tuple[float, float, float], tuple[float, float, float]]]] = {
-        JointType.REVOLUTE: [(_Z, _NONE)],
-        JointType.SLIDER: [(_NONE, _Z)],
-        JointType.SCREW: [(_Z, rise)],
-        JointType.CYLINDRICAL: [(_NONE, _Z), (_Z, _NONE)],
-        JointType.PLANAR: [(_NONE, _X), (_NONE, _Y), (_Z, _NONE)],
-        JointType.UNIVERSAL: [(_X, _NONE), (_Y, _NONE)],
-        JointType.BALL: [(_X, _NONE), (_Y, _NONE), (_Z, _NONE)],
-    }
-    sign = 1.0 if mover.forward else -1.0
-    found = [Factor(turn, slide, column, sign) for (turn, slide), column in zip(steps[mover.joint.type], mover.columns, strict=True)]
+    sign, factors = 1.0 if mover.forward else -1.0, mover.joint.type.factors(mover.joint.lead)
+    found = [Factor(turn, slide, column, sign) for (turn, slide), column in zip(factors, mover.columns, strict=True)]
     return found if mover.forward else found[::-1]
 
 

@@ -16,7 +16,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Literal, NamedTuple
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,7 +30,7 @@ from articad.export.losses import Feature
 from articad.export.names import Names, valid_name
 from articad.export.once import once
 from articad.geometry.part import Part, Shape
-from articad.kinematics.joints import Joint, JointType
+from articad.kinematics.joints import Joint, JointType, Step
 
 if TYPE_CHECKING:
     from articad.assembly import Assembly
@@ -39,38 +39,13 @@ FloatArray = NDArray[np.float64]
 Kind = Literal["turn", "slide"]
 
 
-class Motion(NamedTuple):
-    """One elementary motion of a joint type.
-
-    Attributes:
-        suffix: Of the name, where a joint has several motions.
-        kind: Turning about or sliding along the axis.
-        axis: In the parent connector's frame.
-        coordinate: Index of the joint's coordinate that is its value; None for a ball's angles and a screw's slide.
-    """
-
-    suffix: str
-    kind: Kind
-    axis: tuple[float, float, float]
-    coordinate: int | None
-
-
 ON_AXIS_MM = 1e-6  # by which a turning axis may miss the origin of a link that keeps its frame
 ROUND = 1e-12  # by which a component of an axis may miss a whole number
 
-_X, _Y, _Z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
 
-MOTIONS: dict[JointType, tuple[Motion, ...]] = {
-    JointType.FIXED: (),
-    JointType.REVOLUTE: (Motion("", "turn", _Z, 0),),
-    JointType.SLIDER: (Motion("", "slide", _Z, 0),),
-    JointType.CYLINDRICAL: (Motion("t", "slide", _Z, 0), Motion("r", "turn", _Z, 1)),
-    JointType.BALL: (Motion("rx", "turn", _X, None), Motion("ry", "turn", _Y, None), Motion("rz", "turn", _Z, None)),
-    JointType.SCREW: (Motion("t", "slide", _Z, None), Motion("r", "turn", _Z, 0)),
-    JointType.PLANAR: (Motion("x", "slide", _X, 0), Motion("y", "slide", _Y, 1), Motion("r", "turn", _Z, 2)),
-    JointType.UNIVERSAL: (Motion("rx", "turn", _X, 0), Motion("ry", "turn", _Y, 1)),
-}
-"""J(q) of each joint type as a product of elementary motions, first one first."""
+def motions(kind: JointType) -> tuple[Step, ...]:
+    """Return J(q) of a joint type as a product of motions that formats can write as joints of their own, first one first."""
+    return kind.steps
 
 
 @dataclass(frozen=True)
@@ -260,7 +235,7 @@ def _keeps_frame(joint: Joint, K: SE3) -> bool:
     if joint.type is JointType.BALL:  # its values are turns about the frame's own axes
         return K.allclose(SE3.identity(), mm=ON_AXIS_MM, rad=1e-12)
     origin = K.translation  # of the part, seen from the joint's frame
-    turning = [np.array(motion.axis) for motion in MOTIONS[joint.type] if motion.kind == "turn"]
+    turning = [np.array(step.vector) for step in motions(joint.type) if step.kind == "turn"]
     return all(float(np.linalg.norm(np.cross(axis, origin))) <= ON_AXIS_MM for axis in turning)
 
 
@@ -292,12 +267,12 @@ class _ValidNames:
     def motions(self, joint: Joint) -> tuple[str, ...]:
         """Return the names of a joint's motions: its own where there is one, else `joint__suffix`."""
         base = self.joints[joint.name]
-        return tuple(self._joint_names.claim(f"{base}__{motion.suffix}") if motion.suffix else base for motion in MOTIONS[joint.type])
+        return tuple(self._joint_names.claim(f"{base}__{step.suffix}") if step.suffix else base for step in motions(joint.type))
 
     def carriers(self, joint: Joint) -> tuple[str, ...]:
         """Return names of links that carry a joint's motions but the last, and one that can stand for its end."""
         base = self.joints[joint.name]
-        count = len(MOTIONS[joint.type])
+        count = len(motions(joint.type))
         return tuple(self._link_names.claim(f"{base}__d{number + 1}") for number in range(max(count, 1)))
 
     def features(self, assembly: Assembly) -> list[Feature]:
@@ -345,19 +320,20 @@ def _frames(joint: Joint, *, backwards: bool) -> tuple[SE3, SE3]:
 
 
 def _freedom(joint: Joint, names: tuple[str, ...], index: int, load: Load) -> Freedom:
-    motion = MOTIONS[joint.type][index]
-    axis = np.array(motion.axis)
+    step = motions(joint.type)[index]
+    axis = np.array(step.vector)
     if joint.type is JointType.BALL:
         lower, upper = ball_box(joint)[index]
-        return Freedom(names[index], motion.kind, axis, lower, upper, ball_angles(joint.rest)[index], load)
-    if motion.coordinate is None:  # the slide of a screw follows its turn
+        return Freedom(names[index], step.kind, axis, lower, upper, ball_angles(joint.rest)[index], load)
+    if step.advances:  # the slide of a screw follows its turn
         ratio = joint.lead / math.tau / MM_PER_M
         ends = sorted((ratio * joint.limits.lower[0], ratio * joint.limits.upper[0]))
-        return Freedom(names[index], motion.kind, axis, ends[0], ends[1], ratio * joint.rest[0], load, Follows(names[1], ratio, 0.0))
-    unit = 1.0 if motion.kind == "turn" else MM_PER_M
-    at = motion.coordinate
+        return Freedom(names[index], step.kind, axis, ends[0], ends[1], ratio * joint.rest[0], load, Follows(names[1], ratio, 0.0))
+    unit = 1.0 if step.kind == "turn" else MM_PER_M
+    assert step.coordinate is not None
+    at = step.coordinate
     lower, upper, rest = joint.limits.lower[at] / unit, joint.limits.upper[at] / unit, joint.rest[at] / unit
-    return Freedom(names[index], motion.kind, axis, lower, upper, rest, load, column=joint.column_names[at])
+    return Freedom(names[index], step.kind, axis, lower, upper, rest, load, column=joint.column_names[at])
 
 
 def ball_angles(xyzw: tuple[float, ...]) -> tuple[float, float, float]:

@@ -38,13 +38,6 @@ _PRIMS = {
     JointType.SLIDER: "PhysicsPrismaticJoint",
     JointType.BALL: "PhysicsSphericalJoint",
 }
-_FREE: dict[JointType, dict[str, int]] = {
-    JointType.CYLINDRICAL: {"transZ": 0, "rotZ": 1},
-    JointType.SCREW: {"transZ": -1, "rotZ": 0},
-    JointType.PLANAR: {"transX": 0, "transY": 1, "rotZ": 2},
-    JointType.UNIVERSAL: {"rotX": 0, "rotY": 1},
-}
-"""Free degrees of the joints that become a generic one, with the coordinate that each is; −1 where it follows another."""
 _DEGREES = ("transX", "transY", "transZ", "rotX", "rotY", "rotZ")
 
 
@@ -184,16 +177,16 @@ def _joint(joint: Joint, name: str, ends: tuple[str, str], *, closes: bool) -> l
 def _generic(joint: Joint, name: str, ends: tuple[str, str], frames: tuple[SE3, SE3], extra: list[str]) -> list[str]:
     """Return a generic joint whose other degrees are locked: a lower limit above the upper one."""
     schemas, limits = [], []
-    free = _FREE[joint.type]
+    free = {f"{'trans' if step.kind == 'slide' else 'rot'}{'XYZ'[step.axis]}": step for step in joint.type.steps}
     for degree in _DEGREES:
-        index = free.get(degree)
-        if index is None:
+        step = free.get(degree)
+        if step is None:
             low, high = "1", "-1"
-        elif index < 0:
+        elif step.advances:  # it follows another
             continue
         else:
-            unit = joint.type.units[index]
-            low, high = _in_usd(joint.limits.lower[index], unit), _in_usd(joint.limits.upper[index], unit)
+            at = step.coordinate or 0
+            low, high = (_in_usd(bounds[at], joint.type.units[at]) for bounds in (joint.limits.lower, joint.limits.upper))
         schemas.append(f'"PhysicsLimitAPI:{degree}"')
         limits += [f"float limit:{degree}:physics:low = {low}", f"float limit:{degree}:physics:high = {high}"]
     return _joint_prim("PhysicsJoint", name, ends, frames, [*extra, *limits], schemas)

@@ -25,6 +25,9 @@ FloatArray = NDArray[np.float64]
 _PRIMES = (2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53, 59, 61, 67, 71)
 _TINY = 1e-9  # rad: of an angle whose sine is itself
 ENDLESS_SLIDE_MM = 1e6  # how far what slides without limits may be: as far as an assembly may be large
+_ABOUT_Z = frozenset(
+    kind for kind in JointType if all(step.kind == "slide" or step.axis == 2 for step in kind.steps)
+)  # turn about z at most
 FULL_TURN = (-math.pi, math.pi)  # an endless joint is proven over one turn about its rest
 
 
@@ -168,18 +171,16 @@ def swing_and_twist(quaternion: FloatArray) -> list[float]:
 
 def motion_matrix(joint: Joint, values: Sequence[float]) -> FloatArray:
     """Return J `(4, 4)` for values of the joint's `freedoms`; the same as `Joint.motion`, without its checks."""
-    kind = joint.type
-    if kind is JointType.REVOLUTE:
-        return _turn_z(values[0], 0.0, 0.0, 0.0)
-    if kind is JointType.SLIDER:
-        return _turn_z(0.0, 0.0, 0.0, values[0])
-    if kind is JointType.CYLINDRICAL:
-        return _turn_z(values[1], 0.0, 0.0, values[0])
-    if kind is JointType.SCREW:
-        return _turn_z(values[0], 0.0, 0.0, joint.lead / (2 * math.pi) * values[0])
-    if kind is JointType.PLANAR:
-        return _turn_z(values[2], values[0], values[1], 0.0)
-    return np.asarray(joint.motion(np.array(driver_values(joint, values))).matrix)
+    if joint.type not in _ABOUT_Z:
+        return np.asarray(joint.motion(np.array(driver_values(joint, values))).matrix)
+    angle, origin = 0.0, [0.0, 0.0, 0.0]
+    for step in joint.type.steps:
+        value = values[step.coordinate or 0]
+        if step.kind == "turn":
+            angle = value
+        else:
+            origin[step.axis] = joint.lead / (2 * math.pi) * value if step.advances else value
+    return _turn_z(angle, *origin)
 
 
 def _turn_z(angle: float, x: float, y: float, z: float) -> FloatArray:
@@ -375,33 +376,20 @@ class Cloud:
 
 
 def _reach_of_joint(joint: Joint, cloud: Cloud, bounds: list[tuple[float, float]]) -> list[float]:
-    match joint.type:
-        case JointType.REVOLUTE:
-            return [cloud.from_axis]
-        case JointType.SLIDER:
-            return [1.0]
-        case JointType.CYLINDRICAL:
-            return [1.0, cloud.from_axis]
-        case JointType.SCREW:
-            return [cloud.from_axis + abs(joint.lead) / (2 * math.pi)]
-        case JointType.PLANAR:
-            return [1.0, 1.0, cloud.from_axis + _largest_travel(joint, bounds)]
-        case _:
-            return [cloud.from_origin] * len(bounds)
+    """Return how fast each freedom of a joint moves points of a cloud at most [mm/rad or 1]."""
+    if joint.type not in _ABOUT_Z:
+        return [cloud.from_origin] * len(bounds)
+    across = any(step.kind == "slide" and step.axis != 2 for step in joint.type.steps)  # then the axis is carried away
+    radius = cloud.from_axis + (_largest_travel(joint, bounds) if across else 0.0)
+    return [(radius if any(turn) else 0.0) + math.hypot(*slide) for turn, slide in joint.type.factors(joint.lead)]
 
 
 def _largest_travel(joint: Joint, bounds: list[tuple[float, float]]) -> float:
     """Return how far the joint carries its origin at most [mm]."""
-    largest = [max(abs(lo), abs(hi)) for lo, hi in bounds]
-    match joint.type:
-        case JointType.SLIDER | JointType.CYLINDRICAL:
-            return largest[0]
-        case JointType.SCREW:
-            return abs(joint.lead) / (2 * math.pi) * largest[0]
-        case JointType.PLANAR:
-            return math.hypot(largest[0], largest[1])
-        case _:
-            return 0.0
+    if joint.type not in _ABOUT_Z:
+        return 0.0
+    factors = zip(joint.type.factors(joint.lead), bounds, strict=True)
+    return math.hypot(*(math.hypot(*slide) * max(abs(lo), abs(hi)) for (_, slide), (lo, hi) in factors))
 
 
 def _inverse(T: FloatArray) -> FloatArray:

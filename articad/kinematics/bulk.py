@@ -9,39 +9,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import NamedTuple
 
 import numpy as np
 
 from articad.connectors import SE3, FloatArray
 from articad.kinematics.crossings import Crossings
-from articad.kinematics.joints import JointType
 
 _CHUNK = 4096  # configurations at a time: with fewer the calls cost more than the rows, with more the rows leave the cache
-
-
-class _Move(NamedTuple):
-    """A turn about, or a travel along, an axis of the frame that earlier moves of the joint have left.
-
-    Attributes:
-        axis: 0 … 2.
-        coordinate: Which of the joint's.
-        turns: Whether it is a turn.
-    """
-
-    axis: int
-    coordinate: int
-    turns: bool
-
-
-_MOVES: dict[JointType, tuple[_Move, ...]] = {  # a ball, which has none, is turned by its quaternion
-    JointType.REVOLUTE: (_Move(2, 0, turns=True),),
-    JointType.SLIDER: (_Move(2, 0, turns=False),),
-    JointType.CYLINDRICAL: (_Move(2, 0, turns=False), _Move(2, 1, turns=True)),
-    JointType.SCREW: (_Move(2, 0, turns=False), _Move(2, 0, turns=True)),
-    JointType.PLANAR: (_Move(0, 0, turns=False), _Move(1, 1, turns=False), _Move(2, 2, turns=True)),
-    JointType.UNIVERSAL: (_Move(0, 0, turns=True), _Move(1, 1, turns=True)),
-}
 
 
 class BulkPoses:
@@ -107,9 +81,10 @@ class _Step:
     def __init__(self, crossings: Crossings, k: int) -> None:
         joint = crossings.joints[k]
         self.near, self.far, self._sign = crossings.near[k], crossings.far[k], float(crossings.sign[k])
-        self._pitch = joint.lead / (2 * math.pi) if joint.type is JointType.SCREW else 1.0
-        self._moves, self._is_ball = _MOVES.get(joint.type, ()), joint.type is JointType.BALL
+        self._pitch = joint.lead / (2 * math.pi)
         self._first = int(crossings.first[k])
+        self._moves = [(step, self._first + step.coordinate) for step in joint.type.steps if step.coordinate is not None]
+        self._quaternion = None if joint.type.quaternion is None else self._first + joint.type.quaternion
         # a frame's rows times A are Aᵀ times its columns, and p ⊗ a is right(a) p
         self._A, self._B = _columns(crossings.A[k]), _columns(crossings.B[k])
         a, b = crossings.quaternions
@@ -122,15 +97,16 @@ class _Step:
         frame, turned = scratch.frame, scratch.quaternion
         np.matmul(self._A, near, out=frame)
         np.matmul(self._a, near_quaternion, out=turned)
-        if self._is_ball:
-            turn = q[self._first : self._first + 4] * np.array([self._sign, self._sign, self._sign, 1.0])[:, None]
-            _turn_freely(frame, turned, turn, scratch)
-        for move in self._moves:
-            value = q[self._first + move.coordinate]
-            if move.turns:
-                _turn(frame, turned, move.axis, value * (0.25 * self._sign), scratch)
+        for step, column in self._moves:
+            value = q[column]
+            if step.kind == "turn":
+                _turn(frame, turned, step.axis, value * (0.25 * self._sign), scratch)
             else:
-                frame[:, 3] += np.multiply(frame[:, move.axis], value * (self._sign * self._pitch), out=scratch.a)
+                share = self._sign * (self._pitch if step.advances else 1.0)
+                frame[:, 3] += np.multiply(frame[:, step.axis], value * share, out=scratch.a)
+        if self._quaternion is not None:
+            turn = q[self._quaternion : self._quaternion + 4] * np.array([self._sign, self._sign, self._sign, 1.0])[:, None]
+            _turn_freely(frame, turned, turn, scratch)
         np.matmul(self._B, frame, out=far)
         np.matmul(self._b, turned, out=far_quaternion)
         far_quaternion *= np.copysign(1.0, far_quaternion[3])

@@ -13,9 +13,10 @@ from articad.connectors import SE3, FloatArray, Mate, flip, quaternion
 from articad.kinematics.joints import Joint, JointType
 from articad.kinematics.layout import IndexArray, Layout
 
-TURNING = frozenset({JointType.REVOLUTE, JointType.CYLINDRICAL, JointType.SCREW})
-SLIDING = frozenset({JointType.SLIDER, JointType.CYLINDRICAL, JointType.SCREW})
-GENERAL = (JointType.BALL, JointType.PLANAR, JointType.UNIVERSAL)  # do more than turn about and slide along their z axis
+# types that do more than turn about and slide along their z axis, and what the others do
+GENERAL = tuple(kind for kind in JointType if any(step.axis != 2 for step in kind.steps))
+TURNING = frozenset(kind for kind in JointType if kind not in GENERAL and any(step.kind == "turn" for step in kind.steps))
+SLIDING = frozenset(kind for kind in JointType if kind not in GENERAL and any(step.kind == "slide" for step in kind.steps))
 _FEW = 500  # quaternions whose squares stay in the cache (measured: break-even 500 … 1000)
 _CODE = {joint_type: i for i, joint_type in enumerate(JointType)}
 _TURNS = np.array([joint_type in TURNING for joint_type in JointType])
@@ -161,32 +162,30 @@ class Transforms:
 
 
 def motion(joint_type: JointType, q: FloatArray, sign: FloatArray) -> FloatArray:
-    """Return J(q) `(*batch, 4, 4)` of balls, planar or universal joints.
+    """Return J(q) `(*batch, 4, 4)` of joints of a type that does more than turn about and slide along z.
 
     Args:
         joint_type: Which of them.
         q: Coordinates `(*batch, n_coordinates)` [rad, mm, unit quaternions].
-        sign: −1 for the inverse motion; of balls only.
+        sign: −1 for the inverse motion; of balls only, which alone are crossed backwards.
     """
     M = np.zeros((*q.shape[:-1], 4, 4))
     M[..., (0, 1, 2, 3), (0, 1, 2, 3)] = 1.0
-    if joint_type is JointType.BALL:
-        M[..., :3, :3] = _rotations(np.concatenate([q[..., :3] * sign, q[..., 3:]], axis=-1))
-    elif joint_type is JointType.UNIVERSAL:
-        M[..., :3, :3] = _universal(q[..., 0], q[..., 1])
-    else:
-        cosine, sine = np.cos(q[..., 2]), np.sin(q[..., 2])
-        M[..., 0, 0], M[..., 1, 1], M[..., 1, 0], M[..., 0, 1] = cosine, cosine, sine, -sine
-        M[..., :2, 3] = q[..., :2]
+    for step in joint_type.steps:
+        if step.coordinate is None:
+            continue
+        value = q[..., step.coordinate]
+        if step.kind == "slide":
+            M[..., :3, 3] += M[..., :3, step.axis] * value[..., None]
+        else:
+            cosine, sine = np.cos(value)[..., None], np.sin(value)[..., None]
+            i, j = (step.axis + 1) % 3, (step.axis + 2) % 3
+            x, y = M[..., :3, i].copy(), M[..., :3, j].copy()
+            M[..., :3, i], M[..., :3, j] = x * cosine + y * sine, y * cosine - x * sine
+    first = joint_type.quaternion
+    if first is not None:  # the steps before it are slides, so that the axes are still those of the connector
+        M[..., :3, :3] = _rotations(np.concatenate([q[..., first : first + 3] * sign, q[..., first + 3 :]], axis=-1))
     return M
-
-
-def _universal(a: FloatArray, b: FloatArray) -> FloatArray:
-    """Return Rx(a) Ry(b) `(*batch, 3, 3)`."""
-    ca, sa, cb, sb = np.cos(a), np.sin(a), np.cos(b), np.sin(b)
-    zero = np.zeros_like(a)
-    R: FloatArray = np.stack([cb, zero, sb, sa * sb, ca, -sa * cb, -ca * sb, sa, ca * cb], axis=-1).reshape(*a.shape, 3, 3)
-    return R
 
 
 def _affine(A: FloatArray, B: FloatArray) -> FloatArray:

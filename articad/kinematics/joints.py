@@ -28,37 +28,92 @@ _Shower = Callable[[float], str]
 LIMIT_SLACK = 1e-9  # rad or mm: a value computed to be at its limit is at its limit
 _QUATERNION_TOLERANCE = 1e-3  # | ‖q‖ − 1 | of a ball's coordinates: digits of a file pass, other quantities do not
 
+Motion = Literal["turn", "slide"]
 
-class _Kind(NamedTuple):
-    """A row of the table of joint types.
+
+class Step(NamedTuple):
+    """One elementary motion of a joint type: about or along an axis of the frame that the steps before it have left.
 
     Attributes:
-        coordinates: Names of the columns of q.
-        units: Their units.
-        freedoms: Number of velocities.
-        mirror: q' = mirror ∘ q makes J(q') = K J(q) K with K = diag(1, −1, 1).
-        reverse: q' = reverse ∘ q makes J(q') = J(q)⁻¹; None where no such signs exist.
-        reverse_opposed: q' = reverse_opposed ∘ q makes J(q') = F J(q)⁻¹ F.
+        kind: Turning about or sliding along the axis.
+        axis: 0, 1, 2 for x, y, z.
+        coordinate: Index of the coordinate that is its value; None for the three turns that a quaternion stands for.
+        advances: True for the slide of a screw, whose value is the coordinate times lead/2π.
+        suffix: Of the name that the step has where formats write one joint per step; empty where the joint has one step.
     """
 
-    coordinates: tuple[str, ...]
-    units: tuple[Unit, ...]
-    freedoms: int
-    mirror: Signs
-    reverse: Signs | None
-    reverse_opposed: Signs | None
+    kind: Motion
+    axis: int
+    coordinate: int | None
+    advances: bool = False
+    suffix: str = ""
 
+    @property
+    def vector(self) -> tuple[float, float, float]:
+        """The axis as a unit vector."""
+        return _AXES[self.axis]
+
+
+_AXES = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+_NONE = (0.0, 0.0, 0.0)
+_X, _Y, _Z = 0, 1, 2
+
+
+class _Kind:
+    """A row of the table of joint types: the names of its coordinates and J(q) as a product of steps. All else follows from these.
+
+    Attributes:
+        coordinates: Names of the columns of q; a quaternion (x, y, z, w) comes last.
+        steps: J(q) as a product, first one first.
+        quaternion: Index of the first of a quaternion's four coordinates, None without one.
+        units: Units of the coordinates.
+        freedom_units: Units of the velocities.
+        mirror: q' = mirror ∘ q makes J(q') = K J(q) K with K = diag(1, −1, 1): a slide along y and turns about x and z change sign.
+        reverse: q' = reverse ∘ q makes J(q') = J(q)⁻¹; None where no such signs exist, because the steps do not commute.
+        reverse_opposed: q' = reverse_opposed ∘ q makes J(q') = F J(q)⁻¹ F, where F = diag(1, −1, −1) turns y and z over.
+    """
+
+    def __init__(self, coordinates: tuple[str, ...], *steps: Step) -> None:
+        self.coordinates, self.steps = coordinates, steps
+        own = {step.coordinate: step for step in steps if step.coordinate is not None and not step.advances}
+        turned = [step for step in steps if step.coordinate is None]
+        self.quaternion = len(own) if turned else None
+        units: list[Unit] = ["rad" if own[i].kind == "turn" else "mm" for i in range(len(own))]
+        pure: list[Unit] = ["1"] * 4 if turned else []
+        angles: list[Unit] = ["rad"] * len(turned)
+        self.units, self.freedom_units = (*units, *pure), (*units, *angles)
+        self.mirror = tuple(_mirrored(own[i]) for i in range(len(own))) + ((-1.0, 1.0, -1.0, 1.0) if turned else ())
+        self.reverse: Signs | None = None
+        self.reverse_opposed: Signs | None = None
+        if all(step.axis == _Z for step in steps):
+            self.reverse, self.reverse_opposed = (-1.0,) * len(own), (1.0,) * len(own)
+        elif not own:
+            self.reverse, self.reverse_opposed = (-1.0, -1.0, -1.0, 1.0), (-1.0, 1.0, 1.0, 1.0)
+        self.neutral = (0.0,) * len(own) + ((0.0, 0.0, 0.0, 1.0) if turned else ())
+
+
+def _mirrored(step: Step) -> float:
+    """Return the sign that the mirror image across the xz plane gives a coordinate."""
+    return -1.0 if (step.kind == "slide") == (step.axis == _Y) else 1.0
+
+
+_TURNS_OF_QUATERNION = tuple(Step("turn", axis, None, suffix=f"r{'xyz'[axis]}") for axis in range(3))
+_QUATERNION = ("qx", "qy", "qz", "qw")
 
 _KINDS: dict[str, _Kind] = {
-    "fixed": _Kind((), (), 0, (), (), ()),
-    "revolute": _Kind(("angle",), ("rad",), 1, (-1,), (-1,), (1,)),
-    "slider": _Kind(("travel",), ("mm",), 1, (1,), (-1,), (1,)),
-    "cylindrical": _Kind(("travel", "angle"), ("mm", "rad"), 2, (1, -1), (-1, -1), (1, 1)),
-    "ball": _Kind(("qx", "qy", "qz", "qw"), ("1", "1", "1", "1"), 3, (-1, 1, -1, 1), (-1, -1, -1, 1), (-1, 1, 1, 1)),
-    "screw": _Kind(("angle",), ("rad",), 1, (-1,), (-1,), (1,)),
-    "planar": _Kind(("x", "y", "angle"), ("mm", "mm", "rad"), 3, (1, -1, -1), None, None),
-    "universal": _Kind(("a", "b"), ("rad", "rad"), 2, (-1, 1), None, None),
+    "fixed": _Kind(()),
+    "revolute": _Kind(("angle",), Step("turn", _Z, 0)),
+    "slider": _Kind(("travel",), Step("slide", _Z, 0)),
+    "cylindrical": _Kind(("travel", "angle"), Step("slide", _Z, 0, suffix="t"), Step("turn", _Z, 1, suffix="r")),
+    "ball": _Kind(_QUATERNION, *_TURNS_OF_QUATERNION),
+    "screw": _Kind(("angle",), Step("slide", _Z, 0, advances=True, suffix="t"), Step("turn", _Z, 0, suffix="r")),
+    "planar": _Kind(
+        ("x", "y", "angle"), Step("slide", _X, 0, suffix="x"), Step("slide", _Y, 1, suffix="y"), Step("turn", _Z, 2, suffix="r")
+    ),
+    "universal": _Kind(("a", "b"), Step("turn", _X, 0, suffix="rx"), Step("turn", _Y, 1, suffix="ry")),
 }
+"""The joint types. Every other table of them is derived from this one, but the checker of certificates and the report page's solver, which
+are independent of it on purpose, and the maps to the joints of engines and file formats."""
 
 
 class JointType(StrEnum):
@@ -74,9 +129,19 @@ class JointType(StrEnum):
     UNIVERSAL = "universal"
 
     @property
+    def steps(self) -> tuple[Step, ...]:
+        """J(q) as a product of elementary motions, first one first; a quaternion is the product of the three turns without coordinate."""
+        return _KINDS[self].steps
+
+    @property
+    def quaternion(self) -> int | None:
+        """Index of the first of the four coordinates that are a quaternion, None where there is none."""
+        return _KINDS[self].quaternion
+
+    @property
     def freedoms(self) -> int:
         """How many independent velocities the joint has."""
-        return _KINDS[self].freedoms
+        return len(_KINDS[self].freedom_units)
 
     @property
     def coordinates(self) -> tuple[str, ...]:
@@ -90,8 +155,8 @@ class JointType(StrEnum):
 
     @property
     def freedom_units(self) -> tuple[Unit, ...]:
-        """Unit of each freedom: as the coordinates', but a ball has three angles."""
-        return ("rad", "rad", "rad") if self is JointType.BALL else _KINDS[self].units
+        """Unit of each freedom: as the coordinates', but a quaternion has three angles."""
+        return _KINDS[self].freedom_units
 
     @property
     def reversible(self) -> bool:
@@ -101,7 +166,25 @@ class JointType(StrEnum):
     @property
     def neutral(self) -> tuple[float, ...]:
         """Coordinates at which J is the identity."""
-        return (0.0, 0.0, 0.0, 1.0) if self is JointType.BALL else (0.0,) * len(self.coordinates)
+        return _KINDS[self].neutral
+
+    def factors(self, lead: float = 0.0) -> list[tuple[tuple[float, float, float], tuple[float, float, float]]]:
+        """Return J as a product of motions exp(value · (turn, slide)), one per freedom, as (turn, slide) [1, mm per unit].
+
+        A screw is one of them: it slides by lead/2π per radian. A quaternion is three turns about x, y and z.
+        """
+        found: dict[int, tuple[tuple[float, float, float], tuple[float, float, float]]] = {}
+        for at, step in enumerate(self.steps):
+            key = at - len(self.steps) if step.coordinate is None else step.coordinate
+            turn, slide = found.get(key, (_NONE, _NONE))
+            if step.kind == "turn":
+                turn = step.vector
+            else:
+                x, y, z = step.vector
+                share = lead / (2 * math.pi) if step.advances else 1.0
+                slide = (share * x, share * y, share * z)
+            found[key] = turn, slide
+        return list(found.values())
 
     def mirror_signs(self) -> FloatArray:
         """Return the signs `(n_coordinates,)` that take coordinates to those of the mirrored joint (kinematics: derive)."""
@@ -118,7 +201,7 @@ class JointType(StrEnum):
             raise KinematicsError(f"E_REVERSE_UNSUPPORTED: a {self} joint cannot be measured from its child; exchange parent and child.")
         return np.array(signs, dtype=np.float64)
 
-    def motion(self, q: npt.ArrayLike, lead: float = 0.0) -> SE3:  # noqa: PLR0911 - one row per type
+    def motion(self, q: npt.ArrayLike, lead: float = 0.0) -> SE3:
         """Return J(q).
 
         Args:
@@ -135,24 +218,24 @@ class JointType(StrEnum):
         values = np.asarray(q, dtype=np.float64)
         if values.ndim == 0 or values.shape[-1] != len(self.coordinates):
             raise KinematicsError(f"A {self} joint has coordinates ({', '.join(self.coordinates)}); q has shape {values.shape}.")
-        column = [values[..., i] for i in range(values.shape[-1])]
-        match self:
-            case JointType.FIXED:
-                return SE3.identity(values.shape[:-1])
-            case JointType.REVOLUTE:
-                return SE3.rot_z(column[0])
-            case JointType.SLIDER:
-                return SE3.trans(0.0, 0.0, column[0])
-            case JointType.CYLINDRICAL:
-                return SE3.trans(0.0, 0.0, column[0]) @ SE3.rot_z(column[1])
-            case JointType.BALL:
-                return SE3.from_quaternion(values)
-            case JointType.SCREW:
-                return SE3.trans(0.0, 0.0, lead / (2 * math.pi) * column[0]) @ SE3.rot_z(column[0])
-            case JointType.PLANAR:
-                return SE3.trans(column[0], column[1], 0.0) @ SE3.rot_z(column[2])
-            case JointType.UNIVERSAL:
-                return SE3.rot_x(column[0]) @ SE3.rot_y(column[1])
+        first, T = self.quaternion, None
+        for step in self.steps:
+            if step.coordinate is None:
+                continue
+            value = values[..., step.coordinate]
+            if step.advances:
+                value = lead / (2 * math.pi) * value
+            moved = _turned(step.axis, value) if step.kind == "turn" else SE3.trans(*(value if share else 0.0 for share in step.vector))
+            T = moved if T is None else T @ moved
+        if first is not None:
+            turned = SE3.from_quaternion(values[..., first : first + 4])
+            T = turned if T is None else T @ turned
+        return SE3.identity(values.shape[:-1]) if T is None else T
+
+
+def _turned(axis: int, angle: FloatArray) -> SE3:
+    """Return the turn about an axis by angles `(*batch)` [rad]."""
+    return (SE3.rot_x, SE3.rot_y, SE3.rot_z)[axis](angle)
 
 
 @dataclass(frozen=True)

@@ -14,15 +14,15 @@ from typing import NamedTuple
 import numpy as np
 
 from articad.connectors import FloatArray, quaternion
-from articad.kinematics.crossings import TURNING, Crossing
+from articad.kinematics.crossings import GENERAL, SLIDING, TURNING, Crossing
 from articad.kinematics.equations import NEAR_PI, Closures
-from articad.kinematics.joints import JointType
+from articad.kinematics.joints import JointType, Step
 from articad.kinematics.layout import Layout
 
 Numbers = tuple[float, ...]
 
 _IDENTITY: Numbers = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0)
-_BEFORE, _AFTER = 0, 3  # of a step's two frames, where an axis is counted from
+_BEFORE, _AFTER, _MOVED = 0, 3, 6  # of a step's two frames, where an axis is counted from; before, but through the origin after
 _STRAIGHT = 1e-16  # rad²: |φ|² below which the square term of the logarithm's Jacobian is below rounding
 
 
@@ -37,7 +37,8 @@ class _Step(NamedTuple):
         travel: Column of the travel along z; of a screw that of the angle.
         slide: Factor of it, 0 where there is none.
         general: Of joints that do more: type, first column, and the sign of each coordinate.
-        axes: Per freedom its axis: 0 … 2 of the frame before the motion, 3 … 5 of the one after it.
+        axes: Per freedom its axis: 0 … 2 of the frame before the motion, 3 … 5 of the one after it, 6 … 8 of the one before it through
+            the origin of the one after it.
     """
 
     near: int
@@ -117,8 +118,8 @@ class SingleEquations:
             after = _along_z(before, q[angle] * turn, q[travel] * slide) if general is None else _times(before, _motion(q, *general))
             frames.append(after)
             for axis in axes:
-                frame, at = (after, 3 * axis - 9) if axis >= _AFTER else (before, 3 * axis)
-                rays.append(frame[at : at + 3] + frame[9:])
+                at, frame = 3 * (axis % 3), after if _AFTER <= axis < _MOVED else before
+                rays.append(frame[at : at + 3] + (before if axis < _AFTER else after)[9:])
         return frames, rays
 
     def _closing(self, frames: Sequence[Numbers]) -> list[tuple[Numbers, Numbers]]:
@@ -170,31 +171,36 @@ def _columns(
 def _step(c: Crossing, near: int, T: FloatArray, layout: Layout) -> _Step:
     kind, columns = c.joint.type, layout.columns[c.joint.name]
     signs = tuple(map(float, c.signs))
-    slide = {JointType.SCREW: signs[0] * c.joint.lead / (2 * math.pi), JointType.SLIDER: signs[0], JointType.CYLINDRICAL: signs[0]}
+    advances = any(step.advances for step in kind.steps)
     return _Step(
         near,
         _numbers(T),
         angle=columns.stop - 1,
         turn=signs[-1] if kind in TURNING else 0.0,
         travel=columns.start,
-        slide=slide.get(kind, 0.0),
-        general=(kind, columns.start, signs) if kind in _GENERAL_AXES else None,
+        slide=signs[0] * (c.joint.lead / (2 * math.pi) if advances else 1.0) if kind in SLIDING else 0.0,
+        general=(kind, columns.start, signs) if kind in GENERAL else None,
         axes=_axes(c),
     )
 
 
-# Axes are those of the declared parent connector, as `batch.Twists` has them; z is the same before and after a motion along it.
-_GENERAL_AXES = {
-    JointType.BALL: (_BEFORE, _BEFORE + 1, _BEFORE + 2),
-    JointType.PLANAR: (_BEFORE, _BEFORE + 1, _AFTER + 2),
-    JointType.UNIVERSAL: (_BEFORE, _AFTER + 1),
-}
-
-
 def _axes(c: Crossing) -> tuple[int, ...]:
-    if c.joint.type is JointType.BALL and c.backwards:  # crossed from its child, the parent connector is what moves
+    """Return each freedom's axis, which are those of the declared parent connector, as `Twists` has them.
+
+    The last step's axis is the same before and after its own motion; those of a quaternion are before it.
+    """
+    kind = c.joint.type
+    if kind is JointType.BALL and c.backwards:  # crossed from its child, the parent connector is what moves
         return _AFTER, _AFTER + 1, _AFTER + 2
-    return _GENERAL_AXES.get(c.joint.type, (_AFTER + 2,) * c.joint.type.freedoms)
+    if kind not in GENERAL:  # z is the same before and after a motion along it
+        return (_AFTER + 2,) * kind.freedoms
+    return tuple(_axis(step, last=step is kind.steps[-1]) for step in kind.steps)
+
+
+def _axis(step: Step, *, last: bool) -> int:
+    if step.coordinate is None:
+        return _MOVED + step.axis
+    return step.axis + (_AFTER if last else _BEFORE)
 
 
 def _numbers(T: FloatArray) -> Numbers:
@@ -231,14 +237,31 @@ def _along_z(G: Numbers, angle: float, travel: float) -> Numbers:
 
 
 def _motion(q: Sequence[float], kind: JointType, column: int, signs: Numbers) -> Numbers:
-    """Return J(q) of a ball, planar or universal joint."""
-    values = [sign * q[column + i] for i, sign in enumerate(signs)]
-    if kind is JointType.BALL:
-        return _ball(*values)
-    if kind is JointType.UNIVERSAL:
-        return _universal(*values)
-    x, y, angle = values
-    return (*_along_z(_IDENTITY, angle, 0.0)[:9], x, y, 0.0)
+    """Return J(q) of a joint that does more than turn about and slide along z."""
+    J, first = _IDENTITY, kind.quaternion
+    for step in kind.steps:
+        if step.coordinate is not None:
+            value = signs[step.coordinate] * q[column + step.coordinate]
+            J = _turned(J, step.axis, value) if step.kind == "turn" else _shifted(J, step.axis, value)
+    if first is not None:  # the steps before it are slides, so that the axes are still those of the connector
+        return (*_ball(*(sign * value for sign, value in zip(signs[first:], q[column + first :], strict=False))), *J[9:])
+    return J
+
+
+def _turned(G: Numbers, axis: int, angle: float) -> Numbers:
+    """Return the frame G turned about one of its axes."""
+    c, s, i, j = math.cos(angle), math.sin(angle), 3 * ((axis + 1) % 3), 3 * ((axis + 2) % 3)
+    turned = list(G)
+    for k in range(3):
+        x, y = G[i + k], G[j + k]
+        turned[i + k], turned[j + k] = x * c + y * s, y * c - x * s
+    return tuple(turned)
+
+
+def _shifted(G: Numbers, axis: int, travel: float) -> Numbers:
+    """Return the frame G moved along one of its axes."""
+    x, y, z = G[3 * axis : 3 * axis + 3]
+    return (*G[:9], G[9] + x * travel, G[10] + y * travel, G[11] + z * travel)
 
 
 def _ball(x: float, y: float, z: float, w: float) -> Numbers:
@@ -246,13 +269,7 @@ def _ball(x: float, y: float, z: float, w: float) -> Numbers:
         *(1 - 2 * (y * y + z * z), 2 * (x * y + z * w), 2 * (x * z - y * w)),
         *(2 * (x * y - z * w), 1 - 2 * (x * x + z * z), 2 * (y * z + x * w)),
         *(2 * (x * z + y * w), 2 * (y * z - x * w), 1 - 2 * (x * x + y * y)),
-        *(0.0, 0.0, 0.0),
     )
-
-
-def _universal(a: float, b: float) -> Numbers:
-    ca, sa, cb, sb = math.cos(a), math.sin(a), math.cos(b), math.sin(b)
-    return cb, sa * sb, -ca * sb, 0.0, ca, sa, sb, -sa * cb, ca * cb, 0.0, 0.0, 0.0
 
 
 def _logarithm(A: Numbers, B: Numbers) -> list[float]:

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from articad.connectors import SE3, FloatArray, quaternion
-from articad.kinematics.joints import JointType
+from articad.kinematics.joints import Step
 from articad.kinematics.layout import Layout
 
 
@@ -21,20 +21,25 @@ class Twists:
 
     def __init__(self, layout: Layout, part_index: dict[str, int]) -> None:
         frames: list[int] = []  # joint of each frame
-        self.planar: list[tuple[int, int]] = []  # frame to be shifted, first column
-        self.universal: list[tuple[int, int]] = []  # frame to be turned, first column
+        self._moved: list[tuple[int, Step, int]] = []  # frame that a step moves, in order; the step, the column of its value
         frame_of, axis_of, angular, pitch = [], [], [], []
         for k, joint in enumerate(layout.joints):
             frames.append(k)
             frame, first = len(frames) - 1, layout.columns[joint.name].start
-            for axis, turns, advance, moved in _AXES[joint.type]:
-                if moved:
+            before: list[Step] = []  # steps that carry the axis of the next one
+            for step in joint.type.steps:
+                if step.advances:  # the slide of a screw belongs to its turn
+                    continue
+                carried = [one for one in before if _moves_axis(one, step)]
+                if carried:
                     frames.append(k)
-                    (self.planar if joint.type is JointType.PLANAR else self.universal).append((len(frames) - 1, first))
-                frame_of.append(len(frames) - 1 if moved else frame)
-                axis_of.append(axis)
-                angular.append(turns)
-                pitch.append(advance * joint.lead / (2 * math.pi))
+                    self._moved += [(len(frames) - 1, one, first + one.coordinate) for one in carried if one.coordinate is not None]
+                frame_of.append(len(frames) - 1 if carried else frame)
+                axis_of.append(step.axis)
+                angular.append(float(step.kind == "turn"))
+                pitch.append(joint.lead / (2 * math.pi) if any(one.advances for one in joint.type.steps) else 0.0)
+                if step.coordinate is not None:  # a quaternion turns by its angular velocity in the frame before it
+                    before.append(step)
         joints = layout.joints
         self._part = np.array([part_index[joints[k].parent] for k in frames], dtype=np.intp)
         self._connector = _matrices([joints[k].T_parent_connector for k in frames])[:, None]
@@ -57,26 +62,21 @@ class Twists:
     def axes(self, T: FloatArray, Q: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return the direction of each freedom and a point of its axis [mm], both `(n_freedoms, batch, 3)`."""
         P = T[self._part] @ self._connector
-        for frame, first in self.planar:
-            P[frame, :, :3, 3] += P[frame, :, :3, 0] * Q[:, first, None] + P[frame, :, :3, 1] * Q[:, first + 1, None]
-        for frame, first in self.universal:
-            a = Q[:, first, None]
-            P[frame, :, :3, 1] = P[frame, :, :3, 1] * np.cos(a) + P[frame, :, :3, 2] * np.sin(a)
+        for frame, step, column in self._moved:
+            value, axes = Q[:, column, None], P[frame]
+            if step.kind == "slide":
+                axes[:, :3, 3] += axes[:, :3, step.axis] * value
+            else:
+                i, j = (step.axis + 1) % 3, (step.axis + 2) % 3
+                cosine, sine, x, y = np.cos(value), np.sin(value), axes[:, :3, i].copy(), axes[:, :3, j].copy()
+                axes[:, :3, i], axes[:, :3, j] = x * cosine + y * sine, y * cosine - x * sine
         return P[self._frame, :, :3, self._axis], P[self._frame, :, :3, 3]
+
+
+def _moves_axis(before: Step, step: Step) -> bool:
+    """Tell whether a step moves the axis of a later one: turns do but about the same axis, slides matter to turns but along their axis."""
+    return before.axis != step.axis and (before.kind == "turn" or step.kind == "turn")
 
 
 def _matrices(poses: list[SE3]) -> FloatArray:
     return SE3.stack(poses).matrix if poses else np.zeros((0, 4, 4))
-
-
-# axis of the parent connector, 1 = turns about it and 0 = slides along it, whether the lead advances it, whether other coordinates move it
-_AXES: dict[JointType, tuple[tuple[int, int, int, bool], ...]] = {
-    JointType.FIXED: (),
-    JointType.REVOLUTE: ((2, 1, 0, False),),
-    JointType.SLIDER: ((2, 0, 0, False),),
-    JointType.CYLINDRICAL: ((2, 0, 0, False), (2, 1, 0, False)),
-    JointType.BALL: ((0, 1, 0, False), (1, 1, 0, False), (2, 1, 0, False)),
-    JointType.SCREW: ((2, 1, 1, False),),
-    JointType.PLANAR: ((0, 0, 0, False), (1, 0, 0, False), (2, 1, 0, True)),
-    JointType.UNIVERSAL: ((0, 1, 0, False), (1, 1, 0, True)),
-}

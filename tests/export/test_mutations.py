@@ -12,7 +12,6 @@ import pytest
 from articad.connectors.mate import flip
 from articad.connectors.se3 import SE3
 from articad.export import lowering, mjcf, urdf
-from articad.export.lowering import MOTIONS
 from articad.export.markup import rpy, wxyz
 from articad.kinematics.joints import Joint, JointType
 from tests.assemblies import all_joint_kinds, random_configurations
@@ -36,8 +35,8 @@ def _frames(forwards: Callable[[Joint], tuple[SE3, SE3]] | None = None, backward
 
 
 def _motions(kind: JointType, *order: int) -> Any:
-    changed = {**MOTIONS, kind: tuple(MOTIONS[kind][at] for at in order)}
-    return lambda patch: patch.setattr(lowering, "MOTIONS", changed)
+    changed = tuple(kind.steps[at] for at in order)
+    return lambda patch: patch.setattr(lowering, "motions", lambda asked: changed if asked is kind else asked.steps)
 
 
 def _after(change: Callable[[lowering.LoweredJoint], lowering.LoweredJoint]) -> Any:
