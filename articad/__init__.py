@@ -45,6 +45,7 @@ _MODULE_OF = {
     "cylindrical": "kinematics.declare",
     "edit": "agents.edit",
     "fixed": "kinematics.declare",
+    "free": "kinematics.declare",
     "generate": "agents.pipeline",
     "planar": "kinematics.declare",
     "read": "entry",
@@ -125,6 +126,7 @@ if TYPE_CHECKING:
     from articad.kinematics.declare import ball as ball
     from articad.kinematics.declare import cylindrical as cylindrical
     from articad.kinematics.declare import fixed as fixed
+    from articad.kinematics.declare import free as free
     from articad.kinematics.declare import planar as planar
     from articad.kinematics.declare import revolute as revolute
     from articad.kinematics.declare import screw as screw

@@ -153,6 +153,8 @@ def _random_joint(rng: np.random.Generator, name: str, kind: JointType, ends: tu
             return declare.planar(name, *ends, x=travel, y=travel, angle=angle, mate=mate)
         case JointType.UNIVERSAL:
             return declare.universal(name, *ends, a=(-1.0, 1.0), b=(-0.8, 1.2), mate=mate)
+        case JointType.FREE:
+            return declare.free(name, *ends, mate=mate)
 
 
 def closed(kind: Callable[[Attachment, Attachment], Joint], *, turned: bool = False) -> Assembly:

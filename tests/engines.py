@@ -31,6 +31,7 @@ SUFFIXES = {
     JointType.CYLINDRICAL: ("__t", "__r"),
     JointType.PLANAR: ("__x", "__y", "__r"),
     JointType.UNIVERSAL: ("__rx", "__ry"),
+    JointType.FREE: ("",) * 7,
 }
 
 

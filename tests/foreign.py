@@ -12,6 +12,7 @@ from lxml import etree
 from numpy.typing import NDArray
 
 from articad.assembly import Assembly
+from articad.connectors.se3 import SE3
 from articad.errors import KinematicsError
 from articad.export.mjcf import write_mjcf
 from articad.export.urdf import write_urdf
@@ -77,7 +78,7 @@ def pinocchio_poses(assembly: Assembly, path: Path, q: FloatArray) -> dict[str, 
         joint = model.joints[model.getJointId(name)]
         at = joint.idx_q
         if joint.nq == 7:
-            full[at : at + 7] = [*(configuration[f"{name}__{axis}"][0] / 1000 for axis in "xyz"), *configuration[f"{name}__ball"]]
+            full[at : at + 7] = [*(configuration[name][:3] / 1000), *configuration[name][3:]]
         elif types[name] is JointType.PLANAR:
             x, y, angle = configuration[name]
             full[at : at + 4] = x / 1000, y / 1000, math.cos(angle), math.sin(angle)
@@ -115,8 +116,11 @@ def mujoco_poses(assembly: Assembly, path: Path, q: FloatArray) -> dict[str, Flo
         name, at = model.joint(index).name or f"joint_{index}", model.jnt_qposadr[index]
         kind = model.jnt_type[index]
         if kind == mujoco.mjtJoint.mjJNT_FREE:
-            x, y, z, w = configuration[f"{name}__ball"]
-            data.qpos[at : at + 7] = [*(configuration[f"{name}__{axis}"][0] / 1000 for axis in "xyz"), w, x, y, z]
+            start = SE3.from_quaternion(
+                model.qpos0[at + 3 : at + 7][[1, 2, 3, 0]], model.qpos0[at : at + 3] * 1000
+            )  # where the file has it
+            placed = (start @ SE3.from_quaternion(configuration[name][3:], configuration[name][:3])).data
+            data.qpos[at : at + 7] = [*(placed[:3] / 1000), placed[6], *placed[3:6]]
         elif kind == mujoco.mjtJoint.mjJNT_BALL:
             x, y, z, w = configuration[name]
             data.qpos[at : at + 4] = w, x, y, z

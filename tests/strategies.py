@@ -59,6 +59,8 @@ def limits_of(joint_type: JointType, rng: np.random.Generator) -> JointLimits:
     """Return limits around zero, of every kind the type may have."""
     if joint_type is JointType.BALL:
         return JointLimits(cone=float(rng.uniform(0.2, 2.5)), twist=None if rng.random() < 0.3 else (-0.7, float(rng.uniform(0.1, 3))))
+    if joint_type is JointType.FREE:
+        return JointLimits()
     spans = [(-2.0, 3.0) if unit == "rad" else (-80.0, 120.0) for unit in joint_type.units]
     return JointLimits(lower=tuple(lo for lo, _ in spans), upper=tuple(hi for _, hi in spans))
 

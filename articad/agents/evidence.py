@@ -76,7 +76,7 @@ def examine(assembly: Assembly, known: Known | None = None) -> Evidence:
     scene = assembly.scene()
     checks = assembly.check(known=None if known is None else known.rest)
     if all(finding.stage == "fit" for finding in checks.findings.errors):  # what overlaps at rest overlaps in motion too
-        for joint in dict.fromkeys(driver.joint for driver in assembly.drivers):
+        for joint in assembly.mechanism.driving_joints:
             checks = _with_motion(checks, assembly, joint, scene, {} if known is None else known.motion.get(joint, {}))
     checks = replace(checks, findings=diagnose(scene, assembly.mechanism.tree, checks.findings))
     return Evidence(checks, _sizes(assembly))
@@ -175,6 +175,8 @@ def pose_of(assembly: Assembly, q: FloatArray) -> dict[str, float]:
 def _freedom_values(joint: Joint, values: list[float]) -> dict[str, float]:
     """Return a joint's coordinates under the names of its freedoms; a ball's quaternion as a swing after a twist."""
     names = [freedom.name for freedom in freedoms(joint)]
+    if joint.type is JointType.FREE:
+        return dict(zip(joint.column_names, map(float, values), strict=True))
     if joint.type is not JointType.BALL:
         return dict(zip(names, map(float, values), strict=True))
     x, y, z, w = values if values[3] >= 0 else [-value for value in values]

@@ -250,7 +250,7 @@ def verdict_of(evidence: Evidence, number: int) -> Verdict:
 
 
 def _observed(assembly: Assembly, product: Sequence[str | Image], llm: LLM, number: int) -> Observations:
-    joints = list(dict.fromkeys(driver.joint for driver in assembly.drivers))[:MOTIONS]
+    joints = assembly.mechanism.driving_joints[:MOTIONS]
     parts: list[str | Image] = [*product, "The assembly at rest, from four sides:", assembly_picture(assembly)]
     for joint in joints:
         parts += [f"Keyframes of joint {joint}:", motion_picture(assembly, joint)]

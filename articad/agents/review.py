@@ -122,7 +122,7 @@ def _opinion(
     for name, realised in list(assembly.realised.items())[:PARTS]:
         if realised.derived_from is None:
             shown += [f"Part {name}:", part_picture(realised.part, realised.digests["build"])]
-    for joint in list(dict.fromkeys(driver.joint for driver in assembly.drivers))[:MOTIONS]:
+    for joint in assembly.mechanism.driving_joints[:MOTIONS]:
         shown += [f"Keyframes of joint {joint}:", motion_picture(assembly, joint)]
     try:
         return ask(llm, "review", "review", (system(prompt("review")), user(*shown)), reader(Opinion), schema=schema_of(Opinion))

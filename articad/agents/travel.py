@@ -15,7 +15,7 @@ _STILL: Final = 1e-6  # rad, mm: what moves less stands still
 
 def travels(assembly: Assembly) -> list[str]:
     """Return a line for each joint that moves, driven or following: how far it goes, in degrees and mm."""
-    driving = {driver.joint for driver in assembly.drivers}
+    driving = set(assembly.mechanism.driving_joints)
     sweeps = _sweeps(assembly) if driving and not assembly.mechanism.is_tree else []
     lines, start = [], 0
     for joint in assembly.joints:
@@ -23,7 +23,9 @@ def travels(assembly: Assembly) -> list[str]:
         start = own.stop
         if joint.type is JointType.FIXED:
             continue
-        if joint.name in driving:
+        if joint.type is JointType.FREE:
+            lines.append(f"- {joint.name}: moves freely in all directions")
+        elif joint.name in driving:
             lines += [f"{line}, drives" for line in _driven(assembly, joint)]
         elif sweeps:
             lines += [f"{line}, follows" for line in _following(joint, [rows[:, own] for rows in sweeps])]
@@ -36,7 +38,7 @@ def _sweeps(assembly: Assembly) -> list[FloatArray]:
     """Return all joints' coordinates `(FOLLOWED, columns)` along the range of each driving coordinate."""
     mechanism = assembly.mechanism
     sweeps: list[FloatArray] = []
-    for joint in dict.fromkeys(driver.joint for driver in assembly.drivers):
+    for joint in assembly.mechanism.driving_joints:
         columns = mechanism.configuration(motion_frames(assembly, joint, FOLLOWED)[1]).columns
         sweeps += list(columns.reshape(-1, FOLLOWED, columns.shape[-1]))
     return sweeps

@@ -251,6 +251,7 @@ class _Certifying:
     later: list[LinkageProver] = field(default_factory=list)
     left: dict[tuple[str, ...], list[tuple[str, str]]] = field(default_factory=dict)
     _constrained: frozenset[str] = frozenset()
+    _floating: frozenset[str] = frozenset()  # names of free joints, which stand at rest
     _ways: dict[tuple[str, ...], Way | str] = field(default_factory=dict)
     _reasons: dict[str, tuple[str, str]] = field(default_factory=dict)
     _checker: Checker = field(init=False)
@@ -258,6 +259,7 @@ class _Certifying:
 
     def run(self) -> Certificate:
         self._constrained = constrained_joints(self.mechanism)
+        self._floating = frozenset(joint.name for joint in self.mechanism.joints if joint.type is JointType.FREE)
         names = driver_names(self.mechanism, self._constrained)
         document = {"mechanism": mechanism_json(self.mechanism), "linkage": sorted(self._constrained), "drivers": names}
         self._checker = Checker(document, {PROOF: {}})
@@ -324,6 +326,10 @@ class _Certifying:
         wanted = [name for name in moving if name not in tied and self._is_asked(name)]
         drivers = [name for at in self._groups_of(tied) for name in self._groups[at] if self._is_asked(self._joint_of(name))]
         a, b = route.parts[0], route.parts[-1]
+        if self._floating & self._constrained and tied:
+            named = ", ".join(sorted(self._floating & self._constrained))
+            self._refuse((a, b), tuple(tied), f"the free joint {named} is part of a loop or coupling, which is not followed")
+            return
         if not self._is_driven((a, b), tied) or (not wanted and not drivers):
             return
         for name in [name for name in wanted if slides_endlessly(self._joint(name))]:
@@ -736,14 +742,15 @@ def constrained_joints(mechanism: Mechanism) -> frozenset[str]:
 
 def driver_names(mechanism: Mechanism, constrained: frozenset[str]) -> list[str]:
     """Return the coordinates that drive loops and couplings."""
-    return [driver.name for driver in mechanism.drivers if driver.joint in constrained]
+    free = {joint.name for joint in mechanism.joints if joint.type is JointType.FREE}
+    return [driver.name for driver in mechanism.drivers if driver.joint in constrained - free]
 
 
 def mechanism_json(mechanism: Mechanism) -> dict[str, Any]:
     """Return parts, frames and joints as numbers: all that a checker needs to place two parts.
 
     A joint is `T_parent_child = parent_frame · Π exp((slide, turn)·q) · child_frame⁻¹`, the product over its freedoms in order; the
-    mate is in `child_frame`. A ball turns about x, y and z, within its cone.
+    mate is in `child_frame`. A ball turns about x, y and z, within its cone. A free joint stands at rest, which is in `parent_frame`.
     """
     loops = {joint.name for joint in mechanism.loop_joints}
     return {
@@ -755,7 +762,7 @@ def mechanism_json(mechanism: Mechanism) -> dict[str, Any]:
                 "type": str(joint.type),
                 "parent": joint.parent,
                 "child": joint.child,
-                "parent_frame": joint.T_parent_connector.matrix.tolist(),
+                "parent_frame": _stand(joint).matrix.tolist(),
                 "child_frame": (joint.T_child_connector @ flip(joint.mate)).matrix.tolist(),
                 "cone": proven_freedoms(joint)[0].upper if joint.type is JointType.BALL else None,
                 "loop": joint.name in loops,
@@ -767,7 +774,14 @@ def mechanism_json(mechanism: Mechanism) -> dict[str, Any]:
     }
 
 
+def _stand(joint: Joint) -> SE3:
+    """Return the frame from which a joint's freedoms are counted: of a free joint, which has none to be proven, where it rests."""
+    return joint.T_parent_connector @ joint.motion(joint.rest) if joint.type is JointType.FREE else joint.T_parent_connector
+
+
 def _freedoms_json(joint: Joint) -> list[dict[str, Any]]:
+    if joint.type is JointType.FREE:
+        return []
     open_ends = [(None if math.isinf(c.lower) else c.lower, None if math.isinf(c.upper) else c.upper) for c in joint.columns]
     found = proven_freedoms(joint)
     bounds = [[f.lower, f.upper] for f in found] if joint.type is JointType.BALL else [list(ends) for ends in open_ends]

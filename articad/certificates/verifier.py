@@ -268,13 +268,15 @@ def motion(u: Any, p: Any, spins: Any, v: Any, along: Any, aside: Any, turned: A
 def covered(certificate: dict[str, Any]) -> str:
     """Return, in a sentence, what moves at once in the claims of a certificate that calls itself ok, and what does not."""
     asked = ", ".join(certificate["asked"]) or "none"
+    free = [joint["name"] for joint in certificate["mechanism"]["joints"] if joint["type"] == "free"]
+    still = f" Not covered: what moves freely stands at rest throughout ({', '.join(free)})." if free else ""
     left = [f"{a}/{b}" for a, b, _ in Checker(certificate, {PROOF: {}}).missing()]
     some = f"{', '.join(left[:4])}{f' and {len(left) - 4} more' if len(left) > 4 else ''}"
     if not left:
-        return f"proven while all of these joints move at once, each over its whole range: {asked}."
+        return f"proven while all of these joints move at once, each over its whole range: {asked}.{still}"
     if not certificate["together"]:
-        return f"proven for every joint alone, the others at rest: {asked}; two or more at once: not covered for {some}."
-    return f"proven for every joint alone and every two together: {asked}; three or more at once: not covered for {some}."
+        return f"proven for every joint alone, the others at rest: {asked}; two or more at once: not covered for {some}.{still}"
+    return f"proven for every joint alone and every two together: {asked}; three or more at once: not covered for {some}.{still}"
 
 
 class Checker:

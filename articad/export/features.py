@@ -65,6 +65,8 @@ def _key(joint: Joint) -> str:
 
 def _loop_features(joint: Joint) -> list[Feature]:
     where = f"joints.{joint.name}"
+    if joint.type is JointType.FREE:
+        return [Feature("loop.free", where)]
     if joint.type is JointType.BALL and _key(joint) != "ball.free":
         return [Feature("loop", where), Feature("loop.ball", where)]
     if joint.type in {JointType.CYLINDRICAL, JointType.PLANAR}:

@@ -209,6 +209,8 @@ class Job:
 
     def _joints(self) -> Iterator[Json]:
         for joint in self.assembly.joints:
+            if joint.type is JointType.FREE:  # FreeCAD has no word for it: its part is loose
+                continue
             form = self._joint(joint)
             yield form
             if joint.type is JointType.UNIVERSAL:

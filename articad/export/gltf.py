@@ -156,7 +156,7 @@ def _shaded(mesh: TriMesh) -> tuple[FloatArray, FloatArray, NDArray[np.int64]]:
 
 
 def _driving(assembly: Assembly) -> list[str]:
-    return list(dict.fromkeys(driver.joint for driver in assembly.drivers))
+    return list(assembly.mechanism.driving_joints)
 
 
 def _animation(assembly: Assembly, joint: str, buffer: _Buffer) -> dict[str, Any] | None:

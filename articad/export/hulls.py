@@ -31,9 +31,9 @@ class HullOverlap:
 
 
 def mating_pairs(joints: tuple[Joint, ...], order: tuple[str, ...]) -> list[Pair]:
-    """Return the pairs of parts that share a joint, each once and in order of declaration."""
+    """Return the pairs of parts that share a joint, each once and in order of declaration; a free joint holds them in no contact."""
     rank = {part: index for index, part in enumerate(order)}
-    pairs = {tuple(sorted((joint.parent, joint.child), key=rank.__getitem__)) for joint in joints}
+    pairs = {tuple(sorted((one.parent, one.child), key=rank.__getitem__)) for one in joints if one.type is not JointType.FREE}
     return sorted(((a, b) for a, b in pairs), key=lambda pair: (rank[pair[0]], rank[pair[1]]))
 
 

@@ -62,10 +62,13 @@ def joint_loads(mechanism: Mechanism, parts: Mapping[str, Part]) -> dict[str, tu
         parts: Masses and shapes by part name.
 
     Returns:
-        By joint name; a fixed joint has none.
+        By joint name; a fixed joint and a free one have none.
     """
     carried = CarriedParts(mechanism, parts)
-    return {joint.name: () if joint.type is JointType.FIXED else _loads(joint, carried.of(joint)) for joint in mechanism.joints}
+    return {
+        joint.name: () if joint.type in {JointType.FIXED, JointType.FREE} else _loads(joint, carried.of(joint))
+        for joint in mechanism.joints
+    }
 
 
 def _loads(joint: Joint, carried: Carried) -> tuple[Load, ...]:

@@ -123,6 +123,25 @@ TABLE: dict[str, dict[Format, Row]] = {
         "sdf": Row("a universal joint"),
         "usd": Row("a generic joint that turns about x and y"),
     },
+    "free": {
+        "urdf": Row("a floating joint"),
+        "mjcf": Row("a freejoint on a body of the world"),
+        "sdf": Row("a link that no joint holds, posed at rest"),
+        "usd": Row("a body that no joint holds, the root of an articulation of its own"),
+    },
+    "free.nested": {
+        "urdf": Row("a floating joint"),
+        "mjcf": Row("a freejoint on a body of the world", "from which part its values are counted: they are counted from the world"),
+        "sdf": Row("a link that no joint holds, posed at rest"),
+        "usd": Row("a body that no joint holds, the root of an articulation of its own"),
+    },
+    "free.rest": {
+        "urdf": Row("a floating joint with zero where its frames coincide", "where it rests"),
+        "mjcf": Row("the key at rest"),
+        "sdf": Row("a link that no joint holds, posed at rest"),
+        "usd": Row("a body that no joint holds, posed at rest"),
+    },
+    "loop.free": {name: Row("nothing: it holds nothing that another joint does not hold") for name in MECHANISM_FORMATS},
     "limits.open": {
         "urdf": Row("a far limit, 1e6 rad or 1000 m away", "the joint is endless to that side"),
         "mjcf": Row("a far limit, 1e6 rad or 1000 m away", "the joint is endless to that side"),
@@ -320,6 +339,8 @@ _FREECAD: dict[str, Row] = {
     "screw": Row("a cylindrical joint and a thread", "FreeCAD's solver does not hold the thread's lead", refused=True),
     "planar": Row("a distance of zero between two planes", "its limits"),
     "universal": Row("a ball and a perpendicular joint", "its two limits", refused=True),
+    "free": Row("no joint: its part is loose", "that a joint is declared there; the record has it"),
+    "loop.free": Row("no joint: it holds nothing", "that a joint is declared there; the record has it"),
     "limits.open": Row("a limit to one side only"),
     "slide.endless": Row("a joint without that limit"),
     "velocity": Row("a record", "FreeCAD has no limit on a joint's velocity"),
@@ -345,7 +366,7 @@ _PLAN: dict[str, Row] = {
     "plan.shape": Row("the sides of each part's bounding box", "the shapes: a plan says what to build, and scripts build it", refused=True),
     "plan.mass": Row("a material of the density that gives its mass", "centre of mass and inertia where they are not those of a solid"),
     "plan.density": Row("a density of 1000 kg/m³", "its mass: its shape encloses no volume that it could be spread over", refused=True),
-    "plan.rest": Row("a rest at zero", "where the joint rests: balls, planar and universal joints of a plan rest at zero"),
+    "plan.rest": Row("a rest at zero", "where the joint rests: balls, planar, universal and free joints of a plan rest at zero"),
     "plan.endless": Row(
         "a far limit, 1e6 mm or 100 turns away", "the coordinate is endless; a plan says so of revolute and cylindrical joints only"
     ),
@@ -360,7 +381,19 @@ for _key, _rows in TABLE.items():
     if _key in _PLAN or (
         "urdf" in _rows
         and not _key.startswith(
-            ("hull", "collision", "limits", "slide.", "loop.points", "loop.mimic", "loop.rest", "effort.", "link.frame", "shape.primitive")
+            (
+                "hull",
+                "collision",
+                "limits",
+                "slide.",
+                "loop.points",
+                "loop.mimic",
+                "loop.rest",
+                "free.",
+                "effort.",
+                "link.frame",
+                "shape.primitive",
+            )
         )
     ):
         _rows["plan"] = _PLAN.get(_key, Row("the same"))

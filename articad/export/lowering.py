@@ -45,7 +45,7 @@ ROUND = 1e-12  # by which a component of an axis may miss a whole number
 
 def motions(kind: JointType) -> tuple[Step, ...]:
     """Return J(q) of a joint type as a product of motions that formats can write as joints of their own, first one first."""
-    return kind.steps
+    return () if kind is JointType.FREE else kind.steps  # formats have it as a whole, or leave it out
 
 
 @dataclass(frozen=True)
@@ -109,6 +109,16 @@ class LoweredJoint:
     T_child_joint: SE3
     freedoms: tuple[Freedom, ...]
     carriers: tuple[str, ...]
+
+    @property
+    def is_free(self) -> bool:
+        """True for a free joint: formats have it as a whole, so that it has no freedoms here."""
+        return self.joint.type is JointType.FREE
+
+    @property
+    def T_rest(self) -> SE3:
+        """How far a free joint has moved at rest [m]."""
+        return metres(self.joint.motion(self.joint.rest))
 
 
 @dataclass(frozen=True, eq=False)
@@ -232,7 +242,7 @@ def lower(assembly: Assembly, reserved: Iterable[str] = ()) -> LoweredModel:
 
 def _keeps_frame(joint: Joint, K: SE3) -> bool:
     """True when the joint's frame can be put on the part's, which is at K⁻¹ of it, without another motion (see the module)."""
-    if joint.type is JointType.BALL:  # its values are turns about the frame's own axes
+    if joint.type.quaternion is not None:  # its values are about the frame's own axes
         return K.allclose(SE3.identity(), mm=ON_AXIS_MM, rad=1e-12)
     origin = K.translation  # of the part, seen from the joint's frame
     turning = [np.array(step.vector) for step in motions(joint.type) if step.kind == "turn"]

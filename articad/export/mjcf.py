@@ -12,6 +12,7 @@ from articad.connectors.se3 import SE3
 from articad.export.bundle import Bundle
 from articad.export.closing import has_limits, tied_points
 from articad.export.collisions import Collision, collide, contact_feature
+from articad.export.features import rigid_with_ground
 from articad.export.hulls import HullOverlap, Pair, mating_pairs, same_group_pairs
 from articad.export.inertia import Inertial
 from articad.export.loads import GRAVITY_M_S2
@@ -86,7 +87,13 @@ def write_mjcf(
     """
     model, contacts = collide(assembly, lower(assembly, RESERVED), collision, _skipped(assembly), cache)
     zero = [row.joint.name for row in model.joints if any(_no_force(freedom) for freedom in row.freedoms)]
-    features = [*model.features, *map(contact_feature, contacts), *(Feature("effort.zero", f"joints.{name}") for name in zero)]
+    nested = [row.joint.name for row in model.joints if row.is_free and _is_nested(row, assembly)]
+    features = [
+        *model.features,
+        *(Feature("free.nested", f"joints.{name}") for name in nested),
+        *map(contact_feature, contacts),
+        *(Feature("effort.zero", f"joints.{name}") for name in zero),
+    ]
     losses = (*losses_of("mjcf", features), *kept_losses("mjcf", assembly.kept, _kept_of_joints(assembly, model).values()))
     if strict:
         refuse(losses)
@@ -117,8 +124,11 @@ class _Writer:
         self._materials()
         world = child(root, "worldbody")
         self._bodies(world)
-        places = {joint.get("name"): joint for joint in world.iter("joint")}
+        places = {joint.get("name"): joint for joint in world.iter("joint", "freejoint")}
         for name, kept in _kept_of_joints(self.assembly, self.model).items():
+            if places[name].tag == "freejoint":  # which has no attributes for dynamics
+                places[name].tag = "joint"
+                places[name].set("type", "free")
             places[name].attrib.update(etree.fromstring(kept.xml).attrib)
         self._exclusions(root, contacts)
         self._equalities(root)
@@ -141,10 +151,18 @@ class _Writer:
     def _bodies(self, world: Any) -> None:
         carried = {joint.child: joint for joint in self.model.joints}
         inertials = self._inertials()
+        zero: dict[str, SE3] = {}  # where each body stands when all values are zero
+        rest = self.assembly.mechanism.rest_poses()
         for link in self.model.links:
             joint = carried.get(link.name)
+            place = SE3.identity() if joint is None else joint.T_parent_joint
+            zero[link.name] = place if joint is None else zero[joint.parent] @ place
             parent = world if joint is None else self.bodies[joint.parent]
-            body = child(parent, "body", {"name": link.name} | ({} if joint is None else _placement(joint.T_parent_joint)))
+            if joint is not None and joint.is_free:  # MuJoCo wants it in the world
+                parent, place = world, zero[link.name]
+                T = metres(rest[link.part.name]) @ link.T_link_part.inverse() if _is_nested(joint, self.assembly) else place @ joint.T_rest
+                self.qpos[joint.name] = [*T.translation.tolist(), *wxyz(T)]
+            body = child(parent, "body", {"name": link.name} | ({} if joint is None else _placement(place)))
             self.bodies[link.name] = body
             inertial = inertials[link.name]
             if inertial is not None:
@@ -171,6 +189,9 @@ class _Writer:
         return found
 
     def _joints(self, body: Any, joint: LoweredJoint) -> None:
+        if joint.is_free:
+            child(body, "freejoint", {"name": joint.name})
+            return
         if joint.joint.type is JointType.BALL:
             attributes = {"name": joint.name, "type": "ball"}
             total = ball_total_angle(joint.joint)
@@ -244,6 +265,8 @@ class _Writer:
     def _close(self, equality: Any, loop: LoweredJoint) -> None:
         """Close a loop: a point for a ball, two points on the axis for an endless hinge, all six directions through a ghost for others."""
         near, far = self.bodies[loop.parent], self.bodies[loop.child]
+        if loop.is_free:
+            return
         if loop.joint.type is JointType.FIXED:
             self._tie_sites(equality, "weld", loop.name, (near, loop.T_parent_joint), (far, loop.T_child_joint))
         elif not _needs_ghost(loop):
@@ -278,7 +301,7 @@ class _Writer:
         return freedoms
 
     def _home(self, root: Any, world: Any, servos: list[Freedom]) -> None:
-        values = [value for joint in world.iter("joint") for value in self.qpos[joint.get("name")]]
+        values = [value for joint in world.iter("joint", "freejoint") for value in self.qpos[joint.get("name")]]
         if values:
             key = {"name": "home", "qpos": numbers(values)} | ({"ctrl": numbers(servo.rest for servo in servos)} if servos else {})
             child(child(root, "keyframe"), "key", key)
@@ -310,7 +333,9 @@ def _inertial(body: Any, inertial: Inertial) -> None:
 
 def _kept_of_joints(assembly: Assembly, model: LoweredModel) -> dict[str, Kept]:
     """Return what an MJCF file said of joints that are one joint again, by the name in what is written."""
-    names = {f"joints.{row.joint.name}": row.name for row in model.joints if len(row.freedoms) == 1 or row.joint.type is JointType.BALL}
+    names = {
+        f"joints.{row.joint.name}": row.name for row in model.joints if len(row.freedoms) == 1 or row.joint.type.quaternion is not None
+    }
     return {names[item.where]: item for item in assembly.kept if item.format == "mjcf" and item.xml and item.where in names}
 
 
@@ -373,7 +398,12 @@ def _needs_ghost(loop: LoweredJoint) -> bool:
     kind = loop.joint.type
     if kind is JointType.REVOLUTE:
         return has_limits(loop)
-    return kind not in {JointType.BALL, JointType.FIXED}
+    return kind not in {JointType.BALL, JointType.FIXED, JointType.FREE}
+
+
+def _is_nested(joint: LoweredJoint, assembly: Assembly) -> bool:
+    """True for a free joint whose parent is not the world or fixed to it."""
+    return joint.joint.parent not in rigid_with_ground(assembly)
 
 
 def _mesh_inertia(mesh: TriMesh) -> dict[str, str]:

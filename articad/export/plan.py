@@ -35,7 +35,7 @@ FAR_MM, FAR_DEG = 1e6, 36_000.0  # where a plan has no word for an endless coord
 UNKNOWN_DENSITY = 1000.0  # kg/m³: water
 MM3_PER_M3 = 1e9
 
-_RESTS_AT_ZERO = (JointType.BALL, JointType.PLANAR, JointType.UNIVERSAL)
+_RESTS_AT_ZERO = (JointType.BALL, JointType.PLANAR, JointType.UNIVERSAL, JointType.FREE)
 
 
 def write_plan(assembly: Assembly, *, strict: bool = False) -> Bundle:

@@ -112,6 +112,10 @@ class _Writer:
         inertial = link.inertial or (Inertial.carrier() if link.moves else None)
         whole, carrier = (inertial, Inertial.carrier()) if inertial is None else inertial.without_carriers(count)
         T = self.poses[joint.parent] @ joint.T_parent_joint
+        if joint.is_free:  # no joint at all: what nothing holds is free
+            self.poses[link.name] = T @ joint.T_rest
+            self._link(model, link, inertial)
+            return
         if native:
             self.poses[link.name] = T @ self._rest_motion(joint)
             self._link(model, link, whole)

@@ -82,6 +82,9 @@ def write_urdf(
     tied = {loop.name: tied_points(model, loop) for loop in model.loops} if loops in {"isaac", "drake"} else {}
     keeper = _Keeper(assembly, model)
     features = [*_loop_features(model, loops, tied), *map(contact_feature, contacts), *_form_features(model, keeper)]
+    features += [
+        Feature("free.rest", f"joints.{row.joint.name}") for row in model.joints if row.is_free and row.joint.rest != row.joint.type.neutral
+    ]
     features += [Feature("effort.assumed", f"joints.{name}") for name in _assumed(model, keeper)]
     losses = (*losses_of("urdf", features), *kept_losses("urdf", assembly.kept, keeper.written))
     if strict:
@@ -268,7 +271,7 @@ def _origin(parent: Any, T: SE3) -> None:
 def _joints(root: Any, joint: LoweredJoint, follows: dict[str, Follows], keeper: _Keeper) -> None:
     """Write a joint as a chain of one-freedom joints over its carriers."""
     if not joint.freedoms:
-        element = child(root, "joint", {"name": joint.name, "type": "fixed"})
+        element = child(root, "joint", {"name": joint.name, "type": "floating" if joint.is_free else "fixed"})
         _ends(element, joint.T_parent_joint, joint.parent, joint.child)
         return
     links = [joint.parent, *joint.carriers[: _carrier_count(joint)], joint.child]

@@ -38,6 +38,7 @@ _PRIMS = {
     JointType.SLIDER: "PhysicsPrismaticJoint",
     JointType.BALL: "PhysicsSphericalJoint",
 }
+_ROOT = '"PhysicsArticulationRootAPI"'
 _DEGREES = ("transX", "transY", "transZ", "rotX", "rotY", "rotZ")
 
 
@@ -68,13 +69,17 @@ def write_usd(assembly: Assembly, *, strict: bool = False) -> Bundle:
     rest = assembly.mechanism.rest_poses()
     closing = {joint.name for joint in assembly.mechanism.loop_joints}
     lines = [_HEADER.format(root=root)]
-    lines.append(f'def Xform "{root}" (\n    prepend apiSchemas = ["PhysicsArticulationRootAPI"]\n)\n{{')
+    free = {joint.child for joint in assembly.joints if joint.type is JointType.FREE and joint.name not in closing}
+    lines.append(f'def Xform "{root}"\n{{' if free else f'def Xform "{root}" (\n    prepend apiSchemas = [{_ROOT}]\n)\n{{')
     for name, part in assembly.parts.items():
-        lines += _indented(_body(part, bodies[name], rest[name]))
+        lines += _indented(_body(part, bodies[name], rest[name], (_ROOT,) if name in free else ()))
     lines += _indented(['def Scope "joints"', "{"])
     ground = f"</{root}/{bodies[assembly.ground]}>"
-    lines += _indented(_joint_prim("PhysicsFixedJoint", "to_world", (None, ground), (rest[assembly.ground], SE3.identity()), []), 2)
+    held = [_ROOT] if free else []  # roots of articulations may not be nested, so that each is on a prim of its own
+    lines += _indented(_joint_prim("PhysicsFixedJoint", "to_world", (None, ground), (rest[assembly.ground], SE3.identity()), [], held), 2)
     for joint in assembly.joints:
+        if joint.type is JointType.FREE:
+            continue
         ends = (f"</{root}/{bodies[joint.parent]}>", f"</{root}/{bodies[joint.child]}>")
         lines += _indented(_joint(joint, names[joint.name], ends, closes=joint.name in closing), 2)
     lines += ["    }", "}"]
@@ -91,12 +96,13 @@ _HEADER = """#usda 1.0
 """
 
 
-def _body(part: Part, name: str, T: SE3) -> list[str]:
+def _body(part: Part, name: str, T: SE3, schemas: Iterable[str] = ()) -> list[str]:
     """Return a rigid body with its meshes."""
+    listed = ", ".join(['"PhysicsRigidBodyAPI"', '"PhysicsMassAPI"', *schemas])
     mass = part.mass if part.mass is not None and part.mass.mass > 0 else None
     lines = [
         f'def Xform "{name}" (',
-        '    prepend apiSchemas = ["PhysicsRigidBodyAPI", "PhysicsMassAPI"]',
+        f"    prepend apiSchemas = [{listed}]",
         ")",
         "{",
         *_indented(_mass(mass)),

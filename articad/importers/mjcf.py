@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -23,7 +22,7 @@ from articad.geometry.shapes import box, capsule, cylinder, sphere
 from articad.importers.closure import require_closed
 from articad.importers.fusing import fused, with_chains_named
 from articad.importers.mjcf_kept import kept_attributes
-from articad.importers.raw import ENDLESS, IDENTITY, RawJoint, RawLink, RawModel, RawTie, aligned, assemble, floating, require_links
+from articad.importers.raw import ENDLESS, IDENTITY, RawJoint, RawLink, RawModel, RawTie, aligned, assemble, require_links
 from articad.importers.reading import MM_PER_M, Folder, color_text, read_xml, unreadable
 from articad.importers.records import assembly_of, read_records, stale
 from articad.kinematics.joints import JointType
@@ -37,8 +36,8 @@ _RECORD_PREFIX = "articad."
 def read_mjcf(path: str | Path, *, root: str | Path | None = None, metadata: bool = True, fuse: bool = False) -> Assembly:
     """Read an MJCF file.
 
-    Bodies become parts in their own frames, the world is the ground; joints keep their names and values, a free joint becomes three
-    slides and a ball, several joints of one body a chain over bare parts. Equality constraints of points, bodies and joints close loops
+    Bodies become parts in their own frames, the world is the ground; joints keep their names and values, several joints of one body
+    become a chain over bare parts. Equality constraints of points, bodies and joints close loops
     and couple joints.
 
     Args:
@@ -213,11 +212,11 @@ class _Reader:
         m, kinds, name = self.m, self.mujoco.mjtJoint, self.joints[index]
         kind, at = m.jnt_type[index], m.jnt_qposadr[index]
         qpos, reference = self.data.qpos, m.qpos0
-        if kind == kinds.mjJNT_FREE:  # its values are a pose in the world, wherever the body stands in the file
-            links, joints = floating(name, parent, child, IDENTITY, IDENTITY)
-            self.raw.links |= {link.name: link for link in links}
-            rests = [*((float(qpos[at + i]) * MM_PER_M,) for i in range(3)), _xyzw(qpos[at + 3 : at + 7])]
-            self.raw.joints += [_resting(joint, rest) for joint, rest in zip(joints, rests, strict=True)]
+        if kind == kinds.mjJNT_FREE:  # its values are a pose in the world; ours count from where the body stands in the file
+            moved = not np.array_equal(qpos[at : at + 7], reference[at : at + 7])
+            home = start.inverse() @ _pose(qpos[at : at + 3], qpos[at + 3 : at + 7]) if moved else IDENTITY
+            self.raw.joints.append(RawJoint(name, JointType.FREE, parent, child, start, IDENTITY, rest=tuple(home.data.tolist())))
+            self._keep_spring(index)
             return
         anchor = SE3.from_translation(m.jnt_pos[index] * MM_PER_M)
         limited = bool(m.jnt_limited[index])
@@ -270,7 +269,10 @@ class _Reader:
         """Keep a joint's rotor and spring, for which an assembly has no field, as attributes that `write_mjcf` puts back."""
         m, at = self.m, self.m.jnt_dofadr[index]
         numbers = {"armature": float(m.dof_armature[at]), "stiffness": float(m.jnt_stiffness[index])}
-        if m.jnt_type[index] != self.mujoco.mjtJoint.mjJNT_BALL and numbers["stiffness"]:
+        kind, kinds = m.jnt_type[index], self.mujoco.mjtJoint
+        if kind == kinds.mjJNT_FREE:
+            numbers |= {"damping": float(m.dof_damping[at]), "frictionloss": float(m.dof_frictionloss[at])}
+        if kind in {kinds.mjJNT_HINGE, kinds.mjJNT_SLIDE} and numbers["stiffness"]:
             numbers["springref"] = float(m.qpos_spring[m.jnt_qposadr[index]])
         said = {name: repr(value) for name, value in numbers.items() if value}
         if said:
@@ -354,10 +356,6 @@ class _Reader:
 def _ellipsoid(a: float, b: float, c: float) -> TriMesh:
     ball = sphere(1.0)
     return TriMesh(ball.vertices * [a, b, c], ball.triangles)
-
-
-def _resting(joint: RawJoint, rest: tuple[float, ...]) -> RawJoint:
-    return replace(joint, rest=rest)
 
 
 def _pose(position: FloatArray, wxyz: FloatArray) -> SE3:

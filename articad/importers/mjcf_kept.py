@@ -95,8 +95,6 @@ def _unread(element: Any, section: str, path: Path, seen: set[Path]) -> Iterator
             yield f"{attribute} of <{tag}>", name
     if tag in {"geom", "material"} and len(words := element.get("rgba", "").split()) == 4 and words[3] not in {"1", "1.0"}:
         yield f"transparency of <{tag}>", name
-    if tag == "freejoint" or (tag == "joint" and element.get("type") == "free"):
-        yield "that it floats: it is three slides and a ball", name
     inside = tag if tag in _SECTIONS and not section else section
     for below in (*_included(element, path, seen), *element):
         yield from _unread(below, inside, path, seen)

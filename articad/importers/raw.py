@@ -61,7 +61,7 @@ class RawJoint:
         child: Name of the other.
         frame_p: In the parent link's frame.
         frame_c: In the child link's frame.
-        ranges: Limits of each coordinate; empty for a ball and a fixed joint.
+        ranges: Limits of each coordinate; empty for a ball, a fixed and a free joint.
         cone: Of a ball.
         twist: Of a ball.
         lead: Of a screw.
@@ -132,19 +132,6 @@ def aligned(axis: FloatArray) -> SE3:
     return SE3.from_axes(np.zeros(3), axis)
 
 
-def floating(name: str, parent: str, child: str, frame_p: SE3, frame_c: SE3) -> tuple[list[RawLink], list[RawJoint]]:
-    """Return a free body's six freedoms as three endless slides and a free ball over three bare links."""
-    links = [RawLink(f"{name}__d{i + 1}") for i in range(3)]
-    names = [parent, *(link.name for link in links)]
-    joints = []
-    for i, axis in enumerate(np.eye(3)):
-        R = aligned(axis)
-        start = frame_p @ R if i == 0 else R
-        joints.append(RawJoint(f"{name}__{'xyz'[i]}", JointType.SLIDER, names[i], names[i + 1], start, R, (ENDLESS,)))
-    joints.append(RawJoint(f"{name}__ball", JointType.BALL, names[3], child, IDENTITY, frame_c, cone=math.pi))
-    return links, joints
-
-
 def require_links(model: RawModel, path: Path) -> None:
     """Refuse joints of links that are not there.
 
@@ -208,8 +195,8 @@ def _rest_values(joints: list[RawJoint], ties: list[RawTie]) -> dict[str, tuple[
     """Return rest values: those wanted, moved into the limits; followers where their leaders put them."""
     rests: dict[str, tuple[float, ...]] = {}
     for joint in joints:
-        if joint.type is JointType.BALL:
-            rests[joint.name] = joint.rest or (0.0, 0.0, 0.0, 1.0)
+        if joint.type.quaternion is not None:
+            rests[joint.name] = joint.rest or joint.type.neutral
             continue
         wanted = joint.rest or (0.0,) * len(joint.ranges)
         rests[joint.name] = tuple(min(max(value, low), high) for value, (low, high) in zip(wanted, joint.ranges, strict=True))
@@ -244,7 +231,8 @@ def _joint(joint: RawJoint, rest: tuple[float, ...], findings: list[Finding]) ->
         lead=joint.lead,
         effort=joint.effort,
         velocity=joint.velocity,
-        damping=joint.damping or ((0.0,) * max(len(ranges), 1) if joint.type is not JointType.FIXED else ()),  # unstated is none
+        damping=joint.damping
+        or ((0.0,) * max(len(ranges), 1) if joint.type not in {JointType.FIXED, JointType.FREE} else ()),  # unstated is none
         friction=joint.friction,
     )
 

@@ -22,7 +22,7 @@ from articad.geometry.part import DEFAULT_COLOR, Primitive, Shape
 from articad.geometry.shapes import box, cylinder, sphere
 from articad.geometry.shapes import capsule as capsule_mesh
 from articad.importers.fusing import fused, with_chains_named
-from articad.importers.raw import ENDLESS, IDENTITY, RawJoint, RawLink, RawModel, RawTie, aligned, assemble, floating, require_links
+from articad.importers.raw import ENDLESS, IDENTITY, RawJoint, RawLink, RawModel, RawTie, aligned, assemble, require_links
 from articad.importers.reading import MAX_LINKS, MM_PER_M, Folder, color_text, read_xml, unreadable
 from articad.importers.records import assembly_of, read_records, stale
 from articad.importers.urdf_kept import kept_elements
@@ -318,9 +318,7 @@ def _add_joint(model: RawModel, joint: Any, types: dict[str, str], path: Path) -
     origin = _pose(joint.origin)
     axis = np.array([1.0, 0.0, 0.0] if joint.axis is None else joint.axis, dtype=np.float64)
     if joint.type == "floating":
-        links, joints = floating(joint.name, joint.parent, joint.child, origin, IDENTITY)
-        model.links |= {link.name: link for link in links}
-        model.joints += joints
+        model.joints.append(RawJoint(joint.name, JointType.FREE, joint.parent, joint.child, origin, IDENTITY))
         return
     if joint.type == "spherical":  # not URDF, but written and read by some
         model.joints.append(RawJoint(joint.name, JointType.BALL, joint.parent, joint.child, origin, IDENTITY, cone=math.pi))

@@ -120,8 +120,6 @@ def _of_material(material: Any, where: str) -> Iterator[Kept]:
 def _of_joint(joint: Any) -> Iterator[Kept]:
     where, kind = f"joints.{joint.get('name')}", joint.get("type")
     yield from _attributes(joint, "joint", where)
-    if kind == "floating":
-        yield Kept("urdf", where, "that it floats: it is three slides and a ball")
     for element in joint:
         key = f"joint/{element.tag}"
         acts = element.tag not in {"limit", "dynamics", "mimic", "axis"} or kind in MOVING or (element.tag == "axis" and kind == "planar")

@@ -188,7 +188,7 @@ class Gauge:
 
 def placed(joint: Joint, values: list[float]) -> FloatArray:
     """Return where the child of a joint stands as its parent sees it, for values of the joint's freedoms, `(4, 4)`."""
-    J = motion_matrix(joint, values) if values else np.eye(4)
+    J = motion_matrix(joint, values) if values or joint.type is JointType.FREE else np.eye(4)
     return np.asarray(joint.T_parent_connector.matrix @ J @ (flip(joint.mate) @ joint.T_child_connector.inverse()).matrix)
 
 

@@ -65,8 +65,8 @@ class Holding:
         """Find groups of parts that are near each other but near nothing that leads to the ground."""
         scene = self.scene
         near = Groups([*scene.bodies, *bare])
-        for joint in scene.relations.joints:  # a part without geometry may hold anything joined to it; fixed parts are judged by themselves
-            if joint.parent in bare or joint.child in bare or joint.type is JointType.FIXED:
+        for joint in scene.relations.joints:  # a part without geometry may hold anything joined to it; fixed parts are judged by themselves, and free ones are held by nothing
+            if joint.parent in bare or joint.child in bare or joint.type in {JointType.FIXED, JointType.FREE}:
                 near.join(joint.parent, joint.child)
         candidates = self.placed.candidates(max([NEAR_MM, *(fit.gap_max or 0.0 for fit in scene.fits.values())]))
         candidates.sort(key=lambda pair: not scene.relations.between(*pair))  # parts that a joint connects are near, mostly

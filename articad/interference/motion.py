@@ -52,7 +52,10 @@ def freedoms(joint: Joint) -> tuple[Freedom, ...]:
     """Return the coordinates along which a joint moves.
 
     One without limits ranges over a whole turn about its rest, or from its one limit; over more where it rests further away.
+    A free joint has no range to be proven or swept over: it has none of these, and stands at rest in every check.
     """
+    if joint.type is JointType.FREE:
+        return ()
     if joint.type is JointType.BALL:
         cone = math.pi if joint.limits.cone is None else joint.limits.cone
         twist = FULL_TURN if joint.limits.twist is None else joint.limits.twist
@@ -120,7 +123,9 @@ def _radical_inverse(index: int, base: int) -> float:
 
 
 def driver_values(joint: Joint, values: Sequence[float]) -> tuple[float, ...]:
-    """Return the joint's own coordinates for values of its `freedoms`: only a ball's differ."""
+    """Return the joint's own coordinates for values of its `freedoms`: only those of a ball and of a free joint differ."""
+    if joint.type is JointType.FREE:
+        return joint.rest
     if joint.type is not JointType.BALL:
         return tuple(values)
     sx, sy, twist = values
@@ -171,6 +176,8 @@ def swing_and_twist(quaternion: FloatArray) -> list[float]:
 
 def motion_matrix(joint: Joint, values: Sequence[float]) -> FloatArray:
     """Return J `(4, 4)` for values of the joint's `freedoms`; the same as `Joint.motion`, without its checks."""
+    if joint.type is JointType.FIXED:
+        return np.eye(4)
     if joint.type not in _ABOUT_Z:
         return np.asarray(joint.motion(np.array(driver_values(joint, values))).matrix)
     angle, origin = 0.0, [0.0, 0.0, 0.0]
@@ -276,7 +283,7 @@ class Chain:
                 K = R
             else:
                 self.hold.update({freedom.name: held.get(freedom.name, freedom.rest) for freedom in mine})
-                J = self._moved(joint, [self.hold[freedom.name] for freedom in mine]) if mine else np.eye(4)
+                J = self._moved(joint, [self.hold[freedom.name] for freedom in mine])
                 K = K @ (J if forward else _inverse(J)) @ R
         self.freedoms = tuple(found)
         self.last = K

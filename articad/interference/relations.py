@@ -82,7 +82,8 @@ class Relations:
         self._between: dict[frozenset[str], list[Joint]] = {}
         self._waivers = {frozenset(waiver.parts): waiver for waiver in waivers}
         for joint in self.joints:
-            self._between.setdefault(frozenset((joint.parent, joint.child)), []).append(joint)
+            if joint.type is not JointType.FREE:  # which fits nothing to anything
+                self._between.setdefault(frozenset((joint.parent, joint.child)), []).append(joint)
             if joint.type is JointType.FIXED:
                 self.rigid.join(joint.parent, joint.child)
 

@@ -100,7 +100,7 @@ class Sweep:
         self.scene, self.mechanism, self.budget = scene, mechanism, budget or Budget(math.inf)
         self.queries = 0
         self._known: dict[tuple[str, str], dict[bytes, float]] = {}
-        driving = dict.fromkeys(coordinate.joint for coordinate in mechanism.drivers)
+        driving = dict.fromkeys(coordinate.joint for coordinate in mechanism.drivers)  # free ones too, which stand at rest
         by_name = {joint.name: joint for joint in mechanism.joints}
         self.driving: tuple[Joint, ...] = tuple(by_name[name] for name in driving)
 

@@ -516,11 +516,12 @@ def driver_freedoms(layout: Layout, columns: Sequence[int]) -> list[int]:
     for column in columns:
         joint = layout.coordinates[column].joint
         own = layout.freedoms[joint]
-        if layout.joint(joint).type is JointType.BALL:
-            if column == layout.columns[joint].start:
-                freedoms.extend(range(own.start, own.stop))
-        else:
+        first = layout.joint(joint).type.quaternion
+        at = column - layout.columns[joint].start
+        if first is None or at < first:
             freedoms.append(layout.freedom_of(column))
+        elif at == first:
+            freedoms.extend(range(own.start + first, own.stop))
     return freedoms
 
 

@@ -156,8 +156,9 @@ class Configuration:
         fraction = np.asarray(s, dtype=np.float64)[..., None]
         columns = self.columns + fraction * (other.columns - self.columns)
         for joint in self.joints:
-            if joint.type is JointType.BALL:
+            if joint.type.quaternion is not None:
                 part = self._slice(joint.name)
+                part = slice(part.start + joint.type.quaternion, part.stop)
                 start, end = SE3.from_quaternion(self.columns[..., part]), SE3.from_quaternion(other.columns[..., part])
                 columns[..., part] = start.interpolate(end, s).quaternion
         return Configuration(self.joints, columns)
@@ -170,6 +171,8 @@ class Configuration:
 
 def _bounded(joint: Joint, values: FloatArray) -> list[tuple[str, str, FloatArray, float, float]]:
     """Return what has bounds: name, unit, values `(*batch)`, lower, upper."""
+    if joint.type is JointType.FREE:
+        return []
     if joint.type is not JointType.BALL:
         return [(c.name, c.unit, values[..., i], c.lower, c.upper) for i, c in enumerate(joint.columns)]
     limits = []
@@ -181,6 +184,10 @@ def _bounded(joint: Joint, values: FloatArray) -> list[tuple[str, str, FloatArra
 
 
 def _random(joint: Joint, rng: np.random.Generator, batch: tuple[int, ...]) -> FloatArray:
+    if joint.type is JointType.FREE:
+        turned = rng.normal(size=(*batch, 4))
+        place = np.array(joint.rest[:3]) + rng.uniform(-_ENDLESS_TRAVEL, _ENDLESS_TRAVEL, (*batch, 3))
+        return np.concatenate([place, quaternion.positive(quaternion.normalized(turned))], axis=-1)
     if joint.type is JointType.BALL:
         low, high = joint.limits.twist or (-math.pi, math.pi)
         direction, tilt = rng.uniform(-math.pi, math.pi, batch), (joint.limits.cone or math.pi) * np.sqrt(rng.random(batch))
@@ -202,6 +209,8 @@ def _ball(direction: FloatArray, tilt: FloatArray, turn: FloatArray) -> FloatArr
 
 
 def _clamped(joint: Joint, values: FloatArray) -> FloatArray:
+    if joint.type is JointType.FREE:
+        return values
     if joint.type is not JointType.BALL:
         return np.clip(values, joint.limits.lower, joint.limits.upper)
     x, y, z, w = np.moveaxis(values, -1, 0)

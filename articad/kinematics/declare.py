@@ -11,6 +11,7 @@ from typing import Literal
 
 from articad.connectors.attachment import Attachment
 from articad.connectors.mate import Mate
+from articad.connectors.se3 import SE3
 from articad.kinematics.joints import Joint, JointLimits, JointType
 
 Range = tuple[float, float] | Literal["endless"]
@@ -120,6 +121,12 @@ def universal(
 ) -> Joint:
     """Turn about the parent's x by `a`, then about the turned y by `b` [rad]; rests at zero."""
     return _joint(name, JointType.UNIVERSAL, parent, child, mate, (a, b), (0.0, 0.0), driver=driver)
+
+
+def free(name: str, parent: Attachment, child: Attachment, *, rest: SE3 | None = None, mate: MateName = "aligned") -> Joint:
+    """Move freely in six directions; `rest` is where the child connector stands in the parent's, by default where the two coincide."""
+    x, y, z, qx, qy, qz, qw = (float(value) for value in (SE3.identity() if rest is None else rest).data)
+    return _joint(name, JointType.FREE, parent, child, mate, (), (x, y, z, qx, qy, qz, qw))
 
 
 def _joint(

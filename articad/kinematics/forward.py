@@ -191,5 +191,7 @@ def _joint_model(pin: Any, joint: Joint) -> Any:  # noqa: PLR0911 - one row per 
             return pin.JointModelHZ(joint.lead / (2 * np.pi))  # Pinocchio's pitch is length per radian
         case JointType.PLANAR:
             return pin.JointModelPlanar()
+        case JointType.FREE:
+            return pin.JointModelFreeFlyer()
         case _:
             return pin.JointModelUniversal(np.array([1.0, 0.0, 0.0]), np.array([0.0, 1.0, 0.0]))

@@ -14,7 +14,9 @@ from articad.kinematics.joints import Joint, JointType
 from articad.kinematics.tree import KinematicTree
 
 # Light joints carry parts first, so that the joints that are left to close loops are passive hinges and balls.
+# A free joint holds nothing, so that it closes no loop where it can carry.
 _WEIGHTS = {
+    JointType.FREE: -1,
     JointType.FIXED: 0,
     JointType.SLIDER: 2,
     JointType.SCREW: 2,

@@ -21,7 +21,7 @@ def _doubtful(joints: Sequence[Joint]) -> Sequence[Joint]:
     types = [joint.type for joint in joints]
     doubtful = [joint for joint in joints if joint.lead or joint.driver]
     doubtful += [joint for joint, kind in zip(joints, types, strict=True) if kind in _SPECIAL and not _clear_special(joint)]
-    doubtful += _unclear([joint for joint, kind in zip(joints, types, strict=True) if kind is not JointType.BALL])
+    doubtful += _unclear([joint for joint, kind in zip(joints, types, strict=True) if kind not in _ROTATED])
     return _in_order(joints, doubtful)
 
 
@@ -39,7 +39,7 @@ def _clear_special(joint: Joint) -> bool:
 
 
 def _unclear(joints: Sequence[Joint]) -> Sequence[Joint]:
-    """Return the joints that are no balls and do not rest within limits of the right number."""
+    """Return the joints that have no quaternion and do not rest within limits of the right number."""
     sizes = [_SIZES[joint.type] for joint in joints]
     rests, limits = [joint.rest for joint in joints], [joint.limits for joint in joints]
     lowers, uppers = [one.lower for one in limits], [one.upper for one in limits]
@@ -51,6 +51,7 @@ def _unclear(joints: Sequence[Joint]) -> Sequence[Joint]:
     return unclear if good else joints
 
 
-_SPECIAL = frozenset({JointType.BALL, JointType.SCREW})
+_SPECIAL = frozenset({JointType.BALL, JointType.SCREW, JointType.FREE})
+_ROTATED = frozenset({JointType.BALL, JointType.FREE})  # have no ranges of their coordinates
 _NEUTRAL = JointType.BALL.neutral
 _SIZES = {joint_type: len(joint_type.coordinates) for joint_type in JointType}

@@ -2,7 +2,7 @@
 
 A joint places its child by `T_child = T_parent · C_p · J(q) · F · C_c⁻¹` (`articad.connectors.mate`). J(q) is given here:
 revolute Rz(θ) · slider Tz(d) · cylindrical Tz(d) Rz(θ) · ball R(quaternion) · screw Tz(lead·θ/2π) Rz(θ) ·
-planar T(x, y, 0) Rz(θ) · universal Rx(a) Ry(b) · fixed I. All angles in rad, lengths in mm.
+planar T(x, y, 0) Rz(θ) · universal Rx(a) Ry(b) · free T(x, y, z) R(quaternion) · fixed I. All angles in rad, lengths in mm.
 """
 
 from __future__ import annotations
@@ -111,13 +111,16 @@ _KINDS: dict[str, _Kind] = {
         ("x", "y", "angle"), Step("slide", _X, 0, suffix="x"), Step("slide", _Y, 1, suffix="y"), Step("turn", _Z, 2, suffix="r")
     ),
     "universal": _Kind(("a", "b"), Step("turn", _X, 0, suffix="rx"), Step("turn", _Y, 1, suffix="ry")),
+    "free": _Kind(
+        ("x", "y", "z", *_QUATERNION), *(Step("slide", axis, axis, suffix="xyz"[axis]) for axis in range(3)), *_TURNS_OF_QUATERNION
+    ),
 }
 """The joint types. Every other table of them is derived from this one, but the checker of certificates and the report page's solver, which
 are independent of it on purpose, and the maps to the joints of engines and file formats."""
 
 
 class JointType(StrEnum):
-    """The eight kinds of joints."""
+    """The nine kinds of joints."""
 
     FIXED = "fixed"
     REVOLUTE = "revolute"
@@ -127,6 +130,7 @@ class JointType(StrEnum):
     SCREW = "screw"
     PLANAR = "planar"
     UNIVERSAL = "universal"
+    FREE = "free"
 
     @property
     def steps(self) -> tuple[Step, ...]:
@@ -160,7 +164,7 @@ class JointType(StrEnum):
 
     @property
     def reversible(self) -> bool:
-        """False for planar and universal: crossed from child to parent they are not joints of their own type."""
+        """False for planar, universal and free: crossed from child to parent they are not joints of their own type."""
         return _KINDS[self].reverse is not None
 
     @property
@@ -194,7 +198,7 @@ class JointType(StrEnum):
         """Return the signs `(n_coordinates,)` that take coordinates to those measured from the child.
 
         Raises:
-            KinematicsError: E_REVERSE_UNSUPPORTED for planar and universal.
+            KinematicsError: E_REVERSE_UNSUPPORTED for planar, universal and free.
         """
         signs = _KINDS[self].reverse_opposed if mate == Mate.OPPOSED else _KINDS[self].reverse
         if signs is None:
@@ -243,7 +247,7 @@ class JointLimits:
     """Bounds of a joint's coordinates [rad, mm].
 
     Attributes:
-        lower: One per coordinate, −inf for an endless one; empty for a ball and a fixed joint.
+        lower: One per coordinate, −inf for an endless one; empty for a ball, a fixed and a free joint.
         upper: Likewise, +inf for an endless one.
         cone: A ball's largest angle between the z axes of its two connectors [rad]; None is free.
         twist: A ball's range of turn about z [rad]; None is free.
@@ -332,8 +336,10 @@ class Joint:
     @property
     def columns(self) -> tuple[Coordinate, ...]:
         """The joint's columns of q."""
-        n = len(self.type.coordinates)
-        lower, upper = ((-1.0,) * n, (1.0,) * n) if self.type is JointType.BALL else (self.limits.lower, self.limits.upper)
+        lower, upper = self.limits.lower, self.limits.upper
+        if self.type.quaternion is not None:
+            far = (math.inf,) * self.type.quaternion
+            lower, upper = (*(-x for x in far), *(-1.0,) * 4), (*far, *(1.0,) * 4)
         rows = zip(self.column_names, self.type.units, lower, upper, self.rest, strict=True)
         return tuple(Coordinate(name, self.name, unit, lo, hi, rest) for name, unit, lo, hi, rest in rows)
 
@@ -347,7 +353,7 @@ class Joint:
         The coordinates are `type.reversal_signs(mate) ∘ q` (kinematics: reversal).
 
         Raises:
-            KinematicsError: E_REVERSE_UNSUPPORTED for planar and universal.
+            KinematicsError: E_REVERSE_UNSUPPORTED for planar, universal and free.
         """
         signs = self.type.reversal_signs(self.mate)
         return replace(
@@ -451,14 +457,16 @@ def _joint_findings(joint: Joint) -> list[Finding]:
         return Finding(code=code, where=where, message=f"Joint {joint.name!r}: {message}", hint=hint, parts=parts)
 
     found: list[Finding] = []
-    if not joint.type.freedoms and joint.driver:
-        found.append(finding("W_DRIVER", "a fixed joint cannot drive.", "Remove the mark."))
+    if joint.type in {JointType.FIXED, JointType.FREE} and joint.driver:
+        found.append(finding("W_DRIVER", f"a {joint.type} joint cannot drive.", "Remove the mark."))
     if not all(map(math.isfinite, (*joint.rest, joint.lead))):
         found.append(finding("E_NONFINITE", "rest values and lead must be finite.", "Give finite numbers."))
     if joint.type is JointType.SCREW and joint.lead == 0:
         found.append(finding("E_LEAD_ZERO", "a screw without lead.", "Give the advance per turn in mm, or use a revolute joint."))
     if joint.type is JointType.BALL:
         return found + _ball_findings(joint, finding)
+    if joint.type is JointType.FREE:
+        return found + _free_findings(joint, finding)
     n = len(joint.type.coordinates)
     if not len(joint.limits.lower) == len(joint.limits.upper) == n or joint.limits.cone is not None or joint.limits.twist is not None:
         found.append(finding("E_LIMITS_KIND", f"a {joint.type} joint has {n} pair(s) of limits, no cone.", "Give its own limits."))
@@ -502,6 +510,15 @@ def _ball_findings(joint: Joint, finding: _FindingMaker) -> list[Finding]:
     turned = limits.twist is not None and not limits.twist[0] - LIMIT_SLACK <= twist(joint.rest) <= limits.twist[1] + LIMIT_SLACK
     if turned or swing(joint.rest) > cone + LIMIT_SLACK:
         return [finding("E_REST_OUTSIDE_LIMITS", "it rests outside its cone or twist.", "Move the rest value or the limit.")]
+    return []
+
+
+def _free_findings(joint: Joint, finding: _FindingMaker) -> list[Finding]:
+    limits = joint.limits
+    if limits.lower or limits.upper or limits.cone is not None or limits.twist is not None or len(joint.rest) != 7:
+        return [finding("E_LIMITS_KIND", "a free joint has no limits, and rests at x, y, z and a quaternion.", "Give no limits.")]
+    if abs(math.hypot(*joint.rest[3:]) - 1) > _QUATERNION_TOLERANCE:
+        return [finding("E_QUAT_NORM", f"it rests turned by {joint.rest[3:]}, not of unit length.", "Give a unit quaternion (x, y, z, w).")]
     return []
 
 

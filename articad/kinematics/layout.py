@@ -23,7 +23,7 @@ _N_FREEDOMS = {joint_type: joint_type.freedoms for joint_type in JointType}
 class Layout:
     """Columns of coordinates and of freedoms of joints, in order of declaration.
 
-    A freedom is a velocity: the derivative of a coordinate, but of a ball the angular velocity (x, y, z) of its child
+    A freedom is a velocity: the derivative of a coordinate, but of a quaternion the angular velocity (x, y, z) of its joint's child
     side against its parent side, in the parent connector's frame [rad/s].
 
     Args:
@@ -58,11 +58,11 @@ class Layout:
 
     @cached_property
     def _ball_columns(self) -> IndexArray:
-        return _runs([start for start, kind in zip(self._starts, self._types, strict=False) if kind is JointType.BALL], 4)
+        return _runs(_quaternions(self._starts, self._types), 4)
 
     @cached_property
     def _ball_freedoms(self) -> IndexArray:
-        return _runs([start for start, kind in zip(self._own, self._types, strict=False) if kind is JointType.BALL], 3)
+        return _runs(_quaternions(self._own, self._types), 3)
 
     @cached_property
     def rest(self) -> FloatArray:
@@ -86,12 +86,12 @@ class Layout:
 
     @cached_property
     def ball_freedoms(self) -> frozenset[int]:
-        """Freedoms that turn balls."""
+        """Freedoms that turn balls and free joints."""
         return frozenset(self._ball_freedoms.ravel().tolist())
 
     @cached_property
     def _plain(self) -> tuple[IndexArray, IndexArray]:
-        """Columns and freedoms of all joints but balls."""
+        """Columns and freedoms that are no part of a quaternion or its turns."""
         all_columns, all_freedoms = np.arange(self.n_columns), np.arange(self.n_freedoms)
         return np.setdiff1d(all_columns, self._ball_columns), np.setdiff1d(all_freedoms, self._ball_freedoms)
 
@@ -107,14 +107,16 @@ class Layout:
         raise UnknownJointError(name, self.columns)
 
     def freedom_of(self, column: int) -> int:
-        """Return the freedom whose integral a column is; a ball's column gives the ball's first freedom."""
+        """Return the freedom whose integral a column is; a quaternion's column gives the first of its three turns."""
         joint = self.coordinates[column].joint
         first = self.columns[joint].start
         start: int = self.freedoms[joint].start
-        return start + (0 if self.joint(joint).type is JointType.BALL else column - first)
+        at, turns_at = column - first, self.joint(joint).type.quaternion
+        freedom: int = start + (at if turns_at is None else min(at, turns_at))
+        return freedom
 
     def column_of_freedom(self, freedom: int) -> int:
-        """Return a column that a freedom moves; a ball's freedoms give its first three."""
+        """Return a column that a freedom moves; a quaternion's turns give its first three."""
         joint = next(joint for joint in self.joints if self.freedoms[joint.name].start <= freedom < self.freedoms[joint.name].stop)
         column: int = self.columns[joint.name].start + freedom - self.freedoms[joint.name].start
         return column
@@ -134,13 +136,13 @@ class Layout:
             if off.max(initial=0.0) > QUATERNION_TOLERANCE:
                 worst = np.unravel_index(np.argmax(off), off.shape)
                 name, length = self.coordinates[self._ball_columns[worst[-2], 0]].joint, float(norm[worst])
-                raise KinematicsError(f"E_QUAT_NORM: ball {name!r} was given a quaternion of length {length:.6g}; its length must be 1.")
+                raise KinematicsError(f"E_QUAT_NORM: joint {name!r} was given a quaternion of length {length:.6g}; its length must be 1.")
             Q = Q.copy()
             Q[..., self._ball_columns] = q / norm
         return Q
 
     def integrate(self, Q: FloatArray, step: FloatArray) -> FloatArray:
-        """Return the coordinates `(*batch, n_columns)` after moving by `step` `(*batch, n_freedoms)`; balls by exp(step)."""
+        """Return the coordinates `(*batch, n_columns)` after moving by `step` `(*batch, n_freedoms)`; quaternions by exp(step)."""
         if not self._ball_columns.size:
             return Q + step
         columns, freedoms = self._plain
@@ -151,7 +153,7 @@ class Layout:
         return moved
 
     def difference(self, start: FloatArray, end: FloatArray) -> FloatArray:
-        """Return the step `(*batch, n_freedoms)` that leads from `start` to `end`; balls the short way."""
+        """Return the step `(*batch, n_freedoms)` that leads from `start` to `end`; quaternions the short way."""
         if not self._ball_columns.size:
             return end - start
         columns, freedoms = self._plain
@@ -160,6 +162,11 @@ class Layout:
         turn = quaternion.multiply(end[..., self._ball_columns], quaternion.conjugate(start[..., self._ball_columns]))
         step[..., self._ball_freedoms] = quaternion.log(turn)
         return step
+
+
+def _quaternions(starts: Sequence[int], types: Sequence[JointType]) -> list[int]:
+    """Return where the quaternions, or their turns, of joints begin, which start at these places."""
+    return [start + kind.quaternion for start, kind in zip(starts, types, strict=False) if kind.quaternion is not None]
 
 
 def _runs(starts: Sequence[int], length: int) -> IndexArray:

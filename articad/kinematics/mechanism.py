@@ -19,7 +19,7 @@ from articad.kinematics.configuration import Configuration
 from articad.kinematics.graph import JointGraph
 from articad.kinematics.inexact import NOISE, Correction, nearest
 from articad.kinematics.joint_check import joint_findings
-from articad.kinematics.joints import Coordinate, Coupling, Joint
+from articad.kinematics.joints import Coordinate, Coupling, Joint, JointType
 from articad.kinematics.layout import Layout
 from articad.kinematics.linkage_findings import askew_error, loop_findings
 from articad.kinematics.mobility import NEARLY_FREE, REALISED, Redundancy, redundancies
@@ -178,6 +178,12 @@ class Mechanism:
         return self.layout.coordinates if self.is_tree else self.branch.drivers
 
     @property
+    def driving_joints(self) -> tuple[str, ...]:
+        """Names of the joints that drivers belong to and that have ranges over which to move, in order; free joints have none."""
+        free = {joint.name for joint in self.joints if joint.type is JointType.FREE}
+        return tuple(name for name in dict.fromkeys(driver.joint for driver in self.drivers) if name not in free)
+
+    @property
     def driver_columns(self) -> tuple[int, ...]:
         """Place of each driver among `coordinates`."""
         return tuple(range(self.layout.n_columns)) if self.is_tree else self.branch.columns
@@ -223,7 +229,7 @@ class Mechanism:
         """
         if self.is_tree:
             return Findings()
-        ranges = [self.feasible_range(c.name) for c in self.drivers if c.unit != "1"]
+        ranges = [self.feasible_range(c.name) for c in self.drivers if c.unit != "1" and c.joint in self.driving_joints]
         return Findings(finding for one in ranges for finding in one.findings)
 
     # --- where things are
@@ -499,7 +505,7 @@ def _coupling_findings(mechanism: Mechanism) -> list[Finding]:
                 hint = f"Use one of [{', '.join(columns)}].{did_you_mean(name, columns)}"
                 found.append(Finding(code="E_JOINT_UNKNOWN", where=where, message=message, hint=hint))
             elif len(columns[name].type.freedom_units) != len(columns[name].type.coordinates):
-                message = f"Coupling {coupling.name!r} ties a component of ball {columns[name].name!r}."
+                message = f"Coupling {coupling.name!r} ties a component of {columns[name].type} joint {columns[name].name!r}."
                 found.append(Finding(code="E_COUPLING", where=where, message=message, hint="Tie an angle or a travel."))
         if coupling.a == coupling.b:
             message = f"Coupling {coupling.name!r} ties {coupling.a!r} to itself."

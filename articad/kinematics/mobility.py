@@ -300,16 +300,16 @@ def choose_drivers(system: ClosureSystem, freedoms: FloatArray) -> tuple[tuple[i
     for joint in sorted(layout.joints, key=lambda joint: not joint.driver):
         columns, own = layout.columns[joint.name], layout.freedoms[joint.name]
         rows = list(freedoms[own])
-        if joint.type is JointType.BALL:
-            grown = _extended(basis, rows)
+        taken, plain = 0, len(rows) if joint.type.quaternion is None else joint.type.quaternion
+        if plain < len(rows):  # a quaternion drives as a whole, or not
+            grown = _extended(basis, rows[plain:])
             if len(grown) == len(basis) + 3:
-                basis = grown
-                chosen.extend(range(columns.start, columns.stop))
+                basis, taken = grown, 3
+                chosen.extend(range(columns.start + plain, columns.stop))
             elif joint.driver:
                 refused.append(joint)
-            continue
-        taken = 0
-        for offset, row in enumerate(rows):
+                continue
+        for offset, row in enumerate(rows[:plain]):
             grown = _extended(basis, [row])
             if len(grown) > len(basis):
                 basis, taken = grown, taken + 1

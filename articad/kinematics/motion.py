@@ -252,6 +252,8 @@ def _margins(track: Track, sign: int, s: FloatArray, coordinate: Coordinate) -> 
                 names.append(f"{joint.name}.twist")
                 rows.append(np.minimum(twist(own) - joint.limits.twist[0], joint.limits.twist[1] - twist(own)))
             continue
+        if joint.type is JointType.FREE:
+            continue
         for i, c in enumerate(joint.columns):
             if c.name != coordinate.name and (math.isfinite(c.lower) or math.isfinite(c.upper)):
                 names.append(c.name)
@@ -349,7 +351,7 @@ def driver_index(mechanism: Mechanism, driver: str) -> int:
         raise UnknownJointError(driver, names)
     index = names.index(driver)
     if mechanism.drivers[index].unit == "1":
-        raise KinematicsError(f"{driver!r} is a component of a quaternion; a ball has no range of its own components.")
+        raise KinematicsError(f"{driver!r} is a component of a quaternion, which has no range of its own components.")
     return index
 
 

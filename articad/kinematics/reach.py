@@ -14,7 +14,6 @@ from articad.errors import KinematicsError
 from articad.findings import Finding
 from articad.kinematics.configuration import Configuration
 from articad.kinematics.factors import svd
-from articad.kinematics.joints import JointType
 from articad.kinematics.loops import CLOSED, characteristic_length, damped_step
 
 if TYPE_CHECKING:
@@ -193,7 +192,7 @@ def _held(mechanism: Mechanism, Q: FloatArray, pull: FloatArray) -> np.ndarray[t
     layout = mechanism.layout
     held = np.zeros(layout.n_freedoms, dtype=bool)
     for joint in mechanism.joints:
-        if joint.type is JointType.BALL:
+        if joint.type.quaternion is not None:
             continue
         columns, freedoms = layout.columns[joint.name], layout.freedoms[joint.name]
         value, force = Q[columns], pull[freedoms]

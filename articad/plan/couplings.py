@@ -98,7 +98,7 @@ def _coordinate(
     elif own:
         message = f"{name!r} does not name one coordinate of the {joints[joint]} joint {joint!r}."
         evaluation.report("E_COUPLING", path, message, f"Use {' or '.join(own)}.")
-    elif joints[joint] in {JointType.FIXED, JointType.BALL}:
+    elif joints[joint] in {JointType.FIXED, JointType.BALL, JointType.FREE}:
         evaluation.report("E_COUPLING", path, f"A {joints[joint]} joint has no coordinate to couple.", "Couple an angle or a travel.")
     return None
 

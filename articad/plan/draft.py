@@ -262,7 +262,7 @@ class Draft:
             return
         coordinates: dict[str, TiedCoordinate] = {}
         for joint in self.joints:
-            if joint.type is JointType.BALL:
+            if joint.type.quaternion is not None:
                 continue
             T = self.parts[joint.parent].T
             axis = None if T is None else T.rotate(joint.T_parent_connector.z_axis)

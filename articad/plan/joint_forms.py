@@ -104,6 +104,12 @@ class UniversalSpec(JointForm):
     b_deg: Interval | None = Field(None, description="Required")
 
 
+class FreeSpec(JointForm):
+    """Leaves the child free in all six directions, as the base of a mobile robot; rests where the two connectors coincide."""
+
+    type: Literal["free"]
+
+
 class JointDerivation(Form):
     """The joint that a derived one copies."""
 
@@ -120,7 +126,7 @@ class DerivedJoint(Form):
     child: Reference = Field(description="On the part that is the image of the source's child")
 
 
-JOINT_TYPES = ("fixed", "revolute", "slider", "cylindrical", "ball", "screw", "planar", "universal")
+JOINT_TYPES = ("fixed", "revolute", "slider", "cylindrical", "ball", "screw", "planar", "universal", "free")
 
 
 def _joint_tag(value: Any) -> str | None:
@@ -129,7 +135,7 @@ def _joint_tag(value: Any) -> str | None:
     return "derived" if isinstance(value, DerivedJoint) else getattr(value, "type", None)
 
 
-JointSpec = FixedSpec | RevoluteSpec | SliderSpec | CylindricalSpec | BallSpec | ScrewSpec | PlanarSpec | UniversalSpec
+JointSpec = FixedSpec | RevoluteSpec | SliderSpec | CylindricalSpec | BallSpec | ScrewSpec | PlanarSpec | UniversalSpec | FreeSpec
 
 AnyJoint = Annotated[
     Annotated[FixedSpec, Tag("fixed")]
@@ -140,6 +146,7 @@ AnyJoint = Annotated[
     | Annotated[ScrewSpec, Tag("screw")]
     | Annotated[PlanarSpec, Tag("planar")]
     | Annotated[UniversalSpec, Tag("universal")]
+    | Annotated[FreeSpec, Tag("free")]
     | Annotated[DerivedJoint, Tag("derived")],
     Discriminator(_joint_tag),
 ]
@@ -207,6 +214,7 @@ __all__ = [
     "DerivedJoint",
     "Fit",
     "FixedSpec",
+    "FreeSpec",
     "GearSpec",
     "JointDerivation",
     "JointForm",

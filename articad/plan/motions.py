@@ -34,8 +34,9 @@ AXES: dict[JointType, tuple[_Axis, ...]] = {
     JointType.SCREW: (_Axis("angle_deg", "rest_deg", "deg"),),
     JointType.PLANAR: (_Axis("x_mm", None, "mm"), _Axis("y_mm", None, "mm"), _Axis("angle_deg", None, "deg")),
     JointType.UNIVERSAL: (_Axis("a_deg", None, "deg"), _Axis("b_deg", None, "deg")),
+    JointType.FREE: (),
 }
-"""The coordinates of each type as the plan writes them, in the order of `JointType.coordinates`; a ball has a cone."""
+"""The coordinates of each type as the plan writes them, in the order of `JointType.coordinates`; a ball has a cone, a free joint no limits."""
 
 
 @dataclass(frozen=True)
@@ -60,7 +61,7 @@ class Motion:
 
     @property
     def turn_at_rest(self) -> float:
-        """Angle [rad] about z by which the rest value turns the child; balls, planar and universal joints rest at zero."""
+        """Angle [rad] about z by which the rest value turns the child; balls, planar, universal and free joints rest at zero."""
         return sum(value for value, unit in zip(self.rest, self.type.units, strict=True) if unit == "rad")
 
     def mirrored(self) -> Motion:
@@ -86,6 +87,8 @@ def motion(form: JointSpec, evaluation: Evaluation) -> Motion | None:
         evaluation.report("E_LEAD_ZERO", f"{where}.lead_mm", "The screw does not advance.", hint, value=0.0, unit="mm")
     if isinstance(form, BallSpec):
         limits, rest = _ball_limits(form, where, evaluation), JointType.BALL.neutral
+    elif joint_type is JointType.FREE:
+        limits, rest = JointLimits(), JointType.FREE.neutral
     else:
         limits, rest = _limits(form, joint_type, where, evaluation)
     if limits is None or math.isnan(lead) or any(map(math.isnan, rest)):

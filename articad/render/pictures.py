@@ -167,7 +167,7 @@ def motion_frames(assembly: Assembly, joint: str, count: int = FRAMES) -> tuple[
     Raises:
         UnknownJointError: If the joint drives nothing.
     """
-    driving = {driver.joint for driver in assembly.drivers}
+    driving = assembly.mechanism.driving_joints
     if joint not in driving:
         raise UnknownJointError(joint, sorted(driving))
     declared = next(entry for entry in assembly.joints if entry.name == joint)

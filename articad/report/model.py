@@ -136,6 +136,8 @@ def _drivers(assembly: Assembly) -> list[Json]:
     found: list[Json] = []
     for column, driver in zip(mechanism.driver_columns, mechanism.drivers, strict=True):
         joint = joints[driver.joint]
+        if joint.type is JointType.FREE:  # it has no range
+            continue
         if joint.type is not JointType.BALL:
             found.append({"kind": "plain", "name": driver.name, "column": column, "unit": driver.unit} | _range(assembly, driver, size))
         elif not any(entry.get("joint") == joint.name for entry in found):

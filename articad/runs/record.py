@@ -85,7 +85,7 @@ def record_pictures(run: Run, assembly: Assembly) -> None:
     for name, realised in assembly.realised.items():
         if realised.derived_from is None:
             run.save_views(name, {view: png(image) for view, image in render_part(assembly.parts[name], size=_PICTURE_PIXELS).items()})
-    for joint in dict.fromkeys(driver.joint for driver in assembly.drivers):
+    for joint in assembly.mechanism.driving_joints:
         frames = render_motion(assembly, joint, size=_PICTURE_PIXELS, supersample=1)
         run.save_motion(joint, png(filmstrip(frames)), motion_gif(frames))
 

@@ -148,7 +148,7 @@ def request_of(place: Path, task: Task, subject: Subject) -> tuple[Message, ...]
         different.setdefault(assembly.parts[name].mesh.digest, name)  # type: ignore[union-attr]
     for shape, name in list(different.items())[:PARTS]:
         shown += [f"Part {name}:", part_picture(assembly.parts[name], shape)]
-    joints = list(dict.fromkeys(driver.joint for driver in assembly.drivers))[:MOTIONS]
+    joints = assembly.mechanism.driving_joints[:MOTIONS]
     for joint in joints:
         shown += [f"Keyframes of joint {joint}:", motion_picture(assembly, joint)]
     if not joints:

@@ -111,13 +111,15 @@ def test_a_difference_is_what_integration_needs(seed: int) -> None:
     assert layout.integrate(a[0], step).shape == a.shape
 
 
-def test_freedoms_and_columns_differ_only_for_balls() -> None:
+def test_freedoms_and_columns_differ_only_for_quaternions() -> None:
     layout = Layout(ALL)
-    assert layout.n_columns == layout.n_freedoms + 1
+    assert layout.n_columns == layout.n_freedoms + 2
     ball = layout.columns[BALL.name]
     assert layout.freedom_of(ball.start + 3) == layout.freedoms[BALL.name].start
     after = layout.columns["j7"].start
     assert layout.freedom_of(after + 1) == layout.freedoms["j7"].start + 1
     assert layout.joint("j7").type is JointType.UNIVERSAL
+    free = layout.columns["j8"].start
+    assert [layout.freedom_of(free + at) - layout.freedoms["j8"].start for at in range(7)] == [0, 1, 2, 3, 3, 3, 3]
     with pytest.raises(UnknownJointError):
         layout.joint("none")

@@ -21,13 +21,14 @@ JOINTS = [
     declare.screw("j5", on("p5", 10), on("p6"), lead=4.0, limits="endless", driver=True),
     declare.planar("j6", on("p6", 10), on("p7"), x=(-5.0, 5.0), y=(-6.0, 6.0), angle="endless"),
     declare.universal("j7", on("p7", 10), on("p8"), a=(-1.0, 1.0), b=(-1.5, 1.5)),
+    declare.free("j8", on("p8", 10), on("p9"), rest=SE3.trans(5, 0, 90)),
 ]
 
 
 def test_every_type_is_declared_by_a_function_of_its_name() -> None:
     assert [joint.type for joint in JOINTS] == list(JointType)
-    mechanism = Mechanism([f"p{i}" for i in range(9)], "p0", JOINTS)
-    assert mechanism.mobility == 13
+    mechanism = Mechanism([f"p{i}" for i in range(10)], "p0", JOINTS)
+    assert mechanism.mobility == 19
     assert mechanism.findings().ok
 
 

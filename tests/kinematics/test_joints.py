@@ -45,6 +45,9 @@ def product_of_exponentials(joint_type: JointType, q: np.ndarray, lead: float) -
             factors = [q[0] * e[0], q[1] * e[1], q[2] * e[5]]
         case JointType.UNIVERSAL:
             factors = [q[0] * e[3], q[1] * e[4]]
+        case JointType.FREE:
+            turned = pin.log3(pin.Quaternion(q[6], q[3], q[4], q[5]).matrix())
+            factors = [q[0] * e[0] + q[1] * e[1] + q[2] * e[2], np.concatenate([np.zeros(3), turned])]
         case _:
             factors = [np.concatenate([np.zeros(3), pin.log3(pin.Quaternion(q[3], q[0], q[1], q[2]).matrix())])]
     M = np.eye(4)
@@ -64,7 +67,7 @@ def test_the_neutral_motion_is_the_identity_and_names_units_and_freedoms_fit(joi
     assert joint_type.motion(joint_type.neutral, lead=5.0) == SE3.identity()
     assert len(joint_type.coordinates) == len(joint_type.units)
     assert len(joint_type.freedom_units) == joint_type.freedoms
-    expected = {"fixed": 0, "revolute": 1, "slider": 1, "cylindrical": 2, "ball": 3, "screw": 1, "planar": 3, "universal": 2}
+    expected = {"fixed": 0, "revolute": 1, "slider": 1, "cylindrical": 2, "ball": 3, "screw": 1, "planar": 3, "universal": 2, "free": 6}
     assert joint_type.freedoms == expected[joint_type]
 
 
@@ -126,7 +129,7 @@ def test_a_reversed_ball_keeps_its_cone_and_turns_its_twist_where_aligned(mate: 
     assert ball.reversed().limits == JointLimits(cone=1.0, twist=expected)
 
 
-@pytest.mark.parametrize("joint_type", [JointType.PLANAR, JointType.UNIVERSAL])
+@pytest.mark.parametrize("joint_type", [JointType.PLANAR, JointType.UNIVERSAL, JointType.FREE])
 def test_planar_and_universal_refuse_reversal(joint_type: JointType) -> None:
     joint = random_joint(np.random.default_rng(0), "j", joint_type, "a", "b", Mate.ALIGNED)
     with pytest.raises(KinematicsError, match="E_REVERSE_UNSUPPORTED"):

@@ -141,11 +141,14 @@ def test_the_jacobian_agrees_with_pinocchio(tree: tuple[Mechanism, np.ndarray]) 
         start = compiled.model.joints[joint_id].idx_v
         block = theirs[:, start : start + c.joint.type.freedoms]
         mine = ours[:, mechanism.layout.freedoms[c.joint.name]]
-        # Pinocchio's velocity of ball and planar is in the moving frame; ours is in the parent connector's
+        # Pinocchio's velocity of ball, free and planar joints is in the moving frame; ours is in the parent connector's
         if c.joint.type is JointType.BALL:
             R = c.joint.motion(values[c.joint.name]).rotation
             backwards = c.signs[0] < 0
             block = block @ (-np.eye(3) if backwards else R.T)
+        elif c.joint.type is JointType.FREE:
+            R = c.joint.motion(values[c.joint.name]).rotation
+            block = np.hstack([block[:, :3] @ R.T, block[:, 3:] @ R.T])
         elif c.joint.type is JointType.PLANAR:
             R = SE3.rot_z(values[c.joint.name][2]).rotation[:2, :2]
             block = np.hstack([block[:, :2] @ R.T, block[:, 2:]])
@@ -164,15 +167,16 @@ def test_the_ball_jacobian_is_in_the_parent_connectors_frame() -> None:
 def test_rest_names_and_counts_of_a_tree() -> None:
     rng = np.random.default_rng(1)
     joints = [random_joint(rng, f"j{i}", t, f"p{i}", f"p{i + 1}", Mate.ALIGNED) for i, t in enumerate(JointType)]
-    mechanism = Mechanism([f"p{i}" for i in range(9)], "p0", joints)
-    assert mechanism.nq == len(mechanism.drivers) == len(mechanism.coordinates) == 14
-    assert mechanism.mobility == mechanism.grubler == 13
+    mechanism = Mechanism([f"p{i}" for i in range(10)], "p0", joints)
+    assert mechanism.nq == len(mechanism.drivers) == len(mechanism.coordinates) == 21
+    assert mechanism.mobility == mechanism.grubler == 19
+    assert mechanism.driving_joints == tuple(joint.name for joint in joints if joint.type not in {JointType.FIXED, JointType.FREE})
     assert mechanism.is_tree
     assert len(mechanism.findings()) == 0
     assert mechanism.rest.tolist() == [value for joint in joints for value in joint.rest]
     assert mechanism.configuration(mechanism.rest).values == Configuration.rest(joints).values
     assert mechanism.rest_poses()["p8"] == mechanism.poses(mechanism.rest)[8]
-    assert repr(mechanism) == "Mechanism(9 parts, 8 joints, 0 loops)"
+    assert repr(mechanism) == "Mechanism(10 parts, 9 joints, 0 loops)"
     assert isinstance(mechanism.configuration(mechanism.rest).values, MappingProxyType)
 
 
@@ -190,7 +194,7 @@ def test_a_part_alone_is_a_mechanism() -> None:
         ([1.0, 2.0], "its last axis must have 5 columns: j, ball.qx"),
         (1.0, "has shape ()"),
         ([math.nan, 0, 0, 0, 1], "E_NONFINITE"),
-        ([0, 0, 0, 0, 2.0], "E_QUAT_NORM: ball 'ball'"),
+        ([0, 0, 0, 0, 2.0], "E_QUAT_NORM: joint 'ball'"),
     ],
 )
 def test_wrong_coordinates_are_refused_before_any_arithmetic(q: object, text: str) -> None:

@@ -40,6 +40,11 @@ const rotX = (a) => [1, 0, 0, 0, 0, Math.cos(a), -Math.sin(a), 0, 0, Math.sin(a)
 const rotY = (a) => [Math.cos(a), 0, Math.sin(a), 0, 0, 1, 0, 0, -Math.sin(a), 0, Math.cos(a), 0];
 const FLIP = [1, 0, 0, 0, 0, -1, 0, 0, 0, 0, -1, 0];
 
+// Place among a joint's coordinates of the first of a quaternion's four; -1 where there is none.
+export function quaternionAt(joint) {
+  return { ball: 0, free: 3 }[joint.type] ?? -1;
+}
+
 // J(q) of a joint whose coordinates begin at Q[joint.column].
 export function motion(joint, Q) {
   const i = joint.column;
@@ -51,6 +56,7 @@ export function motion(joint, Q) {
     case "planar": return rotZ(Q[i + 2], Q[i], Q[i + 1], 0);
     case "universal": return multiply(rotX(Q[i]), rotY(Q[i + 1]));
     case "ball": return fromPose([0, 0, 0, Q[i], Q[i + 1], Q[i + 2], Q[i + 3]]);
+    case "free": return fromPose(Q.slice(i, i + 7));
     default: return IDENTITY;
   }
 }
@@ -95,11 +101,12 @@ export class Mechanism {
     this.ground = fromPose(model.ground_pose);
     this.rest = model.rest.slice();
     this.columns = model.coordinates;
-    // freedoms: one for each column, but three for the four of a ball
+    // freedoms: one for each column, but three for the four of a quaternion
     this.freedoms = [];
     for (const joint of this.joints) {
-      if (joint.type === "ball") for (let k = 0; k < 3; k++) this.freedoms.push({ ball: joint.column, axis: k });
-      else for (let k = 0; k < joint.coordinates; k++) this.freedoms.push({ column: joint.column + k });
+      const at = quaternionAt(joint);
+      for (let k = 0; k < (at < 0 ? joint.coordinates : at); k++) this.freedoms.push({ column: joint.column + k });
+      if (at >= 0) for (let k = 0; k < 3; k++) this.freedoms.push({ ball: joint.column + at, axis: k });
     }
     this.scale = this.freedoms.map((f) => (f.column !== undefined && this.columns[f.column].unit === "mm" ? model.length : 1));
   }

@@ -27,9 +27,10 @@ function set(values, { others = "stay" } = {}) {
     if (column.name in values && (!solver.needed || !column.follows)) wanted[index] = values[column.name];
   });
   for (const joint of mechanism.joints) {
-    if (joint.type !== "ball") continue;
-    const turn = wanted.slice(joint.column, joint.column + 4), norm = Math.hypot(...turn);
-    turn.forEach((value, k) => (wanted[joint.column + k] = norm ? value / norm : Number(k === 3)));
+    const at = quaternionAt(joint);
+    if (at < 0) continue;
+    const first = joint.column + at, turn = wanted.slice(first, first + 4), norm = Math.hypot(...turn);
+    turn.forEach((value, k) => (wanted[first + k] = norm ? value / norm : Number(k === 3)));
   }
   const { Q: reached, arrived } = solver.follow(from, wanted);
   Q = reached;
