@@ -104,6 +104,20 @@ def random_configurations(assembly: Assembly, seed: int, count: int) -> NDArray[
     return Configuration.random(assembly.joints, np.random.default_rng(seed), (count,)).columns
 
 
+def walker() -> Assembly:
+    """A base that floats over the ground, with an arm that runs into the base at 90°."""
+    ground, base = (
+        block("ground", (100, 100, 2), top=frame()),
+        block("base", (40, 40, 40), root=frame(), tip=frame(at=(0, 0, 30), z=(0, 1, 0))),
+    )
+    arm = block("arm", (60, 6, 6), root=frame(at=(-25, 0, 0), z=(0, 1, 0)))
+    joints = [
+        declare.free("root", ground["top"], base["root"], rest=SE3.trans(0, 0, 500)),
+        declare.revolute("shoulder", base["tip"], arm["root"], limits=(-0.5, 2.0)),
+    ]
+    return Assembly.from_parts("walker", parts=[ground, base, arm], joints=joints, ground="ground")
+
+
 def geared_pair() -> Assembly:
     """Two wheels and a rack, tied by couplings."""
     base = block("base", (100, 40, 5), a=frame(), b=frame(at=(60, 0, 0)), s=frame(at=(0, 40, 0), z=(1, 0, 0)))

@@ -26,7 +26,7 @@ from articad.interference.relations import Relations
 from articad.kinematics import declare
 from articad.kinematics.joints import Joint, JointType
 from articad.plan.resolve import resolve
-from tests.assemblies import block, four_bar, frame
+from tests.assemblies import block, four_bar, frame, walker
 
 pytestmark = pytest.mark.engines
 
@@ -252,20 +252,6 @@ def test_a_urdf_that_floats_falls_as_the_original(tmp_path: Path) -> None:
         np.testing.assert_allclose(after, before, atol=1e-12)
         np.testing.assert_allclose(start_again, start, atol=1e-12)
         np.testing.assert_allclose(end_again, end, rtol=1e-6, atol=1e-6)
-
-
-def walker() -> Assembly:
-    """A base that floats over the ground, with an arm that runs into the base at 90°."""
-    ground, base = (
-        block("ground", (100, 100, 2), top=frame()),
-        block("base", (40, 40, 40), root=frame(), tip=frame(at=(0, 0, 30), z=(0, 1, 0))),
-    )
-    arm = block("arm", (60, 6, 6), root=frame(at=(-25, 0, 0), z=(0, 1, 0)))
-    joints = [
-        declare.free("root", ground["top"], base["root"], rest=SE3.trans(0, 0, 500)),
-        declare.revolute("shoulder", base["tip"], arm["root"], limits=(-0.5, 2.0)),
-    ]
-    return Assembly.from_parts("walker", parts=[ground, base, arm], joints=joints, ground="ground")
 
 
 def test_a_free_base_is_held_at_rest_by_sweeps_and_certificates_which_say_so() -> None:

@@ -23,7 +23,7 @@ from articad.geometry.shapes import box, sphere
 from articad.kinematics import declare
 from articad.plan.schema import AssemblyPlan
 from articad.report import Documents, report_page
-from tests.assemblies import all_joint_kinds, four_bar, geared_pair
+from tests.assemblies import all_joint_kinds, four_bar, geared_pair, walker
 from tests.moving_bases import excavator, four_bar_on_turntable, gripper_arm
 from tests.report.conftest import Opened
 
@@ -111,7 +111,7 @@ def test_dragging_each_slider_moves_exactly_its_parts_to_the_poses_of_the_assemb
 
 
 @pytest.mark.parametrize(
-    "make", [all_joint_kinds, geared_pair, four_bar, gripper_arm, four_bar_on_turntable, excavator], ids=lambda make: make.__name__
+    "make", [all_joint_kinds, walker, geared_pair, four_bar, gripper_arm, four_bar_on_turntable, excavator], ids=lambda make: make.__name__
 )
 def test_every_kind_of_joint_moves_as_the_assembly_does(open_page: Open, make: Callable[[], Assembly]) -> None:
     assembly = make()
@@ -125,9 +125,10 @@ def test_every_kind_of_joint_moves_as_the_assembly_does(open_page: Open, make: C
             lower, upper = max(free.lower, driver.rest - 3) + 0.01, min(free.upper, driver.rest + 3) - 0.01
             values[driver.name] = float(rng.normal() if driver.unit == "1" else rng.uniform(lower, upper))
         for joint in assembly.joints:
-            if str(joint.type) == "ball":
-                turn = np.array([values[name] for name in joint.column_names])
-                values |= dict(zip(joint.column_names, (turn / np.linalg.norm(turn)).tolist(), strict=True))
+            if joint.type.quaternion is not None:
+                names = joint.column_names[joint.type.quaternion :]
+                turn = np.array([values[name] for name in names])
+                values |= dict(zip(names, (turn / np.linalg.norm(turn)).tolist(), strict=True))
         assert opened("values => articad.set(values)", values)
         q = np.array([values[driver.name] for driver in assembly.drivers])
         assert error_of(opened, assembly, q) < SAME

@@ -1,6 +1,6 @@
 // The page: sliders, tables that move the model, tools. Texts come from the data and are set as text, never as markup.
 import { Vector3 } from "three";
-import { fromPose, IDENTITY, Mechanism, quaternionFromVector, quaternionProduct } from "./kinematics.js";
+import { fromPose, IDENTITY, Mechanism, quaternionAt, quaternionFromVector, quaternionProduct } from "./kinematics.js";
 import { Solver } from "./solver.js";
 import { DIRECTIONS, View } from "./view.js";
 import { save, shapesOf, stl } from "./files.js";
