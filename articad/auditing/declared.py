@@ -228,12 +228,12 @@ def _link(part: Part, kind: str) -> DeclaredLink:
 def _joints(assembly: Assembly) -> Iterator[DeclaredJoint]:
     tied = {a: b for coupling in assembly.mechanism.couplings for a, b in ((coupling.a, coupling.b), (coupling.b, coupling.a))}
     for joint in assembly.joints:
-        names = joint.column_names if joint.type is not JointType.BALL else ()
+        names = joint.column_names if joint.type.quaternion is None else ()
         ends = (joint.parent, joint.child)
         if not names:
-            ball = joint.type is JointType.BALL
-            frame = None if ball else joint.T_parent_connector @ joint.T_child_connector.inverse()
-            yield DeclaredJoint(joint.name, f"joints.{joint.name}", "spherical" if ball else "fixed", *ends, frame)
+            kind = {JointType.BALL: "spherical", JointType.FREE: "floating"}.get(joint.type, "fixed")
+            frame = joint.T_parent_connector @ joint.T_child_connector.inverse() if kind == "fixed" else None
+            yield DeclaredJoint(joint.name, f"joints.{joint.name}", kind, *ends, frame)
         for index, (name, unit) in enumerate(zip(names, joint.type.units, strict=False)):
             kind = "screw" if joint.type is JointType.SCREW else "revolute" if unit == "rad" else "prismatic"
             lower, upper = joint.limits.lower[index], joint.limits.upper[index]
