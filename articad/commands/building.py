@@ -16,16 +16,18 @@ if TYPE_CHECKING:
 
 @command("build", "Build a plan's parts, assemble, check and export them.", argument("plan", metavar="PLAN_DIR"), *BUILD_ARGUMENTS)
 def _build(options: argparse.Namespace, terminal: Terminal) -> Report:
-    from articad.plan.schema import AssemblyPlan
+    from articad.commands.steps import plan_in
     from articad.runs.record import record_assembly, record_certificate, record_checks, record_export, record_page, record_pictures
-    from articad.runs.run import RunRequest, open_or_create
+    from articad.runs.run import RunRequest, open_or_create, require_place
 
-    plan = AssemblyPlan.load(options.plan)
+    plan = plan_in(options.plan)
     folder = Path(options.plan)
     scripts = (folder if folder.is_dir() else folder.parent) / "parts"
     choices = {"task": "build", "kernel": options.kernel or plan.kernel, "parameters": dict(options.parameters)}
+    request = RunRequest(prompt=plan.name, options=choices)
+    require_place(request, options.out)
     assembly = assembled(plan, scripts, options, terminal)
-    with open_or_create(RunRequest(prompt=plan.name, options=choices), options.out) as run, terminal.progress("Finishing") as tell:
+    with open_or_create(request, options.out) as run, terminal.progress("Finishing") as tell:
         run.save_plan(plan.dumps(), 0)
         record_assembly(run, assembly)
         with stage(tell, "checks at rest"):
@@ -51,12 +53,12 @@ def _build(options: argparse.Namespace, terminal: Terminal) -> Report:
 @command("check", "Check a plan, or the plan and the geometry of a finished run.", argument("target", metavar="PLAN_DIR|RUN|FILE"))
 def _check(options: argparse.Namespace, terminal: Terminal) -> Report:
     from articad.commands import summaries
+    from articad.commands.steps import plan_in
     from articad.errors import PlanError
     from articad.plan.check import check_plan
-    from articad.plan.schema import AssemblyPlan
 
     try:
-        plan = AssemblyPlan.load(options.target)
+        plan = plan_in(options.target)
     except PlanError as error:  # what is wrong with a plan is what this command is asked for
         if not error.findings:
             raise

@@ -36,6 +36,24 @@ def assembled(plan: AssemblyPlan, scripts: Path, options: argparse.Namespace, te
         )
 
 
+def plan_in(target: str) -> AssemblyPlan:
+    """Return the plan of a file or folder.
+
+    Raises:
+        PlanError: If it is not of the form; with everything else that is wrong with it, as far as that can be told.
+        ReadError: If it cannot be read.
+    """
+    from articad.errors import PlanError
+    from articad.plan.beyond import further_findings
+    from articad.plan.schema import AssemblyPlan
+
+    try:
+        return AssemblyPlan.load(target)
+    except PlanError as error:
+        findings = further_findings(Path(target), error.findings)
+        raise PlanError("\n".join(map(str, findings.errors)), findings=findings) from None
+
+
 @contextmanager
 def stage(tell: Progress, name: str) -> Iterator[None]:
     """Tell that a step of the program's own begins, and that it is done."""

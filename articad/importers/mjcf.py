@@ -272,7 +272,7 @@ class _Reader:
         kind, kinds = m.jnt_type[index], self.mujoco.mjtJoint
         if kind == kinds.mjJNT_FREE:
             numbers |= {"damping": float(m.dof_damping[at]), "frictionloss": float(m.dof_frictionloss[at])}
-        if kind in {kinds.mjJNT_HINGE, kinds.mjJNT_SLIDE} and numbers["stiffness"]:
+        elif kind != kinds.mjJNT_BALL and numbers["stiffness"]:
             numbers["springref"] = float(m.qpos_spring[m.jnt_qposadr[index]])
         said = {name: repr(value) for name, value in numbers.items() if value}
         if said:

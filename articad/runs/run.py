@@ -184,11 +184,9 @@ class Run:
         path = _new_directory(request.prompt) if out is None else Path(out)
         with _writing(path):
             path.mkdir(parents=True, exist_ok=True)
-            strangers = sorted(entry.name for entry in path.iterdir() if entry.name != _IMAGES and not _TEMPORARY.fullmatch(entry.name))
+            strangers = _strangers(path)
         if strangers:
-            raise RunError.told(
-                path, f"{path} is not empty: it holds {strangers[0]}.", "Name a new directory, or resume the run that is there."
-            )
+            raise _not_empty(path, strangers)
         run = cls(path, request, _locked(path))
         run._sweep()
         described = request.to_json(_version() if version is None else version)
@@ -607,15 +605,59 @@ def open_or_create(request: RunRequest, out: str | Path | None) -> Run:
     Raises:
         RunError: If `out` holds another request's run, or something else.
     """
+    require_place(request, out)
     if out is None or not (Path(out) / REQUEST_FILE).exists():
         return Run.create(request, out=out)
-    run = Run.open(out)
-    if run.request.same_as(request):
-        return run
-    run.close()
-    raise RunError.told(
-        Path(out), f"{out} is a run of another request.", "Name another directory, or repeat the run's own prompt and options."
-    )
+    return Run.open(out)
+
+
+def require_place(request: RunRequest, out: str | Path | None) -> None:
+    """Refuse a directory in which `open_or_create` could not work, before any work is done; nothing is written.
+
+    Raises:
+        RunError: If `out` holds another request's run, or something else.
+    """
+    if out is None:
+        return
+    path = Path(out)
+    if not (path / REQUEST_FILE).exists():
+        with _writing(path):
+            strangers = _strangers(path) if path.exists() else []
+        if strangers:
+            raise _not_empty(path, strangers)
+        return
+    there = _read_request(path)
+    if not there.same_as(request):
+        task, own = there.options.get("task", "generate"), _words(there)
+        repeat = f"repeat the run's own: {own}" if own else f"go on with it by `articad resume {path}`"
+        message = f"{path} is a run of another request: of `articad {task}`{_difference(there, request)}."
+        raise RunError.told(path, message, f"Name another directory with --out, or {repeat}.")
+
+
+def _strangers(path: Path) -> list[str]:
+    """Return what a new run would find in its directory."""
+    return sorted(entry.name for entry in path.iterdir() if entry.name != _IMAGES and not _TEMPORARY.fullmatch(entry.name))
+
+
+def _not_empty(path: Path, strangers: Sequence[str]) -> RunError:
+    return RunError.told(path, f"{path} is not empty: it holds {strangers[0]}.", "Name a new directory, or resume the run that is there.")
+
+
+def _difference(there: RunRequest, wanted: RunRequest) -> str:
+    """Return in which words or options two requests differ."""
+    if there.prompt != wanted.prompt:
+        return f" for {there.prompt[:_SLUG_LENGTH]!r}"
+    keys = [key for key in dict.fromkeys((*there.options, *wanted.options)) if there.options.get(key) != wanted.options.get(key)]
+    return f" with other {', '.join(keys)}" if keys else " with other pictures"
+
+
+def _words(request: RunRequest) -> str:
+    """Return the flags that ask for the same build again; empty for what models made."""
+    if request.options.get("task") != "build":
+        return ""
+    parameters = request.options.get("parameters") or {}
+    flags = [f"--set {name}={value!r}" for name, value in parameters.items()]
+    return " ".join([f"`articad build` of the plan {request.prompt!r}", *(["with", *flags] if flags else ["without --set"])])
 
 
 def differences(first: Run, second: Run) -> Sequence[str]:

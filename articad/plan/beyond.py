@@ -1,0 +1,152 @@
+"""Beyond the form: what else is wrong with a plan whose text is not of the form, so that one look finds everything.
+
+A plan that is not of the form cannot be judged. So a copy of it is mended: a misspelt field gets the name that was meant, a field that does
+not belong is left out, and so is an entry of a list that cannot be read. What is wrong with the copy is wrong with the plan, as far as it does
+not follow from what was left out.
+"""
+
+from __future__ import annotations
+
+import copy
+import json
+from collections.abc import Mapping, Sequence
+from difflib import get_close_matches
+from pathlib import Path
+from typing import Any, Final
+
+from pydantic import ValidationError
+
+from articad.findings import Finding, Findings
+from articad.plan import reading
+from articad.plan.check import check_plan
+from articad.plan.schema import PLAN_FILE, AssemblyPlan
+
+__all__ = ["further_findings"]
+
+MOST_ROUNDS: Final = 200  # of mending: each removes at least one field or entry
+STAND_IN: Final = "no_name"  # for a name that is none
+_OWN: Final = frozenset({
+    *("E_NAME", "E_DUP_NAME", "E_NONFINITE", "E_PARAMETER_BOUNDS", "E_COUNT", "E_DENSITY", "E_FRICTION", "E_AXIS_ZERO", "E_AXIS_PARALLEL"),
+    *("E_LIMITS_MISSING", "E_LIMITS_ORDER", "E_LIMITS_KIND", "W_LIMITS_EQUAL", "W_LIMITS_UNITS", "E_REST_OUTSIDE_LIMITS", "E_LEAD_ZERO"),
+    *("E_FIT", "E_ALLOW", "E_JOINT_SELF"),
+})  # fmt: skip
+"""Codes of findings that depend on the entry alone in which they stand."""
+_NAMING: Final = {
+    "E_EXPRESSION": "parameters",
+    "E_PART_UNKNOWN": "parts",
+    "E_CONNECTOR_UNKNOWN": "parts",
+    "E_MATERIAL_UNKNOWN": "materials",
+    "E_NO_GROUND": "parts",
+}
+"""Codes of findings that name an entry of a list."""
+
+
+def further_findings(path: Path, found: Findings) -> Findings:
+    """Return the findings about a plan's form together with what else is wrong with the plan.
+
+    Args:
+        path: The plan, or the folder that holds it.
+        found: What is wrong with its form.
+    """
+    file = path / PLAN_FILE if path.is_dir() else path
+    try:
+        document = json.loads(file.read_bytes())
+    except (OSError, ValueError, RecursionError):  # then there is nothing but the form to judge
+        return found
+    if not isinstance(document, dict):
+        return found
+    mended = _Mended(document)
+    plan = mended.plan()
+    if plan is None:
+        return found
+    known = {(finding.code, finding.where) for finding in found}
+    return Findings(
+        [*found, *(finding for finding in check_plan(plan) if (finding.code, finding.where) not in known and mended.tells(finding))]
+    )
+
+
+class _Mended:
+    """A copy of a document, mended until it is of the form.
+
+    Attributes:
+        document: The copy.
+        places: Paths of fields that were left out.
+        lists: Names of the lists of which an entry was left out.
+    """
+
+    def __init__(self, document: dict[str, Any]) -> None:
+        self.document = copy.deepcopy(document)
+        self.places: list[str] = []
+        self.lists: set[str] = set()
+
+    def plan(self) -> AssemblyPlan | None:
+        """Return the plan of the mended copy; None where it cannot be mended."""
+        for _ in range(MOST_ROUNDS):
+            try:
+                return AssemblyPlan.model_validate(self.document)
+            except ValidationError as error:
+                detail = error.errors(include_url=False)[0]
+            if not self._mend(detail):
+                return None
+        return None
+
+    def tells(self, finding: Finding) -> bool:
+        """Tell whether a finding about the copy holds of the plan: it does not follow from what was left out."""
+        if STAND_IN in finding.message or any(
+            finding.where == place or finding.where.startswith((f"{place}.", f"{place}[")) for place in self.places
+        ):
+            return False
+        if not self.lists or finding.code in _OWN:
+            return True
+        return finding.code in _NAMING and _NAMING[finding.code] not in self.lists
+
+    def _mend(self, detail: Any) -> bool:
+        """Mend the place of one of pydantic's errors; False where nothing can be left out."""
+        location, owner, raw = reading._resolved(AssemblyPlan, self.document, detail["loc"], detail["type"])  # noqa: SLF001 - the same room
+        if not location:
+            return False
+        holder, key = _value_at(self.document, location[:-1]), location[-1]
+        if detail["type"] == "extra_forbidden" and isinstance(raw, dict) and owner is not None and key in raw:
+            meant = get_close_matches(str(key), [name for name in reading._keys(owner) if name not in raw], n=1)  # noqa: SLF001
+            value = raw.pop(str(key))
+            if meant:
+                raw[meant[0]] = value
+            return True
+        field = None if owner is None else reading._field(owner, str(key))  # noqa: SLF001
+        if isinstance(holder, dict) and holder is raw and key in holder and field is not None and not field.is_required():
+            del holder[key]
+            self.places.append(reading._path(self.document, location))  # noqa: SLF001
+            return True
+        if (
+            detail["type"] == "plan_name"
+            and isinstance(holder, dict)
+            and isinstance(value := holder.get(key), str)
+            and STAND_IN not in value
+        ):
+            holder[key] = f"{STAND_IN}.{STAND_IN}" if "." in value else STAND_IN
+            self.places.append(reading._path(self.document, location))  # noqa: SLF001
+            self.lists.add(str(location[0]))
+            return True
+        return self._leave_out(location)
+
+    def _leave_out(self, location: Sequence[str | int]) -> bool:
+        """Leave out the entry of a list in which a place is."""
+        if len(location) < 2 or not isinstance(location[1], int):
+            return False
+        entries = self.document.get(str(location[0]))
+        if not isinstance(entries, list) or not 0 <= location[1] < len(entries):
+            return False
+        entry = entries.pop(location[1])
+        name = entry.get("name") if isinstance(entry, Mapping) else None
+        self.places.append(f"{location[0]}.{name}" if isinstance(name, str) else str(location[0]))
+        self.lists.add(str(location[0]))
+        return True
+
+
+def _value_at(document: Any, location: Sequence[str | int]) -> Any:
+    for step in location:
+        try:
+            document = document[step]
+        except (KeyError, IndexError, TypeError):
+            return None
+    return document
