@@ -116,6 +116,10 @@ def read(path: str | Path, *, root: str | Path | None = None, fuse: bool = False
         raise ReadError(
             f"{message} {EXPAND}", path=str(path), findings=[Finding(code="E_READ", where=str(path), message=message, hint=EXPAND)]
         )
+    if path.is_dir():
+        message, inside = f"{path} is a folder, and a file is read.", path / "plan.json"
+        hint = f"Name the file: {inside}." if inside.is_file() else "Name a file in it."
+        raise ReadError(message, path=str(path), findings=[Finding(code="E_READ", where=str(path), message=message, hint=hint)])
     found = format_of(path)
     if found is None:
         raise _not_read(path)

@@ -83,7 +83,9 @@ def _generate(options: argparse.Namespace, terminal: Terminal) -> Report:
 def _edit(options: argparse.Namespace, terminal: Terminal) -> Report:
     from articad.agents.edit import edit
     from articad.agents.recollection import StoredDocumentation, StoredMemory
+    from articad.runs.run import Run
 
+    Run.view(options.run)  # before a key is asked for
     budget, sees = asked_model(options, terminal) if options.text.strip() else (None, False)
     with terminal.progress("Editing", note=None if budget is None else lambda: _spent(budget)) as tell:
         run = edit(

@@ -28,7 +28,7 @@ STAND_IN: Final = "no_name"  # for a name that is none
 _OWN: Final = frozenset({
     *("E_NAME", "E_DUP_NAME", "E_NONFINITE", "E_PARAMETER_BOUNDS", "E_COUNT", "E_DENSITY", "E_FRICTION", "E_AXIS_ZERO", "E_AXIS_PARALLEL"),
     *("E_LIMITS_MISSING", "E_LIMITS_ORDER", "E_LIMITS_KIND", "W_LIMITS_EQUAL", "W_LIMITS_UNITS", "E_REST_OUTSIDE_LIMITS", "E_LEAD_ZERO"),
-    *("E_FIT", "E_ALLOW", "E_JOINT_SELF"),
+    *("E_FIT", "E_ALLOW", "E_JOINT_SELF", "E_EFFORT", "E_ENVELOPE_VALUE", "E_AXIS_NOT_ORTHOGONAL"),
 })  # fmt: skip
 """Codes of findings that depend on the entry alone in which they stand."""
 _NAMING: Final = {

@@ -68,6 +68,7 @@ _RECALLED = "recalled"
 _BASE, _EDIT, _REVIEW = "base.json", "edit.json", "review.json"
 _VIEWS, _MOTION, _PAGE = "views", "motion", "report.html"
 _CERTIFICATE, _CERTIFIED = "certificate.json", "certificate"
+_PROBE = ".probe.tmp-00000000"  # a name that a run sweeps away
 _TEMPORARY = re.compile(r"\..+\.tmp-[0-9a-f]{8}$")
 
 _IMAGE_FILE = re.compile(rf"{_IMAGES}/[0-9]{{1,6}}\.(png|jpg|gif|webp)")
@@ -620,11 +621,12 @@ def require_place(request: RunRequest, out: str | Path | None) -> None:
     if out is None:
         return
     path = Path(out)
+    if path.exists() and not path.is_dir():
+        raise RunError.told(path, f"{path} is a file, and a run is a directory.", "Name a new directory with --out.")
     if not (path / REQUEST_FILE).exists():
-        with _writing(path):
-            strangers = _strangers(path) if path.exists() else []
-        if strangers:
+        if path.is_dir() and (strangers := _strangers(path)):
             raise _not_empty(path, strangers)
+        _require_writable(path)
         return
     there = _read_request(path)
     if not there.same_as(request):
@@ -634,13 +636,31 @@ def require_place(request: RunRequest, out: str | Path | None) -> None:
         raise RunError.told(path, message, f"Name another directory with --out, or {repeat}.")
 
 
+def _require_writable(path: Path) -> None:
+    """Make a directory and remove it again, with those above it that are new.
+
+    Raises:
+        WriteError: If it cannot be made.
+    """
+    missing = [folder for folder in (path, *path.parents) if not folder.exists()]
+    try:
+        with _writing(path):
+            path.mkdir(parents=True, exist_ok=True)
+            (path / _PROBE).touch()
+            (path / _PROBE).unlink()
+    finally:
+        for folder in missing:
+            with contextlib.suppress(OSError):
+                folder.rmdir()
+
+
 def _strangers(path: Path) -> list[str]:
     """Return what a new run would find in its directory."""
     return sorted(entry.name for entry in path.iterdir() if entry.name != _IMAGES and not _TEMPORARY.fullmatch(entry.name))
 
 
 def _not_empty(path: Path, strangers: Sequence[str]) -> RunError:
-    return RunError.told(path, f"{path} is not empty: it holds {strangers[0]}.", "Name a new directory, or resume the run that is there.")
+    return RunError.told(path, f"{path} is not empty: it holds {strangers[0]}.", "Name a new directory with --out, or empty this one.")
 
 
 def _difference(there: RunRequest, wanted: RunRequest) -> str:
@@ -710,7 +730,10 @@ def _read_request(path: Path) -> RunRequest:
     run = Run(path, RunRequest(prompt=""), None)
     stored = run._read_json(REQUEST_FILE)  # noqa: SLF001 - the same class, before it is whole
     if stored is None or stored.get("schema") != REQUEST_SCHEMA:
-        raise RunError.told(path, f"{path} is not a run: it has no {REQUEST_FILE} of the form {REQUEST_SCHEMA}.", "Name a run directory.")
+        hint = "Name a run directory."
+        if (path / _PLAN).is_file() and stored is None:
+            hint = f"It is a plan: build it first, by `articad build {path} --out RUN`, and name that run."
+        raise RunError.told(path, f"{path} is not a run: it has no {REQUEST_FILE} of the form {REQUEST_SCHEMA}.", hint)
     try:
         prompt, options, named = stored["prompt"], stored["options"], [(image["file"], image.get("part")) for image in stored["images"]]
         whole = isinstance(prompt, str) and isinstance(options, dict) and all(isinstance(name, str) for name, _ in named)
@@ -750,7 +773,9 @@ def _writing(path: Path) -> Iterator[None]:
         reason = {errno.ENOSPC: "the disk is full", errno.EDQUOT: "the quota is used up", errno.EROFS: "the file system is read-only"}
         why = reason.get(error.errno or 0, error.strerror or str(error))
         message = f"Cannot write {path}: {why}."
-        finding = Finding(code="E_WRITE", where=str(path), message=message, hint="Mend this and resume: finished work is kept.")
+        finding = Finding(
+            code="E_WRITE", where=str(path), message=message, hint="Mend this and give the same command again: finished work is kept."
+        )
         raise WriteError(message, path=str(path), findings=[finding]) from error
 
 

@@ -22,9 +22,6 @@ EXEMPT = {
     "docs/how-to/use-a-model.md": "asks models",
     "docs/reference/cli.md": "a form, not a command",
 }
-HINGE = """<robot name="hinge"><link name="post"><visual><geometry><box size="0.1 0.1 0.1"/></geometry></visual></link>
-<link name="flap"><visual><geometry><box size="0.2 0.02 0.1"/></geometry></visual></link><joint name="turn" type="revolute"><parent link="post"/>
-<child link="flap"/><origin xyz="0.16 0 0"/><axis xyz="0 0 1"/><limit lower="-1" upper="1" effort="1" velocity="1"/></joint></robot>"""
 
 
 def blocks(page: Path) -> list[tuple[str, str, int]]:
@@ -51,7 +48,6 @@ def test_the_command_lines_of_a_page_run(page: Path, tmp_path: Path, monkeypatch
     (work / "examples").mkdir()
     for folder in (ROOT / "examples").iterdir():
         (work / "examples" / folder.name).symlink_to(folder)
-    (work / "examples" / "hinge.urdf").write_text(HINGE)
     monkeypatch.chdir(work)
     monkeypatch.setenv("PATH", f"{tools}:{Path(sys.executable).parent}:{os.environ['PATH']}")
     monkeypatch.setenv("PYTHONPATH", str(ROOT))
