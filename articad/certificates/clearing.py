@@ -188,7 +188,7 @@ class _Search:
 
     def step(self, rows: _Pairs) -> list[_Pairs]:
         """Settle what is settled and cut the rest."""
-        outside = np.array([self.boxes.outside[box] for box in rows.box.tolist()])
+        outside = np.fromiter((self.boxes.outside[box] for box in rows.box.tolist()), dtype=bool, count=len(rows))
         if outside.any():
             rows = rows.of(~outside)
         out: list[_Pairs] = []
@@ -456,12 +456,14 @@ class Ranges:
     Args:
         spread: Empty, of the chain.
         bounds: Of each coordinate.
-        left_out: Whether a box (lower ends, upper ends) lies outside what the joints allow.
+        left_out: Which boxes (lower ends `(k, n)`, upper ends) lie outside what the joints allow, `(k,)`.
     """
 
     price = BOX
 
-    def __init__(self, spread: Spread, bounds: FloatArray, left_out: Callable[[FloatArray, FloatArray], bool] | None = None) -> None:
+    def __init__(
+        self, spread: Spread, bounds: FloatArray, left_out: Callable[[FloatArray, FloatArray], NDArray[np.bool_]] | None = None
+    ) -> None:
         self.spread, self.bounds, self.left_out = spread, bounds, left_out
         self.ends = np.empty((0, len(bounds), 2))
         self.outside, self.columns, self.places, self.halves = list[bool](), list[int](), list[float](), list[tuple[int, int]]()
@@ -472,7 +474,7 @@ class Ranges:
 
     def _add(self, ends: FloatArray) -> IntArray:
         self.ends = np.concatenate([self.ends, ends])
-        self.outside += [self.left_out is not None and self.left_out(*box.T) for box in ends]
+        self.outside += [False] * len(ends) if self.left_out is None else self.left_out(ends[..., 0], ends[..., 1]).tolist()
         self.columns += [-1] * len(ends)
         self.places += [math.nan] * len(ends)
         self.halves += [(-1, -1)] * len(ends)
@@ -501,6 +503,6 @@ class Ranges:
     def contact(self, box: int) -> tuple[float, ...] | None:
         """Return the centre of a box."""
         centre = self.ends[box].mean(axis=1)
-        if self.left_out is not None and self.left_out(centre, centre):
+        if self.left_out is not None and self.left_out(centre[None], centre[None]).any():
             return None
         return tuple(centre.tolist())

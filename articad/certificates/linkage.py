@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 from articad.certificates.clearing import Boxes, CannotCut, Cleared
 from articad.certificates.proof import Proof, Prover, Shrink
 from articad.certificates.spread import Spread
-from articad.certificates.verifier import FLOAT, Checker, Refuted, corners_of, joined
+from articad.certificates.verifier import FLOAT, Checker, Refuted, joined
 from articad.connectors.se3 import SE3
 from articad.interference.motion import Chain, Freedom, Route, scattered
 from articad.interference.overlap import Overlap, overlap
@@ -39,7 +39,7 @@ IntArray = NDArray[np.int64]
 Ends = tuple[tuple[float, float], ...]  # of each driver
 
 SMALLEST_STEP = 1e-6  # of the driver's range, below which it is not followed further
-FIRST_STEP = 1 / 32  # of the way to a bound
+FIRST_STEP = 1 / 8  # of the way to a bound
 SMALLEST_BOX = 1 / 256  # of the ranges of several drivers, below which they are not followed together
 MOST_BOXES = 3000  # of several drivers
 WIDER = 1.2  # than the distance within which there is a solution: that within which there is no other one
@@ -47,6 +47,7 @@ ROOM = (2e-4, 2e-6)  # rad or mm: of a tube beside what it must hold; much of it
 SMALLEST_PIECE = 1e-4  # rad or mm: to which the end of what is free along a driver is found
 LOOKS = 24  # poses looked at beyond contact
 MOST_TURNS = 64  # of a driver of couplings alone, after which what follows is taken never to come back
+REACHED = 1e-6  # rad or mm: by which the middle of a box may miss a pose of the mechanism that is looked at instead
 _CLOSED = 1e-10  # of loops and couplings
 _STILL = 1e-14  # of a Newton step: rounding
 
@@ -59,11 +60,13 @@ class Piece:
         ends: Of each driver [rad or mm].
         numbers: Among all boxes of the way, of those it consists of.
         line: Of each coordinate of the group: its value in the middle, its rate by each driver `(drivers,)`, and how far it is from that.
+        off: By how much the line misses a pose of the mechanism in the middle [rad or mm]; infinite for several boxes.
     """
 
     ends: Ends
     numbers: tuple[int, ...]
     line: Mapping[str, tuple[float, FloatArray, float]]
+    off: float
 
     @property
     def half(self) -> FloatArray:
@@ -153,7 +156,7 @@ class Way:
         """Return between which values each coordinate stays over all that could be followed [rad or mm]."""
         found: dict[str, tuple[float, float]] = {}
         for number in () if self.whole is None else self.whole.numbers:
-            ends, *line = self._found[number][:4]
+            ends, *line, _ = self._found[number]
             middle, slopes, near = joined(np.array([ends]), [tuple(line)])
             far = np.abs(slopes).T @ (np.ptp(np.array(ends), axis=1) / 2) + near
             for name, low, high in zip(self.names, (middle - far).tolist(), (middle + far).tolist(), strict=True):
@@ -174,7 +177,7 @@ class Way:
         share = np.array([(high - low) / (most - least) for (low, high), (least, most) in zip(ends, self.bounds, strict=True)])
         if share.max() < SMALLEST_BOX:
             return None
-        _, _, slopes, _, _ = self._found[beside]
+        slopes = self._found[beside][2]
         reach = np.abs(slopes[:, len(ends) :]).max(axis=1, initial=0.0) * [high - low for low, high in ends]
         at = int(np.argmax(reach)) if reach.any() else int(np.argmax(share))
         return self._parted(ends, at, sum(ends[at]) / 2)
@@ -206,7 +209,8 @@ class Way:
             rows = [self._found[number] for number in numbers]
             middle, slopes, near = joined(np.array([row[0] for row in rows]), [row[1:4] for row in rows])
             named = zip(self.names, zip(middle.tolist(), slopes.T, near.tolist(), strict=True), strict=True)
-            self._pieces[ends] = Piece(ends, numbers, dict(named))
+            off = float(np.abs(rows[0][1] - rows[0][4][0]).max()) if len(rows) == 1 else math.inf
+            self._pieces[ends] = Piece(ends, numbers, dict(named), off)
         return self._pieces[ends]
 
     def _leaves(self, ends: Ends) -> Iterator[int]:
@@ -244,28 +248,25 @@ class Way:
         guess = self.solved(span.mean(axis=1), beside)
         if guess is None:
             return None
-        for room in ROOM:
-            with contextlib.suppress(Refuted):
-                self._checker.join(self._found, self.names, span, guess, self._tube(span, guess, room), beside)
-                self._others.append(beside)
-                self._number[ends] = len(self._found) - 1
-                return self.piece(ends)
+        with contextlib.suppress(Refuted):
+            bounds = self._checker.enclosures(self.names, span[None], guess[None])
+            for room in ROOM:
+                with contextlib.suppress(Refuted):
+                    (row,) = self._checker.held(self.names, bounds, self._tube(bounds, room))
+                    self._checker.join(self._found, self.names, row, beside)
+                    self._others.append(beside)
+                    self._number[ends] = len(self._found) - 1
+                    return self.piece(ends)
         return None
 
-    def _tube(self, ends: FloatArray, guess: FloatArray, room: float) -> FloatArray:
-        """Return distances within which there should be no other solution."""
-        count, half = len(ends), (ends[:, 1] - ends[:, 0]) / 2
-        _, J, share = self._checker.closure(self.names, guess, guess)
-        A, wide, rates = np.linalg.pinv(J[:, count:], rcond=1e-7), np.zeros(len(self.names)), np.eye(count, len(self.names))
-        rates[:, count:] = -(A @ J[:, :count]).T
-        far, off, bend = half @ np.abs(rates), np.zeros(len(A)), np.zeros((len(A), len(A)))
-        for signs in corners_of(count):
-            there, slope, _ = self._checker.closure(self.names, guess + (signs * half) @ rates, guess)
-            off, bend = np.maximum(off, np.abs(A @ there)), np.maximum(bend, np.abs(A @ (slope - J)[:, count:]))
-        third = np.minimum(share @ far, 1.0) ** 3 / 15
-        off, bend = off * 1.25**count + np.abs(A) @ third, bend * 1.25**count + np.abs(A) @ (third[:, None] * share[:, count:])
+    def _tube(self, bounds: tuple[Any, ...], room: float) -> FloatArray:
+        """Return distances from a curve that should contain one solution and no other, `(1, n)`: a fixed point of the checker's bound, widened."""
+        ends, guess, _, _, off, bend, most, share = bounds
+        count, wide = ends.shape[1], np.zeros_like(guess)
         for _ in range(6):
-            wide[count:] = WIDER * (off + room + bend @ wide[count:] + np.abs(A) @ np.minimum(share @ wide, 1.0) ** 2)
+            within = wide[:, count:, None]
+            held = off[..., None] + room + bend @ within + most @ np.minimum(share[..., count:] @ within, 1.0) ** 2
+            wide[:, count:] = WIDER * held[..., 0]
         return wide
 
     def solved(self, values: FloatArray, beside: int) -> FloatArray | None:
@@ -296,8 +297,8 @@ class Way:
         cuts = list(self._cuts.items())
         return {
             f"{key}.ends": np.array([row[0] for row in rows]).reshape(-1, count, 2),
-            f"{key}.values": np.array([row[1] for row in rows]).reshape(-1, len(self.names)),
-            f"{key}.wide": np.array([row[4] for row in rows]).reshape(-1, len(self.names)),
+            f"{key}.values": np.array([row[4][0] for row in rows]).reshape(-1, len(self.names)),
+            f"{key}.wide": np.array([row[4][3] for row in rows]).reshape(-1, len(self.names)),
             f"{key}.other": np.array(self._others, dtype=np.int64),
             f"{key}.boxes": np.array([ends for ends, _ in cuts]).reshape(-1, count, 2),
             f"{key}.cuts": np.array([cut[0] for _, cut in cuts], dtype=np.int64),
@@ -442,8 +443,8 @@ class Steps:
         raise CannotCut
 
     def is_reached(self, box: int) -> bool:
-        """Return whether the middle of a box is a pose of the mechanism: in a box of several pieces loops need not close."""
-        return all(len(piece.numbers) == 1 for piece in self.rows[box][0])
+        """Return whether the middle of a box is a pose of the mechanism: loops need not close there in a wide box, or in several as one."""
+        return all(piece.off <= REACHED for piece in self.rows[box][0])
 
     def contact(self, box: int) -> tuple[float, ...] | None:
         """Return the chain's coordinates at the middle of a box; none if the mechanism does not reach it."""

@@ -310,7 +310,7 @@ class Prover:
     def seen(self, begun: Proof) -> dict[str, Any]:
         """Return where the two overlap beyond what is allowed at one of a few poses all over the range, if they do."""
         places = np.concatenate([[self.bounds[:, 0], self.bounds[:, 1]], scattered(self.chain.freedoms, LOOKS)])
-        places = places[[not self._outside_cone(place, place) for place in places]]
+        places = places[~self._outside_cone(places, places)]
         deepest = max(places.tolist(), key=self.depth, default=None)
         if deepest is None or self.depth(deepest) <= max(self.allowed, begun.overlap.depth):
             return {}
@@ -346,16 +346,16 @@ class Prover:
                 step /= 3
         return at
 
-    def _outside_cone(self, low: FloatArray, high: FloatArray) -> bool:
-        """Return whether a box lies outside the cone of a ball: turns x and y swing it by acos(cos x · cos y)."""
+    def _outside_cone(self, low: FloatArray, high: FloatArray) -> NDArray[np.bool_]:
+        """Return which boxes `(k, n)` lie outside the cone of a ball: turns x and y swing it by acos(cos x · cos y), `(k,)`."""
+        outside = np.zeros(len(low), dtype=bool)
         for mover in self.chain.movers:
             if mover.joint.type is JointType.BALL:
                 swing = list(mover.columns[:2])
-                x, y = np.maximum(np.maximum(low[swing], -high[swing]), 0.0).tolist()
+                least = np.maximum(np.maximum(low[:, swing], -high[:, swing]), 0.0)
                 cone = self.chain.freedoms[swing[0]].upper
-                if max(x, y) < np.pi / 2 and math.cos(x) * math.cos(y) < math.cos(cone) - CONE_ROUNDING:
-                    return True
-        return False
+                outside |= (least.max(axis=1) < np.pi / 2) & (np.cos(least).prod(axis=1) < math.cos(cone) - CONE_ROUNDING)
+        return outside
 
     def claim(self, start: Overlap, vary: Mapping[str, tuple[float, float]], shrink: Shrink, outcome: Cleared) -> Claim:
         """Return what was proven."""

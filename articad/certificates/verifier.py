@@ -33,6 +33,12 @@ STIFF = 1e-4  # rad or mm: about the rest pose of what nothing drives, within wh
 SETTLED = 1e-7  # rad or mm: to which a solution is found at the ends of what repeats itself
 FLOAT = 1e-12  # by which a ratio may be off for whole turns to fit it
 BULK = 2048  # rows looked at together
+TUBES = 16  # pieces of drivers' ranges looked at together
+NODES = np.array([-1.0, -(0.5**0.5), 0.0, 0.5**0.5, 1.0])  # of quartic interpolation: the extrema of the Chebyshev polynomial T4, whose ...
+LEBESGUE, QUINTIC = 1.8, 1 / 960  # ... Lebesgue constant is below 1.8, and whose error is below 1/960 of the largest fifth derivative
+BERNSTEIN = np.linalg.inv(
+    [[math.comb(4, j) * (1 + t) ** j * (1 - t) ** (4 - j) / 16 for j in range(5)] for t in NODES]
+)  # from values to coefficients
 LARGEST = 1e7  # mm or rad: further out, numbers are rounded by more than matters
 TYPES = {"f": "f8", "i": "i8", "u": "i8", "U": "U"}  # of arrays, by kind: short numbers overflow, and complex ones have no order
 SWUNG = -7  # a piece keeps inside a cone about a ball's axis however it swings, and the other one outside
@@ -123,13 +129,32 @@ def plane(axis: Any) -> Any:
     return np.eye(3) - np.outer(axis, axis)
 
 
-def hull(corners: Any, span: tuple[int, int], known: dict[tuple[int, int], Any]) -> Any:
-    """Return points whose hull holds a piece: the corners of a triangle or two, else of a box."""
-    if span not in known:
-        points = corners[slice(*span)].reshape(-1, 3)
-        few = len(points) < len(SIDES)
-        known[span] = np.resize(points, SIDES.shape) if few else np.stack([points.min(0), points.max(0)])[SIDES, [0, 1, 2]]
-    return known[span]
+class Hulls:
+    """Points whose hulls hold pieces of a surface `(n, 3, 3)`: the corners of one or two triangles, or of the box of more."""
+
+    def __init__(self, corners: Any) -> None:
+        self.points, count = corners.reshape(-1, 3), len(corners)
+        self.ends = [np.append(of(corners, axis=1), corners[:1, 0], axis=0) for of in (np.min, np.max)]  # with a row behind the last
+        self.base, self.known, self.found = count + 1, np.empty(0, dtype=np.int64), np.empty((0, 8, 3))
+
+    def of(self, spans: Any) -> Any:
+        """Return the points `(k, 8, 3)` of pieces, each from one triangle of the order up to another `(k, 2)`."""
+        keys = spans @ [self.base, 1]
+        new = np.setdiff1d(keys, self.known)
+        if len(new):
+            starts, stops = np.divmod(new, self.base)
+            box = np.stack(
+                [
+                    of.reduceat(ends, np.stack([starts, stops], axis=1).ravel())[::2]
+                    for of, ends in zip((np.minimum, np.maximum), self.ends, strict=True)
+                ]
+            )
+            found, few = np.moveaxis(box, 0, 1)[:, SIDES, [0, 1, 2]], stops - starts <= 2
+            which = 3 * starts[few, None] + np.arange(8) % (3 * np.maximum(stops - starts, 1)[few, None])
+            found[few] = self.points[which]
+            order = np.argsort(known := np.append(self.known, new))
+            self.known, self.found = known[order], np.append(self.found, found, axis=0)[order]
+        return self.found[np.searchsorted(self.known, keys)]
 
 
 def radii(flat: Any) -> tuple[Any, Any]:
@@ -157,38 +182,50 @@ def apart(u: Any, p: Any, q: Any, moving: Any) -> Any:
     return ahead.min(1) - (p @ u[..., None])[..., 0].max(1)
 
 
-def follow(rows: Any, codes: list[int], directions: Any, A: Any, B: Any, how: Any, clear: float) -> None:
-    """Cut rows of pieces `(a, b, box)` as written, each time all that are left, until each two are known to be further apart than `clear`."""
-    (along, of_a), (moving, halves, kept), known, first = directions, how, (dict[Any, Any](), dict[Any, Any]()), 0
-    level = list(rows)
-    while level:
-        told, first, left, parted = codes[first : first + len(level)], first + len(level), list[Any](), list[Any]()
+def follow(rows: Any, codes: Any, directions: Any, A: Any, B: Any, how: Any, clear: float) -> None:
+    """Cut rows of pieces as written, each time all that are left, until each two are known to be further apart than `clear`.
+
+    A row `(5,)` is a piece of a, from one triangle up to another, a piece of b, and a box.
+    """
+    (along, of_a), (moving, halves, kept), hulls, level = directions, how, (Hulls(A), Hulls(B)), rows
+    while len(level):
+        told, codes = codes[: len(level)], codes[len(level) :]
         need(len(told) == len(level), "rows are missing")
-        for row, code in zip(level, told, strict=True):
-            if CUT <= code < 0:
-                k, (start, end) = code - CUT, row[min(code - CUT, 1)]
-                parts = halves[row[2]] if k == 2 else [(start, (start + end) // 2), ((start + end) // 2, end)]
-                left.extend((*row[:k], part, *row[k + 1 :]) for part in parts)
-            elif code >= 0:
-                parted.append((*row, code))
-            else:
-                need(kept(code, slice(*row[0]), slice(*row[1]), row[2]) > clear, "pieces come too near")
-        for start in range(0, len(parted), BULK):
-            a, b, *others = zip(*parted[start : start + BULK], strict=True)
-            box, code = np.array(others)
+        for (*row, box), code in zip(level[told < CUT].tolist(), told[told < CUT].tolist(), strict=True):
+            need(kept(code, slice(*row[:2]), slice(*row[2:]), box) > clear, "pieces come too near")
+        settled, by = level[told >= 0], told[told >= 0]
+        for start in range(0, len(settled), BULK):
+            some, code = settled[start : start + BULK], by[start : start + BULK]
+            box = some[:, 4]
             u = np.where((code < of_a)[:, None], along[code], (moving[0][box] @ along[code][..., None])[..., 0])
-            p, q = np.array([hull(A, span, known[0]) for span in a]), np.array([hull(B, span, known[1]) for span in b])
+            p, q = hulls[0].of(some[:, :2]), hulls[1].of(some[:, 2:4])
             for k in np.flatnonzero(~(apart(u, p, q, [part[box] for part in moving]) > clear)).tolist():
-                one, x, y = slice(k, k + 1), slice(*a[k]), slice(*b[k])  # all corners tell more than those of the box
+                one, x, y = slice(k, k + 1), slice(*some[k, :2]), slice(*some[k, 2:4])  # all corners tell more than those of the box
                 gap = apart(u[one], A[x].reshape(1, -1, 3), B[y].reshape(1, -1, 3), [part[box[one]] for part in moving])
                 need(gap[0] > clear, "pieces come too near")
-        level = left
+        is_cut = (told >= CUT) & (told < 0)
+        kind, level = np.repeat(told[is_cut], 2), np.repeat(level[is_cut], 2, axis=0)
+        second = np.arange(len(level)) % 2
+        for column, code in ((0, CUT), (2, CUT + 1)):
+            middle = (level[:, column] + level[:, column + 1]) // 2
+            for end in (0, 1):
+                which = (kind == code) & (second != end)
+                level[which, column + end] = middle[which]
+        which = kind == CUT + 2
+        level[which, 4] = halves[level[which, 4], second[which]]
+        need((level >= 0).all(), "a box is not halved")
 
 
 def cross(a: Any, b: Any) -> Any:
-    """Return the cross product of two vectors, without the time that NumPy takes for many."""
-    (x, y, z), (u, v, w) = a.tolist(), b.tolist()
-    return np.array([y * w - z * v, z * u - x * w, x * v - y * u])
+    """Return the cross products of vectors `(..., 3)`."""
+    return a[..., [1, 2, 0]] * b[..., [2, 0, 1]] - a[..., [2, 0, 1]] * b[..., [1, 2, 0]]
+
+
+def spins(axes: Any) -> Any:
+    """Return 4 x 4 matrices K with K @ (p, 1) = (axis x p, 0)."""
+    found = np.zeros((*axes.shape[:-1], 4, 4))
+    found[..., :3, :3] = np.cross(axes[..., None, :], np.eye(3)).swapaxes(-1, -2)
+    return found
 
 
 def framed(parent: Any, child: Any) -> Any:
@@ -236,9 +273,16 @@ def joined(ends: Any, rows: list[Any]) -> tuple[Any, Any, Any]:
     return middle + (low + high) / 2, np.array(slopes), (high - low) / 2 + ROUNDING**2
 
 
-def corners_of(count: int, signs: tuple[int, ...] = (-1, 1)) -> Any:
-    """Return all combinations of signs, (signs^count, count)."""
-    return np.array(list(itertools.product(signs, repeat=count)), dtype=float)
+def corners_of(count: int, places: Any = (-1, 1)) -> Any:
+    """Return all combinations of places on each of so many axes, `(places^count, count)`."""
+    return np.array(list(itertools.product(places, repeat=count)), dtype=float)
+
+
+def on_path(row: Any, at: Any) -> Any:
+    """Return the centre of a piece's tube at values of the drivers `(drivers,)`: linear and quadratic terms about the middle."""
+    ends, _, rates, _, (guess, curve, *_) = row
+    step = at - ends.mean(1)
+    return guess + step @ rates + step @ np.tensordot(step, curve, 1) / 2
 
 
 def is_outside(ball: dict[str, Any], box: dict[str, tuple[float, float]]) -> bool:
@@ -292,9 +336,10 @@ class Checker:
             name: (np.array(f["turn"]), np.array(f["slide"]), any(f["turn"]), any(f["slide"])) for name, f in self.freedoms.items()
         }
         self.shells = functools.cache(lambda name: shells(self.meshes[name]["vertices"], self.meshes[name]["triangles"]))
-        self.lines, self.rows = dict[Any, Any](), dict[Any, Any]()
+        self.lines, self.rows, self.ways = dict[Any, Any](), dict[Any, Any](), dict[Any, Any]()
         self.linked = [f["name"] for name in certificate["linkage"] for f in self.joints[name]["freedoms"]]
-        self.loops = [[*self.way(j["parent"], j["child"]), (j, False)] for j in self.joints.values() if j["loop"]]
+        ways = ([*self.way(j["parent"], j["child"]), (j, False)] for j in self.joints.values() if j["loop"])
+        self.loops = [(way, self.around(way)) for way in ways]
         self.groups = self.grouped(certificate["mechanism"]["couplings"])
 
     def check(self) -> None:
@@ -368,7 +413,7 @@ class Checker:
             turn, slide, ends = (np.array([f[key] for f in ball["freedoms"]]) for key in ("turn", "slide", "range"))
             is_ball = np.array_equal(turn, np.eye(3)) and not slide.any() and (np.abs(ends).max(1) <= [np.pi, np.pi / 2, LARGEST]).all()
             need(is_ball and 0 <= ball["cone"] <= np.pi, "what has a cone is no ball")  # turns about x, y and z
-        tied = {joint["name"] for way in self.loops for joint, _ in way}
+        tied = {joint["name"] for way, _ in self.loops for joint, _ in way}
         tied |= {j["name"] for j in joints for f in j["freedoms"] for c in couplings if f["name"] in (c["a"], c["b"])}
         need(self.certificate["linkage"] == sorted(tied), "what is linked is said to move by itself, or the other way round")
         self.begin(self.linked, 0)  # which also looks at loops in which nothing moves
@@ -388,99 +433,183 @@ class Checker:
     def grouped(self, couplings: Any) -> list[list[str]]:
         """Return the coordinates that loops and couplings tie, those that move together in one list: a coupling ties two, not two joints."""
         found: list[set[str]] = []
-        ties = [{f["name"] for joint, _ in way for f in joint["freedoms"]} for way in self.loops]
+        ties = [{f["name"] for joint, _ in way for f in joint["freedoms"]} for way, _ in self.loops]
         for tie in [*ties, *({c["a"], c["b"]} for c in couplings), *({name} for name in self.linked)]:
             apart = [group for group in found if not group & tie]
             found = [*apart, tie.union(*(group for group in found if group & tie))]
         return [[name for name in self.linked if name in group] for group in found if group]
 
-    def place(self, way: list[Any], values: dict[str, float]) -> tuple[Any, dict[str, Any]]:
-        """Return T_a_b, and of each freedom on the way its axis and its speed at a's origin, as a sees them."""
-        T, steps = np.eye(4), {}
+    def steps_on(self, way: list[Any]) -> tuple[list[str], Any, Any, Any, Any]:
+        """Return the freedoms on a way, their motions (signed spins and slides), the frames that stand before each, and the last one."""
+        key = tuple((joint["name"], forward) for joint, forward in way)
+        if key not in self.ways:
+            names, moves, frames, still = list[str](), list[Any](), list[Any](), np.eye(4)
+            for joint, forward in way:
+                sign, (before, after) = (1, self.frames[joint["name"]][0]) if forward else (-1, self.frames[joint["name"]][1])
+                still = still @ before
+                for f in joint["freedoms"][::sign]:
+                    names, moves, frames = (
+                        [*names, f["name"]],
+                        [*moves, [sign * part for part in self.turns[f["name"]][:2]]],
+                        [*frames, still],
+                    )
+                    still = np.eye(4)
+                still = still @ after
+            turns, slides = np.moveaxis(np.array(moves).reshape(-1, 2, 3), 1, 0)
+            self.ways[key] = names, turns, slides, np.array([*frames, still]), spins(turns)
+        return self.ways[key]
+
+    def place(self, way: list[Any], values: Any) -> tuple[Any, dict[str, Any]]:
+        """Return T_a_b, and of each freedom on the way its axis and its speed at a's origin, as a sees them.
+
+        Values are numbers, or arrays of one shape `(...)` for many poses at once: T is (..., 4, 4), axes and speeds are (..., 3).
+        """
+        T, names, axes, speeds = self.placed(way, values)
+        return T, dict(zip(names, zip(axes, speeds, strict=True), strict=True))
+
+    def placed(self, way: list[Any], values: Any) -> tuple[Any, list[str], Any, Any]:
+        """Return the same with axes and speeds as arrays `(freedoms, ..., 3)`."""
+        names, turns, slides, frames, spin = self.steps_on(way)
+        if not names:
+            return frames[0], names, np.empty((0, 3)), np.empty((0, 3))
+        angles = np.stack(np.broadcast_arrays(*(values[name] for name in names)))
+        wide = (len(names), *(1,) * (angles.ndim - 1))
+        K, a, slide = spin.reshape(*wide, 4, 4), angles[..., None, None], np.zeros((*angles.shape, 4, 4))
+        slide[..., :3, 3] = slides.reshape(*wide, 3) * angles[..., None]
+        motions = np.eye(4) + np.sin(a) * K + (1 - np.cos(a)) * (K @ K) + slide  # Rodrigues; no joint turns and slides but along its axis
+        motions, at = motions @ frames[1:].reshape(*wide, 4, 4), [np.broadcast_to(frames[0], (*angles.shape[1:], 4, 4))]
+        for motion in motions:
+            at.append(at[-1] @ motion)
+        before = np.array(at[:-1])
+        R, o = before[..., :3, :3], before[..., :3, 3]
+        axes, along = ((R @ part.reshape(*wide, 3, 1))[..., 0] for part in (turns, slides))
+        return at[-1], names, axes, along + cross(o, axes)
+
+    def around(self, way: list[Any]) -> tuple[Any, float]:
+        """Return the first corner of a loop, and how long the loop is: the sum of distances between joints along its parts."""
+        ends = []
         for joint, forward in way:
-            sign, (before, after) = (1, self.frames[joint["name"]][0]) if forward else (-1, self.frames[joint["name"]][1])
-            T = T @ before
-            for f in joint["freedoms"][::sign]:
-                turn, slide, is_turn, is_slide = self.turns[f["name"]]
-                axis, angle, motion = sign * T[:3, :3] @ turn, sign * values[f["name"]], np.eye(4)
-                steps[f["name"]] = axis, sign * T[:3, :3] @ slide + cross(T[:3, 3], axis)
-                if is_turn:
-                    K = np.array([[0.0, -turn[2], turn[1]], [turn[2], 0.0, -turn[0]], [-turn[1], turn[0], 0.0]])
-                    motion[:3, :3] += math.sin(angle) * K + (1 - math.cos(angle)) * K @ K  # Rodrigues
-                if is_slide:
-                    motion[:3, 3] = slide * angle
-                T = T @ motion
-            T = T @ after
-        return T, steps
+            ends += [joint[f"{side}_frame"] for side in (("parent", "child") if forward else ("child", "parent"))]
+        corners = [[row[3] for row in frame[:3]] for frame in ends]
+        return np.array(corners[0]), sum(
+            math.dist(far, near) for far, near in zip(corners[1::2], [*corners[2::2], corners[0]], strict=True)
+        )
 
     def closure(self, names: list[str], values: Any, about: Any) -> tuple[Any, Any, Any]:
-        """Return residuals of loops and couplings, their Jacobian, and shares s: |r''| <= (s · change)², and the third is below its cube.
+        """Return residuals r of loops and couplings, their Jacobian, and shares s: the k-th derivative of r is at most (s · change)^k, k > 1.
 
-        Those in which none of the names takes part are left out. Lengths are in levers: no turn carries what is round a loop by more
-        than one while no slide is further from 0 than 1 more than twice what it is `about`.
+        Values are (..., n); r is (..., m), the Jacobian (..., m, n). Constraints in which none of the names takes part are left out.
+        A loop R, t leaves its gap at the first corner, and the vector of (R - R')/2, whose derivative for a turn w is (tr R - R) w / 2.
+        Lengths are divided by a lever: no turn carries what is round a loop by more than one lever while no slide is further from 0
+        than 1 more than twice what it is `about` (..., n).
         """
-        known, r, J, shares = {**self.rest, **dict(zip(names, values.tolist(), strict=True))}, [], [], []
-        size, mine = {**self.rest, **dict(zip(names, about.tolist(), strict=True))}, {*names}
-        for way in self.loops:
-            moving = {f["name"] for joint, _ in way for f in joint["freedoms"]}
-            if moving and not moving & mine:
+        batch, n = values.shape[:-1], len(names)
+        known, size = {**self.rest, **dict(zip(names, np.moveaxis(values, -1, 0), strict=True))}, np.moveaxis(np.abs(about), -1, 0)
+        column = {name: at for at, name in enumerate(names)}
+        r, J, shares = [np.zeros((*batch, 0))], [np.zeros((*batch, 0, n))], [np.zeros((*about.shape[:-1], 0, n))]
+        for way, (start, length) in self.loops:
+            moving = [f["name"] for joint, _ in way for f in joint["freedoms"]]
+            mine = [name for name in moving if name in column]
+            if moving and not mine:
                 continue
-            (T, steps), ends = self.place(way, known), []
-            need(np.abs(T[:3, :3] - np.eye(3)).max() < HALF, "a loop is not closed")  # half a turn leaves no residual either
-            for joint, forward in way:
-                ends += [joint[f"{side}_frame"] for side in (("parent", "child") if forward else ("child", "parent"))]
-            ends = [[row[3] for row in frame[:3]] for frame in ends]
-            lever: Any = sum(math.dist(far, near) for far, near in zip(ends[1::2], [*ends[2::2], ends[0]], strict=True))
-            lever += sum(2 * math.hypot(*self.freedoms[name]["slide"]) * (1 + abs(size[name])) for name in steps)
-            lever, start = lever or 1.0, np.array(ends[0])
-            there = T[:3, :3] @ start + T[:3, 3]
-            r += [*(there - start) / lever, *((T[[2, 0, 1], [1, 2, 0]] - T[[1, 2, 0], [2, 0, 1]]) / 2)]
-            columns, share = np.zeros((6, len(names))), np.zeros(len(names))
-            for at, name in enumerate(names):
-                if name in steps:
-                    w, v = steps[name]
-                    columns[:3, at], columns[3:, at] = (v + cross(w, there)) / lever, w
-                    share[at] = 1.0 if self.turns[name][2] else 1 / lever
-            J += columns.tolist()
-            shares += [share] * 6
+            T, on_way, axes, speeds = self.placed(way, known)
+            R = T[..., :3, :3]
+            need(np.abs(R - np.eye(3)).max() < HALF, "a loop is not closed")  # half a turn leaves no residual either
+            distances = [math.hypot(*self.freedoms[name]["slide"]) for name in moving]
+            far = [1 + (size[column[name]] if name in column else abs(self.rest[name])) for name in moving]
+            lever = np.broadcast_to(length + sum(2 * slide * reach for slide, reach in zip(distances, far, strict=True)), about.shape[:-1])
+            lever = np.where(lever > 0, lever, 1.0)
+            there = R @ start + T[..., :3, 3]
+            gap = (T[..., [2, 0, 1], [1, 2, 0]] - T[..., [1, 2, 0], [2, 0, 1]]) / 2
+            r.append(np.broadcast_to(np.concatenate([(there - start) / lever[..., None], gap], axis=-1), (*batch, 6)))
+            block, share, at = np.zeros((*batch, 6, n)), np.zeros((*about.shape[:-1], 6, n)), [column[name] for name in mine]
+            if mine:
+                moved = [on_way.index(name) for name in mine]
+                w, v = np.moveaxis(axes[moved], 0, -2), np.moveaxis(speeds[moved], 0, -2)
+                turn = (np.trace(R, axis1=-2, axis2=-1)[..., None, None] * np.eye(3) - R) / 2
+                block[..., :3, at] = (v + cross(w, there[..., None, :])).swapaxes(-1, -2) / lever[..., None, None]
+                block[..., 3:, at] = turn @ w.swapaxes(-1, -2)
+                share[..., at] = np.where([self.turns[name][2] for name in mine], 1.0, 1 / lever[..., None])[..., None, :]
+            J.append(block)
+            shares.append(share)
         for c in self.certificate["mechanism"]["couplings"]:
-            if {c["a"], c["b"]} & mine:
-                r.append(known[c["b"]] - c["ratio"] * known[c["a"]] - c["offset"])
-                J.append([float(name == c["b"]) - c["ratio"] * (name == c["a"]) for name in names])
-                shares.append(np.zeros(len(names)))
-        return np.array(r), np.array(J).reshape(len(r), len(names)), np.array(shares).reshape(len(r), len(names))
+            if c["a"] in column or c["b"] in column:
+                r.append(np.broadcast_to(known[c["b"]] - c["ratio"] * known[c["a"]] - c["offset"], batch)[..., None])
+                row = np.array([float(name == c["b"]) - c["ratio"] * (name == c["a"]) for name in names])
+                J.append(np.broadcast_to(row, (*batch, 1, n)))
+                shares.append(np.zeros((*about.shape[:-1], 1, n)))
+        return np.concatenate(r, axis=-1), np.concatenate(J, axis=-2), np.concatenate(shares, axis=-2)
 
-    def piece(self, names: list[str], ends: Any, guess: Any, wide: Any) -> tuple[Any, Any]:
-        """Return rates `(drivers, n)`, and distances from the line that they draw within which is a solution; within `wide` is no other one.
+    def enclosures(self, names: list[str], ends: Any, guess: Any) -> tuple[Any, ...]:
+        """Bound, for pieces of drivers' ranges `(k, drivers, 2)`, how a Newton map moves what is near a curve through a guess `(k, n)`.
 
-        `ends (drivers, 2)` of the first of the names, which drive. As soon as x - A r(x) takes what is within `wide` to what is nearer,
-        it also shrinks distances: Brouwer and Banach. Along each driver A r and A J are within 1/15 of their third derivative of the
-        parabola through three points, which is within 5/4 of them; so over several drivers of what is drawn through the grid of these.
+        The first of the names drive: t from -1 to 1 for each. What follows is near x(t) = guess + S t + t'Qt/2. The map of a deviation d is
+        d - A(t) r(x(t) + d), with A(t) = (1 - sum t_k L_k) A, A the inverse of the Jacobian in the middle, and L_k its relative rate. Both
+        A(t) r and A(t) J - 1 are interpolated on a grid of `NODES`; the largest Bernstein coefficient bounds a polynomial. The error of an
+        interpolation is `QUINTIC` of the fifth derivative; along t_k, derivatives of r(x(t)) are below those of exp(v t + a t^2/2).
+
+        Returns S `(k, drivers, n)`; Q `(k, drivers², n)`; bounds of A r `(k, n)`, of |A J - 1| `(k, n, n)`, and of |A| `(k, n, m)`; shares.
         """
-        count, half = len(ends), (ends[:, 1] - ends[:, 0]) / 2
+        count, half = ends.shape[1], np.ptp(ends, axis=2) / 2
         r, J, share = self.closure(names, guess, guess)
-        A, rates = np.linalg.pinv(J[:, count:], rcond=1e-7), np.eye(count, len(names))
-        rates[:, count:], B = -(A @ J[:, :count]).T, np.abs(A)
-        fits = np.array_equal(guess[:count], ends.mean(1)) and np.abs([*r, *(J @ rates.T).ravel()]).max(initial=0.0) < (
+        A, S = np.linalg.pinv(J[..., count:], rcond=1e-7), np.zeros((*guess.shape[:1], count, len(names)))
+        S[..., :count], S[..., count:] = np.eye(count), -(A @ J[..., :count]).swapaxes(1, 2)
+        few = (np.abs(A @ J[..., count:] - np.eye(len(names) - count)).sum(2) < ROUNDING).all(1)
+        fits = few & (guess[:, :count] == ends.mean(2)).all(1)
+        fits &= np.abs(np.concatenate([r, (J @ S.swapaxes(1, 2)).reshape(len(r), -1)], axis=1)).max(1, initial=0.0) < (
             ROUNDING if count else REST
         )
-        need(fits, f"{', '.join(names[:count])} cannot be at {guess[:count].round(9).tolist()}, or not alone")
-        far, near, off, bend = half @ np.abs(rates), wide, 0.0, 0.0
-        for signs in corners_of(count, (-1, 0, 1)):
-            there, slope, _ = self.closure(names, guess + (signs * half) @ rates, guess)
-            off, bend = np.maximum(off, np.abs(A @ there)), np.maximum(bend, np.abs(A @ (slope - J)[:, count:]))
-        off, bend = off * 1.25**count + ROUNDING, bend * 1.25**count
+        need(fits.all(), f"{', '.join(names[:count])} cannot be at {guess[~fits][:1, :count].round(9).tolist()}, or not alone")
+        S, Q = S * half[..., None], np.zeros((len(guess), count**2, len(names)))
+
+        def powers(t: Any) -> Any:  # t_k t_l / 2
+            return (t[:, :, None] * t[:, None]).reshape(len(t), -1) / 2
+
+        t = corners_of(count, (-1, 0, 1))
+        fit = np.linalg.pinv(np.concatenate([np.ones((len(t), 1)), t, powers(t)], axis=1))[1 + count :]
+        Q[..., count:] = -fit @ self.closure(names, guess[:, None] + t @ S, guess[:, None])[0] @ A.swapaxes(1, 2)
+        t = corners_of(count, NODES)
+        r, J, _ = self.closure(names, guess[:, None] + t @ S + powers(t) @ Q, guess[:, None])
+        L = A[:, None] @ np.tensordot(np.linalg.pinv(t), J[..., count:], (1, 1)).swapaxes(0, 1)
+        rates = L @ A[:, None]
+        at = A[:, None] - np.tensordot(t, rates, (1, 1)).swapaxes(0, 1)
+        off, bend, most = (at @ r[..., None])[..., 0], at @ J[..., count:] - np.eye(len(names) - count), np.abs(at).max(1)
+        bernstein = functools.reduce(np.kron, [BERNSTEIN] * count, np.eye(1))
+        off, bend = (np.abs(np.tensordot(bernstein, part, (1, 1))).max(0) for part in (off, bend))
         for k in range(count):
-            third = (share @ (np.abs(rates[k]) * half[k])) ** 3 * 1.25**k / 15
-            off, bend = off + B @ third, bend + B @ (third[:, None] * share[:, count:])
-        exact = (np.abs(A @ J[:, count:] - np.eye(len(names) - count)).sum(1) < ROUNDING).all()
-        bends = share.any(0)  # what no loop carries is in couplings alone, which are exact
-        holds = exact and (far + wide <= 1 + np.abs(guess))[bends].all() and (share @ (far + wide) < 1).all()
+            v, a = (
+                share @ part[..., None]
+                for part in (np.abs(S[:, k]) + np.abs(Q[:, k * count : (k + 1) * count]).sum(1), np.abs(Q[:, k * (count + 1)]))
+            )
+            fifth, fourth = (v**5 + 10 * v**3 * a + 15 * v * a**2).swapaxes(1, 2), (v**4 + 6 * v**2 * a + 3 * a**2).swapaxes(1, 2)
+            rest = (most * fifth + 5 * np.abs(rates[:, k]) * fourth) * QUINTIC * LEBESGUE**k
+            off, bend = off + rest.sum(2), bend + rest @ share[..., count:]
+        return ends, guess, S, Q, off + ROUNDING, bend, most, share
+
+    def held(self, names: list[str], bounds: tuple[Any, ...], wide: Any) -> list[Any]:
+        """Return pieces with the distances from their curves within which is a solution; within `wide` `(k, n)` there is no other one.
+
+        As soon as the Newton map takes what is within `wide` to what is nearer, it also shrinks distances: Brouwer and Banach. A piece
+        is its ends; value, rates and distance of a line; and of its tube the guess, the curve, the distance, and `wide`.
+        """
+        ends, guess, S, Q, off, bend, most, share = bounds
+        count, half, far = ends.shape[1], np.ptp(ends, axis=2) / 2, np.abs(S).sum(1) + np.abs(Q).sum(1) / 2
+        bends, near = share.any(1), wide.copy()  # what no loop carries is in couplings alone, which are exact
+        near[:, :count] = 0.0
+        holds = (wide >= 0).all(1) & ((far + wide <= 1 + np.abs(guess)) | ~bends).all(1) & (share @ (far + wide)[..., None] < 1).all((1, 2))
         for _ in range(4):
-            closer = np.append(np.zeros(count), off + bend @ near[count:] + B @ (share @ near) ** 2)
-            need(holds and (closer <= near).all(), f"{', '.join(names[:count])} cannot be followed over {np.round(ends, 9).tolist()}")
-            near = closer
-        return rates, near
+            close = near[:, count:, None]
+            closer = (off[..., None] + bend @ close + most @ (share[..., count:] @ close) ** 2)[..., 0]
+            good = holds & (closer <= near[:, count:]).all(1)
+            need(good.all(), f"{', '.join(names[:count])} cannot be followed over {ends[~good][:1].round(9).tolist()}")
+            near[:, count:] = closer
+        square = Q.reshape(len(Q), count, count, len(names))
+        bow = np.abs(square).sum((1, 2)) / 2 - np.abs(np.diagonal(square, 0, 1, 2)).sum(-1) / 4  # of t'Qt/2 beside the mean of its ends
+        half = np.where(half > 0, half, 1.0)
+        value, rates = guess + np.diagonal(square, 0, 1, 2).sum(-1) / 4, S / half[..., None]
+        curve = square / (half[:, :, None] * half[:, None])[..., None]
+        tubes = zip(guess, curve, near, wide, strict=True)
+        return list(zip(ends, value, rates, near + bow, tubes, strict=True))
 
     def followers(self, drivers: Any) -> list[str]:
         """Return drivers of one group and all that is linked with them, but for its other drivers, which stand."""
@@ -489,19 +618,18 @@ class Checker:
 
     def is_rigid(self, group: list[str]) -> bool:
         """Return whether coordinates that nothing drives cannot move: near rest, there is no other solution."""
-        rest, wide = np.array([self.rest[name] for name in group]), np.full(len(group), STIFF)
+        rest, wide = np.array([[self.rest[name] for name in group]]), np.full((1, len(group)), STIFF)
         try:
-            self.piece(group, np.empty((0, 2)), rest, wide)
+            self.held(group, self.enclosures(group, np.empty((1, 0, 2)), rest), wide)
         except Refuted:
             return False
         return True
 
-    def join(self, found: list[Any], names: list[str], ends: Any, guess: Any, wide: Any, other: int) -> None:
+    def join(self, found: list[Any], names: list[str], row: Any, other: int) -> None:
         """Add a piece of drivers' ranges to others if it holds the solution of one that is beside or around it, or at rest."""
-        rates, near = self.piece(names, ends, guess, wide)
-        span, there, slopes, close, apart = found[other]
+        (ends, *_, (_, _, near, wide)), (span, *_, (_, _, close, apart)) = row, found[other]
         at = np.clip(ends.mean(1), *span.T)
-        gap = np.abs(guess + (at - ends.mean(1)) @ rates - there - (at - span.mean(1)) @ slopes)
+        gap = np.abs(on_path(row, at) - on_path(found[other], at)) * (np.arange(len(names)) >= len(ends))
         same = (gap + near <= apart).all() or (gap + close <= wide).all()  # what one holds is the only solution that the other has
         need(
             same and (ends[:, 0] <= at).all() and (at <= ends[:, 1]).all(),
@@ -509,23 +637,28 @@ class Checker:
         )
         for name, (low, high) in zip(names[: len(ends)], ends, strict=True):
             need(not low < self.rest[name] < high, f"{name} is on both sides of rest")  # which may be a dead point
-        found.append((ends, guess, rates, near, wide))
+        found.append(row)
 
     def begin(self, names: list[str], count: int) -> list[Any]:
         """Return the rest pose as a piece, about which a solution is no further than `REST`; the first of the names drive."""
         at, still = np.array([self.rest[name] for name in names]), np.zeros((count, len(names)))
         need(np.abs(self.closure(names, at, at)[0]).max(initial=0.0) < REST, "a loop or coupling is open at rest")
-        return [(np.stack([at[:count]] * 2, axis=1), at, still, REST * (np.arange(len(names)) >= count), np.zeros(len(names)))]
+        near, nothing = REST * (np.arange(len(names)) >= count), np.zeros(len(names))
+        return [(np.stack([at[:count]] * 2, axis=1), at, still, near, (at, np.zeros((count, *still.shape)), near, nothing))]
 
     def line(self, drivers: tuple[str, ...]) -> Any:
         """Return pieces of drivers' ranges, all on the branch of the rest pose, and how ranges are parted into them; by their ends."""
         if drivers not in self.lines:
             names, key = self.followers(drivers), "+".join(drivers)
             found = self.begin(names, len(drivers))
-            ends, *others = (self.proof[f"{key}.{what}"] for what in ("ends", "values", "wide", "other"))
-            for row in zip(ends.reshape(-1, len(drivers), 2), *others, strict=True):
-                self.join(found, names, *row)
-            pieces = {boxed(ends): row for ends, *row in found[1:]}
+            ends, values, wide, others = (self.proof[f"{key}.{what}"] for what in ("ends", "values", "wide", "other"))
+            need(len(ends) == len(values) == len(wide) == len(others), "a piece of a driver's range is left out")
+            for start in range(0, len(ends), TUBES):
+                some = slice(start, start + TUBES)
+                bounds = self.enclosures(names, ends[some].reshape(-1, len(drivers), 2), values[some])
+                for row, other in zip(self.held(names, bounds, wide[some]), others[some], strict=True):
+                    self.join(found, names, row, other)
+            pieces = {boxed(row[0]): row for row in found[1:]}
             boxes, cuts, places = (self.proof.get(f"{key}.{what}", np.empty(0)) for what in ("boxes", "cuts", "at"))
             parted = zip(map(boxed, boxes.reshape(-1, len(drivers), 2)), zip(cuts.tolist(), places.tolist(), strict=True), strict=True)
             self.lines[drivers] = pieces, dict(parted)
@@ -545,7 +678,7 @@ class Checker:
                 cut, place = parted[one]
                 need(one[cut][0] < place < one[cut][1], "a part of the range is left out")
                 todo += [(*one[:cut], half, *one[cut + 1 :]) for half in ((one[cut][0], place), (place, one[cut][1]))]
-            middle, slopes, near = joined(np.array(found), [pieces[one][:3] for one in found])
+            middle, slopes, near = joined(np.array(found), [pieces[one][1:4] for one in found])
             self.rows[drivers, box] = dict(zip(self.followers(drivers), zip(middle, slopes.T, near, strict=True), strict=True))
         return self.rows[drivers, box]
 
@@ -566,10 +699,10 @@ class Checker:
         stand here: where they move, what follows stays on the branch on which it is while they stand.
         """
         names, (pieces, _) = self.followers((driver,)), self.line((driver,))
-        first = [(box[0], row) for box, row in pieces.items() if box[0][0] == low]
-        last = [(box[0], row) for box, row in pieces.items() if box[0][1] == high]
+        first = [row for box, row in pieces.items() if box[0][0] == low]
+        last = [row for box, row in pieces.items() if box[0][1] == high]
         need(first and last, f"{driver} is not followed from {low:.9g} to {high:.9g}")
-        low_x, high_x = (self.settled(names, *one, at) for one, at in ((first[0], low), (last[0], high)))
+        low_x, high_x = (self.settled(names, row, at) for row, at in ((first[0], low), (last[0], high)))
         shift = high_x - low_x
         turns = np.round(shift / (2 * math.pi)) * [self.turns[name][2] and not self.turns[name][3] for name in names]
         known = dict(zip(names, turns.tolist(), strict=True))
@@ -577,10 +710,9 @@ class Checker:
         fits = all(abs(one - other) <= FLOAT * max(1.0, abs(other)) for one, other in ties)
         return bool(fits and (np.abs(shift - 2 * math.pi * turns) < SETTLED).all())
 
-    def settled(self, names: list[str], ends: Any, row: Any, at: float) -> Any:
+    def settled(self, names: list[str], row: Any, at: float) -> Any:
         """Return the solution at an end of a piece of one driver's range, to within `SETTLED`: the only one within its tube there."""
-        value, rates, _, wide = row
-        there = value + rates[0] * (at - sum(ends) / 2)
+        there, wide = on_path(row, np.array([at])), row[-1][-1]
         x = there.copy()
         for _ in range(5):
             r, J, _ = self.closure(names, x, x)
@@ -621,7 +753,7 @@ class Checker:
         turns = [joint for joint, _ in way if {f["name"] for f in joint["freedoms"]} & {*vary, *self.linked}]
         cone = turns[0]["cone"] if len(turns) == 1 and all(f["name"] in vary and not f["rest"] for f in turns[0]["freedoms"]) else None
         angles = [leans(local, steps[turns[0]["freedoms"][-1]["name"]][0]) for local in both if cone]
-        near, far = zip(*(radii(local @ plane(axis)) for local in both), strict=True)
+        near, far = zip(*(radii(local @ plane(axis)) for local in both), strict=True) if proof["codes"].min() <= ROUND else ((), ())
         outside = [swung(local, steps[turns[0]["freedoms"][-1]["name"]][0], cone) for local in both if cone and cone <= np.pi / 2]
         spans = [list(itertools.pairwise(proof[key].tolist())) for key in ("parts_a", "parts_b")]
         need([(own[0][0], own[-1][1]) for own in spans] == [(0, len(A)), (0, len(B))], "a triangle is left out")
@@ -641,7 +773,8 @@ class Checker:
             return max((near[1][y] * np.sin(np.clip(side - cone, 0, np.pi / 2))).min() for side in over)  # than its own, a twist by none
 
         along = proof["along"] / np.linalg.norm(proof["along"], axis=1, keepdims=True), int(proof["of_a"])
-        follow(itertools.product(*spans, [0]), proof["codes"].tolist(), along, A, B, (moving, halves, kept), claim["clear_mm"])
+        rows = np.array([(*one, *other, 0) for one, other in itertools.product(*spans)])
+        follow(rows, proof["codes"], along, A, B, (moving, halves, kept), claim["clear_mm"])
 
     def driven(self, way: list[Any], vary: Any) -> list[tuple[str, ...]]:
         """Return the drivers of each group of which something on a way follows: what does not move by itself."""
@@ -649,31 +782,44 @@ class Checker:
         found = [tuple(name for name in self.drivers if name in group and name in vary) for group in self.groups if here & {*group}]
         return [drivers for drivers in found if drivers]
 
-    def boxes(self, way: list[Any], vary: dict[str, Any], lines: Any, proof: dict[str, Any]) -> tuple[list[Any], list[Any], dict[int, Any]]:
+    def boxes(self, way: list[Any], vary: dict[str, Any], lines: Any, proof: dict[str, Any]) -> tuple[list[Any], list[Any], Any]:
         """Cut a range into boxes; of each return whether points keep to an axis; of all the pose in the middle, and how far what goes."""
-        names, todo, found, steady, halves = list(vary), [{name: (low, high) for name, (low, high) in vary.items()}], [], [], {}
+        names, todo, halves = list(vary), [{name: (low, high) for name, (low, high) in vary.items()}], []
         (centre, axis), across, count = proof["about"], plane(proof["about"][1]), sum(map(len, lines))
-        for number, (box, cut, place) in enumerate(zip(todo, proof["cuts"].tolist(), proof["at"].tolist(), strict=True)):
-            if cut >= 0:
+        for box, cut, place in zip(todo, proof["cuts"].tolist(), proof["at"].tolist(), strict=True):
+            if cut < 0:
+                halves.append((-1, -1))
+            else:
                 (low, high), name = box[names[cut]], names[cut]
                 need(low < place < high, "a part of the range is left out")
-                halves[number] = len(todo), len(todo) + 1
+                halves.append((len(todo), len(todo) + 1))
                 todo += [{**box, name: (low, place)}, {**box, name: (place, high)}]  # they become more
-            values, first = {name: (sum(ends) / 2, np.zeros(count), (ends[1] - ends[0]) / 2) for name, ends in box.items()}, 0
-            for drivers in lines:
-                span = np.array([box[name] for name in drivers])
-                for n, (value, rates, near) in self.stretch(drivers, boxed(span)).items():
-                    if n in drivers or n not in vary:
-                        along = np.zeros(count)
-                        along[first : first + len(drivers)] = rates * (span[:, 1] - span[:, 0]) / 2
-                        values[n] = value, along, near
-                first += len(drivers)
-            T, steps = self.place(way, {**self.rest, **{name: value for name, (value, *_) in values.items()}})
-            moved = [(*steps[name], *values[name][1:]) for name in steps if name in values] or [(*np.zeros((2, 3)), np.zeros(count), 0.0)]
-            w, v, along, aside = map(np.array, zip(*moved, strict=True))
-            turned, loose = (np.abs(along).sum(1) + aside) * w.any(1), np.abs(np.cross(w, w[w.any(1).argmax()])).max() > ALIGNED
-            off = [(v + np.cross(w, centre)) @ across, np.cross(w, axis), across @ across - across]  # none about one axis or point
-            steady.append((box, max(np.abs(part).max() for part in off) < ROUNDING))
-            outer = loose * (np.cumsum(turned) - turned)
-            found.append((T[:3, :3], T[:3, 3], np.cross(w[:, None], np.eye(3)), v, along, aside, turned, outer))
-        return steady, [np.array(column) for column in zip(*found, strict=True)], halves
+        spans = {name: np.array([box[name] for box in todo]) for name in names}
+        values = {name: (ends.mean(1), np.zeros((len(todo), count)), np.ptp(ends, axis=1) / 2) for name, ends in spans.items()}
+        first = 0
+        for drivers in lines:
+            sides = np.stack([spans[name] for name in drivers], axis=1)
+            rows = [self.stretch(drivers, boxed(ends)) for ends in sides]
+            for n in (n for n in rows[0] if n in drivers or n not in vary):
+                value, rates, near = (np.array(column) for column in zip(*(row[n] for row in rows), strict=True))
+                along = np.zeros((len(todo), count))
+                along[:, first : first + len(drivers)] = rates * np.ptp(sides, axis=2) / 2
+                values[n] = value, along, near
+            first += len(drivers)
+        T, steps = self.place(way, {**self.rest, **{name: value for name, (value, *_) in values.items()}})
+        T = np.broadcast_to(T, (len(todo), 4, 4))
+        moved = [(*steps[name], *values[name][1:]) for name in steps if name in values]
+        nothing = np.zeros((len(todo), 1, 3)), np.zeros((len(todo), 1, 3)), np.zeros((len(todo), 1, count)), np.zeros((len(todo), 1))
+        w, v, along, aside = (np.stack(np.broadcast_arrays(*column), axis=1) for column in zip(*moved, strict=True)) if moved else nothing
+        w, v = (np.broadcast_to(part, (len(todo), *part.shape[1:])) for part in (w, v))
+        turned = (np.abs(along).sum(2) + aside) * w.any(2)
+        turning = w[np.arange(len(todo)), w.any(2).argmax(1)]
+        loose = np.abs(cross(w, turning[:, None])).max((1, 2)) > ALIGNED
+        off = [
+            np.abs((v + cross(w, centre)) @ across).max((1, 2)),
+            np.abs(cross(w, axis)).max((1, 2)),
+            np.abs(across @ across - across).max(),
+        ]
+        steady = list(zip(todo, functools.reduce(np.maximum, off) < ROUNDING, strict=True))  # none of them moves about one axis or point
+        outer = loose[:, None] * (np.cumsum(turned, axis=1) - turned)
+        return steady, [T[:, :3, :3], T[:, :3, 3], np.cross(w[:, :, None], np.eye(3)), v, along, aside, turned, outer], np.array(halves)
