@@ -216,14 +216,14 @@ def test_a_group_that_nothing_drives_is_no_rigid_one(apart: Certificate) -> None
 
 
 APEX = (50.0, 60 + math.sqrt(90**2 - 50**2), 0.0)
-TURN = 0.2  # rad
+TURN, WIDE = 0.2, 0.5  # rad: one box holds what follows over a quarter of the former, several are needed over one of the latter
 
 
-def five_bar(post: TriMesh) -> tuple[Meshes, Mechanism]:
+def five_bar(post: TriMesh, turn: float = TURN) -> tuple[Meshes, Mechanism]:
     joints = [
-        pinned("a1", "base", "l1", (0, 0, 0), lower=(-TURN,), upper=(TURN,), driver=True),
+        pinned("a1", "base", "l1", (0, 0, 0), lower=(-turn,), upper=(turn,), driver=True),
         pinned("b", "l1", "l2", (0, 60, 0), **ENDLESS),
-        pinned("a2", "base", "r1", (100, 0, 0), lower=(-TURN,), upper=(TURN,), driver=True),
+        pinned("a2", "base", "r1", (100, 0, 0), lower=(-turn,), upper=(turn,), driver=True),
         pinned("d", "r1", "r2", (100, 60, 0), **ENDLESS),
         pinned("c", "l2", "r2", APEX, **ENDLESS),
     ]
@@ -234,7 +234,7 @@ def five_bar(post: TriMesh) -> tuple[Meshes, Mechanism]:
 @pytest.fixture(scope="module")
 def beside() -> Certificate:
     """A post below the region in which the tip of a five-bar moves."""
-    meshes, mechanism = five_bar(box(60, 6, 10).transformed(at(50, 70)))
+    meshes, mechanism = five_bar(box(60, 6, 10).transformed(at(50, 70)), WIDE)
     certificate = certify(meshes, mechanism)
     assert certificate.ok, str(certificate.findings)
     return certificate

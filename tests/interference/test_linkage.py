@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from itertools import pairwise
 from typing import Any
 
@@ -114,6 +115,68 @@ def test_no_loop_bends_more_than_the_lever_that_the_checker_takes(half: float, m
         change = rng.uniform(-1, 1, len(names)) * np.where(turns, half, (1 + np.abs(rest)) * 2 * half)  # as far as slides may go
         bent = checker.closure(names, rest + change, rest)[0] - r - J @ change
         assert (np.abs(bent) <= (share @ np.abs(change)) ** 2 / 2 + 1e-9).all()
+
+
+def test_the_jacobian_is_the_derivative_of_the_residuals_where_a_loop_is_open(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(verifier, "HALF", math.inf)  # by which a loop may be open
+    checker, rng = checker_of(slider_crank()), np.random.default_rng(5)
+    names = checker.followers(("crank",))
+    x = rng.uniform(-0.4, 0.4, (20, len(names)))
+    about, J = np.zeros_like(x), checker.closure(names, x, np.zeros_like(x))[1]
+    for k, step in enumerate(np.eye(len(names)) * 1e-6):
+        slope = (checker.closure(names, x + step, about)[0] - checker.closure(names, x - step, about)[0]) / 2e-6
+        assert slope == pytest.approx(J[..., k], abs=1e-8)
+
+
+def test_the_grid_of_a_tube_bounds_functions_between_its_points() -> None:
+    t, powers = np.linspace(-1, 1, 4001), np.arange(5)
+    weights = np.linalg.inv(verifier.NODES[:, None] ** powers).T @ t ** powers[:, None]  # Lagrange's polynomials
+    assert np.abs(weights).sum(axis=0).max() <= verifier.LEBESGUE
+    assert np.abs(np.prod(t[:, None] - verifier.NODES, axis=1)).max() / math.factorial(5) <= verifier.QUINTIC * (1 + 1e-12)
+    values = np.random.default_rng(6).normal(size=(100, 5))
+    assert (np.abs(values @ weights).max(axis=1) <= np.abs(values @ verifier.BERNSTEIN.T).max(axis=1) * (1 + 1e-9)).all()
+
+
+def test_every_solution_lies_within_the_tube_of_its_box_of_two_drivers() -> None:
+    # a five-bar: the closure is by the circles about its two elbows, apart from every solver of the project
+    elbows, rod, turn = np.array([[0.0, 60], [100.0, 60]]), 90.0, 0.6
+    apex = np.array([50.0, 60 + math.sqrt(rod**2 - 50**2)])
+    pins = (
+        ("a1", "base", "l1", (0, 0)),
+        ("b", "l1", "l2", elbows[0]),
+        ("a2", "base", "r1", (100, 0)),
+        ("d", "r1", "r2", elbows[1]),
+        ("c", "l2", "r2", apex),
+    )
+    joints = [
+        replace(joint(n, "revolute", p, c, at_parent=at(*xy), at_child=at(*xy), lower=(-turn,), upper=(turn,)), driver=True) if n in ("a1", "a2")
+        else joint(n, "revolute", p, c, at_parent=at(*xy), at_child=at(*xy), lower=(-math.inf,), upper=(math.inf,))
+        for n, p, c, xy in pins
+    ]  # fmt: skip
+    way = Way(checker_of(Mechanism(("base", "l1", "l2", "r1", "r2"), "base", joints)), ("a1", "a2"), ((-turn, turn), (-turn, turn)))
+    assert way.whole is not None
+    assert way.count <= 60
+    rng = np.random.default_rng(7)
+    for ends, _, _, _, (guess, curve, near, _) in way._found[1:]:
+        middle, half = ends.mean(axis=1), np.ptp(ends, axis=1) / 2
+        rates = next(row for row in way._found if row[0] is ends)[2]
+        for step in rng.uniform(-1, 1, (20, 2)) * half:
+            values = middle + step
+            pins_at = [np.array([x, 0]) + rotated(value) @ [0.0, 60] for x, value in zip((0, 100), values, strict=True)]
+            between = pins_at[1] - pins_at[0]
+            height = math.sqrt(rod**2 - between @ between / 4)
+            tip = (pins_at[0] + pins_at[1]) / 2 + height * np.array([-between[1], between[0]]) / np.linalg.norm(between)
+            turned = [
+                math.remainder(math.atan2(*(tip - pin)[::-1]) - math.atan2(*(apex - elbow)[::-1]), 2 * math.pi)
+                for pin, elbow in zip(pins_at, elbows, strict=True)
+            ]
+            true = {"a1": values[0], "a2": values[1], "b": turned[0] - values[0], "d": turned[1] - values[1], "c": turned[1] - turned[0]}
+            there = guess + step @ rates + step @ np.tensordot(step, curve, 1) / 2
+            assert (np.abs([true[name] for name in way.names] - there) <= near + 1e-9).all()
+
+
+def rotated(angle: float) -> np.ndarray:
+    return np.array([[math.cos(angle), -math.sin(angle)], [math.sin(angle), math.cos(angle)]])
 
 
 def test_a_four_bar_in_layers_is_certified_over_a_full_turn() -> None:
@@ -323,11 +386,10 @@ def tampered(certificate: Certificate, change: Callable[[dict[str, Any]], object
 def follow_another_branch(proof: dict[str, Any]) -> None:
     ends, values = proof["crank.ends"], proof["crank.values"]
     mechanism = Mechanism(tuple(four_bar((0.0, 5.0, 0.0))[0]), "frame", four_bar((0.0, 5.0, 0.0))[1])
-    proof["crank.wide"][:, 1:] *= 4.0  # the other branch bends more
-    for row, ((low, high),) in enumerate(ends):  # coupler and rocker mirrored about the line from the crank's pin to the rocker's pivot
-        found = mechanism.configuration(np.array([(low + high) / 2])).values
-        across, opened = crossing((low + high) / 2)
-        values[row][1:] = [found["pin_b"][0] + across, found["pin_c"][0] + opened, found["rock"][0] + across + opened]
+    low, high = ends[0][0] = ends[0][0] / 4  # from rest on: the other branch bends more
+    found = mechanism.configuration(np.array([(low + high) / 2])).values
+    across, opened = crossing((low + high) / 2)  # coupler and rocker mirrored about the line from the crank's pin to the rocker's pivot
+    values[0] = [(low + high) / 2, found["pin_b"][0] + across, found["pin_c"][0] + opened, found["rock"][0] + across + opened]
 
 
 def crossing(crank: float) -> tuple[float, float]:
