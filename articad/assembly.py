@@ -494,8 +494,14 @@ class Assembly:
         if not self.fits:
             return certificate
         fits = certified_fits(self._held_fits(joints, certificate.spans, seconds=budget))
-        claims = (*certificate.claims, *fits.claims)
-        return replace(certificate, findings=certificate.findings + fits.findings, claims=claims, fits=fits.rows).checked()
+        return replace(
+            certificate,
+            findings=certificate.findings + fits.findings,
+            claims=(*certificate.claims, *fits.claims),
+            fits=fits.rows,
+            queries=certificate.queries + fits.queries,
+            work=certificate.work + fits.work,
+        ).checked()
 
     def mass(self, q: ArrayLike | None = None) -> MassProperties:
         """Return mass, centre of mass and inertia of the whole in the ground frame; parts without mass count as massless.

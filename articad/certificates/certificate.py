@@ -91,7 +91,7 @@ class Certificate:
         together: Whether joints were to be moved two at a time, too.
         constrained: Names of the joints of loops and couplings.
         queries: Pairs of pieces of surface that were looked at.
-        work: Units of work spent, the same on every machine; `articad.interference.work`.
+        work: Units of work spent, on pairs and on fits, the same on every machine; `articad.interference.work`.
         seconds: Time by the clock.
         followed: Pieces of the drivers' ranges, as arrays that a checker reads.
         fits: Declared fits against what was measured and proven, in the order of the joints.

@@ -106,11 +106,15 @@ class FitReport:
         findings: One per broken fit.
         rows: One per declared fit, in order.
         claims: What is proven of them, for a certificate.
+        queries: Pairs of pieces of surface that were looked at.
+        work: Units of work spent; `articad.interference.work`.
     """
 
     findings: Findings
     rows: tuple[FitCheck, ...]
     claims: tuple[Claim, ...] = ()
+    queries: int = 0
+    work: int = 0
 
     @property
     def ok(self) -> bool:
@@ -148,6 +152,7 @@ def check_fits(
     rows: list[FitCheck] = []
     findings: list[Finding] = []
     claims: list[Claim] = []
+    budgets: list[Budget] = []
     for joint in scene.relations.joints:
         fit = scene.fits.get(joint.name)
         if fit is None or (joints is not None and joint.name not in joints):
@@ -159,12 +164,14 @@ def check_fits(
             rows.append(FitCheck(joint.name, (joint.parent, joint.child), fit, None, None, None, "not_checked", strength=strength))
             findings.append(_unmeasured(joint, reason))
             continue
-        held = _Held(scene, joint, fit, Budget(seconds))
+        budgets.append(Budget(seconds))
+        held = _Held(scene, joint, fit, budgets[-1])
         row, finding = held.check(reached, proven or {})
         rows.append(row)
         findings += finding or _unresolved(row)
         claims += held.claims
-    return FitReport(Findings(findings), tuple(rows), tuple(claims))
+    queries, work = sum(budget.queries for budget in budgets), sum(budget.work for budget in budgets)
+    return FitReport(Findings(findings), tuple(rows), tuple(claims), queries, work)
 
 
 def certified_fits(report: FitReport) -> FitReport:

@@ -262,7 +262,8 @@ class Way:
     def _tube(self, bounds: tuple[Any, ...], room: float) -> FloatArray:
         """Return distances from a curve that should contain one solution and no other, `(1, n)`: a fixed point of the checker's bound, widened."""
         ends, guess, _, _, off, bend, most, share = bounds
-        count, wide = ends.shape[1], np.zeros_like(guess)
+        count: int = ends.shape[1]
+        wide: FloatArray = np.zeros(guess.shape)
         for _ in range(6):
             within = wide[:, count:, None]
             held = off[..., None] + room + bend @ within + most @ np.minimum(share[..., count:] @ within, 1.0) ** 2

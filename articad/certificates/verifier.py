@@ -439,7 +439,7 @@ class Checker:
             found = [*apart, tie.union(*(group for group in found if group & tie))]
         return [[name for name in self.linked if name in group] for group in found if group]
 
-    def steps_on(self, way: list[Any]) -> tuple[list[str], Any, Any, Any, Any]:
+    def steps_on(self, way: list[Any]) -> Any:
         """Return the freedoms on a way, their motions (signed spins and slides), the frames that stand before each, and the last one."""
         key = tuple((joint["name"], forward) for joint, forward in way)
         if key not in self.ways:
@@ -574,7 +574,7 @@ class Checker:
         rates = L @ A[:, None]
         at = A[:, None] - np.tensordot(t, rates, (1, 1)).swapaxes(0, 1)
         off, bend, most = (at @ r[..., None])[..., 0], at @ J[..., count:] - np.eye(len(names) - count), np.abs(at).max(1)
-        bernstein = functools.reduce(np.kron, [BERNSTEIN] * count, np.eye(1))
+        bernstein = functools.reduce(np.kron, [np.eye(1), *[BERNSTEIN] * count])
         off, bend = (np.abs(np.tensordot(bernstein, part, (1, 1))).max(0) for part in (off, bend))
         for k in range(count):
             v, a = (
@@ -809,9 +809,9 @@ class Checker:
         T, steps = self.place(way, {**self.rest, **{name: value for name, (value, *_) in values.items()}})
         T = np.broadcast_to(T, (len(todo), 4, 4))
         moved = [(*steps[name], *values[name][1:]) for name in steps if name in values]
-        nothing = np.zeros((len(todo), 1, 3)), np.zeros((len(todo), 1, 3)), np.zeros((len(todo), 1, count)), np.zeros((len(todo), 1))
-        w, v, along, aside = (np.stack(np.broadcast_arrays(*column), axis=1) for column in zip(*moved, strict=True)) if moved else nothing
-        w, v = (np.broadcast_to(part, (len(todo), *part.shape[1:])) for part in (w, v))
+        nothing: list[Any] = [np.zeros((1, 1, 3)), np.zeros((1, 1, 3)), np.zeros((1, 1, count)), np.zeros((1, 1))]
+        parts = [np.stack(np.broadcast_arrays(*column), axis=1) for column in zip(*moved, strict=True)] if moved else nothing
+        w, v, along, aside = (np.broadcast_to(part, (len(todo), *part.shape[1:])) for part in parts)
         turned = (np.abs(along).sum(2) + aside) * w.any(2)
         turning = w[np.arange(len(todo)), w.any(2).argmax(1)]
         loose = np.abs(cross(w, turning[:, None])).max((1, 2)) > ALIGNED

@@ -7,6 +7,7 @@ import math
 
 import pytest
 
+import articad
 from articad.certificates.fits import FitReport, check_fits
 from articad.connectors import SE3
 from articad.geometry import TriMesh, box, cylinder, merged, sphere
@@ -164,3 +165,19 @@ def test_the_table_is_json() -> None:
     (row,) = json.loads(json.dumps(fits(*pin_in_bore(0.2), HINGE, Fit(0.1, 0.4, 8.0, "allowed")).to_json()))["rows"]
     assert row["declared"] == {"gap_mm": [0.1, 0.4], "within_mm": 8.0, "contact": "allowed"}
     assert row["verdict"] == "ok"
+
+
+def test_the_work_of_a_certificate_includes_that_of_its_fits() -> None:
+    block, pin = pin_in_bore(0.2)
+    hinge = joint("hinge", "revolute", "block", "pin", lower=(-0.3,), upper=(0.3,))
+    held = check_fits(Scene.of({"block": block, "pin": pin}, [hinge], fits={"hinge": Fit(0.1, 0.4)}))
+    assert held.work > 0
+    assert held.queries > 0
+    parts = [articad.Part.from_mesh(name, mesh) for name, mesh in (("block", block), ("pin", pin))]
+    both: list[dict[str, Fit]] = [{}, {"hinge": Fit(0.1, 0.4)}]
+    plain, fitted = (
+        articad.Assembly.from_parts("hinged", parts=parts, ground="block", joints=[hinge], fits=some).certify()  # type: ignore[arg-type]
+        for some in both
+    )
+    assert fitted.work > plain.work
+    assert fitted.queries > plain.queries
