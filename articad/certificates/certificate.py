@@ -36,7 +36,7 @@ from articad.interference.report import PairCheck, Row, Strength, rounded
 from articad.interference.scene import Scene
 from articad.interference.surface import Surface, surface_distance, whole_surface
 from articad.interference.verdict import judge
-from articad.interference.work import PIECE, Budget
+from articad.interference.work import Budget
 from articad.kinematics.joints import Joint, JointType
 from articad.kinematics.mechanism import Mechanism
 
@@ -47,7 +47,7 @@ WIDE_PAIRS = 60_000  # of pieces, spent on all joints at once before they are ta
 TIED_PAIRS = 8_000  # of pieces, spent on whatever a linkage does before its drivers are followed: that is cheap
 FOLLOWED_PAIRS = 400_000  # of pieces, spent on whatever a linkage does that cannot be followed
 MOST_EXPECTED = 1000  # boxes of several drivers of one group, as the pieces of each alone suggest, beyond which they are not followed
-MOST_TOGETHER = 2  # drivers of one group followed all at once before they are taken two at a time
+MOST_TOGETHER = 3  # drivers of one group followed all at once before they are taken two at a time
 _END_SLACK = 1e-6  # rad or mm: by which a driver may end before its limit
 _ENTRY_MM = 1e-6  # distance at which meshes are said to touch
 
@@ -482,18 +482,19 @@ class _Certifying:
             ends, self._reasons[drivers[0]] = driven_range(self.mechanism, self._checker, names.index(drivers[0]))
             way = Way(self._checker, drivers, (ends,))
             found = way.whole
-            self.budget.spend(PIECE * way.count)
+            self.budget.spend(way.work)
             return way if found else "near rest nothing encloses what follows the driver"
         ways = [self._way((name,)) for name in drivers]
         bad = [way for way in ways if isinstance(way, str)]
         if bad:
             return bad[0]
         expected = math.prod(way.count for way in ways if not isinstance(way, str))
-        if expected > MOST_EXPECTED:
-            return f"{' and '.join(drivers)} together would take about {expected} boxes, more than {MOST_EXPECTED}"
+        most = MOST_EXPECTED if len(drivers) == 2 else MOST_EXPECTED // 4  # each box of three takes five times as long
+        if expected > most:
+            return f"{' and '.join(drivers)} together would take about {expected} boxes, more than {most}"
         way = Way(self._checker, drivers, tuple(way.whole.ends[0] for way in ways if not isinstance(way, str) and way.whole))
         found = way.whole
-        self.budget.spend(PIECE * way.count)
+        self.budget.spend(way.work)
         return way if found else f"{' and '.join(drivers)} do not reach all of their ranges together, or nothing encloses what follows"
 
     def _followed(self, prover: LinkageProver, proof: Proof) -> None:

@@ -45,7 +45,6 @@ class Boxes(Protocol):
 
     Attributes:
         spread: What moves in each.
-        price: Units of work that one costs.
         outside: Whether no joint goes there, for each.
         columns: Which of the claim's coordinates each was cut across, −1 for those that were not.
         places: Where.
@@ -53,11 +52,14 @@ class Boxes(Protocol):
     """
 
     spread: Spread
-    price: int
     outside: list[bool]
     columns: list[int]
     places: list[float]
     halves: list[tuple[int, int]]
+
+    @property
+    def work(self) -> int:
+        """Units of work that the boxes have cost so far."""
 
     def root(self) -> IntArray:
         """Add the whole range, and return its number."""
@@ -156,14 +158,14 @@ def clear(
             stack.append(rows.of(np.arange(len(rows)) < len(rows) - CHUNK))
             rows = rows.of(np.arange(len(rows)) >= len(rows) - CHUNK)
         outcome.pairs += len(rows)
-        placed = len(boxes.spread)
+        before = boxes.work
         try:
             stack += [found for found in search.step(rows) if len(found)]
         except CannotCut:
             outcome.out_of_budget = True
             break
         finally:
-            budget.spend(len(rows) + STEP + boxes.price * (len(boxes.spread) - placed), queries=len(rows))
+            budget.spend(len(rows) + STEP + boxes.work - before, queries=len(rows))
     outcome.boxes = len(boxes.spread)
     if outcome.is_complete:
         outcome.trail = search.trail
@@ -459,14 +461,17 @@ class Ranges:
         left_out: Which boxes (lower ends `(k, n)`, upper ends) lie outside what the joints allow, `(k,)`.
     """
 
-    price = BOX
-
     def __init__(
         self, spread: Spread, bounds: FloatArray, left_out: Callable[[FloatArray, FloatArray], NDArray[np.bool_]] | None = None
     ) -> None:
         self.spread, self.bounds, self.left_out = spread, bounds, left_out
         self.ends = np.empty((0, len(bounds), 2))
         self.outside, self.columns, self.places, self.halves = list[bool](), list[int](), list[float](), list[tuple[int, int]]()
+
+    @property
+    def work(self) -> int:
+        """Units of work that the boxes have cost so far."""
+        return BOX * len(self.spread)
 
     def root(self) -> IntArray:
         """Add the whole range."""

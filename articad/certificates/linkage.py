@@ -30,7 +30,7 @@ from articad.interference.motion import Chain, Freedom, Route, scattered
 from articad.interference.overlap import Overlap, overlap
 from articad.interference.scene import Scene
 from articad.interference.verdict import UNRELATED_VOLUME_MM3
-from articad.interference.work import PIECE, Budget
+from articad.interference.work import CLOSED, PLACED, Budget, piece_price
 from articad.kinematics.mechanism import Mechanism
 from articad.kinematics.motion import track_of
 
@@ -39,7 +39,7 @@ IntArray = NDArray[np.int64]
 Ends = tuple[tuple[float, float], ...]  # of each driver
 
 SMALLEST_STEP = 1e-6  # of the driver's range, below which it is not followed further
-FIRST_STEP = 1 / 8  # of the way to a bound
+FIRST_STEP = 1.0  # of the way to a bound, halved until what follows is enclosed
 SMALLEST_BOX = 1 / 256  # of the ranges of several drivers, below which they are not followed together
 MOST_BOXES = 3000  # of several drivers
 WIDER = 1.2  # than the distance within which there is a solution: that within which there is no other one
@@ -87,6 +87,9 @@ class Way:
         drivers: Coordinates of one group; its other drivers stand.
         bounds: Of each driver, to be covered as far as it can be followed.
 
+    Attributes:
+        work: Units of work that its pieces have cost so far, those included that could not be followed.
+
     Raises:
         Refuted: If a loop is open at rest.
     """
@@ -97,6 +100,8 @@ class Way:
         self._checker, self.rest = checker, np.array([checker.rest[name] for name in drivers])
         self._found = checker.begin(self.names, len(drivers))
         self._others: list[int] = []
+        self._price = piece_price(len(self.names) - len(drivers), len(drivers))
+        self.work = 0
         self._number: dict[Ends, int] = {}
         self._cuts: dict[Ends, tuple[int, float, Ends, Ends]] = {}
         self._pieces: dict[Ends, Piece] = {}
@@ -245,6 +250,7 @@ class Way:
         if ends in self._number:
             return self.piece(ends)
         span = np.array(ends)
+        self.work += self._price
         guess = self.solved(span.mean(axis=1), beside)
         if guess is None:
             return None
@@ -370,8 +376,6 @@ class Steps:
         pieces: To be covered, one of each way; by default all of it.
     """
 
-    price = PIECE
-
     def __init__(self, ways: Sequence[Way], chain: Chain, others: FloatArray, pieces: Sequence[Piece] | None = None) -> None:
         self.ways, self.chain, self.spread = tuple(ways), chain, Spread(chain)
         self.free = np.flatnonzero(~np.isnan(others[:, 0]))
@@ -384,6 +388,11 @@ class Steps:
         self._names = names
         self.rows: list[tuple[tuple[Piece, ...], FloatArray]] = []
         self.outside, self.columns, self.places, self.halves = list[bool](), list[int](), list[float](), list[tuple[int, int]]()
+
+    @property
+    def work(self) -> int:
+        """Units of work that the boxes, and the pieces of the ways, have cost so far."""
+        return PLACED * len(self.spread) + sum(way.work for way in self.ways)
 
     def root(self) -> IntArray:
         """Add all of it, with the whole range of the other coordinates."""
@@ -598,6 +607,7 @@ class LinkageProver(Prover):
         """Return the chain's coordinates at values of the drivers and of what moves by itself; None where drivers were not followed."""
         known = dict(place)
         for way in self.ways:
+            self.budget.spend(CLOSED)
             found = way.at(np.array([place[name] for name in way.drivers]))
             if found is None:
                 return None

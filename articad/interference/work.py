@@ -15,7 +15,9 @@ from collections.abc import Callable
 PIECES_PER_SECOND = 100_000  # units of work in a nominal second
 STEP = 60  # units: one round of a search, however few pairs it looks at
 BOX = 3  # units: a box of a tree of joints placed
-PIECE = 100  # units: a piece of a driver's range on which loops are closed and followed
+PIECE = 250  # units: a try to follow loops over a piece of drivers' ranges, …
+FOLLOWER, FOLLOWED = 8, 6  # … for each coordinate that follows, and for each of those at a fifth of the poses that are looked at
+PLACED = 20  # units: a box along drivers placed
 LOOK = 60  # units: a measured overlap, …
 LOOK_TRIANGLES = 50  # … and one more for so many triangles of both meshes
 POSE = 5  # units: all parts placed by a tree of joints at one pose, …
@@ -84,6 +86,11 @@ class Budget:
                 "the verdict may differ on another machine."
             )
         return f"The budget of {self.seconds:g} s of work ({self.pieces:.0f} units) was spent."
+
+
+def piece_price(followers: int, drivers: int) -> int:
+    """Return what it costs to try to follow so many coordinates over a piece of so many drivers' ranges [units]: five poses for each."""
+    return PIECE + followers * (FOLLOWER + FOLLOWED * 5 ** max(drivers - 1, 0))
 
 
 def look_price(*triangles: int) -> int:

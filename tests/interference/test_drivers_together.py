@@ -12,6 +12,7 @@ import manifold3d as m3
 import numpy as np
 import pytest
 
+from articad.certificates import certificate as certificates
 from articad.certificates.certificate import Certificate, certify
 from articad.certificates.verifier import PROOF
 from articad.connectors import SE3
@@ -254,6 +255,37 @@ def test_a_post_in_a_corner_of_a_five_bar_is_found() -> None:
     certificate = certify(meshes, mechanism)
     assert not certificate.ok
     assert certificate.findings.of("E_MOTION_COLLISION")
+
+
+def six_bar(turn: float) -> tuple[Meshes, Mechanism]:
+    """A hexagon of six pins with three drivers, and a wheel on its far side that stays above a post."""
+    corners = [(60 * math.cos(a), 60 * math.sin(a), 0.0) for a in np.radians([240, 180, 120, 60, 0, 300])]
+    links = ["base", "l1", "l2", "l3", "l4", "l5", "base"]
+    limits: dict[str, Any] = {"lower": (-turn,), "upper": (turn,), "driver": True}
+    joints = [
+        pinned(f"p{k}", *(links[k : k + 2] if k < 5 else ("base", "l5")), corner, **(limits if k in (0, 1, 5) else ENDLESS))
+        for k, corner in enumerate(corners)
+    ]
+    meshes = {"base": box(10, 10, 10).transformed(at(0, 28)), "l3": cylinder(2, 10, 12).transformed(at(0, 52, 0))}
+    return meshes, mechanism_of(meshes, joints)
+
+
+def test_three_drivers_of_one_group_move_at_once_where_few_boxes_hold_them() -> None:
+    meshes, mechanism = six_bar(0.04)
+    certificate = certify(meshes, mechanism)
+    assert certificate.ok, str(certificate.findings)
+    (claim,) = (claim for claim in certificate.claims if set(claim.parts) == {"base", "l3"})
+    assert set(claim.vary) == {"p0", "p1", "p5"}
+    assert "all of these joints move at once" in certificate.to_json()["covers"]
+    assert verified(stated(certificate), certificate) == []
+
+
+def test_a_certificate_names_the_pairs_that_three_drivers_at_once_are_not_proven_for(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(certificates, "MOST_TOGETHER", 2)
+    certificate = certify(*six_bar(0.04))
+    assert certificate.ok, str(certificate.findings)
+    assert all(len(claim.vary) < 3 for claim in certificate.claims)
+    assert "three or more at once: not covered for base/l3" in certificate.to_json()["covers"]
 
 
 def tampered(certificate: Certificate, change: Callable[[dict[str, Any]], object]) -> list[str]:
