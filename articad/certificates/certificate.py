@@ -20,7 +20,7 @@ import numpy as np
 
 from articad.certificates.claims import Claim
 from articad.certificates.clearing import MOST_PAIRS
-from articad.certificates.linkage import LOOKS, LinkageProver, Way, driven_range
+from articad.certificates.linkage import LinkageProver, Way, driven_range
 from articad.certificates.proof import Proof, Prover, beyond
 from articad.certificates.verifier import PROOF, Checker, Refuted, covered, widened
 from articad.connectors.mate import flip
@@ -509,12 +509,12 @@ class _Certifying:
         else:
             worst, pose = prover.worst(proof)
             check, found = judge(
-                self.scene, parts, worst, over=over, pose=pose, baseline=proof.overlap.volume, strength=Strength.sampled(LOOKS)
+                self.scene, parts, worst, over=over, pose=pose, baseline=proof.overlap.volume, strength=Strength.sampled(prover.looked)
             )
             self.verdicts.append(check)
             self.findings += found
             if not any(finding.code == "E_MOTION_COLLISION" for finding in found) and check.strength.kind != "waived":
-                self.findings.append(_unproven(parts, over, worst, check.allowed, LOOKS))
+                self.findings.append(_unproven(parts, over, worst, check.allowed, prover.looked))
         if not prover.is_single:
             return
         (name,), (way,) = prover.drivers, prover.ways

@@ -489,6 +489,7 @@ class LinkageProver(Prover):
         if self.axis is not None and self.axis.dimensions == 3:
             self.axis = None  # a ball that follows is not held within its cone: nothing proves that it keeps to it
         self._last: Steps | None = None
+        self.looked = 0  # poses at which `worst` measured the overlap
 
     @property
     def is_line(self) -> bool:
@@ -587,21 +588,26 @@ class LinkageProver(Prover):
                 if values is None:
                     continue
                 self.budget.spend(self.look_price)
+                self.looked += 1
                 found = overlap(self.body_a, self.body_b, SE3.from_matrix(self.chain.matrix(values)))
                 if found.depth > worst.depth:
                     worst, where = found, place
         return worst, where
 
     def _beyond(self, contact: Mapping[str, float]) -> Iterator[dict[str, float]]:
-        """Yield values from a contact on, closely at first: each driver to its end away from rest, and all to theirs together."""
+        """Yield values from a contact on, closely at first: each driver to its end away from rest, all to theirs, and all back to rest.
+
+        A search may meet the far side of what is in the way first, so that only the way back leads into it.
+        """
         own = {freedom.name: contact[freedom.name] for freedom in self._own()}
         rest, start = self._rest(), {name: contact.get(name, value) for name, value in self._rest().items()}
         bounds = {name: ends for way in self.ways if way.whole for name, ends in zip(way.drivers, way.whole.ends, strict=True)}
         end = {name: bounds[name][1 if start[name] >= rest[name] else 0] for name in start}
         ways: list[set[str]] = [{name} for name in start]
-        for moving in [*ways, set(start)] if len(ways) > 1 else ways:
+        goals = [(end, moving) for moving in ([*ways, set(start)] if len(ways) > 1 else ways)]
+        for goal, moving in [*goals, (rest, set(start))]:
             for share in (np.linspace(0.0, 1.0, LOOKS) ** 3).tolist():
-                yield {**own, **{name: start[name] + (end[name] - start[name]) * share * (name in moving) for name in start}}
+                yield {**own, **{name: start[name] + (goal[name] - start[name]) * share * (name in moving) for name in start}}
 
     def placed(self, place: Mapping[str, float]) -> list[float] | None:
         """Return the chain's coordinates at values of the drivers and of what moves by itself; None where drivers were not followed."""

@@ -90,7 +90,7 @@ class Budget:
 
 def piece_price(followers: int, drivers: int) -> int:
     """Return what it costs to try to follow so many coordinates over a piece of so many drivers' ranges [units]: five poses for each."""
-    return PIECE + followers * (FOLLOWER + FOLLOWED * 5 ** max(drivers - 1, 0))
+    return PIECE + followers * (FOLLOWER + FOLLOWED * int(5 ** max(drivers - 1, 0)))
 
 
 def look_price(*triangles: int) -> int:

@@ -260,11 +260,11 @@ def test_a_post_in_a_corner_of_a_five_bar_is_found() -> None:
 def six_bar(turn: float) -> tuple[Meshes, Mechanism]:
     """A hexagon of six pins with three drivers, and a wheel on its far side that stays above a post."""
     corners = [(60 * math.cos(a), 60 * math.sin(a), 0.0) for a in np.radians([240, 180, 120, 60, 0, 300])]
-    links = ["base", "l1", "l2", "l3", "l4", "l5", "base"]
+    links = [("base", "l1"), ("l1", "l2"), ("l2", "l3"), ("l3", "l4"), ("l4", "l5"), ("base", "l5")]
     limits: dict[str, Any] = {"lower": (-turn,), "upper": (turn,), "driver": True}
     joints = [
-        pinned(f"p{k}", *(links[k : k + 2] if k < 5 else ("base", "l5")), corner, **(limits if k in (0, 1, 5) else ENDLESS))
-        for k, corner in enumerate(corners)
+        pinned(f"p{k}", parent, child, corner, **(limits if k in (0, 1, 5) else ENDLESS))
+        for k, ((parent, child), corner) in enumerate(zip(links, corners, strict=True))
     ]
     meshes = {"base": box(10, 10, 10).transformed(at(0, 28)), "l3": cylinder(2, 10, 12).transformed(at(0, 52, 0))}
     return meshes, mechanism_of(meshes, joints)
