@@ -20,9 +20,11 @@ from articad.findings import Findings
 from articad.geometry.mesh import TriMesh
 from articad.geometry.part import MassProperties, Part
 from articad.interference.check import Checks, check_scene
+from articad.interference.clearance import Clearance, least_clearances, searched
 from articad.interference.report import PairCheck
 from articad.interference.scene import Scene
-from articad.interference.sweep import sweep
+from articad.interference.sweep import DEFAULT_STEPS
+from articad.interference.sweep import Sweep as MotionSweep
 from articad.kernels.choice import kernel_named
 from articad.kernels.kernel import BuildCache, PartKernel
 from articad.kernels.parts import Progress, RealisedPart, build_parts, find_scripts
@@ -424,19 +426,43 @@ class Assembly:
 
     # ------------------------------------------------------------------ what is true of it
 
-    def check(self, q: ArrayLike | None = None, *, known: Mapping[tuple[str, str], PairCheck] | None = None) -> Checks:
+    def check(
+        self,
+        q: ArrayLike | None = None,
+        *,
+        motion: bool = False,
+        steps: int = DEFAULT_STEPS,
+        known: Mapping[tuple[str, str], PairCheck] | None = None,
+    ) -> Checks:
         """Check one pose for overlap, floating parts and broken meshes; at rest the declared fits, too, also over their motion.
 
         Args:
             q: Configuration `(nq,)` [rad, mm]; the rest pose by default.
+            motion: Whether to sample the motion as well: each driver alone, every two on a grid, all at scattered poses, and then by a
+                search for the nearest pose of each two parts. A sample proves nothing between two poses; `certify` does.
+            steps: Poses per driver, with `motion`.
             known: Verdicts of an earlier check by pair of parts: they are taken over without measuring, and without findings.
-        """
-        at_rest = q is None
-        poses = Poses(self.mechanism.parts, self.poses(self.mechanism.rest if q is None else q))
-        checks = check_scene(self.scene(), poses, over="rest" if at_rest else "pose", ground=self.ground, known=known)
-        return self._with_fits(checks) if at_rest else checks
 
-    def sweep(self, joints: Sequence[str] | None = None, *, steps: int = 60, together: bool = False, samples: int = 0) -> Checks:
+        Raises:
+            PlanError: If a configuration is given and `motion` asked for.
+        """
+        if motion:
+            if q is not None:
+                raise PlanError("A check of the motion begins at rest; leave out the configuration.")
+            moved = self._moved()
+            checks = self._checked_at(None, known) + moved.run(None, steps=steps, together=True, samples=steps)
+            return self._with_fits(checks + searched(moved, checks))
+        checks = self._checked_at(q, known)
+        return self._with_fits(checks) if q is None else checks
+
+    def _checked_at(self, q: ArrayLike | None, known: Mapping[tuple[str, str], PairCheck] | None) -> Checks:
+        poses = Poses(self.mechanism.parts, self.poses(self.mechanism.rest if q is None else q))
+        return check_scene(self.scene(), poses, over="rest" if q is None else "pose", ground=self.ground, known=known)
+
+    def _moved(self) -> MotionSweep:
+        return MotionSweep(self.scene(), self.mechanism)
+
+    def sweep(self, joints: Sequence[str] | None = None, *, steps: int = DEFAULT_STEPS, together: bool = False, samples: int = 0) -> Checks:
         """Sample the motion of every driver over its range, the others at rest; a sample proves nothing between two poses.
 
         Declared fits are held over the motion of their joints, too; each row of `fits` says whether that is proven or sampled.
@@ -447,18 +473,19 @@ class Assembly:
             together: Whether to move every two coordinates on a grid as well.
             samples: Further poses, scattered over all coordinates at once.
         """
-        checks = sweep(
-            self._meshes(),
-            self.mechanism,
-            joints=joints,
-            steps=steps,
-            together=together,
-            samples=samples,
-            waivers=self.waivers,
-            deflection=self._deflections(),
-            fits=self.fits,
-        )
+        checks = self._moved().run(joints, steps=steps, together=together, samples=samples)
         return self._with_fits(checks, joints)
+
+    def clearances(self, joints: Sequence[str] | None = None, *, together: bool = True) -> tuple[Clearance, ...]:
+        """Return the smallest distance seen of each two parts that move against each other, with its pose, the nearest first.
+
+        Poses are sampled and searched, so that the true least distance may be smaller; `certify` proves that parts do not meet.
+
+        Args:
+            joints: Names of the joints to move; all that drive by default.
+            together: Whether to move several drivers at once, too.
+        """
+        return least_clearances(self._moved(), joints, together=together)
 
     def certify(
         self,

@@ -32,7 +32,8 @@ MOST_DRIVERS = 3
 HIT, CLEAR = 0.5, 0.6  # mm: posts are hit by more than this, or missed by more
 AT_REST = 1.0  # mm: room at rest
 TRIES = 60
-CHUNK = 4096
+SURELY_CLEAR = 2 * CLEAR  # mm
+CHUNK = 2048
 
 
 class Convex:
@@ -47,24 +48,37 @@ class Convex:
         self.radius = float(np.linalg.norm(V, axis=1).max())
 
     def depth(self, other: Convex, T: FloatArray) -> FloatArray:
-        """Return by how much the other at poses `(n, 4, 4)` is in this one, negative where some plane is between them [mm]."""
+        """Return by how much the other at poses `(n, 4, 4)` is in this one, negative where some plane is between them [mm].
+
+        Where they are apart by more than `SURELY_CLEAR` any plane that shows it will do.
+        """
         out: FloatArray = self.radius + other.radius - np.linalg.norm(T[:, :3, 3], axis=1)
-        near = np.flatnonzero(out > -2 * CLEAR)
+        near = np.flatnonzero(out > -SURELY_CLEAR)
         for rows in np.array_split(near, math.ceil(len(near) / CHUNK)) if len(near) else []:
             out[rows] = self._depth(other, T[rows])
         return out
 
     def _depth(self, other: Convex, T: FloatArray) -> FloatArray:
-        R, n = T[:, :3, :3], len(T)
-        corners, normals, edges = (points @ np.swapaxes(R, 1, 2) for points in (other.corners, other.normals, other.edges))
-        corners = corners + T[:, None, :3, 3]
-        across = np.cross(self.edges[None, :, None], edges[:, None]).reshape(n, -1, 3)
-        size = np.linalg.norm(across, axis=2, keepdims=True)
-        across = np.where(size > 1e-6, across / np.maximum(size, 1e-6), self.normals[0])
-        axes = np.concatenate([np.broadcast_to(self.normals, (n, *self.normals.shape)), normals, across], axis=1)
-        a, b = axes @ self.corners.T, axes @ np.swapaxes(corners, 1, 2)
-        overlap: FloatArray = np.minimum(a.max(2) - b.min(2), b.max(2) - a.min(2)).min(1)
-        return overlap
+        R, t, n = T[:, :3, :3], T[:, :3, 3], len(T)
+        theirs = other.normals @ np.swapaxes(R, 1, 2)
+        out = self._least(other, R, t, np.concatenate([np.broadcast_to(self.normals, (n, *self.normals.shape)), theirs], axis=1))
+        left = np.flatnonzero(out > -SURELY_CLEAR)  # planes along an edge of each are many, and few poses need them
+        if len(left):
+            edges = other.edges @ np.swapaxes(R[left], 1, 2)
+            across = np.cross(self.edges[None, :, None], edges[:, None]).reshape(len(left), -1, 3)
+            size = np.linalg.norm(across, axis=2, keepdims=True)
+            across = np.where(size > 1e-6, across / np.maximum(size, 1e-6), self.normals[0])
+            out[left] = np.minimum(out[left], self._least(other, R[left], t[left], across))
+        return out
+
+    def _least(self, other: Convex, R: FloatArray, t: FloatArray, axes: FloatArray) -> FloatArray:
+        """Return the least overlap along axes `(n, k, 3)` where the other is turned by `R (n, 3, 3)` and moved by `t (n, 3)`."""
+        mine = self.corners @ axes.reshape(-1, 3).T  # corners first: the largest of few rows of many numbers is quick
+        others = other.corners @ (axes @ R).reshape(-1, 3).T
+        at = (axes @ t[:, :, None]).ravel()
+        overlap = np.minimum(mine.max(0) - others.min(0) - at, others.max(0) + at - mine.min(0))
+        least: FloatArray = overlap.reshape(len(t), -1).min(1)
+        return least
 
 
 def _directions(vectors: FloatArray) -> FloatArray:

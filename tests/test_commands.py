@@ -250,6 +250,25 @@ def test_check_of_a_run_holds_its_geometry_too(chest: Path, tmp_path: Path, repo
     assert (code, checked["schema"], checked["ok"]) == (0, "articad.checks/1", True)
 
 
+def test_check_of_the_motion_names_pair_pose_and_depth_whatever_it_is_given(chest: Path, tmp_path: Path, report: Any) -> None:
+    """The lid is let too far back: it meets the box behind the hinge."""
+    code, checked = report("check", chest, "--motion")
+    assert (code, checked["schema"], checked["ok"]) == (0, "articad.checks/1", True)
+    assert {"sampled"} == {pair["strength"]["kind"] for pair in checked["pairs"]}
+    wrong = PLAN | {"joints": [PLAN["joints"][0] | {"angle_deg": [0, 260]}, *PLAN["joints"][1:]]}
+    (chest / "plan.json").write_text(json.dumps(wrong))
+    assert report("build", chest, "--out", tmp_path / "out")[0] == 0
+    for target in (chest, chest / "plan.json", tmp_path / "out"):
+        code, checked = report("check", target, "--motion")
+        assert (code, checked["ok"]) == (1, False)
+        collisions = [finding for finding in checked["findings"] if finding["code"] == "E_MOTION_COLLISION"]
+        assert collisions
+        for finding in collisions:
+            assert len(finding["parts"]) == 2
+            assert finding["pose"]
+            assert finding["value"] > 0
+
+
 def test_export_writes_beside_or_elsewhere_the_same_bytes(chest: Path, tmp_path: Path, report: Any) -> None:
     out = tmp_path / "out"
     assert report("build", chest, "--out", out, "--export", "urdf")[0] == 0

@@ -16,7 +16,7 @@ from articad.certificates.certificate import certify
 from articad.errors import ArticadError
 from articad.findings import Finding
 from articad.interference.body import relative
-from articad.interference.motion import Freedom, freedoms
+from articad.interference.motion import Freedom
 from articad.interference.overlap import volume
 from articad.interference.relations import Groups, Relations
 from articad.interference.sweep import Sweep
@@ -57,7 +57,7 @@ def sample_motion(case: Case, found: Contacts, seconds: float) -> None:
     """Move each joint over its range, then two at a time, until so many nominal seconds of work are spent."""
     budget = Budget(seconds)
     sweep = Sweep(replace(case.scene, relations=_Quiet(case)), case.assembly.mechanism, budget)
-    ranges = [freedom for joint in sweep.driving for freedom in freedoms(joint)]
+    ranges = sweep.ranges()
     guilty = {frozenset(finding.parts) for finding in found.findings}
     resting = _depths_at_rest(found)
     late: list[str] = []

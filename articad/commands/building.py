@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from articad.commands.command import argument, command
-from articad.commands.options import BUILD_ARGUMENTS
-from articad.commands.steps import assembled, reported, stage
+from articad.commands.options import BUILD_ARGUMENTS, SANDBOX
+from articad.commands.steps import assembled, loaded, reported, stage
 
 if TYPE_CHECKING:
     from articad.commands.terminal import Report, Terminal
@@ -30,11 +30,8 @@ def _build(options: argparse.Namespace, terminal: Terminal) -> Report:
     with open_or_create(request, options.out) as run, terminal.progress("Finishing") as tell:
         run.save_plan(plan.dumps(), 0)
         record_assembly(run, assembly)
-        with stage(tell, "checks at rest"):
-            checks = assembly.check()
-        if options.verify == "sampled":
-            with stage(tell, "samples of motion"):
-                checks += assembly.sweep()
+        with stage(tell, "checks of rest and motion" if options.verify == "sampled" else "checks at rest"):
+            checks = assembly.check(motion=options.verify == "sampled")
         record_checks(run, checks)
         if options.verify == "certified":
             with stage(tell, "proof of motion"):
@@ -50,7 +47,15 @@ def _build(options: argparse.Namespace, terminal: Terminal) -> Report:
     return reported(run, terminal)
 
 
-@command("check", "Check a plan, or the plan and the geometry of a finished run.", argument("target", metavar="PLAN_DIR|RUN|FILE"))
+@command(
+    "check",
+    "Check a plan, or the plan and the geometry of a finished run.",
+    argument("target", metavar="PLAN_DIR|RUN|FILE"),
+    argument(
+        "--motion", action="store_true", help="sample the motion, too: drivers alone, two at a time, all at once (builds a plan's parts)"
+    ),
+    SANDBOX,
+)
 def _check(options: argparse.Namespace, terminal: Terminal) -> Report:
     from articad.commands import summaries
     from articad.commands.steps import plan_in
@@ -67,15 +72,13 @@ def _check(options: argparse.Namespace, terminal: Terminal) -> Report:
         name, findings = plan.name, check_plan(plan)
     terminal.findings(findings)
     terminal.say(f"{name}: {summaries.counted(findings)}.")
-    if not findings.ok or not (Path(options.target) / "request.json").is_file():
+    if not findings.ok or not (options.motion or (Path(options.target) / "request.json").is_file()):
         return findings.to_json()
 
-    from articad.runs.record import assembly_of
-    from articad.runs.run import Run
-
-    with Run.view(options.target) as run, terminal.progress("Reading") as tell:
-        checks = assembly_of(run, progress=tell).check()
-    terminal.findings(checks.findings)
+    assembly = loaded(options.target, options, terminal)
+    with terminal.progress("Checking"):
+        checks = assembly.check(motion=options.motion)
     report = checks.to_json()
+    summaries.print_findings(report["findings"], terminal)
     summaries.print_checks(report, terminal)
     return report

@@ -119,6 +119,21 @@ class Scene:
         centres, halves = self.local_boxes
         return boxes_apart((centres[i], halves[i]), (centres[j], halves[j]), T_i_j)
 
+    def boxes_gap(self, i: int, j: int, T_i_j: FloatArray) -> FloatArray:
+        """Return how far apart two bodies are at least, `(n,)` [mm]: what lies between their turned boxes along any of the boxes' axes.
+
+        Args:
+            i: Place of a body.
+            j: Of another.
+            T_i_j: Where that stands as seen from the first, `(n, 3, 4)` [mm].
+        """
+        (c, d), (h, g) = ((sides[i], sides[j]) for sides in self.local_boxes)
+        R = T_i_j[..., :3]
+        away = R @ d + T_i_j[..., 3] - c
+        size = np.abs(R)
+        beyond = np.concatenate([np.abs(away) - h - size @ g, np.abs((R * away[:, :, None]).sum(axis=1)) - g - h @ size], axis=1)
+        return np.maximum(beyond.max(axis=1), 0.0)
+
 
 def relatives(A: FloatArray, B: FloatArray) -> FloatArray:
     """Return where bodies at `B` stand as seen from those at `A`, all `(n, 3, 4)` [mm]."""

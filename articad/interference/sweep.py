@@ -6,7 +6,7 @@ A pair is asked again only where its relative pose is new: while one joint moves
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import combinations, compress, product
@@ -19,8 +19,9 @@ from articad.errors import KinematicsError
 from articad.findings import Finding, Findings
 from articad.geometry.mesh import TriMesh
 from articad.interference.check import broken_finding, unknown_pairs
-from articad.interference.motion import ENDLESS_SLIDE_MM, Freedom, driver_values, freedoms, scattered
+from articad.interference.motion import Freedom, driver_values, freedoms, scattered
 from articad.interference.overlap import VOLUME_NOISE_MM3, Overlap, common, may_overlap, overlap_of
+from articad.interference.ranges import MOST_TURNS, driving_joints, sampled_ranges
 from articad.interference.relations import FitLike, WaiverLike
 from articad.interference.report import Checks, PairCheck, Strength
 from articad.interference.scene import Scene, relatives
@@ -29,11 +30,12 @@ from articad.interference.verdict import UNRELATED_VOLUME_MM3, judge
 from articad.interference.work import CLOSED, PAIRS_PLACED, POSE, TREE_TRIANGLES, Budget, look_price
 from articad.kinematics.joints import Joint
 from articad.kinematics.mechanism import Mechanism
+from articad.kinematics.solution import Solution
 
 FloatArray = NDArray[np.float64]
 
 DEFAULT_STEPS = 60
-ENDLESS_SAMPLED_MM = 100.0  # either way of rest, of what slides without limits
+LIMIT_SLACK = 1e-6  # mm or rad by which a joint that follows may be outside its limits
 _KEY_DIGITS = 9  # of millimetres and of rotation entries: relative poses that agree so far are one
 _WORTH_OUTLINES = 8  # poses to ask for from which comparing outlines first is cheaper
 _DEEPEST = 2  # poses of largest volume at which the depth of a pair is measured
@@ -100,43 +102,62 @@ class Sweep:
         self.scene, self.mechanism, self.budget = scene, mechanism, budget or Budget(math.inf)
         self.queries = 0
         self._known: dict[tuple[str, str], dict[bytes, float]] = {}
-        driving = dict.fromkeys(coordinate.joint for coordinate in mechanism.drivers)  # free ones too, which stand at rest
-        by_name = {joint.name: joint for joint in mechanism.joints}
-        self.driving: tuple[Joint, ...] = tuple(by_name[name] for name in driving)
+        self.driving: tuple[Joint, ...] = driving_joints(mechanism)  # free ones too, which stand at rest
 
     def run(self, joints: Sequence[str] | None, *, steps: int, together: bool, samples: int) -> Checks:
         """Sweep and report; see `sweep`."""
-        chosen = [joint for joint in self.driving if joints is None or joint.name in joints]
-        ranges = [_sampled(freedom) for joint in chosen for freedom in freedoms(joint)]
+        ranges = self.ranges(joints)
         over = tuple(freedom.name for freedom in ranges)
         broken = Findings(broken_finding(name, reason) for name, reason in self.scene.broken.items())
         report = Checks(broken, tuple(unknown_pairs(self.scene, over).values()), self.scene.deflection, over, tuple(self.scene.bodies))
         for freedom in ranges:
-            values = np.linspace(freedom.lower, freedom.upper, max(steps, 2))
+            turns = (freedom.upper - freedom.lower) / (2 * math.pi) if self._is_angle(freedom.name) else 1.0
+            values = np.linspace(freedom.lower, freedom.upper, max(math.ceil(steps * min(max(turns, 1.0), MOST_TURNS)), 2))
             step = float(values[1] - values[0])
             report += self.sampled([{freedom.name: value} for value in values.tolist()], (freedom.name,), step)
         if together:
             side = max(2, round(steps**0.5))
             for pair in combinations(ranges, 2):
-                grid = product(*(np.linspace(freedom.lower, freedom.upper, side).tolist() for freedom in pair))
-                names: tuple[str, ...] = (pair[0].name, pair[1].name)
-                report += self.sampled([dict(zip(names, point, strict=True)) for point in grid], names, None)
+                report += self._several(pair, product(*(np.linspace(freedom.lower, freedom.upper, side) for freedom in pair)))
         if samples and ranges:
-            names = tuple(freedom.name for freedom in ranges)
-            report += self.sampled([dict(zip(names, point, strict=True)) for point in scattered(ranges, samples)], names, None)
+            report += self._several(ranges, scattered(ranges, samples))
         return report
+
+    def _several(self, ranges: Sequence[Freedom], points: Iterable[tuple[float, ...]]) -> Checks:
+        """Check values of several freedoms at once, but those that no cone of a ball allows."""
+        values = np.array(list(points))
+        names = tuple(freedom.name for freedom in ranges)
+        allowed = values[self.within_cones(ranges, values)].tolist()
+        return self.sampled([dict(zip(names, point, strict=True)) for point in allowed], names, None)
+
+    def ranges(self, joints: Sequence[str] | None = None) -> list[Freedom]:
+        """Return what is moved, each over the range that it is sampled over: of some joints, or of all that drive."""
+        chosen = {joint.name for joint in self.driving if joints is None or joint.name in joints}
+        return [freedom for freedom in self._ranges if freedom.name.split(".")[0] in chosen]
+
+    @cached_property
+    def _ranges(self) -> tuple[Freedom, ...]:
+        return sampled_ranges(self.mechanism)
+
+    def _is_angle(self, name: str) -> bool:
+        return any(driver.name == name and driver.unit == "rad" for driver in self.mechanism.drivers)
 
     def sampled(self, points: Sequence[Mapping[str, float]], over: tuple[str, ...], step: float | None) -> Checks:
         """Check poses given by values of freedoms, the others at rest."""
-        self.budget.spend(len(points) * (CLOSED if self.mechanism.loop_joints else POSE))
+        findings: list[Finding] = []
         try:
-            poses = self.mechanism.poses(np.array([self.columns(point) for point in points])).matrix
+            kept, poses, solution = self.placed(points)
         except KinematicsError as error:
-            return self._unreached(error, over)
+            return Checks(self._unreached(error.findings, error.message, over), (), self.scene.deflection, over, tuple(self.scene.bodies))
+        if not solution.ok:
+            missed = f"{int((~solution.reached).sum())} of {len(points)} poses are not reached."
+            findings += self._unreached(solution.findings, missed, over)
+        if not len(kept):
+            return Checks(Findings(findings), (), self.scene.deflection, over, tuple(self.scene.bodies))
+        points = [points[at] for at in kept]
         matrices = poses[:, [self.mechanism.part_index(name) for name in self.scene.bodies], :3]
         turning = Turning.of(self.scene, self.mechanism, over[0], poses[0], matrices[0]) if len(over) == 1 else None
         tracks = self._tracks(matrices, turning)
-        findings: list[Finding] = []
         pairs: list[PairCheck] = []
         strength = Strength.sampled(len(points), step)
         for (a, b), track in tracks.items():
@@ -145,6 +166,31 @@ class Sweep:
             findings += found
         bare = tuple(name for name in self.mechanism.parts if name not in self.scene.bodies)
         return Checks(Findings(findings), tuple(pairs), self.scene.deflection, over, tuple(self.scene.bodies), bare)
+
+    def placed(self, points: Sequence[Mapping[str, float]]) -> tuple[NDArray[np.int64], FloatArray, Solution]:
+        """Place all parts at values of freedoms, the others at rest.
+
+        Returns:
+            Which points are reached with everything that follows within its limits; matrices of all parts there `(n, N, 4, 4)`; and
+            what was reached at all.
+
+        Raises:
+            KinematicsError: If a loop is open at rest.
+        """
+        self.budget.spend(len(points) * (CLOSED if self.mechanism.loop_joints else POSE))
+        solution = self.mechanism.solve(np.array([self.columns(point) for point in points]))
+        kept = np.flatnonzero(solution.reached & self._within_limits(solution.columns))
+        return kept, np.asarray(solution.poses[kept].matrix), solution
+
+    def within_cones(self, ranges: Sequence[Freedom], points: FloatArray) -> NDArray[np.bool_]:
+        """Return which values `(n, freedoms)` keep every ball within its cone: a swing (sx, sy) has the length of its angle."""
+        places = {freedom.name: at for at, freedom in enumerate(ranges)}
+        inside = np.ones(len(points), dtype=bool)
+        for name, at in places.items():
+            other = places.get(f"{name[:-2]}sy") if name.endswith(".sx") else None
+            if other is not None:
+                inside &= np.hypot(points[:, at], points[:, other]) <= ranges[at].upper * (1 + LIMIT_SLACK)
+        return inside
 
     def columns(self, point: Mapping[str, float]) -> list[float]:
         """Return the drivers' values `(nq,)` for values of some freedoms, the others at rest."""
@@ -220,20 +266,19 @@ class Sweep:
         check, findings = judge(self.scene, parts, worst, over=over, strength=strength, pose=where, baseline=baseline)
         return check, findings
 
-    def _unreached(self, error: KinematicsError, over: tuple[str, ...]) -> Checks:
+    def _within_limits(self, columns: FloatArray) -> NDArray[np.bool_]:
+        """Return in which configurations `(n, columns)` everything that follows drivers is within its limits."""
+        driving = {driver.name for driver in self.mechanism.drivers}
+        followers = [at for at, c in enumerate(self.mechanism.coordinates) if c.name not in driving and c.unit != "1"]
+        bounds = np.array([(c.lower, c.upper) for c in self.mechanism.coordinates]).reshape(-1, 2)[followers]
+        values = columns[:, followers]
+        return np.asarray(((bounds[:, 0] - LIMIT_SLACK <= values) & (values <= bounds[:, 1] + LIMIT_SLACK)).all(axis=1))
+
+    def _unreached(self, causes: Sequence[Finding] | Findings, what: str, over: tuple[str, ...]) -> Findings:
         finding = Finding(
             code="E_NOT_CHECKED",
             where=f"joints.{over[0].split('.')[0]}",
-            message=f"The motion over {', '.join(over)} cannot be sampled: {error.message}",
+            message=f"The motion over {', '.join(over)} is not all sampled: {what}",
             hint="Narrow the limits to what the mechanism can reach.",
         )
-        return Checks(Findings([*error.findings, finding]), (), self.scene.deflection, over, tuple(self.scene.bodies))
-
-
-def _sampled(freedom: Freedom) -> Freedom:
-    """Return a range that can be sampled: of what slides without limits a piece about rest."""
-    if freedom.upper - freedom.lower < ENDLESS_SLIDE_MM:
-        return freedom
-    return freedom._replace(
-        lower=max(freedom.lower, freedom.rest - ENDLESS_SAMPLED_MM), upper=min(freedom.upper, freedom.rest + ENDLESS_SAMPLED_MM)
-    )
+        return Findings([*causes, finding])

@@ -1,0 +1,103 @@
+"""Ranges over which drivers are sampled, so that sweeps, audits and clearances look at the same motion.
+
+A driver with limits is sampled between them. One without limits is sampled over the travel after which everything that follows it has
+come back: one turn, or several turns where couplings or loops need them. What slides or screws away without limits is sampled over a
+piece about rest.
+"""
+
+from __future__ import annotations
+
+import math
+
+from articad.interference.motion import ENDLESS_SLIDE_MM, Freedom, freedoms, radians_per_mm, slides_endlessly, travels
+from articad.kinematics.joints import Coordinate, Joint, JointType
+from articad.kinematics.mechanism import Mechanism
+from articad.kinematics.motion import track_of
+from articad.kinematics.track import Track
+
+ENDLESS_SAMPLED_MM = 100.0  # either way of rest, of what slides without limits
+MOST_TURNS = 16  # of a driver whose followers come back later than that, or never
+_WHOLE = 1e-9  # turns by which a follower may be off a whole number of turns
+
+
+def driving_joints(mechanism: Mechanism) -> tuple[Joint, ...]:
+    """Return the joints that hold a driver, in the order of the drivers."""
+    by_name = {joint.name: joint for joint in mechanism.joints}
+    return tuple(by_name[name] for name in dict.fromkeys(coordinate.joint for coordinate in mechanism.drivers))
+
+
+def sampled_ranges(mechanism: Mechanism) -> tuple[Freedom, ...]:
+    """Return every freedom that drives, with the range over which it is sampled [rad or mm]."""
+    places = {driver.name: index for index, driver in enumerate(mechanism.drivers)}
+    found = []
+    for joint in driving_joints(mechanism):
+        for freedom in travels(joint):
+            index = places.get(freedom.name)
+            if index is not None and math.isinf(mechanism.drivers[index].upper - mechanism.drivers[index].lower):
+                found.append(_endless(mechanism, joint, index, freedom))
+            elif index is not None or joint.type is JointType.BALL:
+                found.append(freedom)
+    return tuple(found)
+
+
+def _endless(mechanism: Mechanism, joint: Joint, index: int, freedom: Freedom) -> Freedom:
+    """Return the range of a driver that lacks a limit, or both."""
+    driver = mechanism.drivers[index]
+    track = track_of(mechanism, index, mechanism.rest)
+    if track is None and _slides(joint, driver):
+        return _piece(joint, freedom)
+    if track is None:
+        return next(one for one in freedoms(joint) if one.name == freedom.name)
+    ends = mechanism.feasible_range(driver.name)
+    lower = ends.lower if ends.lower_reason.startswith("limit of ") else driver.lower
+    upper = ends.upper if ends.upper_reason.startswith("limit of ") else driver.upper
+    length = _return_travel(mechanism, track, driver, -1 if math.isfinite(upper) else 1)
+    if math.isinf(lower) and math.isinf(upper):
+        lower, upper = freedom.rest - length / 2, freedom.rest + length / 2
+    elif math.isinf(lower):
+        lower = upper - length * max(1, math.ceil((upper - freedom.rest) / length))
+    elif math.isinf(upper):
+        upper = lower + length * max(1, math.ceil((freedom.rest - lower) / length))
+    return freedom._replace(lower=lower, upper=upper)
+
+
+def _slides(joint: Joint, driver: Coordinate) -> bool:
+    return driver.unit == "mm" or (joint.type is JointType.SCREW and slides_endlessly(joint))
+
+
+def _piece(joint: Joint, freedom: Freedom) -> Freedom:
+    """Return a piece about rest of what slides or screws without limits."""
+    per_mm = radians_per_mm(joint) if joint.type is JointType.SCREW else 1.0
+    if freedom.upper - freedom.lower < ENDLESS_SLIDE_MM * per_mm:
+        return freedom
+    far = ENDLESS_SAMPLED_MM * per_mm
+    return freedom._replace(lower=max(freedom.lower, freedom.rest - far), upper=min(freedom.upper, freedom.rest + far))
+
+
+def _return_travel(mechanism: Mechanism, track: Track, driver: Coordinate, sign: int) -> float:
+    """Return the travel of a driver after which everything that follows has come back [rad or mm], up to a largest one.
+
+    Couplings alone: followers turn at fixed rates `k` per turn of the driver. They are back after the least `n` for which all `n k` are
+    whole numbers. What slides never comes back, so that its travel sets the end.
+    """
+    system = track.follower.system
+    rates = [(driver, 1.0), *((system.layout.coordinates[column], ratio) for column, ratio, _ in system.ties.tied_to(track.column))]
+    slid = [2 * ENDLESS_SAMPLED_MM / rate for c, ratio in rates if (rate := _travel_per_unit(mechanism, c, ratio)) > 0]
+    if driver.unit == "mm":
+        return min(slid, default=2 * ENDLESS_SAMPLED_MM)
+    period = track.period(sign) if system.loops and not slid else None
+    if period is not None:
+        return period.length
+    turns = [ratio for c, ratio in rates if c.unit == "rad"]
+    count = next((n for n in range(1, MOST_TURNS + 1) if all(abs(n * k - round(n * k)) < _WHOLE for k in turns)), MOST_TURNS)
+    return max([2 * math.pi * count, *([min(slid)] if slid else [])])
+
+
+def _travel_per_unit(mechanism: Mechanism, coordinate: Coordinate, ratio: float) -> float:
+    """Return by how much [mm] a coordinate without limits takes its part along, per unit of the driver that it follows at a ratio."""
+    joint = next(joint for joint in mechanism.joints if joint.name == coordinate.joint)
+    if not slides_endlessly(joint):
+        return 0.0
+    if coordinate.unit == "mm":
+        return abs(ratio)
+    return abs(ratio) / radians_per_mm(joint) if joint.type is JointType.SCREW else 0.0
