@@ -230,7 +230,7 @@ def _limited(specimen: Specimen, rng: np.random.Generator) -> tuple[Mechanism, d
         way = equations.follow(names, goal)
         if any(abs(way[-1].s[equations.place[name]] - value) > 1e-9 for name, value in goal.items()):
             return None
-    joints = [replace(j, limits=JointLimits((limits[j.name][0],), (limits[j.name][1],))) if j.name in limits else j for j in free]
+    joints = [replace(j, limits=_limits(j, limits)) if j.type is not JointType.BALL else j for j in free]
     return _remade(specimen.mechanism, joints), spans
 
 
@@ -252,6 +252,11 @@ def _period(mechanism: Mechanism, equations: PoseEquations, names: Sequence[str]
 def _unlimited(joint: Joint) -> JointLimits:
     count = len(joint.limits.lower)
     return joint.limits if joint.type is JointType.BALL else JointLimits((-math.inf,) * count, (math.inf,) * count)
+
+
+def _limits(joint: Joint, limits: dict[str, tuple[float, float]]) -> JointLimits:
+    bounds = [limits.get(name, (-math.inf, math.inf)) for name in joint.column_names]
+    return JointLimits(tuple(low for low, _ in bounds), tuple(high for _, high in bounds))
 
 
 def _remade(mechanism: Mechanism, joints: Sequence[Joint]) -> Mechanism:

@@ -81,8 +81,7 @@ def least_clearances(motion: Sweep, joints: Sequence[str] | None = None, *, toge
     pairs = [found for i, j in search.pairs() if (found := search.nearest(i, j, points[kept], matrices)) is not None]
     pairs.sort(key=lambda pair: pair.gap)
     search.refine(pairs[:NEAREST], together=together)
-    found = [pair.clearance(motion, ranges) for pair in pairs]
-    return tuple(sorted(found, key=lambda one: one.gap))
+    return tuple(sorted((pair.clearance(motion, ranges) for pair in pairs), key=lambda one: one.gap))
 
 
 def searched(motion: Sweep, known: Checks) -> Checks:

@@ -132,7 +132,7 @@ class Scene:
         away = R @ d + T_i_j[..., 3] - c
         size = np.abs(R)
         beyond = np.concatenate([np.abs(away) - h - size @ g, np.abs((R * away[:, :, None]).sum(axis=1)) - g - h @ size], axis=1)
-        return np.maximum(beyond.max(axis=1), 0.0)
+        return np.asarray(np.maximum(beyond.max(axis=1), 0.0))
 
 
 def relatives(A: FloatArray, B: FloatArray) -> FloatArray:

@@ -19,13 +19,13 @@ from articad.kinematics.joints import Joint
 from articad.kinematics.mechanism import Mechanism
 from tests.interference.mechanisms import at, fixed, joint
 
-ENDLESS = {"lower": (-math.inf,), "upper": (math.inf,)}
+BELOW, ABOVE = (-math.inf,), (math.inf,)
 
 
 def geared(ratio: float, *, slow_limits: tuple[float, float] = (-math.inf, math.inf), rest: float = 0.0) -> Mechanism:
     """A fast crank that drives, and an arm that follows at a ratio; the post stands on the frame."""
     joints = [
-        joint("fast", "revolute", "frame", "crank", **ENDLESS, rest=(rest,)),
+        joint("fast", "revolute", "frame", "crank", lower=BELOW, upper=ABOVE, rest=(rest,)),
         joint("slow", "revolute", "frame", "arm", lower=slow_limits[:1], upper=slow_limits[1:], rest=(ratio * rest,)),
         fixed("held", "frame", "post"),
     ]
@@ -84,7 +84,10 @@ def test_an_endless_screw_is_sampled_as_far_as_a_slide_without_limits(lower: flo
 
 def test_what_an_endless_driver_pushes_along_is_sampled_as_far_as_a_slide_without_limits() -> None:
     """Rack and pinion without limits: 5 mm for each radian."""
-    joints = [joint("pinion", "revolute", "frame", "wheel", **ENDLESS), joint("rack", "slider", "frame", "bar", **ENDLESS)]
+    joints = [
+        joint("pinion", "revolute", "frame", "wheel", lower=BELOW, upper=ABOVE),
+        joint("rack", "slider", "frame", "bar", lower=BELOW, upper=ABOVE),
+    ]
     mechanism = Mechanism(("frame", "wheel", "bar"), "frame", joints, [Coupling("mesh", "linear", "pinion", "rack", 5.0, 0.0)])
     (pinion,) = sampled_ranges(mechanism)
     assert 5.0 * (pinion.upper - pinion.lower) == pytest.approx(2 * ENDLESS_SAMPLED_MM)
@@ -104,7 +107,7 @@ def test_what_is_reached_is_sampled_where_not_all_is_and_that_is_said() -> None:
     names = ["crank", "rod", "rocker"]
     ends = [("frame", "crank"), ("crank", "rod"), ("rod", "rocker"), ("frame", "rocker")]
     joints: list[Joint] = [
-        joint(f"j{k}", "revolute", a, b, at_parent=place, at_child=place, **ENDLESS)
+        joint(f"j{k}", "revolute", a, b, at_parent=place, at_child=place, lower=BELOW, upper=ABOVE)
         for k, ((a, b), place) in enumerate(zip(ends, places, strict=True))
     ]
     mechanism = Mechanism(("frame", *names, "post"), "frame", [*joints, fixed("held", "frame", "post")])
