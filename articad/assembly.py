@@ -21,6 +21,7 @@ from articad.geometry.mesh import TriMesh
 from articad.geometry.part import MassProperties, Part
 from articad.interference.check import Checks, check_scene
 from articad.interference.clearance import Clearance, least_clearances, searched
+from articad.interference.following import ROWS, Following, what_follows
 from articad.interference.report import PairCheck
 from articad.interference.scene import Scene
 from articad.interference.sweep import DEFAULT_STEPS
@@ -486,6 +487,15 @@ class Assembly:
             together: Whether to move several drivers at once, too.
         """
         return least_clearances(self._moved(), joints, together=together)
+
+    def follows(self, joints: Sequence[str] | None = None, *, rows: int = ROWS) -> tuple[Following, ...]:
+        """Return a table of what follows each driver of loops and couplings, the other drivers at rest.
+
+        Args:
+            joints: Names of the joints that drive; all by default.
+            rows: Values of each driver, evenly over its range, beside the rest value.
+        """
+        return what_follows(self._moved(), joints, rows=rows)
 
     def certify(
         self,

@@ -28,13 +28,16 @@ from articad.connectors.se3 import SE3
 from articad.errors import KinematicsError
 from articad.findings import Finding, Findings
 from articad.geometry.mesh import TriMesh
+from articad.interference.clearance import Clearance, least_clearances
 from articad.interference.cover import cover_line
+from articad.interference.following import Following, what_follows
 from articad.interference.motion import Route, Values, freedoms, proven_freedoms, routes, slides_endlessly
 from articad.interference.overlap import NOTHING, Overlap, overlap
 from articad.interference.relations import FitLike, WaiverLike
 from articad.interference.report import PairCheck, Row, Strength, rounded
 from articad.interference.scene import Scene
 from articad.interference.surface import Surface, surface_distance, whole_surface
+from articad.interference.sweep import Sweep
 from articad.interference.verdict import judge
 from articad.interference.work import Budget
 from articad.kinematics.joints import Joint, JointType
@@ -96,6 +99,8 @@ class Certificate:
         followed: Pieces of the drivers' ranges, as arrays that a checker reads.
         fits: Declared fits against what was measured and proven, in the order of the joints.
         spans: Between which values each coordinate that follows is proven to stay [rad or mm].
+        clearances: Smallest distance seen of each two parts over the motion, the nearest first: sampled, not proven.
+        follows: Table of what follows each driver of loops and couplings.
     """
 
     findings: Findings
@@ -115,6 +120,8 @@ class Certificate:
     followed: Mapping[str, Any] = field(default_factory=dict)
     fits: tuple[Row, ...] = ()
     spans: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    clearances: tuple[Clearance, ...] = ()
+    follows: tuple[Following, ...] = ()
 
     @property
     def ok(self) -> bool:
@@ -145,6 +152,8 @@ class Certificate:
                 for r in self.ranges
             ],
             "claims": [claim.to_json() for claim in self.claims],
+            "clearances": [row.to_json() for row in self.clearances],
+            "follows": [row.to_json() for row in self.follows],
             **({"fits": [row.to_json() for row in self.fits]} if self.fits else {}),
         }
 
@@ -275,6 +284,7 @@ class _Certifying:
             self._followed(prover, prover.prove())
         self._report_left()
         self._report_unreached()
+        motion = Sweep(self.scene, self.mechanism)
         return Certificate(
             Findings(self.findings),
             tuple(self.verdicts),
@@ -292,6 +302,8 @@ class _Certifying:
             self.budget.elapsed,
             {key: array for way in self._ways.values() if not isinstance(way, str) for key, array in way.arrays().items()},
             spans=self._spans(),
+            clearances=least_clearances(motion, self.asked, together=self.together),
+            follows=what_follows(motion, self.asked),
         )
 
     def _with_drivers(self) -> Sequence[str] | None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any
@@ -11,6 +12,7 @@ if TYPE_CHECKING:
     from articad.findings import Findings
 
 _CELL = 60  # characters of a value in a table
+_NEAREST = 3  # pairs, or coordinates that follow, that are shown unless all are asked for
 
 
 def print_run(report: Report, terminal: Terminal) -> None:
@@ -87,7 +89,44 @@ def print_certificate(report: Report, terminal: Terminal) -> None:
                 f"  {free['joint']}: free in [{free['free'][0]:.6g}, {free['free'][1]:.6g}], declared {free['declared']} (rad, mm)"
             )
     print_fits(report, terminal)
+    print_clearances(report.get("clearances", []), terminal)
+    print_follows(report.get("follows", []), terminal)
     print_findings(report["findings"], terminal)
+
+
+def print_clearances(rows: list[Report], terminal: Terminal) -> None:
+    """Print where parts that no joint connects come nearest to each other; all pairs if that is asked for."""
+    shown = rows if terminal.verbose else [row for row in rows if row["relation"] != "mating"][:_NEAREST]
+    if not shown:
+        return
+    terminal.say("Least clearances, sampled and not proven (rad, mm):")
+    for row in shown:
+        pose = ", ".join(f"{name} = {value:.4g}" for name, value in row["pose"].items()) or "rest"
+        terminal.say(f"  {' and '.join(row['parts'])}: {row['gap_mm']:.4g} mm at {pose} ({row['strength']['poses']} poses)")
+    if len(shown) < len(rows):
+        terminal.say(f"  … and {len(rows) - len(shown)} more pairs (-v lists them)")
+
+
+def print_follows(tables: list[Report], terminal: Terminal) -> None:
+    """Print where what follows a driver is at both ends of the driver's range; whole tables if that is asked for."""
+    for table in tables:
+        names, units = list(table["followers"]), table["units"]
+        rows = [
+            [_in_degrees(value, units[table["driver"]]), *(_in_degrees(table["followers"][name][at], units[name]) for name in names)]
+            for at, value in enumerate(table["values"])
+        ]
+        if terminal.verbose:
+            terminal.say()
+            terminal.table([table["driver"], *names], rows, right=tuple(range(len(names) + 1)))
+            continue
+        more = f" and {len(names) - _NEAREST} more (-v lists them)" if len(names) > _NEAREST else ""
+        for row in (rows[0], rows[-1]):
+            told = ", ".join(f"{name} {value}" for name, value in zip(names[:_NEAREST], row[1:], strict=False))
+            terminal.say(f"  {table['driver']} {row[0]} → {told}{more}")
+
+
+def _in_degrees(value: float, unit: str) -> str:
+    return f"{math.degrees(value):.4g}°" if unit == "rad" else f"{value:.4g} {unit}"
 
 
 def print_verdict(report: Report, checks: Report, terminal: Terminal) -> None:

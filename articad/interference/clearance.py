@@ -21,19 +21,22 @@ from articad.errors import KinematicsError
 from articad.findings import Findings
 from articad.interference.motion import Freedom, scattered
 from articad.interference.overlap import distance, one_contains_the_other, se3_of, volume
+from articad.interference.relations import Relation
 from articad.interference.report import Checks, Strength, rounded
 from articad.interference.scene import relatives
 from articad.interference.sweep import Sweep
 
 FloatArray = NDArray[np.float64]
 
-LINE, SIDE, SCATTERED = 25, 6, 96  # poses along one driver, on a side of a grid of two, and over all
+LINE, SIDE, SCATTERED = 17, 6, 96  # poses along one driver, on a side of a grid of two, and over all
 MOST_GRIDS = 60  # of two drivers
 NEAREST = 60  # pairs that are searched further, the nearest first
 ROUNDS = 24  # of that search
 FIRST_STEP = 1 / (LINE - 1)  # of a range
-LEAST_STEP = 1e-7  # of a range
+LEAST_STEP = 1e-5  # of a range
+JOINED = 9  # poses of two parts that a joint connects: they keep their fit, and distances of mating surfaces cost most
 _KEY_DIGITS = 6  # of mm and rotation entries: relative poses that agree so far are one
+FLAT_MM = 1e-6  # a distance that varies by less about a pose does not depend on it
 _SAME_MM = 1e-3  # over which distances must vary for the parts to move against each other
 
 
@@ -46,12 +49,14 @@ class Clearance:
         gap: Distance of their meshes there [mm]; 0 where they touch or overlap.
         pose: Values of what was moved, the rest stands at rest [rad, mm].
         poses: How many poses of the two were looked at: more would find the same or less.
+        relation: "mating" when a joint connects them, else "unrelated".
     """
 
     parts: tuple[str, str]
     gap: float
     pose: Mapping[str, float]
     poses: int
+    relation: Relation
 
     @property
     def strength(self) -> Strength:
@@ -61,7 +66,8 @@ class Clearance:
     def to_json(self) -> dict[str, Any]:
         """Return the JSON object of a report."""
         pose = {name: rounded(value) for name, value in self.pose.items()}
-        return {"parts": list(self.parts), "gap_mm": rounded(self.gap), "pose": pose, "strength": self.strength.to_json()}
+        told = {"parts": list(self.parts), "relation": self.relation, "gap_mm": rounded(self.gap), "pose": pose}
+        return {**told, "strength": self.strength.to_json()}
 
 
 def least_clearances(motion: Sweep, joints: Sequence[str] | None = None, *, together: bool = True) -> tuple[Clearance, ...]:
@@ -80,7 +86,7 @@ def least_clearances(motion: Sweep, joints: Sequence[str] | None = None, *, toge
     kept, matrices = search.placed(points)
     pairs = [found for i, j in search.pairs() if (found := search.nearest(i, j, points[kept], matrices)) is not None]
     pairs.sort(key=lambda pair: pair.gap)
-    search.refine(pairs[:NEAREST], together=together)
+    search.refine([pair for pair in pairs if not search.are_joined(pair.i, pair.j)][:NEAREST], together=together)
     return tuple(sorted((pair.clearance(motion, ranges) for pair in pairs), key=lambda one: one.gap))
 
 
@@ -141,7 +147,8 @@ class _Pair:
     def clearance(self, motion: Sweep, ranges: Sequence[Freedom]) -> Clearance:
         names = list(motion.scene.bodies)
         pose = {f.name: float(value) for f, value in zip(ranges, self.at, strict=True) if value != f.rest}
-        return Clearance((names[self.i], names[self.j]), max(self.gap, 0.0), pose, self.poses)
+        parts = names[self.i], names[self.j]
+        return Clearance(parts, max(self.gap, 0.0), pose, self.poses, motion.scene.relations.of(*parts))
 
 
 class _Search:
@@ -180,14 +187,16 @@ class _Search:
         _, first = np.unique(np.round(relative, _KEY_DIGITS), axis=0, return_index=True)
         bound = self.scene.boxes_gap(i, j, relative[first])
         order = np.argsort(bound, kind="stable")
-        best, where = math.inf, int(first[order[0]])
+        if self.are_joined(i, j):
+            order = order[np.unique(np.linspace(0, len(order) - 1, JOINED).round().astype(np.int64))]
+        best, where, looked = math.inf, int(first[order[0]]), len(order)
         for at in order.tolist():
             if bound[at] >= best or best <= 0.0:
                 break
             gap = self._distance(i, j, relative[first[at]])
             if gap < best:
                 best, where = gap, int(first[at])
-        return _Pair(i, j, best, points[where].copy(), movers or list(range(len(self.ranges))), len(first))
+        return _Pair(i, j, best, points[where].copy(), movers or list(range(len(self.ranges))), looked)
 
     def refine(self, pairs: Sequence[_Pair], *, together: bool) -> None:
         """Look for nearer poses beside those found, all pairs in one batch a round."""
@@ -199,22 +208,27 @@ class _Search:
             inside = np.flatnonzero(self.motion.within_cones(self.ranges, points))
             kept, matrices = self.placed(points[inside])
             before = {id(pair): pair.gap for pair in pairs}
+            flat = set(before)
             for row, at in enumerate(inside[kept].tolist()):
                 pair = tried[at][0]
                 relative = relatives(matrices[row : row + 1, pair.i], matrices[row : row + 1, pair.j])
                 pair.poses += 1
                 if self.scene.boxes_gap(pair.i, pair.j, relative)[0] <= max(pair.gap, 0.0):
                     gap = self._distance(pair.i, pair.j, relative[0])
+                    if abs(gap - before[id(pair)]) > FLAT_MM:
+                        flat.discard(id(pair))
                     if gap < pair.gap:
                         pair.gap, pair.at = gap, points[at]
+                else:
+                    flat.discard(id(pair))
             for pair in pairs:
-                if pair.gap == before[id(pair)]:
+                if id(pair) in flat:  # such as two parts that turn about one axis
+                    pair.step = 0.0
+                elif pair.gap == before[id(pair)]:
                     pair.step /= 3
 
     def _beside(self, pair: _Pair, *, together: bool) -> Iterator[FloatArray]:
         """Yield values one step up and down each freedom that moves a pair."""
-        if pair.gap <= 0 and not self._may_deepen(pair.i, pair.j):
-            return
         moved = [k for k in pair.movers if pair.at[k] != self.ranges[k].rest]
         for k in pair.movers if together or not moved else moved[:1]:
             for sign in (-1.0, 1.0):
@@ -223,9 +237,9 @@ class _Search:
                 if row[k] != pair.at[k]:
                     yield row
 
-    def _may_deepen(self, i: int, j: int) -> bool:
-        """Return whether it is asked how deep two parts meet: not of those that a joint holds together."""
-        return not self.scene.relations.between(self.names[i], self.names[j])
+    def are_joined(self, i: int, j: int) -> bool:
+        """Return whether a joint connects two bodies: then they may touch, and how deep they meet is not asked."""
+        return bool(self.scene.relations.between(self.names[i], self.names[j]))
 
     def _distance(self, i: int, j: int, T: FloatArray) -> float:
         """Return the distance of two bodies; of those that no joint holds together, minus the cube root of what they share [mm]."""
@@ -233,4 +247,4 @@ class _Search:
         gap = distance(a, b, se3_of(T))
         if gap > 0 and not one_contains_the_other(a, b, T):
             return gap
-        return -(max(volume(a, b, T), 0.0) ** (1 / 3)) if self._may_deepen(i, j) else 0.0
+        return -(max(volume(a, b, T), 0.0) ** (1 / 3)) if not self.are_joined(i, j) else 0.0
