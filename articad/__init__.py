@@ -21,6 +21,7 @@ _MODULE_OF = {
     "Checks": "interference.check",
     "Connector": "connectors.connector",
     "Coupling": "kinematics.joints",
+    "Dynamics": "kinematics.dynamics",
     "Finding": "findings",
     "Findings": "findings",
     "Fit": "plan.resolve",
@@ -132,6 +133,7 @@ if TYPE_CHECKING:
     from articad.kinematics.declare import screw as screw
     from articad.kinematics.declare import slider as slider
     from articad.kinematics.declare import universal as universal
+    from articad.kinematics.dynamics import Dynamics as Dynamics
     from articad.kinematics.joints import Coupling as Coupling
     from articad.kinematics.joints import Joint as Joint
     from articad.kinematics.mechanism import Mechanism as Mechanism

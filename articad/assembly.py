@@ -29,6 +29,7 @@ from articad.interference.sweep import Sweep as MotionSweep
 from articad.kernels.choice import kernel_named
 from articad.kernels.kernel import BuildCache, PartKernel
 from articad.kernels.parts import Progress, RealisedPart, build_parts, find_scripts
+from articad.kinematics.dynamics import GRAVITY, Dynamics
 from articad.kinematics.joints import Coordinate, Coupling, Joint, JointType
 from articad.kinematics.mechanism import Mechanism
 from articad.kinematics.motion import FeasibleRange, Sweep
@@ -548,6 +549,17 @@ class Assembly:
         """
         poses = Poses(self.mechanism.parts, self.poses(self.mechanism.rest if q is None else q))
         return MassProperties.combined([part.mass.moved(poses[name]) for name, part in self.parts.items() if part.mass is not None])
+
+    def dynamics(self, *, gravity: Sequence[float] = GRAVITY) -> Dynamics:
+        """Return the rigid-body dynamics: mass matrix, bias, inverse and forward dynamics, with loops and couplings closed.
+
+        Parts without mass count as massless. Configurations are in mm and rad; velocities, efforts and inertias in SI units.
+
+        Args:
+            gravity: Acceleration [m/s²] in the ground frame.
+        """
+        masses = {name: part.mass for name, part in self.parts.items() if part.mass is not None}
+        return Dynamics(self.mechanism, masses, gravity=gravity)
 
     def to_plan(self) -> AssemblyPlan:
         """Return the plan it was made from, with its parameters as they are, or a plan that tells it anew.

@@ -22,10 +22,11 @@ from dataclasses import dataclass, replace
 
 from articad.export.carried import LEAST_REACH_M, MM_PER_M, Carried, CarriedParts
 from articad.geometry.part import Part
+from articad.kinematics.dynamics import GRAVITY
 from articad.kinematics.joints import Joint, JointType
 from articad.kinematics.mechanism import Mechanism
 
-GRAVITY_M_S2 = 9.81
+GRAVITY_M_S2 = -GRAVITY[2]
 MARGIN = 2.0  # for friction and acceleration, on top of holding the load
 DAMPING_SHARE = 0.05  # of the effort, spent at full velocity
 
