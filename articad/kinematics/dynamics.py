@@ -181,7 +181,8 @@ class Dynamics:
         state = self._state(q, self._velocity(v))
         tau: FloatArray = self._array(efforts, "efforts") / self._effort[self._driving]
         EZ = self._driven(state)
-        z: FloatArray = np.linalg.solve(state.Z.T @ state.M @ state.Z, EZ.T @ tau - state.Z.T @ (state.M @ state.c + state.h))
+        pull: FloatArray = np.asarray(EZ.T @ tau, dtype=np.float64) - state.Z.T @ (state.M @ state.c + state.h)
+        z: FloatArray = np.asarray(np.linalg.solve(state.Z.T @ state.M @ state.Z, pull), dtype=np.float64)
         return self._result(state, z, tau)
 
     def centre_of_mass(self, q: npt.ArrayLike) -> FloatArray:
