@@ -29,6 +29,7 @@ from articad.interference.sweep import Sweep as MotionSweep
 from articad.kernels.choice import kernel_named
 from articad.kernels.kernel import BuildCache, PartKernel
 from articad.kernels.parts import Progress, RealisedPart, build_parts, find_scripts
+from articad.kinematics.configuration import Configuration
 from articad.kinematics.dynamics import GRAVITY, Dynamics
 from articad.kinematics.joints import Coordinate, Coupling, Joint, JointType
 from articad.kinematics.mechanism import Mechanism
@@ -424,7 +425,8 @@ class Assembly:
         Raises:
             KinematicsError: E_REACH_BARRED if the target is reached only where parts meet.
         """
-        return self.mechanism.reach(part, target, self._frame(part, frame), accept=self._is_clear if clear else None)
+        accept = (lambda q: self._is_clear(self.mechanism.configuration(q))) if clear else None
+        return self.mechanism.reach(part, target, self._frame(part, frame), accept=accept)
 
     # ------------------------------------------------------------------ what is true of it
 
@@ -623,9 +625,11 @@ class Assembly:
             return self.parts[part][frame].connector.frame
         return SE3.identity() if frame is None else frame
 
-    def _is_clear(self, q: FloatArray) -> bool:
+    def _is_clear(self, configuration: Configuration) -> bool:
         """Tell whether no two parts overlap in a configuration beyond what joints, fits and waivers allow."""
-        return all(pair.verdict in {"clear", "contact"} for pair in self.check(q).pairs)
+        poses = Poses(self.mechanism.parts, self.mechanism.arrays.poses(configuration.columns))
+        checks = check_scene(self.scene(), poses, over="pose", ground=self.ground)
+        return all(pair.verdict in {"clear", "contact"} for pair in checks.pairs)
 
     def _refuse_followers_outside_limits(self, q: FloatArray, names: Iterable[str]) -> None:
         if self.mechanism.is_tree:

@@ -398,7 +398,7 @@ class Mechanism:
         """
         return reach(self, part, target, SE3.identity() if T_part_frame is None else T_part_frame, starts, accept)
 
-    def path(self, start: npt.ArrayLike, goal: npt.ArrayLike, *, accept: Callable[[FloatArray], bool] | None = None) -> FloatArray:
+    def path(self, start: npt.ArrayLike, goal: npt.ArrayLike, *, accept: Callable[[Configuration], bool] | None = None) -> FloatArray:
         """Return waypoints of the drivers from one configuration to another, straight lines between which keep to branch and limits.
 
         Straight where that is free, else two random trees that meet (RRT-Connect), seeded: the same question has the same answer.
@@ -407,7 +407,7 @@ class Mechanism:
         Args:
             start: Values of the drivers `(nq,)` [rad, mm].
             goal: The same [rad, mm]; the way ends in the configuration that `poses` has there.
-            accept: Decides whether drivers' values `(nq,)` [rad, mm] on the way will do, such as that no parts meet.
+            accept: Decides whether a configuration on the way will do, such as that no parts meet.
 
         Returns:
             `(n, nq)`, start and goal included.

@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 
 _LONGEST_TRAVEL = 100.0  # lengths L that an unlimited slider is followed
 _SAMPLES_PER_STEP = 4  # between two nodes, where limits of other joints are looked at
+_UNREACHED = ""  # in place of a coordinate's name
+_END = 1e-6  # of a trace: how near its end a pose may fail to close
 _SPLITS, _ROUNDS = 16, 10  # a limit is located to 16⁻¹⁰ of a step
 
 
@@ -218,7 +220,7 @@ def _first_violation(track: Track, trace: Trace, sign: int, coordinate: Coordina
     if len(stations) == 1:  # stopped where it stands
         return None
     fine = np.unique(np.concatenate([np.linspace(a, b, _SAMPLES_PER_STEP + 1) for a, b in itertools.pairwise(stations)]))
-    names, margins = _margins(track, sign, fine, coordinate)
+    names, margins = _margins(track, sign, fine, coordinate, trace.end)
     if not names or not (margins < -LIMIT_SLACK).any():
         return None
     for _ in range(_ROUNDS):
@@ -227,16 +229,20 @@ def _first_violation(track: Track, trace: Trace, sign: int, coordinate: Coordina
             break
         a, b = fine[first - 1], fine[first]
         fine = np.linspace(a, b, _SPLITS + 1)
-        names, margins = _margins(track, sign, fine, coordinate)
+        names, margins = _margins(track, sign, fine, coordinate, trace.end)
         if not (margins < -LIMIT_SLACK).any():
             break
     first = int(np.argmax((margins < -LIMIT_SLACK).any(axis=0)))
     worst = int(np.argmin(margins[:, first]))
-    return track.value(sign, float(fine[max(0, first - 1)])), f"limit of {names[worst]}"
+    reason = str(Stop.STEPS) if names[worst] == _UNREACHED else f"limit of {names[worst]}"
+    return track.value(sign, float(fine[max(0, first - 1)])), reason
 
 
-def _margins(track: Track, sign: int, s: FloatArray, coordinate: Coordinate) -> tuple[list[str], FloatArray]:
-    """Return for every bounded coordinate but the driver's how far it is inside its limits, `(names, len(s))`."""
+def _margins(track: Track, sign: int, s: FloatArray, coordinate: Coordinate, end: float) -> tuple[list[str], FloatArray]:
+    """Return for every bounded coordinate but the driver's how far it is inside its limits, `(names, len(s))`.
+
+    Where the linkage was not closed a last row is minus infinity.
+    """
     values = np.array([track.value(sign, float(x)) for x in s])
     Q, reached, _ = track.evaluate(values)
     layout = track.follower.system.layout
@@ -260,6 +266,9 @@ def _margins(track: Track, sign: int, s: FloatArray, coordinate: Coordinate) -> 
                 rows.append(np.minimum(own[:, i] - c.lower, c.upper - own[:, i]))
     margins = np.array(rows).reshape(len(names), len(s))
     margins[:, ~reached] = np.inf
+    if not reached.all():  # whether limits hold there is not known; at the very end of a trace a dead point may keep it from closing
+        names.append(_UNREACHED)
+        margins = np.vstack([margins, np.where(reached | (s >= end * (1 - _END)), np.inf, -np.inf)])
     return names, margins
 
 

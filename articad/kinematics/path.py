@@ -24,7 +24,7 @@ from articad.kinematics.loops import characteristic_length
 if TYPE_CHECKING:
     from articad.kinematics.mechanism import Mechanism
 
-Accept = Callable[[FloatArray], bool]
+Accept = Callable[[Configuration], bool]
 
 _STEP = 0.1  # rad, or lengths L: between two looks at limits, and at what else is asked
 _EXTENSION = 0.6  # rad, or lengths L: that a tree grows at once
@@ -60,7 +60,7 @@ class Planner:
 
     Args:
         mechanism: Whose drivers move.
-        accept: Tells of drivers' values `(nq,)` within limits whether they will do; None asks for limits alone.
+        accept: Tells of a configuration within limits whether it will do; None asks for limits alone.
     """
 
     def __init__(self, mechanism: Mechanism, accept: Accept | None) -> None:
@@ -161,9 +161,10 @@ class Planner:
         return found
 
     def _is_free(self, Q: FloatArray) -> bool:
-        if Configuration(self.mechanism.joints, Q).violations():
+        configuration = Configuration(self.mechanism.joints, Q)
+        if configuration.violations():
             return False
-        return self.accept is None or self.accept(Q[self._columns])
+        return self.accept is None or self.accept(configuration)  # not `poses(q)`: at q the mechanism may have several configurations
 
     def _shortened(self, way: list[FloatArray]) -> list[FloatArray]:
         for _ in range(_SHORTCUTS):
@@ -182,8 +183,9 @@ def path(mechanism: Mechanism, start: npt.ArrayLike, goal: npt.ArrayLike, accept
     for name, q in zip(("start", "goal"), ends, strict=True):
         if q.shape != (mechanism.nq,):
             raise KinematicsError(f"The {name} of a path is one configuration ({mechanism.nq},); it has shape {q.shape}.")
-        mechanism.configuration(q).require_within_limits()
-        if accept is not None and not accept(q):
+        configuration = mechanism.configuration(q)
+        configuration.require_within_limits()
+        if accept is not None and not accept(configuration):
             raise KinematicsError(f"The {name} of the path is not free itself: parts overlap there.")
     found = planner.find(*ends)
     if found is None:

@@ -119,8 +119,14 @@ def reach(
         hint = "Move the target, or what is in the way."
         finding = Finding(code="E_REACH_BARRED", where=f"parts.{part}", message=message, hint=hint, parts=(part,))
         raise KinematicsError(str(finding), findings=[finding])
-    assert best is not None  # the rest pose itself is always a configuration of its own branch
-    return best
+    return best if best is not None else _at_rest(task)  # no start ended on the branch of the drivers
+
+
+def _at_rest(task: _Task) -> Reach:
+    mechanism = task.mechanism
+    configuration = mechanism.configuration(mechanism.rest)
+    distance, turn = task.error(configuration.columns)
+    return Reach(mechanism.rest.copy(), configuration, distance, float(np.linalg.norm(turn)), ())
 
 
 def _approached(task: _Task, Q: FloatArray) -> Reach | None:

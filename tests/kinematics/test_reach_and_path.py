@@ -11,6 +11,8 @@ import pytest
 from articad.connectors import SE3
 from articad.errors import KinematicsError, LimitError
 from articad.kinematics import Joint, JointLimits, Mechanism
+from articad.kinematics.configuration import Configuration
+from articad.kinematics.track import Track
 from tests.kinematics.linkages import at, from_rest, joint, mismatch
 
 AXES = [(0, 0, 1), (0, 1, 0), (0, 1, 0), (1, 0, 0), (0, 1, 0), (1, 0, 0)]
@@ -120,3 +122,56 @@ def test_a_path_beyond_a_followers_limit_is_refused_and_one_within_found() -> No
     way = mechanism.path([0.0, 0.0], [1.2, 1.0])
     for a, b in itertools.pairwise(way):
         assert not mechanism.configuration(a + np.linspace(0, 1, 30)[:, None] * (b - a)).violations(1e-3)
+
+
+def test_a_path_asks_about_the_configurations_on_the_way_each_next_to_one_before() -> None:
+    """At one q a linkage may have several configurations: what is asked about is the one that the way goes through."""
+    mechanism = five_bar()
+    asked: list[np.ndarray] = []
+
+    def accept(configuration: Configuration) -> bool:
+        asked.append(configuration.columns)
+        return True
+
+    mechanism.path([0.0, 0.0], [1.2, 1.0], accept=accept)
+    assert len(asked) > 10
+    closure = mechanism.branch.system
+    for k, Q in enumerate(asked[2:], start=2):
+        assert np.abs(closure.evaluate_one(closure.to_system(Q))[0]).max() < 1e-9
+        assert min(np.abs(Q - before).max() for before in asked[:k]) < 0.3  # a step is 0.1 rad of the drivers
+
+
+def test_a_path_is_refused_where_what_follows_is_barred() -> None:
+    mechanism = five_bar()
+    free = mechanism.configuration([0.6, 0.5])["c"].item()
+    with pytest.raises(KinematicsError, match=r"E_NO_PATH|not free"):
+        mechanism.path([0.0, 0.0], [1.2, 1.0], accept=lambda configuration: abs(configuration["c"].item()) < abs(free) / 4)
+
+
+def test_where_no_start_ends_on_the_branch_the_rest_pose_is_as_near_as_it_comes(monkeypatch: pytest.MonkeyPatch) -> None:
+    mechanism = five_bar()
+    monkeypatch.setattr("articad.kinematics.reach._approached", lambda *_: None)
+    found = mechanism.reach("l2", [20.0, 500.0, 0.0], starts=3)
+    assert not found.ok
+    assert np.array_equal(found.q, mechanism.rest)
+    placed = mechanism.poses(mechanism.rest)[mechanism.part_index("l2")].translation
+    assert found.distance == pytest.approx(float(np.linalg.norm(placed - [20.0, 500.0, 0.0])))
+
+
+def test_a_range_ends_where_the_linkage_is_not_closed(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Limits of joints that follow are not known to hold where a pose was not closed."""
+    evaluate = Track.evaluate
+
+    def with_a_gap(track: Track, values: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        Q, reached, proved = evaluate(track, values)
+        return Q, reached & ~((values > 0.1) & (values < 0.2)), proved
+
+    mechanism = five_bar(limit=0.8)
+    before = mechanism.feasible_range("a")
+    assert before.upper > 0.25
+    monkeypatch.setattr(Track, "evaluate", with_a_gap)
+    found = five_bar(limit=0.8).feasible_range("a")
+    assert found.upper == pytest.approx(0.1, abs=1e-6)
+    assert found.upper_reason == "not followed further"
+    assert found.lower == pytest.approx(before.lower)
+    assert found.findings.of("E_NOT_FOLLOWED") or not math.isfinite(found.driver.upper)
