@@ -51,6 +51,8 @@ TIED_PAIRS = 8_000  # of pieces, spent on whatever a linkage does before its dri
 FOLLOWED_PAIRS = 400_000  # of pieces, spent on whatever a linkage does that cannot be followed
 MOST_EXPECTED = 1000  # boxes of several drivers of one group, as the pieces of each alone suggest, beyond which they are not followed
 MOST_TOGETHER = 3  # drivers of one group followed all at once before they are taken two at a time
+IDLE = 1e-7  # singular value of the Jacobian of loops, below which what follows can move while its drivers stand
+IDLE_SHARE = 0.3  # of such a motion, above which a twist can be taken for its driver
 _END_SLACK = 1e-6  # rad or mm: by which a driver may end before its limit
 _ENTRY_MM = 1e-6  # distance at which meshes are said to touch
 
@@ -491,7 +493,11 @@ class _Certifying:
     def _new_way(self, drivers: tuple[str, ...]) -> Way | str:
         if len(drivers) == 1:
             names = [driver.name for driver in self.mechanism.drivers]
-            ends, self._reasons[drivers[0]] = driven_range(self.mechanism, self._checker, names.index(drivers[0]))
+            if drivers[0] in names:
+                ends, self._reasons[drivers[0]] = driven_range(self.mechanism, self._checker, names.index(drivers[0]))
+            else:  # the idle twist of a rod
+                low, high = self._checker.freedoms[drivers[0]]["range"]
+                ends, self._reasons[drivers[0]] = (low, high), ("limit", "limit")
             way = Way(self._checker, drivers, (ends,))
             found = way.whole
             self.budget.spend(way.work)
@@ -623,8 +629,11 @@ class _Certifying:
         for drivers, way in self._ways.items():
             if isinstance(way, str) or len(drivers) > 1:
                 continue
-            driver, rest = coordinates[drivers[0]], self._checker.rest[drivers[0]]
-            both = zip((-1, 1), (driver.lower, driver.upper), way.bounds[0], self._reasons[driver.name], strict=True)
+            name, rest = drivers[0], self._checker.rest[drivers[0]]
+            driver = coordinates.get(name)
+            limits = way.bounds[0] if driver is None else (driver.lower, driver.upper)
+            joint, unit = self._joint_of(name), "rad" if driver is None else driver.unit
+            both = zip((-1, 1), limits, way.bounds[0], self._reasons[name], strict=True)
             for sign, declared, bound, reason in both:
                 end = way.reached(sign)
                 endless = bound if reason in ("endless", "not followed further") else rest + sign * math.pi
@@ -633,12 +642,12 @@ class _Certifying:
                     self.findings.append(
                         Finding(
                             code="E_NOT_CHECKED",
-                            where=f"joints.{driver.joint}",
-                            message=f"{driver.name} is proven up to {end:.6g} only, not to {wanted:.6g}: {reason}.",
-                            hint=f"Set the limit of {driver.joint} to what the linkage can do.",
+                            where=f"joints.{joint}",
+                            message=f"{name} is proven up to {end:.6g} only, not to {wanted:.6g}: {reason}.",
+                            hint=f"Set the limit of {joint} to what the linkage can do.",
                             value=end,
                             limit=wanted,
-                            unit=driver.unit,
+                            unit=unit,
                         )
                     )
 
@@ -754,9 +763,31 @@ def constrained_joints(mechanism: Mechanism) -> frozenset[str]:
 
 
 def driver_names(mechanism: Mechanism, constrained: frozenset[str]) -> list[str]:
-    """Return the coordinates that drive loops and couplings."""
+    """Return the coordinates that drive loops and couplings, and the idle twists of rods between two balls."""
     free = {joint.name for joint in mechanism.joints if joint.type is JointType.FREE}
-    return [driver.name for driver in mechanism.drivers if driver.joint in constrained - free]
+    names = [driver.name for driver in mechanism.drivers if driver.joint in constrained - free]
+    balls = [joint for joint in mechanism.joints if joint.name in constrained and joint.type is JointType.BALL]
+    twists = {proven_freedoms(joint)[-1].name for joint in balls}
+    while balls:
+        checker = Checker({"mechanism": mechanism_json(mechanism), "linkage": sorted(constrained), "drivers": names}, {PROOF: {}})
+        idle = [name for group in checker.groups for name in _idle(checker, group) if name in twists]
+        if not idle:
+            break
+        names.append(idle[0])
+    return names
+
+
+def _idle(checker: Checker, group: Sequence[str]) -> list[str]:
+    """Return the coordinates that take part in a motion at rest in which the drivers of a group stand, the one that turns most first."""
+    driving = [name for name in group if name in checker.drivers]
+    names = [name for name in group if name not in checker.drivers]
+    if not driving or not names:
+        return []
+    rest = np.array([checker.rest[name] for name in names])
+    _, J, _ = checker.closure(names, rest, rest)
+    _, sizes, ways = np.linalg.svd(J)
+    share = np.abs(ways[(sizes > IDLE).sum() :]).max(axis=0, initial=0.0)
+    return [names[at] for at in np.argsort(-share, kind="stable") if share[at] > IDLE_SHARE]
 
 
 def mechanism_json(mechanism: Mechanism) -> dict[str, Any]:

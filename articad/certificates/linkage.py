@@ -97,6 +97,7 @@ class Way:
     def __init__(self, checker: Checker, drivers: tuple[str, ...], bounds: Ends) -> None:
         self.drivers, self.bounds = drivers, bounds
         self.names: list[str] = checker.followers(drivers)
+        self.group = frozenset(next(group for group in checker.groups if drivers[0] in group))  # its other drivers stand
         self._checker, self.rest = checker, np.array([checker.rest[name] for name in drivers])
         self._found = checker.begin(self.names, len(drivers))
         self._others: list[int] = []
@@ -484,7 +485,7 @@ class LinkageProver(Prover):
         super().__init__(scene, route, joints, epsilon=epsilon, budget=budget)
         self.ways = tuple(ways)
         self.drivers = tuple(name for way in ways for name in way.drivers)
-        mine = np.array([any(freedom.name in way.names for way in ways) for freedom in self.chain.freedoms], dtype=bool)
+        mine = np.array([any(freedom.name in way.group for way in ways) for freedom in self.chain.freedoms], dtype=bool)
         self.others = np.where(mine[:, None], np.nan, self.bounds)
         if self.axis is not None and self.axis.dimensions == 3:
             self.axis = None  # a ball that follows is not held within its cone: nothing proves that it keeps to it
