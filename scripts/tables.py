@@ -27,9 +27,9 @@ def findings() -> str:
         "# Findings",
         "",
         NOTE,
-        "A check returns all its findings at once, as values: `code`, `severity`, `stage`, `where`, `message`, `hint`, the `value` that was measured and the",
-        "`limit` it was held against, the `parts` concerned, and who must act: the plan's author (*design*) or the part script's (*code*). The first letter of a",
-        "code is its severity: `E_` error, `W_` warning, `I_` info. A report is `ok` when it has no error and everything that was asked for was done.",
+        "A check returns all its findings at once, as values: `code`, `severity`, `stage`, `where`, `message`, `hint`, the measured `value` and its",
+        "`limit`, the `parts` concerned, and who must act: the plan's author (*design*) or the part script's (*code*). The first letter of a",
+        "code is its severity: `E_` error, `W_` warning, `I_` info. A report is `ok` if it has no error and everything that was requested was done.",
         "",
         "As JSON (`articad.findings/1`):",
         "",
@@ -43,19 +43,19 @@ def findings() -> str:
     order = list(dict.fromkeys(code.stage for code in CODES.values()))
     entries = sorted(CODES.items(), key=lambda entry: order.index(entry[1].stage))
     for stage, group in groupby(entries, key=lambda entry: entry[1].stage):
-        lines += ["", f"## {stage.capitalize()}", "", "| code | severity | who acts | what | what to do |", "|---|---|---|---|---|"]
+        lines += ["", f"## {stage.capitalize()}", "", "| code | severity | who acts | meaning | remedy |", "|---|---|---|---|---|"]
         for name, code in group:
             lines.append(f"| `{name}` | {SEVERITIES[name[0]]} | {code.route or ''} | {code.meaning} | {code.remedy} |")
     return "\n".join(lines) + "\n"
 
 
 KEPT_URDF = (
-    "Everything else is kept word for word. `convert` writes it back into a URDF, where it was; in any other format it is a row of the losses, "
-    "and so is what a URDF cannot take back: textures, transparency, and attributes of shapes."
+    "Everything else is kept verbatim. `convert` writes it back into a URDF at the same place; in any other format it is a row of the losses, "
+    "and so are textures, transparency and attributes of shapes, which cannot be written back into a URDF."
 )
 KEPT_MJCF = (
     "MuJoCo's compiler resolves defaults, classes, frames, includes and copies first. Everything else is a row of the losses of every format, "
-    "MJCF too, but for the rotor and the spring of a joint: its names refer to geoms, sites and tendons that an assembly does not have."
+    "including MJCF, except for the rotor and the spring of a joint: its names refer to geoms, sites and tendons that an assembly does not have."
 )
 
 
@@ -65,8 +65,8 @@ def losses() -> str:
         "# Formats and their losses",
         "",
         NOTE,
-        "What each feature of an assembly becomes in each format, and what a reader that does not know articad's metadata does not see. An export reports the rows",
-        "that concern it; with `strict` it refuses those marked so, where motion, mass or shape would change. What has no entry in *lost* is held exactly.",
+        "This page lists what each feature of an assembly becomes in each format, and what a reader that ignores articad's metadata loses. An export reports the rows",
+        "that concern it; with `strict` it refuses the marked rows, because motion, mass or shape would change. A feature without an entry in *lost* is represented exactly.",
     ]
     for format_name in get_args(Format):
         if not any(format_name in rows for rows in TABLE.values()):
@@ -77,7 +77,7 @@ def losses() -> str:
                 row = rows[format_name]
                 lines.append(f"| `{key}` | {row.becomes} | {row.lost} | {'refused' if row.refused else ''} |")
     for name, kept, read in (("URDF", KEPT_URDF, READ_URDF), ("MJCF", KEPT_MJCF, READ_MJCF)):
-        lines += ["", f"## What is read of {name}", "", kept, "", "| element | attributes |", "|---|---|"]
+        lines += ["", f"## What is read from {name}", "", kept, "", "| element | attributes |", "|---|---|"]
         lines += [f"| `{key}` | {'all' if '*' in names else ', '.join(sorted(names)) or 'none'} |" for key, names in read.items()]
     lines[5:] = [re.sub(r"<\w+>", r"`\g<0>`", line) for line in lines[5:]]  # a tag in a cell is text, not HTML
     return "\n".join(lines) + "\n"
@@ -100,17 +100,17 @@ articad [--json] [-q] [-v] [--no-color] COMMAND …
 | 0 | ok |
 | 1 | done, with findings: the report is not `ok` |
 | 2 | the command line is wrong |
-| 3 | cannot go on: the error says why and what would have been valid |
-| 130 | interrupted; what was finished is kept |
+| 3 | cannot continue: the error states why and what is valid |
+| 130 | interrupted; finished work is kept |
 
 | environment variable | meaning |
 |---|---|
 | `ARTICAD_CACHE` | where built parts are kept (`~/.cache/articad`) |
-| `ARTICAD_MODEL` | the model of `generate`, where `--model` is not given |
+| `ARTICAD_MODEL` | the model of `generate` if `--model` is not given |
 | `ARTICAD_MEMORY` | where the experience of earlier runs is kept |
 | `ARTICAD_SANDBOX` | `weak` runs part scripts with less isolation than landlock or bubblewrap give |
 | `ARTICAD_FREECAD` | FreeCAD's program, for the FreeCAD kernel |
-| the provider's own, such as `GEMINI_API_KEY` | the key; it is read from nowhere else and written nowhere |"""
+| the provider's own, such as `GEMINI_API_KEY` | the key; articad reads it from nowhere else and writes it nowhere |"""
 
 
 def commands() -> str:

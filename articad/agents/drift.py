@@ -58,7 +58,7 @@ def _finding(kind: str, files: list[str], recorded: Run, again: Run, why: str, *
     if math.isfinite(far):
         message += f" Meshes differ by {far:.2g} mm at most."
     harmless = other and (far <= SAME_MM or kind == "exports")
-    hint = "Nothing: rounding of another kernel or platform." if harmless else "Replay with what it was recorded with, or record again."
+    hint = "Nothing: rounding of another kernel or platform." if harmless else "Replay with the versions that recorded it, or record again."
     return Finding(
         code="W_REPLAY_DRIFT" if harmless else "E_REPLAY_DIFFERS",
         where=files[0],

@@ -22,27 +22,27 @@ if TYPE_CHECKING:
 
 @command(
     "audit",
-    "Find what is wrong with a URDF, MJCF, FreeCAD or STEP file, a plan, a run, or a folder of models.",
+    "Find the faults of a URDF, MJCF, FreeCAD or STEP file, a plan, a run, or a folder of models.",
     argument("target", metavar="FILE|DIR"),
-    argument("--table", action="store_true", help="one line a file, for a folder of many"),
+    argument("--table", action="store_true", help="one line per file, for a folder of many"),
     argument("--root", metavar="DIR", help="folder that meshes may be read from (the file's ROS package, or its own folder)"),
     argument(
         "--budget",
         metavar="SECONDS",
         type=amount,
         default=12.0,
-        help="nominal seconds of work for looking at the motion of a file, the same work on every machine (12)",
+        help="nominal seconds of work for checking the motion of a file, the same work on every machine (12)",
     ),
     argument(
         "--certify",
         metavar="SECONDS",
         type=amount,
         default=None,
-        help="prove the motion free instead of sampling it, in so many nominal seconds of work",
+        help="prove the motion collision-free instead of sampling it, within this many nominal seconds of work",
     ),
     argument("--no-engines", dest="engines", action="store_false", help="do not ask simulators to load the file"),
-    argument("--fix", metavar="OUT", help="write a copy with everything mended that can be without guessing (URDF)"),
-    argument("--density", metavar="KG_M3", type=amount, default=None, help="with --fix: of whatever has no mass"),
+    argument("--fix", metavar="OUT", help="write a copy that repairs every fault with a certain repair (URDF)"),
+    argument("--density", metavar="KG_M3", type=amount, default=None, help="with --fix: density of bodies without mass"),
     argument("--report", metavar="PAGE.html", help="write the report as a page"),
     SANDBOX,
 )
@@ -73,11 +73,11 @@ def _audit(options: argparse.Namespace, terminal: Terminal) -> Report:
 
 @command(
     "sim",
-    "Hold, drive and let go a model in MuJoCo and PyBullet.",
+    "Test a model in MuJoCo and PyBullet: load it, hold it, drive every joint, and release it.",
     argument("target", metavar="FILE|RUN|PLAN_DIR"),
-    argument("--film", metavar="FILE.png", help="write a filmstrip of what the joints did"),
-    argument("--engine", choices=["mujoco", "pybullet"], action="append", default=None, help="only this one (both, where installed)"),
-    argument("--seconds", metavar="SECONDS", type=amount, default=300.0, help="at most, for each engine (300)"),
+    argument("--film", metavar="FILE.png", help="write a filmstrip of the joints' motion"),
+    argument("--engine", choices=["mujoco", "pybullet"], action="append", default=None, help="only this engine (both, if installed)"),
+    argument("--seconds", metavar="SECONDS", type=amount, default=300.0, help="time limit for each engine (300)"),
     SANDBOX,
 )
 def _sim(options: argparse.Namespace, terminal: Terminal) -> Report:

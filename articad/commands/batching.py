@@ -14,11 +14,11 @@ if TYPE_CHECKING:
 
 @command(
     "batch",
-    "Make many assemblies: plans with values for their parameters, checked, exported and kept with their provenance.",
+    "Make many assemblies from plans with parameter values; check, export and store them with their provenance.",
     argument("spec", metavar="BATCH.json", help="items, or samples of plans' parameters"),
-    argument("--out", metavar="DIR", default="batch", help="a folder for each item; what is there is not made again (batch)"),
+    argument("--out", metavar="DIR", default="batch", help="a folder for each item; existing items are not made again (batch)"),
     *ENGINE,
-    argument("--jobs", metavar="N", type=positive, default=None, help="workers of this machine (one a processor)"),
+    argument("--jobs", metavar="N", type=positive, default=None, help="workers of this machine (one per processor)"),
     argument("--memory", metavar="GB", type=amount, default=4.0, help="data of each worker process (4)"),
 )
 def _batch(options: argparse.Namespace, terminal: Terminal) -> Report:

@@ -52,7 +52,7 @@ def _build(options: argparse.Namespace, terminal: Terminal) -> Report:
     "Check a plan, or the plan and the geometry of a finished run.",
     argument("target", metavar="PLAN_DIR|RUN|FILE"),
     argument(
-        "--motion", action="store_true", help="sample the motion, too: drivers alone, two at a time, all at once (builds a plan's parts)"
+        "--motion", action="store_true", help="also sample the motion: drivers alone, two at a time, all at once (builds a plan's parts)"
     ),
     SANDBOX,
 )

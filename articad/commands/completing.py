@@ -39,7 +39,7 @@ _ZSH = "autoload -U +X compinit && compinit\nautoload -U +X bashcompinit && bash
 
 @command(
     "completion",
-    'Print what makes a shell complete articad\'s words: eval "$(articad completion bash)".',
+    'Print a shell script that completes articad\'s commands: eval "$(articad completion bash)".',
     argument("shell", choices=["bash", "zsh", "fish"]),
     needs_libraries=False,
 )

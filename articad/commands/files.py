@@ -19,17 +19,19 @@ if TYPE_CHECKING:
     argument("run", metavar="RUN"),
     argument("--to", metavar="FORMATS", dest="formats", type=formats, required=True, help=f"formats to write, of {', '.join(FORMATS)}"),
     argument("--out", metavar="DIR", help="where to write, a folder for each format; by default RUN/export"),
-    argument("--strict", action="store_true", help="refuse what a format cannot hold, instead of reporting it as lost"),
+    argument("--strict", action="store_true", help="fail on what a format cannot represent, instead of reporting it as lost"),
     argument("--loops", choices=["none", "isaac", "drake", "mimic"], default="none", help="how URDF closes loops (none)"),
     argument(
         "--collision",
         choices=["solid", "hull", "decompose"],
         default="solid",
-        help="what URDF and MJCF collide with: the parts' own meshes, their hulls, or convex pieces (solid)",
+        help="collision shapes of URDF and MJCF: the parts' own meshes, their hulls, or convex pieces (solid)",
     ),
     argument("--actuators", action="store_true", help="give every driver of an MJCF a servo"),
-    argument("--ros", metavar="PACKAGE", default=None, help="lay URDF out as a ROS 2 package, with SRDF and ros2_control"),
-    argument("--process", choices=["fdm", "sla", "sls"], default="fdm", help="how 3MF will be printed: gaps are held to it (fdm)"),
+    argument("--ros", metavar="PACKAGE", default=None, help="write URDF as a ROS 2 package, with SRDF and ros2_control"),
+    argument(
+        "--process", choices=["fdm", "sla", "sls"], default="fdm", help="the printing process for 3MF: gaps are checked against it (fdm)"
+    ),
 )
 def _export(options: argparse.Namespace, terminal: Terminal) -> Report:
     from articad.commands import summaries
@@ -66,9 +68,13 @@ def _export(options: argparse.Namespace, terminal: Terminal) -> Report:
     "convert",
     "Convert a file into another format.",
     argument("source", metavar="IN", help="a .urdf, .xml (MJCF), .FCStd or .step file, or a plan.json"),
-    argument("target", metavar="OUT", help="its ending says the format: .urdf .xml .FCStd .json .sdf .usda .step .glb .3mf"),
-    argument("--strict", action="store_true", help="refuse what the format cannot hold, instead of reporting it as lost"),
-    argument("--fuse", action="store_true", help="of a URDF or MJCF file: make chains of joints over bare links one joint, such as a ball"),
+    argument("target", metavar="OUT", help="its suffix selects the format: .urdf .xml .FCStd .json .sdf .usda .step .glb .3mf"),
+    argument("--strict", action="store_true", help="fail on what the format cannot represent, instead of reporting it as lost"),
+    argument(
+        "--fuse",
+        action="store_true",
+        help="for URDF and MJCF: replace chains of joints over links without shape by one joint, such as a ball",
+    ),
 )
 def _convert(options: argparse.Namespace, terminal: Terminal) -> Report:
     from articad.commands import summaries
@@ -84,13 +90,17 @@ def _convert(options: argparse.Namespace, terminal: Terminal) -> Report:
 
 @command(
     "adopt",
-    "Make a plan folder, which builds at once, of a file that somebody else made.",
+    "Turn a URDF, MJCF, FreeCAD or STEP file into a plan folder that builds at once.",
     argument("source", metavar="FILE", help="a .urdf, .xml (MJCF), .FCStd or .step file"),
     argument("--out", metavar="DIR", required=True, help="the folder: plan.json, parts/*.py, meshes/*.stl; it must be empty or new"),
     argument("--root", metavar="DIR", default=None, help="folder that meshes may be read from (the file's own)"),
-    argument("--script", metavar="FILE", default=None, help="what made the file, to keep it beside the plan"),
-    argument("--fuse", action="store_true", help="of a URDF or MJCF file: make chains of joints over bare links one joint, such as a ball"),
-    argument("--no-audit", dest="audit", action="store_false", help="do not look for what is wrong with the file"),
+    argument("--script", metavar="FILE", default=None, help="the program that made the file; a copy is kept beside the plan"),
+    argument(
+        "--fuse",
+        action="store_true",
+        help="for URDF and MJCF: replace chains of joints over links without shape by one joint, such as a ball",
+    ),
+    argument("--no-audit", dest="audit", action="store_false", help="do not audit the file"),
 )
 def _adopt(options: argparse.Namespace, terminal: Terminal) -> Report:
     import json

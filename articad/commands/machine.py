@@ -1,4 +1,4 @@
-"""Say what this machine has and lacks."""
+"""List what this machine has and lacks."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ if TYPE_CHECKING:
 
 @command(
     "doctor",
-    "Say what this machine has and lacks.",
-    argument("--model", metavar="NAME", help="ask this model one tiny question: key, forms, sight, price"),
+    "List what this machine has and lacks.",
+    argument("--model", metavar="NAME", help="ask this model one tiny question: tests key, schemas, vision and price"),
     argument("--api-base", metavar="URL", help="an OpenAI-compatible endpoint"),
     needs_libraries=False,
 )

@@ -21,8 +21,8 @@ if TYPE_CHECKING:
 
 @command(
     "generate",
-    "Have a model write the plan and the part scripts of what you describe; then build, check and export it.",
-    argument("text", metavar="TEXT", help="what is wanted"),
+    "Let a model write the plan and the part scripts from your description; then build, check and export the product.",
+    argument("text", metavar="TEXT", help="description of the product"),
     *ANSWERING,
     *GENERATING,
     OUT,
@@ -68,9 +68,11 @@ def _generate(options: argparse.Namespace, terminal: Terminal) -> Report:
 
 @command(
     "edit",
-    "Change a finished run by words, or its parameters by numbers, and prove that nothing else has changed.",
+    "Edit a finished run by a description or by parameter values, and prove that nothing else changed.",
     argument("run", metavar="RUN"),
-    argument("text", metavar="TEXT", nargs="?", default="", help="what shall be otherwise; without it only --set, and no model"),
+    argument(
+        "text", metavar="TEXT", nargs="?", default="", help="the change to make; without it, only --set applies and no model is called"
+    ),
     SET,
     *ANSWERING,
     OUT,
@@ -113,7 +115,7 @@ def _edit(options: argparse.Namespace, terminal: Terminal) -> Report:
 
 @command(
     "resume",
-    "Go on with a run of generate or edit that was interrupted: no call is repeated, no part built twice.",
+    "Continue an interrupted run of generate or edit: no call is repeated, no part is built twice.",
     argument("run", metavar="RUN"),
     *MODELS,
     *TEACHING,
@@ -236,10 +238,10 @@ def _asking(terminal: Terminal) -> Choose:
 
 @command(
     "replay",
-    "Make a recorded run again, without model or network, and compare.",
+    "Repeat a recorded run without model or network, and compare the results.",
     argument("run", metavar="RUN"),
     OUT,
-    argument("--strict", action="store_true", help="refuse a prompt that is not the recorded one, instead of reporting it"),
+    argument("--strict", action="store_true", help="fail on a prompt that differs from the recorded one, instead of reporting it"),
     SANDBOX,
     JOBS,
     FORCE,

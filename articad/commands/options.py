@@ -66,13 +66,13 @@ SANDBOX = argument(
     "--sandbox", choices=["strict", "weak"], default=None, help="weak runs part scripts with less isolation than landlock or bwrap"
 )
 JOBS = argument("--jobs", metavar="N", type=positive, default=None, help="parts built at once (all processors)")
-FORCE = argument("--force", action="store_true", help="build every part anew, whatever the cache holds")
+FORCE = argument("--force", action="store_true", help="rebuild every part, whatever the cache holds")
 EXPORT = argument("--export", metavar="FORMATS", dest="formats", type=formats, default=USUAL, help="formats to write (urdf,mjcf)")
-PICTURES = argument("--no-pictures", dest="pictures", action="store_false", help="draw neither parts nor motion, write no page")
+PICTURES = argument("--no-pictures", dest="pictures", action="store_false", help="draw neither parts nor motion, and write no page")
 SET = argument("--set", metavar="NAME=VALUE", dest="parameters", type=parameter, action="append", default=[], help="replace a parameter")
 BUILD_ARGUMENTS = (
     OUT,
-    argument("--kernel", choices=["build123d", "freecad"], default=None, help="what builds part scripts (the plan's own choice)"),
+    argument("--kernel", choices=["build123d", "freecad"], default=None, help="the kernel that builds part scripts (the plan's choice)"),
     SET,
     argument("--verify", choices=["rest", "sampled", "certified"], default="rest", help="how much motion is checked (rest)"),
     EXPORT,
@@ -86,11 +86,13 @@ ENGINE = (
     argument("--scheduler", metavar="URL", help="address of the Dask scheduler; its workers must see the folders"),
 )
 MEMORY = argument("--memory", metavar="DIR", help="the store of earlier runs ($ARTICAD_MEMORY, or the user's own)")
-EMBEDDINGS = argument("--embeddings", metavar="NAME", help="a provider's model that says which cases are alike (offline word vectors)")
+EMBEDDINGS = argument(
+    "--embeddings", metavar="NAME", help="a provider's embedding model that measures the similarity of cases (offline word vectors)"
+)
 API_BASE = argument("--api-base", metavar="URL", help="an OpenAI-compatible endpoint")
 MODELS = (
     argument(
-        "--model", metavar="NAME", default=None, help="the model, as LiteLLM names it ($ARTICAD_MODEL, else gemini/gemini-3-flash-preview)"
+        "--model", metavar="NAME", default=None, help="the model, by LiteLLM's name ($ARTICAD_MODEL, else gemini/gemini-3-flash-preview)"
     ),
     argument("--vision-model", metavar="NAME", help="the model that gets pictures (the same)"),
     argument("--judge-model", metavar="NAME", help="the model that judges the assembly (the same)"),
@@ -99,37 +101,41 @@ MODELS = (
 TEACHING = (
     MEMORY,
     EMBEDDINGS,
-    argument("--docs", action="store_true", help="have the model name what it would look up in the kernel's documentation, and tell it"),
+    argument("--docs", action="store_true", help="let the model look up names in the kernel's documentation"),
 )
 BUDGET = (
-    argument("--max-calls", metavar="N", type=positive, default=60, help="model calls, with bench of each task (60)"),
+    argument("--max-calls", metavar="N", type=positive, default=60, help="model calls (bench: per task) (60)"),
     argument("--max-tokens", metavar="N", type=positive, default=None, help="tokens of these calls (unlimited)"),
     argument("--max-cost", metavar="USD", type=amount, default=None, help="cost of these calls (unlimited)"),
-    argument("--max-minutes", metavar="N", type=amount, default=60.0, help="wall clock, with bench of each task (60)"),
+    argument("--max-minutes", metavar="N", type=amount, default=60.0, help="wall-clock minutes (bench: per task) (60)"),
 )
 ASKING = (
     *MODELS,
-    argument("--no-look", dest="look", action="store_false", help="compare no pictures of parts with their specification"),
-    argument("--no-inspection", dest="inspection", action="store_false", help="have the assembly neither observed nor judged by models"),
+    argument("--no-look", dest="look", action="store_false", help="do not compare pictures of parts with their specification"),
+    argument("--no-inspection", dest="inspection", action="store_false", help="do not let models observe and judge the assembly"),
     *TEACHING,
-    argument("--rounds", metavar="N", type=positive, default=3, help="designs that are built and checked (3)"),
-    argument("--repairs", metavar="N", type=positive, default=3, help="attempts to mend one part (3)"),
+    argument("--rounds", metavar="N", type=positive, default=3, help="number of designs that are built and checked (3)"),
+    argument("--repairs", metavar="N", type=positive, default=3, help="attempts to repair one part (3)"),
     *BUDGET,
 )
 ANSWERING = (
-    argument("--image", metavar="FILE", dest="images", action="append", default=[], help="a picture that belongs to the request"),
+    argument("--image", metavar="FILE", dest="images", action="append", default=[], help="a picture for the request"),
     argument("--review", action="store_true", help="score the finished assembly, by rules and by a model that looks at all of it"),
     *ASKING,
 )
 GENERATING = (
-    argument("--part-image", metavar="NAME=FILE", dest="part_images", type=assignment, action="append", default=[], help="of one part"),
-    argument("--kernel", choices=["build123d", "freecad"], default="build123d", help="what part scripts are written for (build123d)"),
+    argument(
+        "--part-image", metavar="NAME=FILE", dest="part_images", type=assignment, action="append", default=[], help="a picture for one part"
+    ),
+    argument(
+        "--kernel", choices=["build123d", "freecad"], default="build123d", help="the kernel for which part scripts are written (build123d)"
+    ),
     argument("--ideas", choices=["auto", "always", "never"], default="auto", help="propose alternatives first (auto: for open requests)"),
     argument("--pick", metavar="N", type=positive, default=None, help="propose alternatives and make the N-th, without asking"),
     argument(
         "--variant",
         choices=["full", "late", "no-rollback", "no-memory", "single-loop"],
         default="full",
-        help="the others are the paper's ablations and its baseline (full)",
+        help="the full pipeline, or one of the paper's ablations or its baseline (full)",
     ),
 )

@@ -18,10 +18,10 @@ if TYPE_CHECKING:
 
 @command(
     "part",
-    "Build one part of a plan and hold it to its contract.",
+    "Build one part of a plan and check it against its contract.",
     argument("plan", metavar="PLAN_DIR"),
     argument("name", metavar="PART"),
-    argument("--kernel", choices=["build123d", "freecad"], default=None, help="what builds the script (the plan's own choice)"),
+    argument("--kernel", choices=["build123d", "freecad"], default=None, help="the kernel that builds the script (the plan's choice)"),
     SANDBOX,
     FORCE,
 )

@@ -16,18 +16,18 @@ if TYPE_CHECKING:
 
 @command(
     "render",
-    "Draw a run, a plan or a URDF, MJCF or FreeCAD file from several sides, or a joint's motion.",
+    "Draw a run, a plan or a URDF, MJCF or FreeCAD file from several sides, or the motion of a joint.",
     argument("target", metavar="RUN|PLAN_DIR|FILE"),
     argument("--views", metavar="VIEWS", default="iso,front,right,top", help="views, each a picture (iso,front,right,top)"),
     argument("--motion", metavar="JOINT", help="draw this joint's motion instead, as a filmstrip and an animation"),
     argument("--parts", metavar="NAMES", help="parts shown in full; the others are faded"),
-    argument("--section", metavar="AXIS[=MM]", help="cut away what lies beyond x, y or z (such as -y=12.5)"),
+    argument("--section", metavar="AXIS[=MM]", help="cut away everything beyond x, y or z (such as -y=12.5)"),
     argument(
         "--explode", metavar="SHARE", type=float, default=0.0, help="move parts apart by this share of their distance from the middle"
     ),
-    argument("--overlaps", action="store_true", help="draw what parts have in common in red, over everything"),
+    argument("--overlaps", action="store_true", help="draw overlaps of parts in red, on top of everything"),
     argument("--size", metavar="PIXELS", type=positive, default=512, help="width and height of a picture (512)"),
-    argument("--renderer", choices=["embree", "pyvista"], default="embree", help="pyvista is smoother, where OpenGL can be had"),
+    argument("--renderer", choices=["embree", "pyvista"], default="embree", help="pyvista is smoother but needs OpenGL"),
     argument("--out", metavar="DIR", default="pictures", help="where to write (pictures)"),
     SANDBOX,
 )

@@ -17,18 +17,18 @@ if TYPE_CHECKING:
 
 @command(
     "certify",
-    "Prove that a run's parts do not meet while its joints move over their whole ranges.",
+    "Prove that the parts of a run do not collide while its joints move over their whole ranges.",
     argument("run", metavar="RUN"),
-    argument("--joints", metavar="A,B", type=names, default=None, help="those to be proven (all that move)"),
+    argument("--joints", metavar="A,B", type=names, default=None, help="joints to prove (all that move)"),
     argument("--pairs", action=argparse.BooleanOptionalAction, default=True, help="move joints two at a time as well (yes)"),
     argument(
         "--budget",
         metavar="SECONDS",
         type=amount,
         default=600.0,
-        help="nominal seconds of work, the same work on every machine; what is not proven by then is not checked, which is not ok (600)",
+        help="nominal seconds of work, the same work on every machine; pairs not proven within it count as not checked, which is not ok (600)",
     ),
-    argument("--epsilon", metavar="MM", type=amount, default=0.001, help="distances up to here are contact (0.001)"),
+    argument("--epsilon", metavar="MM", type=amount, default=0.001, help="distances up to this count as contact (0.001)"),
 )
 def _certify(options: argparse.Namespace, terminal: Terminal) -> Report:
     from articad.commands import summaries
@@ -50,7 +50,7 @@ def _certify(options: argparse.Namespace, terminal: Terminal) -> Report:
     "verify-certificate",
     "Check a certificate without trusting whoever wrote it.",
     argument("file", metavar="FILE", help="certificate.json"),
-    argument("--meshes", metavar="DIR", help="the meshes it is about, <part>.npz (the folder certificate/ beside it)"),
+    argument("--meshes", metavar="DIR", help="its meshes, <part>.npz (the folder certificate/ beside it)"),
 )
 def _verify_certificate(options: argparse.Namespace, terminal: Terminal) -> Report:
     from articad.certificates.verifier import verify_file

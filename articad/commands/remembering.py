@@ -33,13 +33,13 @@ _WORDS: Final = 60  # characters of a request in a table
 
 @command(
     "memory",
-    "Look into the experience of earlier runs, fill it, thin it out.",
+    "List, search, fill or prune the experience of earlier runs.",
     argument("action", choices=list(_WHAT), help="what to do"),
     argument("what", nargs="?", metavar="ID|TEXT|FILE", help="a case to show or remove; a request to search for; a file of cases"),
     MEMORY,
     EMBEDDINGS,
     API_BASE,
-    argument("--keep", metavar="N", type=positive, default=1000, help="cases of each kind that prune leaves (1000)"),
+    argument("--keep", metavar="N", type=positive, default=1000, help="cases of each kind that prune keeps (1000)"),
 )
 def _memory(options: argparse.Namespace, terminal: Terminal) -> Report:
     from articad.errors import ReadError

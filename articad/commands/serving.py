@@ -33,7 +33,7 @@ def _mcp(options: argparse.Namespace, _terminal: Terminal) -> Report:
 @command(
     "skill",
     "Install or print the instructions that teach a coding agent to use articad.",
-    argument("action", choices=["install", "print"], help="where to: a file, or the terminal"),
+    argument("action", choices=["install", "print"], help="install into a folder, or print to the terminal"),
     argument("--dir", metavar="DIR", default=str(_SKILLS), help=f"folder of the skill ({_SKILLS})"),
 )
 def _skill(options: argparse.Namespace, terminal: Terminal) -> Report:

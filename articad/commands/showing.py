@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 _STARTER: Final = Path(__file__).parents[1] / "starter"
 _NAME: Final = re.compile(r"[a-z][a-z0-9]*(_[a-z0-9]+)*")
 _SCRIPTS: Final = {"build123d": ".py", "freecad": ".freecad.py"}
-_BROWSER = argument("--no-browser", dest="browser", action="store_false", help="write or serve the page, and open nothing")
+_BROWSER = argument("--no-browser", dest="browser", action="store_false", help="write or serve the page without opening a browser")
 
 
 @command(
@@ -58,10 +58,10 @@ def _show(options: argparse.Namespace, terminal: Terminal) -> Report:
 
 @command(
     "new",
-    "Begin a product: a folder with a commented plan and part scripts that builds at once.",
+    "Create a product: a folder with a commented plan and part scripts that builds at once.",
     argument("name", metavar="NAME", help="its folder, and the name of the product: small letters, digits and single underscores"),
-    argument("--example", metavar="NAME", help="begin with a copy of one of the project's examples, such as lamp"),
-    argument("--kernel", choices=sorted(_SCRIPTS), default="build123d", help="what builds the part scripts (build123d)"),
+    argument("--example", metavar="NAME", help="start from a copy of one of the project's examples, such as lamp"),
+    argument("--kernel", choices=sorted(_SCRIPTS), default="build123d", help="the kernel that builds the part scripts (build123d)"),
 )
 def _new(options: argparse.Namespace, terminal: Terminal) -> Report:
     from articad.errors import WriteError
@@ -98,11 +98,11 @@ def _new(options: argparse.Namespace, terminal: Terminal) -> Report:
 
 @command(
     "watch",
-    "Serve the page of a plan to your browser, and build what has changed whenever a file is saved.",
+    "Serve the page of a plan to your browser, and rebuild what changed whenever a file is saved.",
     argument("plan", metavar="PLAN_DIR"),
-    argument("--kernel", choices=sorted(_SCRIPTS), default=None, help="what builds part scripts (the plan's own choice)"),
+    argument("--kernel", choices=sorted(_SCRIPTS), default=None, help="the kernel that builds part scripts (the plan's choice)"),
     argument("--set", metavar="NAME=VALUE", dest="parameters", type=parameter, action="append", default=[], help="replace a parameter"),
-    argument("--port", metavar="N", type=int, default=0, help="of the page's address (any that is free)"),
+    argument("--port", metavar="N", type=int, default=0, help="port of the page's address (any free port)"),
     _BROWSER,
     SANDBOX,
     JOBS,

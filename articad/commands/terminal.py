@@ -162,7 +162,7 @@ class Terminal:
         """Say that the user stopped the program."""
         if self._is_watched(self.err):
             print("\x1b[?25h", end="", file=self.err)  # a bar that was cut off has hidden the cursor
-        self.failure(KeyboardInterrupt(), "interrupted; what was finished is kept.")
+        self.failure(KeyboardInterrupt(), "interrupted; finished work is kept.")
         self.out.flush()
         self.err.flush()
 

@@ -105,11 +105,11 @@ TABLE: dict[str, dict[Format, Row]] = {
     "screw": {
         "urdf": Row(
             "a prismatic joint that mimics a revolute joint, with a carrier link",
-            "readers that ignore <mimic> let the two move on their own",
+            "in readers that ignore <mimic>, the two move independently",
         ),
         "mjcf": Row("a slide and a hinge on one body, tied by an equality of joints"),
         "sdf": Row("a screw joint"),
-        "usd": Row("a generic joint that slides along and turns about z", "the lead: the two move on their own", refused=True),
+        "usd": Row("a generic joint that slides along and turns about z", "the lead: the two move independently", refused=True),
     },
     "planar": {
         "urdf": Row("two prismatic joints and a revolute joint, with two carrier links"),
@@ -126,26 +126,26 @@ TABLE: dict[str, dict[Format, Row]] = {
     "free": {
         "urdf": Row("a floating joint"),
         "mjcf": Row("a freejoint on a body of the world"),
-        "sdf": Row("a link that no joint holds, posed at rest"),
-        "usd": Row("a body that no joint holds, the root of an articulation of its own"),
+        "sdf": Row("a link without a joint, posed at rest"),
+        "usd": Row("a body without a joint, the root of its own articulation"),
     },
     "free.nested": {
         "urdf": Row("a floating joint"),
-        "mjcf": Row("a freejoint on a body of the world", "from which part its values are counted: they are counted from the world"),
-        "sdf": Row("a link that no joint holds, posed at rest"),
-        "usd": Row("a body that no joint holds, the root of an articulation of its own"),
+        "mjcf": Row("a freejoint on a body of the world", "the part from which its values are measured: they are measured from the world"),
+        "sdf": Row("a link without a joint, posed at rest"),
+        "usd": Row("a body without a joint, the root of its own articulation"),
     },
     "free.rest": {
-        "urdf": Row("a floating joint with zero where its frames coincide", "where it rests"),
+        "urdf": Row("a floating joint with zero where its frames coincide", "the rest value"),
         "mjcf": Row("the key at rest"),
-        "sdf": Row("a link that no joint holds, posed at rest"),
-        "usd": Row("a body that no joint holds, posed at rest"),
+        "sdf": Row("a link without a joint, posed at rest"),
+        "usd": Row("a body without a joint, posed at rest"),
     },
-    "loop.free": {name: Row("nothing: it holds nothing that another joint does not hold") for name in MECHANISM_FORMATS},
+    "loop.free": {name: Row("nothing: it constrains nothing that other joints do not constrain") for name in MECHANISM_FORMATS},
     "limits.open": {
-        "urdf": Row("a far limit, 1e6 rad or 1000 m away", "the joint is endless to that side"),
-        "mjcf": Row("a far limit, 1e6 rad or 1000 m away", "the joint is endless to that side"),
-        "sdf": Row("a limit to one side only"),
+        "urdf": Row("a far limit, 1e6 rad or 1000 m away", "the joint is endless in that direction"),
+        "mjcf": Row("a far limit, 1e6 rad or 1000 m away", "the joint is endless in that direction"),
+        "sdf": Row("a limit in one direction only"),
         "usd": Row("one infinite limit"),
     },
     "slide.endless": {
@@ -173,12 +173,12 @@ TABLE: dict[str, dict[Format, Row]] = {
         "usd": Row("nothing", "friction in joints"),
     },
     "effort.assumed": {
-        name: Row("effort and velocity that carry the load", "that the file states none, where this format demands them")
+        name: Row("effort and velocity that carry the load", "the fact that the file states none; this format requires them")
         for name in MECHANISM_FORMATS
     },
     "effort.zero": {
         "urdf": Row("an effort of zero"),
-        "mjcf": Row("no actuatorfrcrange", "that no force may drive the joint: MuJoCo takes an empty range for none"),
+        "mjcf": Row("no actuatorfrcrange", "the fact that no force may drive the joint: MuJoCo reads an empty range as unlimited"),
         "sdf": Row("an effort of zero"),
         "usd": Row("nothing", "efforts"),
     },
@@ -190,9 +190,7 @@ TABLE: dict[str, dict[Format, Row]] = {
         "usd": Row("a joint that is excluded from the articulation"),
     },
     "loop.points": {
-        "urdf": Row(
-            "points that two links share", "only the reader that was asked for closes the loop, and the closing joint has no limits there"
-        ),
+        "urdf": Row("points that two links share", "only the chosen reader closes the loop, and the closing joint has no limits there"),
         "mjcf": Row("equality constraints between sites"),
         "sdf": Row("a joint like any other"),
         "usd": Row("a joint that is excluded from the articulation"),
@@ -210,22 +208,26 @@ TABLE: dict[str, dict[Format, Row]] = {
         "usd": Row("a spherical joint with a cone", "the range of its twist"),
     },
     "coupling": {
-        "urdf": Row("<mimic>", "readers that ignore <mimic> let the joints move on their own"),
+        "urdf": Row("<mimic>", "in readers that ignore <mimic>, the joints move independently"),
         "mjcf": Row("an equality of joints"),
-        "sdf": Row("<mimic>", "readers that ignore <mimic> let the joints move on their own"),
-        "usd": Row("nothing", "UsdPhysics ties no joints: they move on their own", refused=True),
+        "sdf": Row("<mimic>", "in readers that ignore <mimic>, the joints move independently"),
+        "usd": Row("nothing", "UsdPhysics has no couplings: the joints move independently", refused=True),
     },
     "coupling.loop": {
-        "urdf": Row("metadata", "the coupling names a joint that closes a loop, or ties joints that are tied already", refused=True),
+        "urdf": Row(
+            "metadata", "the coupling: it names a joint that closes a loop, or couples joints that are already coupled", refused=True
+        ),
         "mjcf": Row("an equality of joints"),
-        "sdf": Row("metadata", "the coupling names a joint that closes a loop, or ties joints that are tied already", refused=True),
-        "usd": Row("nothing", "UsdPhysics ties no joints: they move on their own", refused=True),
+        "sdf": Row(
+            "metadata", "the coupling: it names a joint that closes a loop, or couples joints that are already coupled", refused=True
+        ),
+        "usd": Row("nothing", "UsdPhysics has no couplings: the joints move independently", refused=True),
     },
     "loop.rest": {
-        "urdf": Row("the tree where all values are zero"),
+        "urdf": Row("the tree with all values at zero"),
         "mjcf": Row("a key at rest"),
-        "sdf": Row("a model that is posed at rest", "values are measured from rest, where the loops are closed, not from zero"),
-        "usd": Row("bodies that are posed at rest"),
+        "sdf": Row("a model posed at rest", "values are measured from rest, where the loops are closed, not from zero"),
+        "usd": Row("bodies posed at rest"),
     },
     "loop.chain": {
         "urdf": Row("metadata"),
@@ -235,28 +237,28 @@ TABLE: dict[str, dict[Format, Row]] = {
     },
     # --- what formats of shapes make of motion and mass
     "motion": {
-        "glb": Row("an animation of every joint that drives", "joints and their limits: glTF has none", refused=True),
+        "glb": Row("an animation of every driver", "joints and their limits: glTF has none", refused=True),
         "3mf": Row("parts one by one", "joints and limits: 3MF has none", refused=True),
         "step": Row("parts placed as they rest", "joints and limits: STEP readers know none", refused=True),
     },
     "mass": {
         "glb": Row("nothing", "mass and inertia: glTF has none"),
         "3mf": Row("nothing", "mass and inertia: 3MF has none"),
-        "step": Row("a solid, whose density is not told", "mass and inertia"),
+        "step": Row("a solid without density", "mass and inertia"),
     },
     "brep.missing": {
         "step": Row("a plane face for each triangle of its mesh", "smooth faces: the part has a mesh and no B-rep"),
     },
     # --- parts
     "link.frame": {
-        name: Row("a frame on the joint", "the link's frame as it came: the joint does not pass through its origin")
+        name: Row("a frame on the joint", "the original frame of the link: the joint does not pass through its origin")
         for name in MECHANISM_FORMATS
     },
     "shape.primitive": {
-        "urdf": Row("a mesh", "that it is a primitive body, which URDF (1.0) does not have"),
+        "urdf": Row("a mesh", "the primitive: URDF 1.0 does not have it"),
         "mjcf": Row("a geom of that kind"),
-        "sdf": Row("a mesh", "that it is a primitive body"),
-        "usd": Row("a mesh", "that it is a primitive body"),
+        "sdf": Row("a mesh", "the primitive type"),
+        "usd": Row("a mesh", "the primitive type"),
     },
     "mass.missing": {
         "urdf": Row("1e-4 kg", "the mass of a moving part is not known", refused=True),
@@ -265,11 +267,15 @@ TABLE: dict[str, dict[Format, Row]] = {
         "usd": Row("1e-4 kg", "the mass of a moving part is not known", refused=True),
     },
     "mass.impossible": {
-        name: Row("the nearest inertia that a body can have", "the inertia as given, which no body has and engines refuse", refused=True)
+        name: Row(
+            "the nearest inertia that is physically possible",
+            "the inertia as given, which is physically impossible and which engines refuse",
+            refused=True,
+        )
         for name in MECHANISM_FORMATS
     },
     "shape.flat": {
-        name: Row("a hull 1 mm thick to collide with", "a surface without thickness, which engines cannot collide with")
+        name: Row("a collision hull 1 mm thick", "a surface without thickness, with which engines cannot collide")
         for name in MECHANISM_FORMATS
     },
     "shape.missing": {
@@ -277,26 +283,26 @@ TABLE: dict[str, dict[Format, Row]] = {
         "mjcf": Row("a body without geoms"),
         "sdf": Row("a link without shapes"),
         "usd": Row("a body without meshes"),
-        "step": Row("nothing", "its place and name: the part has no shape"),
+        "step": Row("nothing", "its position and name: the part has no shape"),
     },
     "hull": {
         "urdf": Row(
             "collision meshes",
-            "readers that collide with convex hulls (MuJoCo, PyBullet) see these two parts overlap at rest or in motion, and URDF cannot exclude the pair",
+            "in readers that use convex hulls for collision (MuJoCo, PyBullet), these two parts overlap at rest or in motion, and URDF cannot exclude the pair",
         ),
         "mjcf": Row(
             "an excluded pair",
-            "MuJoCo collides with convex hulls; those of these two parts overlap at rest or in motion, so they do not collide at all",
+            "MuJoCo uses convex hulls for collision; those of these two parts overlap at rest or in motion, so the two do not collide at all",
         ),
         "sdf": Row("collision meshes"),
-        "usd": Row("convex hulls to collide with"),
+        "usd": Row("convex hulls for collision"),
     },
     "collision.hull": {
-        name: Row("a convex hull to collide with", "dents, holes and slots of the part, which bodies cannot enter", refused=True)
+        name: Row("a convex hull for collision", "dents, holes and slots of the part: other bodies cannot enter them", refused=True)
         for name in MECHANISM_FORMATS
     },
     "collision.pieces": {
-        name: Row("convex pieces to collide with", "what the pieces add to the solid and leave out of it") for name in MECHANISM_FORMATS
+        name: Row("convex pieces for collision", "the difference between the pieces and the solid") for name in MECHANISM_FORMATS
     },
     "color": {"urdf": Row("<material>"), "mjcf": Row("a material"), "sdf": Row("a material"), "usd": Row("displayColor")},
     "friction": {
@@ -315,7 +321,7 @@ TABLE: dict[str, dict[Format, Row]] = {
         "urdf": Row("metadata"),
         "mjcf": Row("metadata"),
         "sdf": Row("metadata"),
-        "usd": Row("nothing", "fits: they are promises to the maker, not to a simulator"),
+        "usd": Row("nothing", "fits"),
     },
     "name": {
         "urdf": Row("a name of letters, digits and underscores", "the name as given, which is kept in the metadata"),
@@ -326,7 +332,7 @@ TABLE: dict[str, dict[Format, Row]] = {
 }
 
 
-_BALL = Row("a ball joint", "its cone and twist: FreeCAD has no limits of a ball")
+_BALL = Row("a ball joint", "its cone and twist: a ball of FreeCAD has no limits")
 _FREECAD: dict[str, Row] = {
     "fixed": Row("a fixed joint"),
     "revolute": Row("a revolute joint with its limits"),
@@ -336,25 +342,25 @@ _FREECAD: dict[str, Row] = {
     "ball": _BALL,
     "ball.free": Row("a ball joint"),
     "ball.wide": _BALL,
-    "screw": Row("a cylindrical joint and a thread", "FreeCAD's solver does not hold the thread's lead", refused=True),
+    "screw": Row("a cylindrical joint and a thread", "FreeCAD's solver does not enforce the lead", refused=True),
     "planar": Row("a distance of zero between two planes", "its limits"),
     "universal": Row("a ball and a perpendicular joint", "its two limits", refused=True),
-    "free": Row("no joint: its part is loose", "that a joint is declared there; the record has it"),
-    "loop.free": Row("no joint: it holds nothing", "that a joint is declared there; the record has it"),
-    "limits.open": Row("a limit to one side only"),
+    "free": Row("no joint: its part is loose", "the joint, except in articad's record"),
+    "loop.free": Row("no joint: it constrains nothing", "the joint, except in articad's record"),
+    "limits.open": Row("a limit in one direction only"),
     "slide.endless": Row("a joint without that limit"),
     "velocity": Row("a record", "FreeCAD has no limit on a joint's velocity"),
     "joint.damping": Row("a record", "damping: FreeCAD has none"),
     "joint.friction": Row("a record", "friction in joints: FreeCAD has none"),
-    "coupling": Row("a joint of its kind, switched off", "FreeCAD's solver does not hold it", refused=True),
-    "fit": Row("a record", "fits: FreeCAD has no word for them"),
+    "coupling": Row("a suppressed joint of the same kind", "FreeCAD's solver does not enforce it", refused=True),
+    "fit": Row("a record", "fits: FreeCAD has none"),
     "freecad.coupling": Row("a record", "FreeCAD has no such coupling", refused=True),
-    "freecad.color": Row("a link to its source", "its colour: it has its source's"),
+    "freecad.color": Row("a link to its source", "its colour: it has the colour of its source"),
     "freecad.features": Row("its B-rep", "its features: it follows no parameter; write with FreeCAD to keep them"),
-    "freecad.brep": Row("its B-rep", "features to edit: it follows no parameter; build with the FreeCAD kernel to have them"),
-    "freecad.mesh": Row("a mesh", "coordinates beyond single precision, and a solid to edit"),
-    "freecad.frame": Row("a fixed frame", "that it follows parameters"),
-    "freecad.direction": Row("a fixed direction", "that its direction follows parameters: its x is chosen by rule"),
+    "freecad.brep": Row("its B-rep", "editable features: it follows no parameter; build with the FreeCAD kernel to get them"),
+    "freecad.mesh": Row("a mesh", "coordinates beyond single precision, and an editable solid"),
+    "freecad.frame": Row("a fixed frame", "the link to parameters"),
+    "freecad.direction": Row("a fixed direction", "the link of its direction to parameters: its x is chosen by rule"),
 }
 """What a FreeCAD document holds for FreeCAD itself; its records hold the rest."""
 
@@ -363,14 +369,17 @@ _PLAN: dict[str, Row] = {
     "name": Row("a name of lower-case words", "the name as given"),
     "joint.damping": Row("nothing", "damping: a plan has none, and exports compute it"),
     "joint.friction": Row("nothing", "friction in joints: a plan has none"),
-    "plan.shape": Row("the sides of each part's bounding box", "the shapes: a plan says what to build, and scripts build it", refused=True),
-    "plan.mass": Row("a material of the density that gives its mass", "centre of mass and inertia where they are not those of a solid"),
-    "plan.density": Row("a density of 1000 kg/m³", "its mass: its shape encloses no volume that it could be spread over", refused=True),
-    "plan.rest": Row("a rest at zero", "where the joint rests: balls, planar, universal and free joints of a plan rest at zero"),
-    "plan.endless": Row(
-        "a far limit, 1e6 mm or 100 turns away", "the coordinate is endless; a plan says so of revolute and cylindrical joints only"
+    "plan.shape": Row(
+        "the sides of each part's bounding box", "the shapes: a plan states what to build, and scripts build it", refused=True
     ),
-    "plan.capacity": Row("the first effort or velocity", "the others: a plan states one for turning and one for sliding"),
+    "plan.mass": Row("a material whose density gives its mass", "centre of mass and inertia if they differ from those of a solid"),
+    "plan.density": Row("a density of 1000 kg/m³", "its mass: its shape encloses no volume", refused=True),
+    "plan.rest": Row("a rest at zero", "the rest value of the joint: ball, planar, universal and free joints of a plan rest at zero"),
+    "plan.endless": Row(
+        "a far limit, 1e6 mm or 100 turns away",
+        "the fact that the coordinate is endless; in a plan only revolute and cylindrical joints can be",
+    ),
+    "plan.capacity": Row("the first effort or velocity", "the others: a plan states one for rotation and one for translation"),
 }
 """What a plan does not hold as it is; everything else that a mechanism has, it was made for."""
 

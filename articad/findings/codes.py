@@ -36,8 +36,8 @@ CODES: dict[str, Code] = {
     "E_NAME": Code(
         "plan",
         "design",
-        "A name is not of the allowed form.",
-        "Use lower_snake_case, at most 40 characters, no Python keyword, no double underscore.",
+        "A name does not have the allowed form.",
+        "Use lower_snake_case with at most 40 characters, no Python keyword and no double underscore.",
     ),
     "E_DUP_NAME": Code("plan", "design", "A name is used twice in its own list.", "Rename one of them."),
     "E_EXPRESSION": Code(
@@ -58,7 +58,7 @@ CODES: dict[str, Code] = {
         "plan",
         "design",
         "The plan breaks when a parameter is at its min or max.",
-        "Narrow the parameter's range, or mend the expression that breaks.",
+        "Narrow the parameter's range, or correct the expression that fails.",
     ),
     "E_MATERIAL_UNKNOWN": Code(
         "plan", "design", "A part names a material that is not declared.", "Declare the material or correct its name."
@@ -80,12 +80,15 @@ CODES: dict[str, Code] = {
     ),
     # --- plan: connectors
     "E_AXIS_ZERO": Code("plan", "design", "An axis has no length.", "Give a vector longer than 1e-9."),
-    "E_AXIS_PARALLEL": Code("plan", "design", "A connector's x is parallel to its z.", "Give an x at right angles to z, or leave x out."),
+    "E_AXIS_PARALLEL": Code("plan", "design", "A connector's x is parallel to its z.", "Give an x perpendicular to z, or leave x out."),
     "E_AXIS_NOT_ORTHOGONAL": Code(
-        "plan", "design", "A connector's x is more than 1 degree off the right angle to z.", "Use the projected x that is named."
+        "plan", "design", "A connector's x is more than 1 degree off perpendicular to z.", "Use the projected x that the hint states."
     ),
     "W_AXIS_NOT_ORTHOGONAL": Code(
-        "plan", "design", "A connector's x is slightly off the right angle to z and was projected.", "Use the projected x that is named."
+        "plan",
+        "design",
+        "A connector's x is not exactly perpendicular to z and was projected.",
+        "Use the projected x that the hint states.",
     ),
     "E_LEFT_HANDED": Code("plan", "design", "A frame is mirrored: its determinant is negative.", "Use derive: mirror for mirrored parts."),
     "E_NOT_ROTATION": Code("plan", "design", "A matrix is not a rotation.", "Give orthonormal columns with determinant 1."),
@@ -98,14 +101,14 @@ CODES: dict[str, Code] = {
     ),
     "W_CONNECTOR_UNUSED": Code("plan", "design", "No joint uses this connector.", "Use it in a joint, or remove it."),
     "W_DUP_CONNECTOR_USE": Code(
-        "plan", "design", "Two joints use one connector.", "This is right for coaxial stacks; otherwise declare a connector of its own."
+        "plan", "design", "Two joints use one connector.", "This is correct for coaxial stacks; otherwise declare a separate connector."
     ),
     "E_NO_CONNECTORS": Code(
         "plan", "design", "A part of an assembly has no connector.", "Declare at least one connector and a joint that uses it."
     ),
     # --- plan: joints and graph
-    "E_PART_UNKNOWN": Code("plan", "design", "A part is named that is not declared.", "Declare it, or use one of those listed."),
-    "E_JOINT_UNKNOWN": Code("plan", "design", "A joint is named that is not declared.", "Declare it, or use one of those listed."),
+    "E_PART_UNKNOWN": Code("plan", "design", "A name refers to a part that is not declared.", "Declare it, or use one of those listed."),
+    "E_JOINT_UNKNOWN": Code("plan", "design", "A name refers to a joint that is not declared.", "Declare it, or use one of those listed."),
     "E_JOINT_SELF": Code("plan", "design", "A joint connects a part with itself.", "Name two different parts."),
     "E_JOINT_DUP": Code("plan", "design", "Two joints connect the same two connectors.", "Remove one."),
     "E_NO_GROUND": Code("plan", "design", "The ground is not one of the parts.", "Name a declared part as ground."),
@@ -122,26 +125,26 @@ CODES: dict[str, Code] = {
         "Remove the joint that closes the loop, or drop 'tree': true.",
     ),
     "E_REVERSE_UNSUPPORTED": Code(
-        "plan", "design", "A planar or universal joint would have to be crossed from child to parent.", "Exchange its parent and child."
+        "plan", "design", "The tree would have to traverse a planar or universal joint from child to parent.", "Swap its parent and child."
     ),
     "E_DOF_MISMATCH": Code(
         "plan",
         "design",
         "The declared freedoms differ from those the joints give.",
-        "Set freedoms to the computed number, or mend the joints.",
+        "Set freedoms to the computed number, or correct the joints.",
     ),
     "E_DRIVER": Code(
         "plan",
         "design",
         "The declared drivers do not determine the motion.",
-        "Mark as drivers as many independent joints as there are freedoms.",
+        "Mark one independent joint as driver for each freedom.",
     ),
     "W_DRIVER": Code("plan", "design", "A driver mark has no effect here.", "Remove it."),
     "E_LIMITS_MISSING": Code("plan", "design", "A joint that moves has no limits.", "Give [lower, upper], or 'endless' for an angle."),
-    "E_LIMITS_ORDER": Code("plan", "design", "A limit's lower bound is above its upper bound.", "Exchange the two."),
+    "E_LIMITS_ORDER": Code("plan", "design", "The lower limit is above the upper limit.", "Swap the two."),
     "E_LIMITS_KIND": Code("plan", "design", "A limit does not suit its joint.", "Use the fields of the joint's own type."),
     "W_LIMITS_EQUAL": Code("plan", "design", "A joint's two limits are equal, so it cannot move.", "Use a fixed joint, or open the range."),
-    "W_LIMITS_UNITS": Code("plan", "design", "Limits of a turning joint look like radians, or exceed two turns.", "Give degrees."),
+    "W_LIMITS_UNITS": Code("plan", "design", "Limits of a rotary joint look like radians, or exceed two turns.", "Give degrees."),
     "E_REST_OUTSIDE_LIMITS": Code("plan", "design", "A joint's rest value is outside its limits.", "Move the rest value or the limit."),
     "E_EFFORT": Code(
         "plan",
@@ -151,16 +154,16 @@ CODES: dict[str, Code] = {
     ),
     "E_LEAD_ZERO": Code("plan", "design", "A screw has no lead.", "Give the advance per turn in mm, or use a revolute joint."),
     "E_MATE_OFFSET": Code(
-        "plan", "design", "The two connectors of a joint do not meet at rest.", "Move one of them by the named offset, or set rest_pose."
+        "plan", "design", "The two connectors of a joint do not meet at rest.", "Move one of them by the stated offset, or set rest_pose."
     ),
     "E_MATE_FLIP": Code(
         "plan",
         "design",
         "The two z axes of a joint oppose at rest although the mate is aligned, or agree although it is opposed.",
-        "Change the mate, or turn one z over.",
+        "Change the mate, or reverse one z.",
     ),
     "E_MATE_TILT": Code(
-        "plan", "design", "The two z axes of a joint are tilted against each other at rest.", "Use the corrected z that is named."
+        "plan", "design", "The two z axes of a joint are tilted against each other at rest.", "Use the corrected z that the hint states."
     ),
     "E_MATE_ROLL": Code(
         "plan",
@@ -171,13 +174,13 @@ CODES: dict[str, Code] = {
     "I_REST_AUTO": Code(
         "plan",
         None,
-        "A part is placed by its joint, so that joint's rest check is empty.",
-        "Give the part a rest_pose if the check is wanted.",
+        "A joint places the part, so the rest check of that joint is always satisfied.",
+        "Give the part a rest_pose if you want the check.",
     ),
     "E_REST_AUTO": Code(
         "plan",
         "design",
-        "A part cannot be placed by a joint: it is the ground, or what would place it is given relative to where it is.",
+        "No joint can place the part: it is the ground, or the connector that would place it is given in the assembly frame.",
         "Give the part a rest_pose, or leave it out.",
     ),
     # --- plan: derived parts and joints
@@ -196,23 +199,26 @@ CODES: dict[str, Code] = {
         "plan",
         "design",
         "A mirrored part's joint has the limits of its source, so the motion is not symmetric.",
-        "Derive the joint as well, or negate and exchange the limits.",
+        "Derive the joint as well, or negate and swap the limits.",
     ),
     "W_CHIRAL": Code(
         "plan",
         "design",
-        "A part that is mirrored seems to have a handedness (thread, gear, text).",
-        "Make it a part of its own, unless the other hand is meant.",
+        "A mirrored part seems to have a handedness (thread, gear, text).",
+        "Make it a separate part, unless the opposite hand is intended.",
     ),
     "I_MIRROR_SIDE": Code(
         "plan",
         None,
-        "A mirrored part keeps connector names or labels that say left or right.",
-        "Nothing, if that is understood; otherwise name the source's connectors without a side.",
+        "A mirrored part keeps connector names or labels that contain left or right.",
+        "Nothing, or name the source's connectors without a side.",
     ),
     # --- plan: couplings, fits, waivers, mechanisms
     "E_COUPLING": Code(
-        "plan", "design", "A coupling's joints do not suit its type.", "Name one coordinate each, of the kinds the coupling ties."
+        "plan",
+        "design",
+        "A coupling's joints do not suit its type.",
+        "Name one coordinate of each joint, of the kind that the coupling requires.",
     ),
     "E_COUPLING_AXES": Code(
         "plan", "design", "A coupling's axes are not parallel at rest.", "Use a linear coupling, or make the axes parallel."
@@ -226,8 +232,8 @@ CODES: dict[str, Code] = {
     "E_COUPLING_LOCKED": Code(
         "plan",
         "design",
-        "Couplings hold each other fast, such as three gears in a triangle.",
-        "Remove one of them, or correct a ratio: round a closed train the product of the ratios must be 1.",
+        "Couplings lock each other, such as three gears in a triangle.",
+        "Remove one of them, or correct a ratio: around a closed train, the product of the ratios must be 1.",
     ),
     "E_FIT": Code("plan", "design", "A fit's range is impossible.", "Give 0 <= min <= max in mm."),
     "E_ALLOW": Code("plan", "design", "A waiver is incomplete.", "Name two different parts, a positive depth in mm and a reason."),
@@ -235,8 +241,8 @@ CODES: dict[str, Code] = {
     "W_LOOP_INEXACT": Code(
         "plan",
         "design",
-        "A loop closes and moves only after its connectors are moved by less than the tolerance: they are rounded.",
-        "Give the named connectors with more digits; nothing is to be done where rounding is all there is.",
+        "A loop closes and moves only after a correction of its connectors within the tolerance, because they are rounded.",
+        "Give the named connectors with more digits, or accept the correction.",
     ),
     "E_LOOP_LOCKED": Code("plan", "design", "A loop cannot move.", "Make the axes parallel, or change a joint of the loop."),
     "E_LOOP_LIMIT": Code(
@@ -255,19 +261,19 @@ CODES: dict[str, Code] = {
     "E_NO_PATH": Code(
         "motion",
         "design",
-        "No way of the drivers between two configurations was found on the branch and within limits.",
+        "No path of the drivers between two configurations was found on the branch and within limits.",
         "Give waypoints, or widen limits.",
     ),
     "E_REACH_BARRED": Code(
         "motion",
         "design",
-        "A target is reached, but only in configurations in which parts overlap.",
-        "Move the target, or what is in the way.",
+        "The target can be reached only in configurations in which parts overlap.",
+        "Move the target or the obstacle.",
     ),
     "E_NOT_FOLLOWED": Code(
         "motion",
         "design",
-        "A linkage was followed over as many steps as there may be, or its constraints have a multiple root; nothing is known to bar the way.",
+        "The solver stopped following a linkage, at its limit of steps or because the constraints have a multiple root; no obstacle is known.",
         "Ask for a value nearer to rest, or give the driver limits.",
     ),
     "W_NEAR_SINGULAR": Code(
@@ -275,17 +281,17 @@ CODES: dict[str, Code] = {
     ),
     "W_SHAKY": Code("plan", "design", "The linkage moves to first order only.", "Change a length: it is rigid, but barely."),
     "W_IDLE_FREEDOM": Code(
-        "plan", "design", "A freedom moves one part alone and drives nothing.", "This is right for a leg that may spin; otherwise fix it."
+        "plan", "design", "A freedom moves one part alone and drives nothing.", "This is correct for a leg that may spin; otherwise fix it."
     ),
     "I_REDUNDANT": Code(
         "plan",
         None,
         "A loop has constraints that it does not need.",
-        "In real life, release the named joint to a ball or cylindrical joint.",
+        "In the real mechanism, replace the named joint by a ball or cylindrical joint.",
     ),
     # --- build
     "E_SCRIPT_MISSING": Code("build", "code", "A part has no script.", "Write parts/<part>.py with a function build(part)."),
-    "E_SCRIPT_ERROR": Code("build", "code", "A part script raised an exception.", "Mend the named line."),
+    "E_SCRIPT_ERROR": Code("build", "code", "A part script raised an exception.", "Correct the named line."),
     "E_SCRIPT_TIMEOUT": Code("build", "code", "A part script ran too long.", "Simplify the geometry; look for an endless loop."),
     "E_SCRIPT_MEMORY": Code("build", "code", "A part script needed too much memory.", "Simplify the geometry."),
     "E_SCRIPT_FORBIDDEN": Code(
@@ -300,7 +306,7 @@ CODES: dict[str, Code] = {
         "A part script does not define build(part), or it does not return (shape, connectors).",
         "Define build(part) and return (shape, connectors).",
     ),
-    "E_NOT_ONE_SOLID": Code("build", "code", "The shape is not one solid.", "Fuse the bodies so that they touch or overlap."),
+    "E_NOT_ONE_SOLID": Code("build", "code", "The shape is not one solid.", "Make the bodies overlap or touch, and fuse them."),
     "E_INVALID_SOLID": Code("build", "code", "The solid is not valid.", "Avoid self-intersecting features and zero-thickness walls."),
     "E_EMPTY_SOLID": Code("build", "code", "The solid has no volume.", "Check that cuts do not remove everything."),
     "E_ENVELOPE": Code("build", "code", "The solid's bounding box differs from the stated one by more than 2 %.", "Build the stated size."),
@@ -311,7 +317,10 @@ CODES: dict[str, Code] = {
         "build", "code", "The script returns a connector that the plan does not have.", "Return only the connectors of the plan."
     ),
     "E_CONNECTOR_DRIFT": Code(
-        "build", "code", "A realised connector is too far from where the plan has it.", "Build the feature where the plan's connector is."
+        "build",
+        "code",
+        "A realised connector is too far from its position in the plan.",
+        "Build the feature where the plan's connector is.",
     ),
     "W_CONNECTOR_DRIFT": Code(
         "build", "code", "A realised connector is slightly off the plan's.", "Build the feature where the plan's connector is."
@@ -334,8 +343,8 @@ CODES: dict[str, Code] = {
     "W_DIMENSION_REFUSED": Code(
         "build",
         "code",
-        "The script itself refuses a small change of a dimension.",
-        "Let the script accept what can be built, or derive dependent dimensions in the plan.",
+        "The script refuses a small change of a dimension.",
+        "Let the script accept every value that can be built, or derive dependent dimensions in the plan.",
     ),
     "W_BUILD_UNCHECKED": Code(
         "build", "code", "A check of the built part was not finished in time.", "Simplify the part, or give the kernel more time."
@@ -343,32 +352,38 @@ CODES: dict[str, Code] = {
     "I_BUILD_UNCHECKED": Code(
         "build",
         None,
-        "The kernel cannot say whether the faces of a solid cut each other.",
-        "Nothing, while volumes and pictures look right.",
+        "The kernel cannot decide whether the faces of a solid intersect.",
+        "Check that volume and pictures look right.",
     ),
     "E_SANDBOX": Code(
         "build",
         None,
         "The sandbox that untrusted scripts need is not available.",
-        "Install what is named, or accept less with --sandbox weak.",
+        "Install the named programs, or accept weaker isolation with --sandbox weak.",
     ),
     "E_KERNEL_UNAVAILABLE": Code(
-        "build", None, "The kernel that builds parts is not available.", "Install what is named; `articad doctor` shows what is there."
+        "build",
+        None,
+        "The kernel that builds parts is not available.",
+        "Install the named programs; `articad doctor` shows what is installed.",
     ),
     "E_FREECAD": Code(
-        "export", None, "FreeCAD failed on a document, or holds some of it invalid.", "Open the document and look at the marked objects."
+        "export",
+        None,
+        "FreeCAD failed on a document, or reports invalid objects in it.",
+        "Open the document and look at the marked objects.",
     ),
     "W_FREECAD_SOLVER": Code(
         "export",
         None,
         "FreeCAD's own solver does not agree with the exact placements that were written.",
-        "Nothing in the file is wrong for that; do not let FreeCAD move the parts.",
+        "The file is correct; do not let FreeCAD move the parts.",
     ),
     "I_FREECAD_UNSEEN": Code(
         "export",
         None,
-        "A FreeCAD document was written without FreeCAD, so that its solver was not asked.",
-        "Open it in FreeCAD 1.0 or later; to have trees of features written too, install it.",
+        "A FreeCAD document was written without FreeCAD, so its solver did not check it.",
+        "Open it in FreeCAD 1.0 or later; install FreeCAD to write feature trees as well.",
     ),
     "W_FREECAD_JOINT": Code(
         "import", None, "A joint of a FreeCAD document was left out.", "Use Fixed, Revolute, Slider, Cylindrical or Ball between two parts."
@@ -386,9 +401,9 @@ CODES: dict[str, Code] = {
         "Bore the hole, or cut the slot.",
     ),
     "E_MOTION_COLLISION": Code(
-        "motion", "design", "Two parts collide during motion.", "Narrow the limits to the free range, or make room."
+        "motion", "design", "Two parts collide during motion.", "Narrow the limits to the free range, or add clearance."
     ),
-    "E_FLOATING": Code("interference", "design", "A part touches nothing.", "Bring it to its neighbour, or connect it."),
+    "E_FLOATING": Code("interference", "design", "A part touches nothing.", "Move it to its neighbour, or connect it."),
     "E_NOT_TOUCHING": Code(
         "interference", "code", "Two parts that are fixed to each other do not touch.", "Extend one of them to the other."
     ),
@@ -400,17 +415,17 @@ CODES: dict[str, Code] = {
     ),
     "I_WAIVED": Code("interference", None, "An overlap is allowed by a waiver of the plan.", "Nothing, while the reason holds."),
     "E_CERTIFICATE_REFUTED": Code(
-        "interference", None, "The independent checker refutes a certificate that the prover calls ok.", "Report it with the plan."
+        "interference", None, "The independent checker refutes a certificate that the prover accepts.", "Report it with the plan."
     ),
-    "E_NOT_CHECKED": Code("interference", None, "A check that was asked for was not done.", "Give it a larger budget, or what it needs."),
+    "E_NOT_CHECKED": Code("interference", None, "A requested check was not done.", "Give it a larger budget, or what it requires."),
     "W_NOT_INSERTABLE": Code(
         "interference",
         "design",
         "A part cannot be put in place in a straight line.",
-        "Open one side, split a part, or make it snap or turn into place.",
+        "Open one side, split a part, or let it snap or rotate into place.",
     ),
     "W_NOT_CERTIFIED": Code(
-        "motion", "design", "Two parts touch too closely for their motion to be proven free; it was sampled.", "Give them a clearance."
+        "motion", "design", "Two parts are too close to prove that their motion is free; it was sampled.", "Give them a clearance."
     ),
     "E_FIT_TIGHT": Code("fit", "code", "A joint's gap is smaller than its fit.", "Enlarge the bore or thin the pin by the named amount."),
     "E_FIT_LOOSE": Code("fit", "code", "A joint's gap is larger than its fit.", "Narrow the bore or thicken the pin by the named amount."),
@@ -424,57 +439,63 @@ CODES: dict[str, Code] = {
     "E_REPLY_SCHEMA": Code(
         "model",
         None,
-        "A model's reply does not have the form asked for.",
+        "A model's reply does not have the required form.",
         "The reply and the form are shown; the request is repeated with the findings.",
     ),
     "W_LOOK_SHAPE": Code(
-        "model", "code", "A model that looked at a part's pictures finds its shape not as specified.", "Compare the pictures with the plan."
+        "model",
+        "code",
+        "A model that saw pictures of a part reports that its shape differs from the specification.",
+        "Compare the pictures with the plan.",
     ),
     "W_LOOK_PROPORTION": Code(
         "model",
         "code",
-        "A model that looked at a part's pictures finds its proportions not as specified.",
+        "A model that saw pictures of a part reports that its proportions differ from the specification.",
         "Compare the pictures with the plan.",
     ),
     "W_LOOK_ORIENTATION": Code(
         "model",
         "code",
-        "A model that looked at a part's pictures finds it turned or mirrored against its specification.",
+        "A model that saw pictures of a part reports that it is rotated or mirrored relative to the specification.",
         "Compare the pictures with the plan.",
     ),
     "I_LOOK_UNSEEN": Code(
-        "model", None, "A model that looked at a part's pictures says what none of them shows.", "Nothing: it was not judged."
+        "model", None, "A model that saw pictures of a part lists what none of them shows.", "Nothing: it was not judged."
     ),
-    "E_VERDICT_PLACEMENT": Code("model", None, "The judge finds parts missing, misplaced or of the wrong look.", "See what was expected."),
-    "E_VERDICT_INTERFERENCE": Code(
-        "model", None, "The judge finds parts in each other's way where no exact check has looked.", "See what was expected."
+    "E_VERDICT_PLACEMENT": Code(
+        "model", None, "The judge finds parts missing, misplaced or of the wrong appearance.", "See what was expected."
     ),
-    "E_VERDICT_MOTION": Code("model", None, "The judge finds that the product does not move as was asked.", "See what was expected."),
+    "E_VERDICT_INTERFERENCE": Code("model", None, "The judge finds interference that no exact check covered.", "See what was expected."),
+    "E_VERDICT_MOTION": Code("model", None, "The judge finds that the product does not move as requested.", "See what was expected."),
     "I_OVERRULED": Code(
-        "model", None, "A model's opinion that an exact check contradicts was left out.", "Nothing: geometry decides what can be measured."
+        "model",
+        None,
+        "A model's opinion was discarded because an exact check contradicts it.",
+        "Nothing: geometry decides what can be measured.",
     ),
     "W_ALTERNATIVES": Code(
-        "model", None, "A model had fewer structurally distinct ideas than were asked for.", "Choose among those there are, or ask again."
+        "model", None, "A model had fewer structurally distinct ideas than requested.", "Choose one of them, or ask again."
     ),
     "W_STALLED": Code(
         "model",
         None,
         "The same finding came back after every strategy; nothing more was tried.",
-        "Mend plan or script by hand, or ask again.",
+        "Correct the plan or the script by hand, or ask again.",
     ),
     "I_ABSORBED": Code(
-        "model", None, "A connector that a script placed slightly beside the plan's was taken into a new version of the plan.", "Nothing."
+        "model", None, "A script placed a connector slightly off the plan; a new version of the plan adopts its position.", "Nothing."
     ),
     "E_EDIT_REACH": Code(
         "model",
         "design",
-        "An edit changes a part that it was not to touch.",
+        "An edit changes a part that it must not touch.",
         "Name the part, or change something narrower, such as the part's own number instead of a shared parameter.",
     ),
     "E_EDIT_UNEQUAL": Code(
         "model",
         None,
-        "A part that an edit does not touch has other files than before.",
+        "A part that an edit does not touch has different files than before.",
         "Replay the run that was edited: it was made on another machine, or its files were changed by hand.",
     ),
     "I_EDITED": Code("model", None, "An edit has changed a value of the plan.", "Nothing."),
@@ -486,19 +507,27 @@ CODES: dict[str, Code] = {
         "model", None, "A prompt differs from the recorded one; the recorded reply was used.", "Record again, or use --strict to refuse."
     ),
     "W_REPLAY_DRIFT": Code(
-        "model", None, "A replay's geometry differs by rounding: another kernel, version or platform made it.", "Nothing, or record again."
+        "model",
+        None,
+        "A replay's geometry differs by rounding, because of another kernel, version or platform.",
+        "Nothing, or record again.",
     ),
     "E_REPLAY_DIFFERS": Code(
-        "model", None, "A replay made other files than the recording.", "Replay with what it was recorded with, or record again."
+        "model", None, "A replay made different files than the recording.", "Replay with the versions that recorded it, or record again."
     ),
     "E_BUDGET": Code("model", None, "The budget is spent.", "Raise --max-calls, --max-cost or --max-minutes, and resume."),
     "E_TRANSPORT": Code("model", None, "The model could not be reached.", "Check --api-base, the network and the provider's status."),
-    "E_KEY_MISSING": Code("model", None, "The provider's key is missing or was refused.", "Set the environment variable that is named."),
+    "E_KEY_MISSING": Code("model", None, "The provider's key is missing or was refused.", "Set the named environment variable."),
     # --- import and export
     "E_UNREPRESENTABLE": Code(
-        "export", None, "A format cannot hold something, and strict was asked for.", "Export without --strict to accept the named loss."
+        "export",
+        None,
+        "A format cannot represent something, and strict was requested.",
+        "Export without --strict to accept the named loss.",
     ),
-    "E_WRITE": Code("export", None, "A file cannot be written.", "Free space or permissions at the named place; finished work is kept."),
+    "E_WRITE": Code(
+        "export", None, "A file cannot be written.", "Check free space and permissions at the named place; finished work is kept."
+    ),
     "E_RUN": Code("import", None, "A run directory cannot be used.", "Name another directory, or wait for the process that uses it."),
     "W_PRINT_CLEARANCE": Code(
         "export", "design", "A joint's gap is smaller than the printing process needs.", "Widen the gap, or use another process."
@@ -509,8 +538,8 @@ CODES: dict[str, Code] = {
     "I_EFFORT_ASSUMED": Code(
         "export",
         None,
-        "Effort, velocity or damping of a joint are computed, because nobody states them.",
-        "State them where drives are known.",
+        "Effort, velocity or damping of a joint are computed, because the input does not state them.",
+        "State them if the drives are known.",
     ),
     "E_READ": Code("import", None, "A file cannot be read.", "Check the file at the named place."),
     "W_IMPORT_STALE": Code(
@@ -525,38 +554,41 @@ CODES: dict[str, Code] = {
     "W_IMPORT_DROPPED": Code(
         "import", None, "Something in a foreign file has no counterpart and is left out.", "Nothing, if it is not needed."
     ),
-    "W_IMPORT_MUJOCO": Code("import", None, "MuJoCo warns of a model that it takes.", "Correct what it names."),
+    "W_IMPORT_MUJOCO": Code("import", None, "MuJoCo accepts a model with a warning.", "Correct what it names."),
     "I_IMPORT_CHAIN": Code(
-        "import", None, "A chain of joints over bare links could be read as one joint.", "Read with fuse to make them one."
+        "import", None, "A chain of joints over links without shape could be read as one joint.", "Read with fuse to merge them."
     ),
     "I_IMPORT_FUSED": Code(
-        "import", None, "A chain of joints over bare links is read as one joint.", "Read without fuse to keep them apart."
+        "import", None, "A chain of joints over links without shape is read as one joint.", "Read without fuse to keep them apart."
     ),
     "I_ADOPT_MERGED": Code(
-        "import", None, "A part without shape is fixed to another, and is part of it in the adopted plan.", "Nothing, if it is a frame."
+        "import",
+        None,
+        "A part without shape is fixed to another part and is merged into it in the adopted plan.",
+        "Nothing, if it is a frame.",
     ),
     "I_ADOPT_FITS": Code("import", "design", "Joints of an adopted file have no fits.", "Declare the play of each joint in the plan."),
     "W_ADOPT_SHAPE": Code(
-        "import", "code", "An adopted part's script differs from its mesh.", "Draw the part anew in its script, after the mesh."
+        "import", "code", "An adopted part's script differs from its mesh.", "Redraw the part in its script from the mesh."
     ),
     "W_ADOPT_PLACEHOLDER": Code(
-        "import", "code", "An adopted part has no shape; a small ball stands for it.", "Draw the part in its script."
+        "import", "code", "An adopted part has no shape; a small ball represents it.", "Draw the part in its script."
     ),
     "E_UNSAFE_PATH": Code("import", None, "A file names a path outside its own folder.", "Keep meshes beside the file."),
     # --- audit and simulation of files that anyone made
     "E_AUDIT_NUMBER": Code(
-        "audit", None, "An attribute is not a number, or not one that can be.", "Give plain decimal numbers; expand xacro first."
+        "audit", None, "An attribute is not a number, or has an impossible value.", "Give plain decimal numbers; expand xacro first."
     ),
     "E_AUDIT_NAME_TWICE": Code("audit", None, "Two links or two joints have one name.", "Rename all but one."),
     "E_AUDIT_NO_NAME": Code("audit", None, "A link or joint has no name.", "Give it one."),
-    "E_AUDIT_LINK_UNKNOWN": Code("audit", None, "A joint names a link that is not there.", "Name a link of the file, or declare it."),
+    "E_AUDIT_LINK_UNKNOWN": Code("audit", None, "A joint names a link that does not exist.", "Name a link of the file, or declare it."),
     "E_AUDIT_JOINT_TYPE": Code("audit", None, "A joint has a type that the format does not know.", "Use one of the format's types."),
     "E_AUDIT_TWO_PARENTS": Code("audit", None, "A link is the child of several joints.", "Keep one; closed loops need MJCF."),
     "E_AUDIT_ROOTS": Code("audit", None, "A file has no root link, or several.", "Connect every link to one root."),
-    "E_AUDIT_CIRCLE": Code("audit", None, "Links carry each other in a circle.", "Remove one of the joints between them."),
-    "E_AUDIT_MIMIC": Code("audit", None, "A joint mimics one that is not there or does not move.", "Name a joint that moves."),
-    "W_AUDIT_NAME": Code("audit", None, "Names have signs that ROS or USD do not take.", "Use letters, digits and underscores."),
-    "W_AUDIT_LONG_NAME": Code("audit", None, "The robot's name is a whole text.", "Give it a short name."),
+    "E_AUDIT_CIRCLE": Code("audit", None, "Links form a circle.", "Remove one of the joints between them."),
+    "E_AUDIT_MIMIC": Code("audit", None, "A joint mimics one that does not exist or does not move.", "Name a joint that moves."),
+    "W_AUDIT_NAME": Code("audit", None, "Names contain characters that ROS or USD do not accept.", "Use letters, digits and underscores."),
+    "W_AUDIT_LONG_NAME": Code("audit", None, "The robot's name is a whole sentence.", "Give it a short name."),
     "E_AUDIT_NO_INERTIA": Code(
         "audit", None, "A body that moves has a shape but no mass.", "Give it mass and inertia; `--fix` computes them."
     ),
@@ -569,25 +601,30 @@ CODES: dict[str, Code] = {
         "audit", None, "The largest moment of an inertia exceeds the sum of the others.", "Compute it from the shape."
     ),
     "W_AUDIT_INERTIA_SHAPE": Code(
-        "audit", None, "An inertia is larger than the body's shape allows.", "Compute it from the shape; check its unit and point."
+        "audit",
+        None,
+        "An inertia is larger than possible for the body's shape.",
+        "Compute it from the shape; check its unit and reference point.",
     ),
     "W_AUDIT_COM": Code(
         "audit", None, "A centre of mass lies outside the box of the body's shapes.", "Give it in the link's frame, in metres."
     ),
-    "W_AUDIT_DENSITY": Code("audit", None, "A body is denser than osmium, or thinner than air.", "Check the units of mass and mesh."),
-    "E_AUDIT_LIMITS_ORDER": Code("audit", None, "A lower bound is above its upper bound.", "Exchange the two."),
+    "W_AUDIT_DENSITY": Code("audit", None, "A body is denser than osmium, or less dense than air.", "Check the units of mass and mesh."),
+    "E_AUDIT_LIMITS_ORDER": Code("audit", None, "A lower limit is above its upper limit.", "Swap the two."),
     "W_AUDIT_NO_LIMITS": Code(
-        "audit", None, "A hinge or slide has no bounds, which readers take for zero.", "Give lower and upper, or make it continuous."
+        "audit", None, "A hinge or slide has no limits, which readers interpret as zero.", "Give lower and upper, or make it continuous."
     ),
-    "W_AUDIT_LOCKED": Code("audit", None, "Both bounds of a joint are equal.", "Make it fixed, or open its range."),
-    "W_AUDIT_DEGREES": Code("audit", None, "Bounds in radians look like degrees.", "Write radians."),
+    "W_AUDIT_LOCKED": Code("audit", None, "Both limits of a joint are equal.", "Make it fixed, or open its range."),
+    "W_AUDIT_DEGREES": Code("audit", None, "Limits in radians look like degrees.", "Write radians."),
     "W_AUDIT_ENDLESS": Code(
-        "audit", None, "A bounded joint spans a full turn or more.", "Make it continuous, unless a cable or thread stops it."
+        "audit", None, "A limited joint spans a full turn or more.", "Make it continuous, unless a cable or thread stops it."
     ),
-    "I_AUDIT_ZERO_OUTSIDE": Code("audit", None, "A range does not hold zero, where readers place the joint.", "Move the joint's origin."),
-    "W_AUDIT_NO_EFFORT": Code("audit", None, "The effort or velocity of a joint that moves is zero or missing.", "Give that of its drive."),
-    "W_AUDIT_PLACEHOLDER": Code("audit", None, "All joints have the same round effort or velocity.", "Give each that of its drive."),
-    "E_AUDIT_MESH_ABSENT": Code("audit", None, "A mesh file is not there.", "Put it there, or correct its name."),
+    "I_AUDIT_ZERO_OUTSIDE": Code("audit", None, "A range excludes zero, where readers place the joint.", "Move the joint's origin."),
+    "W_AUDIT_NO_EFFORT": Code(
+        "audit", None, "The effort or velocity of a joint that moves is zero or missing.", "State that of its drive."
+    ),
+    "W_AUDIT_PLACEHOLDER": Code("audit", None, "All joints have the same round effort or velocity.", "State that of each joint's drive."),
+    "E_AUDIT_MESH_ABSENT": Code("audit", None, "A mesh file does not exist.", "Add the file, or correct its name."),
     "W_AUDIT_MESH_OUTSIDE": Code(
         "audit", None, "A mesh lies outside the folders that may be read.", "Name the folder that holds both with `--root`."
     ),
@@ -596,36 +633,40 @@ CODES: dict[str, Code] = {
         "audit", None, "A mesh has a format that is not read, so its shape is not audited.", "Convert it to STL, OBJ, GLB or PLY."
     ),
     "W_AUDIT_NO_COLLISION": Code(
-        "audit", None, "A link is drawn, but nothing can touch it.", "Collide with the same mesh or a simpler one."
+        "audit", None, "A link has visual shapes but no collision shapes.", "Use the same mesh or a simpler one for collision."
     ),
-    "W_AUDIT_MESH_OPEN": Code("audit", None, "A mesh has edges without a partner, or is no solid for another reason.", "Close it."),
+    "W_AUDIT_MESH_OPEN": Code("audit", None, "A mesh has edges with only one triangle, or is not a solid for another reason.", "Close it."),
     "W_AUDIT_MESH_FLAT": Code("audit", None, "A mesh encloses nothing.", "Give it a thickness."),
     "W_AUDIT_MESH_INSIDE_OUT": Code("audit", None, "The triangles of a mesh face inwards.", "Reverse them."),
-    "W_AUDIT_PIECES": Code("audit", None, "A link is several bodies that do not touch.", "Make each a link, or join them."),
-    "I_AUDIT_UNFUSED": Code("audit", None, "A mesh is several bodies that touch but are not fused.", "Fuse them."),
+    "W_AUDIT_PIECES": Code("audit", None, "A link consists of several bodies that do not touch.", "Make each body a link, or join them."),
+    "I_AUDIT_UNFUSED": Code("audit", None, "A mesh consists of several bodies that touch but are not fused.", "Fuse them."),
     "W_AUDIT_SCALE": Code("audit", None, "A whole robot is larger than 100 m or smaller than 1 mm.", "Check the unit of its meshes."),
-    "W_AUDIT_UNITS": Code("audit", None, "A shape is drawn in another unit than what is beside it.", "Give it the right scale."),
+    "W_AUDIT_UNITS": Code("audit", None, "A shape has a different unit than the shapes around it.", "Give it the right scale."),
     "I_AUDIT_BASE": Code(
         "audit", None, "A robot reaches below the origin of its base.", "Spawn it higher, or add a base link at the floor."
     ),
-    "W_AUDIT_GLTF": Code("audit", None, "glTF in millimetres, though glTF is in metres.", "Write STL or OBJ, or glTF in metres."),
+    "W_AUDIT_GLTF": Code(
+        "audit", None, "A glTF file is in millimetres, although glTF is in metres.", "Write STL or OBJ, or glTF in metres."
+    ),
     "I_AUDIT_CARRIERS": Code(
-        "audit", None, "Links without shape carry a joint of several freedoms.", "Use MJCF or CAD, where it is one joint."
+        "audit", None, "Links without shape represent a joint of several freedoms.", "Use MJCF or CAD, where it is one joint."
     ),
     "I_AUDIT_SHARED": Code(
-        "audit", None, "Shapes that simulators never let collide share space.", "Nothing, if the shapes stand for bodies that fit."
+        "audit", None, "Shapes overlap that simulators never let collide.", "Nothing, if the shapes represent bodies that fit."
     ),
-    "W_AUDIT_PAIR_COLLISION": Code("audit", None, "Two parts collide when two joints move together.", "Narrow one range, or make room."),
-    "W_AUDIT_NOT_CHECKED": Code("audit", None, "There was no time for a check.", "Give it more with `--budget`."),
+    "W_AUDIT_PAIR_COLLISION": Code(
+        "audit", None, "Two parts collide when two joints move together.", "Narrow one range, or add clearance."
+    ),
+    "W_AUDIT_NOT_CHECKED": Code("audit", None, "The budget did not suffice for a check.", "Raise `--budget`."),
     "W_AUDIT_ENGINE": Code("audit", None, "A simulator does not load the file.", "Correct what it names."),
     "W_AUDIT_UNNAMED": Code(
         "audit", None, "Parts of a STEP file have no names of their own.", "Name the products before they are exported."
     ),
-    "E_AUDIT_NOT_SOLID": Code("audit", None, "A part of a STEP file is no valid closed solid.", "Repair it in CAD."),
+    "E_AUDIT_NOT_SOLID": Code("audit", None, "A part of a STEP file is not a valid closed solid.", "Repair it in CAD."),
     "E_SIM_LOAD": Code("audit", None, "A simulator does not load the model.", "Audit the file: `articad audit`."),
     "E_SIM_EXPLODES": Code("audit", None, "Numbers in a simulation grow without bound.", "Audit the file for overlap and inertias."),
-    "E_SIM_UNSETTLED": Code("audit", None, "A model that is held does not come to rest.", "Audit the file for overlap at rest."),
-    "E_SIM_RANGE": Code("audit", None, "A joint does not reach 95 % of its range.", "Make room, or narrow the range."),
+    "E_SIM_UNSETTLED": Code("audit", None, "A model whose joints are held does not come to rest.", "Audit the file for overlap at rest."),
+    "E_SIM_RANGE": Code("audit", None, "A joint does not reach 95 % of its range.", "Add clearance, or narrow the range."),
     "E_SIM_RESIDUAL": Code(
         "audit", None, "The constraints of closed loops are not met.", "Let the loop close at rest; stiffen the constraint."
     ),

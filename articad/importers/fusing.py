@@ -44,7 +44,7 @@ def with_chains_named(model: RawModel) -> RawModel:
             code="I_IMPORT_CHAIN",
             where=f"joints.{joint.name}",
             message=f"{' and '.join(repr(part.name) for part in chain)} make one {joint.type} joint together; they are kept apart.",
-            hint="Read with fuse to make them one.",
+            hint="Read with fuse to merge them.",
         )
         for joint, chain in _chains(model).values()
     ]

@@ -88,7 +88,7 @@ class InsertionOrder:
                     where=f"parts.{self.stuck[0]}",
                     parts=self.stuck,
                     message=f"{', '.join(self.stuck)} cannot be put in place in a straight line: blocked are {ways}.",
-                    hint="Open one side, split a part, or make it snap or turn into place.",
+                    hint="Open one side, split a part, or let it snap or rotate into place.",
                 )
             ]
         )

@@ -131,7 +131,7 @@ def _driver_findings(group: Group, beyond: Correction | None) -> list[Finding]:
     found = []
     for joint in group.refused:
         message = f"Joint {joint.name!r} is marked as a driver, but the {analysis.mobility} freedom(s) are driven already by {names}."
-        hint = "Mark as drivers as many independent joints as there are freedoms."
+        hint = "Mark one independent joint as driver for each freedom."
         found.append(Finding(code="E_DRIVER", where=f"joints.{joint.name}", message=message, hint=hint, value=analysis.mobility))
     return found
 
@@ -196,7 +196,7 @@ def _mobility_findings(group: Group) -> list[Finding]:
         )
     for idle in idle_parts(system, analysis):
         message = f"{' and '.join(idle)} can move while all other parts stand still."
-        hint = "This is right for a leg that may spin; otherwise fix it."
+        hint = "This is correct for a leg that may spin; otherwise fix it."
         found.append(Finding(code="W_IDLE_FREEDOM", where=f"parts.{idle[0]}", message=message, hint=hint, parts=idle))
     return found
 

@@ -116,7 +116,7 @@ def reach(
             return found
     if accept is not None and best is not None and best.ok:
         message = f"{part!r} reaches the target, but only in configurations that are not accepted."
-        hint = "Move the target, or what is in the way."
+        hint = "Move the target or the obstacle."
         finding = Finding(code="E_REACH_BARRED", where=f"parts.{part}", message=message, hint=hint, parts=(part,))
         raise KinematicsError(str(finding), findings=[finding])
     return best if best is not None else _at_rest(task)  # no start ended on the branch of the drivers

@@ -106,7 +106,9 @@ def test_half_open_and_endless_slides_are_reported(writer: str) -> None:
     half = replace(declare.revolute("j", *_ends(), limits=(0, 1)), limits=replace(JOINTS["slider"](*_ends()).limits, upper=(math.inf,)))
     endless = declare.cylindrical("j", *_ends(), travel="endless", angle=(0, 1))
 
-    assert losses(pair(lambda *_: half), writer) == (["joints.j: the joint is endless to that side"] if writer in {"urdf", "mjcf"} else [])
+    assert losses(pair(lambda *_: half), writer) == (
+        ["joints.j: the joint is endless in that direction"] if writer in {"urdf", "mjcf"} else []
+    )
     assert losses(pair(lambda *_: endless), writer) == ([f"joints.j: {TABLE['slide.endless']['urdf'].lost}"] if writer == "urdf" else [])
 
 
@@ -218,7 +220,7 @@ def test_an_inertia_that_no_body_has_is_reported_and_the_nearest_is_written(writ
     needle = MassProperties(2.0, np.zeros(3), np.diag([1.0, 1.0, 9.0]))
     assembly = pair(JOINTS["revolute"], mass=needle)
 
-    assert losses(assembly, writer) == ["parts.part: the inertia as given, which no body has and engines refuse"]
+    assert losses(assembly, writer) == ["parts.part: the inertia as given, which is physically impossible and which engines refuse"]
     with pytest.raises(UnrepresentableError):
         WRITERS[writer](assembly, strict=True)
 
@@ -228,7 +230,7 @@ def test_what_is_flat_is_thickened_to_collide_with(writer: str) -> None:
     square = TriMesh(np.array([[0, 0, 0], [9, 0, 0], [9, 9, 0], [0, 9, 0]], dtype=float), np.array([[0, 1, 2], [0, 2, 3]]))
     assembly = pair(JOINTS["revolute"], visuals=(), collisions=(Shape(square),))
 
-    assert losses(assembly, writer) == ["parts.part: a surface without thickness, which engines cannot collide with"]
+    assert losses(assembly, writer) == ["parts.part: a surface without thickness, with which engines cannot collide"]
     (thick,) = solid_enough(assembly.parts["part"])
     assert thick.mesh.volume == pytest.approx(10 * 10 * 1)
     assert solid_enough(assembly.parts["base"]) == assembly.parts["base"].visuals
@@ -245,7 +247,7 @@ def test_hulls_to_collide_with_are_written_and_their_error_told(writer: str) -> 
     assembly = Assembly.from_parts("p", parts=[base, part], joints=[JOINTS["revolute"](base["a"], part["a"])], ground="base")
     bundle = WRITERS[writer](assembly, collision="hull")
 
-    assert [(loss.where, loss.kept) for loss in bundle.losses] == [("parts.base", "a convex hull to collide with (80 % more volume)")]
+    assert [(loss.where, loss.kept) for loss in bundle.losses] == [("parts.base", "a convex hull for collision (80 % more volume)")]
     assert len([path for path in bundle.files if path.endswith(".stl")]) == 4
     with pytest.raises(UnrepresentableError):
         WRITERS[writer](assembly, collision="hull", strict=True)
