@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
@@ -16,6 +16,7 @@ from articad.export.convex import manifold
 from articad.export.hulls import HULL_DEPTH_MM, HULL_VOLUME_MM3, HullOverlap, Pair
 from articad.geometry.mesh import TriMesh
 from articad.geometry.part import Shape
+from articad.interference.boxes import meeting_boxes
 from articad.interference.motion import freedoms
 from articad.interference.scene import Scene
 from articad.interference.sweep import Sweep
@@ -111,7 +112,7 @@ class ContactSearch:
         boxes = [self._boxes(part) for part in parts]
         # Boxes about all poses of a part: only parts whose boxes meet can meet in a pose.
         whole = np.array([[low.min(axis=0), high.max(axis=0)] for low, high in boxes]).reshape(-1, 2, 3)
-        for i, j in meeting_boxes(whole[:, 0], whole[:, 1]):
+        for i, j in meeting_boxes(whole[:, 0], whole[:, 1]).tolist():
             a, b = parts[i], parts[j]
             if (a, b) in skip or (b, a) in skip or (a, b) in self._found:
                 continue
@@ -184,28 +185,6 @@ class ContactSearch:
             hull = manifold3d.Manifold.hull_points(mesh.vertices).simplify(HULL_DEPTH_MM / 10) if convex else None
             self._bodies[key] = manifold(mesh) if hull is None else hull
         return self._bodies[key]
-
-
-def meeting_boxes(low: FloatArray, high: FloatArray) -> Iterator[tuple[int, int]]:
-    """Yield the pairs (i, j), i < j, of boxes that share more than a face, in order.
-
-    The boxes are sorted along the axis on which they lie furthest apart; each is compared with those that begin before it ends.
-
-    Args:
-        low: Lowest corners `(n, 3)`.
-        high: Highest corners `(n, 3)`.
-    """
-    if len(low) < 2:
-        return
-    axis = int(np.argmax(np.ptp(low, axis=0) / np.maximum((high - low).mean(axis=0), np.finfo(float).tiny)))
-    order = np.argsort(low[:, axis], kind="stable")
-    starts = low[order, axis]
-    found = []
-    for position, i in enumerate(order.tolist()):
-        later = order[position + 1 : np.searchsorted(starts, high[i, axis])]
-        meet = later[((low[later] < high[i]) & (low[i] < high[later])).all(axis=1)]
-        found += [(min(i, j), max(i, j)) for j in meet.tolist()]
-    yield from sorted(found)
 
 
 def _overlap(first: list[_Placed], second: list[_Placed], T: FloatArray) -> tuple[float, float]:

@@ -5,18 +5,20 @@ from __future__ import annotations
 import json
 import math
 import struct
+from collections import Counter
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from articad.connectors.mate import flip
 from articad.connectors.se3 import SE3
 from articad.errors import KinematicsError
 from articad.export.bundle import Bundle
 from articad.export.losses import Feature, kept_losses, losses_of, refuse
 from articad.export.names import Names, valid_name
 from articad.geometry.mesh import TriMesh
-from articad.kinematics.joints import JointType
+from articad.kinematics.joints import Joint, JointType
 
 if TYPE_CHECKING:
     from articad.assembly import Assembly
@@ -36,7 +38,8 @@ _FLOAT, _UINT = 5126, 5125
 def write_glb(assembly: Assembly, *, strict: bool = False) -> Bundle:
     """Write an assembly as one GLB file in its rest pose, with an animation for every joint that drives.
 
-    The root node turns articad's z-up into glTF's y-up; below it each part is a node of its own name, in metres.
+    The root node turns articad's z-up into glTF's y-up. Below it each part is a node of its own name, in metres, and stands in the node of
+    the part that carries it, so that a joint that moves by itself animates one node, however much it carries.
 
     Args:
         assembly: What to write.
@@ -54,16 +57,19 @@ def write_glb(assembly: Assembly, *, strict: bool = False) -> Bundle:
     buffer = _Buffer()
     names = Names()
     nodes: list[dict[str, Any]] = [
-        {"name": valid_name(assembly.name), "rotation": Z_UP_TO_Y_UP, "children": list(range(1, len(assembly.parts) + 1))}
+        {"name": valid_name(assembly.name), "rotation": Z_UP_TO_Y_UP, "children": []},
     ]
-    rest = assembly.mechanism.rest_poses()
-    for name, part in assembly.parts.items():
-        node: dict[str, Any] = {"name": names.claim(name), **_placement(rest[name])}
+    tree = _Tree(assembly)
+    rest = tree.local(assembly.poses(assembly.mechanism.rest)[None])[0]
+    for index, (name, part) in enumerate(assembly.parts.items()):
+        node: dict[str, Any] = {"name": names.claim(name), **_placement(rest[index])}
         shapes = part.visuals or part.collisions
         if shapes:
             node["mesh"] = buffer.mesh([(shape.placed, shape.color or part.color) for shape in shapes], node["name"])
         nodes.append(node)
-    animations = [animation for joint in _driving(assembly) if (animation := _animation(assembly, joint, buffer)) is not None]
+    for index, carrier in enumerate(tree.carriers):
+        nodes[carrier + 1].setdefault("children", []).append(index + 1)
+    animations = [animation for joint in tree.driving if (animation := _animation(tree, joint, buffer)) is not None]
     document = {
         "asset": {"version": "2.0", "generator": "articad"},
         "scene": 0,
@@ -85,6 +91,7 @@ class _Buffer:
         self.meshes: list[dict[str, Any]] = []
         self.materials: dict[str, int] = {}
         self._geometry: dict[str, dict[str, Any]] = {}
+        self._times: int | None = None
 
     def document(self) -> dict[str, Any]:
         """Return the glTF arrays; those that are empty are left out, as the format demands."""
@@ -113,6 +120,12 @@ class _Buffer:
             accessor |= {"min": flat.min(axis=0).tolist(), "max": flat.max(axis=0).tolist()}
         self.accessors.append(accessor)
         return len(self.accessors) - 1
+
+    def times(self) -> int:
+        """Return the accessor of the times of an animation's frames, which all animations share."""
+        if self._times is None:
+            self._times = self.add(np.linspace(0.0, SECONDS, FRAMES).astype(np.float32), "SCALAR", bounds=True)
+        return self._times
 
     def mesh(self, shapes: list[tuple[TriMesh, str]], name: str) -> int:
         """Add a mesh of one primitive per shape and return its index."""
@@ -155,48 +168,101 @@ def _shaded(mesh: TriMesh) -> tuple[FloatArray, FloatArray, NDArray[np.int64]]:
     return positions, np.concatenate([smooth[used], corners[creased]]), indices
 
 
-def _driving(assembly: Assembly) -> list[str]:
-    return list(assembly.mechanism.driving_joints)
+class _Tree:
+    """Which part carries which, and how parts move in their carriers.
+
+    Attributes:
+        carriers: Index of the part in which each part stands; -1 for the ground part.
+        driving: Names of the joints that drive.
+    """
+
+    def __init__(self, assembly: Assembly) -> None:
+        self.assembly = assembly
+        mechanism = assembly.mechanism
+        place = {name: index for index, name in enumerate(assembly.parts)}
+        self.carriers = [-1] * len(place)
+        self._edges: dict[str, tuple[int, bool]] = {}
+        for edge in mechanism.tree.edges:
+            self.carriers[place[edge.part]] = place[edge.parent]
+            self._edges[edge.joint.name] = place[edge.part], edge.reversed
+        self._joints = {joint.name: joint for joint in mechanism.joints}
+        self._columns: dict[str, list[int]] = {}
+        for index, driver in enumerate(assembly.drivers):
+            self._columns.setdefault(driver.joint, []).append(index)
+        self.driving = tuple(mechanism.driving_joints)
+        self._tied = _tied(assembly)
+
+    def local(self, poses: SE3) -> SE3:
+        """Return the poses of all parts in their carriers, `(frames, N)`, from those in the world."""
+        carriers = np.array(self.carriers)
+        moved = np.flatnonzero(carriers >= 0)
+        found = poses.data.copy()
+        found[:, moved] = (poses[:, carriers[moved]].inverse() @ poses[:, moved]).data
+        return SE3.from_unit_array(found)
+
+    def moved(self, joint: str) -> list[tuple[int, SE3]]:
+        """Return the parts that move in their carriers while a joint goes through its range and back, and how, `(frames,)` each.
+
+        Raises:
+            KinematicsError: If a loop does not let it reach its range.
+        """
+        columns, spec = self._columns[joint], self._joints[joint]
+        values = _swept(self.assembly, spec, columns)
+        if joint not in self._tied:
+            part, is_reversed = self._edges[joint]
+            T = spec.T_parent_connector @ spec.motion(values) @ flip(spec.mate) @ spec.T_child_connector.inverse()
+            return [(part, T.inverse() if is_reversed else T)]
+        q = np.tile(self.assembly.mechanism.rest, (FRAMES, 1))
+        q[:, columns] = values
+        local = self.local(self.assembly.poses(q))
+        return [(index, local[:, index]) for index in range(len(self.carriers))]
 
 
-def _animation(assembly: Assembly, joint: str, buffer: _Buffer) -> dict[str, Any] | None:
+def _tied(assembly: Assembly) -> set[str]:
+    """Return the joints of couplings, of loops, and those of which not every coordinate drives."""
+    mechanism = assembly.mechanism
+    owner = {column: joint.name for joint in mechanism.joints for column in joint.column_names}
+    tied = {owner[column] for coupling in mechanism.couplings for column in (coupling.a, coupling.b)}
+    for joint in mechanism.loop_joints:
+        parts = set(mechanism.tree.path(joint.parent, joint.child))
+        tied |= {joint.name} | {edge.joint.name for edge in mechanism.tree.edges if {edge.part, edge.parent} <= parts}
+    driving = Counter(driver.joint for driver in assembly.drivers)
+    return tied | {joint.name for joint in mechanism.joints if driving[joint.name] != len(joint.column_names)}
+
+
+def _animation(tree: _Tree, joint: str, buffer: _Buffer) -> dict[str, Any] | None:
     """Return the motion of one joint through its range and back, all others at rest; None where it cannot move."""
     try:
-        poses = assembly.poses(_sweep(assembly, joint))
+        moved = tree.moved(joint)
     except KinematicsError:  # a range that a loop does not let it reach: its motion is a loss that `_features` has told
         return None
-    times = buffer.add(np.linspace(0.0, SECONDS, FRAMES).astype(np.float32), "SCALAR", bounds=True)
     channels, samplers = [], []
-    for index in range(len(assembly.parts)):
-        T = poses[:, index]
+    for index, T in moved:
         paths = {"translation": T.translation / MM_PER_M, "rotation": _continuous(T.quaternion)}
         for path, values in paths.items():
             if np.abs(values - values[0]).max() < 1e-9:
                 continue
             output = buffer.add(values.astype(np.float32), "VEC3" if path == "translation" else "VEC4")
-            samplers.append({"input": times, "output": output, "interpolation": "LINEAR"})
+            samplers.append({"input": buffer.times(), "output": output, "interpolation": "LINEAR"})
             channels.append({"sampler": len(samplers) - 1, "target": {"node": index + 1, "path": path}})
     return {"name": valid_name(joint), "channels": channels, "samplers": samplers} if channels else None
 
 
-def _sweep(assembly: Assembly, joint: str) -> FloatArray:
-    """Return configurations that take one joint from rest to its upper limit, to its lower one and back, `(frames, nq)`."""
-    q = np.tile(assembly.mechanism.rest, (FRAMES, 1))
-    columns = [index for index, driver in enumerate(assembly.drivers) if driver.joint == joint]
+def _swept(assembly: Assembly, spec: Joint, columns: list[int]) -> FloatArray:
+    """Return the values of a joint that goes from rest to its upper limit, to its lower one and back, `(frames, coordinates)`."""
+    drivers = [assembly.drivers[column] for column in columns]
     phase = np.sin(np.linspace(0.0, math.tau, FRAMES))
-    if assembly.drivers[columns[0]].unit == "1":
-        spec = next(candidate for candidate in assembly.joints if candidate.name == joint)
+    if drivers[0].unit == "1":
         cone = min(spec.limits.cone or math.pi, math.pi / 2)
-        q[:, columns] = (SE3.from_quaternion(spec.rest) @ SE3.rot_x(0.5 * cone * phase)).quaternion
-        return q
-    for place, column in enumerate(columns):
-        driver = assembly.drivers[column]
+        return np.asarray((SE3.from_quaternion(spec.rest) @ SE3.rot_x(0.5 * cone * phase)).quaternion)
+    values = np.empty((FRAMES, len(columns)))
+    for place, driver in enumerate(drivers):
         far = FAR_RAD if driver.unit == "rad" else FAR_MM
         low, high = max(driver.lower, driver.rest - far), min(driver.upper, driver.rest + far)
         # several coordinates of one joint go one after the other, so that each is seen by itself
         own = _wave(len(columns), place)
-        q[:, column] = driver.rest + np.where(own > 0, (high - driver.rest) * own, (driver.rest - low) * own)
-    return q
+        values[:, place] = driver.rest + np.where(own > 0, (high - driver.rest) * own, (driver.rest - low) * own)
+    return values
 
 
 def _wave(count: int, place: int) -> FloatArray:

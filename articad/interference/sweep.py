@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from articad.errors import KinematicsError
 from articad.findings import Finding, Findings
 from articad.geometry.mesh import TriMesh
+from articad.interference.boxes import meeting_boxes
 from articad.interference.check import broken_finding, unknown_pairs
 from articad.interference.motion import Freedom, driver_values, freedoms, scattered
 from articad.interference.overlap import VOLUME_NOISE_MM3, Overlap, common, may_overlap, overlap_of
@@ -194,25 +195,46 @@ class Sweep:
 
     def columns(self, point: Mapping[str, float]) -> list[float]:
         """Return the drivers' values `(nq,)` for values of some freedoms, the others at rest."""
-        row: list[float] = []
-        for joint, moves, is_driven in self._driving:
+        row = list(self._resting)
+        for at in {self._owner[name] for name in point if name in self._owner}:
+            start, joint, moves, is_driven = self._driving[at]
             values = driver_values(joint, [point.get(freedom.name, freedom.rest) for freedom in moves])
-            row += compress(values, is_driven)
+            row[start : start + sum(is_driven)] = compress(values, is_driven)
         return row
 
     @cached_property
-    def _driving(self) -> list[tuple[Joint, tuple[Freedom, ...], list[bool]]]:
-        """Each joint that drives, along what it moves, and which of its coordinates are drivers."""
+    def _resting(self) -> list[float]:
+        """The drivers' values with every freedom at rest."""
+        row: list[float] = []
+        for _, joint, moves, is_driven in self._driving:
+            row += compress(driver_values(joint, [freedom.rest for freedom in moves]), is_driven)
+        return row
+
+    @cached_property
+    def _owner(self) -> dict[str, int]:
+        """The place in `_driving` of the joint that each freedom belongs to."""
+        return {freedom.name: at for at, (_, _, moves, _) in enumerate(self._driving) for freedom in moves}
+
+    @cached_property
+    def _driving(self) -> list[tuple[int, Joint, tuple[Freedom, ...], list[bool]]]:
+        """The first driver of each joint that drives, the joint, along what it moves, and which of its coordinates are drivers."""
         names = {coordinate.name for coordinate in self.mechanism.drivers}
-        return [(joint, freedoms(joint), [name in names for name in joint.column_names]) for joint in self.driving]
+        rows, start = [], 0
+        for joint in self.driving:
+            is_driven = [name in names for name in joint.column_names]
+            rows.append((start, joint, freedoms(joint), is_driven))
+            start += sum(is_driven)
+        return rows
 
     def _tracks(self, matrices: FloatArray, turning: Turning | None) -> dict[tuple[str, str], _Track]:
         """Measure the overlap volume of every candidate pair at every pose, each relative pose once, and none that cannot be."""
         names = list(self.scene.bodies)
         low, high = self.scene.boxes(matrices)
         tracks: dict[tuple[str, str], _Track] = {}
-        self.budget.spend(math.comb(len(names), 2) / PAIRS_PLACED)
-        for i, j in combinations(range(len(names)), 2):
+        # Boxes about all poses of a body: only bodies whose boxes meet can meet in a pose.
+        candidates = meeting_boxes(low.min(axis=0), high.max(axis=0))
+        self.budget.spend(math.comb(len(names), 2) / PAIRS_PLACED)  # the price of comparing all, whatever is saved
+        for i, j in candidates.tolist():
             a, b = names[i], names[j]
             if self.scene.relations.rigid.together(a, b) or a in self.scene.broken or b in self.scene.broken:
                 continue

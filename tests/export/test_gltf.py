@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import struct
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +18,7 @@ from articad.errors import UnrepresentableError
 from articad.export.gltf import FRAMES, write_glb
 from articad.geometry.part import Part
 from tests.assemblies import all_joint_kinds, block, four_bar, geared_pair
+from tests.chains import chain
 
 Y_UP = Rotation.from_euler("x", -90, degrees=True).as_matrix()
 
@@ -53,6 +55,7 @@ def test_every_joint_that_drives_has_an_animation_that_begins_at_rest() -> None:
     assembly = all_joint_kinds()
     document, binary = parts_of(write_glb(assembly).files["all_kinds.glb"])
     rest = assembly.mechanism.rest_poses()
+    carrier = {child: index for index, node in enumerate(document["nodes"]) for child in node.get("children", ()) if index}
 
     assert {animation["name"] for animation in document["animations"]} == {driver.joint for driver in assembly.drivers}
     for animation in document["animations"]:
@@ -60,12 +63,61 @@ def test_every_joint_that_drives_has_an_animation_that_begins_at_rest() -> None:
             sampler = animation["samplers"][channel["target"]["node"] and channel["sampler"]]
             path = channel["target"]["path"]
             output = values(document, binary, sampler["output"])
-            pose = rest[document["nodes"][channel["target"]["node"]]["name"]]
+            node = channel["target"]["node"]
+            pose = rest[document["nodes"][node]["name"]]
+            if node in carrier:
+                pose = rest[document["nodes"][carrier[node]]["name"]].inverse() @ pose
             expected = pose.translation / 1000 if path == "translation" else pose.quaternion
             assert len(output) == FRAMES
             assert np.allclose(output[0], expected, atol=1e-6) or np.allclose(output[0], -expected, atol=1e-6)
             assert np.allclose(output[0], output[-1], atol=1e-6) or np.allclose(output[0], -output[-1], atol=1e-6)
             assert (np.abs(np.diff(output, axis=0)).max(axis=0) < 0.5).all()  # no jumps
+
+
+def world(document: dict[str, Any], binary: bytes, animation: dict[str, Any], frame: int) -> dict[str, Any]:
+    """Return where each node is at a frame of an animation, in metres and before the root's turn."""
+    own = {index: (node.get("translation"), node.get("rotation")) for index, node in enumerate(document["nodes"])}
+    for channel in animation["channels"]:
+        node, path = channel["target"]["node"], channel["target"]["path"]
+        value = values(document, binary, animation["samplers"][channel["sampler"]]["output"])[frame]
+        own[node] = (value, own[node][1]) if path == "translation" else (own[node][0], value)
+    places: dict[str, Any] = {}
+
+    def walk(index: int, above: Any) -> None:
+        T = np.eye(4)
+        T[:3, 3], T[:3, :3] = own[index][0], Rotation.from_quat(own[index][1]).as_matrix()
+        places[document["nodes"][index]["name"]] = above @ T
+        for child in document["nodes"][index].get("children", ()):
+            walk(child, above @ T)
+
+    for child in document["nodes"][0]["children"]:
+        walk(child, np.eye(4))
+    return places
+
+
+@pytest.mark.parametrize("make", [all_joint_kinds, geared_pair, lambda: chain(5)])
+def test_every_part_is_where_the_mechanism_has_it_at_the_far_end_of_each_joint(make: Callable[[], Assembly]) -> None:
+    assembly = make()
+    document, binary = parts_of(next(iter(write_glb(assembly).files.values())))
+    checked = 0
+    for animation in document.get("animations", ()):
+        columns = [index for index, driver in enumerate(assembly.drivers) if driver.joint == animation["name"]]
+        driver = assembly.drivers[columns[0]]
+        if len(columns) > 1 or driver.unit == "1":
+            continue
+        q = assembly.mechanism.rest.copy()
+        q[columns] = min(driver.upper, driver.rest + (np.pi if driver.unit == "rad" else 100.0))
+        places = world(document, binary, animation, 12)  # a quarter of the way: the upper end
+        for name, T in zip(assembly.parts, assembly.poses(q).matrix, strict=True):
+            assert np.allclose(places[name][:3, 3], T[:3, 3] / 1000, atol=1e-6)
+            assert np.allclose(places[name][:3, :3], T[:3, :3], atol=1e-5)
+        checked += 1
+    assert checked
+
+
+def test_a_joint_that_moves_by_itself_animates_one_node_however_much_it_carries() -> None:
+    document, _ = parts_of(write_glb(chain(30)).files["chain.glb"])
+    assert [len({channel["target"]["node"] for channel in one["channels"]}) for one in document["animations"]] == [1] * 29
 
 
 def test_a_hinge_swings_through_its_whole_range() -> None:
