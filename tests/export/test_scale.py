@@ -61,7 +61,12 @@ def test_an_export_is_as_large_per_part(name: str) -> None:
 def test_the_search_for_contacts_asks_in_proportion_to_the_parts(monkeypatch: pytest.MonkeyPatch) -> None:
     asked: list[str] = []
     look = ContactSearch._first_contact
-    monkeypatch.setattr(ContactSearch, "_first_contact", lambda self, a, b, near: (asked.append(a), look(self, a, b, near))[1])
+
+    def counted(self: ContactSearch, a: str, b: str, near: Any) -> Any:
+        asked.append(a)
+        return look(self, a, b, near)
+
+    monkeypatch.setattr(ContactSearch, "_first_contact", counted)
     counts = []
     for count in (FEW, MANY):
         asked.clear()
