@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from articad.commands.command import argument, command
-from articad.commands.options import FORMATS, formats
+from articad.commands.options import FORMATS, SANDBOX, formats
 
 if TYPE_CHECKING:
     from articad.commands.terminal import Report, Terminal
@@ -100,14 +100,19 @@ def _convert(options: argparse.Namespace, terminal: Terminal) -> Report:
         action="store_true",
         help="for URDF and MJCF: replace chains of joints over links without shape by one joint, such as a ball",
     ),
+    argument("--no-build", dest="build", action="store_false", help="do not build the parts; those that cannot be built are not simplified"),
     argument("--no-audit", dest="audit", action="store_false", help="do not audit the file"),
+    SANDBOX,
 )
 def _adopt(options: argparse.Namespace, terminal: Terminal) -> Report:
     import json
     import shutil
 
     from articad.commands import summaries
+    from articad.commands.steps import sandbox_level
     from articad.errors import WriteError
+    from articad.kernels.cache import BuildCache
+    from articad.kernels.choice import kernel_named
     from articad.runs.adopt import adopt
 
     source, folder = Path(options.source), Path(options.out)
@@ -115,8 +120,9 @@ def _adopt(options: argparse.Namespace, terminal: Terminal) -> Report:
         raise WriteError(f"{folder} is not empty.", path=str(folder))
     if options.script is not None and not Path(options.script).is_file():
         raise WriteError(f"There is no file {options.script}.", path=options.script)
-    with terminal.progress("Reading"):
-        assembly, bundle = adopt(source, root=options.root, fuse=options.fuse)
+    kernel = kernel_named("build123d", sandbox=sandbox_level(options)) if options.build else None
+    with terminal.progress("Building") as tell:
+        assembly, bundle = adopt(source, root=options.root, fuse=options.fuse, kernel=kernel, cache=BuildCache(), progress=tell)
     files = bundle.write(folder)
     if options.script is not None:
         (folder / "source").mkdir()

@@ -574,6 +574,9 @@ CODES: dict[str, Code] = {
     "W_ADOPT_PLACEHOLDER": Code(
         "import", "code", "An adopted part has no shape; a small ball represents it.", "Draw the part in its script."
     ),
+    "W_ADOPT_UNTRIED": Code(
+        "import", None, "The parts of an adopted file were not built, so that nobody knows whether they can be.", "Build the folder."
+    ),
     "E_UNSAFE_PATH": Code("import", None, "A file names a path outside its own folder.", "Keep meshes beside the file."),
     # --- audit and simulation of files that anyone made
     "E_AUDIT_NUMBER": Code(

@@ -1,14 +1,15 @@
 """A plan folder of a file that somebody else made: connectors, joints and limits in `plan.json`, shapes as scripts and as meshes.
 
 Boxes, cylinders, spheres and capsules become scripts with their sizes as dimensions; a mesh becomes a script with few facets, and stays beside
-it as an STL file for whoever draws the part anew. Parts without shape that are fixed to another become part of it.
+it as an STL file for whoever draws the part anew. Parts without shape that are fixed to another become part of it. Given a kernel, each part is
+built, and what it refuses is drawn more coarsely until it does not (`articad.runs.facets`): then the folder builds at once.
 """
 
 from __future__ import annotations
 
 import json
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Final
@@ -19,9 +20,8 @@ from numpy.typing import NDArray
 from articad.assembly import Assembly
 from articad.connectors.connector import Connector
 from articad.connectors.se3 import SE3
-from articad.errors import ReadError
+from articad.errors import ContractError, KernelError, PlanError, ReadError
 from articad.export.bundle import Bundle
-from articad.export.convex import hull_mesh, manifold
 from articad.export.losses import losses_of
 from articad.export.plan import plan_of
 from articad.findings import Finding, Findings
@@ -30,16 +30,18 @@ from articad.geometry.mesh import TriMesh, merged
 from articad.geometry.mesh_files import write_stl
 from articad.geometry.part import Part, Primitive, Shape
 from articad.geometry.shapes import box, capsule, cylinder, sphere
+from articad.kernels.cache import BuildCache
+from articad.kernels.kernel import PartKernel
+from articad.kernels.parts import Progress
 from articad.kinematics.joints import Joint, JointType
 from articad.kinematics.mechanism import Mechanism
 from articad.plan.schema import PLAN_FILE, AssemblyPlan
+from articad.runs.facets import LEVELS, ROUNDING_MM, one_solid
 
 FloatArray = NDArray[np.float64]
 Json = dict[str, Any]
 
-MOST_FACETS: Final = 400  # of a part: the CAD kernel sews so many in a second
 SAME_VOLUME: Final = 1e-3  # share by which a solid of few facets may differ from its mesh without a word
-ROUNDING_MM: Final = 6  # digits of a facet's corners: a millionth of a millimetre
 PLACEHOLDER_MM: Final = 1.0  # radius of the ball that stands for a shape that is not there
 
 _POLYHEDRON: Final = """
@@ -49,13 +51,24 @@ def _polyhedron(corners, triangles):
 """
 
 
-def adopt(source: str | Path, *, root: str | Path | None = None, fuse: bool = False) -> tuple[Assembly, Bundle]:
+def adopt(
+    source: str | Path,
+    *,
+    root: str | Path | None = None,
+    fuse: bool = False,
+    kernel: PartKernel | None = None,
+    cache: BuildCache | None = None,
+    progress: Progress | None = None,
+) -> tuple[Assembly, Bundle]:
     """Make a plan folder of a URDF, MJCF, FreeCAD or STEP file; nothing is written yet.
 
     Args:
         source: The file.
         root: Folder that meshes may be read from; the file's own by default.
         fuse: Make chains of joints over bare links the one joint that they stand for; see `articad.formats.read`.
+        kernel: Builds every part, so that the folder is known to build; without one nothing is built.
+        cache: Keeps what is built; by default `$ARTICAD_CACHE` or `~/.cache/articad`.
+        progress: Receives each part's fate.
 
     Returns:
         The assembly that the plan tells, and `plan.json`, `parts/*.py`, `meshes/*.stl`, with what could not be taken over.
@@ -70,20 +83,58 @@ def adopt(source: str | Path, *, root: str | Path | None = None, fuse: bool = Fa
     assembly, findings = _without_frames(read(path, root=root, fuse=fuse))
     plan, features = plan_of(assembly)
     document: Json = json.loads(plan.dumps())
-    scripts: dict[str, bytes] = {}
-    meshes: dict[str, bytes] = {}
-    for form, part in zip(document["parts"], assembly.parts.values(), strict=True):
-        draft = _drafted(part, form["name"], path.name)
-        form |= {"dimensions": draft.dimensions, "description": draft.description, "envelope_mm": draft.envelope}
-        scripts[f"parts/{form['name']}.py"] = draft.script.encode()
-        findings += draft.findings
-        shapes = _shapes(part)
-        if shapes:
-            meshes[f"meshes/{form['name']}.stl"] = write_stl(merged([shape.placed for shape in shapes]))
+    parts = {form["name"]: part for form, part in zip(document["parts"], assembly.parts.values(), strict=True)}
+    drafts = {name: _Writer(part, name, path.name).draft() for name, part in parts.items()}
+    if kernel is not None:
+        drafts, refused = _built(document, parts, drafts, path.name, kernel, cache, progress)
+        findings += refused
+    meshes = {
+        f"meshes/{name}.stl": write_stl(merged([shape.placed for shape in shapes]))
+        for name, part in parts.items()
+        if (shapes := _shapes(part))
+    }
+    findings += [finding for draft in drafts.values() for finding in draft.findings]
     findings += _missing_fits(assembly)
-    files = {PLAN_FILE: AssemblyPlan.from_json(document).dumps().encode(), **scripts, **meshes}
+    scripts = {f"parts/{name}.py": draft.script.encode() for name, draft in drafts.items()}
+    files = {PLAN_FILE: _plan_with(document, drafts).dumps().encode(), **scripts, **meshes}
     losses = tuple(loss for loss in losses_of("plan", features) if loss.where != "parts")  # the shapes are in the scripts
     return assembly, Bundle(files, losses, assembly.findings + Findings(findings))
+
+
+def _plan_with(document: Json, drafts: Mapping[str, _Draft]) -> AssemblyPlan:
+    """Return the plan with what the drafts say of its parts."""
+    forms = [form | drafts[form["name"]].form for form in document["parts"]]
+    return AssemblyPlan.from_json(document | {"parts": forms})
+
+
+def _built(
+    document: Json,
+    parts: Mapping[str, Part],
+    drafts: dict[str, _Draft],
+    source: str,
+    kernel: PartKernel,
+    cache: BuildCache | None,
+    progress: Progress | None,
+) -> tuple[dict[str, _Draft], list[Finding]]:
+    """Build every part, and draft more coarsely what is refused; return the drafts and what could not be built or tried."""
+    for level in (*LEVELS, ""):
+        plan = _plan_with(document, drafts)
+        try:
+            scripts = {name: draft.script for name, draft in drafts.items()}
+            Assembly.from_plan(plan, scripts, kernel=kernel, cache=cache, progress=progress)
+        except ContractError as error:
+            refused = {finding.where.split(".")[1] for finding in error.findings if finding.where.startswith("parts.")} & drafts.keys()
+            if not refused or not level:
+                return drafts, list(error.findings)
+            drafts = drafts | {name: _Writer(parts[name], name, source, level).draft() for name in refused}
+        except (PlanError, KernelError) as error:
+            message = f"The parts could not be tried out: {error.message}"
+            return drafts, [
+                Finding(code="W_ADOPT_UNTRIED", where="parts", message=message, hint="Build the folder to see whether they hold.")
+            ]
+        else:
+            return drafts, []
+    return drafts, []
 
 
 # ---------------------------------------------------------------------- parts without shape
@@ -189,17 +240,17 @@ class _Draft:
     script: str
     findings: list[Finding]
 
-
-def _drafted(part: Part, name: str, source: str) -> _Draft:
-    writer = _Writer(part, name, source)
-    return writer.draft()
+    @property
+    def form(self) -> Json:
+        """What the plan says of the part."""
+        return {"dimensions": self.dimensions, "description": self.description, "envelope_mm": self.envelope}
 
 
 class _Writer:
-    """Writes one part script."""
+    """Writes one part script: with the primitives that the part has, or one solid of facets at a level of `articad.runs.facets`."""
 
-    def __init__(self, part: Part, name: str, source: str) -> None:
-        self.part, self.name = part, name
+    def __init__(self, part: Part, name: str, source: str, level: str | None = None) -> None:
+        self.part, self.name, self.level = part, name, level
         self.source = re.sub(r"[^\w .-]", "_", source, flags=re.ASCII)  # it stands in a script
         self.dimensions: dict[str, float] = {}
         self.words: list[str] = []
@@ -211,7 +262,7 @@ class _Writer:
         self.drawn: list[TriMesh] = []
 
     def draft(self) -> _Draft:
-        meshes = [shape.placed for shape in _shapes(self.part) if not self._primitive(shape)]
+        meshes = [shape.placed for shape in _shapes(self.part) if self.level is not None or not self._primitive(shape)]
         if meshes:
             self._facets(meshes)
         if not self.terms:
@@ -261,25 +312,29 @@ class _Writer:
         return True
 
     def _facets(self, meshes: list[TriMesh]) -> None:
-        """Add solids of few facets in the place of meshes, and say by how much they differ."""
-        whole = merged(meshes)
-        bodies, exact = few_facets(meshes)
-        if not bodies:
+        """Add a solid of few facets in the place of meshes, and say by how much it differs."""
+        whole, found = merged(meshes), one_solid(meshes, self.level or LEVELS[0])
+        if found.mesh is None:
             return
-        for body in bodies:
-            number = len(self.data) + 1
-            corners = ", ".join(f"({x}, {y}, {z})" for x, y, z in _rounded(body))
-            triangles = ", ".join(f"({a}, {b}, {c})" for a, b, c in body.triangles.tolist())
-            self.data.append(f"CORNERS_{number} = [{corners}]\nTRIANGLES_{number} = [{triangles}]\n")
-            self.terms.append(f"_polyhedron(CORNERS_{number}, TRIANGLES_{number})")
-        self.drawn += bodies
+        corners = ", ".join(f"({x}, {y}, {z})" for x, y, z in _rounded(found.mesh))
+        triangles = ", ".join(f"({a}, {b}, {c})" for a, b, c in found.mesh.triangles.tolist())
+        self.data.append(f"CORNERS = [{corners}]\nTRIANGLES = [{triangles}]\n")
+        self.terms.append("_polyhedron(CORNERS, TRIANGLES)")
+        self.drawn.append(found.mesh)
         self.used |= {"Face", "Shell", "Solid", "Wire"}
-        facets, volume = sum(len(body.triangles) for body in bodies), sum(body.volume for body in bodies)
+        facets = len(found.mesh.triangles)
         self.words.append(f"a solid of {facets} facets, from meshes/{self.name}.stl")
-        more = volume / exact - 1 if exact > 0 else np.nan
-        if not abs(more) <= SAME_VOLUME:
-            by = f"its volume is {100 * more:+.2g} %" if exact > 0 else "the mesh is open, so this is its hull"
-            message = f"A mesh of {len(whole.triangles)} triangles became a solid of {facets} facets; {by}."
+        more = found.mesh.volume / found.exact - 1 if found.exact > 0 else np.nan
+        said = [f"its volume is {100 * more:+.2g} %" if found.exact > 0 else "the mesh is open, and its holes are closed"]
+        said += [
+            {"pieces": "convex pieces stand for it", "hull": "its hull stands for it", "box": "its box stands for it"}.get(found.level, "")
+        ]
+        said += [
+            f"thin bars tie {found.bars} loose pieces to it" if found.bars else "",
+            f"{found.crumbs} crumbs are left out" if found.crumbs else "",
+        ]
+        if not abs(more) <= SAME_VOLUME or any(said[1:]):
+            message = f"A mesh of {len(whole.triangles)} triangles became a solid of {facets} facets; {', '.join(filter(None, said))}."
             self._warn("W_ADOPT_SHAPE", message, f"Draw it anew in parts/{self.name}.py, after meshes/{self.name}.stl.")
 
     def _placeholder(self) -> None:
@@ -316,27 +371,6 @@ def recognised(mesh: TriMesh) -> tuple[str, dict[str, float]]:
         same = np.array_equal(mesh.triangles, whole.triangles) and np.allclose(mesh.vertices, whole.vertices, rtol=0, atol=1e-9 * z)
         return ("capsule", {"radius": x / 2, "length": length}) if same else ("", {})
     return "", {}
-
-
-def few_facets(meshes: list[TriMesh]) -> tuple[list[TriMesh], float]:
-    """Return closed bodies of at most `MOST_FACETS` triangles together in the place of meshes, and the meshes' volume; 0 where one is open."""
-    whole = [manifold(mesh) for mesh in meshes]
-    closed = all(not body.is_empty() and body.volume() > 0 for body in whole)
-    vertices = np.concatenate([mesh.vertices for mesh in meshes])
-    solid = sum(whole[1:], start=whole[0]) if closed else manifold(hull_mesh(vertices))
-    if solid.is_empty():
-        return [], 0.0
-    exact = float(solid.volume()) if closed else 0.0
-    size = float(np.ptp(vertices, axis=0).max())
-    coarse, tolerance = solid.simplify(1e-6 * size), 1e-4 * size
-    while coarse.num_tri() > MOST_FACETS and tolerance < size / 4:
-        coarse, tolerance = solid.simplify(tolerance), 1.2 * tolerance
-    if coarse.num_tri() > MOST_FACETS or coarse.is_empty():
-        coarse = manifold(hull_mesh(coarse.simplify(size / 50).to_mesh64().vert_properties[:, :3]))
-    bodies = [body for body in coarse.decompose() if body.volume() > 0]
-    bodies.sort(key=lambda body: (-body.volume(), tuple(body.bounding_box())))
-    rows = [body.to_mesh64() for body in bodies]
-    return [TriMesh(np.array(row.vert_properties[:, :3]), row.tri_verts.astype(np.int32)) for row in rows], exact
 
 
 def _rounded(mesh: TriMesh) -> list[list[float]]:

@@ -14,15 +14,18 @@ from articad import cli
 from articad.assembly import Assembly
 from articad.connectors.se3 import SE3
 from articad.errors import ReadError
+from articad.export.convex import hull_mesh, manifold
 from articad.export.mjcf import write_mjcf
 from articad.export.urdf import write_urdf
 from articad.formats import read
-from articad.geometry.mesh import TriMesh
+from articad.geometry.mesh import TriMesh, merged
+from articad.geometry.mesh_files import write_stl
 from articad.geometry.shapes import box, capsule, cylinder, sphere, tube
 from articad.plan.check import check_plan
 from articad.plan.resolve import resolve
 from articad.plan.schema import AssemblyPlan
-from articad.runs.adopt import MOST_FACETS, adopt, few_facets, recognised
+from articad.runs.adopt import adopt, recognised
+from articad.runs.facets import LEVELS, MOST_FACETS, one_solid
 from tests.agents import stories
 from tests.assemblies import all_joint_kinds, geared_pair
 from tests.foreign import TOLERANCE, configurations, difference, mujoco_poses
@@ -59,7 +62,7 @@ def test_what_is_adopted_stands_and_moves_as_in_mujoco(name: str, tmp_path: Path
 @pytest.mark.engines
 @pytest.mark.parametrize("name", PLANTED)
 def test_the_planted_defect_is_named(name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert cli.main(["adopt", str(FILES / f"{name}.xml"), "--out", str(tmp_path / "out"), "--script", __file__, "--json"]) == 0
+    assert cli.main(["adopt", str(FILES / f"{name}.xml"), "--out", str(tmp_path / "out"), "--script", __file__, "--no-build", "--json"]) == 0
     report = json.loads(capsys.readouterr().out)
 
     assert report["schema"] == "articad.adopt/1"
@@ -173,14 +176,81 @@ def test_primitives_are_recognised_and_nothing_else_is() -> None:
     assert recognised(read(FILES / "tree.xml").parts["b9"].collisions[0].mesh) == ("", {})
 
 
+def star(open_: bool) -> TriMesh:
+    """A flat star of five legs, as chairs stand on; open where a triangle is missing."""
+    legs = [manifold(box(200, 10, 8).transformed(SE3.rot_z(at * math.tau / 5) @ SE3.trans(100, 0, 0))) for at in range(5)]
+    row = sum(legs[1:], start=legs[0]).to_mesh64()
+    triangles = np.asarray(row.tri_verts, dtype=np.int32)
+    return TriMesh(np.asarray(row.vert_properties[:, :3]), triangles[:-1] if open_ else triangles)
+
+
 def test_few_facets_are_few_closed_and_near() -> None:
     fine, hollow = sphere(10.0, 128), tube(5, 10, 20, 256)
     for mesh in (fine, hollow):
-        (body,), exact = few_facets([mesh])
-        assert len(body.triangles) <= MOST_FACETS
-        assert body.is_closed
-        assert exact == pytest.approx(mesh.volume)
-        assert body.volume == pytest.approx(exact, rel=0.1)
-    (hull,), exact = few_facets([TriMesh(fine.vertices, fine.triangles[:-50])])
-    assert (exact, hull.is_closed) == (0.0, True)
-    assert len(few_facets([box(1, 1, 1), box(1, 1, 1).transformed(SE3.trans(5, 0, 0))])[0]) == 2
+        found = one_solid([mesh])
+        assert found.mesh is not None
+        assert len(found.mesh.triangles) <= MOST_FACETS
+        assert found.mesh.is_closed
+        assert found.exact == pytest.approx(mesh.volume)
+        assert found.mesh.volume == pytest.approx(found.exact, rel=0.1)
+
+
+def test_an_open_mesh_keeps_its_volume_where_its_hull_would_not() -> None:
+    closed, opened = (one_solid([star(open_)]) for open_ in (False, True))
+    assert closed.mesh is not None
+    assert opened.mesh is not None
+    assert (closed.level, opened.level, opened.exact) == ("mesh", "mesh", 0.0)
+    assert opened.mesh.volume == pytest.approx(closed.mesh.volume, rel=0.1)
+    for level in LEVELS:
+        found = one_solid([star(open_=True)], level)
+        assert found.mesh is not None
+        assert (found.level, len(found.mesh.components()), found.mesh.is_closed) == (level, 1, True)
+    assert hull_mesh(star(open_=False).vertices).volume > 3 * closed.mesh.volume
+
+
+def test_loose_pieces_are_tied_by_bars_and_crumbs_are_left_out() -> None:
+    pieces = [box(10, 10, 10), box(10, 10, 10).transformed(SE3.trans(15, 3, 1)), box(0.1, 0.1, 0.1).transformed(SE3.trans(0, 30, 0))]
+    found = one_solid(pieces)
+    assert found.mesh is not None
+    assert (found.bars, found.crumbs, len(found.mesh.components())) == (1, 1, 1)
+    assert found.mesh.volume == pytest.approx(2000, rel=2e-3)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", [0])
+def test_whatever_a_link_looks_like_its_folder_builds(seed: int, tmp_path: Path) -> None:
+    """Open meshes, loose ones, ones that cut themselves, primitives that touch along an edge, flat ones: all in one file."""
+    rng = np.random.default_rng(seed)
+    rough = sphere(20.0, 12)
+    rough = TriMesh(rough.vertices * rng.uniform(0.6, 1.4, (len(rough.vertices), 1)), rough.triangles)  # cuts itself here and there
+    meshes = {
+        "rough": rough,
+        "open": TriMesh(rough.vertices, rough.triangles[: -int(rng.integers(1, 40))]),
+        "loose": merged([box(5, 5, 5).transformed(SE3.trans(*(rng.uniform(-40, 40, 3)))) for _ in range(6)]),
+        "flat": TriMesh(np.array([[0.0, 0, 0], [30, 0, 0], [0, 20, 0]]), np.array([[0, 1, 2]])),
+        "star": star(open_=True),
+    }
+    links = ['<link name="base"><visual><geometry><box size=".1 .1 .1"/></geometry></visual></link>']
+    for name, mesh in meshes.items():
+        (tmp_path / f"{name}.stl").write_bytes(write_stl(mesh))
+        links.append(
+            f'<link name="{name}"><visual><geometry><mesh filename="{name}.stl" scale=".001 .001 .001"/></geometry></visual></link>'
+        )
+    cubes = "".join(f'<visual><origin xyz="{x} {x} 0"/><geometry><box size=".1 .1 .1"/></geometry></visual>' for x in (0, 0.1))
+    links.append(f'<link name="edge">{cubes}</link>')
+    joint = '<joint name="to_{0}" type="continuous"><parent link="base"/><child link="{0}"/><axis xyz="0 0 1"/></joint>'
+    joints = [joint.format(name) for name in [*meshes, "edge"]]
+    (tmp_path / "a.urdf").write_text(f'<robot name="a">{"".join(links)}{"".join(joints)}</robot>')
+    cache = stories.cache(tmp_path)
+
+    assembly, bundle = adopt(tmp_path / "a.urdf", kernel=stories.kernel(), cache=cache)
+    bundle.write(tmp_path / "out")
+    built = Assembly.from_plan(AssemblyPlan.load(tmp_path / "out"), tmp_path / "out/parts", kernel=stories.kernel(), cache=cache)
+
+    assert bundle.findings.ok
+    assert set(built.parts) == set(assembly.parts)
+    for name, part in built.parts.items():
+        own = [mesh for mesh in (shape.placed for shape in assembly.parts[name].visuals) if mesh.is_closed and mesh.volume > 0]
+        if own and name in {"base", "edge", "star"}:
+            assert part.solid is not None
+            assert part.solid.volume == pytest.approx(sum(mesh.volume for mesh in own), rel=0.05)
