@@ -100,7 +100,9 @@ def _convert(options: argparse.Namespace, terminal: Terminal) -> Report:
         action="store_true",
         help="for URDF and MJCF: replace chains of joints over links without shape by one joint, such as a ball",
     ),
-    argument("--no-build", dest="build", action="store_false", help="do not build the parts; those that cannot be built are not simplified"),
+    argument(
+        "--no-build", dest="build", action="store_false", help="do not build the parts; those that cannot be built are not simplified"
+    ),
     argument("--no-audit", dest="audit", action="store_false", help="do not audit the file"),
     SANDBOX,
 )

@@ -62,7 +62,9 @@ def test_what_is_adopted_stands_and_moves_as_in_mujoco(name: str, tmp_path: Path
 @pytest.mark.engines
 @pytest.mark.parametrize("name", PLANTED)
 def test_the_planted_defect_is_named(name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert cli.main(["adopt", str(FILES / f"{name}.xml"), "--out", str(tmp_path / "out"), "--script", __file__, "--no-build", "--json"]) == 0
+    assert (
+        cli.main(["adopt", str(FILES / f"{name}.xml"), "--out", str(tmp_path / "out"), "--script", __file__, "--no-build", "--json"]) == 0
+    )
     report = json.loads(capsys.readouterr().out)
 
     assert report["schema"] == "articad.adopt/1"
