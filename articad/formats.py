@@ -24,7 +24,7 @@ from articad.findings import Finding
 from articad.importers.freecad import read_freecad
 from articad.importers.mjcf import read_mjcf
 from articad.importers.step import read_step
-from articad.importers.urdf import EXPAND, read_urdf
+from articad.importers.urdf import read_urdf
 from articad.plan.schema import AssemblyPlan
 
 
@@ -112,10 +112,7 @@ def read(path: str | Path, *, root: str | Path | None = None, fuse: bool = False
     """
     path = Path(path)
     if path.suffix.lower() == ".xacro":
-        message = f"{path}: a xacro file is a program that writes a URDF; it is not run here."
-        raise ReadError(
-            f"{message} {EXPAND}", path=str(path), findings=[Finding(code="E_READ", where=str(path), message=message, hint=EXPAND)]
-        )
+        return NAMED["urdf"].read(path, root=root, fuse=fuse)
     if path.is_dir():
         message, inside = f"{path} is a folder, and a file is read.", path / "plan.json"
         hint = f"Name the file: {inside}." if inside.is_file() else "Name a file in it."

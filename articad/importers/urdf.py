@@ -23,9 +23,10 @@ from articad.geometry.shapes import box, cylinder, sphere
 from articad.geometry.shapes import capsule as capsule_mesh
 from articad.importers.fusing import fused, with_chains_named
 from articad.importers.raw import ENDLESS, IDENTITY, RawJoint, RawLink, RawModel, RawTie, aligned, assemble, require_links
-from articad.importers.reading import MAX_LINKS, MM_PER_M, Folder, color_text, read_xml, unreadable
+from articad.importers.reading import MAX_LINKS, MM_PER_M, Folder, color_text, parse_xml, read_xml, unreadable
 from articad.importers.records import assembly_of, read_records, stale
 from articad.importers.urdf_kept import kept_elements
+from articad.importers.xacro import expanded
 from articad.kinematics.joints import JointType
 
 FloatArray = NDArray[np.float64]
@@ -41,10 +42,10 @@ def read_urdf(path: str | Path, *, root: str | Path | None = None, metadata: boo
     """Read a URDF file.
 
     Links become parts in their own frames, joints keep their names and values. `mimic` becomes a coupling, `planar` a planar joint,
-    `floating` three slides and a ball. Meshes that are missing are left out with a finding.
+    `floating` a free joint. Meshes that are missing are left out with a finding.
 
     Args:
-        path: The file; xacro must be expanded.
+        path: The file; one that ends in `.xacro` is expanded first (`articad.importers.xacro`).
         root: Folder that meshes may be read from; the file's own by default. `package://name/…` is looked up below it.
         metadata: Use the records that articad left in its own files, so that they come back as they were.
         fuse: Without metadata, make chains over bare links of small mass one joint: cylindrical, screw, universal, planar, ball.
@@ -54,7 +55,7 @@ def read_urdf(path: str | Path, *, root: str | Path | None = None, metadata: boo
     """
     path = Path(path)
     folder = Folder.of(path, None if root is None else Path(root))
-    document = read_xml(path)
+    document = parse_xml(expanded(path, folder.root if root else None), path) if path.suffix.lower() == ".xacro" else read_xml(path)
     if document.tag != "robot":
         raise unreadable(path, f"line {document.sourceline}", f"The root element is <{document.tag}>, not <robot>.")
     texts = [element.text or "" for element in document.iterfind("articad")]
