@@ -208,9 +208,9 @@ TABLE: dict[str, dict[Format, Row]] = {
         "usd": Row("a spherical joint with a cone", "the range of its twist"),
     },
     "coupling": {
-        "urdf": Row("<mimic>", "in readers that ignore <mimic>, the joints move independently"),
+        "urdf": Row("<mimic>", "readers that ignore <mimic> let the joints move on their own"),
         "mjcf": Row("an equality of joints"),
-        "sdf": Row("<mimic>", "in readers that ignore <mimic>, the joints move independently"),
+        "sdf": Row("<mimic>", "readers that ignore <mimic> let the joints move on their own"),
         "usd": Row("nothing", "UsdPhysics has no couplings: the joints move independently", refused=True),
     },
     "coupling.loop": {
@@ -288,11 +288,11 @@ TABLE: dict[str, dict[Format, Row]] = {
     "hull": {
         "urdf": Row(
             "collision meshes",
-            "in readers that use convex hulls for collision (MuJoCo, PyBullet), these two parts overlap at rest or in motion, and URDF cannot exclude the pair",
+            "readers that collide with convex hulls (MuJoCo, PyBullet) see these two parts overlap at rest or in motion, and URDF cannot exclude the pair",
         ),
         "mjcf": Row(
             "an excluded pair",
-            "MuJoCo uses convex hulls for collision; those of these two parts overlap at rest or in motion, so the two do not collide at all",
+            "MuJoCo collides with convex hulls; those of these two parts overlap at rest or in motion, so they do not collide at all",
         ),
         "sdf": Row("collision meshes"),
         "usd": Row("convex hulls for collision"),
