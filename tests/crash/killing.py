@@ -21,7 +21,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-Work = Callable[[Path], None]
+Work = Callable[[Path], object]
 _CHANGING = ("replace", "rename", "fsync", "mkdir", "unlink", "rmdir", "chmod")
 PATIENCE_S = 120.0  # of a work that is not killed
 

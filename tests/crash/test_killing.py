@@ -44,10 +44,12 @@ def recording(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def work_named(name: str, recording: Path) -> Work:
     if name == "edit":
         return lambda folder: works.edited(folder, recording)
+    if name == "proven":
+        return works.proven
     return works.build if name == "build" else lambda folder: works.generated(folder, recording=recording)
 
 
-@pytest.mark.parametrize("name", ["build", "generate", "edit"])
+@pytest.mark.parametrize("name", ["build", "generate", "edit", "proven"])
 def test_killed_at_some_stages_and_times_it_resumes_and_ends_equal(name: str, recording: Path, tmp_path: Path) -> None:
     work = work_named(name, recording)
     (tmp_path / "whole").mkdir()

@@ -22,7 +22,7 @@ from articad.kernels.kernel import BuildCache, PartKernel
 from articad.memory.case import Case
 from articad.memory.experience import ExperienceStore
 from articad.plan.schema import AssemblyPlan
-from articad.runs.record import record_assembly, record_checks, record_export
+from articad.runs.record import record_assembly, record_certificate, record_checks, record_export
 from articad.runs.run import Run, RunRequest, open_or_create
 from tests.agents import stories
 from tests.crash.stand_in import FixedKernel
@@ -50,7 +50,7 @@ def kernel(name: str) -> PartKernel:
     return FixedKernel() if name == "fixed" else Build123dKernel()
 
 
-def build(folder: Path, kernel_name: str = "fixed") -> None:
+def build(folder: Path, kernel_name: str = "fixed") -> Assembly:
     """What `articad build` does: build, record, check, export."""
     plan = AssemblyPlan.load(FIVE_JOINTS)
     scripts = {part.stem: part.read_bytes() for part in (FIVE_JOINTS / "parts").glob("*.py") if "." not in part.stem}
@@ -60,6 +60,16 @@ def build(folder: Path, kernel_name: str = "fixed") -> None:
         record_assembly(run, assembly)
         record_checks(run, assembly.check())
         for name in ("urdf", "mjcf"):
+            record_export(run, assembly, name)
+    return assembly
+
+
+def proven(folder: Path) -> None:
+    """What `articad certify` and `articad export` do with a run, which is built first."""
+    assembly = build(folder)
+    with Run.open(folder / "run") as run:
+        record_certificate(run, assembly.certify(pairs=False, budget=0.1))
+        for name in ("sdf", "usd", "glb", "3mf", "plan"):
             record_export(run, assembly, name)
 
 
