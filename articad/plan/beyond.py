@@ -16,6 +16,7 @@ from typing import Any, Final
 
 from pydantic import ValidationError
 
+from articad.files import PLAN_BYTES, read_file
 from articad.findings import Finding, Findings
 from articad.plan import reading
 from articad.plan.check import check_plan
@@ -50,7 +51,7 @@ def further_findings(path: Path, found: Findings) -> Findings:
     """
     file = path / PLAN_FILE if path.is_dir() else path
     try:
-        document = json.loads(file.read_bytes())
+        document = json.loads(read_file(file, PLAN_BYTES, root=path if path.is_dir() else None))
     except (OSError, ValueError, RecursionError):  # then there is nothing but the form to judge
         return found
     if not isinstance(document, dict):
