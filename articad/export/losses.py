@@ -6,6 +6,7 @@ all of it. A feature whose `lost` is empty is held by the format without loss.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Container, Iterable
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
@@ -17,6 +18,8 @@ if TYPE_CHECKING:
     from articad.assembly import Kept
 
 Format = Literal["urdf", "mjcf", "sdf", "usd", "freecad", "glb", "3mf", "step", "plan"]
+
+_SHAPE = re.compile(r"(parts\..*)\.(?:visuals|collisions)\.\d+$")  # where something is said of one shape of a part
 
 MECHANISM_FORMATS: tuple[Format, ...] = ("urdf", "mjcf", "sdf", "usd")  # hold joints; the others hold shapes
 
@@ -175,6 +178,15 @@ TABLE: dict[str, dict[Format, Row]] = {
     "effort.assumed": {
         name: Row("effort and velocity that carry the load", "the fact that the file states none; this format requires them")
         for name in MECHANISM_FORMATS
+    },
+    "rest.assumed": {
+        "mjcf": Row("the key home, at rest", "that the file states no such pose: zero is outside of its limits"),
+    },
+    "chain.carriers": {
+        "urdf": Row("a chain of joints over carrier links", "that it is one joint; its carriers take a small share of the part's mass"),
+    },
+    "contact.joined": {
+        "mjcf": Row("an excluded pair", "contacts between two parts that a joint connects: MuJoCo lets a body touch what stands still"),
     },
     "effort.zero": {
         "urdf": Row("an effort of zero"),
@@ -400,6 +412,7 @@ for _key, _rows in TABLE.items():
                 "loop.rest",
                 "free.",
                 "effort.",
+                "chain.",
                 "link.frame",
                 "shape.primitive",
             )
@@ -420,9 +433,13 @@ def losses_of(format_name: Format, features: Iterable[Feature]) -> tuple[Loss, .
 
 
 def kept_losses(format_name: Format, kept: Iterable[Kept], written: Container[Kept] = ()) -> tuple[Loss, ...]:
-    """Return a loss for everything that the file said beyond the assembly and that is not written."""
-    rows = (Loss(format_name, item.where, "nothing", item.what, refused=False) for item in kept if item not in written)
-    return tuple(dict.fromkeys(rows))
+    """Return a loss for everything that the file said beyond the assembly and that is not written, one for the shapes of each part."""
+    lost: dict[tuple[str, str], list[str]] = {}
+    for item in kept:
+        if item.what and item not in written:
+            shape = _SHAPE.match(item.where)
+            lost.setdefault((shape[1], "shapes") if shape else (item.where, item.what), []).append(item.what)
+    return tuple(Loss(format_name, where, "nothing", "; ".join(dict.fromkeys(said)), refused=False) for (where, _), said in lost.items())
 
 
 def assumed_finding(joints: Iterable[str], format_name: Format) -> list[Finding]:

@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -98,6 +98,7 @@ class LoweredJoint:
         T_child_joint: The frame of the child link that coincides with it where all values are zero [m]; identity in a tree.
         freedoms: Its motions, from the parent outwards.
         carriers: Names for links between its motions, and one for a link at its end.
+        anchor: Where its axes pass through, in the child link's frame [m], `(3,)`; the origin unless `lower` was asked to keep frames.
     """
 
     name: str
@@ -109,6 +110,7 @@ class LoweredJoint:
     T_child_joint: SE3
     freedoms: tuple[Freedom, ...]
     carriers: tuple[str, ...]
+    anchor: FloatArray = field(default_factory=lambda: np.zeros(3))
 
     @property
     def is_free(self) -> bool:
@@ -191,7 +193,7 @@ def metres(T: SE3) -> SE3:
     return SE3.from_unit_array(T.data / np.array([MM_PER_M, MM_PER_M, MM_PER_M, 1.0, 1.0, 1.0, 1.0]))
 
 
-def lower(assembly: Assembly, reserved: Iterable[str] = ()) -> LoweredModel:
+def lower(assembly: Assembly, reserved: Iterable[str] = (), *, as_it_came: bool = False) -> LoweredModel:
     """Turn an assembly into links, frames and one-freedom motions in SI units.
 
     Names become valid, limits and rest values are converted, loads are computed, and each feature that a format may not hold is noted.
@@ -199,9 +201,10 @@ def lower(assembly: Assembly, reserved: Iterable[str] = ()) -> LoweredModel:
     Args:
         assembly: What is written.
         reserved: Names that no link may have.
+        as_it_came: Keep the frame of every link and all names, for a format whose joints may pass anywhere and whose names are any text.
     """
     mechanism = assembly.mechanism
-    names = _ValidNames(assembly, reserved)
+    names = _ValidNames(assembly, reserved, any_text=as_it_came)
     loads = once(assembly, "loads", lambda: joint_loads(mechanism, assembly.parts))
     T_link_part = {mechanism.ground: mechanism.T_ground}
     joints = []
@@ -209,7 +212,7 @@ def lower(assembly: Assembly, reserved: Iterable[str] = ()) -> LoweredModel:
     for edge in mechanism.tree.edges:
         head, K = _frames(edge.joint, backwards=edge.reversed)
         T_link_part[edge.part] = K
-        keeps = assembly.foreign and _keeps_frame(edge.joint, K)
+        keeps = assembly.foreign and _keeps_frame(edge.joint, K, anywhere=as_it_came)
         if keeps:
             T_link_part[edge.part] = SE3.identity()
         elif assembly.foreign and not K.allclose(SE3.identity(), mm=ON_AXIS_MM, rad=1e-9):
@@ -218,6 +221,8 @@ def lower(assembly: Assembly, reserved: Iterable[str] = ()) -> LoweredModel:
         row = _lowered(edge.joint, edge.parent, edge.part, T_parent_joint, SE3.identity(), loads, names, backwards=edge.reversed)
         if keeps:
             row = replace(row, freedoms=tuple(replace(one, axis=_rounded(K.rotation.T @ one.axis)) for one in row.freedoms))
+            if as_it_came:
+                row = replace(row, anchor=K.inverse().translation / MM_PER_M)
         joints.append(row)
     still = rigid_with_ground(assembly)
     loops = []
@@ -240,10 +245,16 @@ def lower(assembly: Assembly, reserved: Iterable[str] = ()) -> LoweredModel:
     )
 
 
-def _keeps_frame(joint: Joint, K: SE3) -> bool:
-    """True when the joint's frame can be put on the part's, which is at K⁻¹ of it, without another motion (see the module)."""
+def _keeps_frame(joint: Joint, K: SE3, *, anywhere: bool = False) -> bool:
+    """True when the joint's frame can be put on the part's, which is at K⁻¹ of it, without another motion (see the module).
+
+    With `anywhere`, the joint's axes need not pass through the part's origin.
+    """
     if joint.type.quaternion is not None:  # its values are about the frame's own axes
-        return K.allclose(SE3.identity(), mm=ON_AXIS_MM, rad=1e-12)
+        far = anywhere and joint.type is JointType.BALL
+        return K.allclose(SE3.identity(), mm=math.inf if far else ON_AXIS_MM, rad=1e-12)
+    if anywhere:
+        return True
     origin = K.translation  # of the part, seen from the joint's frame
     turning = [np.array(step.vector) for step in motions(joint.type) if step.kind == "turn"]
     return all(float(np.linalg.norm(np.cross(axis, origin))) <= ON_AXIS_MM for axis in turning)
@@ -267,8 +278,9 @@ def _rounded(axis: FloatArray) -> FloatArray:
 class _ValidNames:
     """Valid names of links and joints; declared ones are claimed before carriers', in the order of declaration."""
 
-    def __init__(self, assembly: Assembly, reserved: Iterable[str]) -> None:
-        self._link_names, self._joint_names = Names(reserved), Names()
+    def __init__(self, assembly: Assembly, reserved: Iterable[str], *, any_text: bool) -> None:
+        self._any_text = any_text
+        self._link_names, self._joint_names = Names(reserved, any_text=any_text), Names(any_text=any_text)
         self.links = {part: self._link_names.claim(part) for part in assembly.mechanism.parts}
         self.joints = {joint.name: self._joint_names.claim(joint.name) for joint in assembly.mechanism.joints}
         self._changed = [("parts", *item) for item in self._link_names.changed.items()]
@@ -288,7 +300,7 @@ class _ValidNames:
     def features(self, assembly: Assembly) -> list[Feature]:
         """Return the names that had to change."""
         features = [Feature("name", f"{kind}.{old}", new) for kind, old, new in self._changed]
-        if valid_name(assembly.name) != assembly.name:
+        if valid_name(assembly.name) != assembly.name and not self._any_text:
             features.append(Feature("name", "name", valid_name(assembly.name)))
         return features
 

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
 from lxml import etree
 
 from articad.connectors.se3 import SE3
@@ -31,6 +33,7 @@ from articad.export.lowering import (
 from articad.export.markup import child, document, number, numbers, rgba, wxyz
 from articad.export.meshes import MM_TO_M, MeshFiles, MeshKind
 from articad.export.metadata import dumps, records
+from articad.export.mjcf_again import Again
 from articad.export.names import Names
 from articad.findings import Findings
 from articad.geometry.mesh import TriMesh
@@ -39,7 +42,7 @@ from articad.kernels.cache import BuildCache
 from articad.kinematics.joints import JointType
 
 if TYPE_CHECKING:
-    from articad.assembly import Assembly, Kept
+    from articad.assembly import Assembly
 
 RESERVED = ("world",)  # the name of MuJoCo's own root body
 FAR_RAD = 1e6  # stands for an open end of a range that has another end
@@ -85,20 +88,24 @@ def write_mjcf(
     Raises:
         UnrepresentableError: If `strict` and there is such a loss.
     """
-    model, contacts = collide(assembly, lower(assembly, RESERVED), collision, _skipped(assembly), cache)
+    again = Again(assembly)
+    model = lower(assembly, () if again.active else RESERVED, as_it_came=assembly.foreign)
+    contacts: tuple[HullOverlap, ...] = ()
+    if not (again.active and collision == "solid"):  # what collides in an MJCF file is what that file says
+        model, contacts = collide(assembly, model, collision, _skipped(assembly), cache)
+    writer = _Writer(assembly, model, MeshFiles(meshes), again)
+    root = writer.document(contacts, actuators=actuators)
     zero = [row.joint.name for row in model.joints if any(_no_force(freedom) for freedom in row.freedoms)]
     nested = [row.joint.name for row in model.joints if row.is_free and _is_nested(row, assembly)]
     features = [
-        *model.features,
+        *writer.features(),
         *(Feature("free.nested", f"joints.{name}") for name in nested),
         *map(contact_feature, contacts),
         *(Feature("effort.zero", f"joints.{name}") for name in zero),
     ]
-    losses = (*losses_of("mjcf", features), *kept_losses("mjcf", assembly.kept, _kept_of_joints(assembly, model).values()))
+    losses = (*losses_of("mjcf", features), *kept_losses("mjcf", assembly.kept, again.written))
     if strict:
         refuse(losses)
-    writer = _Writer(assembly, model, MeshFiles(meshes))
-    root = writer.document(contacts, actuators=actuators)
     assumed = [] if assembly.foreign else [row.joint.name for row in model.joints if any(freedom.load.assumed for freedom in row.freedoms)]
     return Bundle({f"{model.name}.xml": document(root), **writer.files.files}, losses, Findings(assumed_finding(assumed, "mjcf")))
 
@@ -106,33 +113,40 @@ def write_mjcf(
 class _Writer:
     """Builds one document; holds what its sections share."""
 
-    def __init__(self, assembly: Assembly, model: LoweredModel, files: MeshFiles) -> None:
-        self.assembly, self.model, self.files = assembly, model, files
+    def __init__(self, assembly: Assembly, model: LoweredModel, files: MeshFiles, again: Again) -> None:
+        self.assembly, self.model, self.files, self.again = assembly, model, files, again
         self.sites = Names()
         self.asset: Any = None
         self.bodies: dict[str, Any] = {}
         self.assets: dict[str, str] = {}
         self.ghosts: dict[str, Inertial] = {}
         self.qpos: dict[str, list[float]] = {}
+        self.between: set[str] = set()
+        self.exact: set[str] = set()
+        self.added: list[Feature] = []
+
+    def features(self) -> list[Feature]:
+        """Return the features of the model that the document has: a step between two joints of a body is no part of it."""
+        said = [feature for feature in self.model.features if feature.where not in self.between]
+        return [*(feature for feature in said if not (feature.key == "ball" and feature.where in self.exact)), *self.added]
 
     def document(self, contacts: Sequence[HullOverlap], *, actuators: bool) -> Any:
-        root = etree.Element("mujoco", model=self.model.name)
+        root = etree.Element("mujoco", model=self.assembly.name if self.assembly.foreign else self.model.name)
         child(root, "compiler", {"angle": "radian", "autolimits": "true", "inertiafromgeom": "false", "balanceinertia": "false"})
-        child(root, "option", {"timestep": number(TIMESTEP_S), "gravity": numbers([0, 0, -GRAVITY_M_S2]), "integrator": "implicitfast"})
-        _defaults(root)
+        if not self.again.active:
+            child(root, "option", {"timestep": number(TIMESTEP_S), "gravity": numbers([0, 0, -GRAVITY_M_S2]), "integrator": "implicitfast"})
+            _defaults(root)
         self.asset = child(root, "asset")
-        self._materials()
+        if not self.again.active:
+            self._materials()
         world = child(root, "worldbody")
         self._bodies(world)
-        places = {joint.get("name"): joint for joint in world.iter("joint", "freejoint")}
-        for name, kept in _kept_of_joints(self.assembly, self.model).items():
-            if places[name].tag == "freejoint":  # which has no attributes for dynamics
-                places[name].tag = "joint"
-                places[name].set("type", "free")
-            places[name].attrib.update(etree.fromstring(kept.xml).attrib)
         self._exclusions(root, contacts)
         self._equalities(root)
         servos = self._actuators(root, world) if actuators else []
+        if self.again.active:
+            self.again.drop_unknown_targets(root)
+            self.again.sections(root, same_joints=self._has_the_files_joints(world))
         self._home(root, world, servos)
         custom = child(root, "custom")
         for number_, record in enumerate(records(self.assembly, self.model, self.files.by_digest, [world, *root.iterfind("equality")])):
@@ -140,6 +154,12 @@ class _Writer:
         if not len(self.asset):
             root.remove(self.asset)
         return root
+
+    def _has_the_files_joints(self, world: Any) -> bool:
+        """True when the joints are those of the file, in its order: the values of its keys are theirs."""
+        closing = {joint.name for joint in self.assembly.mechanism.loop_joints}
+        moving = [joint.name for joint in self.assembly.joints if joint.type is not JointType.FIXED and joint.name not in closing]
+        return [joint.get("name") for joint in world.iter("joint", "freejoint")] == moving
 
     # ------------------------------------------------------------------ bodies
 
@@ -151,27 +171,81 @@ class _Writer:
     def _bodies(self, world: Any) -> None:
         carried = {joint.child: joint for joint in self.model.joints}
         inertials = self._inertials()
-        zero: dict[str, SE3] = {}  # where each body stands when all values are zero
-        rest = self.assembly.mechanism.rest_poses()
+        zero: dict[str, SE3] = {}  # where each link stands when all values are zero
+        chains: dict[str, tuple[LoweredJoint, ...]] = {}  # over bare links of an MJCF file, which are several joints of one body
         for link in self.model.links:
             joint = carried.get(link.name)
-            place = SE3.identity() if joint is None else joint.T_parent_joint
-            zero[link.name] = place if joint is None else zero[joint.parent] @ place
-            parent = world if joint is None else self.bodies[joint.parent]
-            if joint is not None and joint.is_free:  # MuJoCo wants it in the world
-                parent, place = world, zero[link.name]
-                T = metres(rest[link.part.name]) @ link.T_link_part.inverse() if _is_nested(joint, self.assembly) else place @ joint.T_rest
-                self.qpos[joint.name] = [*T.translation.tolist(), *wxyz(T)]
-            body = child(parent, "body", {"name": link.name} | ({} if joint is None else _placement(place)))
+            chain = () if joint is None else (*chains.get(joint.parent, ()), joint)
+            zero[link.name] = SE3.identity() if joint is None else zero[joint.parent] @ joint.T_parent_joint
+            if self.again.active and joint is not None and self._is_between(link, chain):
+                chains[link.name] = chain
+                self.between.add(f"parts.{link.part.name}")
+                continue
+            if joint is not None and joint.is_free:
+                body = self._free_body(world, link, joint, zero[link.name])
+            else:
+                body = world if joint is None and self._is_world(link) else self._body(world, link, chain)
             self.bodies[link.name] = body
             inertial = inertials[link.name]
             if inertial is not None:
                 _inertial(body, inertial)
-            if joint is not None:
-                self._joints(body, joint)
+            for one in chain:
+                self._joints(body, one)
             self._geoms(body, link)
+            if self.again.active:
+                body.attrib.update(self.again.attributes(f"parts.{link.part.name}", "body"))
+                self.again.below(f"parts.{link.part.name}", body)
+            if self.assembly.foreign:
+                continue
             for connector in link.part.connectors.values():
                 self._site(body, f"{link.name}__{connector.name}", link.T_link_part @ metres(connector.frame))
+
+    def _free_body(self, world: Any, link: Link, joint: LoweredJoint, place: SE3) -> Any:
+        """Return the element of a body that floats, placed where it is at zero; MuJoCo wants it in the world."""
+        T = place @ joint.T_rest
+        if _is_nested(joint, self.assembly):
+            T = metres(self.assembly.mechanism.rest_poses()[link.part.name]) @ link.T_link_part.inverse()
+        self.qpos[joint.name] = [*T.translation.tolist(), *wxyz(T)]
+        return child(world, "body", {"name": link.name} | _placement(place))
+
+    def _body(self, world: Any, link: Link, chain: tuple[LoweredJoint, ...]) -> Any:
+        """Return the element of a body, placed where it is when every joint has the value `ref`."""
+        if not chain:
+            return child(world, "body", {"name": link.name})
+        T = SE3.identity()
+        for joint in chain:
+            T = T @ joint.T_parent_joint @ self._reference(joint)
+        return child(self.bodies[chain[0].parent], "body", {"name": link.name} | _placement(T))
+
+    def _is_world(self, link: Link) -> bool:
+        """True for the ground of an MJCF file that is its world."""
+        return self.again.active and link.name == "world" and link.inertial is None
+
+    def _is_between(self, link: Link, chain: tuple[LoweredJoint, ...]) -> bool:
+        """True for a link that stands for nothing but the step from one joint of a body to the next; MuJoCo has no such bodies."""
+        part, name = link.part, link.part.name
+        joints = [joint for joint in self.assembly.joints if name in {joint.parent, joint.child}]
+        bare = part.mass is None and not part.visuals and not part.collisions and len(joints) == 2
+        beyond = [row for row in self.model.joints if row.parent == link.name]
+        if not bare or len(beyond) != 1 or not chain[-1].freedoms or not beyond[0].freedoms:
+            return False
+        return (beyond[0].T_parent_joint @ self._reference(beyond[0])).allclose(SE3.identity(), mm=1e-9, rad=1e-9)
+
+    def _reference(self, joint: LoweredJoint) -> SE3:
+        """Return how a joint moves its body from zero to the value `ref` that the file's own pose has [m]."""
+        if len(joint.freedoms) != 1 or not (ref := self.references.get(joint.joint.name)):
+            return SE3.identity()
+        axis = joint.freedoms[0].axis
+        if joint.freedoms[0].kind == "slide":
+            return SE3.from_translation(ref * axis)
+        turn = SE3.from_quaternion([*(math.sin(ref / 2) * axis), math.cos(ref / 2)])
+        return SE3.from_translation(joint.anchor) @ turn @ SE3.from_translation(-joint.anchor)
+
+    @cached_property
+    def references(self) -> dict[str, float]:
+        """Values of the joints in the file's own pose [rad or m], where they are not zero."""
+        said = {joint.name: self.again.attributes(f"joints.{joint.name}", "joint").get("ref") for joint in self.assembly.joints}
+        return {name: float(text) for name, text in said.items() if text}
 
     def _inertials(self) -> dict[str, Inertial | None]:
         """Return each link's inertia; ghosts of loops get half of the part that they stand for.
@@ -189,29 +263,51 @@ class _Writer:
         return found
 
     def _joints(self, body: Any, joint: LoweredJoint) -> None:
+        kept = self.again.attributes(f"joints.{joint.joint.name}", "joint") if len(joint.freedoms) == 1 or joint.joint.type.quaternion is not None else {}
         if joint.is_free:
-            child(body, "freejoint", {"name": joint.name})
+            plain = kept.keys() <= {"group"}  # <freejoint> has no attributes for dynamics
+            child(body, "freejoint" if plain else "joint", {"name": joint.name} | ({} if plain else {"type": "free"}) | kept)
             return
+        anchor = {"pos": numbers(joint.anchor)} if joint.anchor.any() else {}
         if joint.joint.type is JointType.BALL:
-            attributes = {"name": joint.name, "type": "ball"}
+            attributes = {"name": joint.name, "type": "ball"} | anchor
             total = ball_total_angle(joint.joint)
             if total < math.pi:
                 attributes["range"] = numbers([0, total])
-            child(body, "joint", attributes | _dynamics(joint.freedoms[0]))
+            if "range" in kept and float(kept["range"].split()[-1]) == joint.joint.limits.cone:
+                self.exact.add(f"joints.{joint.joint.name}")
+            else:
+                kept.pop("range", None)
+            child(body, "joint", attributes | _dynamics(joint.freedoms[0]) | kept)
             R = SE3.from_quaternion(joint.joint.rest)
             self.qpos[joint.name] = list(wxyz(R.inverse() if joint.backwards else R))
             return
         for freedom in joint.freedoms:
-            child(body, "joint", _joint(freedom, foreign=self.assembly.foreign))
+            attributes = _joint(freedom, foreign=self.assembly.foreign) | anchor
+            child(body, "joint", attributes | (self._still_true(kept, freedom) if len(joint.freedoms) == 1 else {}))
             self.qpos[freedom.name] = [freedom.rest]
 
+    @staticmethod
+    def _still_true(kept: dict[str, str], freedom: Freedom) -> dict[str, str]:
+        """Return what was kept of a joint; a range of forces only while its larger end is the joint's effort."""
+        ends = [abs(float(word)) for word in kept.get("actuatorfrcrange", "").split()]
+        stale = ends and not math.isclose(max(ends), freedom.load.effort, rel_tol=1e-12)
+        return {name: value for name, value in kept.items() if not (stale and name == "actuatorfrcrange")}
+
     def _geoms(self, body: Any, link: Link) -> None:
-        for placed in link.visuals:
-            geom = {"class": "visual"} | self._form(placed, link.name) | {"material": _material(placed.color)}
-            child(body, "geom", geom | _placement(placed.T_link_shape))
-        friction = {} if link.friction is None else {"friction": numbers([link.friction, FRICTION_SPIN, FRICTION_ROLL])}
-        for placed in link.collisions:
-            child(body, "geom", {"class": "collision"} | self._form(placed, link.name) | friction | _placement(placed.T_link_shape))
+        for kind, shapes in (("visuals", link.visuals), ("collisions", link.collisions)):
+            for index, placed in enumerate(shapes):
+                geom = self._form(placed, link.name) | _placement(placed.T_link_shape)
+                if self.again.active:
+                    usual = {"type": "mesh"} if "mesh" in geom else {}
+                    free = {"contype": "0", "conaffinity": "0"} if kind == "visuals" else {}
+                    kept = self.again.attributes(f"parts.{link.part.name}.{kind}.{index}", "geom")
+                    child(body, "geom", usual | geom | (kept or free | {"rgba": rgba(placed.color)}))
+                elif kind == "visuals":
+                    child(body, "geom", {"class": "visual"} | geom | {"material": _material(placed.color)})
+                else:
+                    friction = {} if link.friction is None else {"friction": numbers([link.friction, FRICTION_SPIN, FRICTION_ROLL])}
+                    child(body, "geom", {"class": "collision"} | geom | friction)
 
     def _form(self, placed: Placed, name: str) -> dict[str, str]:
         """Return the attributes of a geom that say its shape: a primitive body, or a mesh."""
@@ -239,13 +335,31 @@ class _Writer:
     # ------------------------------------------------------------------ relations
 
     def _exclusions(self, root: Any, contacts: Sequence[HullOverlap]) -> None:
+        if self.again.active:
+            return
         links = {link.part.name: link for link in self.model.links}
-        mating = mating_pairs(self.assembly.mechanism.joints, self.assembly.mechanism.parts)
+        mating = self._joined()
         pairs = dict.fromkeys([*mating, *(contact.parts for contact in contacts)])
+        if self.assembly.foreign:
+            self.added += [Feature("contact.joined", "parts." + "+".join(pair)) for pair in mating]
         if pairs:
             contact = child(root, "contact")
             for a, b in pairs:
                 child(contact, "exclude", {"body1": links[a].name, "body2": links[b].name})
+
+    def _joined(self) -> list[Pair]:
+        """Return the pairs of parts that share a joint; of a file's only those that MuJoCo would let touch.
+
+        MuJoCo keeps a body from touching the one that carries it, unless that one stands still, and parts that never move apart.
+        """
+        mechanism = self.assembly.mechanism
+        pairs = list(mating_pairs(mechanism.joints, mechanism.parts))
+        if not self.assembly.foreign:
+            return pairs
+        still = rigid_with_ground(self.assembly)
+        rigid = same_group_pairs(mechanism.joints, mechanism.parts)
+        closing = {frozenset((joint.parent, joint.child)) for joint in mechanism.loop_joints}
+        return [pair for pair in pairs if pair not in rigid and (frozenset(pair) in closing or still & {*pair})]
 
     def _equalities(self, root: Any) -> None:
         """Tie what the tree of bodies does not: loops by sites, screws and couplings by their joints."""
@@ -255,9 +369,14 @@ class _Writer:
                 if freedom.follows is not None and freedom.name in self.qpos:
                     _tie(equality, freedom.name, freedom.name, freedom.follows)
         for loop in self.model.loops:
-            self._close(equality, loop)
+            if (said := self.again.equality(f"joints.{loop.joint.name}")) is None:
+                self._close(equality, loop)
+            else:
+                equality.append(said)
         for name, follower, follows in self.model.couplings:
-            if {follower, follows.leader} <= self.qpos.keys():
+            if (said := self.again.equality(f"couplings.{name}")) is not None:
+                equality.append(said)
+            elif {follower, follows.leader} <= self.qpos.keys():
                 _tie(equality, name, follower, follows)
         if not len(equality):
             root.remove(equality)
@@ -302,9 +421,17 @@ class _Writer:
 
     def _home(self, root: Any, world: Any, servos: list[Freedom]) -> None:
         values = [value for joint in world.iter("joint", "freejoint") for value in self.qpos[joint.get("name")]]
+        if self.again.active or (self.assembly.foreign and self._rests_at_zero()):  # an MJCF file has keys of its own
+            return
         if values:
+            if self.assembly.foreign:
+                self.added.append(Feature("rest.assumed", "model"))
             key = {"name": "home", "qpos": numbers(values)} | ({"ctrl": numbers(servo.rest for servo in servos)} if servos else {})
             child(child(root, "keyframe"), "key", key)
+
+    def _rests_at_zero(self) -> bool:
+        """True when every joint rests at zero, which is where engines begin."""
+        return all(np.allclose(joint.rest, joint.type.neutral, rtol=0, atol=1e-12) for joint in self.assembly.joints)
 
 
 def _defaults(root: Any) -> None:
@@ -329,14 +456,6 @@ def _inertial(body: Any, inertial: Inertial) -> None:
     I = inertial.inertia
     moments = [I[0, 0], I[1, 1], I[2, 2], I[0, 1], I[0, 2], I[1, 2]]
     child(body, "inertial", {"pos": numbers(inertial.com), "mass": number(inertial.mass), "fullinertia": numbers(moments)})
-
-
-def _kept_of_joints(assembly: Assembly, model: LoweredModel) -> dict[str, Kept]:
-    """Return what an MJCF file said of joints that are one joint again, by the name in what is written."""
-    names = {
-        f"joints.{row.joint.name}": row.name for row in model.joints if len(row.freedoms) == 1 or row.joint.type.quaternion is not None
-    }
-    return {names[item.where]: item for item in assembly.kept if item.format == "mjcf" and item.xml and item.where in names}
 
 
 def _half_sizes(form: Primitive) -> list[float]:

@@ -12,13 +12,14 @@ MAX_LENGTH = 120  # characters; files are named after parts, and file systems st
 class Names:
     """Hands out valid names, each once, and none that is reserved."""
 
-    def __init__(self, reserved: Iterable[str] = ()) -> None:
+    def __init__(self, reserved: Iterable[str] = (), *, any_text: bool = False) -> None:
         self._taken: set[str] = set(reserved)
+        self._valid = str if any_text else valid_name
         self.changed: dict[str, str] = {}
 
     def claim(self, wanted: str) -> str:
         """Return `wanted` if it is valid and free, else a valid name like it; `changed` remembers which."""
-        name = free = valid_name(wanted)
+        name = free = self._valid(wanted)
         number = 2
         while free in self._taken:
             free = f"{name}_{number}"

@@ -78,14 +78,12 @@ def write_urdf(
     if package is not None:
         require_package_name(package)
     model = lower(assembly)
-    model, contacts = collide(assembly, model, collision, _skipped(assembly, model), cache)
+    contacts: tuple[HullOverlap, ...] = ()
+    if srdf or collision != "solid" or not assembly.foreign:  # a file's own collision meshes are what they are
+        model, contacts = collide(assembly, model, collision, _skipped(assembly, model), cache)
     tied = {loop.name: tied_points(model, loop) for loop in model.loops} if loops in {"isaac", "drake"} else {}
     keeper = _Keeper(assembly, model)
-    features = [*_loop_features(model, loops, tied), *map(contact_feature, contacts), *_form_features(model, keeper)]
-    features += [
-        Feature("free.rest", f"joints.{row.joint.name}") for row in model.joints if row.is_free and row.joint.rest != row.joint.type.neutral
-    ]
-    features += [Feature("effort.assumed", f"joints.{name}") for name in _assumed(model, keeper)]
+    features = [*_loop_features(model, loops, tied), *map(contact_feature, contacts), *_features_of_file(assembly, model, keeper)]
     losses = (*losses_of("urdf", features), *kept_losses("urdf", assembly.kept, keeper.written))
     if strict:
         refuse(losses)
@@ -113,6 +111,18 @@ def write_urdf(
         main = {f"{kind}/{model.name}.{kind}": content for kind, content in documents.items()}
         main |= package_files(package, model.name, [*documents, files.folder])
     return Bundle({**main, **files.files}, losses, Findings(assumed_finding(_assumed(model, keeper, all_of=True), "urdf")))
+
+
+def _features_of_file(assembly: Assembly, model: LoweredModel, keeper: _Keeper) -> list[Feature]:
+    """Return what URDF changes of what a file says: forms, joints that become chains, and efforts that it has to state."""
+    chains = [row.joint for row in model.joints if assembly.foreign and len(row.freedoms) > 1]
+    rests = [row.joint.name for row in model.joints if row.is_free and row.joint.rest != row.joint.type.neutral]
+    return [
+        *_form_features(model, keeper),
+        *(Feature("free.rest", f"joints.{name}") for name in rests),
+        *(Feature("chain.carriers", f"joints.{joint.name}", joint.child) for joint in chains),
+        *(Feature("effort.assumed", f"joints.{name}") for name in _assumed(model, keeper)),
+    ]
 
 
 class _Keeper:
@@ -163,7 +173,12 @@ def _assumed(model: LoweredModel, keeper: _Keeper, *, all_of: bool = False) -> l
 
 def _writes_assumed(freedom: Freedom, keeper: _Keeper) -> bool:
     needed = freedom.load.assumed - ({"damping"} if keeper.foreign else set())
-    return bool(needed) and not (keeper.foreign and _type(freedom) == "continuous")
+    return bool(needed) and not _says_no_limit(freedom, keeper)
+
+
+def _says_no_limit(freedom: Freedom, keeper: _Keeper) -> bool:
+    """True for an endless joint of a file that states neither effort nor velocity; nobody asks it for them."""
+    return keeper.foreign and _type(freedom) == "continuous" and freedom.load.assumed >= {"effort", "velocity"}
 
 
 def _form_features(model: LoweredModel, keeper: _Keeper) -> list[Feature]:
@@ -304,7 +319,7 @@ def _type(freedom: Freedom) -> str:
 
 def _limit(freedom: Freedom, keeper: _Keeper) -> dict[str, str]:
     bounds: dict[str, str] = {}
-    if keeper.foreign and _type(freedom) == "continuous" and freedom.load.assumed >= {"effort", "velocity"}:
+    if _says_no_limit(freedom, keeper):
         return bounds
     if _type(freedom) != "continuous":
         far = FAR_RAD if freedom.kind == "turn" else FAR_M

@@ -633,7 +633,7 @@ CODES: dict[str, Code] = {
     ),
     "E_AUDIT_MESH_UNREADABLE": Code("audit", None, "A mesh file cannot be read.", "Export it again."),
     "I_AUDIT_MESH_FORMAT": Code(
-        "audit", None, "A mesh has a format that is not read, so its shape is not audited.", "Convert it to STL, OBJ, GLB or PLY."
+        "audit", None, "A mesh has a format that is not read, so its shape is not audited.", "Convert it to STL, OBJ, GLB, PLY or DAE."
     ),
     "W_AUDIT_NO_COLLISION": Code(
         "audit", None, "A link has visual shapes but no collision shapes.", "Use the same mesh or a simpler one for collision."

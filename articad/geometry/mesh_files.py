@@ -1,6 +1,7 @@
-"""Mesh files: STL, OBJ, GLB and PLY, read and written.
+"""Mesh files: STL, OBJ, GLB and PLY, read and written; COLLADA (DAE), read.
 
-STL and OBJ are read with NumPy, and so is everything written; trimesh is loaded only to read GLB and PLY.
+STL and OBJ are read with NumPy, and so is everything written; trimesh is loaded only to read GLB, PLY and DAE.
+A DAE states its unit, which is applied, and an axis that points up, which is not: RViz, Gazebo and Pinocchio take coordinates as they are.
 What is written depends on the mesh alone: no times, no names of programs, no order of dictionaries.
 A file is somebody else's: whatever is wrong with it becomes a `ReadError` that says where.
 """
@@ -9,6 +10,7 @@ from __future__ import annotations
 
 import io
 import json
+import math
 import re
 import struct
 from collections.abc import Callable
@@ -46,8 +48,8 @@ def read_mesh(path: str | Path, scale: float = 1.0, root: Path | None = None) ->
     """Read a mesh file; exactly equal vertices are merged, collapsed triangles dropped.
 
     Args:
-        path: A file whose name ends in .stl, .obj, .glb, .gltf or .ply.
-        scale: Millimetres per unit of the file.
+        path: A file whose name ends in .stl, .obj, .glb, .gltf, .ply or .dae.
+        scale: Millimetres per unit of the file; a DAE counts as one in metres, whatever unit it states.
         root: A folder above the file; no component below it may be a link.
 
     Raises:
@@ -295,7 +297,7 @@ def _obj_faces_one_by_one(path: Path, lines: list[bytes], total: int) -> NDArray
 
 
 def _read_with_trimesh(path: Path, content: bytes) -> TriMesh:
-    """Read GLB or PLY; nodes of a scene are placed and merged.
+    """Read GLB, PLY or DAE; nodes of a scene are placed and merged.
 
     Only what is inside the file is read: buffers and pictures that a glTF names beside itself are not looked up.
     """
@@ -303,12 +305,22 @@ def _read_with_trimesh(path: Path, content: bytes) -> TriMesh:
 
     kind = path.suffix.lower().lstrip(".")
     _require_whole(path, kind, content)
+    unit = _unit_of_dae(content) if kind == "dae" else 1.0
     scene = trimesh.load_scene(io.BytesIO(content), file_type=kind, process=False)
     pieces = [piece for piece in scene.dump(concatenate=False) if isinstance(piece, trimesh.Trimesh)]
-    meshes = [TriMesh(np.asarray(piece.vertices, dtype=np.float64), np.asarray(piece.faces, dtype=np.int32)) for piece in pieces]
+    meshes = [TriMesh(np.asarray(piece.vertices, dtype=np.float64) * unit, np.asarray(piece.faces, dtype=np.int32)) for piece in pieces]
     if not meshes:
         raise _unreadable(path, "file", "it holds no triangle mesh")
     return merged(meshes).welded()
+
+
+def _unit_of_dae(content: bytes) -> float:
+    """Return the metres of one unit of a DAE: `<asset><unit meter="…"/>`, one where nothing is stated."""
+    match = re.search(rb"<unit\b[^>]*\bmeter\s*=\s*[\"']\s*([^\"'\s]+)", content[: content.find(b"</asset>") + 1 or None])
+    unit = float(match[1]) if match else 1.0
+    if not 0 < unit < math.inf:
+        raise ValueError(f"the unit of {unit} m is no length")
+    return unit
 
 
 def _require_whole(path: Path, kind: str, content: bytes) -> None:
@@ -318,6 +330,8 @@ def _require_whole(path: Path, kind: str, content: bytes) -> None:
         announced = struct.unpack_from("<I", content, 8)[0]
         if announced > len(content):
             raise _unreadable(path, f"byte {len(content)}", f"its header announces {announced} bytes; is it truncated?")
+    if kind == "dae" and (content[:2] == b"PK" or b"<!DOCTYPE" in content or b"<!ENTITY" in content):
+        raise _unreadable(path, "byte 0", "a DAE is plain XML, without entities and not packed")
     if kind == "ply" and b"end_header" not in content:
         raise _unreadable(path, "header", "it has no 'end_header'")
 
@@ -341,7 +355,7 @@ def _unreadable(path: Path, where: str, reason: str) -> ReadError:
         code="E_READ",
         where=f"{path.name}, {where}",
         message=f"{path.name} cannot be read at {where}: {reason}.",
-        hint="Export the mesh again as STL, OBJ, GLB or PLY.",
+        hint="Export the mesh again as STL, OBJ, GLB, PLY or DAE.",
     )
     return ReadError(finding.message, path=str(path), where=where, findings=[finding])
 
@@ -352,4 +366,5 @@ _READERS: dict[str, Callable[[Path, bytes], TriMesh]] = {
     ".glb": _read_with_trimesh,
     ".gltf": _read_with_trimesh,
     ".ply": _read_with_trimesh,
+    ".dae": _read_with_trimesh,
 }

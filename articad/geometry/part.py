@@ -197,7 +197,7 @@ class Part:
 
         Args:
             name: Name of the part.
-            mesh: The mesh, or an STL, OBJ, GLB or PLY file.
+            mesh: The mesh, or an STL, OBJ, GLB, PLY or DAE file.
             density: [kg/m³]; without it the part has no mass.
             connectors: By name.
             scale: Millimetres per unit of the file or mesh.

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from copy import deepcopy
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 from lxml import etree
@@ -21,7 +23,8 @@ from articad.geometry.part import DEFAULT_COLOR, Primitive, Shape
 from articad.geometry.shapes import box, capsule, cylinder, sphere
 from articad.importers.closure import require_closed
 from articad.importers.fusing import fused, with_chains_named
-from articad.importers.mjcf_kept import kept_attributes
+from articad.importers.mjcf_carried import Carrier, geom_kind
+from articad.importers.mjcf_kept import kept_attributes, section_elements, with_includes
 from articad.importers.raw import ENDLESS, IDENTITY, RawJoint, RawLink, RawModel, RawTie, aligned, assemble, require_links
 from articad.importers.reading import MM_PER_M, Folder, color_text, read_xml, unreadable
 from articad.importers.records import assembly_of, read_records, stale
@@ -31,6 +34,17 @@ from articad.processes import launcher
 FloatArray = NDArray[np.float64]
 
 _RECORD_PREFIX = "articad."
+
+COUNTED: Final = {
+    "actuator": {"actuator": "nactuator"},
+    "sensor": {"sensor": "nsensor"},
+    "tendon": {"tendon": "ntendon"},
+    "equality": {"equality": "neq"},
+    "keyframe": {"key": "nkey"},
+    "contact": {"pair": "npair", "exclude": "nexclude"},
+    "custom": {"numeric": "nnumeric", "text": "ntext", "tuple": "ntuple"},
+}
+"""Sections, and what MuJoCo's model calls the number of what each kind of their elements makes."""
 
 
 def read_mjcf(path: str | Path, *, root: str | Path | None = None, metadata: bool = True, fuse: bool = False) -> Assembly:
@@ -62,10 +76,10 @@ def read_mjcf(path: str | Path, *, root: str | Path | None = None, metadata: boo
         if not edited:
             return assembly_of(records, folder, path)
     require_closed(path, folder.root)
+    whole = with_includes(document, path)
     with _warnings() as said:
-        model = _Reader(_compiled(path), document.get("model") or path.stem).model()
+        model = _Reader(_compiled(path), document.get("model") or path.stem, whole).model()
     model.findings += edited
-    model.kept += kept_attributes(document, path)
     for text in dict.fromkeys(said):
         hint = "Correct what it names: simulators read the file the same way."
         model.findings.append(Finding(code="W_IMPORT_MUJOCO", where=path.name, message=f"MuJoCo warns: {text}", hint=hint))
@@ -100,7 +114,7 @@ def _compiled(path: Path) -> Any:
 class _Reader:
     """Turns a compiled model into links and joints."""
 
-    def __init__(self, compiled: Any, name: str) -> None:
+    def __init__(self, compiled: Any, name: str, document: Any) -> None:
         import mujoco  # noqa: PLC0415
 
         self.m, self.mujoco = compiled, mujoco
@@ -112,10 +126,14 @@ class _Reader:
         self.bodies = self._unique(mujoco.mjtObj.mjOBJ_BODY, compiled.nbody, "body")
         self.joints = self._unique(mujoco.mjtObj.mjOBJ_JOINT, compiled.njnt, "joint")
         self.raw = RawModel(name, self.bodies[0])
+        self.carrier = Carrier(compiled, mujoco, self.bodies, self.joints)
+        self.document = document
 
     def model(self) -> RawModel:
         """Return everything that the compiled model holds."""
+        self._keep_sections()
         for body in range(self.m.nbody):
+            self.raw.kept += self.carrier.body(body)
             self.raw.links[self.bodies[body]] = self._link(body)
         for body in range(1, self.m.nbody):
             self._add_joints(body)
@@ -139,6 +157,50 @@ class _Reader:
         hint = "Nothing, if it is not needed."
         self.raw.findings.append(Finding(code="W_IMPORT_DROPPED", where=where, message=message, hint=hint))
 
+    # ------------------------------------------------------------------ what is kept
+
+    def _keep_sections(self) -> None:
+        """Keep what the document says beyond bodies, section by section, where its elements are those of the compiled model.
+
+        Copies of `<replicate>` and models of `<attach>` bring elements that no document has in this form; those are kept by name only.
+        """
+        copied = [section for section in COUNTED if len(section_elements(self.document, section)) != self._count(section)]
+        for item in kept_attributes(self.document):
+            section = etree.fromstring(item.xml).tag if item.xml else ""
+            if section not in {*copied, "equality"}:
+                self.raw.kept.append(item)
+        for section in copied:
+            for word, count in COUNTED[section].items():
+                kind = {"eq": "EQUALITY"}.get(count[1:], count[1:].upper())
+                for index in range(_number_of(self.m, count)):
+                    name = self.mujoco.mj_id2name(self.m, getattr(self.mujoco.mjtObj, f"mjOBJ_{kind}", 0), index)
+                    if not str(name).startswith(_RECORD_PREFIX):
+                        self.raw.kept.append(
+                            Kept("mjcf", "model", f"{word} {name or f'{word}_{index}'!r}, which a copy or an attached model brings")
+                        )
+
+    def _count(self, section: str) -> int:
+        """Return how many elements of a section the compiled model has, without our own records."""
+        count = sum(_number_of(self.m, count) for count in COUNTED[section].values())
+        if section == "custom":
+            texts = (self.mujoco.mj_id2name(self.m, self.mujoco.mjtObj.mjOBJ_TEXT, index) or "" for index in range(self.m.ntext))
+            count -= sum(name.startswith(_RECORD_PREFIX) for name in texts)
+        return count
+
+    def _keep_equality(self, row: int, name: str, *, joint: str = "") -> None:
+        """Keep an equality word for word; one that the assembly holds as a joint or a coupling has only its softness to say."""
+        elements = section_elements(self.document, "equality")
+        if len(elements) != self.m.neq:
+            return
+        element = elements[row]
+        soft = ", ".join(f"{key} {value}" for key, value in element.attrib.items() if key in {"solref", "solimp", "torquescale"})
+        ends = " and ".join(value for key, value in element.attrib.items() if key[-1:] in {"1", "2"})
+        what = f"equality {name!r} ({element.tag} of {ends})"
+        wrapped = etree.Element("equality")
+        wrapped.append(deepcopy(element))
+        xml = etree.tostring(wrapped, encoding="unicode")
+        self.raw.kept.append(Kept("mjcf", joint or "model", (f"{soft} of {what}" if soft else "") if joint else what, xml))
+
     # ------------------------------------------------------------------ links
 
     def _link(self, body: int) -> RawLink:
@@ -153,15 +215,22 @@ class _Reader:
         for geom in range(m.body_geomadr[body], m.body_geomadr[body] + m.body_geomnum[body]):
             shape = self._shape(geom, name)
             if shape is not None:
-                collides = m.geom_contype[geom] or m.geom_conaffinity[geom]
-                (collisions if collides else visuals).append(shape)
+                kind, shapes = ("collisions", collisions) if m.geom_contype[geom] or m.geom_conaffinity[geom] else ("visuals", visuals)
+                self.raw.kept.append(self.carrier.geom(geom, f"parts.{name}.{kind}.{len(shapes)}"))
+                shapes.append(shape)
                 color = shape.color or color
         return RawLink(name, mass, tuple(visuals), tuple(collisions), color)
 
     def _shape(self, geom: int, body: str) -> Shape | None:
         mesh, form = self._mesh(geom)
         if mesh is None:
-            self._drop(f"parts.{body}", f"A geom of type {self.mujoco.mjtGeom(self.m.geom_type[geom]).name} is left out.")
+            name = self.mujoco.mj_id2name(self.m, self.mujoco.mjtObj.mjOBJ_GEOM, geom) or ""
+            kind = geom_kind(self.mujoco, int(self.m.geom_type[geom]))
+            if kind == "plane":
+                self.raw.kept.append(self.carrier.plane(geom, f"parts.{body}"))
+            else:
+                self.raw.kept.append(Kept("mjcf", f"parts.{body}", f"the {kind} geom {name!r}"))
+            self._drop(f"parts.{body}", f"A geom of type {kind} is no shape of the assembly.")
             return None
         material = self.m.geom_matid[geom]
         rgba = self.m.mat_rgba[material] if material >= 0 else self.m.geom_rgba[geom]
@@ -200,7 +269,9 @@ class _Reader:
         parent, child = self.bodies[m.body_parentid[body]], self.bodies[body]
         indices = list(range(m.body_jntadr[body], m.body_jntadr[body] + m.body_jntnum[body])) if m.body_jntnum[body] else []
         if not indices:
-            self.raw.joints.append(RawJoint(self._free_name(f"{child}_fixed"), JointType.FIXED, parent, child, start, IDENTITY))
+            self.raw.joints.append(
+                RawJoint(self._free_name(re.sub(r"[^A-Za-z0-9_]+", "_", f"{child}_fixed")), JointType.FIXED, parent, child, start, IDENTITY)
+            )
             return
         for place, index in enumerate(indices):
             last = place == len(indices) - 1
@@ -216,7 +287,7 @@ class _Reader:
             moved = not np.array_equal(qpos[at : at + 7], reference[at : at + 7])
             home = start.inverse() @ _pose(qpos[at : at + 3], qpos[at + 3 : at + 7]) if moved else IDENTITY
             self.raw.joints.append(RawJoint(name, JointType.FREE, parent, child, start, IDENTITY, rest=tuple(home.data.tolist())))
-            self._keep_spring(index)
+            self.raw.kept += self.carrier.joint(index)
             return
         anchor = SE3.from_translation(m.jnt_pos[index] * MM_PER_M)
         limited = bool(m.jnt_limited[index])
@@ -249,7 +320,7 @@ class _Reader:
 
     def _dynamics(self, index: int) -> dict[str, Any]:
         """Return what a joint states of effort, damping and friction, in N, mm and s; a ball is like a hinge."""
-        m, name = self.m, self.joints[index]
+        m = self.m
         slides = m.jnt_type[index] == self.mujoco.mjtJoint.mjJNT_SLIDE
         force, length = (1.0, MM_PER_M) if slides else (MM_PER_M, 1.0)
         at = m.jnt_dofadr[index]
@@ -257,28 +328,9 @@ class _Reader:
         if m.jnt_actfrclimited[index]:
             low, high = (float(bound) for bound in m.jnt_actfrcrange[index])
             effort = max(-low, high) * force
-            if low != -high:
-                self.raw.kept.append(
-                    Kept("mjcf", f"joints.{name}", f"actuatorfrcrange {low:.6g} {high:.6g}: the larger end holds both ways")
-                )
-        self._keep_spring(index)
+        self.raw.kept += self.carrier.joint(index)
         damping, friction = float(m.dof_damping[at]) * force / length, float(m.dof_frictionloss[at]) * force
         return {"effort": (effort,), "damping": (damping,), "friction": (friction,)}
-
-    def _keep_spring(self, index: int) -> None:
-        """Keep a joint's rotor and spring, for which an assembly has no field, as attributes that `write_mjcf` puts back."""
-        m, at = self.m, self.m.jnt_dofadr[index]
-        numbers = {"armature": float(m.dof_armature[at]), "stiffness": float(m.jnt_stiffness[index])}
-        kind, kinds = m.jnt_type[index], self.mujoco.mjtJoint
-        if kind == kinds.mjJNT_FREE:
-            numbers |= {"damping": float(m.dof_damping[at]), "frictionloss": float(m.dof_frictionloss[at])}
-        elif kind != kinds.mjJNT_BALL and numbers["stiffness"]:
-            numbers["springref"] = float(m.qpos_spring[m.jnt_qposadr[index]])
-        said = {name: repr(value) for name, value in numbers.items() if value}
-        if said:
-            words = ", ".join(f"{name} {value}" for name, value in said.items())
-            xml = etree.tostring(etree.Element("joint", said), encoding="unicode")
-            self.raw.kept.append(Kept("mjcf", f"joints.{self.joints[index]}", words, xml))
 
     def _bare_link(self, wanted: str) -> str:
         while wanted in self.raw.links:
@@ -299,28 +351,33 @@ class _Reader:
         name = self._free_name(self.mujoco.mj_id2name(m, self.mujoco.mjtObj.mjOBJ_EQUALITY, row) or f"equality_{row}")
         kind = kinds(int(m.eq_type[row]))
         if not m.eq_active0[row]:
-            self._drop(f"equality.{name}", f"Equality {name!r} is switched off (active=false); it is left out.")
+            held, reason = "", f"Equality {name!r} is switched off (active=false); it is left out."
         elif kind == kinds.mjEQ_JOINT:
-            self._add_tie(row, name)
+            held, reason = self._add_tie(row, name)
         elif kind in {kinds.mjEQ_CONNECT, kinds.mjEQ_WELD}:
-            self._add_closing(row, name)
+            held, reason = self._add_closing(row, name)
         else:
-            self._drop(f"equality.{name}", f"An equality of type {kind.name} is left out.")
+            held, reason = "", f"An equality of type {kind.name} is left out."
+        if not held:
+            self._drop(f"equality.{name}", reason)
+        self._keep_equality(row, name, joint=held)
 
-    def _add_tie(self, row: int, name: str) -> None:
+    def _add_tie(self, row: int, name: str) -> tuple[str, str]:
+        """Add a line between two joints; return what holds it, or why it is left out."""
         m = self.m
         first, second = m.eq_obj1id[row], m.eq_obj2id[row]
         c0, c1, *higher = (float(c) for c in m.eq_data[row][:5])
         if second < 0 or any(higher):
-            self._drop(f"equality.{name}", f"Equality {name!r} is not a straight line between two joints; it is left out.")
-            return
+            return "", f"Equality {name!r} is not a straight line between two joints; it is left out."
         zero1, zero2 = (float(m.qpos0[m.jnt_qposadr[joint]]) for joint in (first, second))
         unit1, unit2 = (MM_PER_M if m.jnt_type[joint] == self.mujoco.mjtJoint.mjJNT_SLIDE else 1.0 for joint in (first, second))
         offset = (zero1 + c0 - c1 * zero2) * unit1
-        self.raw.ties.append(RawTie(self.joints[first], self.joints[second], c1 * unit1 / unit2, offset))
+        tie = RawTie(self.joints[first], self.joints[second], c1 * unit1 / unit2, offset)
+        self.raw.ties.append(tie)
+        return f"couplings.{tie.name}", ""
 
-    def _add_closing(self, row: int, name: str) -> None:
-        """Add a point or a body that two bodies share.
+    def _add_closing(self, row: int, name: str) -> tuple[str, str]:
+        """Add a point or a body that two bodies share; return what holds it, or why it is left out.
 
         A connect shares the point `anchors`. A weld of sites makes their frames agree. A weld of bodies holds, with the compiled data
         anchor a (in body 2), place p and quaternion Q (in body 1): T₁⁻¹ T₂ = trans(p) · Q · trans(−a); the compiler fills p and Q in
@@ -331,11 +388,9 @@ class _Reader:
         ids = [int(m.eq_obj1id[row]), int(m.eq_obj2id[row])]
         bodies = [int(m.site_bodyid[index]) for index in ids] if sites else ids
         if bodies[0] == bodies[1]:
-            self._drop(f"equality.{name}", f"Equality {name!r} ties a body to itself; it is left out.")
-            return
+            return "", f"Equality {name!r} ties a body to itself; it is left out."
         if any(m.body_mocapid[body] >= 0 for body in bodies):
-            self._drop(f"equality.{name}", f"Equality {name!r} ties a mocap body, which a simulation's user moves by hand; it is left out.")
-            return
+            return "", f"Equality {name!r} ties a mocap body, which a simulation's user moves by hand; it is left out."
         first, second = (self.bodies[body] for body in bodies)
         weld, data = m.eq_type[row] == self.mujoco.mjtEq.mjEQ_WELD, m.eq_data[row]
         if sites:
@@ -346,11 +401,17 @@ class _Reader:
             near, far = (SE3.from_translation(data[at : at + 3] * MM_PER_M) for at in (0, 3))
         if weld and data[10] > 0:
             self.raw.joints.append(RawJoint(name, JointType.FIXED, first, second, near, far, closing=True))
-            return
+            return f"joints.{name}", ""
         # a point: its frames are turned so that the ball rests at zero where the file's own pose has the bodies
         turns = [_rotation_pose(self.data.xpos[body], self.data.xmat[body]).inverse().quaternion for body in bodies]
         near, far = (SE3.from_quaternion(turn, frame.translation) for turn, frame in zip(turns, (near, far), strict=True))
         self.raw.joints.append(RawJoint(name, JointType.BALL, first, second, near, far, cone=math.pi, closing=True))
+        return f"joints.{name}", ""
+
+
+def _number_of(compiled: Any, count: str) -> int:
+    """Return a number of a compiled model; before MuJoCo 4 every actuator had one control."""
+    return int(getattr(compiled, count, 0) or (compiled.nu if count == "nactuator" else 0))
 
 
 def _ellipsoid(a: float, b: float, c: float) -> TriMesh:

@@ -1,38 +1,71 @@
 """What an MJCF file says beyond bodies, joints, shapes and equalities: every element and attribute that is not read, by name.
 
 MuJoCo's compiler resolves defaults, classes, frames, includes and copies; the reader takes what is left of these from the compiled model.
-`READ` lists the attributes whose meaning arrives in the assembly that way. Everything else, known to MuJoCo or not, becomes a `Kept`
-without XML: its names refer to geoms, sites and tendons that an assembly does not have, so no writer can put it back.
+`READ` lists the attributes whose meaning arrives in the assembly that way, or is kept with it (`mjcf_carried`). The sections of `WHOLE`
+speak of named things only, so their elements are kept word for word, with the defaults of their kinds, and `write_mjcf` puts them back
+where all that they name is there. Everything else, known to MuJoCo or not, becomes a `Kept` without XML.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from copy import deepcopy
 from pathlib import Path
 from typing import Any, Final
 
+from lxml import etree
+
 from articad.assembly import Kept
+from articad.importers.mjcf_carried import CARRIED
 from articad.importers.reading import read_xml
 
-__all__ = ["READ", "kept_attributes"]
+__all__ = ["READ", "WHOLE", "kept_attributes", "section_elements", "with_includes"]
 
 ALL: Final = frozenset({"*"})
 _PLACE = frozenset({"pos", "quat", "axisangle", "xyaxes", "zaxis", "euler"})
-_BODY = _PLACE | {"name", "childclass"}
-_JOINT = frozenset(
-    {"name", "class", "type", "pos", "axis", "limited", "range", "ref", "damping", "frictionloss", "actuatorfrclimited", "actuatorfrcrange"}
-) | {"armature", "stiffness", "springref"}  # these three are kept joint by joint
-_GEOM = _PLACE | {"name", "class", "type", "size", "fromto", "mesh", "fitscale", "mass", "density", "shellinertia", "rgba", "material"}
-_TIE = frozenset({"name", "class", "active"})
+_BODY = _PLACE | {"name", "childclass"} | CARRIED["body"]
+_JOINT = (
+    frozenset(
+        {
+            "name",
+            "class",
+            "type",
+            "pos",
+            "axis",
+            "limited",
+            "range",
+            "ref",
+            "damping",
+            "frictionloss",
+            "actuatorfrclimited",
+            "actuatorfrcrange",
+        }
+    )
+    | CARRIED["joint"]
+)
+_GEOM = (
+    _PLACE
+    | {"name", "class", "type", "size", "fromto", "mesh", "fitscale", "mass", "density", "shellinertia", "material"}
+    | CARRIED["geom"]
+)
+
+WHOLE: Final = ("option", "size", "visual", "statistic", "custom", "contact", "equality", "tendon", "actuator", "sensor", "keyframe")
+"""Sections whose elements are kept word for word."""
+
+SETTINGS: Final = frozenset({"option", "size", "visual", "statistic"})
+"""Of these, those that speak of the whole model and have no elements with names."""
+
+_OWN_DEFAULTS = frozenset(
+    {"general", "motor", "position", "velocity", "intvelocity", "damper", "cylinder", "muscle", "adhesion", "dcmotor", "plugin"}
+) | {"tendon", "pair", "equality"}  # kinds of elements in the sections of `WHOLE` that have defaults
 
 READ: Final[Mapping[str, frozenset[str]]] = {
     "mujoco": frozenset({"model"}),
     "compiler": ALL,
+    "compiler/lengthrange": ALL,
     "default": frozenset({"class"}),
     "worldbody": ALL,
     "asset": ALL,
-    "equality": ALL,
-    "keyframe": ALL,
     "include": ALL,
     "body": _BODY,
     "frame": ALL,
@@ -40,39 +73,142 @@ READ: Final[Mapping[str, frozenset[str]]] = {
     "attach": ALL,
     "inertial": ALL,
     "joint": _JOINT,
-    "freejoint": frozenset({"name"}),
+    "freejoint": frozenset({"name"}) | CARRIED["freejoint"],
     "geom": _GEOM,
+    "site": CARRIED["site"] | {"material"},
+    "camera": CARRIED["camera"],
+    "light": CARRIED["light"],
     "asset/mesh": ALL,
     "asset/model": ALL,
     "asset/material": frozenset({"name", "class", "rgba"}),
     "default/mesh": ALL,
     "default/material": frozenset({"rgba"}),
-    "default/equality": frozenset({"active"}),
-    "equality/connect": _TIE | {"anchor", "body1", "body2", "site1", "site2"},
-    "equality/weld": _TIE | {"anchor", "relpose", "body1", "body2", "site1", "site2"},
-    "equality/joint": _TIE | {"joint1", "joint2", "polycoef"},
-    "keyframe/key": frozenset({"name", "qpos"}),
-}
-"""Attributes that are read, by tag, or by section and tag; `*` for all of them."""
+} | {f"default/{tag}": ALL for tag in sorted(_OWN_DEFAULTS)}
+"""Attributes that are read or carried, by tag, or by section and tag; `*` for all of them."""
 
-_SECTIONS = frozenset({"default", "asset", "equality", "keyframe"})
-_COLLIDES = frozenset({"contype", "conaffinity"})  # 0 and 1 say whether it collides, which is read
+_SECTIONS = frozenset({"default", "asset"})
 _NAMES = 6  # that a row lists
 _PREFIX = "articad."  # of our own records
-_WRITTEN = {"gravity": ("0", "0", "-9.81"), "timestep": ("0.002",), "integrator": ("implicitfast",)}
+_USUAL = {"gravity": ("0", "0", "-9.81")}  # what every reader takes anyway
 
 
-def kept_attributes(document: Any, path: Path) -> list[Kept]:
-    """Return what an MJCF document and its includes say that is not read, one row for each kind of element or attribute.
+def with_includes(document: Any, path: Path) -> Any:
+    """Return the document with what it includes in its place.
+
+    MuJoCo looks for an included file beside the model, then beside the file that includes it, and takes each file once.
 
     Args:
-        document: The root element.
-        path: Of the file; includes are found beside it.
+        document: The root element; it is left as it is.
+        path: Of the model's file.
+    """
+    whole = deepcopy(document)
+    _include(whole, path.parent, path.parent, {path.resolve()})
+    return whole
+
+
+def _include(element: Any, top: Path, here: Path, seen: set[Path]) -> None:
+    for include in list(element.iter("include")):
+        places = [(folder / include.get("file", "")).resolve() for folder in (top, here)]
+        target = next((place for place in places if place.is_file()), None)
+        if target is None or target in seen:
+            continue
+        seen.add(target)
+        brought = read_xml(target)
+        _include(brought, top, target.parent, seen)
+        above = include.getparent()
+        at = above.index(include)
+        above[at : at + 1] = list(brought)
+
+
+def kept_attributes(document: Any) -> list[Kept]:
+    """Return what an MJCF document says that is not read: the elements of `WHOLE`, and a row for each other kind of element or attribute.
+
+    Args:
+        document: The root element, with includes in place.
     """
     rows: dict[str, list[str]] = {}
-    for what, name in _unread(document, "", path, {path.resolve()}):
+    for what, name in _unread(document, ""):
         rows.setdefault(what, []).append(name)
-    return [Kept("mjcf", "model", _listed(what, names)) for what, names in rows.items()]
+    return [
+        *_compiler(document),
+        *_defaults(document),
+        *(kept for section in WHOLE for kept in _section(document, section)),
+        *(Kept("mjcf", "model", _listed(what, names)) for what, names in rows.items()),
+    ]
+
+
+def section_elements(document: Any, section: str) -> list[Any]:
+    """Return the elements of all sections of this name, in the order in which MuJoCo numbers what they make."""
+    return [element for part in document.iterfind(section) for element in part if isinstance(element.tag, str) and not _own_record(element)]
+
+
+def _section(document: Any, section: str) -> Iterator[Kept]:
+    if section in SETTINGS:
+        for part in document.iterfind(section):
+            said = [f"{name} {value}" for name, value in part.attrib.items() if tuple(value.split()) != _USUAL.get(name)]
+            said += [f"{below.tag}: {', '.join(f'{name} {value}' for name, value in below.attrib.items())}" for below in part]
+            yield Kept("mjcf", "model", f"<{section}> {', '.join(said)}" if said else "", _text(part))
+        return
+    counts: dict[str, int] = {}
+    for element in section_elements(document, section):
+        what = element.tag if section in {"contact", "custom", "keyframe"} else section
+        counts[what] = counts.get(what, -1) + 1
+        wrapped = etree.Element(section)
+        wrapped.append(deepcopy(element))
+        yield Kept("mjcf", "model", _called(element, what, counts[what]), _text(wrapped))
+
+
+def _called(element: Any, what: str, number: int) -> str:
+    """Return the words for an element: what it is, its name or number, its tag and what it refers to."""
+    about = ", ".join(f"{name} {value!r}" for name, value in element.attrib.items() if name in _REFERRING)
+    said = " ".join([*([] if element.tag == what else [element.tag]), *([f"of {about}"] if about else [])])
+    return f"{what} {element.get('name') or f'{what}_{number}'!r}{f' ({said})' if said else ''}"
+
+
+_REFERRING = frozenset(
+    {
+        "joint",
+        "jointinparent",
+        "joint1",
+        "joint2",
+        "body",
+        "body1",
+        "body2",
+        "site",
+        "site1",
+        "site2",
+        "geom1",
+        "geom2",
+        "tendon",
+        "objname",
+    }
+) | {"cranksite", "actuator", "tendon1", "tendon2"}
+
+
+def _compiler(document: Any) -> Iterator[Kept]:
+    """Yield the compiler's settings that what is kept word for word depends on."""
+    kept = etree.Element("compiler")
+    for compiler in document.iterfind("compiler"):
+        if "autolimits" in compiler.attrib:
+            kept.set("autolimits", compiler.get("autolimits"))
+        kept.extend(deepcopy(list(compiler.iterfind("lengthrange"))))
+    if len(kept) or kept.get("autolimits") == "false":
+        yield Kept("mjcf", "model", "", _text(kept))
+
+
+def _defaults(document: Any) -> Iterator[Kept]:
+    """Yield the defaults of the elements that are kept word for word; they say nothing without those."""
+    for default in document.iterfind("default"):
+        kept = deepcopy(default)
+        for element in list(kept.iter()):
+            if isinstance(element.tag, str) and element.tag not in _OWN_DEFAULTS | {"default"}:
+                element.getparent().remove(element)
+        if any(element.tag != "default" or element.get("class") for element in kept.iter()):
+            yield Kept("mjcf", "model", "", _text(kept))
+
+
+def _text(element: Any) -> str:
+    return str(etree.tostring(element, encoding="unicode", with_tail=False))
 
 
 def _listed(what: str, names: list[str]) -> str:
@@ -82,7 +218,7 @@ def _listed(what: str, names: list[str]) -> str:
     return f"{what}{count}{f': {listed}' if listed else ''}"
 
 
-def _unread(element: Any, section: str, path: Path, seen: set[Path]) -> Iterator[tuple[str, str]]:
+def _unread(element: Any, section: str) -> Iterator[tuple[str, str]]:
     """Yield what is not read of an element and below, and the name of what has it."""
     tag, name = element.tag, _name(element)
     key = _key(element, section)
@@ -90,46 +226,34 @@ def _unread(element: Any, section: str, path: Path, seen: set[Path]) -> Iterator
         yield from _whole(element)
         return
     read = READ[key]
-    for attribute, value in element.attrib.items():
-        if "*" not in read and attribute not in read and not (attribute in _COLLIDES and tag == "geom" and value in {"0", "1"}):
+    for attribute in element.attrib:
+        if "*" not in read and attribute not in read:
             yield f"{attribute} of <{tag}>", name
-    if tag in {"geom", "material"} and len(words := element.get("rgba", "").split()) == 4 and words[3] not in {"1", "1.0"}:
-        yield f"transparency of <{tag}>", name
+    if tag == "material" and len(words := element.get("rgba", "").split()) == 4 and words[3] not in {"1", "1.0"}:
+        yield "transparency of <material>", name
     inside = tag if tag in _SECTIONS and not section else section
-    for below in (*_included(element, path, seen), *element):
-        yield from _unread(below, inside, path, seen)
+    for below in element:
+        if isinstance(below.tag, str) and not (tag == "mujoco" and below.tag in WHOLE):
+            yield from _unread(below, inside)
 
 
 def _key(element: Any, section: str) -> str | None:
     """Return the key of `READ` that speaks of an element; None where it is not read at all."""
     tag = element.tag
     if f"{section}/{tag}" in READ:
-        return f"{section}/{tag}" if tag != "key" or element.get("name") == "home" else None
+        return f"{section}/{tag}"
+    if tag == "lengthrange":
+        return "compiler/lengthrange"
     # in a section, what stands in bodies has another meaning; in defaults it has the same
     return tag if tag in READ and (section in {"", "default"} or tag == "include") else None
 
 
 def _whole(element: Any) -> Iterator[tuple[str, str]]:
-    """Yield an element that is not read: a section by what it holds, settings one by one, others by name."""
-    tag = element.tag
-    if tag == "option":
-        yield from ((f"{attribute} {value} of <option>", "") for attribute, value in element.attrib.items() if not _ours(attribute, value))
-        yield from ((f"<{below.tag}> of <option>", "") for below in element)
-    elif len(element) and not element.attrib:
-        yield from ((f"<{below.tag}> of <{tag}>", below.get("name") or "") for below in element if not _own_record(below))
+    """Yield an element that is not read: a section by what it holds, others by name."""
+    if len(element) and not element.attrib:
+        yield from ((f"<{below.tag}> of <{element.tag}>", below.get("name") or "") for below in element if not _own_record(below))
     elif not _own_record(element):
-        yield f"<{tag}>", _name(element)
-
-
-def _included(element: Any, path: Path, seen: set[Path]) -> list[Any]:
-    """Return what an include brings; each file once."""
-    if element.tag != "include":
-        return []
-    target = (path.parent / element.get("file", "")).resolve()
-    if target in seen or not target.is_file():
-        return []
-    seen.add(target)
-    return list(read_xml(target))
+        yield f"<{element.tag}>", _name(element)
 
 
 def _name(element: Any) -> str:
@@ -138,8 +262,3 @@ def _name(element: Any) -> str:
 
 def _own_record(element: Any) -> bool:
     return element.tag == "text" and str(element.get("name", "")).startswith(_PREFIX)
-
-
-def _ours(attribute: str, value: str) -> bool:
-    """True for a setting that `write_mjcf` writes as well."""
-    return tuple(value.split()) == _WRITTEN.get(attribute)

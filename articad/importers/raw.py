@@ -29,6 +29,9 @@ FloatArray = NDArray[np.float64]
 
 IDENTITY = SE3.identity()
 ENDLESS = (-math.inf, math.inf)
+_CHANGED = frozenset(
+    {"W_IMPORT_DROPPED", "W_IMPORT_MESH", "W_IMPORT_LIMITS"}
+)  # findings that say what the file has and the assembly has not
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,6 +103,11 @@ class RawTie:
     ratio: float
     offset: float
 
+    @property
+    def name(self) -> str:
+        """Name of the coupling that it becomes."""
+        return f"{self.follower}_follows_{self.leader}"
+
 
 @dataclass
 class RawModel:
@@ -162,9 +170,7 @@ def assemble(model: RawModel, path: Path) -> Assembly:
     ties = _consistent_ties(model)
     rests = _rest_values(model.joints, ties)
     joints = [_joint(joint, rests[joint.name], model.findings) for joint in model.joints]
-    couplings = [
-        Coupling(f"{tie.follower}_follows_{tie.leader}", "linear", tie.leader, tie.follower, tie.ratio, tie.offset) for tie in ties
-    ]
+    couplings = [Coupling(tie.name, "linear", tie.leader, tie.follower, tie.ratio, tie.offset) for tie in ties]
     parts = {
         name: Part(name, connectors[name], link.visuals, link.collisions, None, link.mass, link.color) for name, link in model.links.items()
     }
@@ -173,7 +179,13 @@ def assemble(model: RawModel, path: Path) -> Assembly:
         mechanism.rest  # noqa: B018 - loops must close before anything is promised
     except (ArticadError, np.linalg.LinAlgError) as error:
         raise unreadable(path, "", f"It makes no mechanism: {error}") from error
-    return Assembly(model.name, mechanism, parts, findings=Findings(model.findings), foreign=True, kept=tuple(model.kept))
+    kept_at = {item.where for item in model.kept if item.format == "mjcf"}  # what MJCF says there is kept, and reported where it is lost
+    changed = [
+        Kept("file", finding.where, finding.message)
+        for finding in model.findings
+        if finding.code in _CHANGED and not finding.where.startswith("equality.") and finding.where not in kept_at
+    ]
+    return Assembly(model.name, mechanism, parts, findings=Findings(model.findings), foreign=True, kept=(*model.kept, *changed))
 
 
 def _consistent_ties(model: RawModel) -> list[RawTie]:

@@ -59,8 +59,8 @@ def parse_xml(content: bytes, path: Path) -> Any:
     """Return the root element of XML text; nothing that it names is loaded, and no entity is expanded."""
     # huge_tree lifts the depth limit of 256, which a chain of bodies exceeds; without entities there is nothing else to blow up
     parser = etree.XMLParser(resolve_entities=False, no_network=True, load_dtd=False, huge_tree=True, remove_comments=True, remove_pis=True)
-    # slips that are widespread, and that other readers forgive: version 0.0, a zero byte at the end
-    content = re.sub(rb"^\s*<\?xml[^>]*?version\s*=\s*[\"']0\.\d[\"'][^>]*\?>", b"", content.rstrip(b"\0\r\n\t "))
+    # slips that are widespread, and that other readers forgive: version 0.0, blank lines before it, a zero byte at the end
+    content = re.sub(rb"^\s*<\?xml[^>]*?version\s*=\s*[\"']0\.\d[\"'][^>]*\?>", b"", content.strip(b"\0\r\n\t "))
     _require_bounded(content, path)
     try:
         root = etree.fromstring(content, parser)
