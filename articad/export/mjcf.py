@@ -263,7 +263,11 @@ class _Writer:
         return found
 
     def _joints(self, body: Any, joint: LoweredJoint) -> None:
-        kept = self.again.attributes(f"joints.{joint.joint.name}", "joint") if len(joint.freedoms) == 1 or joint.joint.type.quaternion is not None else {}
+        kept = (
+            self.again.attributes(f"joints.{joint.joint.name}", "joint")
+            if len(joint.freedoms) == 1 or joint.joint.type.quaternion is not None
+            else {}
+        )
         if joint.is_free:
             plain = kept.keys() <= {"group"}  # <freejoint> has no attributes for dynamics
             child(body, "freejoint" if plain else "joint", {"name": joint.name} | ({} if plain else {"type": "free"}) | kept)
