@@ -43,6 +43,7 @@ class Difference:
         was: In the original.
         now: In the conversion.
         free: True where the difference comes with a free joint.
+        members: Other elements that the fact is about.
     """
 
     kind: str
@@ -52,6 +53,7 @@ class Difference:
     was: str
     now: str
     free: bool = False
+    members: tuple[str, ...] = ()
 
     def __str__(self) -> str:
         return f"{self.kind} {self.element!r} {self.field}: {self.was} -> {self.now}"
@@ -66,12 +68,14 @@ class Element:
         path: Where it stands, for those without a name.
         holder: Name of the body or joint it belongs to.
         facts: By field.
+        members: Of a link that moves: the links that are fixed to it, whose masses are its own here.
     """
 
     name: str
     path: str
     holder: str
     facts: dict[str, Any] = field(default_factory=dict)
+    members: tuple[str, ...] = ()
 
 
 Facts = dict[str, list[Element]]
@@ -477,6 +481,7 @@ def _links_of_mujoco(compiled: Compiled, names: list[str]) -> list[Element]:
             "",
             name,
             {"frame": at_zero[body], "frame in motion": moved[body]} | (_combined(groups[body]) if body and roots[body] == body else {}),
+            tuple(other for other, root in zip(names, roots, strict=True) if root == body),
         )
         for body, name in enumerate(names)
     ]
@@ -685,11 +690,13 @@ def _links_of_pinocchio(model: Any) -> list[Element]:
     for index, frame in enumerate(model.frames):
         if frame.type == pin.FrameType.BODY:
             found: dict[str, Any] = {"frame": poses[1][index], "frame in motion": poses[0][index]}
+            members: tuple[str, ...] = ()
             if frame.parentJoint not in seen:  # the first link of a joint, with all that is fixed to it
                 Y, T = model.inertias[frame.parentJoint], data.oMi[frame.parentJoint]
                 found |= _combined([(float(Y.mass), T.act(Y.lever), T.rotation @ Y.inertia @ T.rotation.T)])
+                members = tuple(one.name for one in model.frames if one.parentJoint == frame.parentJoint and one.type == pin.FrameType.BODY)
             seen.add(frame.parentJoint)
-            elements.append(Element(frame.name, "", frame.name, found))
+            elements.append(Element(frame.name, "", frame.name, found, members))
     return elements
 
 
@@ -820,17 +827,17 @@ def differences(one: Facts, other: Facts, renames: Mapping[str, str] = MappingPr
             label = element.name or f"{element.holder} {element.path}".strip()
             if twin is None:
                 fields = element.facts.items() if kind in _ONLY_STATED else [("exists", "yes")]
-                was = [(name, _text(value)) for name, value in fields]
-                found += [Difference(kind, label, element.holder, name, value, "no", _of_free(element, free)) for name, value in was]
+                said = [(name, _text(value)) for name, value in fields]
+                found += [Difference(kind, label, element.holder, name, value, "no", _of_free(element, free)) for name, value in said]
                 continue
             if element.name in renames and kind in {"link", "joint"}:
                 found.append(Difference(kind, label, element.holder, "name", element.name, renames[element.name], _of_free(element, free)))
             seen.add(id(twin))
             for name, value in element.facts.items():
                 if name in twin.facts and not _same(value, twin.facts[name], name):
-                    found.append(
-                        Difference(kind, label, element.holder, name, _text(value), _text(twin.facts[name]), _of_free(element, free))
-                    )
+                    members = element.members if name in {"mass", "com", "inertia"} else ()
+                    was, now = _text(value), _text(twin.facts[name])
+                    found.append(Difference(kind, label, element.holder, name, was, now, _of_free(element, free), members))
         found += [
             Difference(
                 kind,
@@ -885,6 +892,7 @@ def _with_the_names_of(one: Facts, other: Facts) -> Facts:
                 element.path,
                 renamed(element.holder),
                 {renamed_key(name, calls): renamed(value) for name, value in element.facts.items()},
+                element.members,
             )
             for element in elements
         ]
@@ -1004,7 +1012,7 @@ def names_it(difference: Difference, row: Row) -> bool:
     if kind == "model":
         return True
     where = row.where.partition(".")[2]
-    names = {difference.element, difference.holder, *difference.element.split("+")} - {""}
+    names = {difference.element, difference.holder, *difference.members, *difference.element.split("+")} - {""}
     names |= {match[1] for name in names if (match := _CARRIER.match(name))}
     return any(
         where == one or where.startswith((f"{one}.", f"{one}+")) or where.endswith(f"+{one}") or _token(one, row.text) for one in names
@@ -1082,6 +1090,45 @@ def examine(source: Path, target: str, folder: Path, packages: Path) -> dict[str
         "idle": [f"{row.where}: {row.text}" for row in result.idle],
         "rows": len(rows),
     }
+
+
+PAGE_HEAD = """# What conversions change
+
+Every model that these packages ship is converted to its own format and to the other. MuJoCo compiles the MJCF files, Pinocchio the URDF
+files, and a program that uses only these engines compares the original with the conversion: frames at zero and in motion, axes, limits,
+damping, armature, friction, efforts, masses, inertias, shapes, actuators, tendons, sensors, equalities, contacts, options, keys. Two MJCF
+files are compared in every field of MuJoCo's model but pictures. A difference is named when a row of the conversion's losses speaks of this
+field of this element; otherwise it is silent. Rows without a difference are about what engines do not read, such as other programs'
+elements and pictures, or about the format in general.
+
+`scripts/corpus` fetches the packages, does it again and checks this page.
+
+| package | from | to | models | refused | named differences | rows without a difference | silent differences |
+| --- | --- | --- | ---: | ---: | ---: | ---: | ---: |
+"""
+
+
+def page(results: Iterable[Mapping[str, Any]]) -> str:
+    """Return the page of the documentation that says what conversions change.
+
+    Args:
+        results: Of `examine`, each with `package`, `origin` and `target`.
+    """
+    rows: dict[tuple[str, str, str], list[Mapping[str, Any]]] = {}
+    for result in results:
+        rows.setdefault((result["package"], result["origin"], result["target"]), []).append(result)
+    lines = []
+    for (package, origin, target), found in sorted(rows.items()):
+        compared = [result for result in found if "silent" in result]
+        counts = [sum(len(result[kind]) for result in compared) for kind in ("named", "idle", "silent")]
+        numbers = [len(found), len(found) - len(compared), *counts]
+        lines.append(f"| {package} | {origin} | {target} | {' | '.join(f'{number:,}' for number in numbers)} |\n")
+    return PAGE_HEAD + "".join(lines) + PAGE_END
+
+
+PAGE_END = """
+Refused are files that an engine does not take as they are, most of them pieces that other files include.
+"""
 
 
 def main(arguments: list[str]) -> int:

@@ -180,13 +180,22 @@ TABLE: dict[str, dict[Format, Row]] = {
         for name in MECHANISM_FORMATS
     },
     "rest.assumed": {
+        "urdf": Row("metadata"),
         "mjcf": Row("the key home, at rest", "that the file states no such pose: zero is outside of its limits"),
+        "sdf": Row("metadata"),
+        "usd": Row("bodies that are posed at rest"),
     },
     "chain.carriers": {
         "urdf": Row("a chain of joints over carrier links", "that it is one joint; its carriers take a small share of the part's mass"),
+        "mjcf": Row("joints of one body"),
+        "sdf": Row("a joint, or a chain of joints"),
+        "usd": Row("a joint"),
     },
     "contact.joined": {
+        "urdf": Row("collision meshes"),
         "mjcf": Row("an excluded pair", "contacts between two parts that a joint connects: MuJoCo lets a body touch what stands still"),
+        "sdf": Row("collision meshes"),
+        "usd": Row("shapes to collide with"),
     },
     "effort.zero": {
         "urdf": Row("an effort of zero"),
@@ -413,6 +422,8 @@ for _key, _rows in TABLE.items():
                 "free.",
                 "effort.",
                 "chain.",
+                "rest.",
+                "contact.",
                 "link.frame",
                 "shape.primitive",
             )

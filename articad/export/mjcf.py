@@ -301,17 +301,17 @@ class _Writer:
     def _geoms(self, body: Any, link: Link) -> None:
         for kind, shapes in (("visuals", link.visuals), ("collisions", link.collisions)):
             for index, placed in enumerate(shapes):
-                geom = self._form(placed, link.name) | _placement(placed.T_link_shape)
+                form, place = self._form(placed, link.name), _placement(placed.T_link_shape)
                 if self.again.active:
-                    usual = {"type": "mesh"} if "mesh" in geom else {}
+                    usual = {"type": "mesh"} if "mesh" in form else {}
                     free = {"contype": "0", "conaffinity": "0"} if kind == "visuals" else {}
                     kept = self.again.attributes(f"parts.{link.part.name}.{kind}.{index}", "geom")
-                    child(body, "geom", usual | geom | (kept or free | {"rgba": rgba(placed.color)}))
+                    child(body, "geom", usual | form | place | (kept or free | {"rgba": rgba(placed.color)}))
                 elif kind == "visuals":
-                    child(body, "geom", {"class": "visual"} | geom | {"material": _material(placed.color)})
+                    child(body, "geom", {"class": "visual"} | form | {"material": _material(placed.color)} | place)
                 else:
                     friction = {} if link.friction is None else {"friction": numbers([link.friction, FRICTION_SPIN, FRICTION_ROLL])}
-                    child(body, "geom", {"class": "collision"} | geom | friction)
+                    child(body, "geom", {"class": "collision"} | form | friction | place)
 
     def _form(self, placed: Placed, name: str) -> dict[str, str]:
         """Return the attributes of a geom that say its shape: a primitive body, or a mesh."""

@@ -305,13 +305,19 @@ def _read_with_trimesh(path: Path, content: bytes) -> TriMesh:
 
     kind = path.suffix.lower().lstrip(".")
     _require_whole(path, kind, content)
-    unit = _unit_of_dae(content) if kind == "dae" else 1.0
+    unit = 1.0
+    if kind == "dae":
+        unit, content = _unit_of_dae(content), _DAE_LOOKS.sub(b"", content)
     scene = trimesh.load_scene(io.BytesIO(content), file_type=kind, process=False)
     pieces = [piece for piece in scene.dump(concatenate=False) if isinstance(piece, trimesh.Trimesh)]
     meshes = [TriMesh(np.asarray(piece.vertices, dtype=np.float64) * unit, np.asarray(piece.faces, dtype=np.int32)) for piece in pieces]
     if not meshes:
         raise _unreadable(path, "file", "it holds no triangle mesh")
     return merged(meshes).welded()
+
+
+_DAE_LOOKS = re.compile(rb"<(bind_material|library_materials|library_effects|library_images)\b[^>]*>.*?</\1>", re.DOTALL)
+"""What a DAE says of looks: a material that is missing would take its mesh with it."""
 
 
 def _unit_of_dae(content: bytes) -> float:

@@ -43,6 +43,7 @@ _LIGHT: Final = {
 } | {"bulbradius": "light_bulbradius", "intensity": "light_intensity", "range": "light_range", "softness": "light_softness"}
 _BOOLEAN: Final = frozenset({"castshadow", "active", "actuatorgravcomp"})
 _LIGHT_TYPES: Final = ("spot", "directional", "point", "image")
+_OUTPUTS: Final = ("rgb", "depth", "distance", "normal", "segmentation")
 _MODES: Final = ("fixed", "track", "trackcom", "targetbody", "targetbodycom")
 
 CARRIED: Final[Mapping[str, frozenset[str]]] = {
@@ -52,7 +53,7 @@ CARRIED: Final[Mapping[str, frozenset[str]]] = {
     "body": frozenset({*_BODY, "mocap"}),
     "site": frozenset({*_SITE, "name", "class", "type", "pos", "quat", "axisangle", "euler", "fromto", "xyaxes", "zaxis", "rgba"}),
     "camera": frozenset({*_CAMERA, "name", "class", "mode", "target", "fovy", "pos", "quat", "axisangle", "euler", "xyaxes", "zaxis"})
-    | {"sensorsize", "focal", "focalpixel", "principal", "principalpixel", "projection"},
+    | {"sensorsize", "focal", "focalpixel", "principal", "principalpixel", "projection", "output"},
     "light": frozenset({*_LIGHT, "name", "class", "mode", "target", "type", "directional", "pos"}),
 }
 """Attributes that are carried, by tag."""
@@ -157,6 +158,8 @@ class Carrier:
         else:
             found["fovy"] = _numbers([m.cam_fovy[camera]])
         orthographic = bool(m.cam_projection[camera]) if hasattr(m, "cam_projection") else bool(m.cam_orthographic[camera])
+        if hasattr(m, "cam_output") and int(m.cam_output[camera]) != int(self._usual.cam_output[0]):
+            found["output"] = " ".join(word for bit, word in enumerate(_OUTPUTS) if int(m.cam_output[camera]) >> bit & 1)
         return found | ({"projection": "orthographic"} if orthographic else {})
 
     def _light(self, light: int) -> dict[str, str]:

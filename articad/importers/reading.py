@@ -134,7 +134,7 @@ class Folder:
     root: Path
     here: Path
     findings: list[Finding] = field(default_factory=list)
-    _meshes: dict[tuple[Path, float], TriMesh | None] = field(default_factory=dict)
+    _meshes: dict[tuple[Path, float], TriMesh | ArticadError] = field(default_factory=dict)
 
     @classmethod
     def of(cls, path: Path, root: Path | None) -> Folder:
@@ -184,16 +184,24 @@ class Folder:
             uniform = scale[0] if scale[0] == scale[1] == scale[2] > 0 else 1.0
             key = (path, uniform)
             if key not in self._meshes:
-                self._meshes[key] = None
-                self._meshes[key] = read_mesh(path, scale=uniform, root=self.root)
+                self._meshes[key] = self._read(path, uniform)
             mesh = self._meshes[key]
+            if isinstance(mesh, ArticadError):
+                raise mesh
         except ArticadError as error:
             if any(finding.code == "E_UNSAFE_PATH" for finding in error.findings):
                 raise
             message = f"Mesh {name!r} is left out: {error.message}"
             self.findings.append(Finding(code="W_IMPORT_MESH", where=where, message=message, hint="Put the mesh where the file names it."))
             return None
-        if mesh is not None and uniform == 1.0 and scale != (1.0, 1.0, 1.0):
+        if uniform == 1.0 and scale != (1.0, 1.0, 1.0):
             stretched = TriMesh(mesh.vertices * scale, mesh.triangles)
             return stretched if scale[0] * scale[1] * scale[2] > 0 else stretched.flipped()
         return mesh
+
+    def _read(self, path: Path, scale: float) -> TriMesh | ArticadError:
+        """Return a mesh, or why it cannot be read: everything that wants it is told."""
+        try:
+            return read_mesh(path, scale=scale, root=self.root)
+        except ArticadError as error:
+            return error

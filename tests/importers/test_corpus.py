@@ -8,10 +8,12 @@ from __future__ import annotations
 import os
 import re
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from articad.errors import ReadError
+from tests.differences import examine, page
 from tests.foreign import TOLERANCE, assert_survives, configurations, difference, oracle_of, read
 
 ROOT = Path(os.environ.get("ARTICAD_CORPUS", "/nonexistent"))
@@ -40,7 +42,9 @@ def models() -> list[Path]:
 
 pytestmark = [pytest.mark.corpus, pytest.mark.skipif(not ROOT.is_dir(), reason="scripts/corpus fetches the packages")]
 MODELS = models() if ROOT.is_dir() else []
+PAGE = Path(__file__).parents[2] / "docs/reference/conversions.md"
 refused: dict[str, str] = {}
+results: list[dict[str, Any]] = []
 
 
 @pytest.mark.parametrize("path", MODELS, ids=lambda path: str(path.relative_to(ROOT)))
@@ -58,6 +62,27 @@ def test_a_robot_is_posed_as_its_engine_poses_it_and_comes_back(path: Path, tmp_
         assert difference(assembly, row, oracle_of(path)(assembly, path, row)) < TOLERANCE
     if len(assembly.parts) <= LARGEST_TAKEN_ROUND:
         assert_survives(assembly, tmp_path, q)
+
+
+@pytest.mark.parametrize("target", ["urdf", "mjcf"])
+@pytest.mark.parametrize("path", MODELS, ids=lambda path: str(path.relative_to(ROOT)))
+def test_no_difference_of_a_conversion_is_silent(path: Path, target: str, tmp_path: Path) -> None:
+    package = path.relative_to(ROOT).parts[0]
+    result = examine(path, target, tmp_path, ROOT / package)
+    results.append(result | {"package": package, "origin": "urdf" if path.suffix == ".urdf" else "mjcf", "target": target})
+
+    assert "copy refused" not in result, result
+    assert result.get("silent", []) == []
+    assert result.get("free", []) == []
+
+
+def test_the_page_of_conversions_says_what_was_found() -> None:
+    """With ARTICAD_CORPUS_WRITE=1 it is written."""
+    if len(results) < 2 * len(MODELS):
+        pytest.skip("only after all models")
+    if os.environ.get("ARTICAD_CORPUS_WRITE") == "1":
+        PAGE.write_text(page(results))
+    assert PAGE.read_text() == page(results)
 
 
 def test_few_are_refused() -> None:

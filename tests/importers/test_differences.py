@@ -278,3 +278,77 @@ def test_what_names_something_that_is_gone_is_a_row(tmp_path: Path) -> None:
     assert [f'name="{name}"' in text for name in ("m", "n", "f", "t", "k")] == [False, True, False, True, False]
     lost = " ".join(loss.lost for loss in bundle.losses)
     assert all(f"'{name}'" in lost for name in ("m", "f", "k"))
+
+
+# ---------------------------------------------------------------------- every attribute of MuJoCo's schema
+
+VALUES = {
+    # by attribute: a value that is not the usual one; an attribute that is not here has none, and fails
+    "actuatorfrclimited": "true", "actuatorfrcrange": "-3 5", "actuatorgravcomp": "true", "active": "false", "adhesion": "0.1", "align": "true",
+    "ambient": "0.1 0.2 0.3", "armature": "0.1", "attenuation": "1 0.2 0.1", "axis": "1 2 3", "axisangle": "1 0 0 0.3", "bulbradius": "0.03",
+    "castshadow": "false", "childclass": "other", "class": "other", "conaffinity": "2", "condim": "4", "contype": "2", "cutoff": "30",
+    "damping": "0.2", "density": "300", "diffuse": "0.1 0.2 0.3", "dir": "1 0 -1", "directional": "true", "euler": "0.1 0.2 0.3",
+    "exponent": "5", "fitscale": "1.5", "fluidcoef": "0.4 0.3 1.4 1 0.9", "fluidshape": "ellipsoid", "focal": "0.01 0.02",
+    "focalpixel": "500 600", "fovy": "50", "friction": "0.5 0.01 0.001", "frictionloss": "0.1", "fromto": "0 0 0 0 0 1", "gap": "0.01",
+    "gravcomp": "0.4", "group": "3", "intensity": "2", "ipd": "0.1", "limited": "true", "margin": "0.02", "mass": "3", "material": "paint",
+    "mode": "track", "name": "called", "output": "depth", "pos": "0.1 0.2 0.3", "principal": "0.001 0.002", "principalpixel": "10 20",
+    "priority": "2", "projection": "orthographic", "quat": "1 0.1 0.2 0.3", "range": "0.1 0.9", "ref": "0.2", "resolution": "320 240",
+    "rgba": "0.1 0.2 0.3 0.4", "sensorsize": "0.01 0.02", "size": "0.3 0.2 0.1", "sleep": "never", "softness": "0.3", "solimp": "0.8 0.9 0.002 0.5 2",
+    "solimpfriction": "0.8 0.9 0.002 0.5 2", "solimplimit": "0.8 0.9 0.002 0.5 2", "solmix": "2", "solref": "0.03 0.9",
+    "solreffriction": "0.03 0.9", "solreflimit": "0.03 0.9", "specular": "0.2 0.3 0.4", "springdamper": "0.1 1", "springref": "0.3",
+    "springyield": "0.1", "stiffness": "3", "surfacevel": "0.1 0.2 0.3", "target": "other", "type": "box", "user": "1 2", "xyaxes": "0 1 0 -1 0 0",
+    "zaxis": "1 0 1",
+}  # fmt: skip
+ELSEWHERE = {  # values that another element needs
+    ("joint", "type"): "slide", ("camera", "type"): "", ("light", "type"): "directional", ("light", "texture"): "", ("light", "range"): "7",
+    ("camera", "mode"): "trackcom", ("freejoint", "name"): "called",
+}  # fmt: skip
+BESIDE = {  # what an attribute does nothing without
+    "focal": 'sensorsize="0.01 0.02"', "focalpixel": 'sensorsize="0.01 0.02" resolution="320 240"', "principal": 'sensorsize="0.01 0.02" focal="0.01 0.01"',
+    "principalpixel": 'sensorsize="0.01 0.02" focal="0.01 0.01" resolution="320 240"', "sensorsize": 'focal="0.01 0.02"',
+    "fromto": 'type="capsule"',
+    "actuatorfrclimited": 'actuatorfrcrange="-1 1"', "limited": 'range="-1 1"', "target": 'mode="targetbody"', "fluidcoef": 'fluidshape="ellipsoid"',
+    "springref": 'stiffness="2"', "springyield": 'stiffness="2"', "surfacevel": 'condim="3"',
+}  # fmt: skip
+NO_VALUE = {("geom", "hfield"), ("geom", "mesh"), ("site", "mesh"), ("geom", "shellinertia"), ("light", "texture"), ("body", "mocap")} | {
+    ("body", "fuse"),  # of the compiler: they change what is compiled, not what it says
+    ("body", "simple"),
+}
+
+
+def schema_cases() -> list[tuple[str, str]]:
+    from tests.importers.test_doors import mujoco_schema
+
+    schema = mujoco_schema()
+    return [(tag, name) for tag in ("joint", "freejoint", "geom", "site", "camera", "light") for name in sorted(schema[f"body/{tag}"])] + [
+        ("body", name) for name in sorted(schema["body"])
+    ]
+
+
+@pytest.mark.parametrize(("tag", "name"), schema_cases(), ids=str)
+def test_every_attribute_of_mujocos_schema_survives_or_is_a_row(tag: str, name: str, tmp_path: Path) -> None:
+    if (tag, name) in NO_VALUE:
+        return
+    value = ELSEWHERE.get((tag, name)) or VALUES[name]
+    said = f'{BESIDE.get(name, "")} {name}="{value}"'
+    body, joint = (
+        (said, "<joint/>")
+        if tag == "body"
+        else ("", {"joint": f"<joint {said}/>", "freejoint": f"<freejoint {said}/>"}.get(tag, "<joint/>"))
+    )
+    if (tag, name) == ("body", "sleep"):
+        joint = "<freejoint/>"
+    size = "" if name == "size" else 'size="0.3 0.2 0.1"'
+    geom = f"<geom {size} {said}/>" if tag == "geom" else '<geom size="0.1"/>'
+    extra = "" if tag not in {"site", "camera", "light"} else f"<{tag} {said}/>"
+    (tmp_path / "a.xml").write_text(
+        f"""<mujoco><compiler angle="radian" inertiafromgeom="true"/><default><default class="other"><joint damping="0.7"/><geom group="2"/><site group="2"/>
+        <camera fovy="33"/><light cutoff="33"/></default></default><asset><material name="paint" rgba="0.1 0.2 0.3 0.5"/></asset>
+        <worldbody><body name="other"/><body {body}>{joint}{geom}{extra}</body></worldbody></mujoco>"""
+    )
+    result = examine(tmp_path / "a.xml", "mjcf", tmp_path / "out", tmp_path)
+
+    assert result.get("silent") == [], result
+    assert result["named"] == []
+    rows = [row for row in result["idle"] if name not in row and "material" not in row]
+    assert rows == []
