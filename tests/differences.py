@@ -1101,7 +1101,7 @@ files are compared in every field of MuJoCo's model but pictures. A difference i
 field of this element; otherwise it is silent. Rows without a difference are about what engines do not read, such as other programs'
 elements and pictures, or about the format in general.
 
-`scripts/corpus` fetches the packages, does it again and checks this page.
+`scripts/corpus` fetches the packages, does all of it and checks this page. The table has the runs that were finished when it was written.
 
 | package | from | to | models | refused | named differences | rows without a difference | silent differences |
 | --- | --- | --- | ---: | ---: | ---: | ---: | ---: |
@@ -1120,7 +1120,8 @@ def page(results: Iterable[Mapping[str, Any]]) -> str:
     lines = []
     for (package, origin, target), found in sorted(rows.items()):
         compared = [result for result in found if "silent" in result]
-        counts = [sum(len(result[kind]) for result in compared) for kind in ("named", "idle", "silent")]
+        counts = [sum(len(result[kind]) for result in compared) for kind in ("named", "idle")]
+        counts.append(sum(len(result["silent"]) + len(result["free"]) for result in compared))
         numbers = [len(found), len(found) - len(compared), *counts]
         lines.append(f"| {package} | {origin} | {target} | {' | '.join(f'{number:,}' for number in numbers)} |\n")
     return PAGE_HEAD + "".join(lines) + PAGE_END

@@ -123,12 +123,14 @@ class _Writer:
         self.qpos: dict[str, list[float]] = {}
         self.between: set[str] = set()
         self.exact: set[str] = set()
+        self.weighed: set[str] = set()
         self.added: list[Feature] = []
 
     def features(self) -> list[Feature]:
         """Return the features of the model that the document has: a step between two joints of a body is no part of it."""
         said = [feature for feature in self.model.features if feature.where not in self.between]
-        return [*(feature for feature in said if not (feature.key == "ball" and feature.where in self.exact)), *self.added]
+        said = [feature for feature in said if not (feature.key == "ball" and feature.where in self.exact)]
+        return [*(feature for feature in said if not (feature.key == "mass.missing" and feature.where in self.weighed)), *self.added]
 
     def document(self, contacts: Sequence[HullOverlap], *, actuators: bool) -> Any:
         root = etree.Element("mujoco", model=self.assembly.name if self.assembly.foreign else self.model.name)
@@ -252,7 +254,11 @@ class _Writer:
 
         MuJoCo's constraints are the softer, the lighter the bodies that they tie, so a ghost must not be much lighter than its part.
         """
-        found = {link.name: link.inertial or (Inertial.carrier() if link.moves else None) for link in self.model.links}
+        self.weighed = {f"parts.{link.part.name}" for link in self.model.links if self.again.active and self._is_weighed(link.name)}
+        found = {
+            link.name: link.inertial or (Inertial.carrier() if link.moves and f"parts.{link.part.name}" not in self.weighed else None)
+            for link in self.model.links
+        }
         for loop in self.model.loops:
             whole = found[loop.child]
             if not _needs_ghost(loop):
@@ -261,6 +267,12 @@ class _Writer:
             if whole is not None:
                 found[loop.child], self.ghosts[loop.name] = whole.halved(loop.T_child_joint)
         return found
+
+    def _is_weighed(self, name: str) -> bool:
+        """True for a link that something with mass is fixed to: MuJoCo asks for no mass of its own then."""
+        masses = {link.name: link.inertial for link in self.model.links}
+        fixed = [row.child for row in self.model.joints if row.parent == name and row.joint.type is JointType.FIXED]
+        return any(masses[child] is not None or self._is_weighed(child) for child in fixed)
 
     def _joints(self, body: Any, joint: LoweredJoint) -> None:
         kept = (

@@ -229,7 +229,11 @@ FOUR_BAR = """<mujoco><option timestep="0.001" integrator="implicitfast"/><defau
 <actuator><velocity name="motor" joint="drive" kv="2"/></actuator></mujoco>"""
 
 
-@pytest.mark.parametrize("text", [PENDULUM, FOUR_BAR], ids=["damped pendulum", "driven four-bar"])
+FREE_FALL = """<mujoco><option timestep="0.001" density="1.2"/><worldbody><body name="a" pos="0.1 0.2 5" euler="10 20 30"><freejoint name="f"/>
+ <geom type="box" size="0.1 0.2 0.3" pos="0.1 0 0"/></body></worldbody></mujoco>"""
+
+
+@pytest.mark.parametrize("text", [FREE_FALL, PENDULUM, FOUR_BAR], ids=["free fall", "damped pendulum", "driven four-bar"])
 def test_mujoco_moves_the_copy_as_the_original(text: str, tmp_path: Path) -> None:
     """All joints after one second, 1e-6 relative."""
     import mujoco
@@ -246,14 +250,22 @@ def test_mujoco_moves_the_copy_as_the_original(text: str, tmp_path: Path) -> Non
         data.ctrl[:] = 3.0
         while data.time < 1:
             mujoco.mj_step(model, data)
-        ends.append(
-            {mujoco.mj_id2name(model, mujoco.mjtObj.mjOBJ_JOINT, i): float(data.qpos[model.jnt_qposadr[i]]) for i in range(model.njnt)}
-        )
+        names = [mujoco.mj_id2name(model, mujoco.mjtObj.mjOBJ_JOINT, joint) for joint in range(model.njnt)]
+        starts = [*model.jnt_qposadr.tolist(), model.nq]
+        ends.append({name: np.array(data.qpos[starts[joint] : starts[joint + 1]]) for joint, name in enumerate(names)})
 
     assert ends[0].keys() == ends[1].keys()
-    assert max(abs(value) for value in ends[0].values()) > 0.1
+    assert max(np.abs(value).max() for value in ends[0].values()) > 0.1
     for name, value in ends[0].items():
         assert ends[1][name] == pytest.approx(value, rel=1e-6), name
+
+
+def test_a_body_that_has_its_mass_from_another_gets_none(tmp_path: Path) -> None:
+    (tmp_path / "a.xml").write_text("""<mujoco><worldbody><body><freejoint/><body><body name="b"><geom size="0.1"/></body></body></body>
+      </worldbody></mujoco>""")
+    result = examine(tmp_path / "a.xml", "mjcf", tmp_path / "out", tmp_path)
+
+    assert (result.get("silent"), result.get("free"), result.get("idle")) == ([], [], []), result
 
 
 def test_what_names_something_that_is_gone_is_a_row(tmp_path: Path) -> None:
