@@ -106,12 +106,12 @@ def test_keys_are_reported_by_name_only(monkeypatch: pytest.MonkeyPatch) -> None
 @pytest.mark.parametrize(
     ("answer", "what", "status", "words"),
     [
-        ('{"color": "red"}', "model's forms", "ok", "keeps to the form"),
+        ('{"color": "red"}', "model's forms", "ok", "returns the requested form"),
         ('{"color": "red"}', "model's sight", "ok", "sees"),
         ('{"color": "red"}', "model's price", "optional", "unknown"),
         ('{"color": "blue"}', "model's sight", "optional", "does not see well"),
-        ("It is red.", "model's forms", "missing", "not in the form"),
-        ('["red"]', "model's forms", "missing", "not in the form"),
+        ("It is red.", "model's forms", "missing", "not in the requested form"),
+        ('["red"]', "model's forms", "missing", "not in the requested form"),
     ],
 )
 def test_a_model_is_judged_by_one_question(answer: str, what: str, status: str, words: str) -> None:

@@ -130,7 +130,7 @@ def test_two_writers_are_refused_and_readers_are_not(tmp_path: Path) -> None:
     with Run.create(request(), out=tmp_path / "r"):
         script = f"from articad.runs.run import Run; Run.view({str(tmp_path / 'r')!r}); Run.open({str(tmp_path / 'r')!r})"
         second = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=False)
-        assert "RunError: Another process works in" in second.stderr
+        assert "RunError: Another process uses" in second.stderr
         with pytest.raises(RunError, match="Another process"):
             Run.open(tmp_path / "r")
     Run.open(tmp_path / "r").close()
@@ -162,7 +162,7 @@ def test_the_same_request_opens_its_run_again_and_another_does_not(tmp_path: Pat
     open_or_create(request(repairs=3), tmp_path / "r").close()
     with open_or_create(request(repairs=3), tmp_path / "r") as run:
         assert run.prompt == "a lamp"
-    with pytest.raises(RunError, match="another request"):
+    with pytest.raises(RunError, match="different request"):
         open_or_create(request(repairs=2), tmp_path / "r")
     Run.open(tmp_path / "r").close()  # the refusal left no lock
 
@@ -293,7 +293,7 @@ def test_a_strangers_run_cannot_have_other_pictures_sent_to_a_model(tmp_path: Pa
     folder = stored_request(tmp_path / "run", images=[{"file": name, "sha256": ""}])
     (folder / "secret.png").write_bytes(b"\x89PNG\r\n\x1a\n secret")
 
-    with pytest.raises(RunError, match="none of the run"):
+    with pytest.raises(RunError, match="not in the run"):
         Run.view(folder)
 
 

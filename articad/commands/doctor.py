@@ -170,22 +170,24 @@ def ask_once(llm: LLM) -> tuple[Item, ...]:
     messages = (system("Answer with one JSON object."), user("Which colour is this square? One English word.", Image(_red_square())))
     reply = llm.complete(Request(role="doctor", step="doctor", messages=messages, response_schema=schema))
     answers = Item(
-        f"model {reply.model}", "ok", f"answers; {reply.usage.total} tokens{f', {reply.fingerprint}' if reply.fingerprint else ''}"
+        f"model {reply.model}", "ok", f"replies; {reply.usage.total} tokens{f', {reply.fingerprint}' if reply.fingerprint else ''}"
     )
     known = (
-        "price unknown: limit calls or tokens, --max-cost cannot be held" if reply.cost is None else f"${reply.cost:.6f} for this question"
+        "price unknown: limit calls or tokens, because --max-cost cannot be enforced"
+        if reply.cost is None
+        else f"${reply.cost:.6f} for this question"
     )
     price = Item("model's price", "optional" if reply.cost is None else "ok", known)
     try:
         color = str(json.loads(reply.text)["color"])
     except (ValueError, KeyError, TypeError, RecursionError):
-        return (answers, Item("model's forms", "missing", f"not in the form asked for: {reply.text[:80]!r}", "Try another model."), price)
+        return (answers, Item("model's forms", "missing", f"not in the requested form: {reply.text[:80]!r}", "Try another model."), price)
     by_provider = getattr(llm, "takes_schemas", None)
-    held = "" if by_provider is None else ", held to the schema by its provider" if by_provider() else ", asked for in words"
-    forms = Item("model's forms", "ok", f"keeps to the form{held}")
+    held = "" if by_provider is None else ", enforced by its provider" if by_provider() else ", requested in the prompt"
+    forms = Item("model's forms", "ok", f"returns the requested form{held}")
     if "red" in color.lower():
         return (answers, forms, Item("model's sight", "ok", "sees"), price)
-    blind = f"does not see well: it took a red square for {color!r}"
+    blind = f"does not see well: it called a red square {color!r}"
     return (answers, forms, Item("model's sight", "optional", blind, "Use --vision-model, or --no-look --no-inspection."), price)
 
 
@@ -228,9 +230,9 @@ def _kernel() -> Item:
     name = "build123d starts"
     ended = launcher.run([], module="articad.kernels.trial_start", limits=launcher.Limits(seconds=_KERNEL_SECONDS))
     if ended.late:
-        return Item(name, "missing", f"no answer in {_KERNEL_SECONDS} s", "Look at the machine's load and disk.")
+        return Item(name, "missing", f"no answer in {_KERNEL_SECONDS} s", "Check the machine's load and disk.")
     if ended.code == 0:
-        return Item(name, "ok", "a box has its volume; Pinocchio imports beside it")
+        return Item(name, "ok", "a box has the correct volume; Pinocchio imports beside it")
     return Item(name, "missing", ended.last_line, "Run ./scripts/setup, or pip install --force-reinstall build123d pin")
 
 
@@ -257,7 +259,7 @@ def _sandbox() -> Item:
 def _renderer() -> Item:
     if not _installed("embreex"):
         return Item("renderer", "missing", "embreex, which casts the rays, is not installed", "pip install embreex")
-    nicer = "VTK is installed too" if _installed("pyvista") else "pip install 'articad[render]' for VTK's"
+    nicer = "VTK is installed too" if _installed("pyvista") else "pip install 'articad[render]' for the VTK renderer"
     return Item("renderer", "ok", f"articad's own, on embreex {metadata.version('embreex')}; {nicer}")
 
 
@@ -270,14 +272,16 @@ def _cache() -> Item:
     existing = next(path for path in (folder, *folder.absolute().parents) if path.exists())
     if os.access(existing, os.W_OK):
         return Item("cache", "ok", str(folder))
-    return Item("cache", "missing", f"{folder} cannot be written", "Set ARTICAD_CACHE to a folder of your own.")
+    return Item("cache", "missing", f"{folder} cannot be written", "Set ARTICAD_CACHE to a folder that you can write to.")
 
 
 def _keys() -> Item:
     present = [name for name in _KEYS if os.environ.get(name)]
     if present:
         return Item("model keys", "ok", ", ".join(f"{name} is set" for name in present))
-    return Item("model keys", "optional", "none set; only generate and edit need one", "Set your provider's variable, say GEMINI_API_KEY.")
+    return Item(
+        "model keys", "optional", "none set; only generate and edit need one", "Set your provider's variable, such as GEMINI_API_KEY."
+    )
 
 
 def _red_square() -> bytes:

@@ -622,7 +622,7 @@ def require_place(request: RunRequest, out: str | Path | None) -> None:
         return
     path = Path(out)
     if path.exists() and not path.is_dir():
-        raise RunError.told(path, f"{path} is a file, and a run is a directory.", "Name a new directory with --out.")
+        raise RunError.told(path, f"{path} is a file; a run is a directory.", "Name a new directory with --out.")
     if not (path / REQUEST_FILE).exists():
         if path.is_dir() and (strangers := _strangers(path)):
             raise _not_empty(path, strangers)
@@ -631,8 +631,8 @@ def require_place(request: RunRequest, out: str | Path | None) -> None:
     there = _read_request(path)
     if not there.same_as(request):
         task, own = there.options.get("task", "generate"), _words(there)
-        repeat = f"repeat the run's own: {own}" if own else f"go on with it by `articad resume {path}`"
-        message = f"{path} is a run of another request: of `articad {task}`{_difference(there, request)}."
+        repeat = f"repeat the command of the run: {own}" if own else f"resume it with `articad resume {path}`"
+        message = f"{path} is a run of a different request, `articad {task}`{_difference(there, request)}."
         raise RunError.told(path, message, f"Name another directory with --out, or {repeat}.")
 
 
@@ -668,7 +668,7 @@ def _difference(there: RunRequest, wanted: RunRequest) -> str:
     if there.prompt != wanted.prompt:
         return f" for {there.prompt[:_SLUG_LENGTH]!r}"
     keys = [key for key in dict.fromkeys((*there.options, *wanted.options)) if there.options.get(key) != wanted.options.get(key)]
-    return f" with other {', '.join(keys)}" if keys else " with other pictures"
+    return f" with different {', '.join(keys)}" if keys else " with other pictures"
 
 
 def _words(request: RunRequest) -> str:
@@ -722,7 +722,7 @@ def _require_plain(path: Path) -> None:
                 if stat.S_ISDIR(mode):
                     waiting.append(entry)
                 elif not stat.S_ISREG(mode):
-                    message = f"{entry} is neither a file nor a folder, and no run holds anything else."
+                    message = f"{entry} is neither a file nor a folder; a run holds nothing else."
                     raise RunError.told(path, message, "Do not use this run, or remove what is in it.")
 
 
@@ -744,7 +744,7 @@ def _read_request(path: Path) -> RunRequest:
     for name, _ in named:  # a run may be a stranger's, and its pictures are sent to a model
         if not _IMAGE_FILE.fullmatch(name):
             raise RunError.told(
-                path, f"{path / REQUEST_FILE} names the picture {name[:100]!r}, which is none of the run.", "Do not use this run."
+                path, f"{path / REQUEST_FILE} names the picture {name[:100]!r}, which is not in the run.", "Do not use this run."
             )
     images = tuple(UserImage.read(path / name, None if part is None else str(part), path) for name, part in named)
     return RunRequest(prompt=prompt, images=images, options=options)
@@ -758,7 +758,7 @@ def _locked(path: Path) -> int:
             fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError as error:
             os.close(handle)
-            raise RunError.told(path, f"Another process works in {path}.", "Wait for it to end, or name another directory.") from error
+            raise RunError.told(path, f"Another process uses {path}.", "Wait for it to end, or name another directory.") from error
         except OSError:  # pragma: no cover - a file system without locks: better unguarded than unusable
             pass
     return handle

@@ -348,7 +348,7 @@ def test_a_finished_run_asks_nothing_when_called_again_and_another_request_is_re
 
     assert again.steps == []
     assert run.hashes() == before
-    with pytest.raises(RunError, match="another request"):
+    with pytest.raises(RunError, match="different request"):
         made(tmp_path, again, prompt="something else")
 
 
