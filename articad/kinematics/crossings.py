@@ -91,7 +91,7 @@ class Crossings:
             return near, far
         C = _stacked([joint.T_parent_connector.data for joint in self.joints] + [joint.T_child_connector.data for joint in self.joints])
         C = C.reshape(2, n, 7)
-        R, p = _rotations(C[..., 3:]), C[..., :3]
+        R, p = rotations(C[..., 3:]), C[..., :3]
         if Mate.OPPOSED in (mates := [joint.mate for joint in self.joints]):
             R[1, [mate is Mate.OPPOSED for mate in mates], :, 1:] *= -1.0
         if self.backwards.any():
@@ -184,7 +184,7 @@ def motion(joint_type: JointType, q: FloatArray, sign: FloatArray) -> FloatArray
             M[..., :3, i], M[..., :3, j] = x * cosine + y * sine, y * cosine - x * sine
     first = joint_type.quaternion
     if first is not None:  # the steps before it are slides, so that the axes are still those of the connector
-        M[..., :3, :3] = _rotations(np.concatenate([q[..., first : first + 3] * sign, q[..., first + 3 :]], axis=-1))
+        M[..., :3, :3] = rotations(np.concatenate([q[..., first : first + 3] * sign, q[..., first + 3 :]], axis=-1))
     return M
 
 
@@ -205,7 +205,7 @@ def _affine(A: FloatArray, B: FloatArray) -> FloatArray:
     return K.reshape(len(A), 4, 16)
 
 
-def _rotations(q: FloatArray) -> FloatArray:
+def rotations(q: FloatArray) -> FloatArray:
     """Return `quaternion.to_matrix(q)` to the last bit; of a few as one product, which costs less than its forty calls."""
     if q.size > 4 * _FEW:
         return quaternion.to_matrix(q)

@@ -1,4 +1,4 @@
-"""The equations of loops at many configurations at once, in NumPy; `single` has the same for one."""
+"""The equations of loops at many configurations at once, in NumPy; `forward.LoopModel` has the same for one."""
 
 from __future__ import annotations
 
@@ -26,6 +26,7 @@ class Closures(NamedTuple):
         spin: Turn [rad] of each loop about the axis of each freedom, per scaled unit `(loops, freedoms)`.
         slide: Travel [L] along it `(loops, freedoms)`.
         lengths: L of each loop [mm] `(loops,)`.
+        scale: What one scaled unit of each freedom is [rad, mm] `(freedoms,)`.
     """
 
     arrays: TreeArrays
@@ -34,6 +35,7 @@ class Closures(NamedTuple):
     spin: FloatArray
     slide: FloatArray
     lengths: FloatArray
+    scale: FloatArray
 
 
 def closures(arrays: TreeArrays, loop_joints: Sequence[Joint], scale: FloatArray, lengths: FloatArray) -> Closures:
@@ -55,7 +57,7 @@ def closures(arrays: TreeArrays, loop_joints: Sequence[Joint], scale: FloatArray
     connectors = np.array([joint.T_child_connector.matrix for joint in loop_joints]).reshape(-1, 4, 4)
     angular, linear = arrays.twists.angular[:, 0, 0], arrays.twists.linear[:, 0, 0]
     return Closures(
-        arrays, np.array([ghosts, far], dtype=np.intp), connectors, weight * angular, weight * linear / lengths[:, None], lengths
+        arrays, np.array([ghosts, far], dtype=np.intp), connectors, weight * angular, weight * linear / lengths[:, None], lengths, scale
     )
 
 

@@ -1,18 +1,22 @@
-"""The only module that imports Pinocchio: a mechanism's tree as a `pinocchio.Model`, for dynamics and as an oracle."""
+"""The only module that imports Pinocchio: trees and loops as a `pinocchio.Model`, for one configuration at a time."""
 
 from __future__ import annotations
 
+import math
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from threading import Lock
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from articad.connectors import SE3, FloatArray
+from articad.connectors import SE3, FloatArray, quaternion
 from articad.errors import KinematicsError
-from articad.kinematics.crossings import Crossing
+from articad.kinematics.crossings import Crossing, rotations
+from articad.kinematics.equations import Closures
 from articad.kinematics.joints import Joint, JointType
-from articad.kinematics.layout import QUATERNION_TOLERANCE, IndexArray
+from articad.kinematics.layout import QUATERNION_TOLERANCE, IndexArray, Layout
 
 if TYPE_CHECKING:
     from articad.kinematics.mechanism import Mechanism
@@ -20,6 +24,8 @@ if TYPE_CHECKING:
 # pinocchio.Data allocates about this many bytes times nv³ (68 MiB at nv = 100, 4.0 GiB at nv = 400, measured with 4.1.0)
 _DATA_BYTES_PER_CUBE = 64
 _DATA_LIMIT_BYTES = 1 << 30
+_EYE = np.eye(3)
+_CLOSED = 1e-13  # |r| of a loop: what it changes in the Jacobian is rounding
 _ONE = np.ones(())  # an array: making one of a number takes longer than the signs of ten parts
 
 
@@ -35,6 +41,31 @@ class _Map(NamedTuple):
     columns: IndexArray
     signs: FloatArray
     turned: IndexArray | None
+
+    def q(self, Q: FloatArray) -> FloatArray:
+        """Return Pinocchio's configuration `(nq,)` for coordinates `(n_columns,)`; quaternions as they are."""
+        q: FloatArray = self.signs * Q.take(self.columns)
+        if self.turned is not None:  # a planar joint's angle is a direction there
+            q[self.turned] = np.cos(q[self.turned])
+            q[self.turned + 1] = np.sin(q[self.turned + 1])
+        return q
+
+
+def _map_of(model: Any, crossed: Sequence[tuple[Crossing, int]], layout: Layout) -> _Map:
+    """Return the map for a model, from its joints as crossed with their numbers."""
+    columns, signs = np.zeros(model.nq, dtype=np.intp), np.ones(model.nq)
+    turned: list[int] = []
+    for c, joint_id in crossed:
+        if not c.joint.type.freedoms:
+            continue
+        first, start = layout.columns[c.joint.name].start, model.joints[joint_id].idx_q
+        n = len(c.signs)
+        columns[start : start + n] = range(first, first + n)
+        signs[start : start + n] = c.signs
+        if c.joint.type is JointType.PLANAR:
+            turned.append(start + n - 1)
+            columns[start + n], signs[start + n] = columns[start + n - 1], signs[start + n - 1]
+    return _Map(columns, signs, np.array(turned, dtype=np.intp) if turned else None)
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,13 +102,9 @@ class CompiledModel:
         Raises:
             KinematicsError: E_NONFINITE; E_QUAT_NORM if a ball's quaternion is off by more than 1e-3.
         """
-        map_ = self._map
-        q = map_.signs * Q.take(map_.columns)
-        if not q.dot(q) < np.inf:  # so that nothing below is asked for the cosine of infinity
+        if not Q.dot(Q) < np.inf:  # so that nothing below is asked for the cosine of infinity
             self.mechanism.layout.normalized(Q)
-        if map_.turned is not None:  # a planar joint's angle is a direction there
-            q[map_.turned] = np.cos(q[map_.turned])
-            q[map_.turned + 1] = np.sin(q[map_.turned + 1])
+        q = self._map.q(Q)
         unit: FloatArray = self._pin.normalize(self.model, q)
         off = unit - q  # of a quaternion it is as long as its length is off
         if not off.dot(off) < QUATERNION_TOLERANCE**2:
@@ -86,19 +113,7 @@ class CompiledModel:
 
     @cached_property
     def _map(self) -> _Map:
-        columns, signs = np.zeros(self.model.nq, dtype=np.intp), np.ones(self.model.nq)
-        turned: list[int] = []
-        for c, joint_id in zip(self.crossings, self.joint_ids, strict=True):
-            if not c.joint.type.freedoms:
-                continue
-            first, start = self.mechanism.layout.columns[c.joint.name].start, self.model.joints[joint_id].idx_q
-            n = len(c.signs)
-            columns[start : start + n] = range(first, first + n)
-            signs[start : start + n] = c.signs
-            if c.joint.type is JointType.PLANAR:
-                turned.append(start + n - 1)
-                columns[start + n], signs[start + n] = columns[start + n - 1], signs[start + n - 1]
-        return _Map(columns, signs, np.array(turned, dtype=np.intp) if turned else None)
+        return _map_of(self.model, list(zip(self.crossings, self.joint_ids, strict=True)), self.mechanism.layout)
 
     @cached_property
     def _placed(self) -> list[Any]:
@@ -126,6 +141,140 @@ class CompiledModel:
         import pinocchio  # noqa: PLC0415 - this import costs 50 ms, paid where it is used
 
         return pinocchio
+
+
+class _Turned(NamedTuple):
+    """Joints whose velocity is measured in another frame: freedoms `(n, 3)`, columns `(n, c)`, and their rotation for coordinates."""
+
+    freedoms: IndexArray
+    columns: IndexArray
+    rotations: Callable[[FloatArray], FloatArray]
+
+
+class LoopModel:
+    """Residuals of loops and their Jacobian at one configuration, by Pinocchio.
+
+    The tree with a ghost for each loop joint is one `pinocchio.Model`; each loop is a rigid constraint between the ghost's connector
+    A and the real one B. With M = A⁻¹B = (R, t), φ = log R and the relative velocity (v, ω) of B against A, seen from A,
+
+        dt = v − t × ω,    dφ = (I − ½[φ] + c [φ]²) ω,
+
+    where (v, ω) is less Pinocchio's constraint Jacobian times the velocity. Pinocchio measures the velocity of a ball and of a planar
+    joint in the frame after the motion, articad in the frame before it.
+
+    Args:
+        closures: What closes.
+    """
+
+    def __init__(self, closures: Closures) -> None:
+        import pinocchio as pin  # noqa: PLC0415 - this import costs 50 ms, paid where it is used
+
+        self._pin, self._closures = pin, closures
+        arrays, layout = closures.arrays, closures.arrays.layout
+        model = pin.Model()
+        place = {arrays.ground: (0, _pin_pose(pin, arrays.T_ground))}
+        crossed: list[tuple[Crossing, int]] = []
+        for c in (*arrays.crossings, *arrays.closing):
+            carrier, B_near = place[c.near]
+            placement = B_near * _pin_pose(pin, c.A)
+            if c.joint.type.freedoms:  # a fixed joint is part of the next one's placement
+                carrier = model.addJoint(carrier, _joint_model(pin, c.joint), placement, c.joint.name)
+                placement = pin.SE3.Identity()
+                crossed.append((c, carrier))
+            place[c.far] = (carrier, placement * _pin_pose(pin, c.B))
+        self._model = model
+        self._map = _map_of(model, crossed, layout)
+        order, sign = np.zeros(layout.n_freedoms, dtype=np.intp), np.ones(layout.n_freedoms)
+        for c, carrier in crossed:
+            own, first = layout.freedoms[c.joint.name], model.joints[carrier].idx_v
+            order[own] = range(first, first + own.stop - own.start)
+            sign[own] = -1.0 if c.backwards else 1.0
+        self._order = None if np.array_equal(order, np.arange(model.nv)) else order
+        self._turned = _turned(layout, [c.joint for c, _ in crossed if not c.backwards])
+        constraints, workspaces = pin.StdVec_RigidConstraintModel(), pin.StdVec_RigidConstraintData()
+        local = pin.ReferenceFrame.LOCAL
+        for (ghost, real), C_c in zip(closures.ends.T.tolist(), closures.connectors, strict=True):
+            C = pin.SE3(C_c[:3, :3], C_c[:3, 3])
+            (one, P), (two, S) = place[ghost], place[real]
+            constraints.append(pin.RigidConstraintModel(pin.ContactType.CONTACT_6D, model, one, P * C, two, S * C, local))
+            workspaces.append(constraints[-1].createData())
+        self._constraints, self._workspaces, self._data = constraints, workspaces, model.createData()
+        self._lengths = closures.lengths[:, None]
+        rows = np.concatenate([np.repeat(1.0 / self._lengths, 3, axis=1), np.ones((len(self._lengths), 3))], axis=1)
+        self._weights = -np.outer(rows, sign * closures.scale)  # Pinocchio's constraint Jacobian is that of A against B
+        self._pairs = list(zip(constraints, workspaces, strict=True))
+        self._lock = Lock()
+
+    def __reduce__(self) -> tuple[type[LoopModel], tuple[Closures]]:
+        """Return how to make it again: Pinocchio's workspaces stay in their process."""
+        return LoopModel, (self._closures,)
+
+    def residual(self, Q: FloatArray) -> FloatArray:
+        """Return the residuals (6 per loop) at `Q` `(columns,)`."""
+        return self._evaluated(Q)[0]
+
+    def fill(self, Q: FloatArray, J: FloatArray) -> FloatArray:
+        """Return the residuals, and write their derivatives, scaled, into the first rows of `J` `(rows, freedoms)`."""
+        r, D = self._evaluated(Q)
+        if self._order is not None:
+            D = D.take(self._order, axis=1)
+        V = D.reshape(-1, 6, D.shape[1])  # (v, ω) of each loop by each freedom, a view
+        for freedoms, columns, turned in self._turned:
+            V[:, :, freedoms] = (V[:, :, freedoms][..., None, :] @ turned(Q[columns]).swapaxes(1, 2))[..., 0, :]
+        if r.dot(r) > _CLOSED**2:
+            t, phi = r.reshape(-1, 2, 3).swapaxes(0, 1)
+            S = _crossed(phi)
+            V[:, :3] -= _crossed(t * self._lengths) @ V[:, 3:]
+            V[:, 3:] = (_EYE - 0.5 * S + quaternion.inverse_coefficient(phi)[..., None] * (S @ S)) @ V[:, 3:]
+        np.multiply(D, self._weights, out=J[: len(D)])
+        return r
+
+    def _evaluated(self, Q: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return the residuals `(6 loops,)` and Pinocchio's constraint Jacobian `(6 loops, nv)`."""
+        pin = self._pin
+        r: list[float] = []
+        with self._lock:  # the workspace belongs to one call at a time
+            pin.computeJointJacobians(self._model, self._data, self._map.q(Q))
+            for constraint, workspace in self._pairs:
+                constraint.calc(self._model, self._data, workspace)
+            D = pin.getConstraintsJacobian(self._model, self._data, self._constraints, self._workspaces)
+            for (_, workspace), length in zip(self._pairs, self._lengths[:, 0].tolist(), strict=True):
+                x, y, z, a, b, c, w = pin.SE3ToXYZQUAT(workspace.c1Mc2).tolist()
+                sine = math.sqrt(a * a + b * b + c * c) + 1e-300  # of half the angle; never zero, and never seen
+                factor = math.copysign(2.0, w) * math.atan2(sine, abs(w)) / sine
+                r += (x / length, y / length, z / length, a * factor, b * factor, c * factor)
+        return np.array(r), D
+
+
+def _turned(layout: Layout, joints: Sequence[Joint]) -> list[_Turned]:
+    """Return the joints whose velocity Pinocchio measures in the frame after the motion, by type."""
+    found = []
+    for kind, turned in ((JointType.BALL, rotations), (JointType.FREE, rotations), (JointType.PLANAR, _about_z)):
+        names = [joint.name for joint in joints if joint.type is kind]
+        first = kind.quaternion or 0
+        columns = np.array([range(layout.columns[name].start + first, layout.columns[name].stop) for name in names])
+        for block in range(0, kind.freedoms if names else 0, 3):  # of a free joint the velocity is turned as well as the spin
+            freedoms = np.array([range(layout.freedoms[name].start + block, layout.freedoms[name].start + block + 3) for name in names])
+            found.append(_Turned(freedoms, columns, turned))
+    return found
+
+
+def _about_z(q: FloatArray) -> FloatArray:
+    """Return the rotations `(n, 3, 3)` of planar joints at x, y, angle `(n, 3)`."""
+    R = np.zeros((len(q), 3, 3))
+    R[:, 0, 0] = R[:, 1, 1] = np.cos(q[:, 2])
+    R[:, 1, 0] = np.sin(q[:, 2])
+    R[:, 0, 1] = -R[:, 1, 0]
+    R[:, 2, 2] = 1.0
+    return R
+
+
+def _crossed(a: FloatArray) -> FloatArray:
+    """Return the matrices `(n, 3, 3)` of a × for rows a `(n, 3)`."""
+    S = np.zeros((len(a), 3, 3))
+    S[:, 2, 1], S[:, 0, 2], S[:, 1, 0] = a.T
+    S[:, 1, 2], S[:, 2, 0], S[:, 0, 1] = -a.T
+    return S
 
 
 def require_data_fits(nv: int) -> None:

@@ -21,9 +21,9 @@ from articad.errors import KinematicsError
 from articad.kinematics.batch import TreeArrays
 from articad.kinematics.equations import BatchEquations, closures
 from articad.kinematics.factors import one_thread, singular_values, svd
+from articad.kinematics.forward import LoopModel
 from articad.kinematics.joints import Coupling, Joint, JointLimits, JointType
 from articad.kinematics.layout import IndexArray, Layout
-from articad.kinematics.single import SingleEquations
 from articad.kinematics.ties import Basis, BoolArray, Ties
 from articad.kinematics.tree import KinematicTree
 
@@ -35,7 +35,7 @@ _DROPPED = 1e-10  # σ/σ₁ below which a direction is left out of a step
 _LARGEST_STEP = 0.5  # rad, or lengths L: the linear model is worth nothing beyond
 _DAMPING_FALL, _DAMPING_RISE = 0.2, 8.0  # of a step that helped, and of one that did not
 _DAMPING_START = 1e-3
-_FEW_JOINTS = 16  # joints up to which plain numbers win over NumPy at one configuration (measured with scissors of 1 … 20 stages)
+_MOST_FREEDOMS = 250  # Pinocchio's workspace takes 64 bytes per cube of these: 1 GiB
 _COINCIDENT = 1e-4  # of the longest link
 _FALLBACK_LENGTH = 100.0  # mm, where no part has two connectors apart
 
@@ -146,9 +146,9 @@ class ClosureSystem:
         return self.columns[self._written]
 
     @cached_property
-    def _one(self) -> SingleEquations | None:
-        """The equations in plain numbers, of systems so small that they win over NumPy at one configuration."""
-        return SingleEquations(self._closures) if len(self.layout.joints) <= _FEW_JOINTS else None
+    def _one(self) -> LoopModel | None:
+        """The equations at one configuration by Pinocchio; None without loops, and of systems whose workspace would be too large."""
+        return LoopModel(self._closures) if self.loops and self.layout.n_freedoms <= _MOST_FREEDOMS else None
 
     # --- equations
 
@@ -178,8 +178,8 @@ class ClosureSystem:
         """Return the residuals alone `(rows,)`."""
         return self.residual(Q[None])[0] if self._one is None else self._with_couplings(self._one.residual(Q), Q)
 
-    def _with_couplings(self, loops: list[float], Q: FloatArray) -> FloatArray:
-        return np.array([*loops, *self.ties.residual(Q)] if self.couplings else loops)
+    def _with_couplings(self, loops: FloatArray, Q: FloatArray) -> FloatArray:
+        return np.concatenate([loops, self.ties.residual(Q)]) if self.couplings else loops
 
     def gaps(self, Q: FloatArray) -> FloatArray:
         """Return the distance `(loops,)` [mm] between each ghost and its connector at `Q` `(columns,)`."""

@@ -11,8 +11,10 @@ from hypothesis import strategies as st
 from articad.connectors import SE3, Mate
 from articad.errors import DeadPointError, KinematicsError, LoopError
 from articad.kinematics import Coupling, JointType, Mechanism
+from articad.kinematics.forward import LoopModel
+from articad.kinematics.graph import JointGraph
+from articad.kinematics.layout import Layout
 from articad.kinematics.loops import CLOSED, ClosureSystem
-from articad.kinematics.single import SingleEquations
 from tests.kinematics.linkages import (
     at,
     bennett,
@@ -334,10 +336,40 @@ def test_random_closable_loops_close_to_rounding_and_keep_their_drivers(mechanis
 
 
 def both_ways(mechanism: Mechanism) -> ClosureSystem:
-    """Return the system of a linkage of any size with the equations for one configuration in plain numbers."""
+    """Return the system of a linkage of any size with Pinocchio's equations for one configuration."""
     system = system_of(mechanism)
-    system.__dict__["_one"] = SingleEquations(system._closures)
+    system.__dict__["_one"] = LoopModel(system._closures)
     return system
+
+
+EVERY_KIND = [
+    *(("free", "g", "p1"), ("planar", "p1", "p2"), ("universal", "p2", "p3"), ("ball", "p4", "p3"), ("cylindrical", "p5", "p4")),
+    *(("screw", "p5", "p6"), ("revolute", "p6", "g"), ("ball", "p1", "p6"), ("planar", "p2", "p5"), ("slider", "p6", "p2")),
+]
+
+
+@given(st.integers(0, 2**16), st.sampled_from([0.0, 0.1, 1.0]), st.permutations(EVERY_KIND))
+def test_every_kind_of_joint_on_a_loop_has_the_equations_of_a_batch(seed: int, size: float, kinds: list[tuple[str, str, str]]) -> None:
+    """Joints of all types, some crossed backwards, some closing; the loops are open, so that all terms of the Jacobian count."""
+    rng = np.random.default_rng(seed)
+
+    def connector(part: str) -> tuple[str, SE3]:
+        return part, SE3.exp(np.concatenate([rng.uniform(-50, 50, 3), rng.uniform(-1, 1, 3)]))
+
+    joints = []
+    for i, (kind, a, b) in enumerate(kinds):
+        one, other = connector(a), connector(b)
+        if kind == "free":
+            joints.append(replace(joint(f"j{i}", "fixed", one, other), type=JointType.FREE, rest=JointType.FREE.neutral))
+        else:
+            joints.append(joint(f"j{i}", kind, one, other, lead=5.0 if kind == "screw" else 0.0))
+    tree, loop_joints = JointGraph(("g", "p1", "p2", "p3", "p4", "p5", "p6"), "g", joints).spanning_tree()
+    system = ClosureSystem(tree, Layout(joints), loop_joints, [])
+    Q = system.move(system.layout.rest, size * rng.standard_normal(system.layout.n_freedoms))
+    (many_r,), (many_J,) = system.evaluate(Q[None])
+    one_r, one_J = system.evaluate_one(Q)
+    assert np.abs(one_r - many_r).max() < 1e-12
+    assert np.abs(one_J - many_J).max() < 1e-11
 
 
 @settings(max_examples=60)
