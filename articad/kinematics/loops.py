@@ -35,7 +35,7 @@ _DROPPED = 1e-10  # σ/σ₁ below which a direction is left out of a step
 _LARGEST_STEP = 0.5  # rad, or lengths L: the linear model is worth nothing beyond
 _DAMPING_FALL, _DAMPING_RISE = 0.2, 8.0  # of a step that helped, and of one that did not
 _DAMPING_START = 1e-3
-_MOST_FREEDOMS = 250  # Pinocchio's workspace takes 64 bytes per cube of these: 1 GiB
+_MOST_FREEDOMS = 60  # Pinocchio's workspace grows with their cube: 14 MB here, and making it takes as long as a hundred evaluations
 _COINCIDENT = 1e-4  # of the longest link
 _FALLBACK_LENGTH = 100.0  # mm, where no part has two connectors apart
 
@@ -147,8 +147,8 @@ class ClosureSystem:
 
     @cached_property
     def _one(self) -> LoopModel | None:
-        """The equations at one configuration by Pinocchio; None without loops, and of systems whose workspace would be too large."""
-        return LoopModel(self._closures) if self.loops and self.layout.n_freedoms <= _MOST_FREEDOMS else None
+        """The equations at one configuration by Pinocchio; None where nothing moves in a loop, or where the workspace is too large."""
+        return LoopModel(self._closures) if self.loops and 0 < self.layout.n_freedoms <= _MOST_FREEDOMS else None
 
     # --- equations
 

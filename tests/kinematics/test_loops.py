@@ -372,6 +372,17 @@ def test_every_kind_of_joint_on_a_loop_has_the_equations_of_a_batch(seed: int, s
     assert np.abs(one_J - many_J).max() < 1e-11
 
 
+def test_a_loop_in_which_nothing_moves_has_its_residual_and_no_derivatives() -> None:
+    """Two fixed joints between the same two parts, which disagree by a millimetre."""
+    joints = [joint("a", "fixed", ("g", at(0)), ("p", at(0))), joint("b", "fixed", ("p", at(50)), ("g", at(51)))]
+    tree, loop_joints = JointGraph(("g", "p"), "g", joints).spanning_tree()
+    system = ClosureSystem(tree, Layout(joints), loop_joints, [])
+    r, J = system.evaluate_one(system.layout.rest)
+    assert J.shape == (6, 0)
+    assert np.abs(r[:3]).max() * system.lengths[0] == pytest.approx(1.0)
+    assert not system.close(system.layout.rest, system.active).ok
+
+
 @settings(max_examples=60)
 @given(closable_loops(), st.integers(0, 2**16))
 def test_one_configuration_has_the_equations_of_a_batch_to_rounding(mechanism: Mechanism, seed: int) -> None:
