@@ -164,6 +164,7 @@ class _Reader:
 
         Copies of `<replicate>` and models of `<attach>` bring elements that no document has in this form; those are kept by name only.
         """
+        self.raw.kept.append(Kept("mjcf", "model", "", "<mujoco/>"))  # that it came from MJCF, where it says nothing else
         copied = [section for section in COUNTED if len(section_elements(self.document, section)) != self._count(section)]
         for item in kept_attributes(self.document):
             section = etree.fromstring(item.xml).tag if item.xml else ""
