@@ -1,8 +1,9 @@
-"""Keeping two surfaces apart over boxes of motion: pieces of both, and of the range, are cut where that helps.
+"""Branch and bound: prove that two surfaces stay apart over boxes of motion.
 
-The search begins with the two whole surfaces over the whole range. What a direction separates, with the motion along it taken
-off, is settled; else the larger of two pieces is cut, or the range once the motion is what matters. So material near an axis is
-not charged with the speed of what is far out, and what is far apart is settled at once.
+A row is a piece of each surface and a box of the motion. The search starts with the whole surfaces over the whole range. A row is
+settled when a direction u separates its pieces: the gap along u at the centre of the box, minus a bound of the motion along u
+(`Spread.first_order` + `Spread.second_order`), exceeds the required distance. Otherwise the row is cut in two: the range if the motion
+exceeds the size of the pieces, else the larger piece. So pieces near an axis get small bounds, and distant pieces are settled early.
 """
 
 from __future__ import annotations
@@ -37,18 +38,18 @@ _COARSE = 64.0  # directions between boxes are rounded to so many parts: any dir
 
 
 class CannotCut(Exception):  # noqa: N818 - it is no error
-    """A box of which no halves are to be had."""
+    """A box cannot be split further."""
 
 
 class Boxes(Protocol):
-    """Boxes that can be cut in two.
+    """Boxes of the motion, stored as a binary tree: each box can be split in two.
 
     Attributes:
-        spread: What moves in each.
-        outside: Whether no joint goes there, for each.
-        columns: Which of the claim's coordinates each was cut across, −1 for those that were not.
-        places: Where.
-        halves: Numbers of what it was cut into.
+        spread: Pose and velocities of each box.
+        outside: For each box, whether it lies outside the limits of the joints.
+        columns: For each box, the index of the claim's coordinate across which it was split; −1 if it was not split.
+        places: For each box, the value at which it was split [rad or mm].
+        halves: For each box, the numbers of its two halves.
     """
 
     spread: Spread
@@ -65,7 +66,7 @@ class Boxes(Protocol):
         """Add the whole range, and return its number."""
 
     def cut(self, boxes: IntArray, share: FloatArray) -> IntArray:
-        """Cut boxes `(k,)` where `share (k, G)` of the motion is largest; return their halves `(k, 2)`."""
+        """Split boxes `(k,)` across the coordinate with the largest `share (k, G)` of the motion; return the numbers of the halves `(k, 2)`."""
 
     def is_reached(self, box: int) -> bool:
         """Return whether the centre of a box is a pose of the mechanism."""
@@ -76,16 +77,16 @@ class Boxes(Protocol):
 
 @dataclass
 class Cleared:
-    """What a search came to.
+    """The result of a search.
 
     Attributes:
-        contact: Centre of a box at which the surfaces are not apart, if one was met.
-        box: Its number, −1 if there is none.
-        out_of_budget: True when it was given up.
-        pairs: Pairs of pieces that were looked at.
-        boxes: Boxes that were looked at.
-        trail: What was done, for a checker to follow.
-        course: The boxes it was done in.
+        contact: Centre of a box in which the surfaces are in contact; None if the search found no contact.
+        box: Number of that box; −1 if there is none.
+        out_of_budget: True if the search ended without a result.
+        pairs: Number of rows examined.
+        boxes: Number of boxes examined.
+        trail: Record of all steps, which a checker can repeat.
+        course: The boxes of the search.
     """
 
     contact: tuple[float, ...] | None = None
@@ -104,7 +105,7 @@ class Cleared:
 
 @dataclass
 class _Pairs:
-    """Rows: a node of each tree, a box, and the row's number in the trail."""
+    """Rows of the search: a node of each tree, a box, and the row's number in the trail; each array is `(rows,)`."""
 
     a: IntArray
     b: IntArray
@@ -136,14 +137,17 @@ def clear(
     """Prove that two surfaces stay further apart than `needed` [mm] over boxes of motion.
 
     Args:
-        a: Of the part that stands.
-        b: Of the part that moves.
-        boxes: Of the motion.
-        needed: Distance that proves nothing, such as the deflection of both meshes [mm].
-        axis: The axis or point about which the outlines are, in the frame of a; None if there are none.
-        epsilon: What is closer by no more is contact [mm].
-        budget: Of work: the pairs looked at, the rounds of the search and the boxes placed are spent from it.
-        most: Pairs of pieces.
+        a: Surface of the fixed part.
+        b: Surface of the moving part.
+        boxes: Boxes of the motion.
+        needed: Distance to exceed, for example the deflection of both meshes [mm].
+        axis: Axis or point to which the outlines of the forests refer, in the frame of a; None if there are no outlines.
+        epsilon: Triangles that come closer than `needed` + `epsilon` at the centre of a box are in contact [mm].
+        budget: Work for rows, rounds and boxes is spent from it.
+        most: Largest number of rows.
+
+    Returns:
+        The trail if the surfaces stay apart; otherwise the contact, or `out_of_budget`.
     """
     search = _Search(a, b, boxes, needed + ROUNDING_MM, epsilon, axis)
     stack, outcome = [search.roots()], search.outcome
@@ -182,14 +186,14 @@ class _Search:
         self.slides: Slides | None = None
 
     def roots(self) -> _Pairs:
-        """Return each two trees over the whole range."""
+        """Return one row for each pair of trees over the whole range."""
         both = np.array(list(itertools.product(self.forests[0].roots, self.forests[1].roots)))
         root = int(self.boxes.root()[0])
         self.slides = Slides.of(self.spread, root)
         return _Pairs(both[:, 0], both[:, 1], np.full(len(both), root), self.trail.begin(len(both)))
 
     def step(self, rows: _Pairs) -> list[_Pairs]:
-        """Settle what is settled and cut the rest."""
+        """Settle the rows that a bound separates; return the halves of all other rows."""
         outside = np.fromiter((self.boxes.outside[box] for box in rows.box.tolist()), dtype=bool, count=len(rows))
         if outside.any():
             rows = rows.of(~outside)
@@ -204,7 +208,7 @@ class _Search:
         return out
 
     def _outlines(self, rows: _Pairs, out: list[_Pairs]) -> _Pairs:
-        """Settle what is apart in coordinates that the joint keeps, cut what is made of such pieces; return the rest."""
+        """Settle rows whose outlines (coordinates that the joint does not change) are apart, cut those that can become so; return the rest."""
         assert self.axis is not None
         a, b = self.forests
         ahead, behind = b.low[rows.b] - a.high[rows.a], a.low[rows.a] - b.high[rows.b]
@@ -232,6 +236,7 @@ class _Search:
     def _nodes(self, rows: _Pairs) -> list[_Pairs]:
         T, box = self.spread.T[rows.box], rows.box
         R = T[:, :3, :3]
+        # Candidate directions: axes of both boxes, and the line between their centres (separating axis test without edge products).
         centre = (R @ self.b.centre[rows.b][..., None])[..., 0] + T[:, :3, 3]
         extent = R.transpose(0, 2, 1) * self.b.half[rows.b][..., None]  # rows: half axes of b's box in a's frame
         apart = centre - self.a.centre[rows.a]
@@ -241,12 +246,14 @@ class _Search:
         u = np.concatenate([np.broadcast_to(_EYE, (len(rows), 3, 3)), R.transpose(0, 2, 1), unit(coarse)], axis=1)
         thick = (np.abs(u) @ self.a.half[rows.a][..., None])[..., 0] + np.abs(u @ extent.transpose(0, 2, 1)).sum(axis=2)
         ahead = (u @ apart[..., None])[..., 0]
+        # Gap at the centre of the box of motion, minus the bound of the motion: positive for one direction is a proof.
         still = np.abs(ahead) - thick
         shares = self.spread.first_order(box, u, centre, extent)
-        motion = shares.sum(axis=2) + self.spread.second_order(box, u, centre, self.size_b[rows.b])
+        motion = shares.sum(axis=2) + self.spread.second_order(box, u, centre, self.size_b[rows.b], extent)
         clear = still - motion > self.needed
         left = ~clear.any(axis=1)
         self._settle(rows.of(~left), np.argmax(clear[~left], axis=1), np.sign(ahead[~left]), coarse[~left])
+        # Cut the range where the motion along the best direction exceeds the size of the pieces, else cut the larger piece.
         rows, best = rows.of(left), np.argmax(still[left], axis=1)
         at = np.arange(len(rows))
         along, most = motion[left][at, best], motion[left].max(axis=1)
@@ -302,6 +309,7 @@ class _Search:
         T, box = self.spread.T[rows.box], rows.box
         p = self.a.corners[self.a.triangle[rows.a]]
         q = self.b.corners[self.b.triangle[rows.b]] @ T[:, :3, :3].transpose(0, 2, 1) + T[:, None, :3, 3]
+        # Candidate directions: both normals, the shortest connection, and the directions of `Slides` or of the turn.
         nearest, towards = shortest_between(p, q)
         u = np.stack([_normals(p), _normals(q), towards], axis=1)
         if self.slides is not None:
@@ -312,6 +320,7 @@ class _Search:
         ahead = theirs.min(axis=2) - mine.max(axis=2) > mine.min(axis=2) - theirs.max(axis=2)
         u = np.where(ahead[..., None], u, -u)
         mine, theirs = np.where(ahead[..., None], mine, -mine), np.where(ahead[..., None], theirs, -theirs)
+        # Bound of the motion of each corner; the gap is the least over the corners, since the motion is bounded at each of them.
         nothing = np.zeros(len(rows))
         shares = [self.spread.first_order(box, u, q[:, k], None) for k in range(3)]
         motion = np.stack([shares[k].sum(axis=2) + self.spread.second_order(box, u, q[:, k], nothing) for k in range(3)], axis=2)
@@ -345,7 +354,7 @@ class _Search:
 
 
 def unit(v: FloatArray) -> FloatArray:
-    """Return vectors `(…, k)` made one long; what is none stays 0."""
+    """Return vectors `(…, k)` scaled to length 1; zero vectors stay zero."""
     return np.asarray(v / np.maximum(np.linalg.norm(v, axis=-1, keepdims=True), 1e-300))
 
 

@@ -133,19 +133,31 @@ class Spread:
             extent: Half axes of a little box about each point, `(n, 3, 3)`, or None for the points alone.
         """
         w, v = self.spin[box], self.flow[box]
-        moved = np.abs((np.cross(w, p[:, None]) + v) @ u.transpose(0, 2, 1)).transpose(0, 2, 1)
-        if extent is not None:
-            turned = np.cross(u[:, :, None], w[:, None])  # u · (w × e) = (u × w) · e
-            moved += np.abs(turned @ extent.transpose(0, 2, 1)[:, None]).sum(axis=-1)
+        moved = np.abs(u @ (_cross(w, p[:, None]) + v).transpose(0, 2, 1))
+        if extent is not None:  # u · (w × e), for each half axis e of the little box
+            carried = _cross(w[:, :, None], extent[:, None]).reshape(len(p), -1, 3)
+            along = np.abs(u @ carried.transpose(0, 2, 1)).reshape(*moved.shape, 3)
+            moved += along[..., 0] + along[..., 1] + along[..., 2]
         return np.asarray(moved)
 
-    def second_order(self, box: IntArray, u: FloatArray, p: FloatArray, size: FloatArray) -> FloatArray:
-        """Bound what is left of the motion along directions, `(n, D)` [mm]; `size (n,)`: radius of a ball about each point."""
+    def second_order(self, box: IntArray, u: FloatArray, p: FloatArray, size: FloatArray, extent: FloatArray | None = None) -> FloatArray:
+        """Bound what is left of the motion along directions, `(n, D)` [mm].
+
+        Args:
+            box: Which box of the spread, `(n,)`.
+            u: Unit directions in a's frame, `(n, D, 3)`.
+            p: Points of b at the box's centre, in a's frame, `(n, 3)`.
+            size: Radius of a ball about each point, `(n,)` [mm].
+            extent: Half axes of a little box in that ball, `(n, 3, 3)`: a rod is not charged with its length for a turn about its own axis.
+        """
         w, v, width = self.omega[box], self.moment[box], self.width[box]
-        speed = np.linalg.norm(np.cross(w, p[:, None]) + v, axis=2)  # of the centre, by each factor
-        speed += self.turns * size[:, None]
+        reach = self.turns * size[:, None]  # how much faster than the centre a point of the little box moves, by each factor
+        if extent is not None:
+            sides = _length(_cross(w[:, :, None], extent[:, None]))
+            reach = np.minimum(reach, sides[..., 0] + sides[..., 1] + sides[..., 2])
+        speed = _length(_cross(w, p[:, None]) + v) + reach
         turned = width * self.turns
-        share = np.linalg.norm(np.cross(u[:, :, None], w[:, None]), axis=-1)  # (n, D, F)
+        share = _length(_cross(u[:, :, None], w[:, None]))  # (n, D, F)
         if not self.is_parallel:  # an axis is turned by the factors outside it
             outside = np.cumsum(turned, axis=1) - turned
             share = np.minimum(share + outside[:, None], 1.0)
@@ -159,6 +171,16 @@ class Spread:
             total += carried[:, None] * (weighted[..., f] + 2 * before[..., f])
             inside = inside + carried
         return np.asarray(total / 2)
+
+
+def _cross(a: FloatArray, b: FloatArray) -> FloatArray:
+    """Return the cross products of vectors `(..., 3)`."""
+    return np.asarray(a[..., [1, 2, 0]] * b[..., [2, 0, 1]] - a[..., [2, 0, 1]] * b[..., [1, 2, 0]])
+
+
+def _length(v: FloatArray) -> FloatArray:
+    """Return the lengths of vectors `(..., 3)`."""
+    return np.asarray(np.sqrt(np.einsum("...i,...i", v, v)))
 
 
 def _moved(factor: Factor, values: FloatArray) -> FloatArray:

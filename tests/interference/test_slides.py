@@ -198,6 +198,40 @@ def test_no_point_goes_further_than_its_bound(seed: int) -> None:
     assert np.median(bound / np.maximum(farthest, 1e-9)) < 100  # it is of some use, too
 
 
+@pytest.mark.parametrize("seed", range(6))
+def test_no_corner_of_a_little_box_goes_further_than_the_bound_of_the_box(seed: int) -> None:
+    rng = np.random.default_rng(100 + seed)
+    chain = mixed(rng)
+    spread = Spread(chain)
+    centre, half = rng.uniform(-1, 1, size=len(chain.freedoms)), 10.0 ** rng.uniform(-2, 0.3, size=len(chain.freedoms))
+    box = spread.add(centre[None], half[[factor.column for _, factor in spread.factors]][None])
+    middles, u = rng.uniform(-40, 40, size=(12, 3)), rng.normal(size=(12, 5, 3))
+    u /= np.linalg.norm(u, axis=2, keepdims=True)
+    sides = rng.uniform(0, 30, size=(12, 3)) * (rng.random(size=(12, 3)) < 0.6)  # half edges along b's axes [mm]: rods and plates, too
+    T = chain.matrix(centre)
+    extent, here = T[:3, :3].T * sides[:, :, None], middles @ T[:3, :3].T + T[:3, 3]
+    rows = np.repeat(box, 12)
+    first, ball = spread.first_order(rows, u, here, extent).sum(axis=2), np.linalg.norm(sides, axis=1)
+    bound = first + spread.second_order(rows, u, here, ball, extent)
+    assert (bound <= first + spread.second_order(rows, u, here, ball) + 1e-9).all()
+    points = middles[:, None] + np.array(list(itertools.product((-1, 1), repeat=3))) * sides[:, None]
+    still = points @ T[:3, :3].T + T[:3, 3]
+    signs = np.array(list(itertools.product((-1, 1), repeat=len(half))))
+    for share in [*signs, *rng.uniform(-1, 1, size=(300, len(half)))]:
+        T = chain.matrix(centre + share * half)
+        moved = points @ T[:3, :3].T + T[:3, 3] - still
+        assert (np.abs(np.einsum("pdi,pci->pcd", u, moved)) <= bound[:, None] + 1e-9).all()
+
+
+def test_a_turn_about_the_axis_of_a_rod_is_bound_by_its_radius_not_its_length() -> None:
+    chain = Chain(Route(("p0", "p1"), (joint("r", "revolute", "p0", "p1", lower=(-1.0,), upper=(1.0,)),)), ["r"], proving=True)
+    spread = Spread(chain)
+    box, u = spread.add(np.zeros((1, 1)), np.full((1, 1), 0.1)), np.array([[[1.0, 0, 0]]])
+    rod = np.diag([2.0, 2.0, 200.0])[None]
+    bound = spread.second_order(box, u, np.zeros((1, 3)), np.array([200.02]), rod)
+    assert bound[0, 0] == pytest.approx(0.1**2 * 4 / 2)  # half the square of the turn times the radius, at most the sum of both sides
+
+
 def test_what_turns_or_slides_everywhere_has_no_directions_of_slides() -> None:
     rng = np.random.default_rng(0)
     for joints, expected in (
