@@ -1,11 +1,11 @@
-"""Proof along drivers of loops or couplings: the joints that follow stay near lines that the checker of certificates can verify.
+"""Proof along drivers of loops or couplings: the followers stay in tubes about curves that the checker of certificates can verify.
 
-Joints that loops and couplings tie together form groups; each group has drivers, and what follows them is the same whatever the other
-groups do. Over a small box of the ranges of some drivers of one group, every coordinate is the only solution near a linear predictor
-(Brouwer, Banach). So it stays in a box with one long side for each driver, on which the bounds of `spread` hold. Where that does not
-suffice, the box is halved about a solution of its own, and its tube shrinks fourfold. Drivers of several groups, and coordinates that
-move by themselves, move together in products of such boxes. The inequalities are the checker's own: what it would refute is not used.
-Most pairs need no small boxes: all of them lie in one wider tube, which is tried first and then parted.
+Joints that loops and couplings tie together form a group. Each group has drivers; its followers do not depend on other groups.
+For a small box of the ranges of one group's drivers, the checker's Newton map proves that the followers have exactly one solution in a
+tube about a quadratic curve (existence: Brouwer; uniqueness: Banach). So each coordinate stays near a line, and the bounds of `spread`
+apply to the box. If the bounds are too wide, the box is halved about a new solution, and the width of its tube falls to a quarter.
+Drivers of several groups and independent coordinates move together in products of such boxes. The prover calls the checker's own
+inequalities, so it uses no piece that the checker would refute. The search starts with the joined tube of all boxes and splits it.
 """
 
 from __future__ import annotations
@@ -54,13 +54,14 @@ _STILL = 1e-14  # of a Newton step: rounding
 
 @dataclass(frozen=True, eq=False)
 class Piece:
-    """A box of the ranges of a group's drivers, or several that make up one.
+    """One followed box of the ranges of a group's drivers, or the union of several.
 
     Attributes:
-        ends: Of each driver [rad or mm].
-        numbers: Among all boxes of the way, of those it consists of.
-        line: Of each coordinate of the group: its value in the middle, its rate by each driver `(drivers,)`, and how far it is from that.
-        off: By how much the line misses a pose of the mechanism in the middle [rad or mm]; infinite for several boxes.
+        ends: Lower and upper end for each driver [rad or mm].
+        numbers: Indices, in the way, of the followed boxes of which it consists.
+        line: For each coordinate of the group: its value in the middle, its rate for each driver `(drivers,)`, and the largest distance
+            of the coordinate from this line [rad or mm].
+        off: Distance of the line from a pose of the mechanism in the middle [rad or mm]; infinite for a union.
     """
 
     ends: Ends
@@ -80,15 +81,15 @@ class Piece:
 
 
 class Way:
-    """What follows some drivers of one group over their ranges, in boxes that are halved when asked for; shared by all pairs.
+    """The followers of some drivers of one group over the drivers' ranges, in boxes that are halved on request; shared by all pairs.
 
     Args:
-        checker: Of a certificate without claims: it knows joints, groups and drivers.
-        drivers: Coordinates of one group; its other drivers stand.
-        bounds: Of each driver, to be covered as far as it can be followed.
+        checker: Checker of a certificate without claims; it holds joints, groups and drivers.
+        drivers: Coordinates of one group; the other drivers of the group stay at rest.
+        bounds: Lower and upper end for each driver; the way covers as much of them as it can follow.
 
     Attributes:
-        work: Units of work that its pieces have cost so far, those included that could not be followed.
+        work: Units of work spent on pieces, including pieces that could not be followed.
 
     Raises:
         Refuted: If a loop is open at rest.
@@ -147,11 +148,11 @@ class Way:
         self._cuts[whole] = 0, low[0][1], low, high
         return whole
 
-    # --- all that can be followed
+    # --- the whole range
 
     @cached_property
     def whole(self) -> Piece | None:
-        """All that can be followed, as one; None if that is nothing, or with several drivers not all."""
+        """The union of all followed pieces; None if there is none, or if several drivers cannot be followed over all of their ranges."""
         if len(self.drivers) == 1:
             steps = [*self.steps(-1)[::-1], *self.steps(1)]
             return self.piece(self._tree([step.ends for step in steps])) if steps else None
@@ -159,7 +160,7 @@ class Way:
         return None if grown is None else self.piece(grown)
 
     def spans(self) -> dict[str, tuple[float, float]]:
-        """Return between which values each coordinate stays over all that could be followed [rad or mm]."""
+        """Return the lower and upper bound of each coordinate over all followed pieces [rad or mm]."""
         found: dict[str, tuple[float, float]] = {}
         for number in () if self.whole is None else self.whole.numbers:
             ends, *line, _ = self._found[number]
@@ -171,7 +172,7 @@ class Way:
         return found
 
     def _grown(self, ends: Ends) -> Ends | None:
-        """Follow several drivers over a box, in parts where it is too large: what is nearer to rest first."""
+        """Follow several drivers over a box; split a box that is too large, and follow the half nearer to rest first."""
         for at, (low, high) in enumerate(ends):
             if low < self.rest[at] < high:
                 return self._parted(ends, at, float(self.rest[at]))
@@ -209,7 +210,7 @@ class Way:
     # --- pieces
 
     def piece(self, ends: Ends) -> Piece:
-        """Return what is known over a box of the drivers that has been followed."""
+        """Return the piece of a box of the drivers that has been followed."""
         if ends not in self._pieces:
             numbers = tuple(self._leaves(ends))
             rows = [self._found[number] for number in numbers]
@@ -247,7 +248,7 @@ class Way:
         return at, place, self.piece(first), self.piece(second)
 
     def _piece(self, ends: Ends, beside: int) -> Piece | None:
-        """Return a piece on the branch of another one if the checker would believe it."""
+        """Return a piece that lies on the branch of another one; None if the checker would refute it."""
         if ends in self._number:
             return self.piece(ends)
         span = np.array(ends)

@@ -1,8 +1,14 @@
 """Check a motion certificate without trusting it: what `articad verify-certificate` asks.
 
-Written apart from the prover, with NumPy alone. A certificate claims that parts keep apart while joints move within ranges. Beside it
-lies how that is seen: how to cut surfaces and ranges, and for each two pieces what keeps them apart. Nothing of that is believed and
-nothing is sought here: every inequality is computed anew from meshes and joints, and no piece, range or pair may be missing.
+The checker is independent of the prover and uses NumPy alone. A certificate claims that parts stay apart while joints move within
+ranges. A proof file says how to cut surfaces and ranges, and which direction separates each two pieces. The checker trusts none of it
+and searches for nothing. It computes every inequality again from meshes and joints, and refutes a proof that omits a piece, a range or a
+pair. The parts of the check:
+
+- `Checker.check_joints`: the mechanism is well formed, and joints of loops and couplings are declared as such.
+- `Checker.closure`, `enclosures`, `held`, `join`: followers of drivers have one solution in a tube about a quadratic curve.
+- `Checker.prove`, `boxes`, `follow`, `apart`, `motion`: each two pieces of surface are further apart than the motion can bring them.
+- `Checker.check_complete`, `missing`, `is_repeated`: every pair of parts has a claim over every range for which it needs one.
 """
 
 from __future__ import annotations
@@ -48,7 +54,7 @@ CUT = -3  # and -2, -1: the piece of a, of b, or the box is cut
 
 
 class Refuted(Exception):  # noqa: N818 - it is no error of the program
-    """Says why a certificate proves nothing."""
+    """The reason why the checker rejects a certificate."""
 
 
 def need(condition: Any, reason: str) -> None:
@@ -58,7 +64,12 @@ def need(condition: Any, reason: str) -> None:
 
 
 def verify_file(file: Path, folder: Path) -> list[str]:
-    """Return why a certificate file is refuted, nothing if it is accepted; `folder` holds `<part>.npz` of every part, and the proof."""
+    """Return the reasons why a certificate file is refuted, an empty list if it is accepted.
+
+    Args:
+        file: The certificate.
+        folder: Directory with `<part>.npz` for every part, and the proof.
+    """
     try:
         certificate, arrays = json.loads(content(file)), dict[str, Any]()
         for name in [*certificate["meshes"], PROOF]:
@@ -76,7 +87,7 @@ def verify_file(file: Path, folder: Path) -> list[str]:
 
 
 def content(file: Path) -> bytes:
-    """Return what a file holds; a pipe or a device would never end."""
+    """Return the bytes of a regular file; refuse a pipe or a device, which might never end."""
     handle = os.open(file, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
     with os.fdopen(handle, "rb") as stream:
         need(stat.S_ISREG(os.fstat(handle).st_mode), f"{file.name} is no file")
@@ -85,18 +96,18 @@ def content(file: Path) -> bytes:
 
 
 def widened(array: Any) -> Any:
-    """Return numbers such that they do not overflow; refuse other kinds."""
+    """Return an array of 64-bit numbers, which do not overflow here; refuse other kinds of arrays."""
     return array.astype(TYPES[array.dtype.kind])
 
 
 def digest(vertices: Any, triangles: Any) -> str:
-    """Return the hash of a mesh as it stands in a certificate."""
+    """Return the hash of a mesh as a certificate stores it."""
     v, f = np.ascontiguousarray(vertices, "<f8"), np.ascontiguousarray(triangles, "<i4")
     return hashlib.sha256(b"articad.mesh/1" + np.array([len(v), len(f)], "<i8").tobytes() + v.tobytes() + f.tobytes()).hexdigest()
 
 
 def shells(V: Any, F: Any) -> Any:
-    """Return a vertex of each connected piece of a mesh that is closed."""
+    """Return one vertex index of each connected component of a closed mesh; refute an open mesh."""
     need(V.shape[1:] == F.shape[1:] == (3,) and np.abs(V).max() < LARGEST, "a mesh is none")
     label = np.arange(len(V))
     forth, back = (np.sort((F * len(V) + np.roll(F, step, 1)).ravel()) for step in (1, -1))  # edges, by their two ends
@@ -108,7 +119,7 @@ def shells(V: Any, F: Any) -> Any:
 
 
 def is_inside(points: Any, corners: Any) -> bool:
-    """Return whether a closed surface winds round one of some points, either way (van Oosterom and Strackee)."""
+    """Return whether a closed surface encloses any of the points: its solid angle there is not 0 (van Oosterom and Strackee, 1983)."""
     for point in points:
         a, b, c = np.moveaxis(corners - point, 1, 0)
         la, lb, lc = (np.linalg.norm(v, axis=1) for v in (a, b, c))
@@ -119,7 +130,7 @@ def is_inside(points: Any, corners: Any) -> bool:
 
 
 def ordered(corners: Any, order: Any) -> Any:
-    """Return all triangles in another order."""
+    """Return the triangles in another order; refute an order that is not a permutation."""
     need(np.array_equal(np.sort(order), np.arange(len(corners))), "a triangle is left out")
     return corners[order]
 
@@ -175,7 +186,7 @@ def leans(local: Any, axis: Any) -> tuple[Any, Any]:
 
 
 def apart(u: Any, p: Any, q: Any, moving: Any) -> Any:
-    """Return by how much points `(k, n, 3)` of one part lie behind those of the other along directions `(k, 3)`, wherever these move."""
+    """Return the gap `(k,)` along directions `(k, 3)` between points `(k, n, 3)` of both parts, minus the bound of the motion of q [mm]."""
     R, t, *rest = moving
     there = q @ R.swapaxes(1, 2) + t[:, None]
     ahead = (there @ u[..., None])[..., 0] - motion(u, there, *rest)
@@ -183,9 +194,9 @@ def apart(u: Any, p: Any, q: Any, moving: Any) -> Any:
 
 
 def follow(rows: Any, codes: Any, directions: Any, A: Any, B: Any, how: Any, clear: float) -> None:
-    """Cut rows of pieces as written, each time all that are left, until each two are known to be further apart than `clear`.
+    """Repeat the cuts of the proof, level by level, and check that the pieces of each row that is not cut are further apart than `clear`.
 
-    A row `(5,)` is a piece of a, from one triangle up to another, a piece of b, and a box.
+    A row `(5,)` holds the first and last triangle of a piece of a, those of a piece of b, and the number of a box.
     """
     (along, of_a), (moving, halves, kept), hulls, level = directions, how, (Hulls(A), Hulls(B)), rows
     while len(level):
@@ -324,7 +335,7 @@ def covered(certificate: dict[str, Any]) -> str:
 
 
 class Checker:
-    """A certificate, its meshes and its proof."""
+    """Checks a certificate with its meshes and its proof."""
 
     def __init__(self, certificate: dict[str, Any], arrays: dict[str, dict[str, Any]]) -> None:
         self.certificate, self.meshes, self.proof = certificate, arrays, arrays[PROOF]
@@ -343,7 +354,7 @@ class Checker:
         self.groups = self.grouped(certificate["mechanism"]["couplings"])
 
     def check(self) -> None:
-        """Prove every claim; of what calls itself ok, find what is missing."""
+        """Check every claim; if the certificate is marked ok, check that no claim is missing."""
         whole, claims = self.certificate, self.certificate["claims"]
         for name, entry in whole["meshes"].items():
             need(digest(**self.meshes[name]) == entry["sha256"], f"mesh of {name} is missing or another")
@@ -391,7 +402,7 @@ class Checker:
                     yield a, b, ", ".join(sorted(name for names, _ in some for name in names))
 
     def check_joints(self, parts: Any, joints: Any, couplings: Any) -> None:
-        """Refute what is no mechanism, or is said to move otherwise than its loops and couplings let it."""
+        """Refute a malformed mechanism, and one whose loops and couplings are declared wrongly."""
         freedoms = [f for j in joints for f in j["freedoms"]]
         need((len(self.joints), len(self.freedoms)) == (len(joints), len(freedoms)), "a name stands twice")
         is_tree = sum(not j["loop"] for j in joints) == len(parts) - 1 and all(self.way(parts[0], part) is not None for part in parts)
@@ -729,7 +740,7 @@ class Checker:
         return max(depths, default=0.0)
 
     def prove(self, claim: dict[str, Any], proof: dict[str, Any]) -> None:
-        """Prove a claim: cut pieces of both surfaces and of the range as written, until what is written keeps each two apart."""
+        """Check a claim: repeat the cuts of the proof, and check that the given direction separates the pieces of each row."""
         (a, b), vary, whole = claim["parts"], claim["vary"], self.certificate
         (V, F), (W, G) = ((self.meshes[name]["vertices"], self.meshes[name]["triangles"]) for name in (a, b))
         moved, order_a, order_b = (self.proof.get(name, 0.0) for name in proof["uses"].tolist())
@@ -783,7 +794,7 @@ class Checker:
         return [drivers for drivers in found if drivers]
 
     def boxes(self, way: list[Any], vary: dict[str, Any], lines: Any, proof: dict[str, Any]) -> tuple[list[Any], list[Any], Any]:
-        """Cut a range into boxes; of each return whether points keep to an axis; of all the pose in the middle, and how far what goes."""
+        """Cut a range into boxes; return for each whether points keep their distance from an axis, and for all the pose in the middle and the motion."""
         names, todo, halves = list(vary), [{name: (low, high) for name, (low, high) in vary.items()}], []
         (centre, axis), across, count = proof["about"], plane(proof["about"][1]), sum(map(len, lines))
         for box, cut, place in zip(todo, proof["cuts"].tolist(), proof["at"].tolist(), strict=True):
