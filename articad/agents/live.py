@@ -126,9 +126,7 @@ class LiteLLM:
         require_open_port()
         model = self.model_for(request)
         while True:
-            blind = model in self._blind or (self._api_base is None and request.has_images and not self._known[model]["sees"])
-            if blind and request.role in _LOOKING:
-                raise transport_error("E_TRANSPORT", f"{model} cannot see, and {request.step} is about pictures.", _SIGHT)
+            blind = self._is_blind(model, request)
             arguments = self._conversation(model, request, blind=blind)
             answer = self._patiently("complete", model, arguments, meter)
             if "error" not in answer:
@@ -191,6 +189,13 @@ class LiteLLM:
                 raise self._failure(failure, model, number)
             self._sleep(pause)
         raise AssertionError("the last try either answers or raises")
+
+    def _is_blind(self, model: str, request: Request) -> bool:
+        """Return whether a model is asked without the pictures of a request, because it takes none; refuse a request about pictures."""
+        blind = model in self._blind or (self._api_base is None and request.has_images and not self._known[model]["sees"])
+        if blind and request.role in _LOOKING:
+            raise transport_error("E_TRANSPORT", f"{model} cannot see, and {request.step} is about pictures.", _SIGHT)
+        return blind
 
     def _conversation(self, model: str, request: Request, *, blind: bool) -> Json:
         """Return what a request says, in the form of chats."""

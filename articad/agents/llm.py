@@ -470,7 +470,15 @@ class Budget:
         return left
 
     def require(self, seconds: float, step: str) -> None:
-        """Check that a pause and a call after it are within the limits; see `Meter.require`."""
+        """Check that a pause and a call after it are within the limits; see `Meter.require`.
+
+        Args:
+            seconds: The length of the pause.
+            step: Whose call it is.
+
+        Raises:
+            BudgetError: If they are not.
+        """
         left = self._left()
         with self._guard:
             spent = self._spent(left)

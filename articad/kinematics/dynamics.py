@@ -186,7 +186,14 @@ class Dynamics:
         return self._result(state, z, tau)
 
     def centre_of_mass(self, q: npt.ArrayLike) -> FloatArray:
-        """Return the centre of mass [m] `(3,)` in the ground frame, the ground part's mass included."""
+        """Return the centre of mass [m] `(3,)` in the ground frame, the ground part's mass included.
+
+        Args:
+            q: Coordinates of the drivers [rad, mm] `(nq,)`.
+
+        Raises:
+            KinematicsError: If no part has mass.
+        """
         poses = self.mechanism.poses(q)
         total = sum(body.mass for body in self.masses.values())
         if total == 0:
