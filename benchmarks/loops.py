@@ -3,6 +3,7 @@
 python benchmarks/loops.py [--out loops.json]
 """
 
+# ruff: noqa: SLF001 - the peer's calls run on the model inside
 from __future__ import annotations
 
 import argparse
@@ -22,6 +23,7 @@ from articad.connectors import SE3, Attachment, Connector
 from articad.kinematics import Mechanism
 from articad.kinematics.declare import revolute
 from benchmarks.timing import Goal, Table, measure, report
+from tests.kinematics.linkages import scissor, stewart
 
 cpu_time = partial(measure, clock=time.process_time)  # every method here uses one thread
 
@@ -170,6 +172,38 @@ class Mujoco:
         return gap
 
 
+def one_configuration_table(name: str, mechanism: Mechanism) -> Table:
+    """Return the times of all residuals and their Jacobian at rest, beside the calls of Pinocchio that give the same numbers.
+
+    Both use one model of the linkage: Pinocchio's part is computeJointJacobians, calc and getConstraintsJacobian, and log6 of each loop.
+    Its Jacobian is unscaled, in its own order, and right on closed loops alone; the difference is what scaling and order cost.
+    """
+    (group,) = mechanism.branch.groups
+    system = group.system
+    loop_model = system._one
+    assert loop_model is not None
+    Q, model, data = group.Q, loop_model._model, loop_model._data
+    q, constraints, workspaces = loop_model._map.q(Q), loop_model._constraints, loop_model._workspaces
+    pairs = list(zip(constraints, workspaces, strict=True))
+
+    def bare() -> tuple[np.ndarray, np.ndarray]:
+        pin.computeJointJacobians(model, data, q)
+        for constraint, workspace in pairs:
+            constraint.calc(model, data, workspace)
+        J = pin.getConstraintsJacobian(model, data, constraints, workspaces)
+        return np.concatenate([pin.log6(workspace.c1Mc2).vector for _, workspace in pairs]), J
+
+    ranks = [np.linalg.matrix_rank(J, 1e-9) for J in (bare()[1], system.evaluate_one(Q)[1])]
+    assert ranks[0] == ranks[1]
+    methods = {
+        "articad": lambda: system.evaluate_one(Q),
+        "Pinocchio's constraint Jacobian": bare,
+        "articad, batch of one": lambda: system.evaluate(Q[None]),
+    }
+    goal = Goal("articad", "Pinocchio's constraint Jacobian", at_most=1.5)
+    return Table(f"{name}: residuals and Jacobian of one configuration", cpu_time(methods), (goal,))
+
+
 def main() -> int:
     """Measure, print, and return the number of goals missed."""
     parser = argparse.ArgumentParser(description=__doc__)
@@ -198,7 +232,8 @@ def main() -> int:
         (Goal("articad", "Newton on Pinocchio", at_most=0.2),),
         (f"largest error of the rocker against the closed formula {error:.1e} rad",),
     )
-    return report([single, along], options.out)
+    linkages = {"four-bar": four_bar(), "scissor of four stages": scissor(4), "Stewart platform": stewart()}
+    return report([single, along, *(one_configuration_table(*row) for row in linkages.items())], options.out)
 
 
 if __name__ == "__main__":

@@ -144,9 +144,15 @@ class CompiledModel:
 
 
 class _Turned(NamedTuple):
-    """Joints whose velocity is measured in another frame: freedoms `(n, 3)`, columns `(n, c)`, and their rotation for coordinates."""
+    """Joints whose velocity is measured in another frame.
 
-    freedoms: IndexArray
+    Attributes:
+        places: Where the rotation of each stands in the matrix that takes Pinocchio's freedoms to the layout's: rows, columns.
+        columns: Coordinates `(n, c)`.
+        rotations: Of coordinates `(n, c)` the rotations `(n, 3, 3)`.
+    """
+
+    places: tuple[IndexArray, IndexArray]
     columns: IndexArray
     rotations: Callable[[FloatArray], FloatArray]
 
@@ -190,7 +196,8 @@ class LoopModel:
             order[own] = range(first, first + own.stop - own.start)
             sign[own] = -1.0 if c.backwards else 1.0
         self._order = None if np.array_equal(order, np.arange(model.nv)) else order
-        self._turned = _turned(layout, [c.joint for c, _ in crossed if not c.backwards])
+        self._turned = _turned(layout, [c.joint for c, _ in crossed if not c.backwards], order)
+        self._ordered = np.eye(model.nv)[order]
         constraints, workspaces = pin.StdVec_RigidConstraintModel(), pin.StdVec_RigidConstraintData()
         local = pin.ReferenceFrame.LOCAL
         for (ghost, real), C_c in zip(closures.ends.T.tolist(), closures.connectors, strict=True):
@@ -203,6 +210,8 @@ class LoopModel:
         rows = np.concatenate([np.repeat(1.0 / self._lengths, 3, axis=1), np.ones((len(self._lengths), 3))], axis=1)
         self._weights = -np.outer(rows, sign * closures.scale)  # Pinocchio's constraint Jacobian is that of A against B
         self._pairs = list(zip(constraints, workspaces, strict=True))
+        # M of each loop, which each call writes anew in its workspace, and L
+        self._mismatches = [(workspace.c1Mc2, float(length)) for workspace, length in zip(workspaces, closures.lengths, strict=True)]
         self._lock = Lock()
 
     def __reduce__(self) -> tuple[type[LoopModel], tuple[Closures]]:
@@ -216,12 +225,15 @@ class LoopModel:
     def fill(self, Q: FloatArray, J: FloatArray) -> FloatArray:
         """Return the residuals, and write their derivatives, scaled, into the first rows of `J` `(rows, freedoms)`."""
         r, D = self._evaluated(Q)
-        if self._order is not None:
+        if self._turned:  # one product puts the columns in order and turns those of balls: a block of three each
+            T = self._ordered.copy()
+            for places, columns, turned in self._turned:
+                T[places] = turned(Q.take(columns))
+            D = D @ T.T
+        elif self._order is not None:
             D = D.take(self._order, axis=1)
-        V = D.reshape(-1, 6, D.shape[1])  # (v, ω) of each loop by each freedom, a view
-        for freedoms, columns, turned in self._turned:
-            V[:, :, freedoms] = (V[:, :, freedoms][..., None, :] @ turned(Q[columns]).swapaxes(1, 2))[..., 0, :]
         if r.dot(r) > _CLOSED**2:
+            V = D.reshape(-1, 6, D.shape[1])  # (v, ω) of each loop by each freedom, a view
             t, phi = r.reshape(-1, 2, 3).swapaxes(0, 1)
             S = _crossed(phi)
             V[:, :3] -= _crossed(t * self._lengths) @ V[:, 3:]
@@ -238,16 +250,16 @@ class LoopModel:
             for constraint, workspace in self._pairs:
                 constraint.calc(self._model, self._data, workspace)
             D = pin.getConstraintsJacobian(self._model, self._data, self._constraints, self._workspaces)
-            for (_, workspace), length in zip(self._pairs, self._lengths[:, 0].tolist(), strict=True):
-                x, y, z, a, b, c, w = pin.SE3ToXYZQUAT(workspace.c1Mc2).tolist()
+            for M, length in self._mismatches:
+                x, y, z, a, b, c, w = pin.SE3ToXYZQUATtuple(M)
                 sine = math.sqrt(a * a + b * b + c * c) + 1e-300  # of half the angle; never zero, and never seen
                 factor = math.copysign(2.0, w) * math.atan2(sine, abs(w)) / sine
                 r += (x / length, y / length, z / length, a * factor, b * factor, c * factor)
         return np.array(r), D
 
 
-def _turned(layout: Layout, joints: Sequence[Joint]) -> list[_Turned]:
-    """Return the joints whose velocity Pinocchio measures in the frame after the motion, by type."""
+def _turned(layout: Layout, joints: Sequence[Joint], order: IndexArray) -> list[_Turned]:
+    """Return the joints whose velocity Pinocchio measures in the frame after the motion, by type; `order` has its freedom for each."""
     found = []
     for kind, turned in ((JointType.BALL, rotations), (JointType.FREE, rotations), (JointType.PLANAR, _about_z)):
         names = [joint.name for joint in joints if joint.type is kind]
@@ -255,7 +267,7 @@ def _turned(layout: Layout, joints: Sequence[Joint]) -> list[_Turned]:
         columns = np.array([range(layout.columns[name].start + first, layout.columns[name].stop) for name in names])
         for block in range(0, kind.freedoms if names else 0, 3):  # of a free joint the velocity is turned as well as the spin
             freedoms = np.array([range(layout.freedoms[name].start + block, layout.freedoms[name].start + block + 3) for name in names])
-            found.append(_Turned(freedoms, columns, turned))
+            found.append(_Turned((freedoms[:, :, None], order[freedoms][:, None, :]), columns, turned))
     return found
 
 
