@@ -39,12 +39,15 @@ class Solution:
         s: Values `(freedoms,)` of the joints [rad, mm]; those of balls are not used.
         R: Rotations `(joints, 3, 3)` of the balls.
         sigma: Smallest singular value of the equations for what follows.
+        volume: Logarithm of the product of their singular values. The equations of one loop near its singular pose take the product
+            along, even where another loop has smaller values all the way.
     """
 
     X: FloatArray
     s: FloatArray
     R: FloatArray
     sigma: float = math.inf
+    volume: float = 0.0
 
 
 class PoseEquations:
@@ -159,14 +162,16 @@ class PoseEquations:
         turns = {self._joint(name): Rotation.from_matrix(R) for name, R in (balls or {}).items()}
         far = float(np.abs((goal - self.rest.s) / self.L).max(initial=0.0))
         steps = max(4, math.ceil(far / STEP))
-        found, at_rest = [self.rest], self._sigma(self.rest, free)
+        found, (at_rest, volume) = [self.rest], self._conditioned(self.rest, free)
         last = at_rest
         for share in np.linspace(0, 1, steps + 1)[1:]:
             at = self._at_drivers(found[-1], self._places(targets), self.rest.s + share * (goal - self.rest.s), turns, share)
             solved = self._solved(at, free)
             if solved is None or solved.sigma < max(WELL_POSED * at_rest, FALLS * (last - solved.sigma)):
                 break
-            last = solved.sigma
+            if solved.volume < volume + math.log(FALLS / (1 + FALLS)):  # exp(now) < FALLS (exp(last) - exp(now)), of the product
+                break
+            last, volume = solved.sigma, solved.volume
             if np.abs((solved.s - found[-1].s) / self.L).max(initial=0.0) > LONGEST:
                 break
             found.append(solved)
@@ -212,13 +217,17 @@ class PoseEquations:
         else:
             if np.abs(self.residual(at)).max() > 1e-11:
                 return None
-        return Solution(at.X, at.s, at.R, self._sigma(at, free))
+        return Solution(at.X, at.s, at.R, *self._conditioned(at, free))
 
-    def _sigma(self, at: Solution, free: FloatArray) -> float:
-        """Return the smallest singular value of the equations for what is free, but for what moves nothing."""
+    def _conditioned(self, at: Solution, free: FloatArray) -> tuple[float, float]:
+        """Return the smallest singular value of the equations for what is free, and the logarithm of the product of all of them.
+
+        Singular values of what moves nothing are left out.
+        """
         K = self.linearized(at)[1][:, free]
         sigma = np.sqrt(np.maximum(np.linalg.eigvalsh(K.T @ K), 0.0))
-        return float(sigma[sigma > _IDLE].min(initial=math.inf))
+        sigma = sigma[sigma > _IDLE]
+        return float(sigma.min(initial=math.inf)), float(np.log(sigma).sum())
 
     def _places(self, names: Sequence[str] | Mapping[str, float]) -> FloatArray:
         return np.array([self.place[name] for name in names], dtype=int)

@@ -26,6 +26,7 @@ MOST_PARTS = 12
 LINES = (1.0, 1e4)  # mm: mechanisms are from 1 mm to 10 m large
 INF = math.inf
 RATIOS = (0.25, 0.5, 1.0, 2.0, math.sqrt(2), None)
+KINDS = tuple(kind for kind in JointType if kind is not JointType.FREE)  # a free joint has no range along which a test could follow it
 
 
 @dataclass(frozen=True)
@@ -70,7 +71,7 @@ class Garden:
         self,
         rng: np.random.Generator,
         scale: float | None = None,
-        kinds: Sequence[str] = tuple(JointType),
+        kinds: Sequence[str] = KINDS,
         ratios: Sequence[float | None] = RATIOS,
     ) -> None:
         self.rng, self.kinds, self.ratios = rng, kinds, ratios
