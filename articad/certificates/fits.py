@@ -20,12 +20,14 @@ from articad.certificates.claims import Claim
 from articad.certificates.proof import NO_SHRINK, Prover, Shrink
 from articad.findings import Finding, Findings
 from articad.interference.gauge import Gauge
-from articad.interference.motion import ENDLESS_SLIDE_MM, Freedom, Route, freedoms, radians_per_mm, scattered, travels
+from articad.interference.motion import Freedom, Route, freedoms, scattered, travels
 from articad.interference.overlap import NOTHING
+from articad.interference.ranges import sampled_piece
 from articad.interference.relations import FitLike
 from articad.interference.report import Strength, rounded
 from articad.interference.scene import Scene
 from articad.interference.surface import Surface
+from articad.interference.sweep import Sweep
 from articad.interference.work import Budget
 from articad.kinematics.joints import Joint, JointType
 from articad.kinematics.mechanism import Mechanism
@@ -46,8 +48,7 @@ STEPS = 24  # poses per coordinate at which the gap is measured in motion
 CONTACT_MM = 0.02  # surfaces this close touch, beyond the deflection of their meshes
 EPSILON_MM = 1e-4  # a gap that exceeds what is to be proven by no more counts as contact in the search
 PROOF_SECONDS = 1.2  # nominal, for the proof of each fit
-ENDLESS_SAMPLED_MM = 100.0  # either way of rest, of what slides without limits
-_FOLLOWED = 61  # poses of each driver's range: a turn in steps of 6°, its half included
+_FOLLOWED = 61  # poses of each driver's range, or of each of its turns: steps of 6°, its half included
 
 FitVerdict = Literal["ok", "tight", "loose", "contact", "apart", "not_checked"]
 Span = Mapping[str, tuple[float, float]]
@@ -187,15 +188,16 @@ def followed(mechanism: Mechanism) -> dict[str, tuple[float, float]]:
     """
     if mechanism.is_tree:
         return {}
+    sweep = Sweep(Scene.of({}, mechanism.joints), mechanism)
+    numbers = {driver.name for driver in mechanism.drivers if driver.unit != "1"}
     rows = [mechanism.configuration(mechanism.rest).columns[None]]
-    for column, driver in enumerate(mechanism.drivers):
-        found = mechanism.feasible_range(driver.name)
-        q = np.repeat(np.array(mechanism.rest, dtype=np.float64)[None], _FOLLOWED, axis=0)
-        endless = ENDLESS_SAMPLED_MM if driver.unit == "mm" else math.pi
-        low = found.lower if math.isfinite(found.lower) else driver.rest - endless
-        high = found.upper if math.isfinite(found.upper) else driver.rest + endless
-        q[:, column] = np.linspace(low, high, _FOLLOWED)
-        rows.append(mechanism.configuration(q).columns)
+    for freedom in sweep.ranges():
+        moved = freedom
+        if freedom.name in numbers:  # the ends of what is reached are the ends of what follows
+            ends = mechanism.feasible_range(freedom.name)
+            moved = freedom._replace(lower=max(freedom.lower, ends.lower), upper=min(freedom.upper, ends.upper))
+        kept, _, solution = sweep.placed([{moved.name: value} for value in sweep.values(moved, _FOLLOWED).tolist()])
+        rows.append(solution.columns[kept])
     every = np.concatenate(rows)
     return {
         c.name: (float(low), float(high)) for c, low, high in zip(mechanism.coordinates, every.min(axis=0), every.max(axis=0), strict=True)
@@ -210,7 +212,6 @@ class _Held:
         self.gauge = Gauge(scene, joint, fit)
         self.slack = self.gauge.slack
         self.moving = travels(joint)
-        self.per_mm = radians_per_mm(joint) if joint.type is JointType.SCREW and joint.lead else 1.0  # coordinate per travel
         self.claims: tuple[Claim, ...] = ()
 
     @property
@@ -284,8 +285,8 @@ class _Held:
     def _over(self, row: FitCheck, moving: tuple[Freedom, ...]) -> FitCheck:
         """Hold the lower bound over a range: by samples, which find what is plainly wrong, then by a proof."""
         poses = 0
-        endless = any(_is_endless(freedom, self.per_mm) for freedom in moving)
-        ranges = [_bounded(freedom, self.per_mm) for freedom in moving]
+        ranges = [sampled_piece(self.joint, freedom) for freedom in moving]
+        endless = ranges != list(moving)
         near = freedoms(self.joint) if endless and self.joint.type is JointType.SCREW else ()  # one turn, in finer steps
         for values in itertools.chain(_samples(near), _samples(ranges)):
             poses += 1
@@ -408,19 +409,6 @@ def _samples(ranges: Sequence[Freedom]) -> Iterator[list[float]]:
         for point in scattered(ranges, STEPS):
             if not swings or math.hypot(point[0], point[1]) <= ranges[0].upper:
                 yield list(point)
-
-
-def _is_endless(freedom: Freedom, per_mm: float) -> bool:
-    """Return whether a range stands for a travel without limits."""
-    return freedom.upper - freedom.lower >= ENDLESS_SLIDE_MM * per_mm
-
-
-def _bounded(freedom: Freedom, per_mm: float) -> Freedom:
-    """Return a range that can be sampled: a piece about rest of what slides without limits."""
-    if not _is_endless(freedom, per_mm):
-        return freedom
-    far = ENDLESS_SAMPLED_MM * per_mm
-    return freedom._replace(lower=max(freedom.lower, freedom.rest - far), upper=min(freedom.upper, freedom.rest + far))
 
 
 def _named(moving: Sequence[Freedom], values: Sequence[float]) -> dict[str, float] | None:

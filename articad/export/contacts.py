@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -17,7 +18,6 @@ from articad.export.hulls import HULL_DEPTH_MM, HULL_VOLUME_MM3, HullOverlap, Pa
 from articad.geometry.mesh import TriMesh
 from articad.geometry.part import Shape
 from articad.interference.boxes import meeting_boxes
-from articad.interference.motion import freedoms
 from articad.interference.scene import Scene
 from articad.interference.sweep import Sweep
 
@@ -26,44 +26,23 @@ if TYPE_CHECKING:
 
 FloatArray = NDArray[np.float64]
 
-POSES_PER_FREEDOM = 13  # over its range, the others at rest
+POSES_PER_FREEDOM = 13  # over its range or each of its turns, the others at rest
 CONVEX_SHARE = 1e-9  # of its volume: what the hull of a convex part adds to it by rounding
-LIMIT_SLACK = 1e-6  # mm or rad by which a joint may be outside its limits
 _KEY_DIGITS = 6  # of mm and rotation entries: relative poses that agree so far are asked once
 
 
 def poses_in_motion(mechanism: Mechanism) -> FloatArray:
     """Return the poses of all parts at rest and along the range of every driver, matrices `(n, N, 4, 4)` [mm].
 
-    Endless joints go one turn. Where a loop stops a driver, or takes another joint out of its limits, its poses end there.
+    These are poses of a sweep: endless drivers move until all that follows is back, and what a loop or a limit of another joint keeps
+    from being reached is left out.
     """
     sweep = Sweep(Scene.of({}, mechanism.joints), mechanism)
     found = [mechanism.poses(mechanism.rest)[None].matrix]
-    for joint in sweep.driving:
-        for freedom in freedoms(joint):
-            values = np.linspace(freedom.lower, freedom.upper, POSES_PER_FREEDOM)
-            if mechanism.loop_joints or mechanism.couplings:
-                found += _walked(mechanism, sweep, freedom.name, values[values < freedom.rest][::-1])
-                found += _walked(mechanism, sweep, freedom.name, values[values >= freedom.rest])
-            else:
-                found.append(mechanism.poses(np.array([sweep.columns({freedom.name: value}) for value in values.tolist()])).matrix)
+    for freedom in sweep.ranges():
+        with contextlib.suppress(KinematicsError):  # a loop that is open at rest has its rest pose
+            found.append(sweep.placed([{freedom.name: value} for value in sweep.values(freedom, POSES_PER_FREEDOM).tolist()])[1])
     return np.concatenate(found)
-
-
-def _walked(mechanism: Mechanism, sweep: Sweep, name: str, values: FloatArray) -> list[FloatArray]:
-    """Return the poses at these values, each `(1, N, 4, 4)`, up to the first that the mechanism does not reach."""
-    lower, upper = (np.array([getattr(coordinate, end) for coordinate in mechanism.coordinates]) for end in ("lower", "upper"))
-    reached = []
-    for value in values.tolist():
-        q = np.array(sweep.columns({name: value}))
-        try:
-            columns = mechanism.configuration(q).columns
-            if not ((lower - LIMIT_SLACK <= columns) & (columns <= upper + LIMIT_SLACK)).all():
-                break
-            reached.append(mechanism.poses(q)[None].matrix)
-        except KinematicsError:
-            break
-    return reached
 
 
 class _Placed(NamedTuple):

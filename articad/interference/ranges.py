@@ -45,7 +45,7 @@ def _endless(mechanism: Mechanism, joint: Joint, index: int, freedom: Freedom) -
     driver = mechanism.drivers[index]
     track = track_of(mechanism, index, mechanism.rest)
     if track is None and _slides(joint, driver):
-        return _piece(joint, freedom)
+        return sampled_piece(joint, freedom)
     if track is None:
         return next(one for one in freedoms(joint) if one.name == freedom.name)
     ends = mechanism.feasible_range(driver.name)
@@ -65,9 +65,9 @@ def _slides(joint: Joint, driver: Coordinate) -> bool:
     return driver.unit == "mm" or (joint.type is JointType.SCREW and slides_endlessly(joint))
 
 
-def _piece(joint: Joint, freedom: Freedom) -> Freedom:
-    """Return a piece about rest of what slides or screws without limits."""
-    per_mm = radians_per_mm(joint) if joint.type is JointType.SCREW else 1.0
+def sampled_piece(joint: Joint, freedom: Freedom) -> Freedom:
+    """Return a piece about rest of what slides or screws without limits; any other range as it is."""
+    per_mm = radians_per_mm(joint) if joint.type is JointType.SCREW and joint.lead else 1.0
     if freedom.upper - freedom.lower < ENDLESS_SLIDE_MM * per_mm:
         return freedom
     far = ENDLESS_SAMPLED_MM * per_mm

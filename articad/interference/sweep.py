@@ -112,8 +112,7 @@ class Sweep:
         broken = Findings(broken_finding(name, reason) for name, reason in self.scene.broken.items())
         report = Checks(broken, tuple(unknown_pairs(self.scene, over).values()), self.scene.deflection, over, tuple(self.scene.bodies))
         for freedom in ranges:
-            turns = (freedom.upper - freedom.lower) / (2 * math.pi) if self._is_angle(freedom.name) else 1.0
-            values = np.linspace(freedom.lower, freedom.upper, max(math.ceil(steps * min(max(turns, 1.0), MOST_TURNS)), 2))
+            values = self.values(freedom, steps)
             step = float(values[1] - values[0])
             report += self.sampled([{freedom.name: value} for value in values.tolist()], (freedom.name,), step)
         if together:
@@ -139,6 +138,11 @@ class Sweep:
     @cached_property
     def _ranges(self) -> tuple[Freedom, ...]:
         return sampled_ranges(self.mechanism)
+
+    def values(self, freedom: Freedom, steps: int) -> FloatArray:
+        """Return the values `(n,)` at which a range is sampled: so many of it, or of each of its turns where it has several."""
+        turns = (freedom.upper - freedom.lower) / (2 * math.pi) if self._is_angle(freedom.name) else 1.0
+        return np.linspace(freedom.lower, freedom.upper, max(math.ceil(steps * min(max(turns, 1.0), MOST_TURNS)), 2))
 
     def _is_angle(self, name: str) -> bool:
         return any(driver.name == name and driver.unit == "rad" for driver in self.mechanism.drivers)

@@ -8,7 +8,9 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
+from articad.certificates.fits import followed
 from articad.connectors import SE3
+from articad.export.contacts import poses_in_motion
 from articad.geometry import box, cylinder
 from articad.interference.clearance import least_clearances
 from articad.interference.ranges import ENDLESS_SAMPLED_MM, MOST_TURNS, sampled_ranges
@@ -53,6 +55,25 @@ def test_a_slow_arm_that_a_fast_crank_brings_round_is_seen_to_hit_a_post() -> No
     (finding,) = report.findings
     assert finding.pose is not None
     assert abs(finding.pose["fast"]) == pytest.approx(4 * math.pi, abs=0.7)
+
+
+@pytest.mark.parametrize("ratio", [0.25, -0.5, 1 / 3])
+def test_fits_and_contacts_look_at_all_that_a_slow_follower_does(ratio: float) -> None:
+    """The arm needs several turns of the crank for one of its own."""
+    mechanism = geared(ratio, rest=0.3)
+    low, high = followed(mechanism)["slow"]
+    assert (low, high) == pytest.approx((0.3 * ratio - math.pi, 0.3 * ratio + math.pi))
+    arm = poses_in_motion(mechanism)[:, mechanism.part_index("arm")]
+    angles = np.sort(np.arctan2(arm[:, 1, 0], arm[:, 0, 0]))
+    assert np.diff(np.append(angles, angles[0] + 2 * math.pi)).max() < math.radians(31) * abs(ratio)
+
+
+def test_fits_and_contacts_look_as_far_as_a_followers_limit() -> None:
+    mechanism = geared(0.5, slow_limits=(-0.4, math.pi / 3))
+    assert followed(mechanism)["slow"] == pytest.approx((-0.4, math.pi / 3), abs=1e-6)
+    arm = poses_in_motion(mechanism)[:, mechanism.part_index("arm")]
+    angles = np.arctan2(arm[:, 1, 0], arm[:, 0, 0])
+    assert (angles.min(), angles.max()) == pytest.approx((-0.4, math.pi / 3), abs=1e-6)
 
 
 def test_a_followers_limits_end_the_range_of_an_endless_driver() -> None:
