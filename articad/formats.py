@@ -130,7 +130,7 @@ def write(assembly: Assembly, path: str | Path, *, strict: bool = False, **optio
         assembly: What to write.
         path: The file; its ending says the format.
         strict: Refuse losses of motion, mass or shape.
-        options: Of the format's writer, such as `collision="decompose"` for `write_urdf`.
+        options: Of the format's writer, such as `collision="hull"` for `write_urdf`.
 
     Returns:
         What was written, with the losses.

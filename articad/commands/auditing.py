@@ -103,11 +103,6 @@ def _sim(options: argparse.Namespace, terminal: Terminal) -> Report:
         for outcome in verdict.outcomes
     ]
     terminal.table(["engine", "loads", "speed at rest", "joints reach", "residual mm", "energy gain"], rows)
-    for outcome in verdict.outcomes:
-        if outcome.loads and outcome.open_loops:
-            terminal.say(
-                f"{outcome.engine}: a URDF holds no closed loop; {outcome.open_loops} of the assembly are open there, their joints free."
-            )
     terminal.findings(verdict.findings)
     if options.film and assembly is not None and (strip := _film(assembly, verdict.outcomes)):
         Path(options.film).parent.mkdir(parents=True, exist_ok=True)

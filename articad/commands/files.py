@@ -23,9 +23,9 @@ if TYPE_CHECKING:
     argument("--loops", choices=["none", "isaac", "drake", "mimic"], default="none", help="how URDF closes loops (none)"),
     argument(
         "--collision",
-        choices=["solid", "hull", "decompose"],
-        default="solid",
-        help="collision shapes of URDF and MJCF: the parts' own meshes, their hulls, or convex pieces (solid)",
+        choices=["pieces", "solid", "hull"],
+        default=None,
+        help="what simulators collide with: convex pieces inside the parts, the parts' own meshes, or their hulls (pieces)",
     ),
     argument("--actuators", action="store_true", help="give every driver of an MJCF a servo"),
     argument("--ros", metavar="PACKAGE", default=None, help="write URDF as a ROS 2 package, with SRDF and ros2_control"),
@@ -44,7 +44,7 @@ def _export(options: argparse.Namespace, terminal: Terminal) -> Report:
     ros = options.ros is not None
     choices = {
         "loops": options.loops,
-        "collision": "pieces" if options.collision == "decompose" else options.collision,
+        "collision": options.collision,
         "actuators": options.actuators,
         "package": options.ros,
         "srdf": ros,

@@ -1,4 +1,7 @@
-"""What a model collides with: the parts' own meshes, their hulls, or convex pieces that add no contact."""
+"""What a model collides with: convex pieces inside the parts, the parts' own meshes, or their hulls.
+
+Convex pieces lie inside the solids. So they touch only where the solids touch, and what is certified of the solids holds for them.
+"""
 
 from __future__ import annotations
 
@@ -7,22 +10,22 @@ from itertools import combinations
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
 from articad.export.contacts import ContactSearch, poses_in_motion
-from articad.export.convex import THRESHOLDS, Pieces, is_convex, pieces_of, whole_hull
+from articad.export.convex import Pieces, as_it_is, pieces_of, whole_hull
 from articad.export.hulls import HullOverlap, Pair
 from articad.export.losses import Feature
+from articad.export.lowering import metres
 from articad.export.once import once
-from articad.geometry.mesh import TriMesh
 from articad.geometry.part import Shape
 from articad.kernels.cache import BuildCache
 
 if TYPE_CHECKING:
     from articad.assembly import Assembly
-    from articad.export.lowering import Link, LoweredModel
+    from articad.export.lowering import Link, LoweredModel, Placed
 
-Collision = Literal["solid", "hull", "pieces"]
+Collision = Literal["pieces", "solid", "hull"]
 
-HULL_SHARE = 1e-6  # of a part's volume: what hulls and pieces may add by rounding
-LARGEST_SHARE = 0.1  # of a part's volume: pieces that add or leave out more are cut finer as long as that helps
+HULL_SHARE = 1e-6  # of a part's volume: what hulls and pieces may differ by rounding
+EXACT_MM = 1e-3  # of the surface that pieces may leave out and still be called exact
 
 
 class Collisions(NamedTuple):
@@ -30,59 +33,69 @@ class Collisions(NamedTuple):
 
     Attributes:
         model: With its collision shapes and what they lose.
-        contacts: Pairs of parts that these shapes, which engines take the hulls of, bring into contact: at rest, or in motion where the
-            solids are apart.
+        contacts: Pairs of parts whose shapes overlap though no joint connects them: of pieces, pairs whose solids overlap at rest; of meshes
+            and hulls, which engines take the hulls of, also those that meet at rest or in motion where the solids are apart.
     """
 
     model: LoweredModel
     contacts: tuple[HullOverlap, ...]
 
 
-def collide(assembly: Assembly, model: LoweredModel, collision: Collision, skip: set[Pair], cache: BuildCache | None = None) -> Collisions:
+def collide(
+    assembly: Assembly, model: LoweredModel, collision: Collision | None, skip: set[Pair], cache: BuildCache | None = None
+) -> Collisions:
     """Return the model with the shapes that are asked for, and the contacts that they add.
 
     Args:
         assembly: Whose motion counts.
         model: Its lowering.
-        collision: "solid" for the parts' own meshes, "hull" for one hull each, "pieces" for convex pieces, which are cut finer until they
-            are near the solid and add no contact, or cannot be cut finer.
+        collision: "pieces" for convex pieces inside the solids, "solid" for the parts' own meshes, "hull" for one hull each; None for
+            pieces, or for the meshes as they came where the assembly is a file that somebody else made.
         skip: Pairs that need no check: engines do not let them collide.
         cache: Keeps pieces by shape; that of built parts by default.
     """
-    cache = cache or BuildCache()
-    shaped = {link.part.name: _Shaped(link, collision, cache) for link in model.links}
-    own = {name: tuple(placed.shape for placed in one.link.collisions) for name, one in shaped.items()}
+    kind = kind_of(assembly, collision)
+    shaped = shape_model(assembly, model, kind, cache)
+    own = {link.part.name: tuple(placed.shape for placed in link.collisions) for link in model.links}
+    formed = {link.part.name: tuple(placed.shape for placed in link.collisions) for link in shaped.links}
     asked = any(own[a] and own[b] and (a, b) not in skip and (b, a) not in skip for a, b in combinations(assembly.mechanism.parts, 2))
     at_rest = assembly.poses(assembly.mechanism.rest)[None].matrix
 
     def begun() -> ContactSearch:
         search = ContactSearch(assembly.mechanism.parts, at_rest, own)
-        for name, one in shaped.items():
-            search.update(name, one.shapes)
-        if asked and not search.is_convex:  # in motion, where convex pieces meet the solids do
+        for name, shapes in formed.items():
+            search.update(name, shapes)
+        if asked and kind != "pieces" and not search.is_convex:  # in motion, where such pieces meet the solids do
             search.poses = once(assembly, "poses in motion", lambda: poses_in_motion(assembly.mechanism))
         return search
 
     # The solids never change, so that what one format has found is known to the next.
     shapes = tuple((name, tuple((id(shape.mesh), shape.frame.data.tobytes()) for shape in solids)) for name, solids in own.items())
-    search = once(assembly, ("contacts", asked, shapes), begun) if collision == "solid" else begun()
-    while True:
-        contacts = search.contacts(skip)
-        added = dict.fromkeys(part for contact in contacts if not contact.solids for part in contact.parts)
-        finer = [name for name in added if shaped[name].refine()]
-        if not finer:
-            break
-        for name in finer:
-            search.update(name, shaped[name].shapes)
-    if collision == "solid":
-        return Collisions(model, tuple(contacts))
-    features = [*model.features, *(feature for one in shaped.values() for feature in one.features())]
-    links = tuple(shaped[link.part.name].result for link in model.links)
-    return Collisions(replace(model, links=links, features=tuple(features)), tuple(contacts))
+    contacts = tuple(once(assembly, ("contacts", kind, asked, shapes), begun).contacts(skip))
+    return Collisions(shaped, contacts)
 
 
-def _reshaped(shape: Shape, mesh: TriMesh) -> Shape:
-    return shape if mesh is shape.mesh else replace(shape, mesh=mesh, primitive=None)
+def kind_of(assembly: Assembly, collision: Collision | None) -> Collision:
+    """Return what an assembly collides with: what is asked for, or else pieces, or the shapes of the file that it came from."""
+    return collision or ("solid" if assembly.foreign else "pieces")
+
+
+def shape_model(assembly: Assembly, model: LoweredModel, kind: Collision, cache: BuildCache | None = None) -> LoweredModel:
+    """Return the model with the collision shapes that are asked for and the features that say what they leave out.
+
+    Args:
+        assembly: What is written.
+        model: Its lowering.
+        kind: As for `collide`.
+        cache: Keeps pieces by shape; that of built parts by default.
+    """
+    if kind == "solid":
+        return model
+    cache = cache or BuildCache()
+    shaped = once(assembly, ("shaped", kind), lambda: {link.part.name: _found(link, kind, cache) for link in model.links})
+    features = [*model.features, *(feature for name, found in shaped.items() for feature in _features(name, kind, found))]
+    links = tuple(_reshaped(link, shaped[link.part.name]) for link in model.links)
+    return replace(model, links=links, features=tuple(features))
 
 
 def contact_feature(contact: HullOverlap) -> Feature:
@@ -90,55 +103,63 @@ def contact_feature(contact: HullOverlap) -> Feature:
     return Feature("hull", "parts." + "+".join(contact.parts), f"hulls share {contact.volume:.3g} mm³")
 
 
-class _Shaped:
-    """A part's collision shapes in convex pieces, as coarse as is good enough so far."""
+def _found(link: Link, kind: Collision, cache: BuildCache) -> list[Pieces]:
+    """Return the pieces of each of a link's collision shapes."""
+    return [_pieces(link, placed, kind, cache) for placed in link.collisions]
 
-    def __init__(self, link: Link, collision: Collision, cache: BuildCache) -> None:
-        self.link, self._cache, self._fineness = link, cache, 0
-        self._key = f"collision.{collision}"
-        meshes = [placed.shape.mesh for placed in link.collisions]
-        self._cuts = collision == "pieces" and not all(map(is_convex, meshes))
-        if collision == "pieces":
-            self._pieces = self._cut()
-            while self._error > LARGEST_SHARE and self.refine():
-                pass
-        else:
-            self._pieces = [whole_hull(mesh) for mesh in meshes] if collision == "hull" else [Pieces((mesh,), 0.0, 0.0) for mesh in meshes]
 
-    @property
-    def shapes(self) -> tuple[Shape, ...]:
-        """The pieces, in the part's frame."""
-        rows = zip(self.link.collisions, self._pieces, strict=True)
-        return tuple(_reshaped(placed.shape, mesh) for placed, pieces in rows for mesh in pieces.meshes)
+def _pieces(link: Link, placed: Placed, kind: Collision, cache: BuildCache) -> Pieces:
+    shape, solid = placed.shape, link.part.solid
+    if kind == "solid" or (kind == "pieces" and shape.primitive is not None):
+        return as_it_is(shape.mesh, shape.primitive)
+    if kind == "hull":
+        return whole_hull(shape.mesh)
+    deflection = solid.deflection if solid is not None and solid.mesh.digest == shape.mesh.digest else 0.0
+    return pieces_of(shape.mesh, cache, deflection=deflection)
 
-    @property
-    def result(self) -> Link:
-        """The link with its pieces."""
-        rows = zip(self.link.collisions, self._pieces, strict=True)
-        pieces = (replace(placed, shape=_reshaped(placed.shape, mesh)) for placed, found in rows for mesh in found.meshes)
-        return replace(self.link, collisions=tuple(pieces))
 
-    @property
-    def _error(self) -> float:
-        return max((max(pieces.more, pieces.less) for pieces in self._pieces), default=0.0)
+def _reshaped(link: Link, found: list[Pieces]) -> Link:
+    """Return the link with pieces for its collision shapes."""
+    placed = [one for placed, pieces in zip(link.collisions, found, strict=True) for one in _placed(placed, pieces)]
+    return replace(link, collisions=tuple(placed))
 
-    def refine(self) -> bool:
-        """Cut the shapes finer; False where that is not possible."""
-        if not self._cuts or self._fineness + 1 >= len(THRESHOLDS):
-            return False
-        self._fineness += 1
-        self._pieces = self._cut()
-        return True
 
-    def features(self) -> list[Feature]:
-        """Return what the pieces are not, if they are not the shape itself."""
-        if self._error <= HULL_SHARE:
-            return []
-        more, less = (100 * max(getattr(pieces, name) for pieces in self._pieces) for name in ("more", "less"))
-        detail = f"{more:.3g} % more volume"
-        if self._key == "collision.pieces":
-            detail = f"{sum(len(pieces.meshes) for pieces in self._pieces)} of them, {detail}, {less:.3g} % less"
-        return [Feature(self._key, f"parts.{self.link.part.name}", detail)]
+def _placed(placed: Placed, found: Pieces) -> list[Placed]:
+    rows = []
+    for piece in found.pieces:
+        if piece.mesh is placed.shape.mesh:
+            rows.append(placed)
+            continue
+        shape = Shape(piece.mesh, placed.shape.frame @ piece.frame, placed.shape.color, placed.shape.name, piece.primitive)
+        rows.append(replace(placed, shape=shape, T_link_shape=placed.T_link_shape @ metres(piece.frame)))
+    return rows
 
-    def _cut(self) -> list[Pieces]:
-        return [pieces_of(placed.shape.mesh, self._fineness, self._cache) for placed in self.link.collisions]
+
+def _features(name: str, kind: Collision, found: list[Pieces]) -> list[Feature]:
+    """Return what the pieces are not, if they are not the shape itself."""
+    where = f"parts.{name}"
+    if kind == "hull":
+        more = max((pieces.more for pieces in found), default=0.0)
+        return [Feature("collision.hull", where, f"{100 * more:.3g} % more volume")] if more > HULL_SHARE else []
+    features = [Feature("collision.open", where) for pieces in found if not pieces.inside]
+    missing = max((pieces.missing for pieces in found), default=0.0)
+    less = max((pieces.less for pieces in found), default=0.0)
+    if missing > EXACT_MM or less > HULL_SHARE:
+        count, bound = sum(len(pieces.pieces) for pieces in found), max(pieces.bound for pieces in found)
+        detail = f"{count} of them, up to {missing:.3g} mm of the solid left out, {100 * less:.3g} % of its volume"
+        features.append(Feature("collision.pieces", where, detail + (f", more than {bound:.3g} mm" if missing > bound else "")))
+    return features
+
+
+def shared(assembly: Assembly, pair: Pair) -> str:
+    """Return why two parts that share joints do not collide."""
+    joints = [joint.name for joint in assembly.mechanism.joints if {joint.parent, joint.child} == set(pair)]
+    return f"adjacent: {pair[0]} and {pair[1]} touch by design at joint {', '.join(joints)}"
+
+
+def excuse(contact: HullOverlap) -> str:
+    """Return why two parts that overlap do not collide."""
+    a, b = contact.parts
+    if contact.solids:
+        return f"not checked: the solids of {a} and {b} overlap by {contact.volume:.3g} mm³ at rest"
+    return f"not checked: the hulls of {a} and {b} overlap by {contact.volume:.3g} mm³ where the solids are apart"

@@ -1,31 +1,27 @@
-"""Convex pieces of a shape, by CoACD: what they add to the solid and what they leave out is measured, and they are kept by shape.
-
-CoACD (Wei et al. 2022) cuts a mesh until each piece is nearer to its hull than a threshold, a share of the shape's size. It is
-seeded, so a shape always falls into the same pieces; it takes seconds to minutes, so pieces are kept where built parts are.
-"""
+"""Collision shapes of a mesh: convex pieces inside it, kept by shape, or its hull."""
 
 from __future__ import annotations
 
 import hashlib
 import io
+import json
 from dataclasses import dataclass
-from importlib.metadata import version
-from typing import Final
+from typing import Any, Final
 
 import manifold3d
 import numpy as np
 from numpy.typing import NDArray
 
+from articad.connectors.se3 import SE3
 from articad.errors import ArticadError
+from articad.geometry.inscribed import MOST_PIECES, SCHEME, Inscribed, Piece, inscribed
 from articad.geometry.mesh import TriMesh
+from articad.geometry.part import Primitive
 from articad.kernels.cache import BuildCache
 
 FloatArray = NDArray[np.float64]
 
-THRESHOLDS: Final = (0.05, 0.02, 0.01)  # of CoACD, coarse to fine; 0.01 is the least that it takes
-CONVEX_SHARE: Final = 1e-3  # of its volume: a shape whose hull adds no more is its own only piece
 _FILE: Final = "pieces.npz"
-_SCHEME: Final = "articad.pieces/1"  # to be changed with anything that changes pieces
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,91 +29,94 @@ class Pieces:
     """Convex pieces that stand for a shape.
 
     Attributes:
-        meshes: In the shape's own frame [mm].
+        pieces: Each in a frame of its own within the shape's [mm].
+        missing: Largest distance of the shape's surface from the pieces [mm].
+        bound: What that distance was meant to be at most [mm].
         more: Volume of the pieces outside the shape, as a share of its own; 0 where the shape is open.
         less: Volume of the shape outside the pieces, likewise.
+        inside: False where the pieces are no part of the shape: a hull, or an open mesh that encloses nothing.
     """
 
-    meshes: tuple[TriMesh, ...]
-    more: float
-    less: float
+    pieces: tuple[Piece, ...]
+    missing: float = 0.0
+    bound: float = 0.0
+    more: float = 0.0
+    less: float = 0.0
+    inside: bool = True
 
 
 def hull_mesh(vertices: FloatArray) -> TriMesh:
     """Return the convex hull of points."""
-    return _mesh(manifold3d.Manifold.hull_points(vertices))
+    found = manifold3d.Manifold.hull_points(vertices).to_mesh64()
+    return TriMesh(np.array(found.vert_properties[:, :3], dtype=np.float64), np.array(found.tri_verts, dtype=np.int32))
 
 
-def is_convex(mesh: TriMesh) -> bool:
-    """True when the hull of a closed mesh adds next to nothing to it."""
-    return mesh.is_closed and mesh.volume > 0 and hull_mesh(mesh.vertices).volume <= mesh.volume * (1 + CONVEX_SHARE)
-
-
-def pieces_of(mesh: TriMesh, fineness: int, cache: BuildCache) -> Pieces:
-    """Return the convex pieces of a shape.
+def pieces_of(mesh: TriMesh, cache: BuildCache, *, deflection: float = 0.0, most: int = MOST_PIECES) -> Pieces:
+    """Return convex pieces that lie inside a shape; of a surface that encloses nothing the mesh itself.
 
     Args:
-        mesh: The shape; an open one is closed by CoACD.
-        fineness: Index of `THRESHOLDS`.
+        mesh: The shape.
         cache: Where pieces are kept; one that cannot be written is done without.
+        deflection: Largest distance between the mesh and the true surface [mm].
+        most: Number of pieces.
     """
-    meshes = (hull_mesh(mesh.vertices),) if is_convex(mesh) else _kept(mesh, THRESHOLDS[fineness], cache)
-    return Pieces(meshes, *_errors(mesh, meshes))
+    faces = hashlib.sha256(b"" if mesh.face is None else np.ascontiguousarray(mesh.face, dtype="<i4").tobytes()).hexdigest()
+    digest = hashlib.sha256(f"{SCHEME} {mesh.digest} {faces} {deflection!r} {most}".encode()).hexdigest()
+    folder = cache.get(digest)
+    if folder is not None:
+        found = _loaded((folder / _FILE).read_bytes())
+    else:
+        found = inscribed(mesh, most=most, deflection=deflection)
+        try:
+            with cache.writing(digest) as new:
+                (new / _FILE).write_bytes(_saved(found))
+        except ArticadError:
+            pass
+    if found is None:
+        return Pieces((Piece(mesh, SE3.identity(), None),), inside=False)
+    return Pieces(found.pieces, found.missing, found.bound, less=found.less)
 
 
 def whole_hull(mesh: TriMesh) -> Pieces:
     """Return the convex hull of a shape as its only piece."""
     hull = hull_mesh(mesh.vertices)
-    return Pieces((hull,), max(0.0, hull.volume / mesh.volume - 1) if mesh.is_closed and mesh.volume > 0 else 0.0, 0.0)
+    more = max(0.0, hull.volume / mesh.volume - 1) if mesh.is_closed and mesh.volume > 0 else 0.0
+    return Pieces((Piece(hull, SE3.identity(), None),), more=more, inside=False)
 
 
-def _kept(mesh: TriMesh, threshold: float, cache: BuildCache) -> tuple[TriMesh, ...]:
-    """Return CoACD's pieces from the cache, or put them there."""
-    asked = f"{_SCHEME} coacd {version('coacd')} {threshold} {mesh.digest}"
-    digest = hashlib.sha256(asked.encode()).hexdigest()
-    folder = cache.get(digest)
-    if folder is not None:
-        return _loaded((folder / _FILE).read_bytes())
-    import coacd  # noqa: PLC0415 - needed by those whose pieces are not kept yet
-
-    coacd.set_log_level("error")
-    found = coacd.run_coacd(coacd.Mesh(mesh.vertices.copy(), mesh.triangles.copy()), threshold=threshold, seed=0)
-    meshes = tuple(hull_mesh(np.asarray(vertices, dtype=np.float64)) for vertices, _ in found)
-    try:
-        with cache.writing(digest) as new:
-            (new / _FILE).write_bytes(_saved(meshes))
-    except ArticadError:
-        return meshes
-    return meshes
+def as_it_is(mesh: TriMesh, primitive: Primitive | None) -> Pieces:
+    """Return a shape as its only piece."""
+    return Pieces((Piece(mesh, SE3.identity(), primitive),))
 
 
-def _saved(meshes: tuple[TriMesh, ...]) -> bytes:
-    arrays = {f"{kind}{i}": getattr(mesh, kind) for i, mesh in enumerate(meshes) for kind in ("vertices", "triangles")}
+def _saved(found: Inscribed | None) -> bytes:
+    arrays: dict[str, Any] = {}
+    head: dict[str, Any] = {"pieces": []}
+    if found is not None:
+        head |= {"missing": found.missing, "bound": found.bound, "less": found.less}
+        for index, piece in enumerate(found.pieces):
+            arrays |= {f"{kind}{index}": getattr(piece.mesh, kind) for kind in ("vertices", "triangles")}
+            form = piece.primitive
+            head["pieces"].append({"frame": piece.frame.data.tolist(), "primitive": None if form is None else [form.kind, *form.size]})
     stream = io.BytesIO()
-    np.savez_compressed(stream, allow_pickle=False, **arrays)
+    np.savez_compressed(stream, allow_pickle=False, head=np.frombuffer(json.dumps(head).encode(), dtype=np.uint8), **arrays)
     return stream.getvalue()
 
 
-def _loaded(content: bytes) -> tuple[TriMesh, ...]:
+def _loaded(content: bytes) -> Inscribed | None:
     with np.load(io.BytesIO(content), allow_pickle=False) as arrays:
-        return tuple(TriMesh(arrays[f"vertices{i}"], arrays[f"triangles{i}"]) for i in range(len(arrays) // 2))
-
-
-def _errors(mesh: TriMesh, pieces: tuple[TriMesh, ...]) -> tuple[float, float]:
-    """Return what the pieces together add to a closed mesh, and what they leave out, as shares of its volume."""
-    solid = manifold(mesh)
-    own = solid.volume()
-    if solid.status() != manifold3d.Error.NoError or own <= 0:
-        return 0.0, 0.0
-    together = manifold3d.Manifold.batch_boolean([manifold(piece) for piece in pieces], manifold3d.OpType.Add)
-    return float((together - solid).volume() / own), float((solid - together).volume() / own)
+        head = json.loads(arrays["head"].tobytes())
+        if not head["pieces"]:
+            return None
+        pieces = []
+        for index, row in enumerate(head["pieces"]):
+            form = row["primitive"]
+            primitive = None if form is None else Primitive(form[0], tuple(form[1:]))
+            mesh = TriMesh(arrays[f"vertices{index}"], arrays[f"triangles{index}"])
+            pieces.append(Piece(mesh, SE3.from_unit_array(np.array(row["frame"])), primitive))
+    return Inscribed(tuple(pieces), head["missing"], head["bound"], head["less"])
 
 
 def manifold(mesh: TriMesh) -> manifold3d.Manifold:
     """Return a mesh as manifold3d takes it, in double precision; look at its status before trusting it."""
     return manifold3d.Manifold(manifold3d.Mesh64(mesh.vertices.copy(), mesh.triangles.astype(np.uint64)))
-
-
-def _mesh(solid: manifold3d.Manifold) -> TriMesh:
-    found = solid.to_mesh64()
-    return TriMesh(np.array(found.vert_properties[:, :3], dtype=np.float64), np.array(found.tri_verts, dtype=np.int32))

@@ -23,6 +23,7 @@ from articad.export.freecad_expressions import Followed
 from articad.export.freecad_file import mesh_kernel
 from articad.export.losses import Feature, kept_losses, losses_of
 from articad.export.lowering import lower
+from articad.export.meshes import MeshFiles
 from articad.export.metadata import dumps, records
 from articad.export.names import Names
 from articad.geometry.part import Part
@@ -91,7 +92,7 @@ class Job:
             "task": "freecad",
             "name": self.assembly.name,
             "ground": self.assembly.ground,
-            "records": [dumps(record) for record in records(self.assembly, self.model, {}, ())],
+            "records": [dumps(record) for record in records(self.assembly, self.model, MeshFiles(), ())],
             "parameters": list(self._parameters()),
             "parts": parts,
             "joints": [*self._joints(), *self._couplings()],

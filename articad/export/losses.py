@@ -323,7 +323,11 @@ TABLE: dict[str, dict[Format, Row]] = {
         for name in MECHANISM_FORMATS
     },
     "collision.pieces": {
-        name: Row("convex pieces for collision", "the difference between the pieces and the solid") for name in MECHANISM_FORMATS
+        name: Row("convex pieces inside the solid for collision", "what the pieces leave out of the solid") for name in MECHANISM_FORMATS
+    },
+    "collision.open": {
+        name: Row("its mesh for collision, of which engines take the hull", "convex pieces: the surface encloses no volume")
+        for name in MECHANISM_FORMATS
     },
     "color": {"urdf": Row("<material>"), "mjcf": Row("a material"), "sdf": Row("a material"), "usd": Row("displayColor")},
     "friction": {

@@ -10,6 +10,9 @@ from lxml import etree
 
 from articad.connectors.se3 import SE3
 
+DUST_DIGITS = 12  # a billionth of a mm
+DUST = 0.5 * 10.0**-DUST_DIGITS
+
 
 def number(value: float) -> str:
     """Return the shortest text that reads back as the same float; −0 becomes 0, and whole numbers lose their ".0"."""
@@ -20,6 +23,16 @@ def number(value: float) -> str:
 def numbers(values: Iterable[float]) -> str:
     """Return numbers with spaces between them."""
     return " ".join(map(number, values))
+
+
+def tidy(values: Iterable[float]) -> list[float]:
+    """Return lengths in m, angles and components of unit vectors without the dust of rounding: 1e-17 is 0, 0.9999999999999998 is 1."""
+    found = []
+    for value in map(float, values):
+        rounded = round(value, DUST_DIGITS)
+        dusty = abs(value) < DUST or abs(value - rounded) <= 2e-15 * max(1.0, abs(value))
+        found.append((rounded if dusty else value) + 0.0)
+    return found
 
 
 def rpy(T: SE3) -> tuple[float, float, float]:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import asdict, is_dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -17,6 +17,7 @@ from articad.connectors.connector import Connector
 from articad.connectors.se3 import SE3
 from articad.export.fingerprint import fingerprint
 from articad.export.lowering import Link, LoweredModel
+from articad.export.meshes import MeshFiles
 from articad.geometry.part import Part
 from articad.kinematics.joints import Coupling, Joint
 
@@ -28,13 +29,13 @@ VERSION = 1
 Record = dict[str, Any]
 
 
-def records(assembly: Assembly, model: LoweredModel, files: Mapping[str, str], written: Iterable[Any] = ()) -> list[Record]:
+def records(assembly: Assembly, model: LoweredModel, files: MeshFiles, written: Iterable[Any] = ()) -> list[Record]:
     """Return everything that a format does not hold by itself.
 
     Args:
         assembly: What is exported.
         model: Its lowering: the names under which parts and joints are found in the file.
-        files: Path of each mesh in the bundle, by the mesh's digest.
+        files: The bundle's meshes.
         written: The elements that say in the format's own words what the records say; whoever edits them makes the records stale.
     """
     links = {link.part.name: link for link in model.links}
@@ -66,7 +67,7 @@ def dumps(record: Record) -> str:
     return json.dumps(record, ensure_ascii=True, allow_nan=False)
 
 
-def _part(link: Link, files: Mapping[str, str]) -> Record:
+def _part(link: Link, files: MeshFiles) -> Record:
     part = link.part
     return {
         "kind": "part",
@@ -82,13 +83,13 @@ def _part(link: Link, files: Mapping[str, str]) -> Record:
     }
 
 
-def _solid(part: Part, files: Mapping[str, str]) -> Record | None:
+def _solid(part: Part, files: MeshFiles) -> Record | None:
     if part.solid is None:
         return None
     solid = part.solid
     return {
-        "file": files.get(solid.mesh.digest),
-        "deflection": solid.deflection,
+        "file": files.by_digest.get(solid.mesh.digest),
+        "deflection": solid.deflection + files.deviation(solid.mesh),
         "volume": solid.volume,
         "area": solid.area,
         "com": solid.com.tolist(),
@@ -96,10 +97,10 @@ def _solid(part: Part, files: Mapping[str, str]) -> Record | None:
     }
 
 
-def _shapes(shapes: tuple[Any, ...], files: Mapping[str, str]) -> list[Record]:
+def _shapes(shapes: tuple[Any, ...], files: MeshFiles) -> list[Record]:
     return [
         {
-            "file": files.get(shape.mesh.digest),
+            "file": files.by_digest.get(shape.mesh.digest),
             "frame": _frame(shape.frame),
             "color": shape.color,
             "name": shape.name,

@@ -13,7 +13,7 @@ from lxml import etree
 from articad.connectors.se3 import SE3
 from articad.export.bundle import Bundle
 from articad.export.closing import has_limits, tied_points
-from articad.export.collisions import Collision, collide, contact_feature
+from articad.export.collisions import Collision, collide, contact_feature, excuse, kind_of, shared
 from articad.export.features import rigid_with_ground
 from articad.export.hulls import HullOverlap, Pair, mating_pairs, same_group_pairs
 from articad.export.inertia import Inertial
@@ -30,7 +30,7 @@ from articad.export.lowering import (
     lower,
     metres,
 )
-from articad.export.markup import child, document, number, numbers, rgba, wxyz
+from articad.export.markup import child, document, number, numbers, rgba, tidy, wxyz
 from articad.export.meshes import MM_TO_M, MeshFiles, MeshKind
 from articad.export.metadata import dumps, records
 from articad.export.mjcf_again import Again
@@ -63,23 +63,23 @@ def write_mjcf(
     strict: bool = False,
     meshes: MeshKind = "stl",
     actuators: bool = False,
-    collision: Collision = "solid",
+    collision: Collision | None = None,
     cache: BuildCache | None = None,
 ) -> Bundle:
     """Write an assembly as MJCF.
 
     Body frames are joint frames, the one base body is the ground part, and every joint's value is ours in rad or m, so all zero is q = 0;
     the key `home` is the rest pose. Loops are closed by equality constraints between sites.
-    Parts that share a joint do not collide with each other, nor do parts that hulls bring into contact, at rest or in motion, where the
-    solids are apart.
+    Parts that share a joint do not collide with each other, nor do parts whose solids overlap at rest; a comment gives the reason. Parts
+    that collide with meshes or hulls do not collide either where these meet and the solids do not.
 
     Args:
         assembly: What to write.
         strict: Refuse what MJCF holds only with a loss of motion, mass or shape.
         meshes: Format of the mesh files: STL holds single precision, OBJ nine digits.
         actuators: Give every driver a position servo of the joint's effort, and its joint the inertia of a rotor.
-        collision: Collide with the parts' own meshes, of which MuJoCo takes the hulls ("solid"), with their hulls, or with convex pieces
-            that are cut until they add no contact; the error of both is told.
+        collision: Collide with convex pieces inside the parts ("pieces"), with the parts' own meshes ("solid"), of which engines take the
+            hulls, or with hulls ("hull"). By default pieces; of a file that somebody else made, its own shapes.
         cache: Keeps convex pieces by shape; that of built parts by default.
 
     Returns:
@@ -106,6 +106,11 @@ def write_mjcf(
     losses = (*losses_of("mjcf", features), *kept_losses("mjcf", assembly.kept, again.written))
     if strict:
         refuse(losses)
+<<<<<<< HEAD
+=======
+    writer = _Writer(assembly, model, MeshFiles(meshes, draws=kind_of(assembly, collision) != "solid"))
+    root = writer.document(contacts, actuators=actuators)
+>>>>>>> f9b092a (Collide with convex pieces inside the solids; let sim say which loops are left open)
     assumed = [] if assembly.foreign else [row.joint.name for row in model.joints if any(freedom.load.assumed for freedom in row.freedoms)]
     return Bundle({f"{model.name}.xml": document(root), **writer.files.files}, losses, Findings(assumed_finding(assumed, "mjcf")))
 
@@ -113,8 +118,14 @@ def write_mjcf(
 class _Writer:
     """Builds one document; holds what its sections share."""
 
+<<<<<<< HEAD
     def __init__(self, assembly: Assembly, model: LoweredModel, files: MeshFiles, again: Again) -> None:
         self.assembly, self.model, self.files, self.again = assembly, model, files, again
+=======
+    def __init__(self, assembly: Assembly, model: LoweredModel, files: MeshFiles) -> None:
+        self.assembly, self.model, self.files = assembly, model, files
+        files.expect(link.part for link in model.links)
+>>>>>>> f9b092a (Collide with convex pieces inside the solids; let sim say which loops are left open)
         self.sites = Names()
         self.asset: Any = None
         self.bodies: dict[str, Any] = {}
@@ -151,7 +162,7 @@ class _Writer:
             self.again.sections(root, same_joints=self._has_the_files_joints(world))
         self._home(root, world, servos)
         custom = child(root, "custom")
-        for number_, record in enumerate(records(self.assembly, self.model, self.files.by_digest, [world, *root.iterfind("equality")])):
+        for number_, record in enumerate(records(self.assembly, self.model, self.files, [world, *root.iterfind("equality")])):
             child(custom, "text", {"name": f"articad.{number_}.{record['kind']}", "data": dumps(record)})
         if not len(self.asset):
             root.remove(self.asset)
@@ -194,11 +205,15 @@ class _Writer:
             for one in chain:
                 self._joints(body, one)
             self._geoms(body, link)
+<<<<<<< HEAD
             if self.again.active:
                 body.attrib.update(self.again.attributes(f"parts.{link.part.name}", "body"))
                 self.again.below(f"parts.{link.part.name}", body)
             if self.assembly.foreign:
                 continue
+=======
+            self.files.keep_all(link.part, link.name)
+>>>>>>> f9b092a (Collide with convex pieces inside the solids; let sim say which loops are left open)
             for connector in link.part.connectors.values():
                 self._site(body, f"{link.name}__{connector.name}", link.T_link_part @ metres(connector.frame))
 
@@ -330,7 +345,7 @@ class _Writer:
         form = placed.shape.primitive
         if form is None:
             return {"mesh": self._mesh(placed, name)}
-        self.files.path(placed.shape.mesh, name)  # the records name it
+        self.files.keep(placed.shape.mesh, name)  # for the records
         return {"type": form.kind, "size": numbers(_half_sizes(form))}
 
     def _mesh(self, placed: Placed, name: str) -> str:
@@ -354,13 +369,19 @@ class _Writer:
         if self.again.active:
             return
         links = {link.part.name: link for link in self.model.links}
+<<<<<<< HEAD
         mating = self._joined()
+=======
+        mating = mating_pairs(self.assembly.mechanism.joints, self.assembly.mechanism.parts)
+        reasons = {contact.parts: excuse(contact) for contact in contacts} | {pair: shared(self.assembly, pair) for pair in mating}
+>>>>>>> f9b092a (Collide with convex pieces inside the solids; let sim say which loops are left open)
         pairs = dict.fromkeys([*mating, *(contact.parts for contact in contacts)])
         if self.assembly.foreign:
             self.added += [Feature("contact.joined", "parts." + "+".join(pair)) for pair in mating]
         if pairs:
             contact = child(root, "contact")
             for a, b in pairs:
+                contact.append(etree.Comment(f" {reasons[a, b]} ".replace("--", "- -")))
                 child(contact, "exclude", {"body1": links[a].name, "body2": links[b].name})
 
     def _joined(self) -> list[Pair]:
@@ -436,9 +457,13 @@ class _Writer:
         return freedoms
 
     def _home(self, root: Any, world: Any, servos: list[Freedom]) -> None:
+<<<<<<< HEAD
         values = [value for joint in world.iter("joint", "freejoint") for value in self.qpos[joint.get("name")]]
         if self.again.active or (self.assembly.foreign and self._rests_at_zero()):  # an MJCF file has keys of its own
             return
+=======
+        values = tidy(value for joint in world.iter("joint", "freejoint") for value in self.qpos[joint.get("name")])
+>>>>>>> f9b092a (Collide with convex pieces inside the solids; let sim say which loops are left open)
         if values:
             if self.assembly.foreign:
                 self.added.append(Feature("rest.assumed", "model"))
@@ -464,7 +489,7 @@ def _material(color: str) -> str:
 
 
 def _placement(T: SE3) -> dict[str, str]:
-    return {"pos": numbers(T.translation), "quat": numbers(wxyz(T))}
+    return {"pos": numbers(tidy(T.translation)), "quat": numbers(tidy(wxyz(T)))}
 
 
 def _inertial(body: Any, inertial: Inertial) -> None:
@@ -495,7 +520,7 @@ def _dynamics(freedom: Freedom) -> dict[str, str]:
 def _joint(freedom: Freedom, *, foreign: bool = False) -> dict[str, str]:
     """Return the attributes of a hinge or slide; the effort limits what actuators give it, where a foreign file states one."""
     turn = freedom.kind == "turn"
-    attributes = {"name": freedom.name, "type": "hinge" if turn else "slide", "axis": numbers(freedom.axis)}
+    attributes = {"name": freedom.name, "type": "hinge" if turn else "slide", "axis": numbers(tidy(freedom.axis))}
     bounds = _range(freedom)
     if bounds is not None:
         attributes["range"] = bounds
@@ -509,7 +534,7 @@ def _range(freedom: Freedom) -> str | None:
     if math.isinf(freedom.lower) and math.isinf(freedom.upper):
         return None
     far = FAR_RAD if freedom.kind == "turn" else FAR_M
-    return numbers([max(freedom.lower, -far), min(freedom.upper, far)])
+    return numbers(tidy([max(freedom.lower, -far), min(freedom.upper, far)]))
 
 
 def _servo(freedom: Freedom) -> dict[str, str]:
@@ -524,7 +549,7 @@ def _servo(freedom: Freedom) -> dict[str, str]:
 
 def _tie(equality: Any, name: str, follower: str, follows: Follows) -> None:
     """Write q_follower = ratio · q_leader + offset."""
-    polynomial = numbers([follows.offset, follows.ratio, 0, 0, 0])
+    polynomial = numbers(tidy([follows.offset, follows.ratio, 0, 0, 0]))
     child(equality, "joint", {"name": name, "joint1": follower, "joint2": follows.leader, "polycoef": polynomial} | EQUALITY)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -10,15 +11,17 @@ from lxml import etree
 
 from articad.connectors.se3 import SE3
 from articad.export.bundle import Bundle
+from articad.export.collisions import Collision, kind_of, shape_model
 from articad.export.features import primitive_features
 from articad.export.follow import followers
 from articad.export.inertia import Inertial
 from articad.export.losses import Feature, assumed_finding, kept_losses, losses_of, refuse
 from articad.export.lowering import Follows, Freedom, Link, LoweredJoint, LoweredModel, Placed, lower
-from articad.export.markup import child, document, number, numbers, rgba, rpy
+from articad.export.markup import child, document, number, numbers, rgba, rpy, tidy
 from articad.export.meshes import MM_TO_M, MeshFiles, MeshKind
 from articad.export.metadata import dumps, records
 from articad.findings import Findings
+from articad.kernels.cache import BuildCache
 from articad.kinematics.joints import JointType
 
 if TYPE_CHECKING:
@@ -38,8 +41,23 @@ _NATIVE = {
     JointType.SCREW: "screw",
 }
 
+_FORMS: dict[str, Callable[[tuple[float, ...]], dict[str, str]]] = {
+    "box": lambda size: {"size": numbers(size)},
+    "sphere": lambda size: {"radius": number(size[0])},
+    "cylinder": lambda size: {"radius": number(size[0]), "length": number(size[1])},
+    "capsule": lambda size: {"radius": number(size[0]), "length": number(size[1])},
+}
+"""What SDFormat says of a primitive body whose sizes are these [m]."""
 
-def write_sdf(assembly: Assembly, *, strict: bool = False, meshes: MeshKind = "stl") -> Bundle:
+
+def write_sdf(
+    assembly: Assembly,
+    *,
+    strict: bool = False,
+    meshes: MeshKind = "stl",
+    collision: Collision | None = None,
+    cache: BuildCache | None = None,
+) -> Bundle:
     """Write an assembly as an SDFormat model.
 
     A tree is posed where all values are zero, as in URDF. A model with loops is posed at rest, where its loops are closed, and values and
@@ -49,6 +67,9 @@ def write_sdf(assembly: Assembly, *, strict: bool = False, meshes: MeshKind = "s
         assembly: What to write.
         strict: Refuse what SDFormat holds only with a loss of motion, mass or shape.
         meshes: Format of the mesh files: STL holds single precision, OBJ, which Drake wants, nine digits.
+        collision: Collide with convex pieces inside the parts ("pieces"), with the parts' own meshes ("solid"), or with hulls ("hull"). By
+            default pieces; of a file that somebody else made, its own shapes.
+        cache: Keeps convex pieces by shape; that of built parts by default.
 
     Returns:
         `<name>.sdf`, `meshes/…`, and the losses.
@@ -56,12 +77,13 @@ def write_sdf(assembly: Assembly, *, strict: bool = False, meshes: MeshKind = "s
     Raises:
         UnrepresentableError: If `strict` and there is such a loss.
     """
-    model = lower(assembly, RESERVED)
+    kind = kind_of(assembly, collision)
+    model = shape_model(assembly, lower(assembly, RESERVED), kind, cache)
     features = [*model.features, *([Feature("loop.rest", "joints")] if model.loops else []), *primitive_features(assembly)]
     losses = (*losses_of("sdf", features), *kept_losses("sdf", assembly.kept))
     if strict:
         refuse(losses)
-    writer = _Writer(assembly, model, MeshFiles(meshes))
+    writer = _Writer(assembly, model, MeshFiles(meshes, draws=kind != "solid"))
     assumed = [] if assembly.foreign else [row.joint.name for row in model.joints if any(freedom.load.assumed for freedom in row.freedoms)]
     return Bundle(
         {f"{model.name}.sdf": document(writer.document()), **writer.files.files}, losses, Findings(assumed_finding(assumed, "sdf"))
@@ -71,6 +93,7 @@ def write_sdf(assembly: Assembly, *, strict: bool = False, meshes: MeshKind = "s
 class _Writer:
     def __init__(self, assembly: Assembly, model: LoweredModel, files: MeshFiles) -> None:
         self.assembly, self.model, self.files = assembly, model, files
+        files.expect(link.part for link in model.links)
         self.at_rest = bool(model.loops)
         self.follows = followers(model, [driver.name for driver in assembly.mechanism.drivers])
         self.poses: dict[str, SE3] = {}
@@ -96,7 +119,7 @@ class _Writer:
             if loop.joint.type in _NATIVE:  # at rest its two frames meet, so the child's is enough
                 self._joint(model, loop.name, loop, loop.parent, loop.child, loop.freedoms, loop.T_child_joint)
         kept = child(model, f"{{{ARTICAD}}}records")
-        for record in records(self.assembly, self.model, self.files.by_digest, [*model.iterfind("link"), *model.iterfind("joint")]):
+        for record in records(self.assembly, self.model, self.files, [*model.iterfind("link"), *model.iterfind("joint")]):
             child(kept, f"{{{ARTICAD}}}record", {"kind": str(record["kind"])}, dumps(record))
         return root
 
@@ -160,6 +183,7 @@ class _Writer:
                 child(material, kind, text=rgba(placed.color))
         for index, placed in enumerate(link.collisions):
             collision = self._shape(element, "collision", index, placed, link.name)
+            self.files.keep_all(link.part, link.name)
             if link.friction is not None:
                 ode = child(child(child(collision, "surface"), "friction"), "ode")
                 for name in ("mu", "mu2"):
@@ -168,7 +192,14 @@ class _Writer:
     def _shape(self, link: Any, tag: str, index: int, placed: Placed, name: str) -> Any:
         element = child(link, tag, {"name": f"{tag}_{index}"})
         child(element, "pose", text=_pose(placed.T_link_shape))
-        mesh = child(child(element, "geometry"), "mesh")
+        geometry, form = child(element, "geometry"), placed.shape.primitive
+        if tag == "collision" and form is not None and form.kind in _FORMS:
+            body = child(geometry, form.kind)
+            for field, value in _FORMS[form.kind](tuple(size * MM_TO_M for size in form.size)).items():
+                child(body, field, text=value)
+            self.files.keep(placed.shape.mesh, name)
+            return element
+        mesh = child(geometry, "mesh")
         child(mesh, "uri", text=self.files.path(placed.shape.mesh, name))
         child(mesh, "scale", text=numbers([MM_TO_M] * 3))
         return element
@@ -231,7 +262,7 @@ def _motion(freedom: Freedom) -> SE3:
 
 
 def _pose(T: SE3) -> str:
-    return f"{numbers(T.translation)} {numbers(rpy(T))}"
+    return f"{numbers(tidy(T.translation))} {numbers(tidy(rpy(T)))}"
 
 
 def _inertial(link: Any, inertial: Inertial) -> None:

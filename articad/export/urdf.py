@@ -11,13 +11,13 @@ from lxml import etree
 from articad.connectors.se3 import SE3
 from articad.export.bundle import Bundle
 from articad.export.closing import TiedPoint, tied_points
-from articad.export.collisions import Collision, collide, contact_feature
+from articad.export.collisions import Collision, collide, contact_feature, kind_of
 from articad.export.follow import followers
 from articad.export.hulls import HullOverlap, Pair, mating_pairs, same_group_pairs
 from articad.export.inertia import Inertial
 from articad.export.losses import Feature, assumed_finding, kept_losses, losses_of, refuse
 from articad.export.lowering import Follows, Freedom, Link, LoweredJoint, LoweredModel, Placed, lower
-from articad.export.markup import child, document, number, numbers, rgba, rpy
+from articad.export.markup import child, document, number, numbers, rgba, rpy, tidy
 from articad.export.meshes import MM_TO_M, MeshFiles, MeshKind
 from articad.export.metadata import dumps, records
 from articad.export.mimic import linear_followers
@@ -46,7 +46,7 @@ def write_urdf(
     package: str | None = None,
     srdf: bool = False,
     ros2_control: bool = False,
-    collision: Collision = "solid",
+    collision: Collision | None = None,
     cache: BuildCache | None = None,
 ) -> Bundle:
     """Write an assembly as URDF.
@@ -64,8 +64,8 @@ def write_urdf(
         package: Name of a ROS 2 package to lay out: `urdf/`, `meshes/`, a manifest, and meshes named `package://…`.
         srdf: Add `<name>.srdf` with the pairs of links that need no collision check.
         ros2_control: Add a `<ros2_control>` system that commands the drivers' positions, on mock hardware.
-        collision: Collide with the parts' own meshes ("solid"), with their hulls, or with convex pieces that are cut until they add no
-            contact; the error of both is told.
+        collision: Collide with convex pieces inside the parts ("pieces"), with the parts' own meshes ("solid"), of which engines take the
+            hulls, or with hulls ("hull"). By default pieces; of a file that somebody else made, its own shapes.
         cache: Keeps convex pieces by shape; that of built parts by default.
 
     Returns:
@@ -87,7 +87,8 @@ def write_urdf(
     losses = (*losses_of("urdf", features), *kept_losses("urdf", assembly.kept, keeper.written))
     if strict:
         refuse(losses)
-    files = MeshFiles(meshes, prefix="" if package is None else f"package://{package}/")
+    files = MeshFiles(meshes, draws=kind_of(assembly, collision) != "solid", prefix="" if package is None else f"package://{package}/")
+    files.expect(link.part for link in model.links)
     follows = followers(model, [driver.name for driver in assembly.mechanism.drivers])
     if loops == "mimic" and model.loops:
         follows |= linear_followers(assembly, model)
@@ -100,7 +101,7 @@ def write_urdf(
         for point in tied.get(loop.name, ()):
             (_isaac if loops == "isaac" else _drake)(root, loop, point)
     keeper.write(root)
-    for record in records(assembly, model, files.by_digest, [*root.iterfind("link"), *root.iterfind("joint")]):
+    for record in records(assembly, model, files, [*root.iterfind("link"), *root.iterfind("joint")]):
         child(root, "articad", {"kind": str(record["kind"])}, dumps(record))
     if ros2_control:
         add_control(root, assembly, model)
@@ -210,6 +211,7 @@ def _tree(root: Any, model: LoweredModel, follows: dict[str, Follows], files: Me
             for name in joint.carriers[:carriers]:
                 _inertial(child(root, "link", {"name": name}), carrier)
         _link(root, link, whole, files, keeper)
+        files.keep_all(link.part, link.name)
         if joint is not None:
             _joints(root, joint, follows, keeper)
 
@@ -272,7 +274,7 @@ def _shape(link: Any, tag: str, placed: Placed, name: str, files: MeshFiles, kee
     form = None if placed.shape.primitive is None else _form(placed.shape.primitive, keeper)
     if form is not None:
         child(child(element, "geometry"), *form)
-        files.path(placed.shape.mesh, name)  # the records name it
+        files.keep(placed.shape.mesh, name)  # for the records
         return element
     mesh = {"filename": files.uri(placed.shape.mesh, name), "scale": numbers([MM_TO_M] * 3)}
     child(child(element, "geometry"), "mesh", mesh)
@@ -280,7 +282,7 @@ def _shape(link: Any, tag: str, placed: Placed, name: str, files: MeshFiles, kee
 
 
 def _origin(parent: Any, T: SE3) -> None:
-    child(parent, "origin", {"xyz": numbers(T.translation), "rpy": numbers(rpy(T))})
+    child(parent, "origin", {"xyz": numbers(tidy(T.translation)), "rpy": numbers(tidy(rpy(T)))})
 
 
 def _joints(root: Any, joint: LoweredJoint, follows: dict[str, Follows], keeper: _Keeper) -> None:
@@ -294,7 +296,7 @@ def _joints(root: Any, joint: LoweredJoint, follows: dict[str, Follows], keeper:
     for freedom, near, far in zip(joint.freedoms, links[:-1], links[1:], strict=True):
         element = child(root, "joint", {"name": freedom.name, "type": _type(freedom)})
         _ends(element, T, near, far)
-        child(element, "axis", {"xyz": numbers(freedom.axis)})
+        child(element, "axis", {"xyz": numbers(tidy(freedom.axis))})
         limit = _limit(freedom, keeper)
         if limit:
             child(element, "limit", limit)

@@ -6,6 +6,7 @@ import json
 import math
 import re
 from collections.abc import Iterable
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,14 +15,18 @@ from numpy.typing import NDArray
 from articad.connectors.mate import flip
 from articad.connectors.se3 import SE3
 from articad.export.bundle import Bundle
+from articad.export.collisions import Collision, kind_of, shape_model
 from articad.export.features import features_of, primitive_features, solid_enough
 from articad.export.inertia import Inertial, is_possible
 from articad.export.losses import Feature, kept_losses, losses_of, refuse
+from articad.export.lowering import lower
 from articad.export.markup import number
+from articad.export.meshes import built_meshes, drawn
 from articad.export.names import Names, valid_name
 from articad.geometry.mass import MassProperties
 from articad.geometry.mesh import TriMesh
-from articad.geometry.part import Part
+from articad.geometry.part import Part, Shape
+from articad.kernels.cache import BuildCache
 from articad.kinematics.joints import Joint, JointType
 
 if TYPE_CHECKING:
@@ -42,7 +47,7 @@ _ROOT = '"PhysicsArticulationRootAPI"'
 _DEGREES = ("transX", "transY", "transZ", "rotX", "rotY", "rotZ")
 
 
-def write_usd(assembly: Assembly, *, strict: bool = False) -> Bundle:
+def write_usd(assembly: Assembly, *, strict: bool = False, collision: Collision | None = None, cache: BuildCache | None = None) -> Bundle:
     """Write an assembly as one `.usda` file in metres, z-up, with meshes inside.
 
     Bodies keep the parts' own frames and are posed at rest. A joint's two local frames coincide where its values are zero, so limits are
@@ -51,6 +56,9 @@ def write_usd(assembly: Assembly, *, strict: bool = False) -> Bundle:
     Args:
         assembly: What to write.
         strict: Refuse what USD holds only with a loss of motion, mass or shape.
+        collision: Collide with convex pieces inside the parts ("pieces"), with the parts' own meshes ("solid"), or with hulls ("hull"). By
+            default pieces; of a file that somebody else made, its own shapes.
+        cache: Keeps convex pieces by shape; that of built parts by default.
 
     Returns:
         `<name>.usda` and the losses.
@@ -62,7 +70,10 @@ def write_usd(assembly: Assembly, *, strict: bool = False) -> Bundle:
     root = valid_name(assembly.name)
     bodies = {name: links.claim(name) for name in assembly.parts}
     names = {joint.name: joints.claim(joint.name) for joint in assembly.joints}
-    features = (*features_of(assembly), *_name_features(assembly, bodies, names), *primitive_features(assembly))
+    kind = kind_of(assembly, collision)
+    model = shape_model(assembly, replace(lower(assembly), features=()), kind, cache)
+    colliding = {link.part.name: tuple(placed.shape for placed in link.collisions) or solid_enough(link.part) for link in model.links}
+    features = (*features_of(assembly), *model.features, *_name_features(assembly, bodies, names), *primitive_features(assembly))
     losses = (*losses_of("usd", features), *kept_losses("usd", assembly.kept))
     if strict:
         refuse(losses)
@@ -72,7 +83,8 @@ def write_usd(assembly: Assembly, *, strict: bool = False) -> Bundle:
     free = {joint.child for joint in assembly.joints if joint.type is JointType.FREE and joint.name not in closing}
     lines.append(f'def Xform "{root}"\n{{' if free else f'def Xform "{root}" (\n    prepend apiSchemas = [{_ROOT}]\n)\n{{')
     for name, part in assembly.parts.items():
-        lines += _indented(_body(part, bodies[name], rest[name], (_ROOT,) if name in free else ()))
+        schemas = (_ROOT,) if name in free else ()
+        lines += _indented(_body(part, bodies[name], rest[name], colliding[name], schemas, draws=kind != "solid"))
     lines += _indented(['def Scope "joints"', "{"])
     ground = f"</{root}/{bodies[assembly.ground]}>"
     held = [_ROOT] if free else []  # roots of articulations may not be nested, so that each is on a prim of its own
@@ -96,8 +108,8 @@ _HEADER = """#usda 1.0
 """
 
 
-def _body(part: Part, name: str, T: SE3, schemas: Iterable[str] = ()) -> list[str]:
-    """Return a rigid body with its meshes."""
+def _body(part: Part, name: str, T: SE3, collisions: tuple[Shape, ...], schemas: Iterable[str] = (), *, draws: bool) -> list[str]:
+    """Return a rigid body with its meshes; those of a built part are simplified where they are only drawn."""
     listed = ", ".join(['"PhysicsRigidBodyAPI"', '"PhysicsMassAPI"', *schemas])
     mass = part.mass if part.mass is not None and part.mass.mass > 0 else None
     lines = [
@@ -110,13 +122,15 @@ def _body(part: Part, name: str, T: SE3, schemas: Iterable[str] = ()) -> list[st
         f"    quatd xformOp:orient = {_quaternion(T)}",
         '    uniform token[] xformOpOrder = ["xformOp:translate", "xformOp:orient"]',
     ]
-    visuals, collisions = part.visuals or part.collisions, solid_enough(part)
-    surfaces = {id(shape): shape for shape in (*visuals, *collisions)}
-    written = {key: _surface(shape.placed) for key, shape in surfaces.items()}  # what is drawn mostly collides too
-    for index, shape in enumerate(visuals):
-        lines += _indented(_mesh(f"visual_{index}", written[id(shape)], shape.color or part.color))
-    for index, shape in enumerate(collisions):
-        lines += _indented(_mesh(f"collision_{index}", written[id(shape)], None))
+    visuals = part.visuals or part.collisions
+    built = built_meshes([part]) if draws else {}
+    looks = {id(one): replace(one, mesh=drawn(built[one.mesh.digest]).mesh) if one.mesh.digest in built else one for one in visuals}
+    surfaces = {id(one): one for one in collisions if _form(one) is None} | looks
+    written = {key: _surface(one.placed) for key, one in surfaces.items()}  # what is drawn may collide too
+    for index, one in enumerate(visuals):
+        lines += _indented(_mesh(f"visual_{index}", written[id(one)], one.color or part.color))
+    for index, one in enumerate(collisions):
+        lines += _indented(_form(one, f"collision_{index}") or _mesh(f"collision_{index}", written[id(one)], None))
     return [*lines, "}"]
 
 
@@ -134,6 +148,35 @@ def _mass(mass: MassProperties | None) -> list[str]:
         f"point3f physics:centerOfMass = {_tuple(mass.com / MM_PER_M)}",
         f"float3 physics:diagonalInertia = {_tuple(moments / MM_PER_M**2)}",
         f"quatf physics:principalAxes = {_quaternion(SE3.from_rotation(axes))}",
+    ]
+
+
+def _form(shape: Shape, name: str = "") -> list[str] | None:
+    """Return a primitive body that collides, None where USD has none or the shape is a mesh."""
+    form, T = shape.primitive, shape.frame
+    if form is None or form.kind not in {"box", "sphere", "cylinder", "capsule"}:
+        return None
+    sizes = [size / MM_PER_M for size in form.size]
+    r, order = number(sizes[0]), '"xformOp:translate", "xformOp:orient"'
+    prims = {
+        "box": ("Cube", ["double size = 1", f"float3 xformOp:scale = {_tuple(sizes)}"]),
+        "sphere": ("Sphere", [f"double radius = {r}"]),
+        "cylinder": ("Cylinder", ['uniform token axis = "Z"', f"double radius = {r}", f"double height = {number(sizes[-1])}"]),
+        "capsule": ("Capsule", ['uniform token axis = "Z"', f"double radius = {r}", f"double height = {number(sizes[-1])}"]),
+    }
+    prim, fields = prims[form.kind]
+    order += ', "xformOp:scale"' if form.kind == "box" else ""
+    return [
+        f'def {prim} "{name}" (',
+        '    prepend apiSchemas = ["PhysicsCollisionAPI"]',
+        ")",
+        "{",
+        *_indented(fields),
+        f"    double3 xformOp:translate = {_tuple(T.translation / MM_PER_M)}",
+        f"    quatd xformOp:orient = {_quaternion(T)}",
+        f"    uniform token[] xformOpOrder = [{order}]",
+        '    uniform token purpose = "guide"',
+        "}",
     ]
 
 
@@ -174,8 +217,8 @@ def _joint(joint: Joint, name: str, ends: tuple[str, str], *, closes: bool) -> l
         cone = joint.limits.cone
         if cone is not None and cone < math.pi:
             extra += [f"float physics:coneAngle{i}Limit = {number(math.degrees(cone))}" for i in (0, 1)]
-    for lower, upper, unit in zip(joint.limits.lower, joint.limits.upper, joint.type.units, strict=False):
-        low, high = (_in_usd(bound, unit) for bound in (lower, upper))
+    for *bounds, unit in zip(joint.limits.lower, joint.limits.upper, joint.type.units, strict=False):
+        low, high = (_in_usd(bound, unit) for bound in bounds)
         extra += [f"float physics:lowerLimit = {low}", f"float physics:upperLimit = {high}"]
     return _joint_prim(kind, name, ends, frames, extra)
 

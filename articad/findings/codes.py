@@ -669,9 +669,15 @@ CODES: dict[str, Code] = {
     "E_SIM_LOAD": Code("audit", None, "A simulator does not load the model.", "Audit the file: `articad audit`."),
     "E_SIM_EXPLODES": Code("audit", None, "Numbers in a simulation grow without bound.", "Audit the file for overlap and inertias."),
     "E_SIM_UNSETTLED": Code("audit", None, "A model whose joints are held does not come to rest.", "Audit the file for overlap at rest."),
-    "E_SIM_RANGE": Code("audit", None, "A joint does not reach 95 % of its range.", "Add clearance, or narrow the range."),
+    "E_SIM_RANGE": Code("audit", None, "A joint does not reach 99 % of its range.", "Add clearance, or narrow the range."),
     "E_SIM_RESIDUAL": Code(
         "audit", None, "The constraints of closed loops are not met.", "Let the loop close at rest; stiffen the constraint."
+    ),
+    "I_SIM_LOOPS_OPEN": Code(
+        "audit",
+        None,
+        "A file leaves closed loops of its assembly open; their joints are not driven where bodies collide.",
+        "Simulate the MJCF, which closes them.",
     ),
     "E_SIM_ENERGY": Code("audit", None, "Energy grows although nothing drives the model.", "Use a smaller time step; check inertias."),
 }

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import importlib
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -38,6 +38,9 @@ class _Trial:
     client: int
     outcome: Outcome
     bodies: list[int]
+    rest: Mapping[str, float]
+    mimics: Mapping[str, tuple[str, float, float]]
+    opened: frozenset[str]
 
     def run(self) -> Outcome:
         """Hold, then drive; return what was measured."""
@@ -57,8 +60,12 @@ class _Trial:
         self.outcome.speed_at_rest = max(ways, default=0.0) / (0.1 * HOLD_S)
         away = (abs(self._value(joint) - joint.start) for joint in joints)
         self.outcome.moved_at_rest = max(away, default=0.0)
-        self.outcome.untried = max(0, len(joints) - MOST_JOINTS)
-        for joint in joints[:MOST_JOINTS]:
+        names = {joint.name for joint in joints}
+        kept = [joint for joint in joints if "*" not in self.opened and joint.name not in self.opened]
+        self.outcome.passed_over = tuple(joint.name for joint in joints if joint not in kept)
+        kept = [joint for joint in kept if self.mimics.get(joint.name, ("",))[0] not in names - {joint.name}]
+        self.outcome.untried = max(0, len(kept) - MOST_JOINTS)
+        for joint in kept[:MOST_JOINTS]:
             self.outcome.reaches.append(self._stroke(joint, joints))
             if self.outcome.exploded:
                 break
@@ -68,11 +75,12 @@ class _Trial:
         """Drive one joint over its range and hold the others."""
         self._reset(joints)
         targets = {other: other.start for other in joints}
+        followers = [(one, *self.mimics[one.name][1:]) for one in joints if self.mimics.get(one.name, ("",))[0] == joint.name]
         low = high = joint.start
         pace = PACE_RAD_S if joint.unit == "rad" else PACE_M_S
         steps = round(max(STROKE_S, (joint.upper - joint.lower) / pace) * STEPS_PER_S)
         for value in strokes(joint.start, joint.lower, joint.upper, steps):
-            self._step(targets | {joint: value})
+            self._step(targets | {joint: value} | {one: ratio * value + offset for one, ratio, offset in followers})
             if self.outcome.exploded:
                 break
             here = self._value(joint)
@@ -94,7 +102,7 @@ class _Trial:
                 elif turns and upper - lower > 2 * math.tau:
                     lower, upper = max(lower, -math.tau), min(upper, math.tau)
                 name = row[1].decode(errors="replace")
-                yield _Joint(body, index, name, "rad" if turns else "m", lower, upper, min(max(0.0, lower), upper))
+                yield _Joint(body, index, name, "rad" if turns else "m", lower, upper, min(max(self.rest.get(name, 0.0), lower), upper))
 
     def _reset(self, joints: list[_Joint]) -> None:
         for joint in joints:
@@ -122,8 +130,20 @@ class _Trial:
         return fastest
 
 
-def run(path: Path) -> Outcome:
-    """Load, hold and drive a model; parts of one body do not collide, for PyBullet is asked as most people ask it."""
+def run(
+    path: Path,
+    rest: Mapping[str, float] | None = None,
+    mimics: Mapping[str, tuple[str, float, float]] | None = None,
+    opened: frozenset[str] = frozenset(),
+) -> Outcome:
+    """Load, hold and drive a model; parts of one body do not collide, for PyBullet is asked as most people ask it.
+
+    Args:
+        path: A URDF or MJCF file.
+        rest: Where joints start by name [rad or m], zero by default.
+        mimics: Leader, multiplier and offset of joints that follow others: PyBullet ties nothing, so the hand moves them with their leader.
+        opened: Joints that are not driven; "*" for all.
+    """
     bullet: Any = importlib.import_module("pybullet")
     client = bullet.connect(bullet.DIRECT)
     try:
@@ -132,6 +152,8 @@ def run(path: Path) -> Outcome:
             bodies = [bullet.loadURDF(str(path), useFixedBase=True, physicsClientId=client)]
         else:
             bodies = list(bullet.loadMJCF(str(path), physicsClientId=client))
-        return _Trial(bullet, client, Outcome("pybullet", str(bullet.getAPIVersion(client))), bodies).run()
+        return _Trial(
+            bullet, client, Outcome("pybullet", str(bullet.getAPIVersion(client))), bodies, rest or {}, mimics or {}, opened
+        ).run()
     finally:
         bullet.disconnect(client)

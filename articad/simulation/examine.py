@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import contextlib
 from pathlib import Path
+from typing import Any, NamedTuple
+
+from lxml import etree
 
 from articad.assembly import Assembly
 from articad.errors import ArticadError, ReadError
@@ -38,7 +42,70 @@ def simulate_file(path: str | Path, *, engines: tuple[Engine, ...] = ENGINES, se
         raise ReadError(f"{path}: there is no such file.", path=str(path))
     root = package_of(path)
     require_closed(path, root)
-    return Verdict(str(path), tuple(try_out(engine, path, root=root, seconds=seconds) for engine in engines))
+    told = _told(path)
+    outcomes = []
+    for engine in engines:
+        opened = ("*",) if engine == "pybullet" and told.equalities else () if engine == "pybullet" else told.opened
+        outcome = try_out(engine, path, root=root, rest=told.rest, opened=opened, mimics=told.mimics, seconds=seconds)
+        outcome.open_loops = told.equalities if engine == "pybullet" and told.equalities else told.loops
+        outcomes.append(outcome)
+    return Verdict(str(path), tuple(outcomes))
+
+
+class _Told(NamedTuple):
+    """What a file and articad's records in it say beyond what engines read.
+
+    Attributes:
+        rest: Where joints of a URDF rest by name [rad or m].
+        mimics: Leader, multiplier and offset of joints of a URDF that follow others.
+        loops: Number of loops that a URDF leaves open.
+        opened: Joints of these loops, and those that are coupled with them.
+        equalities: Number of equality constraints of an MJCF, which PyBullet leaves out.
+    """
+
+    rest: dict[str, float]
+    mimics: dict[str, tuple[str, float, float]]
+    loops: int = 0
+    opened: tuple[str, ...] = ()
+    equalities: int = 0
+
+
+def _told(path: Path) -> _Told:
+    """Return what a file says beyond what engines read of it; nothing where it cannot be parsed, which engines will say."""
+    try:
+        root = etree.parse(str(path), etree.XMLParser(resolve_entities=False, no_network=True)).getroot()
+    except (etree.XMLSyntaxError, OSError):
+        return _Told({}, {})
+    if path.suffix.lower() != ".urdf":
+        return _Told({}, {}, equalities=len(root.findall("equality/*")))
+    mimics = _mimics(root)
+    assembly = readable(path) if root.find("articad") is not None else None
+    if assembly is None:
+        return _Told({}, mimics)
+    model, mechanism = lower(assembly), assembly.mechanism
+    rest = {freedom.name: freedom.rest for joint in model.joints for freedom in joint.freedoms}
+    couplings = {name for _, name, _ in model.couplings} | {follows.leader for _, _, follows in model.couplings}
+    couplings |= {freedom.name for joint in model.joints for freedom in joint.freedoms if freedom.follows is not None}
+    inside = {joint.name for loop in mechanism.loop_joints for joint in mechanism.tree.joints_between(loop.parent, loop.child)}
+    opened = {freedom.name for joint in model.joints if joint.joint.name in inside for freedom in joint.freedoms}
+    if opened & ({*mimics} - couplings):  # <mimic> stands for the loops
+        return _Told(rest, mimics)
+    for _ in model.couplings:
+        for _, name, follows in model.couplings:
+            if {name, follows.leader} & opened:
+                opened |= {name, follows.leader}
+    return _Told(rest, mimics, len(mechanism.loop_joints), tuple(sorted(opened & rest.keys())))
+
+
+def _mimics(root: Any) -> dict[str, tuple[str, float, float]]:
+    """Return leader, multiplier and offset of the joints of a URDF that follow others."""
+    found = {}
+    for joint in root.iterfind("joint"):
+        tie = joint.find("mimic")
+        if tie is not None:
+            with contextlib.suppress(ValueError):  # no number: engines will say so
+                found[joint.get("name", "")] = (tie.get("joint", ""), float(tie.get("multiplier", 1)), float(tie.get("offset", 0)))
+    return found
 
 
 def simulate_assembly(assembly: Assembly, file: str, *, engines: tuple[Engine, ...] = ENGINES, seconds: float = SECONDS) -> Verdict:

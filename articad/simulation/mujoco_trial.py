@@ -8,8 +8,8 @@ pushed but not pushed through. A model's own actuators are switched off. Everyth
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
-from dataclasses import dataclass, field
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -52,30 +52,38 @@ class Trial:
     data: Any
     outcome: Outcome
     start: FloatArray = field(default_factory=lambda: np.zeros(0))
+    rest: Mapping[str, float] = field(default_factory=dict)
+    mimics: Mapping[str, tuple[str, float, float]] = field(default_factory=dict)
 
     @classmethod
-    def of(cls, path: Path) -> Trial:
+    def of(cls, path: Path, rest: Mapping[str, float] | None = None, mimics: Mapping[str, tuple[str, float, float]] | None = None) -> Trial:
         """Load a model.
+
+        Args:
+            path: A URDF or MJCF file.
+            rest: Where hinges and slides start by name [rad or m], for a file that has no key `home`.
+            mimics: Leader, multiplier and offset of joints that follow others and that MuJoCo does not tie.
 
         Raises:
             ValueError: If MuJoCo does not take it.
         """
         model = mujoco.MjModel.from_xml_path(str(path))
         model.opt.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_ACTUATION)
-        trial = cls(model, mujoco.MjData(model), Outcome("mujoco", str(mujoco.__version__)))
+        trial = cls(model, mujoco.MjData(model), Outcome("mujoco", str(mujoco.__version__)), rest=rest or {}, mimics=mimics or {})
         trial.reset()
         trial.start = np.array(trial.data.qpos)
         return trial
 
-    def run(self, drivers: tuple[str, ...] | None = None) -> Outcome:
+    def run(self, drivers: tuple[str, ...] | None = None, opened: frozenset[str] = frozenset()) -> Outcome:
         """Hold, drive and let go; return what was measured.
 
         Args:
             drivers: Joints that drive closed loops; None where nobody knows, so that each joint is driven.
+            opened: Joints that are not driven, because the loop that would lead their bodies is open in the file.
         """
         self._hold()
         if not self.outcome.exploded:
-            self._drive(drivers)
+            self._drive(drivers, opened)
             self._let_go()
         return self.outcome
 
@@ -86,6 +94,9 @@ class Trial:
             mujoco.mj_resetDataKeyframe(self.model, self.data, home)
         else:
             mujoco.mj_resetData(self.model, self.data)
+            for joint in self._single_joints():
+                at = self.model.jnt_qposadr[joint]
+                self.data.qpos[at] = self.rest.get(self._name(joint), self.data.qpos[at])
         self.data.qvel[:] = 0.0
         mujoco.mj_forward(self.model, self.data)
 
@@ -106,9 +117,11 @@ class Trial:
         rows = self.data.efc_type[: self.data.nefc] == int(mujoco.mjtConstraint.mjCNSTR_EQUALITY)
         self.outcome.residual = float(np.abs(self.data.efc_pos[: self.data.nefc][rows]).max(initial=0.0)) if self.model.neq else 0.0
 
-    def _drive(self, drivers: tuple[str, ...] | None) -> None:
+    def _drive(self, drivers: tuple[str, ...] | None, opened: frozenset[str]) -> None:
         """Drive each hinge and slide over its range, of a loop its drivers, with the rest of the loop free to follow."""
         single, count = list(self._single_joints()), 0
+        self.outcome.passed_over = tuple(self._name(joint) for joint in single if self._name(joint) in opened)
+        single = [joint for joint in single if self._name(joint) not in opened and self._leader(joint) is None]
         for number, loop in enumerate(self._loops(single)):
             inside = [joint for joint in single if joint in loop]
             leading = [joint for joint in inside if drivers is not None and self._name(joint) in drivers]
@@ -124,6 +137,7 @@ class Trial:
             for joint in inside if len(taken) == len(driven) else taken:
                 role: Role = "free" if len(loop) == 1 else "tied" if not leading else "driver" if joint in taken else "follower"
                 self.outcome.reaches.append(self._reach(joint, number, role, strokes_made))
+                self.outcome.reaches += self._followed(joint, number, strokes_made)
 
     def _reach(self, joint: int, number: int, role: Role, made: dict[int, Stroke]) -> Reach:
         """Return how far a joint came in any stroke of its loop."""
@@ -133,6 +147,27 @@ class Trial:
         share = covered(low, high, lower, upper)
         blocker = made[joint].blocker if joint in made and share < 1 else ""
         return Reach(self._name(joint), lower, upper, low, high, share, unit, blocker, role, None if role == "free" else number)
+
+    def _leader(self, joint: int) -> int | None:
+        """Return the hinge or slide that leads a joint by <mimic>; None where nothing does."""
+        found = self.mimics.get(self._name(joint))
+        if found is None or self.model.neq:  # a model with equalities ties its joints itself
+            return None
+        return next((one for one in self._single_joints() if self._name(one) == found[0] and one != joint), None)
+
+    def _followers(self, joint: int) -> list[tuple[int, float, float]]:
+        """Return the joints that follow one, each with its multiplier and offset."""
+        return [(one, *self.mimics[self._name(one)][1:]) for one in self._single_joints() if self._leader(one) == joint]
+
+    def _followed(self, leader: int, number: int, made: dict[int, Stroke]) -> list[Reach]:
+        """Return how far those came that follow a leader, of what it brings them to."""
+        lower, upper, _ = self._range(leader)
+        found = []
+        for joint, ratio, offset in self._followers(leader):
+            low, high = sorted((ratio * lower + offset, ratio * upper + offset))
+            reach = self._reach(joint, number, "follower", made)
+            found.append(replace(reach, lower=low, upper=high, share=covered(reach.low, reach.high, low, high), loop=None))
+        return found
 
     def _stroke(self, joint: int, following: frozenset[int]) -> Stroke:
         """Drive one joint over its range, those that follow carried along, all others held."""
@@ -145,11 +180,15 @@ class Trial:
         low, high, blocker, lag = np.array(self.start), np.array(self.start), "", 0.0
         steps = self._steps(max(STROKE_S, (upper - lower) / (PACE_RAD_S if unit == "rad" else PACE_M_S)))
         shown = {steps, 2 * steps, 3 * steps - 1}
-        before = rest
+        before, followers = rest, self._followers(joint)
         for step, value in enumerate(strokes(rest, lower, upper, steps)):
             target[at] = value
             pace = np.zeros(self.model.nv)
-            pace[self.model.jnt_dofadr[joint]] = (value - before) / self.model.opt.timestep
+            speed = (value - before) / self.model.opt.timestep
+            pace[self.model.jnt_dofadr[joint]] = speed
+            for follower, ratio, offset in followers:
+                target[self.model.jnt_qposadr[follower]] = ratio * value + offset
+                pace[self.model.jnt_dofadr[follower]] = ratio * speed
             before = value
             if not self._step(target, held, free, pace):
                 break
@@ -244,6 +283,10 @@ class Trial:
             lower, upper = (rest, rest + math.tau) if turns else (rest - FREE_SLIDE_M, rest + FREE_SLIDE_M)
         elif turns and upper - lower > 2 * math.tau:
             lower, upper = max(lower, rest - math.tau), min(upper, rest + math.tau)
+        for follower, ratio, offset in self._followers(joint):
+            if self.model.jnt_limited[follower] and ratio:
+                ends = sorted((float(bound) - offset) / ratio for bound in self.model.jnt_range[follower])
+                lower, upper = max(lower, ends[0]), min(upper, ends[1])
         return lower, upper, unit
 
     def _loops(self, single: list[int]) -> list[frozenset[int]]:

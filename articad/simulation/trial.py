@@ -1,9 +1,10 @@
-"""Trials in processes of their own: this module with `ENGINE FILE DRIVERS` prints what an engine measured as JSON."""
+"""Trials in processes of their own: this module with `ENGINE FILE ROOT DRIVERS REST OPENED MIMICS` prints what an engine measured as JSON."""
 
 from __future__ import annotations
 
 import json
 import sys
+from collections.abc import Mapping
 from dataclasses import asdict
 from pathlib import Path
 
@@ -16,7 +17,15 @@ SECONDS = 300.0
 
 
 def try_out(
-    engine: Engine, path: Path, *, root: Path | None = None, drivers: tuple[str, ...] | None = None, seconds: float = SECONDS
+    engine: Engine,
+    path: Path,
+    *,
+    root: Path | None = None,
+    drivers: tuple[str, ...] | None = None,
+    rest: Mapping[str, float] | None = None,
+    opened: tuple[str, ...] = (),
+    mimics: Mapping[str, tuple[str, float, float]] | None = None,
+    seconds: float = SECONDS,
 ) -> Outcome:
     """Have an engine load a model and move it, in a process of its own with bounded time and memory.
 
@@ -25,12 +34,22 @@ def try_out(
         path: A URDF or MJCF file.
         root: Folder that the engine may read; see `articad.simulation.loading.load`.
         drivers: Joints that drive closed loops; None where nobody knows.
+        rest: Where joints rest by name [rad or m], for files that do not say so.
+        opened: Joints that are not driven, because the engine or the file leaves their loop open; "*" for all.
+        mimics: Leader, multiplier and offset of joints that the file lets follow others; the hand that drives the leader drives them.
         seconds: After which it is ended.
     """
     loading = load(engine, path, root=root)
     if not loading.loads:
         return Outcome(engine, loading.version, loads=loading.loads, message=loading.message)
-    words = [engine, *places(path, root), json.dumps(drivers)]
+    words = [
+        engine,
+        *places(path, root),
+        json.dumps(drivers),
+        json.dumps(dict(rest or {})),
+        json.dumps(opened),
+        json.dumps(dict(mimics or {})),
+    ]
     limits = launcher.Limits(seconds=seconds, memory=MEMORY, file_size=FILE_SIZE)
     ended = launcher.run(words, module="articad.simulation.trial", limits=limits)
     if ended.late:
@@ -43,17 +62,18 @@ def try_out(
 
 def main(arguments: list[str]) -> int:
     """Try a model out and print what was measured."""
-    engine, path, root, drivers = arguments
+    engine, path, root, drivers, rest, opened, mimics = arguments
     sandbox.keep_to([root], [str(Path.cwd())])
     names = json.loads(drivers)
     if engine == "mujoco":
         from articad.simulation.mujoco_trial import Trial  # noqa: PLC0415 - each process loads one engine
 
-        outcome = Trial.of(Path(path)).run(None if names is None else tuple(names))
+        trial = Trial.of(Path(path), json.loads(rest), json.loads(mimics))
+        outcome = trial.run(None if names is None else tuple(names), frozenset(json.loads(opened)))
     else:
         from articad.simulation.bullet_trial import run  # noqa: PLC0415
 
-        outcome = run(Path(path))
+        outcome = run(Path(path), json.loads(rest), json.loads(mimics), frozenset(json.loads(opened)))
     print("\n" + json.dumps(asdict(outcome)))  # noqa: T201 - this is the answer; PyBullet may have left a line open
     return 0
 

@@ -9,7 +9,7 @@ from typing import Any, Literal
 
 from articad.findings import Finding, Findings
 
-SHARE = 0.95  # of its range that every joint must reach
+SHARE = 0.99  # of its range that every joint must reach
 CALM = 0.02  # rad/s or m/s: slower is at rest
 DRIFT = 0.05  # rad or m by which a held joint may be pushed away
 RESIDUAL = 1e-3  # m or rad by which a closed loop may be open
@@ -80,7 +80,8 @@ class Outcome:
         reaches: By joint.
         untried: Joints that there were too many of.
         frames: For a filmstrip.
-        open_loops: Closed loops of the assembly that the model leaves open.
+        open_loops: Closed loops, or equality constraints, that the file or the engine leaves out.
+        passed_over: Joints that were not driven, because the loop that leads them is open.
     """
 
     engine: str
@@ -97,6 +98,7 @@ class Outcome:
     untried: int = 0
     frames: list[Frame] = field(default_factory=list)
     open_loops: int = 0
+    passed_over: tuple[str, ...] = ()
 
     @property
     def judged(self) -> list[Reach]:
@@ -125,7 +127,8 @@ class Outcome:
         """Return what another process measured."""
         reaches = [Reach(**reach | {"allowed": reach.get("allowed") and tuple(reach["allowed"])}) for reach in row.pop("reaches", [])]
         frames = [Frame(**frame) for frame in row.pop("frames", [])]
-        return cls(**row, reaches=reaches, frames=frames)
+        passed_over = tuple(row.pop("passed_over", ()))
+        return cls(**row, reaches=reaches, frames=frames, passed_over=passed_over)
 
 
 @dataclass(frozen=True)
@@ -203,6 +206,14 @@ def _findings(outcome: Outcome) -> Iterator[Finding]:
             value=outcome.residual * 1000,
             limit=RESIDUAL * 1000,
             unit="mm",
+        )
+    if outcome.open_loops:
+        told = f"; {', '.join(outcome.passed_over)} were not driven" if outcome.passed_over else ", their joints free"
+        yield Finding(
+            code="I_SIM_LOOPS_OPEN",
+            where=outcome.engine,
+            message=f"{outcome.open_loops} closed loops or couplings of the model are left out in {name}{told}.",
+            hint="Simulate the MJCF, which closes them.",
         )
     if (outcome.energy_growth or 0.0) > GROWTH:
         yield Finding(

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-import sys
+import re
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from lxml import etree
 
 from articad.assembly import Assembly
 from articad.connectors.connector import Connector
@@ -17,10 +18,13 @@ from articad.export import convex
 from articad.export.contacts import poses_in_motion
 from articad.export.convex import pieces_of, whole_hull
 from articad.export.mjcf import write_mjcf
+from articad.export.sdf import write_sdf
 from articad.export.urdf import write_urdf
+from articad.export.usd import write_usd
 from articad.geometry.mesh import TriMesh
-from articad.geometry.part import Part
-from articad.geometry.shapes import box, tube
+from articad.geometry.part import Part, Solid
+from articad.geometry.shapes import box, sphere, tube
+from articad.importers.urdf import read_urdf
 from articad.interference.body import Body
 from articad.kernels.cache import BuildCache
 from articad.kinematics import declare
@@ -63,10 +67,11 @@ def test_the_channel_is_a_body() -> None:
     assert channel().volume == pytest.approx(100 * (60 * 40 - 40 * 30))
 
 
+@pytest.mark.parametrize("collision", ["solid", "hull"])
 @pytest.mark.parametrize("from_outside", [False, True])
 @pytest.mark.parametrize("writer", WRITERS)
-def test_hulls_that_meet_at_rest_or_only_in_motion_are_told(writer: str, from_outside: bool) -> None:
-    bundle = WRITERS[writer](sledge(from_outside=from_outside))
+def test_hulls_that_meet_at_rest_or_only_in_motion_are_told(writer: str, from_outside: bool, collision: str) -> None:
+    bundle = WRITERS[writer](sledge(from_outside=from_outside), collision=collision)
 
     assert "parts.rail+slider" in [loss.where for loss in bundle.losses]
     assert (b'body1="rail" body2="slider"' in bundle.files[bundle.main]) == (writer == "mjcf")
@@ -74,21 +79,19 @@ def test_hulls_that_meet_at_rest_or_only_in_motion_are_told(writer: str, from_ou
 
 @pytest.mark.parametrize("from_outside", [False, True])
 @pytest.mark.parametrize("writer", WRITERS)
-def test_pieces_let_the_slider_pass(writer: str, from_outside: bool, cache: BuildCache) -> None:
-    bundle = WRITERS[writer](sledge(from_outside=from_outside), collision="pieces", cache=cache)
+def test_pieces_are_the_default_and_let_the_slider_pass(writer: str, from_outside: bool, cache: BuildCache) -> None:
+    bundle = WRITERS[writer](sledge(from_outside=from_outside), cache=cache)
 
     assert "parts.rail+slider" not in [loss.where for loss in bundle.losses]
     assert b'body1="rail" body2="slider"' not in bundle.files[bundle.main]
-    (error,) = (loss for loss in bundle.losses if loss.where == "parts.rail")
-    assert "3 of them" in error.kept
-    assert not error.refused
+    assert "parts.rail" not in [loss.where for loss in bundle.losses]  # three boxes are all of it
 
 
 @pytest.mark.engines
 def test_mujoco_holds_the_slider_in_its_channel_without_contact(cache: BuildCache, tmp_path: Path) -> None:
     import mujoco
 
-    bundle = write_mjcf(sledge(from_outside=True), collision="pieces", cache=cache)
+    bundle = write_mjcf(sledge(from_outside=True), cache=cache)
     bundle.write(tmp_path)
     model = mujoco.MjModel.from_xml_path(str(tmp_path / bundle.main))
     data = mujoco.MjData(model)
@@ -105,44 +108,106 @@ def test_mujoco_holds_the_slider_in_its_channel_without_contact(cache: BuildCach
     assert data.ncon > 0
 
 
-def test_a_pair_that_no_fineness_parts_is_excluded(cache: BuildCache, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(convex, "_kept", lambda mesh, *_: whole_hull(mesh).meshes)
-    bundle = write_mjcf(sledge(from_outside=True), collision="pieces", cache=cache)
+def test_only_parts_that_share_a_joint_are_excluded_and_the_joint_is_cited(cache: BuildCache) -> None:
+    assembly = sledge(from_outside=False)
+    root = etree.fromstring(write_mjcf(assembly, cache=cache).files["sledge.xml"])
+    rows = list(root.find("contact"))
+    cited = [(rows[i].text.strip(), (rows[i + 1].get("body1"), rows[i + 1].get("body2"))) for i in range(0, len(rows), 2)]
 
-    assert b'body1="rail" body2="slider"' in bundle.files[bundle.main]
-
-
-def test_pieces_are_measured_against_the_solid(cache: BuildCache) -> None:
-    ring = tube(20, 30, 10, 12)
-    found, whole = pieces_of(ring, 0, cache), whole_hull(ring)
-
-    assert whole.more == pytest.approx(0.8)  # 30² / (30² − 20²) − 1
-    assert sum(piece.volume for piece in found.meshes) >= (1 + found.more - found.less) * ring.volume * (1 - 1e-9)
-    assert max(found.more, found.less) < 1e-2
-    assert all(piece.is_closed and piece.volume > 0 for piece in found.meshes)
+    assert {pair for _, pair in cited} == {("base", "rail"), ("base", "slider")}
+    assert all(text.startswith("adjacent:") for text, _ in cited)
+    assert "joint stand" in cited[0][0]
 
 
-def test_a_convex_shape_is_its_own_piece(cache: BuildCache) -> None:
-    found = pieces_of(box(10, 20, 30), 0, cache)
+def test_solids_that_overlap_at_rest_are_excluded_and_it_is_said(cache: BuildCache) -> None:
+    a, b = block("a", (20, 20, 20), at=frame()), block("b", (20, 20, 20), at=frame(at=(-35, 0, 0)))
+    ground = block("ground", (5, 5, 5), one=frame(at=(0, 0, 200)), two=frame(at=(-20, 0, 200)))
+    joints = [declare.fixed("first", ground["one"], a["at"]), declare.revolute("second", ground["two"], b["at"], limits=(-0.1, 0.1))]
+    text = (
+        write_mjcf(Assembly.from_parts("pair", parts=[ground, a, b], joints=joints, ground="ground"), cache=cache)
+        .files["pair.xml"]
+        .decode()
+    )
 
-    assert len(found.meshes) == 1
-    assert found.meshes[0].volume == pytest.approx(6000)
-    assert (found.more, found.less) == pytest.approx((0, 0), abs=1e-12)
+    assert "not checked: the solids of a and b overlap by 2e+03 mm³ at rest" in text
+    assert '<exclude body1="a" body2="b"/>' in text
+
+
+def forms(assembly: Assembly, cache: BuildCache) -> dict[str, list[str]]:
+    """Return the kinds of collision shapes of the part `rail` by format."""
+    urdf = etree.fromstring(write_urdf(assembly, cache=cache).files["sledge.urdf"])
+    mjcf = etree.fromstring(write_mjcf(assembly, cache=cache).files["sledge.xml"])
+    sdf = etree.fromstring(write_sdf(assembly, cache=cache).files["sledge.sdf"])
+    usd = write_usd(assembly, cache=cache).files["sledge.usda"].decode()
+    usd = usd.partition('def Xform "rail"')[2].partition('def Xform "slider"')[0]
+    return {
+        "urdf": [one.tag for one in urdf.iterfind("link[@name='rail']/collision/geometry/*")],
+        "mjcf": [one.get("type") for one in mjcf.iterfind(".//body[@name='rail']/geom[@class='collision']")],
+        "sdf": [one.tag for one in sdf.iterfind("model/link[@name='rail']/collision/geometry/*")],
+        "usd": re.findall(r'def (\w+) "collision_\d+"', usd),
+    }
+
+
+def test_all_formats_have_the_same_shapes(cache: BuildCache) -> None:
+    found = forms(sledge(from_outside=False), cache)
+
+    assert found["urdf"] == found["mjcf"] == found["sdf"] == ["box"] * 3
+    assert found["usd"] == ["Cube"] * 3
+
+
+def test_what_pieces_leave_out_is_told(cache: BuildCache) -> None:
+    ring = Part.from_mesh("ring", tube(20, 30, 10, 64), density=STEEL)
+    bundle = write_mjcf(Assembly.from_parts("alone", parts=[ring], joints=[], ground="ring"), cache=cache)
+    (loss,) = (loss for loss in bundle.losses if loss.where == "parts.ring")
+
+    assert "of the solid left out" in loss.kept
+    assert not loss.refused
+
+
+def test_an_open_mesh_collides_as_it_is(cache: BuildCache) -> None:
+    whole = box(10, 10, 10)
+    part = Part.from_mesh("lid", TriMesh(whole.vertices, whole.triangles[:-1]))
+    bundle = write_mjcf(Assembly.from_parts("alone", parts=[part], joints=[], ground="lid"), cache=cache)
+
+    assert [loss.lost for loss in bundle.losses if loss.where == "parts.lid"] == ["convex pieces: the surface encloses no volume"]
+
+
+def test_the_hull_of_a_ring_is_measured() -> None:
+    assert whole_hull(tube(20, 30, 10, 12)).more == pytest.approx(0.8)  # 30² / (30² - 20²) - 1
 
 
 def test_pieces_are_kept_by_shape(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     cache = BuildCache(tmp_path)
-    first = pieces_of(channel(), 0, cache)
-    monkeypatch.setitem(sys.modules, "coacd", None)  # whoever runs it now fails
-    again = pieces_of(channel(), 0, cache)
+    first = pieces_of(channel(), cache)
 
-    assert [mesh.digest for mesh in again.meshes] == [mesh.digest for mesh in first.meshes]
+    def never(*_: object, **__: object) -> None:
+        raise AssertionError("pieces are found anew")
+
+    monkeypatch.setattr(convex, "inscribed", never)
+    again = pieces_of(channel(), cache)
+
+    assert [(piece.mesh.digest, piece.primitive, piece.frame.data.tolist()) for piece in again.pieces] == [
+        (piece.mesh.digest, piece.primitive, piece.frame.data.tolist()) for piece in first.pieces
+    ]
+    assert (again.missing, again.bound, again.less) == (first.missing, first.bound, first.less)
 
 
-def test_pieces_come_out_the_same_twice(tmp_path: Path) -> None:
-    first, again = (pieces_of(channel(), 0, BuildCache(tmp_path / name)) for name in "ab")
+def test_what_is_drawn_of_a_built_part_is_coarser_and_says_by_how_much(cache: BuildCache, tmp_path: Path) -> None:
+    """A ball of 100,000 triangles becomes one of at most 5,000; what is read back states the larger deflection."""
+    fine = Solid.from_mesh(sphere(20, 320), deflection=0.001)
+    part = Part.from_solid("ball", fine, density=STEEL)
+    bundle = write_urdf(Assembly.from_parts("alone", parts=[part], joints=[], ground="ball"), cache=cache)
+    bundle.write(tmp_path)
+    again = read_urdf(tmp_path / bundle.main).parts["ball"]
 
-    assert [mesh.digest for mesh in again.meshes] == [mesh.digest for mesh in first.meshes]
+    assert len(fine.mesh.triangles) > 90_000
+    assert again.solid is not None
+    assert len(again.solid.mesh.triangles) <= 5000
+    off = np.abs(np.linalg.norm(again.solid.mesh.vertices[again.solid.mesh.triangles].mean(axis=1), axis=1) - 20)
+    assert float(off.max()) <= again.solid.deflection <= 0.01 * 40 * np.sqrt(3)
+    assert again.mass is not None
+    assert part.mass is not None
+    assert again.mass.mass == part.mass.mass
 
 
 def test_motion_is_sampled_as_far_as_loops_go() -> None:

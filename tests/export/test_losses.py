@@ -257,7 +257,7 @@ def test_the_hull_of_an_open_mesh_has_no_known_error() -> None:
     solid = box(10, 10, 10)
 
     assert whole_hull(TriMesh(solid.vertices, solid.triangles[:-1])).more == 0
-    assert whole_hull(solid).meshes[0].volume == pytest.approx(1000)
+    assert whole_hull(solid).pieces[0].mesh.volume == pytest.approx(1000)
 
 
 @pytest.mark.parametrize("kind", JOINTS)

@@ -1,0 +1,594 @@
+"""Convex pieces that lie inside a solid: collision shapes that touch nothing that the solid does not touch.
+
+Each piece is an intersection of half-spaces that is grown around a seed point. For each triangle of the surface there is a plane of the
+piece that has the whole triangle on its far side. So no surface point is inside the piece; the piece is connected and its seed is inside
+the solid, hence the piece is.
+
+1. Seeds: from points of the surface, half-way through the material along the inward normal.
+2. Growth (as in IRIS, Deits and Tedrake 2015, without the ellipsoid): the triangle nearest to the seed gives a plane, all triangles beyond
+   that plane are done, and so on until none is left. The plane is the triangle's own one, so that flat faces are exact and bores get
+   tangent planes, or else the plane through its nearest point. Before round outer surfaces the plane moves inwards a little, so that one
+   plane does for many facets.
+3. Choice: the next seed belongs to the surface point that is farthest from all pieces, until each is within the bound.
+
+Balls and cylinders are recognised by their faces and taken whole, as far as they lie inside; pieces with six perpendicular planes are boxes.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import combinations
+from typing import Final
+
+import manifold3d
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import ConvexHull, HalfspaceIntersection, QhullError
+
+from articad.connectors.se3 import SE3
+from articad.geometry.mesh import TriMesh
+from articad.geometry.part import Primitive
+from articad.geometry.shapes import box, cylinder, sphere
+
+__all__ = ["INSIDE_MM", "MOST_PIECES", "Inscribed", "Piece", "inscribed", "missing_bound"]
+
+FloatArray = NDArray[np.float64]
+
+MOST_PIECES: Final = 32
+BOUND_MM, BOUND_SHARE = 0.5, 0.01  # how far the solid may reach beyond its pieces: the larger of the two, the share is of its diagonal
+INSIDE_MM: Final = 1e-4  # by which rounding may bring a piece outside the mesh
+SCHEME: Final = "articad.inscribed/1"  # to be changed with anything that changes pieces
+
+_SLACK_MM, _SLACK_SHARE = 0.25, 0.004  # how far a plane moves inwards at most: the larger of the two, the share is of the diagonal
+_SLACKS = (0.0, 0.04, 0.25, 0.5, 1.0)  # of that: what is tried
+_OF_DEPTH = 0.5  # of the material below a point: where walls are thin, less may be missing
+_MOST_CORNERS = 64  # of a piece: PhysX takes no more
+_SAMPLES = 800  # points of the surface that the pieces are measured at, and half as many corners
+_COARSE_TRIANGLES = 3000  # of a mesh that pieces are grown in; a finer one is simplified first
+_SIMPLIFY = 0.1  # of the bound: how far simplification moves the surface
+_ROUND = 6  # digits of mm that are kept of a piece's corners
+_OWN = 0.3  # a triangle's own plane is taken if its distance from the seed is this share of the triangle's
+_MUCH = 0.2  # of what is open: a recognised body that covers as much is taken at once
+_TRIES = 3  # seeds that are tried for each piece
+_SMOOTH = np.cos(np.radians(25.0))  # facets of one smooth surface turn by less
+_SEGMENTS = 48  # of the meshes of recognised cylinders
+
+
+@dataclass(frozen=True, eq=False)
+class Piece:
+    """A convex piece of a solid.
+
+    Attributes:
+        mesh: In the piece's own frame [mm].
+        frame: Where that frame is in the solid's.
+        primitive: The body that the mesh stands for, or None.
+    """
+
+    mesh: TriMesh
+    frame: SE3
+    primitive: Primitive | None
+
+
+@dataclass(frozen=True, eq=False)
+class Inscribed:
+    """The pieces of a solid and how much of it they leave out.
+
+    Attributes:
+        pieces: Convex pieces; they may overlap.
+        missing: Largest distance of a sampled surface point of the solid from the nearest piece [mm].
+        bound: The distance that was asked for [mm].
+        less: Volume of the solid that no piece covers, as a share of the solid's.
+    """
+
+    pieces: tuple[Piece, ...]
+    missing: float
+    bound: float
+    less: float
+
+
+def missing_bound(mesh: TriMesh) -> float:
+    """Return how far a solid may reach beyond its pieces [mm], unless something else is asked for."""
+    return max(BOUND_MM, BOUND_SHARE * float(np.linalg.norm(mesh.bounds[1] - mesh.bounds[0])))
+
+
+def inscribed(mesh: TriMesh, *, bound: float | None = None, most: int = MOST_PIECES, deflection: float = 0.0) -> Inscribed | None:
+    """Cover a solid with convex pieces that lie inside it.
+
+    A piece is outside the mesh by at most `INSIDE_MM`, or by the deflection where it is a ball or a cylinder.
+
+    Args:
+        mesh: Surface of the solid: closed, outside out.
+        bound: Largest distance of the solid's surface from the pieces [mm]; `missing_bound` by default.
+        most: Number of pieces.
+        deflection: Largest distance between mesh and true surface [mm], by which recognised round bodies may be outside the mesh.
+
+    Returns:
+        The pieces, or None if the mesh bounds no solid or no piece fits in.
+    """
+    if not mesh.is_closed or mesh.volume <= 0:
+        return None
+    body = _manifold(mesh)
+    if body.status() != manifold3d.Error.NoError or body.volume() <= 0:
+        return None
+    bound = missing_bound(mesh) if bound is None else bound
+    cover = _Cover(mesh, body, bound, deflection)
+    while len(cover.found) < most and len(cover.open):
+        if not cover.add():
+            break
+    return cover.result()
+
+
+@dataclass(frozen=True, eq=False)
+class _Grown:
+    """Planes `(K, 4)`, n·x ≤ d; what is inside all of them by no more than `bound` counts as covered."""
+
+    planes: FloatArray
+    piece: Piece
+    volume: float
+
+    def distance(self, points: FloatArray) -> FloatArray:
+        """Return a lower bound of the distance of points from the piece, `(M,)` [mm]."""
+        return np.asarray((points @ self.planes[:, :3].T - self.planes[:, 3]).max(axis=1))
+
+
+class _Cover:
+    """Pieces found so far, and how far the sampled points are from them."""
+
+    def __init__(self, mesh: TriMesh, body: manifold3d.Manifold, bound: float, deflection: float) -> None:
+        self.mesh, self.bound, self.deflection = mesh, bound, deflection
+        self.size = float(np.linalg.norm(mesh.bounds[1] - mesh.bounds[0]))
+        self.volume = mesh.volume
+        self.full = _Facets.of(mesh)
+        coarse = body.simplify(_SIMPLIFY * bound) if len(mesh.triangles) > _COARSE_TRIANGLES else body
+        found = coarse.to_mesh64()
+        self.coarse = _Facets.of(TriMesh(np.array(found.vert_properties[:, :3]), np.array(found.tri_verts, dtype=np.int32)))
+        self.points, self.seeds, self.depths = _samples(self.coarse, coarse, self.size)
+        self.limits = np.minimum(bound, np.maximum(BOUND_MM, _OF_DEPTH * self.depths))
+        self.slack = min(bound / 2, max(_SLACK_MM, _SLACK_SHARE * self.size))
+        self.far = np.full(len(self.points), np.inf)
+        self.tried = np.zeros(len(self.points), dtype=bool)
+        self.found: list[_Grown] = []
+        self.candidates = _round_bodies(mesh, self.full, deflection)
+
+    @property
+    def open(self) -> NDArray[np.intp]:
+        """Indices of points that are too far from all pieces and worth a try."""
+        return np.flatnonzero((self.far > self.limits) & ~self.tried)
+
+    def add(self) -> bool:
+        """Add the piece that covers most of what is left, around one of the farthest points; False if there is none to try."""
+        while len(open_ := self.open):
+            ready = max(self.candidates, key=self._gain, default=None)
+            if ready is not None and self._gain(ready) >= _MUCH * len(open_):
+                self._take(ready)
+                return True
+            target = open_[self._first(open_)]
+            near = open_[np.argsort(np.linalg.norm(self.points[open_] - self.points[target], axis=1))]
+            chosen = [target, *near[[len(near) // 8, len(near) // 2]].tolist()][:_TRIES]
+            grown = [one for index in dict.fromkeys(chosen) for one in self._around(self.seeds[index])]
+            gains = [(self._gain(one), one.volume, place) for place, one in enumerate([*grown, *self.candidates])]
+            best = max(gains, default=(0, 0.0, 0))
+            if best[0] == 0:
+                self.tried[target] = True
+                continue
+            piece = [*grown, *self.candidates][best[2]]
+            self._take(piece)
+            return True
+        return False
+
+    def _take(self, piece: _Grown) -> None:
+        self.far = np.minimum(self.far, piece.distance(self.points))
+        self.found.append(piece)
+        self.candidates = [one for one in self.candidates if one is not piece]
+
+    def _first(self, open_: NDArray[np.intp]) -> int:
+        """Return the place of the farthest point; where no piece is yet, the one with most material below it."""
+        if not self.found:
+            return int(self.depths[open_].argmax())
+        return int((self.far[open_] / self.limits[open_]).argmax())
+
+    def _gain(self, one: _Grown) -> int:
+        return int(((self.far > self.limits) & (one.distance(self.points) <= self.limits)).sum())
+
+    def _around(self, seed: FloatArray) -> list[_Grown]:
+        """Return the piece around a seed, and the one around its middle."""
+        found = []
+        for _ in range(2):
+            one = self._piece(seed)
+            if one is None:
+                break
+            found.append(one)
+            seed = one.piece.mesh.transformed(one.piece.frame).vertices.mean(axis=0)
+        return found
+
+    def _piece(self, seed: FloatArray) -> _Grown | None:
+        planes = _grown(self.coarse, seed, self.slack, self.size)
+        if planes is None:
+            return None
+        if self.coarse.count != self.full.count:
+            planes = _held_off(planes, self.full)
+        return _polytope(planes, seed)
+
+    def result(self) -> Inscribed | None:
+        """Return the pieces without those that others make needless."""
+        if not self.found:
+            return None
+        table = np.array([one.distance(self.points) <= self.limits for one in self.found])
+        keep = np.ones(len(self.found), dtype=bool)
+        for index in np.argsort([one.volume for one in self.found]):
+            keep[index] = False
+            if (table[keep].any(axis=0) != table.any(axis=0)).any():
+                keep[index] = True
+        kept = [_fewer_corners(one) for one, is_kept in zip(self.found, keep, strict=True) if is_kept]
+        placed = [one.piece.mesh.transformed(one.piece.frame) for one in kept]
+        together = manifold3d.Manifold.batch_boolean([_manifold(mesh) for mesh in placed], manifold3d.OpType.Add)
+        less = max(0.0, 1.0 - together.volume() / self.volume)
+        missing = _distance_to(self.points, kept, placed)
+        return Inscribed(tuple(one.piece for one in kept), missing, self.bound, less)
+
+
+# ---------------------------------------------------------------------- surface
+
+
+@dataclass(frozen=True, eq=False)
+class _Facets:
+    """Triangles of a surface.
+
+    Attributes:
+        corners: `(N, 3, 3)` [mm].
+        normals: Outward unit normals, `(N, 3)`.
+        offsets: n·x of each triangle's plane, `(N,)` [mm].
+        areas: `(N,)` [mm²].
+    """
+
+    corners: FloatArray
+    normals: FloatArray
+    offsets: FloatArray
+    areas: FloatArray
+
+    @property
+    def count(self) -> int:
+        return len(self.corners)
+
+    @classmethod
+    def of(cls, mesh: TriMesh) -> _Facets:
+        twice = mesh.normals_of_twice_area
+        length = np.linalg.norm(twice, axis=1)
+        normals = twice / np.where(length > 0, length, 1.0)[:, None]
+        corners = mesh.vertices[mesh.triangles]
+        return cls(corners, normals, (normals * corners[:, 0]).sum(axis=1), length / 2)
+
+
+def _samples(facets: _Facets, body: manifold3d.Manifold, size: float) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return points of the surface `(M, 3)`, for each a point half-way through the material below it, and the depth there [mm]."""
+    rng = np.random.default_rng(0)
+    corners = facets.corners.reshape(-1, 3)
+    owners = np.repeat(np.arange(facets.count), 3)
+    pick = rng.permutation(len(corners))[
+        : _SAMPLES // 2
+    ]  # corners stick out farthest; a few in from them, so that a ray has material below
+    weights = rng.dirichlet((1, 1, 1), _SAMPLES)
+    drawn = rng.choice(facets.count, _SAMPLES, p=facets.areas / facets.areas.sum())
+    inner = (facets.corners[drawn] * weights[:, :, None]).sum(axis=1)
+    middles = facets.corners.mean(axis=1)
+    points = np.concatenate([inner, corners[pick]])
+    starts = np.concatenate([inner, corners[pick] + 0.05 * (middles[owners[pick]] - corners[pick])])
+    normals = np.concatenate([facets.normals[drawn], facets.normals[owners[pick]]])
+    lift = 1e-7 * size
+    seeds, depths, kept = [], [], []
+    for index, (start, normal) in enumerate(zip(starts, normals, strict=True)):
+        hits = body.ray_cast(tuple(start - lift * normal), tuple(start - 2 * size * normal))
+        far = [hit.distance for hit in hits]
+        depth = far[0] * 2 * size if far else 0.0
+        if depth > 10 * lift:
+            seeds.append(start - normal * depth / 2)
+            depths.append(depth)
+            kept.append(index)
+    return points[kept], np.array(seeds).reshape(-1, 3), np.array(depths)
+
+
+def _nearest(facets: _Facets, seed: FloatArray) -> FloatArray:
+    """Return the point of each triangle that is nearest to the seed, `(N, 3)` (Ericson, Real-Time Collision Detection, 5.1.5)."""
+    a, b, c = facets.corners[:, 0], facets.corners[:, 1], facets.corners[:, 2]
+    ab, ac, bc = b - a, c - a, c - b
+    inside = seed - (facets.normals @ seed - facets.offsets)[:, None] * facets.normals
+    best = _on_segment(a, ab, seed)
+    for start, way in ((a, ac), (b, bc)):
+        other = _on_segment(start, way, seed)
+        nearer = ((other - seed) ** 2).sum(axis=1) < ((best - seed) ** 2).sum(axis=1)
+        best = np.where(nearer[:, None], other, best)
+    n = facets.normals
+    within = np.ones(facets.count, dtype=bool)
+    for start, way in ((a, ab), (b, bc), (c, -ac)):
+        within &= (np.cross(way, inside - start) * n).sum(axis=1) >= 0
+    return np.asarray(np.where(within[:, None], inside, best))
+
+
+def _on_segment(start: FloatArray, way: FloatArray, point: FloatArray) -> FloatArray:
+    length = np.maximum((way * way).sum(axis=1), 1e-300)
+    share = np.clip(((point - start) * way).sum(axis=1) / length, 0.0, 1.0)
+    return np.asarray(start + share[:, None] * way)
+
+
+# ---------------------------------------------------------------------- growth
+
+
+def _grown(facets: _Facets, seed: FloatArray, slack: float, size: float) -> FloatArray | None:
+    """Return planes `(K, 4)` around a seed such that each triangle is beyond one of them; None if the seed is on the surface."""
+    nearest = _nearest(facets, seed)
+    distance = np.linalg.norm(nearest - seed, axis=1)
+    tolerance = 1e-9 * size
+    if distance.min() < 1e-6 * size:
+        return None
+    heights = facets.offsets - facets.normals @ seed  # of the seed below each triangle's plane
+    left = np.lexsort((-heights, np.round(distance, 6)))  # triangles in front of all planes so far, nearest first
+    relative = np.moveaxis(facets.corners, 1, 0) - seed  # (3, N, 3): the first corners, the second, the third
+    planes = []
+    while len(left):
+        first = left[0]
+        if heights[first] >= _OWN * distance[first]:
+            n, height = facets.normals[first], float(heights[first])
+        else:
+            n, height = (nearest[first] - seed) / distance[first], float(distance[first])
+        least = _least(relative[:, left] @ n)  # how far beyond the seed each triangle is
+        areas = facets.areas[left]
+        beyond = [least >= height - min(share * slack, height / 2) - tolerance for share in _SLACKS]
+        gained = [float(areas[mask].sum()) for mask in beyond]
+        mask = beyond[next(index for index, gain in enumerate(gained) if gain >= 0.5 * gained[-1])]
+        mask[0] = True
+        reach = float(least[mask].min())  # as far out as the triangles that it is for allow
+        planes.append([*n, float(n @ seed) + min(height, reach)])
+        left = left[~mask]
+    return np.array(planes)
+
+
+def _least(values: FloatArray) -> FloatArray:
+    """Return the least of three rows, `(3, N)` to `(N,)`."""
+    return np.asarray(np.minimum(np.minimum(values[0], values[1]), values[2]))
+
+
+def _held_off(planes: FloatArray, facets: _Facets) -> FloatArray:
+    """Return the planes moved inwards until each triangle of a finer surface is beyond one of them, each triangle by the shortest way."""
+    corners = np.ascontiguousarray(np.moveaxis(facets.corners, 1, 0))
+    need = np.full(facets.count, np.inf)  # by which a plane would have to move
+    which = np.zeros(facets.count, dtype=int)
+    left = np.arange(facets.count)
+    for index, plane in enumerate(planes):
+        moves = plane[3] - _least(corners[:, left] @ plane[:3])
+        better = moves < need[left]
+        need[left[better]], which[left[better]] = moves[better], index
+        left = left[moves > 0]
+    moves = np.zeros(len(planes))
+    np.maximum.at(moves, which, np.maximum(need, 0.0))
+    return np.column_stack([planes[:, :3], planes[:, 3] - moves])
+
+
+def _polytope(planes: FloatArray, seed: FloatArray) -> _Grown | None:
+    """Return the intersection of half-spaces around a seed as a mesh, with only the planes that bound it; None if it is too thin."""
+    if ((planes[:, :3] @ seed - planes[:, 3]) >= -1e-6).any():
+        return None
+    try:
+        corners = HalfspaceIntersection(np.column_stack([planes[:, :3], -planes[:, 3]]), seed).intersections
+        corners = np.round(corners[np.isfinite(corners).all(axis=1)], _ROUND) + 0.0
+        hull = ConvexHull(corners)
+    except QhullError:
+        return None
+    mesh = _tidy(manifold3d.Manifold.hull_points(corners[np.sort(hull.vertices)]))
+    if mesh is None:
+        return None
+    bounding = np.unique(np.round(np.column_stack([hull.equations[:, :3], -hull.equations[:, 3]]), 9), axis=0)
+    boxed = _as_box(mesh)
+    return _Grown(bounding, Piece(mesh, SE3.identity(), None) if boxed is None else boxed, mesh.volume)
+
+
+def _fewer_corners(one: _Grown) -> _Grown:
+    """Return the hull of few of a piece's corners: those that are farthest out, then each time the one farthest from the hull so far."""
+    corners = one.piece.mesh.vertices
+    if one.piece.primitive is not None or len(corners) <= _MOST_CORNERS:
+        return one
+    directions = sphere(1.0, 8).vertices
+    chosen = list(dict.fromkeys((corners @ directions.T).argmax(axis=0).tolist()))
+    planes = np.zeros((0, 4))
+    while len(chosen) < _MOST_CORNERS:
+        hull = ConvexHull(corners[chosen])
+        planes = np.column_stack([hull.equations[:, :3], -hull.equations[:, 3]])
+        heights = (corners @ planes[:, :3].T - planes[:, 3]).max(axis=1)
+        if heights.max() <= 10.0**-_ROUND:
+            break
+        chosen.append(int(heights.argmax()))
+    mesh = _tidy(manifold3d.Manifold.hull_points(corners[sorted(chosen)]))
+    return one if mesh is None else _Grown(planes, Piece(mesh, SE3.identity(), None), mesh.volume)
+
+
+def _tidy(solid: manifold3d.Manifold) -> TriMesh | None:
+    found = solid.to_mesh64()
+    mesh = TriMesh(np.array(found.vert_properties[:, :3], dtype=np.float64), np.array(found.tri_verts, dtype=np.int32))
+    return mesh if mesh.is_closed and mesh.volume > 0 else None
+
+
+# ---------------------------------------------------------------------- recognised bodies
+
+
+def _as_box(mesh: TriMesh) -> Piece | None:
+    """Return a hull as a box if it is one: eight corners whose edges at one of them are perpendicular."""
+    corners = mesh.vertices
+    if len(corners) != 8:
+        return None
+    first = corners[0]
+    ways = corners[1:] - first
+    size = float(np.abs(ways).max())
+    for i, j, k in combinations(range(7), 3):
+        a, b, c = ways[[i, j, k]]
+        if max(abs(a @ b), abs(b @ c), abs(a @ c)) > 1e-7 * size * size:
+            continue
+        wanted = np.array([a + b, a + c, b + c, a + b + c])
+        if all(float(np.abs(ways - one).max(axis=1).min()) <= 1e-6 * size for one in wanted):
+            return _box_piece(first, np.array([a, b, c]))
+    return None
+
+
+def _box_piece(first: FloatArray, edges: FloatArray) -> Piece:
+    """Return the box that a corner and three edges span; its axes are those of the solid's frame as far as they are the same."""
+    lengths = np.linalg.norm(edges, axis=1)
+    axes = edges / lengths[:, None]
+    order, free = [], [0, 1, 2]
+    for axis in range(2):
+        best = max(free, key=lambda index: abs(float(axes[index, axis])))
+        free.remove(best)
+        order.append(best)
+    order += free
+    axes, lengths = axes[order], lengths[order]
+    for index in (0, 1):
+        if axes[index][int(np.abs(axes[index]).argmax())] < 0:
+            axes[index] = -axes[index]
+    x, z = _whole(axes[0]), _whole(np.cross(axes[0], axes[1]))
+    middle = first + edges.sum(axis=0) / 2
+    sides = tuple(float(side) for side in np.round(lengths, _ROUND))
+    frame = SE3.from_axes(np.round(middle, _ROUND) + 0.0, z, x)
+    return Piece(box(*sides), frame, Primitive("box", sides))
+
+
+def _whole(axis: FloatArray) -> FloatArray:
+    """Return a unit vector with components that are nearly 0 or ±1 made so."""
+    rounded = np.round(axis)
+    return np.asarray(rounded if float(np.abs(axis - rounded).max()) < 1e-9 else axis) + 0.0
+
+
+def _round_bodies(mesh: TriMesh, facets: _Facets, deflection: float) -> list[_Grown]:
+    """Return the balls and cylinders that smooth faces of the solid are part of and that lie inside it."""
+    found = []
+    for chosen in _smooth_faces(mesh, facets):
+        corners, normals = facets.corners[chosen].reshape(-1, 3), facets.normals[chosen]
+        weights = facets.areas[chosen]
+        moments = (normals * weights[:, None]).T @ normals / weights.sum()
+        spread, axes = np.linalg.eigh(moments)
+        slack = max(deflection, 1e-6 * float(np.ptp(corners, axis=0).max()))
+        one = None
+        if spread[0] < 1e-3 < spread[1]:
+            one = _cylinder(facets, corners, normals, axes[:, 0], slack)
+        elif spread[0] > 0.05:
+            one = _ball(facets, corners, normals, slack)
+        if one is not None:
+            found.append(one)
+    return found
+
+
+def _smooth_faces(mesh: TriMesh, facets: _Facets) -> list[NDArray[np.intp]]:
+    """Return the triangles of each face of the B-rep, or of each smooth patch where the mesh knows no faces; flat ones are left out."""
+    label = _patches(mesh, facets) if mesh.face is None else np.asarray(mesh.face)
+    order = np.argsort(label, kind="stable")
+    groups = np.split(order, np.flatnonzero(np.diff(label[order])) + 1)
+    groups.sort(key=lambda group: -float(facets.areas[group].sum()))
+    return [group for group in groups[:200] if len(group) >= 8 and float((facets.normals[group] @ facets.normals[group[0]]).min()) < 0.99]
+
+
+def _patches(mesh: TriMesh, facets: _Facets) -> NDArray[np.int64]:
+    """Return the number of the patch of each triangle: neighbours across an edge that is hardly bent share one."""
+    start, end = mesh.triangles.astype(np.int64), np.roll(mesh.triangles.astype(np.int64), -1, axis=1)
+    keys = np.minimum(start, end) * len(mesh.vertices) + np.maximum(start, end)
+    owners = np.repeat(np.arange(facets.count), 3)
+    order = np.argsort(keys.ravel(), kind="stable")
+    same = keys.ravel()[order][1:] == keys.ravel()[order][:-1]
+    a, b = owners[order][:-1][same], owners[order][1:][same]
+    smooth = (facets.normals[a] * facets.normals[b]).sum(axis=1) >= _SMOOTH
+    a, b = a[smooth], b[smooth]
+    graph = coo_array((np.ones(len(a)), (a, b)), shape=(facets.count, facets.count))
+    return np.asarray(connected_components(graph, directed=False)[1], dtype=np.int64)
+
+
+def _ball(facets: _Facets, corners: FloatArray, normals: FloatArray, slack: float) -> _Grown | None:
+    """Return the ball that all these corners are on, if the solid contains it."""
+    system = np.column_stack([2 * corners, np.ones(len(corners))])
+    solution, *_ = np.linalg.lstsq(system, (corners**2).sum(axis=1), rcond=None)
+    center = solution[:3]
+    r = float(np.sqrt(max(solution[3] + center @ center, 0.0)))
+    if r <= 0 or float(np.abs(np.linalg.norm(corners - center, axis=1) - r).max()) > slack:
+        return None
+    middles = corners.reshape(-1, 3, 3).mean(axis=1)
+    if float(((middles - center) * normals).sum(axis=1).min()) <= 0:  # a hollow
+        return None
+    if float(np.linalg.norm(_nearest(facets, center) - center, axis=1).min()) < r - slack - 1e-6 * r:
+        return None
+    center = np.round(center, _ROUND) + 0.0
+    r = round(r, _ROUND)
+    directions = sphere(1.0, 24).vertices
+    planes = np.column_stack([directions, directions @ center + r])
+    piece = Piece(sphere(r, 32), SE3.from_translation(center), Primitive("sphere", (r,)))
+    return _Grown(planes, piece, 4 / 3 * np.pi * r**3)
+
+
+def _cylinder(facets: _Facets, corners: FloatArray, normals: FloatArray, axis: FloatArray, slack: float) -> _Grown | None:
+    """Return the cylinder that all these corners are on, if the solid contains it between the ends of the face."""
+    axis = _whole(axis if axis[int(np.abs(axis).argmax())] > 0 else -axis)
+    side = np.eye(3)[int(np.abs(axis).argmin())]
+    x = side - (side @ axis) * axis
+    x /= np.linalg.norm(x)
+    y = np.cross(axis, x)
+    flat = np.column_stack([corners @ x, corners @ y])
+    solution, *_ = np.linalg.lstsq(np.column_stack([2 * flat, np.ones(len(flat))]), (flat**2).sum(axis=1), rcond=None)
+    middle = solution[:2]
+    r = float(np.sqrt(max(solution[2] + middle @ middle, 0.0)))
+    if r <= 0 or float(np.abs(np.linalg.norm(flat - middle, axis=1) - r).max()) > slack:
+        return None
+    outward = (flat.reshape(-1, 3, 2).mean(axis=1) - middle) @ np.array([x, y])
+    if float((outward * normals).sum(axis=1).min()) <= 0:  # a bore
+        return None
+    along = corners @ axis
+    low, high = float(along.min()), float(along.max())
+    planar = np.stack([facets.corners @ x - middle[0], facets.corners @ y - middle[1]], axis=-1)  # (N, 3, 2)
+    heights = facets.corners @ axis
+    tolerance = 1e-6 * (r + high - low)
+    near = (heights.min(axis=1) < high - tolerance) & (heights.max(axis=1) > low + tolerance)
+    if float(_to_origin(planar[near]).min(initial=np.inf)) < r - slack - tolerance:
+        return None
+    center = np.round(middle[0] * x + middle[1] * y + axis * (low + high) / 2, _ROUND) + 0.0
+    r, length = round(r, _ROUND), round(high - low, _ROUND)
+    angles = 2 * np.pi * np.arange(_SEGMENTS) / _SEGMENTS
+    around = np.cos(angles)[:, None] * x + np.sin(angles)[:, None] * y
+    n = np.concatenate([around, [axis, -axis]])
+    reach = np.concatenate([np.full(_SEGMENTS, r), [length / 2, length / 2]])
+    planes = np.column_stack([n, n @ center + reach])
+    piece = Piece(cylinder(r, length, _SEGMENTS), SE3.from_axes(center, axis, _whole(x)), Primitive("cylinder", (r, length)))
+    return _Grown(planes, piece, np.pi * r * r * length)
+
+
+def _to_origin(triangles: FloatArray) -> FloatArray:
+    """Return the distance of plane triangles `(N, 3, 2)` from the origin, 0 for those that contain it."""
+    best = np.full(len(triangles), np.inf)
+    signs = []
+    for i in range(3):
+        a, b = triangles[:, i], triangles[:, (i + 1) % 3]
+        way = b - a
+        length = np.maximum((way * way).sum(axis=1), 1e-300)
+        share = np.clip(-(a * way).sum(axis=1) / length, 0.0, 1.0)
+        best = np.minimum(best, np.linalg.norm(a + share[:, None] * way, axis=1))
+        signs.append(way[:, 0] * -a[:, 1] + way[:, 1] * a[:, 0])
+    turns = np.array(signs)
+    inside = (turns > 0).all(axis=0) | (turns < 0).all(axis=0)
+    return np.asarray(np.where(inside, 0.0, best))
+
+
+# ---------------------------------------------------------------------- measure
+
+
+def _distance_to(points: FloatArray, grown: list[_Grown], placed: list[TriMesh]) -> float:
+    """Return the largest distance of points from the nearest piece [mm]."""
+    least = np.array([one.distance(points) for one in grown])
+    far = np.flatnonzero(least.min(axis=0) > 0)
+    far = far[np.argsort(-least[:, far].min(axis=0))]
+    facets = [_Facets.of(mesh) for mesh in placed]
+    worst = 0.0
+    for index in far[:300].tolist():
+        best = np.inf
+        for which in np.argsort(least[:, index]).tolist():
+            if least[which, index] >= best or best <= worst:
+                break
+            best = min(best, float(np.linalg.norm(_nearest(facets[which], points[index]) - points[index], axis=1).min()))
+        worst = max(worst, best)
+    return worst
+
+
+def _manifold(mesh: TriMesh) -> manifold3d.Manifold:
+    return manifold3d.Manifold(manifold3d.Mesh64(mesh.vertices.copy(), mesh.triangles.astype(np.uint64)))

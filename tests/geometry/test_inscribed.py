@@ -1,0 +1,185 @@
+"""Convex pieces lie inside the solid and reach close to its surface, for random solids; manifold3d and trimesh judge."""
+
+from __future__ import annotations
+
+import manifold3d
+import numpy as np
+import pytest
+import trimesh
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+from articad.connectors.se3 import SE3
+from articad.geometry.inscribed import INSIDE_MM, MOST_PIECES, Inscribed, inscribed, missing_bound
+from articad.geometry.mesh import TriMesh
+from articad.geometry.shapes import box, capsule, cylinder, sphere, tube
+
+FloatArray = NDArray[np.float64]
+
+
+def body_of(mesh: TriMesh) -> manifold3d.Manifold:
+    body = manifold3d.Manifold(manifold3d.Mesh64(mesh.vertices.copy(), mesh.triangles.astype(np.uint64)))
+    assert body.status() == manifold3d.Error.NoError
+    return body
+
+
+def mesh_of(body: manifold3d.Manifold) -> TriMesh:
+    found = body.to_mesh64()
+    return TriMesh(np.array(found.vert_properties[:, :3]), np.array(found.tri_verts, dtype=np.int32))
+
+
+def placed(found: Inscribed) -> list[TriMesh]:
+    return [piece.mesh.transformed(piece.frame) for piece in found.pieces]
+
+
+def assert_inside(found: Inscribed, solid: TriMesh, epsilon: float = INSIDE_MM) -> None:
+    """No corner of a piece is outside by more than epsilon, and no volume is, as manifold3d's boolean has it."""
+    body = body_of(solid)
+    for mesh in placed(found):
+        outside = body_of(mesh) - body
+        assert outside.volume() <= epsilon * outside.surface_area() / 2 + 1e-9 * mesh.volume
+        assert mesh.is_closed
+        assert body_of(mesh).hull().volume() == pytest.approx(mesh.volume, rel=1e-6)  # convex
+
+
+def random_solid(rng: np.random.Generator) -> TriMesh:
+    """A slab, a disc or a frame with bosses, bores, slots and pockets, somewhere in space."""
+    size = rng.uniform(5, 300)
+    base = rng.integers(3)
+    if base == 0:
+        body = manifold3d.Manifold.cube(tuple(size * rng.uniform(0.1, 1, 3)), center=True)
+    elif base == 1:
+        body = manifold3d.Manifold.cylinder(
+            size * rng.uniform(0.1, 1), size / 2, size / 2 * rng.uniform(0.3, 1), int(rng.integers(24, 96)), center=True
+        )
+    else:
+        outer, wall = size * rng.uniform(0.4, 1, 3), size * rng.uniform(0.02, 0.1)
+        body = manifold3d.Manifold.cube(tuple(outer), center=True) - manifold3d.Manifold.cube(
+            tuple(outer - 2 * wall), center=True
+        ).translate((0, 0, wall * 1.5))
+    low, high = np.array(body.bounding_box()[:3]), np.array(body.bounding_box()[3:])
+    for _ in range(int(rng.integers(0, 5))):
+        where = tuple(rng.uniform(low, high))
+        form = rng.integers(3)
+        r = size * rng.uniform(0.02, 0.15)
+        if form == 0:
+            tool = manifold3d.Manifold.cylinder(3 * size, r, r, int(rng.integers(16, 64)), center=True)
+        elif form == 1:
+            tool = manifold3d.Manifold.sphere(r, 32)
+        else:
+            tool = manifold3d.Manifold.cube(tuple(size * rng.uniform(0.05, 0.3, 3)), center=True)
+        tool = tool.rotate(tuple(90.0 * rng.integers(0, 3, 3)) if rng.random() < 0.6 else tuple(rng.uniform(0, 360, 3))).translate(where)
+        body = body - tool if rng.random() < 0.7 else body + (tool ^ manifold3d.Manifold.cube(tuple(1.2 * (high - low)), center=True))
+    largest = max(body.decompose(), key=lambda piece: float(piece.volume()))
+    T = SE3.from_axis_angle(rng.normal(size=3), rng.uniform(0, 3)) if rng.random() < 0.5 else SE3.identity()
+    return mesh_of(largest).transformed(SE3.from_translation(rng.uniform(-200, 200, 3)) @ T)
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_pieces_of_a_random_solid_lie_inside_it(seed: int) -> None:
+    solid = random_solid(np.random.default_rng(seed))
+    found = inscribed(solid)
+
+    assert found is not None
+    assert 1 <= len(found.pieces) <= MOST_PIECES
+    assert_inside(found, solid)
+
+
+@pytest.mark.soak
+@pytest.mark.parametrize("seed", range(100, 300))
+def test_pieces_of_many_random_solids_lie_inside_them(seed: int) -> None:
+    solid = random_solid(np.random.default_rng(seed))
+    found = inscribed(solid)
+    if found is not None:
+        assert_inside(found, solid)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_what_is_missing_is_what_an_independent_measurement_finds(seed: int) -> None:
+    """trimesh samples the solid's surface and the pieces: the farthest sample is about as far as is stated."""
+    solid = random_solid(np.random.default_rng(seed))
+    found = inscribed(solid)
+    assert found is not None
+    size = float(np.linalg.norm(solid.bounds[1] - solid.bounds[0]))
+    surface, _ = trimesh.sample.sample_surface(trimesh.Trimesh(solid.vertices, solid.triangles), 3000, seed=1)
+    together = [trimesh.sample.sample_surface(trimesh.Trimesh(mesh.vertices, mesh.triangles), 20_000, seed=1)[0] for mesh in placed(found)]
+    inside = np.array([max(trimesh.Trimesh(mesh.vertices, mesh.triangles).area for mesh in placed(found))])
+    spacing = 3 * float(np.sqrt(inside[0] / 20_000))
+    far, _ = cKDTree(np.concatenate(together)).query(surface)
+
+    assert found.missing <= missing_bound(solid) * 3
+    assert float(far.max()) <= found.missing + spacing + 0.02 * size
+
+
+def test_a_box_is_one_box_wherever_it_stands() -> None:
+    T = SE3.from_axis_angle((1, 2, 3), 0.7) @ SE3.from_translation((5, -3, 8))
+    found = inscribed(box(10, 20, 30).transformed(T))
+
+    assert found is not None
+    (piece,) = found.pieces
+    assert piece.primitive is not None
+    assert piece.primitive.kind == "box"
+    assert sorted(piece.primitive.size) == pytest.approx([10, 20, 30], abs=1e-4)
+    assert found.missing < 1e-4
+    assert_inside(found, box(10, 20, 30).transformed(T))
+
+
+def test_a_plate_keeps_its_axes_and_whole_sides() -> None:
+    found = inscribed(box(10, 20, 30))
+
+    assert found is not None
+    assert found.pieces[0].primitive is not None
+    assert found.pieces[0].primitive.size == (10.0, 20.0, 30.0)
+    assert found.pieces[0].frame.allclose(SE3.identity(), mm=0.0, rad=0.0)
+
+
+@pytest.mark.parametrize("phase", [0.0, 0.3])
+def test_a_cylinder_and_a_ball_are_recognised(phase: float) -> None:
+    pin, ball = cylinder(4, 30, 64, phase=phase), sphere(8, 64)
+    T = SE3.from_axis_angle((1, 0, 1), 1.1)
+    turned, round_ = inscribed(pin.transformed(T), deflection=0.01), inscribed(ball, deflection=0.05)
+
+    assert turned is not None
+    assert round_ is not None
+    (a,), (b,) = turned.pieces, round_.pieces
+    assert (a.primitive and a.primitive.kind, b.primitive and b.primitive.kind) == ("cylinder", "sphere")
+    assert a.primitive is not None
+    assert a.primitive.size == pytest.approx((4, 30), abs=1e-4)
+    assert abs(a.frame.z_axis @ T.rotation[:, 2]) == pytest.approx(1)
+
+
+def test_a_bore_is_never_entered() -> None:
+    """Corners and faces of the pieces of a tube keep out of the bore, as its facets have it."""
+    r, n = 20.0, 64
+    found = inscribed(tube(r, 30, 10, n))
+
+    assert found is not None
+    assert len(found.pieces) <= 16
+    for mesh in placed(found):
+        points, _ = trimesh.sample.sample_surface(trimesh.Trimesh(mesh.vertices, mesh.triangles), 2000, seed=0)
+        assert float(np.linalg.norm(points[:, :2], axis=1).min()) >= r * np.cos(np.pi / n) - INSIDE_MM
+
+
+def test_a_capsule_is_covered_from_inside() -> None:
+    solid = capsule(5, 20, 48)
+    found = inscribed(solid)
+
+    assert found is not None
+    assert_inside(found, solid)
+    assert found.missing <= found.bound
+
+
+def test_what_encloses_nothing_has_no_pieces() -> None:
+    open_ = TriMesh(box(1, 1, 1).vertices, box(1, 1, 1).triangles[:-1])
+
+    assert inscribed(open_) is None
+    assert inscribed(box(1, 1, 1).flipped()) is None
+
+
+def test_pieces_come_out_the_same_twice() -> None:
+    solid = random_solid(np.random.default_rng(3))
+    first, again = inscribed(solid), inscribed(solid)
+
+    assert first is not None
+    assert again is not None
+    assert [piece.mesh.digest for piece in first.pieces] == [piece.mesh.digest for piece in again.pieces]
