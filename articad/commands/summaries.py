@@ -169,7 +169,9 @@ def print_exports(exports: Mapping[str, Report], terminal: Terminal) -> None:
     """Print each export's main file, everything that was lost in it, and what else its writer had to say."""
     for name, export in exports.items():
         losses = counted_things(len(export["rows"]), "loss", "losses")
-        terminal.say(f"{name.upper()}: {export['main']} ({counted_things(len(export['files']), 'file', 'files')}, {losses})")
+        meshes = sum(size for path, size in export["files"].items() if path.endswith((".stl", ".obj")))
+        weight = f", {meshes / 1e6:.2f} MB of meshes" if meshes else ""
+        terminal.say(f"{name.upper()}: {export['main']} ({counted_things(len(export['files']), 'file', 'files')}{weight}, {losses})")
         alike: dict[str, list[Report]] = {}
         for row in export["rows"]:
             alike.setdefault(row["lost"], []).append(row)

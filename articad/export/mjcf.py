@@ -91,9 +91,9 @@ def write_mjcf(
     again = Again(assembly)
     model = lower(assembly, () if again.active else RESERVED, as_it_came=assembly.foreign)
     contacts: tuple[HullOverlap, ...] = ()
-    if not (again.active and collision == "solid"):  # what collides in an MJCF file is what that file says
+    if not (again.active and kind_of(assembly, collision) == "solid"):  # what collides in an MJCF file is what that file says
         model, contacts = collide(assembly, model, collision, _skipped(assembly), cache)
-    writer = _Writer(assembly, model, MeshFiles(meshes), again)
+    writer = _Writer(assembly, model, MeshFiles(meshes, draws=kind_of(assembly, collision) != "solid"), again)
     root = writer.document(contacts, actuators=actuators)
     zero = [row.joint.name for row in model.joints if any(_no_force(freedom) for freedom in row.freedoms)]
     nested = [row.joint.name for row in model.joints if row.is_free and _is_nested(row, assembly)]
@@ -106,11 +106,6 @@ def write_mjcf(
     losses = (*losses_of("mjcf", features), *kept_losses("mjcf", assembly.kept, again.written))
     if strict:
         refuse(losses)
-<<<<<<< HEAD
-=======
-    writer = _Writer(assembly, model, MeshFiles(meshes, draws=kind_of(assembly, collision) != "solid"))
-    root = writer.document(contacts, actuators=actuators)
->>>>>>> f9b092a (Collide with convex pieces inside the solids; let sim say which loops are left open)
     assumed = [] if assembly.foreign else [row.joint.name for row in model.joints if any(freedom.load.assumed for freedom in row.freedoms)]
     return Bundle({f"{model.name}.xml": document(root), **writer.files.files}, losses, Findings(assumed_finding(assumed, "mjcf")))
 
@@ -118,14 +113,9 @@ def write_mjcf(
 class _Writer:
     """Builds one document; holds what its sections share."""
 
-<<<<<<< HEAD
     def __init__(self, assembly: Assembly, model: LoweredModel, files: MeshFiles, again: Again) -> None:
         self.assembly, self.model, self.files, self.again = assembly, model, files, again
-=======
-    def __init__(self, assembly: Assembly, model: LoweredModel, files: MeshFiles) -> None:
-        self.assembly, self.model, self.files = assembly, model, files
         files.expect(link.part for link in model.links)
->>>>>>> f9b092a (Collide with convex pieces inside the solids; let sim say which loops are left open)
         self.sites = Names()
         self.asset: Any = None
         self.bodies: dict[str, Any] = {}
@@ -205,15 +195,12 @@ class _Writer:
             for one in chain:
                 self._joints(body, one)
             self._geoms(body, link)
-<<<<<<< HEAD
+            self.files.keep_all(link.part, link.name)
             if self.again.active:
                 body.attrib.update(self.again.attributes(f"parts.{link.part.name}", "body"))
                 self.again.below(f"parts.{link.part.name}", body)
             if self.assembly.foreign:
                 continue
-=======
-            self.files.keep_all(link.part, link.name)
->>>>>>> f9b092a (Collide with convex pieces inside the solids; let sim say which loops are left open)
             for connector in link.part.connectors.values():
                 self._site(body, f"{link.name}__{connector.name}", link.T_link_part @ metres(connector.frame))
 
@@ -369,12 +356,8 @@ class _Writer:
         if self.again.active:
             return
         links = {link.part.name: link for link in self.model.links}
-<<<<<<< HEAD
         mating = self._joined()
-=======
-        mating = mating_pairs(self.assembly.mechanism.joints, self.assembly.mechanism.parts)
         reasons = {contact.parts: excuse(contact) for contact in contacts} | {pair: shared(self.assembly, pair) for pair in mating}
->>>>>>> f9b092a (Collide with convex pieces inside the solids; let sim say which loops are left open)
         pairs = dict.fromkeys([*mating, *(contact.parts for contact in contacts)])
         if self.assembly.foreign:
             self.added += [Feature("contact.joined", "parts." + "+".join(pair)) for pair in mating]
@@ -457,13 +440,9 @@ class _Writer:
         return freedoms
 
     def _home(self, root: Any, world: Any, servos: list[Freedom]) -> None:
-<<<<<<< HEAD
-        values = [value for joint in world.iter("joint", "freejoint") for value in self.qpos[joint.get("name")]]
+        values = tidy(value for joint in world.iter("joint", "freejoint") for value in self.qpos[joint.get("name")])
         if self.again.active or (self.assembly.foreign and self._rests_at_zero()):  # an MJCF file has keys of its own
             return
-=======
-        values = tidy(value for joint in world.iter("joint", "freejoint") for value in self.qpos[joint.get("name")])
->>>>>>> f9b092a (Collide with convex pieces inside the solids; let sim say which loops are left open)
         if values:
             if self.assembly.foreign:
                 self.added.append(Feature("rest.assumed", "model"))
