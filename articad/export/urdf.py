@@ -79,7 +79,7 @@ def write_urdf(
         require_package_name(package)
     model = lower(assembly)
     contacts: tuple[HullOverlap, ...] = ()
-    if srdf or collision != "solid" or not assembly.foreign:  # a file's own collision meshes are what they are
+    if srdf or kind_of(assembly, collision) != "solid" or not assembly.foreign:  # a file's own collision meshes are what they are
         model, contacts = collide(assembly, model, collision, _skipped(assembly, model), cache)
     tied = {loop.name: tied_points(model, loop) for loop in model.loops} if loops in {"isaac", "drake"} else {}
     keeper = _Keeper(assembly, model)
