@@ -213,7 +213,7 @@ def test_a_plan_that_is_told_is_free_of_errors_and_tells_its_losses() -> None:
     losses = write_plan(all_joint_kinds()).losses
 
     assert check_plan(plan).ok
-    assert {loss.where for loss in losses if loss.lost.startswith("where the joint rests")} == {"joints.knob"}
+    assert {loss.where for loss in losses if loss.lost.startswith("the rest value of the joint")} == {"joints.knob"}
     assert {loss.where for loss in losses if loss.refused} == {"parts"}
 
 
