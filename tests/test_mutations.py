@@ -71,9 +71,9 @@ MUTATIONS = {
         JOINTS, "signs = self.type.mirror_signs()", "signs = abs(self.type.mirror_signs())", LAWS
     ),
     "a mirrored screw keeps its hand": Mutation(JOINTS, "lead=-self.lead + 0.0", "lead=self.lead", LAWS),
-    "a screw advances by its lead per radian": Mutation(JOINTS, "lead / (2 * math.pi) * column[0]", "lead * column[0]", LAWS),
+    "a screw advances by its lead per radian": Mutation(JOINTS, "value = lead / (2 * math.pi) * value", "value = lead * value", LAWS),
     "a universal joint turns about y first": Mutation(
-        JOINTS, "return SE3.rot_x(column[0]) @ SE3.rot_y(column[1])", "return SE3.rot_y(column[1]) @ SE3.rot_x(column[0])", LAWS
+        JOINTS, "T = moved if T is None else T @ moved", "T = moved if T is None else moved @ T", LAWS
     ),
 }
 

@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
 
 from articad.assembly import Assembly
 from articad.certificates.certificate import constrained_joints, driver_names, mechanism_json
@@ -104,14 +105,27 @@ def test_pictures_and_animations_show_the_assemblys_poses(make: Callable[[], Ass
     q = assembly.mechanism.rest.copy()
     q[0] = min(first.upper, first.rest + FAR_RAD)
     T = assembly.poses(q)
-    moved = set()
+    nodes = [dict(node) for node in document["nodes"]]
     for channel in animation["channels"]:
         at = values(document, binary, animation["samplers"][channel["sampler"]]["output"])[quarter]
-        part = T[channel["target"]["node"] - 1]
-        moved.add(channel["target"]["node"] - 1)
-        wanted = part.translation / 1000 if channel["target"]["path"] == "translation" else part.quaternion
-        assert min(np.abs(at - wanted).max(), np.abs(at + wanted).max()) < 1e-6  # numbers of a GLB have 24 bits
-    assert moved == set(range(1, len(assembly.parts))), "everything stands on the first joint"
+        nodes[channel["target"]["node"]][channel["target"]["path"]] = at.tolist()
+    placed: dict[str, SE3] = {}
+
+    def place(index: int, carrier: SE3) -> None:
+        """Place a node and what it carries; lengths are m."""
+        node = nodes[index]
+        own = SE3.from_rotation(Rotation.from_quat(node.get("rotation", [0, 0, 0, 1])).as_matrix())
+        here = carrier @ SE3.trans(*node.get("translation", [0, 0, 0])) @ own
+        placed[node.get("name", "")] = here
+        for child in node.get("children", []):
+            place(child, here)
+
+    first_part = next(i for i, node in enumerate(nodes) if node.get("name") == assembly.mechanism.ground)
+    place(first_part, SE3.identity())
+    for name, wanted in zip(assembly.parts, T, strict=True):
+        in_ground = T[list(assembly.parts).index(assembly.mechanism.ground)].inverse() @ wanted
+        assert np.abs(placed[name].translation - in_ground.translation / 1000).max() < 1e-6  # numbers of a GLB have 24 bits
+        assert np.abs(placed[name].rotation - in_ground.rotation).max() < 1e-6
 
 
 @each

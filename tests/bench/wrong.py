@@ -145,11 +145,11 @@ def _two_solids(_check: Check, subject: Subject) -> Subject:
 
 
 def _massless(_check: Check, subject: Subject) -> Subject:
-    """The file tells of no mass, as many published ones."""
+    """The file states no mass and no shape that a simulator could take one from."""
     folder = Path(tempfile.mkdtemp(prefix="articad-massless-"))
     atexit.register(shutil.rmtree, folder, ignore_errors=True)
     (file,) = (path for path in write_urdf(subject.assembly).write(folder) if path.suffix == ".urdf")
-    file.write_text(re.sub(r"<inertial>.*?</inertial>", "", file.read_text(), flags=re.DOTALL))
+    file.write_text(re.sub(r"<(inertial|collision)>.*?</\1>", "", file.read_text(), flags=re.DOTALL))
     return Subject(subject.assembly, file=file)
 
 
