@@ -40,13 +40,13 @@ def _command(*arguments: str) -> Callable[[], Outcome]:
     return run
 
 
-def _tests() -> Outcome:
+def _tests(*more: str) -> Outcome:
     """Run pytest and count its tests; a run that broke off, or ran none, counts as one failure more."""
     jobs = os.environ.get("ARTICAD_TEST_JOBS", "2")
     with tempfile.TemporaryDirectory() as folder:
-        report = Path(folder, "report.xml")
+        report = Path(os.environ.get("ARTICAD_TEST_REPORT", Path(folder, "report.xml")))
         selection = ["-m", "not crash and not fuzz and not supply and not corpus and not soak and not engines_all and not freecad_next"]
-        options = ["-q", "-n", jobs, "--durations=10", "--hypothesis-profile=ci", f"--junit-xml={report}"]
+        options = ["-q", "-n", jobs, "--durations=10", "--hypothesis-profile=ci", f"--junit-xml={report}", *more]
         done = subprocess.run([PYTHON, "-m", "pytest", *selection, *options], cwd=ROOT, env=ENVIRONMENT, check=False)
         if not report.is_file():
             return Outcome(0, 1)
@@ -95,9 +95,16 @@ STAGES: dict[str, Callable[[], Outcome]] = {
 }
 
 
+FAST: dict[str, Callable[[], Outcome]] = {name: STAGES[name] for name in ("ruff", "format", "imports")}
+FAST["fast"] = lambda: _tests("--fast")
+"""What `./scripts/test fast` runs: every layer, without the tests that `tests/slow.txt` lists."""
+
+
 def main(names: list[str]) -> int:
     """Run the named stages, or all; return 0 when nothing failed."""
-    unknown = [name for name in names if name not in STAGES]
+    stages = STAGES | FAST
+    names = list(FAST) if names == ["fast"] else names
+    unknown = [name for name in names if name not in stages]
     if unknown:
         print(f"unknown stage {', '.join(unknown)}; there are {', '.join(STAGES)}", file=sys.stderr)
         return 2
@@ -105,7 +112,7 @@ def main(names: list[str]) -> int:
     for name in names or STAGES:
         print(f"--- {name}", flush=True)
         start = time.monotonic()
-        outcome = STAGES[name]()
+        outcome = stages[name]()
         rows.append((name, outcome, time.monotonic() - start))
     print(f"\n{'stage':<10} {'passed':>7} {'failed':>7} {'skipped':>8} {'seconds':>8}")
     for name, outcome, seconds in rows:

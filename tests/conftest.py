@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator
+from pathlib import Path
 
 import pytest
 from hypothesis import HealthCheck, settings
@@ -20,3 +21,21 @@ def memory_of_the_tests(tmp_path_factory: pytest.TempPathFactory) -> Iterator[No
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("ARTICAD_MEMORY", str(tmp_path_factory.mktemp("memory") / "store"))
         yield
+
+
+SLOW = Path(__file__).with_name("slow.txt")
+"""Test functions that take longer than `scripts/durations.py` allows a fast one, as it measured them."""
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    parser.addoption("--fast", action="store_true", help="leave out the tests that tests/slow.txt lists")
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    if not config.getoption("--fast"):
+        return
+    slow = {line.split()[1] for line in SLOW.read_text(encoding="utf-8").splitlines() if not line.startswith("#")}
+    marks = {"slow", "freecad", "engines"}
+    late = [item for item in items if item.nodeid.partition("[")[0] in slow or marks & {mark.name for mark in item.iter_markers()}]
+    config.hook.pytest_deselected(items=late)
+    items[:] = [item for item in items if item not in set(late)]
