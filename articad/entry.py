@@ -14,7 +14,6 @@ from articad.assembly import Assembly
 from articad.auditing.examine import AUDITED, AuditOptions, audit_assembly, audit_file, audit_made
 from articad.auditing.report import Audit
 from articad.certificates.certificate import DEFAULT_BUDGET_S, DEFAULT_EPSILON_MM, Certificate
-from articad.kernels.choice import kernel_named
 from articad.kernels.parts import Progress
 from articad.plan.schema import AssemblyPlan
 from articad.runs.record import assembly_of
@@ -56,7 +55,7 @@ def read(
     if path.is_dir() or path.suffix.lower() == ".json":
         plan = AssemblyPlan.load(path)
         folder = path if path.is_dir() else path.parent
-        return Assembly.from_plan(plan, folder / "parts", kernel=kernel_named(plan.kernel, sandbox=sandbox), progress=progress)
+        return Assembly.from_plan(plan, folder / "parts", sandbox=sandbox, progress=progress)
     return formats.read(path, root=root, fuse=fuse)
 
 

@@ -14,7 +14,7 @@ Units: configurations q in mm and rad, as everywhere in articad; everything else
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property
 from typing import Final, NamedTuple, Protocol
 
@@ -79,6 +79,7 @@ class _State(NamedTuple):
         Z: Basis of the admissible velocities `(n, k)`.
         c: Acceleration of all freedoms where ż is 0 `(n,)`.
         J: Scaled constraints `(rows, n)`.
+        scale: What one scaled unit of each freedom is `(n,)`.
     """
 
     M: FloatArray
@@ -86,6 +87,7 @@ class _State(NamedTuple):
     Z: FloatArray
     c: FloatArray
     J: FloatArray
+    scale: FloatArray
 
 
 class Dynamics:
@@ -251,13 +253,13 @@ class Dynamics:
         M, h = self._tree(Q, v)
         J, scale = self._constraints(Q)
         if not len(J):
-            return _State(M, h, np.eye(len(M)), np.zeros(len(M)), J)
+            return _State(M, h, np.eye(len(M)), np.zeros(len(M)), J, scale)
         # in scaled freedoms y = v / scale: null space Z, and the shortest c with J c = −J̇ v
         U, s, Vt = np.linalg.svd(J)
         rank = int((s > RANK_TOLERANCE * s.max(initial=0.0)).sum())
-        turned = U[:, :rank].T @ self._rate(Q, v)
+        turned = U[:, :rank].T @ self._rate(lambda at: self._constraints(at)[0], Q, v, scale)
         c = -Vt[:rank].T @ (turned / s[:rank])
-        return _State(M, h, scale[:, None] * Vt[rank:].T, scale * c, J)
+        return _State(M, h, scale[:, None] * Vt[rank:].T, scale * c, J, scale)
 
     def _all_velocities(self, Q: FloatArray, given: FloatArray) -> FloatArray:
         if self.mechanism.is_tree:
@@ -277,17 +279,19 @@ class Dynamics:
             blocks.append(block)
         return np.concatenate(blocks), scale
 
-    def _rate(self, Q: FloatArray, v: FloatArray) -> FloatArray:
-        """Return J̇ v by central differences along v, Richardson-extrapolated: the error is of fourth order in the step."""
-        _, scale = self._constraints(Q)
+    def _rate(self, of: Callable[[FloatArray], FloatArray], Q: FloatArray, v: FloatArray, scale: FloatArray) -> FloatArray:
+        """Return Ȧ w of a matrix A(Q) that acts on w = v / scale.
+
+        Central differences along v, Richardson-extrapolated: the error is of fourth order in the step.
+        """
         y = v / scale
         speed = float(np.abs(y).max(initial=0.0))
         if speed == 0:
-            return np.zeros(len(self._constraints(Q)[0]))
+            return np.zeros(len(of(Q)))
         layout = self.mechanism.layout
 
         def difference(h: float) -> FloatArray:
-            ahead, behind = (self._constraints(layout.integrate(Q, sign * h / speed * v))[0] for sign in (1.0, -1.0))
+            ahead, behind = (of(layout.integrate(Q, sign * h / speed * v)) for sign in (1.0, -1.0))
             slope: FloatArray = (ahead - behind) @ y * (speed / (2 * h))
             return slope
 
@@ -304,10 +308,9 @@ class Dynamics:
         """Return the smallest constraint forces λ with Jᵀ λ = M v̇ + h − Eᵀ τ, by loop joint and by coupling."""
         if self.mechanism.is_tree:
             return {}
-        scale = self._constraints_scale
         U, s, Vt = svd(state.J)
         kept = s > RANK_TOLERANCE * s.max(initial=0.0)
-        multipliers = (U[:, kept] / s[kept]) @ (Vt[kept] @ (free * scale))
+        multipliers = (U[:, kept] / s[kept]) @ (Vt[kept] @ (free * state.scale))
         forces: dict[str, FloatArray] = {}
         at = 0
         for group in self.mechanism.branch.groups:
@@ -318,14 +321,10 @@ class Dynamics:
                 at += 6
             for row, coupling in enumerate(system.couplings):
                 column = self.mechanism.layout.freedom_of(self.mechanism.layout.column_of[coupling.b])
-                slope = state.J[at + row, column] / scale[column]
+                slope = state.J[at + row, column] / state.scale[column]
                 forces[coupling.name] = np.array([multipliers[at + row] * slope * self._effort[column]])
             at += len(system.couplings)
         return forces
-
-    @cached_property
-    def _constraints_scale(self) -> FloatArray:
-        return self._constraints(self.mechanism.configuration(self.mechanism.rest).columns)[1]
 
     # --- the tree, by Pinocchio
 
@@ -350,31 +349,13 @@ class Dynamics:
 
         model, data = self._compiled.model, self._compiled.data
         B = self._velocity_map(Q)
-        B_v = self._map_rate(Q, v)
+        lengths = np.where(self.mechanism.layout.is_length, _MM_PER_M, 1.0)  # a step of 1 rad is as long as one of 1 m
+        B_v = self._rate(lambda at: self._velocity_map(at) * lengths, Q, v, lengths)
         q, v_p = self._compiled.q(Q), B @ v
         M_p = np.array(pin.crba(model, data, q)).reshape(model.nv, model.nv)
         M_p = np.triu(M_p) + np.triu(M_p, 1).T
         h_p = np.array(pin.rnea(model, data, q, v_p, B_v))
         return B.T @ M_p @ B, B.T @ h_p
-
-    def _map_rate(self, Q: FloatArray, v: FloatArray) -> FloatArray:
-        """Return Ḃ v by extrapolated central differences, as `_rate`."""
-        speed = float(np.abs(v).max(initial=0.0))
-        if speed == 0:
-            return np.zeros(self._compiled.model.nv)
-        layout = self.mechanism.layout
-        angular = np.where(layout.is_length, 0.0, v)
-        speed = float(np.abs(angular).max(initial=0.0))
-        if speed == 0:
-            return np.zeros(self._compiled.model.nv)
-
-        def difference(h: float) -> FloatArray:
-            ahead, behind = (self._velocity_map(layout.integrate(Q, sign * h / speed * v)) for sign in (1.0, -1.0))
-            slope: FloatArray = (ahead - behind) @ v * (speed / (2 * h))
-            return slope
-
-        rate: FloatArray = (4 * difference(_STEP / 2) - difference(_STEP)) / 3
-        return rate
 
     def _velocity_map(self, Q: FloatArray) -> FloatArray:
         """Return B `(nv_p, n_freedoms)`: Pinocchio's velocities per freedom.
