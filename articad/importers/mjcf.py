@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from copy import deepcopy
 from pathlib import Path
 from typing import Any, Final
@@ -23,13 +22,13 @@ from articad.geometry.part import DEFAULT_COLOR, Primitive, Shape
 from articad.geometry.shapes import box, capsule, cylinder, sphere
 from articad.importers.closure import require_closed
 from articad.importers.fusing import fused, with_chains_named
-from articad.importers.mjcf_carried import Carrier, geom_kind
+from articad.importers.mjcf_carried import Carrier
+from articad.importers.mjcf_compiled import Compiled, compiled_mjcf
 from articad.importers.mjcf_kept import kept_attributes, section_elements, with_includes
 from articad.importers.raw import ENDLESS, IDENTITY, RawJoint, RawLink, RawModel, RawTie, aligned, assemble, require_links
 from articad.importers.reading import MM_PER_M, Folder, color_text, read_xml, unreadable
 from articad.importers.records import assembly_of, read_records, stale
 from articad.kinematics.joints import JointType
-from articad.processes import launcher
 
 FloatArray = NDArray[np.float64]
 
@@ -77,56 +76,25 @@ def read_mjcf(path: str | Path, *, root: str | Path | None = None, metadata: boo
             return assembly_of(records, folder, path)
     require_closed(path, folder.root)
     whole = with_includes(document, path)
-    with _warnings() as said:
-        model = _Reader(_compiled(path), document.get("model") or path.stem, whole).model()
+    compiled = compiled_mjcf(path, folder.root)
+    model = _Reader(compiled, document.get("model") or path.stem, whole).model()
     model.findings += edited
-    for text in dict.fromkeys(said):
+    for text in dict.fromkeys(compiled.warnings):
         hint = "Correct what it names: simulators read the file the same way."
         model.findings.append(Finding(code="W_IMPORT_MUJOCO", where=path.name, message=f"MuJoCo warns: {text}", hint=hint))
     require_links(model, path)
     return assemble(fused(model) if fuse else with_chains_named(model), path)
 
 
-@contextmanager
-def _warnings() -> Iterator[list[str]]:
-    """Collect what MuJoCo warns of; left alone, it prints that and writes it into a log in the folder where the process stands."""
-    with launcher.safe_path():
-        import mujoco  # noqa: PLC0415 - only readers of MJCF need it
-
-    said: list[str] = []
-    before = mujoco.get_mju_user_warning()
-    mujoco.set_mju_user_warning(said.append)
-    try:
-        yield said
-    finally:
-        mujoco.set_mju_user_warning(before)
-
-
-def _compiled(path: Path) -> Any:
-    import mujoco  # noqa: PLC0415
-
-    try:
-        return mujoco.MjModel.from_xml_path(str(path))
-    except (ValueError, RuntimeError, mujoco.FatalError) as error:  # RuntimeError: its own parser failed
-        raise unreadable(path, "", f"MuJoCo does not take it: {error}") from None
-
-
 class _Reader:
     """Turns a compiled model into links and joints."""
 
-    def __init__(self, compiled: Any, name: str, document: Any) -> None:
-        import mujoco  # noqa: PLC0415
-
-        self.m, self.mujoco = compiled, mujoco
-        self.data = mujoco.MjData(compiled)
-        home = mujoco.mj_name2id(compiled, mujoco.mjtObj.mjOBJ_KEY, "home")
-        if home >= 0:
-            mujoco.mj_resetDataKeyframe(compiled, self.data, home)
-        mujoco.mj_kinematics(compiled, self.data)
-        self.bodies = self._unique(mujoco.mjtObj.mjOBJ_BODY, compiled.nbody, "body")
-        self.joints = self._unique(mujoco.mjtObj.mjOBJ_JOINT, compiled.njnt, "joint")
+    def __init__(self, compiled: Compiled, name: str, document: Any) -> None:
+        self.m = compiled
+        self.bodies = self._unique("BODY", compiled.nbody)
+        self.joints = self._unique("JOINT", compiled.njnt)
         self.raw = RawModel(name, self.bodies[0])
-        self.carrier = Carrier(compiled, mujoco, self.bodies, self.joints)
+        self.carrier = Carrier(compiled, self.bodies, self.joints)
         self.document = document
 
     def model(self) -> RawModel:
@@ -141,12 +109,12 @@ class _Reader:
             self._add_equality(row)
         return self.raw
 
-    def _unique(self, kind: Any, count: int, word: str) -> list[str]:
-        names = [self.mujoco.mj_id2name(self.m, kind, index) for index in range(count)]
+    def _unique(self, kind: str, count: int) -> list[str]:
+        names = [self.m.name(kind, index) for index in range(count)]
         taken = set(names)
         for index, name in enumerate(names):
             if not name:
-                free = f"{word}_{index}"
+                free = f"{kind.lower()}_{index}"
                 while free in taken:
                     free += "_"
                 names[index] = free
@@ -174,8 +142,8 @@ class _Reader:
             for word, count in COUNTED[section].items():
                 kind = {"eq": "EQUALITY"}.get(count[1:], count[1:].upper())
                 for index in range(_number_of(self.m, count)):
-                    name = self.mujoco.mj_id2name(self.m, getattr(self.mujoco.mjtObj, f"mjOBJ_{kind}", 0), index)
-                    if not str(name).startswith(_RECORD_PREFIX):
+                    name = self.m.name(kind, index)
+                    if not name.startswith(_RECORD_PREFIX):
                         self.raw.kept.append(
                             Kept("mjcf", "model", f"{word} {name or f'{word}_{index}'!r}, which a copy or an attached model brings")
                         )
@@ -184,7 +152,7 @@ class _Reader:
         """Return how many elements of a section the compiled model has, without our own records."""
         count = sum(_number_of(self.m, count) for count in COUNTED[section].values())
         if section == "custom":
-            texts = (self.mujoco.mj_id2name(self.m, self.mujoco.mjtObj.mjOBJ_TEXT, index) or "" for index in range(self.m.ntext))
+            texts = (self.m.name("TEXT", index) for index in range(self.m.ntext))
             count -= sum(name.startswith(_RECORD_PREFIX) for name in texts)
         return count
 
@@ -225,8 +193,8 @@ class _Reader:
     def _shape(self, geom: int, body: str) -> Shape | None:
         mesh, form = self._mesh(geom)
         if mesh is None:
-            name = self.mujoco.mj_id2name(self.m, self.mujoco.mjtObj.mjOBJ_GEOM, geom) or ""
-            kind = geom_kind(self.mujoco, int(self.m.geom_type[geom]))
+            name = self.m.name("GEOM", geom)
+            kind = self.m.word("GEOM", int(self.m.geom_type[geom]))
             if kind == "plane":
                 self.raw.kept.append(self.carrier.plane(geom, f"parts.{body}"))
             else:
@@ -236,25 +204,25 @@ class _Reader:
         material = self.m.geom_matid[geom]
         rgba = self.m.mat_rgba[material] if material >= 0 else self.m.geom_rgba[geom]
         color = color_text(rgba)
-        name = self.mujoco.mj_id2name(self.m, self.mujoco.mjtObj.mjOBJ_GEOM, geom) or ""
+        name = self.m.name("GEOM", geom)
         return Shape(mesh, _pose(self.m.geom_pos[geom], self.m.geom_quat[geom]), color, name, form)
 
     def _mesh(self, geom: int) -> tuple[TriMesh | None, Primitive | None]:
         """Return a geom's mesh, and the primitive body that it stands for."""
-        kinds = self.mujoco.mjtGeom
+        m = self.m
         a, b, c = (float(size) * MM_PER_M for size in self.m.geom_size[geom])
         kind = int(self.m.geom_type[geom])
         forms: dict[int, tuple[Callable[[], TriMesh], Primitive]] = {
-            int(kinds.mjGEOM_BOX): (lambda: box(2 * a, 2 * b, 2 * c), Primitive("box", (2 * a, 2 * b, 2 * c))),
-            int(kinds.mjGEOM_SPHERE): (lambda: sphere(a), Primitive("sphere", (a,))),
-            int(kinds.mjGEOM_CYLINDER): (lambda: cylinder(a, 2 * b), Primitive("cylinder", (a, 2 * b))),
-            int(kinds.mjGEOM_CAPSULE): (lambda: capsule(a, 2 * b), Primitive("capsule", (a, 2 * b))),
-            int(kinds.mjGEOM_ELLIPSOID): (lambda: _ellipsoid(a, b, c), Primitive("ellipsoid", (a, b, c))),
+            int(m.mjGEOM_BOX): (lambda: box(2 * a, 2 * b, 2 * c), Primitive("box", (2 * a, 2 * b, 2 * c))),
+            int(m.mjGEOM_SPHERE): (lambda: sphere(a), Primitive("sphere", (a,))),
+            int(m.mjGEOM_CYLINDER): (lambda: cylinder(a, 2 * b), Primitive("cylinder", (a, 2 * b))),
+            int(m.mjGEOM_CAPSULE): (lambda: capsule(a, 2 * b), Primitive("capsule", (a, 2 * b))),
+            int(m.mjGEOM_ELLIPSOID): (lambda: _ellipsoid(a, b, c), Primitive("ellipsoid", (a, b, c))),
         }
         if kind in forms:
             make, form = forms[kind]
             return make(), form
-        if kind != kinds.mjGEOM_MESH:
+        if kind != m.mjGEOM_MESH:
             return None, None
         mesh = self.m.geom_dataid[geom]
         vertices = self.m.mesh_vert[self.m.mesh_vertadr[mesh] :][: self.m.mesh_vertnum[mesh]]
@@ -281,10 +249,10 @@ class _Reader:
             parent, start = far, IDENTITY
 
     def _add_joint(self, index: int, parent: str, child: str, start: SE3) -> None:
-        m, kinds, name = self.m, self.mujoco.mjtJoint, self.joints[index]
+        m, name = self.m, self.joints[index]
         kind, at = m.jnt_type[index], m.jnt_qposadr[index]
-        qpos, reference = self.data.qpos, m.qpos0
-        if kind == kinds.mjJNT_FREE:  # its values are a pose in the world; ours count from where the body stands in the file
+        qpos, reference = m.qpos, m.qpos0
+        if kind == m.mjJNT_FREE:  # its values are a pose in the world; ours count from where the body stands in the file
             moved = not np.array_equal(qpos[at : at + 7], reference[at : at + 7])
             home = start.inverse() @ _pose(qpos[at : at + 3], qpos[at + 3 : at + 7]) if moved else IDENTITY
             self.raw.joints.append(RawJoint(name, JointType.FREE, parent, child, start, IDENTITY, rest=tuple(home.data.tolist())))
@@ -293,7 +261,7 @@ class _Reader:
         anchor = SE3.from_translation(m.jnt_pos[index] * MM_PER_M)
         limited = bool(m.jnt_limited[index])
         low, high = (float(bound) for bound in m.jnt_range[index])
-        if kind == kinds.mjJNT_BALL:
+        if kind == m.mjJNT_BALL:
             reach = min(high, math.pi) if limited else math.pi
             if limited:
                 self._drop(
@@ -307,7 +275,7 @@ class _Reader:
                 )
             )
             return
-        slides = kind == kinds.mjJNT_SLIDE
+        slides = kind == m.mjJNT_SLIDE
         unit = MM_PER_M if slides else 1.0
         R = anchor @ aligned(m.jnt_axis[index])
         zero = float(reference[at]) * unit  # the value that the file's own pose has
@@ -322,7 +290,7 @@ class _Reader:
     def _dynamics(self, index: int) -> dict[str, Any]:
         """Return what a joint states of effort, damping and friction, in N, mm and s; a ball is like a hinge."""
         m = self.m
-        slides = m.jnt_type[index] == self.mujoco.mjtJoint.mjJNT_SLIDE
+        slides = m.jnt_type[index] == m.mjJNT_SLIDE
         force, length = (1.0, MM_PER_M) if slides else (MM_PER_M, 1.0)
         at = m.jnt_dofadr[index]
         effort = None
@@ -348,17 +316,17 @@ class _Reader:
     # ------------------------------------------------------------------ constraints
 
     def _add_equality(self, row: int) -> None:
-        m, kinds = self.m, self.mujoco.mjtEq
-        name = self._free_name(self.mujoco.mj_id2name(m, self.mujoco.mjtObj.mjOBJ_EQUALITY, row) or f"equality_{row}")
-        kind = kinds(int(m.eq_type[row]))
+        m = self.m
+        name = self._free_name(self.m.name("EQUALITY", row) or f"equality_{row}")
+        kind = int(m.eq_type[row])
         if not m.eq_active0[row]:
             held, reason = "", f"Equality {name!r} is switched off (active=false); it is left out."
-        elif kind == kinds.mjEQ_JOINT:
+        elif kind == m.mjEQ_JOINT:
             held, reason = self._add_tie(row, name)
-        elif kind in {kinds.mjEQ_CONNECT, kinds.mjEQ_WELD}:
+        elif kind in {m.mjEQ_CONNECT, m.mjEQ_WELD}:
             held, reason = self._add_closing(row, name)
         else:
-            held, reason = "", f"An equality of type {kind.name} is left out."
+            held, reason = "", f"An equality of type {m.word('EQ', kind)} is left out."
         if not held:
             self._drop(f"equality.{name}", reason)
         self._keep_equality(row, name, joint=held)
@@ -371,7 +339,7 @@ class _Reader:
         if second < 0 or any(higher):
             return "", f"Equality {name!r} is not a straight line between two joints; it is left out."
         zero1, zero2 = (float(m.qpos0[m.jnt_qposadr[joint]]) for joint in (first, second))
-        unit1, unit2 = (MM_PER_M if m.jnt_type[joint] == self.mujoco.mjtJoint.mjJNT_SLIDE else 1.0 for joint in (first, second))
+        unit1, unit2 = (MM_PER_M if m.jnt_type[joint] == m.mjJNT_SLIDE else 1.0 for joint in (first, second))
         offset = (zero1 + c0 - c1 * zero2) * unit1
         tie = RawTie(self.joints[first], self.joints[second], c1 * unit1 / unit2, offset)
         self.raw.ties.append(tie)
@@ -385,7 +353,7 @@ class _Reader:
         from the file's own pose where the file gives no `relpose` (MuJoCo: mj_instantiateEquality). Without torque it shares the point only.
         """
         m = self.m
-        sites = m.eq_objtype[row] == self.mujoco.mjtObj.mjOBJ_SITE
+        sites = m.eq_objtype[row] == m.mjOBJ_SITE
         ids = [int(m.eq_obj1id[row]), int(m.eq_obj2id[row])]
         bodies = [int(m.site_bodyid[index]) for index in ids] if sites else ids
         if bodies[0] == bodies[1]:
@@ -393,7 +361,7 @@ class _Reader:
         if any(m.body_mocapid[body] >= 0 for body in bodies):
             return "", f"Equality {name!r} ties a mocap body, which a simulation's user moves by hand; it is left out."
         first, second = (self.bodies[body] for body in bodies)
-        weld, data = m.eq_type[row] == self.mujoco.mjtEq.mjEQ_WELD, m.eq_data[row]
+        weld, data = m.eq_type[row] == m.mjEQ_WELD, m.eq_data[row]
         if sites:
             near, far = (_pose(m.site_pos[index], m.site_quat[index]) for index in ids)
         elif weld:
@@ -404,13 +372,13 @@ class _Reader:
             self.raw.joints.append(RawJoint(name, JointType.FIXED, first, second, near, far, closing=True))
             return f"joints.{name}", ""
         # a point: its frames are turned so that the ball rests at zero where the file's own pose has the bodies
-        turns = [_rotation_pose(self.data.xpos[body], self.data.xmat[body]).inverse().quaternion for body in bodies]
+        turns = [_rotation_pose(m.xpos[body], m.xmat[body]).inverse().quaternion for body in bodies]
         near, far = (SE3.from_quaternion(turn, frame.translation) for turn, frame in zip(turns, (near, far), strict=True))
         self.raw.joints.append(RawJoint(name, JointType.BALL, first, second, near, far, cone=math.pi, closing=True))
         return f"joints.{name}", ""
 
 
-def _number_of(compiled: Any, count: str) -> int:
+def _number_of(compiled: Compiled, count: str) -> int:
     """Return a number of a compiled model; before MuJoCo 4 every actuator had one control."""
     return int(getattr(compiled, count, 0) or (compiled.nu if count == "nactuator" else 0))
 

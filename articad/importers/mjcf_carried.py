@@ -1,7 +1,7 @@
 """What a compiled MuJoCo model says of its bodies, joints and geoms beyond an assembly, as elements that `write_mjcf` puts back.
 
 The compiled model has every default, class, frame, copy and include resolved, so each value is an attribute of its own element here. A
-value is carried where it is not the one that MuJoCo takes where a file says nothing; MuJoCo itself is asked for those (`_usual`).
+value is carried where it is not the one that MuJoCo takes where a file says nothing; the compiler says which those are (`_usual`).
 """
 
 from __future__ import annotations
@@ -15,8 +15,9 @@ from lxml import etree
 from numpy.typing import NDArray
 
 from articad.assembly import Kept
+from articad.importers.mjcf_compiled import Compiled
 
-__all__ = ["CARRIED", "Carrier", "geom_kind"]
+__all__ = ["CARRIED", "Carrier"]
 
 FloatArray = NDArray[np.float64]
 Names = Callable[[str, int], str]
@@ -62,11 +63,9 @@ CARRIED: Final[Mapping[str, frozenset[str]]] = {
 class Carrier:
     """Makes the kept elements of a compiled model."""
 
-    def __init__(self, compiled: Any, mujoco: Any, bodies: list[str], joints: list[str]) -> None:
-        self.m, self.mujoco = compiled, mujoco
+    def __init__(self, compiled: Compiled, bodies: list[str], joints: list[str]) -> None:
+        self.m, self._usual = compiled, compiled.usual
         self.bodies, self.joints = bodies, joints
-        text = '<mujoco><worldbody><body><joint/><geom size="1"/><site/><camera/><light/></body></worldbody></mujoco>'
-        self._usual = mujoco.MjModel.from_xml_string(text)
 
     # ------------------------------------------------------------------ elements
 
@@ -98,8 +97,7 @@ class Carrier:
         """Yield what a joint says beyond its axis, limits, damping and friction."""
         m, at, q = self.m, int(self.m.jnt_dofadr[joint]), int(self.m.jnt_qposadr[joint])
         found = self._attributes(_JOINT, joint, 0) | self._attributes(_DOF, at, 0)
-        kinds = self.mujoco.mjtJoint
-        ball, free = m.jnt_type[joint] == kinds.mjJNT_BALL, m.jnt_type[joint] == kinds.mjJNT_FREE
+        ball, free = m.jnt_type[joint] == m.mjJNT_BALL, m.jnt_type[joint] == m.mjJNT_FREE
         if free:  # the assembly has no dynamics of a free joint
             found |= {
                 name: _numbers(getattr(m, f"dof_{name}")[at]) for name in ("damping", "frictionloss") if getattr(m, f"dof_{name}")[at]
@@ -140,7 +138,7 @@ class Carrier:
                 )
 
     def _site(self, site: int) -> dict[str, str]:
-        kind = geom_kind(self.mujoco, int(self.m.site_type[site]))
+        kind = self.m.word("GEOM", int(self.m.site_type[site]))
         rgba = self.m.mat_rgba[self.m.site_matid[site]] if self.m.site_matid[site] >= 0 else self.m.site_rgba[site]
         whole = self._attributes(_SITE, site, 0) | self._place("site", site) | {"rgba": _numbers(rgba)}
         return whole | ({"type": kind} if kind != "sphere" else {})
@@ -170,7 +168,7 @@ class Carrier:
     # ------------------------------------------------------------------ values
 
     def _name(self, kind: str, index: int) -> str:
-        return self.mujoco.mj_id2name(self.m, getattr(self.mujoco.mjtObj, f"mjOBJ_{kind}"), index) or ""
+        return self.m.name(kind, index)
 
     def _place(self, prefix: str, index: int) -> dict[str, str]:
         return {name: _numbers(getattr(self.m, f"{prefix}_{name}")[index]) for name in ("pos", "quat")}
@@ -195,11 +193,6 @@ class Carrier:
             if value.size and not (np.array_equal(value, normal) if value.size == normal.size else not value.any()):
                 found[name] = ("true" if value[0] else "false") if name in _BOOLEAN else _numbers(value)
         return found
-
-
-def geom_kind(mujoco: Any, kind: int) -> str:
-    """Return MJCF's word for a type of geom."""
-    return str(mujoco.mjtGeom(kind).name).removeprefix("mjGEOM_").lower()
 
 
 def _numbers(values: Any) -> str:

@@ -59,7 +59,7 @@ def test_an_encoding_of_several_bytes_is_read(tmp_path: Path) -> None:
 @pytest.mark.parametrize("count", ["1000000000", "1e9", "1001", "-5 1e9", "40 40", "nan", "inf", "0x7fffffff", "9" * 5000, "many"])
 @pytest.mark.parametrize("tag", ["replicate", "composite", "flexcomp"])
 def test_copies_are_counted_before_they_are_made(tag: str, count: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("articad.importers.mjcf._compiled", never)
+    monkeypatch.setattr("articad.importers.mjcf.compiled_mjcf", never)
     path = tmp_path / "a.xml"
     path.write_text(WORLD.format(f'<{tag} count="{count}">{GEOM}</{tag}>'))
     with pytest.raises(ReadError, match=r"copies; 1000 are the most|no count of copies"):
@@ -78,7 +78,7 @@ def beside(number: int, count: int) -> str:
     ("text", "reason"), [(nested(2, 40), "1600 copies"), (nested(40, 2), "copies"), (beside(30, 1000), "330031 elements|elements")]
 )
 def test_products_and_sums_of_copies_are_bounded(text: str, reason: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("articad.importers.mjcf._compiled", never)
+    monkeypatch.setattr("articad.importers.mjcf.compiled_mjcf", never)
     path = tmp_path / "a.xml"
     path.write_text(text)
     with pytest.raises(ReadError, match=reason):
