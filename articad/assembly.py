@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
@@ -24,8 +25,7 @@ from articad.interference.clearance import Clearance, least_clearances, searched
 from articad.interference.following import ROWS, Following, what_follows
 from articad.interference.report import PairCheck
 from articad.interference.scene import Scene
-from articad.interference.sweep import DEFAULT_STEPS
-from articad.interference.sweep import Sweep as MotionSweep
+from articad.interference.sweep import DEFAULT_STEPS, MotionSampler
 from articad.kernels.choice import kernel_named
 from articad.kernels.kernel import BuildCache, PartKernel
 from articad.kernels.parts import Progress, RealisedPart, build_parts, find_scripts
@@ -33,7 +33,7 @@ from articad.kinematics.configuration import Configuration
 from articad.kinematics.dynamics import GRAVITY, Dynamics
 from articad.kinematics.joints import Coordinate, Coupling, Joint, JointType
 from articad.kinematics.mechanism import Mechanism
-from articad.kinematics.motion import FeasibleRange, Sweep
+from articad.kinematics.motion import DrivenMotion, FeasibleRange
 from articad.kinematics.reach import Reach
 from articad.kinematics.solution import Solution
 from articad.plan.check import admitted
@@ -386,8 +386,8 @@ class Assembly:
         """
         return self.mechanism.jacobian(np.asarray(q, dtype=np.float64), part, self._frame(part, frame))
 
-    def motion(self, driver: str, lower: float, upper: float, *, steps: int = 60, at: Mapping[str, float] | None = None) -> Sweep:
-        """Move one driver evenly while the rest of the mechanism follows; see `Mechanism.sweep`.
+    def drive(self, driver: str, lower: float, upper: float, *, steps: int = 60, at: Mapping[str, float] | None = None) -> DrivenMotion:
+        """Move one driver evenly while the rest of the mechanism follows; see `Mechanism.drive`.
 
         Args:
             driver: Name of a driver.
@@ -400,7 +400,12 @@ class Assembly:
             UnknownJointError: If there is no such driver.
             LoopError: If the loops do not close at rest.
         """
-        return self.mechanism.sweep(driver, lower, upper, steps, at=at)
+        return self.mechanism.drive(driver, lower, upper, steps, at=at)
+
+    def motion(self, *args: Any, **options: Any) -> DrivenMotion:
+        """Deprecated name of `drive`."""
+        warnings.warn("Assembly.motion is named Assembly.drive.", DeprecationWarning, stacklevel=2)
+        return self.drive(*args, **options)
 
     def feasible_range(self, driver: str, *, at: Mapping[str, float] | None = None) -> FeasibleRange:
         """Return how far a driver can go from rest before a limit, a dead point or a singular pose stops it.
@@ -463,10 +468,12 @@ class Assembly:
         poses = Poses(self.mechanism.parts, self.poses(self.mechanism.rest if q is None else q))
         return check_scene(self.scene(), poses, over="rest" if q is None else "pose", ground=self.ground, known=known)
 
-    def _moved(self) -> MotionSweep:
-        return MotionSweep(self.scene(), self.mechanism)
+    def _moved(self) -> MotionSampler:
+        return MotionSampler(self.scene(), self.mechanism)
 
-    def sweep(self, joints: Sequence[str] | None = None, *, steps: int = DEFAULT_STEPS, together: bool = False, samples: int = 0) -> Checks:
+    def check_motion(
+        self, joints: Sequence[str] | None = None, *, steps: int = DEFAULT_STEPS, together: bool = False, samples: int = 0
+    ) -> Checks:
         """Sample the motion of every driver over its range, the others at rest; a sample proves nothing between two poses.
 
         Declared fits are held over the motion of their joints, too; each row of `fits` says whether that is proven or sampled.
@@ -479,6 +486,11 @@ class Assembly:
         """
         checks = self._moved().run(joints, steps=steps, together=together, samples=samples)
         return self._with_fits(checks, joints)
+
+    def sweep(self, *args: Any, **options: Any) -> Checks:
+        """Deprecated name of `check_motion`."""
+        warnings.warn("Assembly.sweep is named Assembly.check_motion.", DeprecationWarning, stacklevel=2)
+        return self.check_motion(*args, **options)
 
     def clearances(self, joints: Sequence[str] | None = None, *, together: bool = True) -> tuple[Clearance, ...]:
         """Return the smallest distance seen of each two parts that move against each other, with its pose, the nearest first.
@@ -596,7 +608,7 @@ class Assembly:
         return f"<Assembly {self.name}: {len(self.parts)} parts, {self.mechanism.mobility} freedoms ({joints})>"
 
     def scene(self) -> Scene:
-        """Return bodies, relations and fits, for measurements of interference beyond `check`, `sweep` and `certify`."""
+        """Return bodies, relations and fits, for measurements of interference beyond `check`, `check_motion` and `certify`."""
         return Scene.of(self._meshes(), self.joints, waivers=self.waivers, deflection=self._deflections(), fits=self.fits)
 
     def _with_fits(self, checks: Checks, joints: Sequence[str] | None = None) -> Checks:

@@ -21,7 +21,7 @@ from articad.runs.run import REQUEST_FILE, Run
 from articad.simulation.examine import ENGINES, SIMULATED, simulate_assembly, simulate_file
 from articad.simulation.loading import Engine
 from articad.simulation.trial import SECONDS
-from articad.simulation.verdict import Verdict
+from articad.simulation.verdict import SimulationVerdict
 
 __all__ = ["audit", "certify", "read", "simulate"]
 
@@ -97,7 +97,7 @@ def certify(
     return assembly.certify(joints, pairs=pairs, epsilon=epsilon, budget=budget)
 
 
-def simulate(target: str | Path | Assembly, *, engines: tuple[Engine, ...] = ENGINES, seconds: float = SECONDS) -> Verdict:
+def simulate(target: str | Path | Assembly, *, engines: tuple[Engine, ...] = ENGINES, seconds: float = SECONDS) -> SimulationVerdict:
     """Hold, drive and let go a model in simulators.
 
     Args:

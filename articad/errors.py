@@ -172,7 +172,7 @@ class ReadError(ArticadError):
         super().__init__(message, findings=findings)
 
     @classmethod
-    def told(cls, where: object, message: str, hint: str, *, said: str | None = None) -> Self:
+    def at(cls, where: object, message: str, hint: str, *, said: str | None = None) -> Self:
         """Return the error E_READ about one place; as a text it reads `said`, by default message and hint."""
         finding = Finding(code="E_READ", where=str(where), message=message, hint=hint)
         return cls(f"{message} {hint}" if said is None else said, path=str(where), findings=[finding])
@@ -198,7 +198,7 @@ class RunError(ArticadError):
         super().__init__(message, findings=findings)
 
     @classmethod
-    def told(cls, path: object, message: str, hint: str) -> Self:
+    def at(cls, path: object, message: str, hint: str) -> Self:
         """Return the error E_RUN about a directory."""
         finding = Finding(code="E_RUN", where=str(path), message=message, hint=hint)
         return cls(f"{message} {hint}", path=str(path), findings=[finding])

@@ -30,7 +30,7 @@ from articad.interference.body import make_bvh
 from articad.interference.check import check_scene
 from articad.interference.overlap import volume
 from articad.interference.scene import Scene
-from articad.interference.sweep import Sweep
+from articad.interference.sweep import MotionSampler
 from articad.kinematics.joints import Joint, JointLimits, JointType
 from articad.kinematics.mechanism import Mechanism
 from benchmarks.timing import Goal, Table, measure, report
@@ -141,7 +141,7 @@ def interference(parts: int, triangles: int, *, curved: bool = False) -> list[Ta
     asked = {body.manifold_triangles for body in scene.bodies.values()}
     turn = measure(
         {
-            "articad": lambda: Sweep(scene, mechanism).run(["j1"], steps=STEPS, together=False, samples=0),
+            "articad": lambda: MotionSampler(scene, mechanism).run(["j1"], steps=STEPS, together=False, samples=0),
             "raw fcl": partial(collide, steps),
         },
         rounds=3,

@@ -17,7 +17,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 from articad.connectors import SE3
 from articad.geometry.shapes import sphere
-from articad.render import Camera, Item, Scene, cast, picture, vtk
+from articad.render import Camera, DrawnMesh, DrawnScene, cast, picture, vtk
 from articad.render.shade import shade
 from benchmarks.timing import Table, measure, report
 
@@ -27,13 +27,15 @@ FRAMES = 60
 VIEW_SECONDS, STRIP_SECONDS, LARGE_SECONDS = 0.15, 10.0, 1.0
 
 
-def scene(segments: int, shift: float = 0.0) -> Scene:
+def scene(segments: int, shift: float = 0.0) -> DrawnScene:
     """Return a row of spheres; 46 segments are about 2k triangles each, 143 about 20k."""
     ball = sphere(10.0, segments)
-    return Scene(tuple(Item(f"ball_{i}", ball, SE3.from_translation([22.0 * i, shift * i, 0.0]), "#8a9299") for i in range(PARTS)))
+    return DrawnScene(
+        tuple(DrawnMesh(f"ball_{i}", ball, SE3.from_translation([22.0 * i, shift * i, 0.0]), "#8a9299") for i in range(PARTS))
+    )
 
 
-def view(drawn: Scene, supersample: int = 1) -> object:
+def view(drawn: DrawnScene, supersample: int = 1) -> object:
     """Draw one view, with everything that is written over it."""
     return picture(drawn, Camera.fit("iso", drawn.bounds, width=SIZE, height=SIZE), supersample=supersample)
 
@@ -68,7 +70,7 @@ def main() -> int:
     return 0 if all(seconds <= goal for seconds, goal in held) else 1
 
 
-def _triangles(drawn: Scene) -> int:
+def _triangles(drawn: DrawnScene) -> int:
     return sum(len(item.mesh.triangles) for item in drawn.items)
 
 

@@ -16,14 +16,14 @@ from scipy.spatial.transform import Rotation
 
 from articad.assembly import Assembly
 from articad.certificates.certificate import constrained_joints, driver_names, mechanism_json
-from articad.certificates.linkage import Way
+from articad.certificates.linkage import DriverTrack
 from articad.certificates.verifier import PROOF, Checker
 from articad.connectors.se3 import SE3
 from articad.export.gltf import FAR_RAD, FRAMES, write_glb
 from articad.interference import sweep as sampled
 from articad.render.pictures import motion_frames
 from articad.simulation import film
-from articad.simulation.verdict import Frame
+from articad.simulation.verdict import FilmFrame
 from tests import moving_bases
 from tests.engines import disagreement
 from tests.export.test_gltf import parts_of, values
@@ -60,12 +60,12 @@ def test_all_that_python_asks_agrees(make: Callable[[], Assembly]) -> None:
         by_name = dict(zip(names, row.tolist(), strict=True))
         assert apart(assembly.at(**by_name).stacked, T) < SAME
         for name, value in by_name.items():
-            swept = assembly.motion(name, value, value, steps=1, at={k: v for k, v in by_name.items() if k != name})
+            swept = assembly.drive(name, value, value, steps=1, at={k: v for k, v in by_name.items() if k != name})
             assert apart(swept.poses()[0], T) < SAME
-        sampler = sampled.Sweep(assembly.scene(), mechanism)
+        sampler = sampled.MotionSampler(assembly.scene(), mechanism)
         assert apart(assembly.poses(sampler.columns(by_name)), T) < SAME
         in_metres = {d.name: v / 1000 if d.unit == "mm" else v for d, v in zip(assembly.drivers, row.tolist(), strict=True)}
-        shown = {item.name: item.T_ground for item in film._scene(assembly, Frame(names[0], in_metres)).items}
+        shown = {item.name: item.T_ground for item in film._scene(assembly, FilmFrame(names[0], in_metres)).items}
         assert all(apart(shown[part], T[i]) < SAME for i, part in enumerate(mechanism.parts))
 
 
@@ -82,7 +82,7 @@ def test_middles_of_certified_pieces_are_the_assemblys_configurations(make: Call
         if driver.joint not in constrained:
             continue
         values = mechanism.rest[k] + np.array([-0.15, 0.1])
-        way = Way(Checker(document, {PROOF: {}}), (driver.name,), ((float(values[0]), float(values[1])),))
+        way = DriverTrack(Checker(document, {PROOF: {}}), (driver.name,), ((float(values[0]), float(values[1])),))
         assert way.whole is not None
         for value in values.tolist():
             q = mechanism.rest.copy()

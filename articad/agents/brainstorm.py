@@ -9,9 +9,9 @@ from typing import Annotated, Any, Final, Literal
 
 from pydantic import BeforeValidator, Field
 
-from articad.agents.forms import Form, reader, schema_of
 from articad.agents.llm import LLM, Message, Request, assistant, system, user
 from articad.agents.prompts import prompt
+from articad.agents.replies import ReplyForm, reader, schema_of
 from articad.agents.requirements import pictures_of, slug
 from articad.errors import OutputError
 from articad.findings import Finding, Findings
@@ -24,14 +24,14 @@ TRIES: Final = 3  # answers until the alternatives differ
 JointKind = Literal["fixed", "revolute", "slider", "cylindrical", "ball", "screw", "planar", "universal"]
 
 
-class Tie(Form):
+class Tie(ReplyForm):
     """A joint between two parts."""
 
     type: JointKind
     between: tuple[str, str]
 
 
-class Alternative(Form):
+class Alternative(ReplyForm):
     """One product that would satisfy the request.
 
     Attributes:
@@ -49,7 +49,7 @@ class Alternative(Form):
     joints: tuple[Tie, ...]
 
 
-class Alternatives(Form):
+class Alternatives(ReplyForm):
     """Several of them, the best first."""
 
     alternatives: tuple[Alternative, ...]

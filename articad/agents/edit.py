@@ -17,15 +17,15 @@ from articad.agents.design import TRIES, listed
 from articad.agents.drift import note
 from articad.agents.edit_base import Base, document_of, with_values
 from articad.agents.evidence import Evidence, Known, examine
-from articad.agents.forms import Form, reader, schema_of
-from articad.agents.generation import REPAIRS
-from articad.agents.line import FORMATS, ROUNDS, Chooser, Line, Planner
+from articad.agents.line import FORMATS, ROUNDS, Chooser, Line, PlanAuthor
 from articad.agents.llm import LLM, Image, Message, Recorded, Reply, Request, assistant, system, user
+from articad.agents.part_builder import PartBuilder, Progress
+from articad.agents.part_writer import REPAIRS
 from articad.agents.prompts import prompt, prompt_section
 from articad.agents.recollection import KeptDocumentation, KeptMemory
+from articad.agents.replies import ReplyForm, reader, schema_of
 from articad.agents.requirements import Requirements, pictures_of
 from articad.agents.retrieval import Documentation, Memory
-from articad.agents.workshop import Progress, Workshop
 from articad.assembly import Assembly
 from articad.errors import AgentError, OutputError, PlanError, ReadError, did_you_mean
 from articad.findings import Finding, Findings
@@ -113,26 +113,26 @@ def edit(
         edited.save_base(base.stored)
         note(edited, kernel)
         known, told = KeptMemory(edited, memory), KeptDocumentation(edited, documentation)
-        shop = Workshop(edited, Recorded(llm or Nobody(), edited), kernel, cache or BuildCache(), jobs, progress, known, told)
-        EditLine(shop, _nothing_to_choose, known).work()
+        builder = PartBuilder(edited, Recorded(llm or Nobody(), edited), kernel, cache or BuildCache(), jobs, progress, known, told)
+        EditLine(builder, _nothing_to_choose, known).work()
     return edited
 
 
 class EditLine(Line):
     """An edit at work: the line from a finished run on."""
 
-    def __init__(self, shop: Workshop, chooser: Chooser, memory: Memory | None) -> None:
-        super().__init__(shop, chooser, memory)
+    def __init__(self, builder: PartBuilder, chooser: Chooser, memory: Memory | None) -> None:
+        super().__init__(builder, chooser, memory)
         stored = self.run.base()
         if stored is None:
             raise ReadError(f"{self.run.path} is an edit that has lost what it began with.", path=str(self.run.path))
         self.base = Base(stored)
-        request = shop.run.request
+        request = builder.run.request
         changed = f"\n\nChanged since: {request.prompt}" if request.prompt else ""
         self.asked = RunRequest(prompt=f"{stored['prompt']}{changed}", images=request.images, options=request.options)
-        shop.begun = self.base.scripts
-        shop.planned = tuple(self.base.resolved.parts)
-        shop.adopt(dict.fromkeys(self.base.scripts, self.base.resolved), self.base.scripts)
+        builder.begun = self.base.scripts
+        builder.planned = tuple(self.base.resolved.parts)
+        builder.adopt(dict.fromkeys(self.base.scripts, self.base.resolved), self.base.scripts)
 
     def requirements(self) -> Requirements:
         """Return what was wanted when the run was made."""
@@ -140,9 +140,9 @@ class EditLine(Line):
         self.run.save_requirements(requirements.to_json())
         return requirements
 
-    def planner(self, requirements: Requirements) -> Planner:  # noqa: ARG002 - the line's
+    def planner(self, requirements: Requirements) -> PlanAuthor:  # noqa: ARG002 - the line's
         """Return who changes the plan."""
-        self.shop.tell("design", "started")
+        self.builder.announce("design", "started")
         return self._editor
 
     @cached_property
@@ -160,12 +160,12 @@ class EditLine(Line):
         assert assembly.resolved is not None
         report = edit_report.report(self.base, self.run, assembly.resolved, evidence.checks, self._known, summary=self._editor.summary)
         self.run.save_edit(report)
-        self.shop.tell("edit", "proved" if report["ok"] else "NOT proved")
+        self.builder.announce("edit", "proved" if report["ok"] else "NOT proved")
 
     _known = Known()
 
 
-class Change(Form):
+class Change(ReplyForm):
     """A designer's answer: what a plan states otherwise."""
 
     summary: str

@@ -16,12 +16,11 @@ from pydantic import model_validator
 
 from articad.agents.design import ANALYSIS
 from articad.agents.evidence import Evidence, told
-from articad.agents.forms import Form, ask, reader, schema_of
 from articad.agents.llm import LLM, Image, system, user
 from articad.agents.numbers import short
 from articad.agents.pictures import assembly_picture, motion_picture, part_picture
 from articad.agents.prompts import prompt
-from articad.agents.replies import unusable
+from articad.agents.replies import ReplyForm, ask, reader, schema_of, unusable
 from articad.agents.requirements import Requirements, pictures_of
 from articad.assembly import Assembly
 from articad.findings import Finding, Findings
@@ -40,7 +39,7 @@ _CODES: Final = {aspect: f"E_VERDICT_{aspect.upper()}" for aspect in _ASPECTS}
 # ---------------------------------------------------------------------- one part
 
 
-class Compared(Form):
+class Compared(ReplyForm):
     """What was seen of one aspect of a part, and what the specification says of it; what no picture shows is neither right nor wrong."""
 
     aspect: Literal["shape", "proportion", "orientation"]
@@ -52,7 +51,7 @@ class Compared(Form):
     remedy: str
 
 
-class Look(Form):
+class Look(ReplyForm):
     """A part's pictures held against its specification: one finding for each aspect."""
 
     findings: tuple[Compared, ...]
@@ -118,7 +117,7 @@ def look(specification: str, name: str, realised: RealisedPart, llm: LLM, *, ste
 # ---------------------------------------------------------------------- the assembly
 
 
-class PartSeen(Form):
+class PartSeen(ReplyForm):
     """What was seen of a part."""
 
     part: str
@@ -126,7 +125,7 @@ class PartSeen(Form):
     expected: bool
 
 
-class MotionSeen(Form):
+class MotionSeen(ReplyForm):
     """What was seen of a joint's motion."""
 
     joint: str
@@ -134,7 +133,7 @@ class MotionSeen(Form):
     expected: bool
 
 
-class Observations(Form):
+class Observations(ReplyForm):
     """What the pictures of an assembly show."""
 
     overall: str
@@ -142,14 +141,14 @@ class Observations(Form):
     motions: tuple[MotionSeen, ...]
 
 
-class Ruling(Form):
+class Ruling(ReplyForm):
     """Whether one aspect is as was asked."""
 
     ok: bool
     reason: str
 
 
-class Problem(Form):
+class Problem(ReplyForm):
     """What is wrong, and whose fault it is."""
 
     aspect: Aspect
@@ -160,7 +159,7 @@ class Problem(Form):
     remedy: str
 
 
-class Judgement(Form):
+class Judgement(ReplyForm):
     """A judge's answer."""
 
     placement: Ruling

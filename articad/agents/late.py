@@ -13,15 +13,15 @@ from typing import Any, Final
 from pydantic import Field
 
 from articad.agents.design import Designer, Judged, judged, listed, task
-from articad.agents.forms import Form, reader, schema_of
-from articad.agents.generation import specification
-from articad.agents.line import Line, Planner
+from articad.agents.line import Line, PlanAuthor
 from articad.agents.llm import Image, Message, Request, assistant, system, user
 from articad.agents.numbers import listed_numbers, short
+from articad.agents.part_builder import PartsError
+from articad.agents.part_writer import specification
 from articad.agents.pictures import part_picture
 from articad.agents.prompts import prompt, prompt_file, prompt_section
+from articad.agents.replies import ReplyForm, reader, schema_of
 from articad.agents.requirements import Requirements, pictures_of
-from articad.agents.workshop import PartsError
 from articad.errors import OutputError, PlanError
 from articad.findings import Finding, Findings
 from articad.kernels.parts import RealisedPart
@@ -46,14 +46,14 @@ _LATER: Final = {"E_DISCONNECTED", "E_NO_CONNECTORS", "E_DOF_MISMATCH"}  # findi
 class LateLine(Line):
     """The line of a run whose connections are planned late."""
 
-    def planner(self, requirements: Requirements) -> Planner:
+    def planner(self, requirements: Requirements) -> PlanAuthor:
         """Return who lists the parts, has them made and connects them."""
-        self.shop.ending = ENDING
-        self.shop.tell("design", "started")
+        self.builder.ending = ENDING
+        self.builder.announce("design", "started")
         return LatePlanner(self, requirements)
 
 
-class Connections(Form):
+class Connections(ReplyForm):
     """An agent's answer: where parts connect, and how."""
 
     connectors: dict[str, tuple[Json, ...]]
@@ -74,7 +74,7 @@ class LatePlanner:
     """
 
     def __init__(self, line: Line, requirements: Requirements) -> None:
-        self._line, self._requirements, self._shop = line, requirements, line.shop
+        self._line, self._requirements, self._builder = line, requirements, line.builder
         self._tries = int(line.options["designs"])
         self._connected = 0
         self._said = ""
@@ -114,25 +114,25 @@ class LatePlanner:
         for number in range(1, self._line.rounds + 1):
             self._parts = parts
             alone = {part.name: resolve(_alone(parts, part.name)) for part in parts.parts if isinstance(part, PartSpec)}
-            self._shop.adopt(self._alone, {name: script for name, script in self._shop.scripts.items() if name in self._alone})
+            self._builder.adopt(self._alone, {name: script for name, script in self._builder.scripts.items() if name in self._alone})
             self._alone = alone
             try:
-                self._shop.make(alone, self._shop.planned)
+                self._builder.make(alone, self._builder.planned)
             except PartsError as failed:
                 if number == self._line.rounds:
                     raise
                 parts = self._designer.again(parts, failed.for_design)
                 continue
             break
-        fates = dict(self._shop.fates)
-        plan = self._connections(parts, self._shop.alone(alone), findings)
-        self._shop.adopt(dict.fromkeys(alone, resolve(plan)), self._shop.scripts, fates)
+        fates = dict(self._builder.fates)
+        plan = self._connections(parts, self._builder.alone(alone), findings)
+        self._builder.adopt(dict.fromkeys(alone, resolve(plan)), self._builder.scripts, fates)
         return plan
 
     # ------------------------------------------------------------------ then what joins them
 
     def _connections(self, parts: AssemblyPlan, made: Mapping[str, RealisedPart], findings: Sequence[Finding]) -> AssemblyPlan:
-        self._shop.tell("connect", "started")
+        self._builder.announce("connect", "started")
         opening = self._opening(parts, made)
         messages = opening
         if findings and self._said:
@@ -159,7 +159,7 @@ class LatePlanner:
             f"The plan of its parts:\n\n```json\n{parts.dumps()}```",
             "The parts as they were made:",
         ]
-        words += [_told(name, part, resolve(_alone(parts, name)), self._shop.shown(name)) for name, part in made.items()]
+        words += [_told(name, part, resolve(_alone(parts, name)), self._builder.shown(name)) for name, part in made.items()]
         shown: list[str | Image] = ["\n\n".join(words), *pictures_of(request)]
         if self._line.options.get("look"):
             for name, part in list(made.items())[:PICTURES]:

@@ -15,12 +15,12 @@ from articad.agents.design import Designer, listed
 from articad.agents.evidence import Evidence, examine
 from articad.agents.inspection import Verdict, inspect, verdict_of
 from articad.agents.llm import Image, closed_port
+from articad.agents.part_builder import PartBuilder, PartsError
 from articad.agents.pictures import offence_picture
 from articad.agents.requirements import Requirements, analyse
 from articad.agents.retrieval import Memory
 from articad.agents.review import review
 from articad.agents.rollback import Repair, Router
-from articad.agents.workshop import PartsError, Workshop
 from articad.assembly import Assembly
 from articad.findings import Finding, Findings
 from articad.plan.resolve import resolve
@@ -35,7 +35,7 @@ Chooser = Callable[[Sequence[Alternative]], tuple[int, str]]
 """Given alternatives, returns the number of the chosen one, from 1, and who chose: "user" or "articad"."""
 
 
-class Planner(Protocol):
+class PlanAuthor(Protocol):
     """Whoever makes plans of one product."""
 
     def first(self) -> AssemblyPlan:
@@ -56,12 +56,12 @@ class Line:
         asked: What inspectors are told was asked for.
     """
 
-    def __init__(self, shop: Workshop, chooser: Chooser, memory: Memory | None) -> None:
-        self.shop, self.run, self.port, self.chooser, self.memory = shop, shop.run, shop.port, chooser, memory
-        self.options: Mapping[str, Any] = shop.run.request.options
+    def __init__(self, builder: PartBuilder, chooser: Chooser, memory: Memory | None) -> None:
+        self.builder, self.run, self.port, self.chooser, self.memory = builder, builder.run, builder.port, chooser, memory
+        self.options: Mapping[str, Any] = builder.run.request.options
         self.rounds = 1 if self.options.get("variant") == "no-rollback" else int(self.options["rounds"])
         self.router = Router(self.port)
-        self.asked = shop.run.request
+        self.asked = builder.run.request
         self.versions = 0
         self.repaired: tuple[int, Repair] | None = None
 
@@ -96,26 +96,26 @@ class Line:
             if repair.design:
                 plan = self._designed_again(planner, plan, repair, assembly)
             else:
-                self.shop.tell("parts", f"again, round {number + 1}")
+                self.builder.announce("parts", f"again, round {number + 1}")
         self.finish(assembly, evidence, requirements)
 
     # ------------------------------------------------------------------ what variants do otherwise
 
     def requirements(self) -> Requirements:
         """Return what is wanted."""
-        self.shop.tell("requirements", "started")
+        self.builder.announce("requirements", "started")
         ideas = self.options.get("ideas", "never")
         requirements = None if ideas == "always" else analyse(self.run.request, self.port)
         if requirements is None or (ideas == "auto" and requirements.open_ended):
             requirements = analyse(self.run.request, self.port, concept=self._concept())
         self.run.save_requirements(requirements.to_json())
-        self.shop.tell("requirements", "read")
+        self.builder.announce("requirements", "read")
         return requirements
 
-    def planner(self, requirements: Requirements) -> Planner:
+    def planner(self, requirements: Requirements) -> PlanAuthor:
         """Return who makes the plans."""
         tries, tell = self.options["designs"], self.tell_of_plan
-        self.shop.tell("design", "started")
+        self.builder.announce("design", "started")
         return Designer(self.run.request, requirements, self.port, tries=tries, tell=tell, memory=self.memory)
 
     def examined(self, assembly: Assembly) -> Evidence:
@@ -125,25 +125,25 @@ class Line:
     def finish(self, assembly: Assembly, evidence: Evidence, requirements: Requirements | None) -> None:
         """Have the result reviewed, if that was asked for, and write what the run is for."""
         if "review" in self.options:
-            self.shop.tell("review", "started")
+            self.builder.announce("review", "started")
             who = self.port if self.options["review"] == "model" else None
             self.run.save_review(review(self.run, assembly, evidence, self.asked, requirements, who))
-            self.shop.tell("review", "written")
+            self.builder.announce("review", "written")
         with closed_port("exports are deterministic"):
             for name in self.options["formats"]:
                 record_export(self.run, assembly, name)
-                self.shop.tell(f"export {name}", "written")
+                self.builder.announce(f"export {name}", "written")
 
     def tell_of_plan(self, plan: AssemblyPlan | None, findings: Findings) -> None:
         """Note what was found in an answer of the planner."""
         for finding in findings:
             self.run.trace_finding(finding)
         what = "unreadable" if plan is None else f"{len(plan.parts)} parts, {len(plan.joints)} joints"
-        self.shop.tell("design", f"{what}, {len(findings.errors)} errors")
+        self.builder.announce("design", f"{what}, {len(findings.errors)} errors")
 
     def _concept(self) -> Alternative:
         """Return what an open request shall become."""
-        self.shop.tell("brainstorm", "started")
+        self.builder.announce("brainstorm", "started")
         alternatives, findings = brainstorm.propose(self.run.request, self.port)
         for finding in findings:
             self.run.trace_finding(finding)
@@ -154,7 +154,7 @@ class Line:
             chosen, by = self.chooser(alternatives)
             self.run.save_alternatives(brainstorm.to_json(alternatives, chosen, by))
         concept = alternatives[chosen - 1]
-        self.shop.tell("brainstorm", f"{concept.name}, chosen by {by} of {len(alternatives)}")
+        self.builder.announce("brainstorm", f"{concept.name}, chosen by {by} of {len(alternatives)}")
         return concept
 
     # ------------------------------------------------------------------ one round
@@ -167,18 +167,18 @@ class Line:
             self.versions += 1
 
     def _assembled(self, plan: AssemblyPlan) -> tuple[AssemblyPlan, Assembly]:
-        self.shop.tell("parts", "started")
+        self.builder.announce("parts", "started")
         try:
-            plan, assembly = self.shop.assembled(plan)
+            plan, assembly = self.builder.assembled(plan)
         finally:
             if self.repaired is not None:
                 number, repair = self.repaired
-                self.run.save_round(number, repair.to_json(number, self.shop.fates))
+                self.run.save_round(number, repair.to_json(number, self.builder.fates))
         self._save(plan)
         with closed_port("assembly and checks are deterministic"):
             record_assembly(self.run, assembly)
-        self.shop.tell("assembly", "made")
-        self.shop.tell("parts", "made")
+        self.builder.announce("assembly", "made")
+        self.builder.announce("parts", "made")
         return plan, assembly
 
     def _judged(self, assembly: Assembly, requirements: Requirements, number: int) -> tuple[Evidence, Verdict]:
@@ -186,15 +186,15 @@ class Line:
         with closed_port("assembly and checks are deterministic"):
             evidence = self.examined(assembly)
             record_checks(self.run, evidence.checks)
-        self.shop.tell("check", "ok" if evidence.ok else f"{len(evidence.findings.errors)} errors")
+        self.builder.announce("check", "ok" if evidence.ok else f"{len(evidence.findings.errors)} errors")
         if not self.options.get("inspection", False):
             return evidence, verdict_of(evidence, number)
         verdict = verdict_of(evidence, number)
         if evidence.ok:
-            self.shop.tell("inspection", "started")
+            self.builder.announce("inspection", "started")
             verdict = inspect(assembly, evidence, self.asked, requirements, self.port, number=number)
-            self.shop.tell("inspection", "ok" if verdict.ok else f"{len(verdict.findings.errors)} errors")
-        verdict = replace(verdict, findings=verdict.findings + self.shop.opinions)
+            self.builder.announce("inspection", "ok" if verdict.ok else f"{len(verdict.findings.errors)} errors")
+        verdict = replace(verdict, findings=verdict.findings + self.builder.opinions)
         self._save_verdict(verdict)
         return evidence, verdict
 
@@ -206,7 +206,7 @@ class Line:
     # ------------------------------------------------------------------ the edge back
 
     def _decided(self, number: int, findings: Findings, plan: AssemblyPlan) -> Repair:
-        repair = self.router.decide(number, findings, resolve(plan), self.shop.scripts)
+        repair = self.router.decide(number, findings, resolve(plan), self.builder.scripts)
         self.repaired = number, repair
         return repair
 
@@ -214,10 +214,10 @@ class Line:
         """Leave for the authors of scripts what was found of their parts, and where."""
         for name, findings in repair.code.items():
             pictures = _places(assembly, findings, most=1)
-            self.shop.complaints[name] = listed(findings), pictures[0] if pictures else None
+            self.builder.complaints[name] = listed(findings), pictures[0] if pictures else None
 
-    def _designed_again(self, planner: Planner, plan: AssemblyPlan, repair: Repair, assembly: Assembly | None) -> AssemblyPlan:
-        self.shop.tell("design", "again")
+    def _designed_again(self, planner: PlanAuthor, plan: AssemblyPlan, repair: Repair, assembly: Assembly | None) -> AssemblyPlan:
+        self.builder.announce("design", "again")
         pictures = () if assembly is None else _places(assembly, repair.design, most=_SHOWN_PLACES)
         return planner.again(plan, repair.design, pictures=pictures, stubborn=repair.stubborn)
 
@@ -233,7 +233,7 @@ class Line:
             )
             for finding in repair.stalled
         ]
-        self.shop.tell("rollback", "stalled")
+        self.builder.announce("rollback", "stalled")
         verdict = replace(verdict, findings=verdict.findings + stalled)
         if self.options.get("inspection", False):
             self._save_verdict(verdict)

@@ -55,9 +55,9 @@ def partial_picture(folder: Path | None, name: str, build: str) -> Image | None:
         return None
 
     def draw() -> list[Picture]:
-        from articad.render import Camera, Item, Scene, picture  # noqa: PLC0415 - pictures are drawn when something failed, and not before
+        from articad.render import Camera, DrawnMesh, DrawnScene, picture  # noqa: PLC0415 - pictures are drawn when something failed, and not before
 
-        scene = Scene((Item(name, mesh, SE3.identity(), _COLOR),))
+        scene = DrawnScene((DrawnMesh(name, mesh, SE3.identity(), _COLOR),))
         return [picture(scene, Camera.fit(view, scene.bounds, width=SIZE, height=SIZE), labels=False, title=view) for view in PART_VIEWS]
 
     return _sheet(draw, 3, {"of": "partial", "build": build, "views": list(PART_VIEWS), "size": SIZE})

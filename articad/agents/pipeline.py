@@ -17,14 +17,14 @@ from articad.agents.brainstorm import Alternative, Choose
 from articad.agents.design import TRIES
 from articad.agents.drift import drift, note
 from articad.agents.edit import EditLine, Nobody
-from articad.agents.generation import REPAIRS
 from articad.agents.late import LateLine
 from articad.agents.line import FORMATS, ROUNDS, Chooser, Line
 from articad.agents.llm import LLM, Recorded, Replay
+from articad.agents.part_builder import PartBuilder, Progress
+from articad.agents.part_writer import REPAIRS
 from articad.agents.recollection import KeptDocumentation, KeptMemory
 from articad.agents.retrieval import Documentation, Memory
 from articad.agents.single import SingleLine
-from articad.agents.workshop import Progress, Workshop
 from articad.errors import AgentError, RunError
 from articad.findings import Findings
 from articad.kernels.choice import kernel_named
@@ -177,9 +177,9 @@ def _options_of(run: Run) -> Mapping[str, Any]:
     options = {**_UNSAID, **run.request.options}
     wrong = [key for key, kind in {**_NEEDED, **dict.fromkeys(_UNSAID, str)}.items() if not isinstance(options.get(key), kind)]
     if options.get("task") not in {"generate", "edit"}:
-        raise RunError.told(run.path, "No model was asked for it: it was built.", "Repeat `articad build` with the same --out.")
+        raise RunError.at(run.path, "No model was asked for it: it was built.", "Repeat `articad build` with the same --out.")
     if wrong:
-        raise RunError.told(run.path, f"Its request lacks options: {', '.join(wrong)}.", "Repeat the command that began it.")
+        raise RunError.at(run.path, f"Its request lacks options: {', '.join(wrong)}.", "Repeat the command that began it.")
     return options
 
 
@@ -209,15 +209,15 @@ def _work(
 ) -> None:
     """Do what a run's request asks for."""
     note(run, kernel)
-    shop = Workshop(run, Recorded(llm, run), kernel, cache or BuildCache(), jobs, progress, *taught)
-    _line(shop, chooser, taught[0]).work()
+    builder = PartBuilder(run, Recorded(llm, run), kernel, cache or BuildCache(), jobs, progress, *taught)
+    _line(builder, chooser, taught[0]).work()
 
 
-def _line(shop: Workshop, chooser: Chooser, memory: Memory | None) -> Line:
+def _line(builder: PartBuilder, chooser: Chooser, memory: Memory | None) -> Line:
     """Return the line that a run's request asks for."""
-    options = shop.run.request.options
+    options = builder.run.request.options
     kind = EditLine if options.get("task") == "edit" else _LINES.get(options.get("variant", "full"), Line)
-    return kind(shop, chooser, memory)
+    return kind(builder, chooser, memory)
 
 
 _LINES: Final[Mapping[str, type[Line]]] = {"late": LateLine, "single-loop": SingleLine}

@@ -12,10 +12,10 @@ import json
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Final
 
-from articad.agents.forms import Form, ask, reader, schema_of
 from articad.agents.late import ENDING
 from articad.agents.llm import LLM, system, user
 from articad.agents.prompts import prompt
+from articad.agents.replies import ReplyForm, ask, reader, schema_of
 from articad.agents.requirements import Requirements
 from articad.agents.retrieval import Documentation, Memory, NoDocumentation, NoMemory, Recalled
 from articad.agents.review import scores
@@ -61,7 +61,7 @@ class StoredMemory:
         return [f"Specification: {_quoted(part.specification)}\n\n{_fenced(part.script)}" for part in parts]
 
 
-class _Names(Form):
+class _Names(ReplyForm):
     """What somebody who knows the API would look up."""
 
     names: list[str]

@@ -1,16 +1,21 @@
-"""Reading replies: the JSON object or the script that a model was asked for, out of what it said."""
+"""Replies of models: parsed, validated against a form, and asked for again until one is valid."""
 
 from __future__ import annotations
 
 import json
 import re
-from collections.abc import Iterable
-from typing import Any, Final
+from collections.abc import Callable, Iterable, Mapping
+from typing import Any, Final, TypeVar
 
+from pydantic import BaseModel, ConfigDict, ValidationError
+
+from articad.agents.llm import LLM, Message, Request, assistant, user
+from articad.agents.prompts import prompt
 from articad.errors import OutputError
 from articad.findings import Finding
 from articad.plan.reading import MOST_LEVELS, is_nested_deeper
 
+TRIES: Final = 3  # a model that misses a form three times does not find it
 _FENCED: Final = re.compile(r"^[ \t]*```[ \t]*([\w+-]*)[^\n]*\n(.*?)^[ \t]*```[ \t]*$", re.DOTALL | re.MULTILINE)
 _OPEN_FENCE: Final = re.compile(r"\A\s*```[ \t]*[\w+-]*[^\n]*\n")
 _SHOWN = 60  # characters of a reply that an error quotes
@@ -87,3 +92,88 @@ def _candidates(text: str) -> Iterable[str]:
 
 def _kind(value: Any) -> str:
     return {list: "list", str: "string", bool: "truth value", type(None): "null"}.get(type(value), "number")
+
+
+class ReplyForm(BaseModel):
+    """Base of replies with named fields: frozen, and without unknown keys."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", validate_by_name=True, validate_by_alias=True)
+
+
+_Value = TypeVar("_Value")
+_Form = TypeVar("_Form", bound=BaseModel)
+
+
+def ask(
+    llm: LLM,
+    role: str,
+    step: str,
+    opening: tuple[Message, ...],
+    read: Callable[[str, str], _Value],
+    *,
+    schema: Mapping[str, Any] | None = None,
+) -> _Value:
+    """Ask until a reply is valid. An invalid reply is sent back together with what is wrong with it.
+
+    The first try is the step itself, later ones `<step>/2`, `<step>/3`.
+
+    Args:
+        llm: Who answers.
+        role: Which agent asks.
+        step: The address of the first try.
+        opening: The question.
+        read: Makes the value of a reply's text and its step, or raises `OutputError`.
+        schema: JSON schema of the reply.
+
+    Raises:
+        OutputError: If none of `TRIES` replies is valid.
+    """
+    messages = opening
+    for number in range(1, TRIES + 1):
+        address = step if number == 1 else f"{step}/{number}"
+        reply = llm.complete(Request(role, address, messages, schema))
+        try:
+            return read(reply.text, address)
+        except OutputError as error:
+            if number == TRIES:
+                raise
+            messages = (*opening, assistant(reply.text), user(prompt("form_repair", problem=error.message)))
+    raise AssertionError("the last try either returns or raises")
+
+
+def reader(form: type[_Form], *, ignore: frozenset[str] = frozenset()) -> Callable[[str, str], _Form]:
+    """Return a function that validates the text of a reply as a form; fields in `ignore` are not validated."""
+
+    def read(text: str, step: str) -> _Form:
+        document = parse_object(text, step=step)
+        try:
+            return form.model_validate({name: value for name, value in document.items() if name not in ignore})
+        except ValidationError as error:
+            problems = [f"{'.'.join(map(str, detail['loc'])) or 'the object'}: {detail['msg']}" for detail in error.errors()]
+            raise unusable("; ".join(problems) + ".", text, step=step) from None
+
+    return read
+
+
+def schema_of(form: type[BaseModel], *, without: frozenset[str] = frozenset()) -> dict[str, Any]:
+    """Return the JSON schema of a form as every provider takes it: references written out, titles dropped."""
+    schema = form.model_json_schema(by_alias=True)
+    for name in without:
+        schema["properties"].pop(name)
+    plain: dict[str, Any] = _plain(schema, schema.get("$defs", {}))
+    return plain
+
+
+def _plain(schema: Any, definitions: Mapping[str, Any]) -> Any:
+    if isinstance(schema, list):
+        return [_plain(item, definitions) for item in schema]
+    if not isinstance(schema, dict):
+        return schema
+    if "$ref" in schema:
+        return _plain(definitions[schema["$ref"].rsplit("/", 1)[-1]], definitions)
+    dropped = {"$defs", "title", "description"}
+    return {
+        name: ({key: _plain(value, definitions) for key, value in item.items()} if name == "properties" else _plain(item, definitions))
+        for name, item in schema.items()
+        if name not in dropped
+    }

@@ -8,9 +8,9 @@ from typing import Annotated, Any, Final, Literal
 
 from pydantic import BaseModel, BeforeValidator, Field
 
-from articad.agents.forms import Form, ask, reader, schema_of
 from articad.agents.llm import LLM, Image, system, user
 from articad.agents.prompts import prompt
+from articad.agents.replies import ReplyForm, ask, reader, schema_of
 from articad.runs.run import RunRequest
 
 SCHEMA: Final = "articad.requirements/1"
@@ -23,7 +23,7 @@ def slug(value: Any) -> Any:
     return re.sub(r"[^a-z0-9]+", "_", value.lower()).strip("_")[:40].strip("_") or value
 
 
-class Component(Form):
+class Component(ReplyForm):
     """A rigid piece, or several that are alike."""
 
     name: str
@@ -31,7 +31,7 @@ class Component(Form):
     description: str
 
 
-class Motion(Form):
+class Motion(ReplyForm):
     """What moves against what."""
 
     component: str
@@ -41,7 +41,7 @@ class Motion(Form):
     range: str
 
 
-class Dimension(Form):
+class Dimension(ReplyForm):
     """A number that the request states or a picture shows."""
 
     of: str
@@ -51,7 +51,7 @@ class Dimension(Form):
     source: Literal["stated", "seen"]
 
 
-class Requirements(Form):
+class Requirements(ReplyForm):
     """What is to be built.
 
     Attributes:

@@ -12,11 +12,11 @@ from typing import Any, Final
 from pydantic import Field
 
 from articad.agents.evidence import Evidence, told
-from articad.agents.forms import Form, ask, reader, schema_of
 from articad.agents.inspection import MOTIONS, asked_for, structure, wanted
 from articad.agents.llm import LLM, Image, system, user
 from articad.agents.pictures import assembly_picture, motion_picture, part_picture
 from articad.agents.prompts import prompt
+from articad.agents.replies import ReplyForm, ask, reader, schema_of
 from articad.agents.requirements import Requirements
 from articad.assembly import Assembly
 from articad.errors import OutputError
@@ -27,14 +27,14 @@ PARTS: Final = 8  # parts that a reviewer sees one by one: more pictures at once
 _STILL: Final = 5  # motion of a product that has none
 
 
-class Scored(Form):
+class Scored(ReplyForm):
     """A score from 1 to 5, and why."""
 
     score: int = Field(ge=1, le=5)
     reason: str
 
 
-class Opinion(Form):
+class Opinion(ReplyForm):
     """A reviewer's answer."""
 
     geometry: Scored

@@ -11,11 +11,10 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Final, Literal
 
-from articad.agents.forms import Form, ask, reader, schema_of
-from articad.agents.generation import specification
 from articad.agents.llm import LLM, system, user
+from articad.agents.part_writer import specification
 from articad.agents.prompts import prompt
-from articad.agents.replies import unusable
+from articad.agents.replies import ReplyForm, ask, reader, schema_of, unusable
 from articad.findings import Finding, Findings
 from articad.plan.resolve import ResolvedPlan
 
@@ -25,7 +24,7 @@ _BORED: Final = "bore_axis"
 _Signature = tuple[str, tuple[str, ...], str | None, str]
 
 
-class Decision(Form):
+class Decision(ReplyForm):
     """Who must mend a fault."""
 
     fault: int
@@ -34,7 +33,7 @@ class Decision(Form):
     reason: str
 
 
-class Decisions(Form):
+class Decisions(ReplyForm):
     """One for each fault."""
 
     decisions: tuple[Decision, ...]

@@ -13,13 +13,12 @@ from typing import Any, Final
 from pydantic import ValidationError
 
 from articad.agents.evidence import Evidence
-from articad.agents.forms import Form
-from articad.agents.generation import failure_text
 from articad.agents.late import ENDING
 from articad.agents.line import Line
 from articad.agents.llm import Message, Request, assistant, closed_port, system, user
+from articad.agents.part_writer import failure_text
 from articad.agents.prompts import prompt, prompt_section
-from articad.agents.replies import parse_script, unusable
+from articad.agents.replies import ReplyForm, parse_script, unusable
 from articad.agents.requirements import pictures_of
 from articad.assembly import Assembly
 from articad.errors import KernelError, OutputError, PlanError
@@ -38,7 +37,7 @@ _API: Final = {"build123d": ("# build123d in brief", "# Example"), "freecad": ("
 _PLAIN: Final = {"name": "plain", "density_kg_m3": 1000, "color": "#b8b8b8"}
 
 
-class Piece(Form):
+class ScriptPart(ReplyForm):
     """A part of the script's assembly."""
 
     name: str
@@ -46,12 +45,12 @@ class Piece(Form):
     description: str = ""
 
 
-class Whole(Form):
+class Whole(ReplyForm):
     """What the script says of the assembly."""
 
     name: str
     ground: str
-    parts: tuple[Piece, ...]
+    parts: tuple[ScriptPart, ...]
     joints: tuple[Json, ...] = ()
     couplings: tuple[Json, ...] = ()
     materials: tuple[Json, ...] = ()
@@ -66,17 +65,17 @@ class SingleLine(Line):
         Raises:
             OutputError, PlanError, KernelError: As the last answer failed.
         """
-        self.shop.tell("design", "started")
+        self.builder.announce("design", "started")
         assembly = self._written()
         with closed_port("assembly and checks are deterministic"):
             record_assembly(self.run, assembly)
             evidence: Evidence = self.examined(assembly)
             record_checks(self.run, evidence.checks)
-        self.shop.tell("check", "ok" if evidence.ok else f"{len(evidence.findings.errors)} errors")
+        self.builder.announce("check", "ok" if evidence.ok else f"{len(evidence.findings.errors)} errors")
         self.finish(assembly, evidence, None)
 
     def _written(self) -> Assembly:
-        request, kernel = self.run.request, self.shop.kernel.name
+        request, kernel = self.run.request, self.builder.kernel.name
         words = f"The request:\n\n{request.prompt.strip() or '(no words; see the pictures)'}"
         api = prompt_section(f"part_{kernel}.md", *_API[kernel])
         shape = "`part.body`" if kernel == "freecad" else "a solid"
@@ -90,7 +89,7 @@ class SingleLine(Line):
             except (OutputError, PlanError, KernelError) as error:
                 for finding in error.findings:
                     self.run.trace_finding(finding)
-                self.shop.tell("script", f"{len(error.findings)} errors")
+                self.builder.announce("script", f"{len(error.findings)} errors")
                 if number > RETRIES:
                     raise
                 messages = (*opening, assistant(reply.text), user(prompt("part_repair", failure=_failure(error))))
@@ -98,13 +97,13 @@ class SingleLine(Line):
 
     def _made(self, text: str, step: str) -> Assembly:
         script = parse_script(text, step=step)
-        plan = _plan(_whole(script, text, step), self.shop.kernel.name)
+        plan = _plan(_whole(script, text, step), self.builder.kernel.name)
         resolved = resolve(plan)
         sources = [name for name, part in resolved.parts.items() if part.derivation is None]
-        self.shop.made.clear()
-        self.shop.adopt(dict.fromkeys(sources, resolved), dict.fromkeys(sources, script + ENDING))
+        self.builder.made.clear()
+        self.builder.adopt(dict.fromkeys(sources, resolved), dict.fromkeys(sources, script + ENDING))
         with closed_port("assembly is deterministic"):
-            _, assembly = self.shop.joined(plan, resolved)
+            _, assembly = self.builder.joined(plan, resolved)
         self.run.save_plan(plan.dumps(), 0)
         return assembly
 

@@ -11,7 +11,7 @@ from itertools import combinations, product
 import numpy as np
 
 from articad.assembly import Assembly
-from articad.auditing.contact_case import Case, Contacts, explained, shared_note
+from articad.auditing.contact_case import ContactCase, Contacts, explained, shared_note
 from articad.auditing.contact_motion import prove_motion, sample_motion
 from articad.auditing.declared import Declared
 from articad.auditing.wording import counted
@@ -27,7 +27,7 @@ from articad.interference.relations import Groups
 from articad.interference.report import Checks, PairCheck
 from articad.interference.scene import Scene
 from articad.interference.verdict import judge
-from articad.interference.work import Budget, look_price
+from articad.interference.work import WorkBudget, look_price
 from articad.kinematics.joints import JointType
 
 FOREIGN = ("urdf", "mjcf")  # formats whose shapes stand for bodies without being them
@@ -64,9 +64,9 @@ def contacts(
         return Contacts(Checks(Findings(), (), 0.0, "rest", ()), findings=[_too_many(len(meshes))], strength="none")
     deflections = {name: part.deflection for name, part in assembly.parts.items()}
     scene = Scene.of(meshes, assembly.joints, waivers=assembly.waivers, deflection=deflections, fits=assembly.fits)
-    case = Case(assembly, foreign, simple | _simple_parts(declared), filtered, scene, _neighbours(assembly, meshes))
+    case = ContactCase(assembly, foreign, simple | _simple_parts(declared), filtered, scene, _neighbours(assembly, meshes))
     poses = dict(zip(assembly.mechanism.parts, assembly.poses(assembly.mechanism.rest), strict=True))
-    found = Contacts(pairs=_at_rest(case, poses, Budget(REST_S)))
+    found = Contacts(pairs=_at_rest(case, poses, WorkBudget(REST_S)))
     found.findings += explained(case, found.pairs.findings)
     found.findings += _held(case, declared, poses, found.pairs)
     found.undone += [f"overlap with {name}: {reason}" for name, reason in scene.broken.items()]
@@ -133,7 +133,7 @@ def _neighbours(assembly: Assembly, meshes: Mapping[str, TriMesh]) -> frozenset[
 # ---------------------------------------------------------------------- at rest
 
 
-def _at_rest(case: Case, poses: Mapping[str, SE3], budget: Budget) -> Checks:
+def _at_rest(case: ContactCase, poses: Mapping[str, SE3], budget: WorkBudget) -> Checks:
     """Check the rest pose. In simulators' formats holding is judged by what is drawn, elsewhere: see `_held`."""
     if not case.foreign:
         return check_scene(case.scene, poses, ground=case.assembly.ground)
@@ -163,7 +163,7 @@ def _too_many(count: int) -> Finding:
     )
 
 
-def _unfinished(left: list[tuple[str, str]], count: int, budget: Budget) -> Finding:
+def _unfinished(left: list[tuple[str, str]], count: int, budget: WorkBudget) -> Finding:
     return Finding(
         code="W_AUDIT_NOT_CHECKED",
         where=f"parts.{left[0][0]}",
@@ -175,7 +175,7 @@ def _unfinished(left: list[tuple[str, str]], count: int, budget: Budget) -> Find
     )
 
 
-def _held(case: Case, declared: Declared, poses: Mapping[str, SE3], rest: Checks) -> list[Finding]:
+def _held(case: ContactCase, declared: Declared, poses: Mapping[str, SE3], rest: Checks) -> list[Finding]:
     """Find parts that touch nothing, or not what they are fixed to: by everything that is drawn or collides, open meshes too."""
     if not case.foreign:
         return []  # `check_scene` has judged it

@@ -43,7 +43,7 @@ class Contacts:
 
 
 @dataclass(frozen=True, eq=False)
-class Case:
+class ContactCase:
     """What is checked.
 
     Attributes:
@@ -74,7 +74,7 @@ class Case:
         return near or self.scene.relations.rigid.together(a, b) or pair in self.filtered
 
 
-def explained(case: Case, findings: Sequence[Finding]) -> list[Finding]:
+def explained(case: ContactCase, findings: Sequence[Finding]) -> list[Finding]:
     """Add causes; put aside what simulators' shapes share by design."""
     measured_ones = [finding for finding in findings if finding.code != "E_MESH_OPEN"]  # `shapes` tells of open meshes
     case.shared.extend(finding for finding in measured_ones if case.by_design(finding.parts))
@@ -90,7 +90,7 @@ def explained(case: Case, findings: Sequence[Finding]) -> list[Finding]:
     return [finding for finding in named if finding.code != "E_NOT_ONE_SOLID"]  # `shapes` tells of pieces, once for each file
 
 
-def _is_doubtful(case: Case, finding: Finding, depth: Finding) -> bool:
+def _is_doubtful(case: ContactCase, finding: Finding, depth: Finding) -> bool:
     """True where a cause that explains many machines does not explain these parts.
 
     A pitch says something of two parts that turn on one base, each by its own joint, and nothing of limbs and chains. A part that
@@ -105,7 +105,7 @@ def _is_doubtful(case: Case, finding: Finding, depth: Finding) -> bool:
     return finding.cause == "envelope" and ends is not None and float(ends[1]) > SHORTEST * (depth.value or 0.0)
 
 
-def _by_share(case: Case, finding: Finding) -> Finding:
+def _by_share(case: ContactCase, finding: Finding) -> Finding:
     """In simulators' formats let an overlap of neighbours be an error only when it is much of the smaller one."""
     if not case.foreign or finding.code != "E_STATIC_OVERLAP":
         return finding

@@ -10,7 +10,7 @@ from itertools import combinations, product
 
 import numpy as np
 
-from articad.auditing.contact_case import Case, Contacts, explained
+from articad.auditing.contact_case import ContactCase, Contacts, explained
 from articad.auditing.wording import counted, listed
 from articad.certificates.certificate import certify
 from articad.errors import ArticadError
@@ -19,8 +19,8 @@ from articad.interference.body import relative
 from articad.interference.motion import Freedom
 from articad.interference.overlap import volume
 from articad.interference.relations import Groups, Relations
-from articad.interference.sweep import Sweep
-from articad.interference.work import CLOSED, POSE, Budget, look_price
+from articad.interference.sweep import MotionSampler
+from articad.interference.work import CLOSED, POSE, WorkBudget, look_price
 from articad.kinematics.joints import JointType
 
 STEPS = 25  # poses of a joint: every 15° of a full turn
@@ -38,13 +38,13 @@ DEEPER = 2.0  # a pair that overlaps at rest is told of again where motion makes
 class _Quiet(Relations):
     """Relations for motion: pairs that may share space by design are not looked at."""
 
-    def __init__(self, case: Case) -> None:
+    def __init__(self, case: ContactCase) -> None:
         super().__init__(case.assembly.joints, case.assembly.waivers)
         self.rigid = _Together(self.rigid, case)
 
 
 class _Together(Groups):
-    def __init__(self, rigid: Groups, case: Case) -> None:
+    def __init__(self, rigid: Groups, case: ContactCase) -> None:
         super().__init__()
         self._rigid, self._case = rigid, case
 
@@ -53,10 +53,10 @@ class _Together(Groups):
         return self._rigid.together(a, b) or self._case.by_design((a, b))
 
 
-def sample_motion(case: Case, found: Contacts, seconds: float) -> None:
+def sample_motion(case: ContactCase, found: Contacts, seconds: float) -> None:
     """Move each joint over its range, then two at a time, until so many nominal seconds of work are spent."""
-    budget = Budget(seconds)
-    sweep = Sweep(replace(case.scene, relations=_Quiet(case)), case.assembly.mechanism, budget)
+    budget = WorkBudget(seconds)
+    sweep = MotionSampler(replace(case.scene, relations=_Quiet(case)), case.assembly.mechanism, budget)
     ranges = sweep.ranges()
     guilty = {frozenset(finding.parts) for finding in found.findings}
     resting = _depths_at_rest(found)
@@ -94,7 +94,12 @@ def _is_news(finding: Finding, resting: Mapping[frozenset[str], float], guilty: 
 
 
 def _collisions(
-    case: Case, sweep: Sweep, freedom: Freedom, findings: list[Finding], resting: Mapping[frozenset[str], float], budget: Budget
+    case: ContactCase,
+    sweep: MotionSampler,
+    freedom: Freedom,
+    findings: list[Finding],
+    resting: Mapping[frozenset[str], float],
+    budget: WorkBudget,
 ) -> list[Finding]:
     """Say where each collision begins. In simulators' formats the first one of each joint stands for the others."""
     met = [
@@ -114,7 +119,9 @@ def _collisions(
     ]
 
 
-def _pairs(case: Case, found: Contacts, sweep: Sweep, ranges: list[Freedom], guilty: set[frozenset[str]], budget: Budget) -> int:
+def _pairs(
+    case: ContactCase, found: Contacts, sweep: MotionSampler, ranges: list[Freedom], guilty: set[frozenset[str]], budget: WorkBudget
+) -> int:
     """Move two joints at a time on a grid; return how many pairs there was no time for."""
     undone, together = 0, list[Finding]()
     for first, second in combinations(ranges, 2):
@@ -141,7 +148,7 @@ def _pairs(case: Case, found: Contacts, sweep: Sweep, ranges: list[Freedom], gui
     return undone
 
 
-def prove_motion(case: Case, found: Contacts, budget: float) -> None:
+def prove_motion(case: ContactCase, found: Contacts, budget: float) -> None:
     """Prove the motion free, or say where it is not."""
     scene = case.scene
     certificate = certify(
@@ -171,7 +178,9 @@ def _together(finding: Finding, names: tuple[str, str]) -> Finding:
     )
 
 
-def _first_contact(case: Case, sweep: Sweep, freedom: Freedom, finding: Finding, budget: Budget) -> tuple[Finding, float | None]:
+def _first_contact(
+    case: ContactCase, sweep: MotionSampler, freedom: Freedom, finding: Finding, budget: WorkBudget
+) -> tuple[Finding, float | None]:
     """Return the value at which, on the way from rest, two parts first meet; None where that cannot be said."""
     if finding.code != MOTION or finding.pose is None or freedom.name not in finding.pose:
         return finding, None
@@ -200,7 +209,7 @@ def _first_contact(case: Case, sweep: Sweep, freedom: Freedom, finding: Finding,
     return finding, met
 
 
-def _beginning(case: Case, freedom: Freedom, finding: Finding, met: float | None) -> Finding:
+def _beginning(case: ContactCase, freedom: Freedom, finding: Finding, met: float | None) -> Finding:
     """Return the finding with the value at which contact begins."""
     if met is None:
         return finding
@@ -216,7 +225,7 @@ def _beginning(case: Case, freedom: Freedom, finding: Finding, met: float | None
     )
 
 
-def _turns(case: Case, freedom: Freedom) -> bool:
+def _turns(case: ContactCase, freedom: Freedom) -> bool:
     name, _, coordinate = freedom.name.partition(".")
     joint = next(joint for joint in case.assembly.joints if joint.name in {freedom.name, name})
     if joint.name == freedom.name or joint.type is JointType.BALL:
@@ -242,7 +251,7 @@ def _unproven(findings: list[Finding]) -> Finding:
     )
 
 
-def _unfinished(late: list[str], count: int, budget: Budget) -> Finding:
+def _unfinished(late: list[str], count: int, budget: WorkBudget) -> Finding:
     return Finding(
         code="W_AUDIT_NOT_CHECKED",
         where=f"joints.{late[0]}",

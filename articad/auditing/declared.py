@@ -28,7 +28,7 @@ MOVING = ("revolute", "continuous", "prismatic", "planar", "floating", "spherica
 
 
 @dataclass(frozen=True, eq=False)
-class Inertial:
+class DeclaredInertial:
     """Mass properties as declared, however impossible.
 
     Attributes:
@@ -73,7 +73,7 @@ class DeclaredLink:
 
     name: str
     where: str
-    inertial: Inertial | None = None
+    inertial: DeclaredInertial | None = None
     shapes: tuple[DeclaredShape, ...] = ()
 
     def of(self, role: Role) -> tuple[DeclaredShape, ...]:
@@ -219,7 +219,7 @@ def from_assembly(
 
 def _link(part: Part, kind: str) -> DeclaredLink:
     where = f"parts.{part.name}"
-    inertial = None if part.mass is None else Inertial(part.mass.mass, part.mass.com, part.mass.inertia)
+    inertial = None if part.mass is None else DeclaredInertial(part.mass.mass, part.mass.com, part.mass.inertia)
     visuals = [DeclaredShape("visual", kind, where, shape.placed) for shape in part.visuals]
     collisions = [DeclaredShape("collision", kind, where, shape.placed) for shape in part.collisions]
     return DeclaredLink(part.name, where, inertial, (*visuals, *collisions))

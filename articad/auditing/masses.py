@@ -11,7 +11,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from articad.auditing.declared import Declared, DeclaredLink, Inertial
+from articad.auditing.declared import Declared, DeclaredInertial, DeclaredLink
 from articad.auditing.wording import counted, listed
 from articad.findings import Finding
 
@@ -243,7 +243,7 @@ def _is_power_of_ten(value: float) -> bool:
     return math.isclose(math.log10(value), round(math.log10(value)), abs_tol=1e-9)
 
 
-def _weighed(declared: Declared) -> Iterator[tuple[DeclaredLink, Inertial, float]]:
+def _weighed(declared: Declared) -> Iterator[tuple[DeclaredLink, DeclaredInertial, float]]:
     """Yield the links that have mass and inertia."""
     for link in declared.links:
         if link.inertial is not None and link.inertial.inertia is not None and (link.inertial.mass or 0.0) > 0:

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from articad.auditing.declared import Declared, DeclaredJoint, DeclaredLink, DeclaredShape, Inertial, Role
+from articad.auditing.declared import Declared, DeclaredInertial, DeclaredJoint, DeclaredLink, DeclaredShape, Role
 from articad.auditing.mesh_references import MeshReferences
 from articad.connectors.se3 import SE3
 from articad.errors import InvalidSolidError
@@ -50,7 +50,7 @@ class UrdfText:
         shapes = [shape for role in ("visual", "collision") for row in element.iterfind(role) if (shape := self._shape(row, role))]
         return DeclaredLink(name, where, self._inertial(element.find("inertial")), tuple(shapes))
 
-    def _inertial(self, element: Any) -> Inertial | None:
+    def _inertial(self, element: Any) -> DeclaredInertial | None:
         if element is None:
             return None
         T = self._pose(element.find("origin"))
@@ -60,7 +60,7 @@ class UrdfText:
             xx, xy, xz, yy, yz, zz = (self._number(moments, axis, 0.0) or 0.0 for axis in _AXES)
             R = T.rotation
             inertia = R @ np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]) @ R.T * MM_PER_M**2
-        return Inertial(None if mass is None else self._number(mass, "value"), T.translation, inertia)
+        return DeclaredInertial(None if mass is None else self._number(mass, "value"), T.translation, inertia)
 
     def _shape(self, element: Any, role: Role | str) -> DeclaredShape | None:
         geometry = element.find("geometry")

@@ -12,7 +12,7 @@ import numpy as np
 from scipy.stats import qmc
 
 from articad.batches import pool
-from articad.batches.items import Item, Json
+from articad.batches.items import BatchItem, Json
 from articad.batches.pool import MEMORY_GB, RETRIES, Told
 from articad.errors import ReadError
 from articad.plan.schema import AssemblyPlan
@@ -21,7 +21,7 @@ MAKE_ITEM: Final = "articad.batches.items:make_stored"
 """What a worker calls for an item."""
 
 
-def read_batch(path: str | Path) -> list[Item]:
+def read_batch(path: str | Path) -> list[BatchItem]:
     """Read a specification `articad.batch/1`: `items`, `sample`, or both.
 
     A sample names a `plan`, a `count` and a `seed`, and for each of its `parameters` the range to draw from; where there are
@@ -38,7 +38,7 @@ def read_batch(path: str | Path) -> list[Item]:
             *stored.get("items", []),
             *itertools.chain.from_iterable(_sampled(sample, file.parent) for sample in stored.get("sample", [])),
         ]
-        return [Item.from_json(row | {"plan": str((file.parent / row["plan"]).resolve())}) for row in rows]
+        return [BatchItem.from_json(row | {"plan": str((file.parent / row["plan"]).resolve())}) for row in rows]
     except OSError as error:
         raise _refused(file, f"It cannot be read: {error.strerror}.") from error
     except (ValueError, KeyError, TypeError, AttributeError) as error:
@@ -64,7 +64,7 @@ def _sampled(sample: Mapping[str, Any], folder: Path) -> Iterator[Json]:
 
 
 def run_local(
-    items: Sequence[Item],
+    items: Sequence[BatchItem],
     out: str | Path,
     *,
     workers: int | None = None,
@@ -90,7 +90,7 @@ def run_local(
 
 
 def run_dask(
-    items: Sequence[Item],
+    items: Sequence[BatchItem],
     out: str | Path,
     *,
     scheduler: str | None = None,
@@ -118,7 +118,7 @@ def run_dask(
     return _with_items(items, found)
 
 
-def calls_of(items: Sequence[Item], out: str | Path) -> list[pool.Call]:
+def calls_of(items: Sequence[BatchItem], out: str | Path) -> list[pool.Call]:
     """Return what workers are told of items."""
     rows = [item.to_json() | {"plan": str(Path(item.plan).resolve())} for item in items]
     return [
@@ -126,7 +126,7 @@ def calls_of(items: Sequence[Item], out: str | Path) -> list[pool.Call]:
     ]
 
 
-def _with_items(items: Sequence[Item], records: Sequence[Json]) -> list[Json]:
+def _with_items(items: Sequence[BatchItem], records: Sequence[Json]) -> list[Json]:
     """Return records with what each was to be, also where none was made."""
     return [item.to_json() | record for item, record in zip(items, records, strict=True)]
 
@@ -161,4 +161,4 @@ def summary(records: Iterable[Json]) -> Json:
 
 
 def _refused(path: Path, message: str) -> ReadError:
-    return ReadError.told(path, message, "See `articad batch --help`.", said=message)
+    return ReadError.at(path, message, "See `articad batch --help`.", said=message)

@@ -38,7 +38,7 @@ BUDGET_S: Final = 60.0  # of the gate "certified"
 
 
 @dataclass(frozen=True)
-class Item:
+class BatchItem:
     """One assembly to be made.
 
     Attributes:
@@ -78,7 +78,7 @@ class Item:
         }
 
     @classmethod
-    def from_json(cls, stored: Mapping[str, Any]) -> Item:
+    def from_json(cls, stored: Mapping[str, Any]) -> BatchItem:
         """Read an item.
 
         Raises:
@@ -102,7 +102,7 @@ class Item:
         return item
 
 
-def make(item: Item, out: str | Path, *, cache_root: str | Path | None = None) -> Json:
+def make(item: BatchItem, out: str | Path, *, cache_root: str | Path | None = None) -> Json:
     """Make one item, unless it is there already.
 
     Args:
@@ -132,10 +132,10 @@ def make(item: Item, out: str | Path, *, cache_root: str | Path | None = None) -
 
 def make_stored(item: Json, out: str) -> Json:
     """Make an item as it came from another process."""
-    return make(Item.from_json(item), out)
+    return make(BatchItem.from_json(item), out)
 
 
-def _made(item: Item, folder: Path, cache_root: str | Path | None) -> Json:
+def _made(item: BatchItem, folder: Path, cache_root: str | Path | None) -> Json:
     clock = _Clock()
     record: Json = {"schema": SCHEMA, "digest": item.digest, "articad": __version__, **item.to_json()}
     built: dict[str, int] = {}
@@ -162,10 +162,10 @@ def _made(item: Item, folder: Path, cache_root: str | Path | None) -> Json:
     return record | built | {"seconds": {name: round(spent, 4) for name, spent in clock.spent.items()}}
 
 
-def _gated(item: Item, assembly: Assembly) -> Findings:
+def _gated(item: BatchItem, assembly: Assembly) -> Findings:
     found = assembly.check().findings
     if found.ok and "motion" in item.gates:
-        found += assembly.sweep(steps=STEPS).findings
+        found += assembly.check_motion(steps=STEPS).findings
     if found.ok and "certified" in item.gates:
         found += assembly.certify(budget=BUDGET_S).findings
     return found
@@ -193,4 +193,4 @@ class _Clock:
 
 
 def _refused(path: Path, message: str) -> ReadError:
-    return ReadError.told(path, message, "Correct the batch's specification.", said=message)
+    return ReadError.at(path, message, "Correct the batch's specification.", said=message)

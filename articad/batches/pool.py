@@ -119,7 +119,7 @@ def run_dask(
         from distributed import Client, as_completed  # noqa: PLC0415 - an extra
     except ImportError as error:
         message = "Dask is not installed: pip install 'articad[batch]'."
-        raise ReadError.told("dask", message, "Install it, or leave --engine out.", said=message) from error
+        raise ReadError.at("dask", message, "Install it, or leave --engine out.", said=message) from error
     own = client is None
     client = client or Client(scheduler)
     try:

@@ -21,7 +21,7 @@ from articad.certificates.profile import Forest
 from articad.certificates.spread import Spread
 from articad.certificates.trail import CUT_A, CUT_B, CUT_RANGE, LEAN, OF_A, OF_B, ROUND, SWUNG, Trail
 from articad.interference.surface import Core
-from articad.interference.work import BOX, STEP, Budget
+from articad.interference.work import BOX, STEP, WorkBudget
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.signedinteger[Any]]
@@ -131,7 +131,7 @@ def clear(
     *,
     axis: Core | None = None,
     epsilon: float,
-    budget: Budget,
+    budget: WorkBudget,
     most: int = MOST_PAIRS,
 ) -> Cleared:
     """Prove that two surfaces stay further apart than `needed` [mm] over boxes of motion.

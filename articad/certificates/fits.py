@@ -27,8 +27,8 @@ from articad.interference.relations import FitLike
 from articad.interference.report import Strength, rounded
 from articad.interference.scene import Scene
 from articad.interference.surface import Surface
-from articad.interference.sweep import Sweep
-from articad.interference.work import Budget
+from articad.interference.sweep import MotionSampler
+from articad.interference.work import WorkBudget
 from articad.kinematics.joints import Joint, JointType
 from articad.kinematics.mechanism import Mechanism
 
@@ -153,7 +153,7 @@ def check_fits(
     rows: list[FitCheck] = []
     findings: list[Finding] = []
     claims: list[Claim] = []
-    budgets: list[Budget] = []
+    budgets: list[WorkBudget] = []
     for joint in scene.relations.joints:
         fit = scene.fits.get(joint.name)
         if fit is None or (joints is not None and joint.name not in joints):
@@ -165,7 +165,7 @@ def check_fits(
             rows.append(FitCheck(joint.name, (joint.parent, joint.child), fit, None, None, None, "not_checked", strength=strength))
             findings.append(_unmeasured(joint, reason))
             continue
-        budgets.append(Budget(seconds))
+        budgets.append(WorkBudget(seconds))
         held = _Held(scene, joint, fit, budgets[-1])
         row, finding = held.check(reached, proven or {})
         rows.append(row)
@@ -188,7 +188,7 @@ def followed(mechanism: Mechanism) -> dict[str, tuple[float, float]]:
     """
     if mechanism.is_tree:
         return {}
-    sweep = Sweep(Scene.of({}, mechanism.joints), mechanism)
+    sweep = MotionSampler(Scene.of({}, mechanism.joints), mechanism)
     numbers = {driver.name for driver in mechanism.drivers if driver.unit != "1"}
     rows = [mechanism.configuration(mechanism.rest).columns[None]]
     for freedom in sweep.ranges():
@@ -207,7 +207,7 @@ def followed(mechanism: Mechanism) -> dict[str, tuple[float, float]]:
 class _Held:
     """One fit, held against its two parts."""
 
-    def __init__(self, scene: Scene, joint: Joint, fit: FitLike, budget: Budget) -> None:
+    def __init__(self, scene: Scene, joint: Joint, fit: FitLike, budget: WorkBudget) -> None:
         self.scene, self.joint, self.fit, self.budget = scene, joint, fit, budget
         self.gauge = Gauge(scene, joint, fit)
         self.slack = self.gauge.slack

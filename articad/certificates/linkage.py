@@ -30,7 +30,7 @@ from articad.interference.motion import Chain, Freedom, Route, scattered
 from articad.interference.overlap import Overlap, overlap
 from articad.interference.scene import Scene
 from articad.interference.verdict import UNRELATED_VOLUME_MM3
-from articad.interference.work import CLOSED, PLACED, Budget, piece_price
+from articad.interference.work import CLOSED, PLACED, WorkBudget, piece_price
 from articad.kinematics.mechanism import Mechanism
 from articad.kinematics.motion import track_of
 
@@ -53,7 +53,7 @@ _STILL = 1e-14  # of a Newton step: rounding
 
 
 @dataclass(frozen=True, eq=False)
-class Piece:
+class FollowedBox:
     """One followed box of the ranges of a group's drivers, or the union of several.
 
     Attributes:
@@ -80,7 +80,7 @@ class Piece:
         return np.array([(high + low) / 2 for low, high in self.ends])
 
 
-class Way:
+class DriverTrack:
     """The followers of some drivers of one group over the drivers' ranges, in boxes that are halved on request; shared by all pairs.
 
     Args:
@@ -106,8 +106,8 @@ class Way:
         self.work = 0
         self._number: dict[Ends, int] = {}
         self._cuts: dict[Ends, tuple[int, float, Ends, Ends]] = {}
-        self._pieces: dict[Ends, Piece] = {}
-        self._steps: dict[int, list[Piece]] = {}
+        self._pieces: dict[Ends, FollowedBox] = {}
+        self._steps: dict[int, list[FollowedBox]] = {}
 
     @property
     def count(self) -> int:
@@ -116,11 +116,11 @@ class Way:
 
     # --- one driver
 
-    def steps(self, sign: int) -> list[Piece]:
+    def steps(self, sign: int) -> list[FollowedBox]:
         """Return the pieces of a single driver's range from rest towards one end, as far as it can be followed."""
         if sign not in self._steps:
             at, end = float(self.rest[0]), self.bounds[0][1 if sign > 0 else 0]
-            step, last, found = (end - at) * FIRST_STEP, 0, list[Piece]()
+            step, last, found = (end - at) * FIRST_STEP, 0, list[FollowedBox]()
             least = abs(end - at) * SMALLEST_STEP
             while at != end and abs(step) > least:
                 there = end if abs(end - at) <= abs(step) * 1.5 else at + step
@@ -151,7 +151,7 @@ class Way:
     # --- the whole range
 
     @cached_property
-    def whole(self) -> Piece | None:
+    def whole(self) -> FollowedBox | None:
         """The union of all followed pieces; None if there is none, or if several drivers cannot be followed over all of their ranges."""
         if len(self.drivers) == 1:
             steps = [*self.steps(-1)[::-1], *self.steps(1)]
@@ -209,7 +209,7 @@ class Way:
 
     # --- pieces
 
-    def piece(self, ends: Ends) -> Piece:
+    def piece(self, ends: Ends) -> FollowedBox:
         """Return the piece of a box of the drivers that has been followed."""
         if ends not in self._pieces:
             numbers = tuple(self._leaves(ends))
@@ -217,7 +217,7 @@ class Way:
             middle, slopes, near = joined(np.array([row[0] for row in rows]), [row[1:4] for row in rows])
             named = zip(self.names, zip(middle.tolist(), slopes.T, near.tolist(), strict=True), strict=True)
             off = float(np.abs(rows[0][1] - rows[0][4][0]).max()) if len(rows) == 1 else math.inf
-            self._pieces[ends] = Piece(ends, numbers, dict(named), off)
+            self._pieces[ends] = FollowedBox(ends, numbers, dict(named), off)
         return self._pieces[ends]
 
     def _leaves(self, ends: Ends) -> Iterator[int]:
@@ -229,7 +229,7 @@ class Way:
             else:
                 todo += self._cuts[one][2:]
 
-    def halves(self, piece: Piece, shares: FloatArray) -> tuple[int, float, Piece, Piece] | None:
+    def halves(self, piece: FollowedBox, shares: FloatArray) -> tuple[int, float, FollowedBox, FollowedBox] | None:
         """Return across which driver a piece is cut, where, and its halves, each about a solution of its own; None if there are none.
 
         Args:
@@ -247,7 +247,7 @@ class Way:
         at, place, first, second = self._cuts[piece.ends]
         return at, place, self.piece(first), self.piece(second)
 
-    def _piece(self, ends: Ends, beside: int) -> Piece | None:
+    def _piece(self, ends: Ends, beside: int) -> FollowedBox | None:
         """Return a piece that lies on the branch of another one; None if the checker would refute it."""
         if ends in self._number:
             return self.piece(ends)
@@ -378,7 +378,7 @@ class Steps:
         pieces: To be covered, one of each way; by default all of it.
     """
 
-    def __init__(self, ways: Sequence[Way], chain: Chain, others: FloatArray, pieces: Sequence[Piece] | None = None) -> None:
+    def __init__(self, ways: Sequence[DriverTrack], chain: Chain, others: FloatArray, pieces: Sequence[FollowedBox] | None = None) -> None:
         self.ways, self.chain, self.spread = tuple(ways), chain, Spread(chain)
         self.free = np.flatnonzero(~np.isnan(others[:, 0]))
         self.others = others
@@ -388,7 +388,7 @@ class Steps:
         self._follow = [np.array([name in way.names for name in names], dtype=bool) for way in ways]
         self._columns = np.array([factor.column for _, factor in self.spread.factors], dtype=np.intp)
         self._names = names
-        self.rows: list[tuple[tuple[Piece, ...], FloatArray]] = []
+        self.rows: list[tuple[tuple[FollowedBox, ...], FloatArray]] = []
         self.outside, self.columns, self.places, self.halves = list[bool](), list[int](), list[float](), list[tuple[int, int]]()
 
     @property
@@ -400,7 +400,7 @@ class Steps:
         """Add all of it, with the whole range of the other coordinates."""
         return self._add([(self.pieces, self.others)])
 
-    def _add(self, rows: list[tuple[tuple[Piece, ...], FloatArray]]) -> IntArray:
+    def _add(self, rows: list[tuple[tuple[FollowedBox, ...], FloatArray]]) -> IntArray:
         centres, lines, tubes = (np.array(part) for part in zip(*(self._placed(*row) for row in rows), strict=True))
         generators = np.concatenate([lines, tubes[:, :, None] * np.eye(tubes.shape[1])], axis=1)
         self.rows += rows
@@ -410,7 +410,7 @@ class Steps:
         self.halves += [(-1, -1)] * len(rows)
         return self.spread.add(centres, np.abs(lines).sum(axis=1) + tubes, generators)
 
-    def _placed(self, pieces: tuple[Piece, ...], ends: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    def _placed(self, pieces: tuple[FollowedBox, ...], ends: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Return the chain's coordinates; how far each factor goes with each driver `(drivers, F)`, and aside of that `(F,)`."""
         values = np.where(np.isnan(ends[:, 0]), self.chain.rest, ends.mean(axis=1))  # what no driver here moves stands
         lines, aside = np.zeros((self.first[-1], len(self._names))), np.zeros(len(self._names))
@@ -432,7 +432,7 @@ class Steps:
             self.halves[box] = halves[0], halves[1]
         return numbers
 
-    def _cut(self, box: int, share: FloatArray) -> list[tuple[tuple[Piece, ...], FloatArray]]:
+    def _cut(self, box: int, share: FloatArray) -> list[tuple[tuple[FollowedBox, ...], FloatArray]]:
         pieces, ends = self.rows[box]
         count = self.first[-1]
         by_driver, aside = share[:count], share[count:]
@@ -481,7 +481,14 @@ class LinkageProver(Prover):
     """
 
     def __init__(
-        self, scene: Scene, route: Route, joints: Sequence[str], ways: Sequence[Way], *, epsilon: float = 1e-3, budget: Budget | None = None
+        self,
+        scene: Scene,
+        route: Route,
+        joints: Sequence[str],
+        ways: Sequence[DriverTrack],
+        *,
+        epsilon: float = 1e-3,
+        budget: WorkBudget | None = None,
     ) -> None:
         super().__init__(scene, route, joints, epsilon=epsilon, budget=budget)
         self.ways = tuple(ways)

@@ -25,7 +25,7 @@ from articad.interference.overlap import Overlap, measured, overlap
 from articad.interference.scene import Scene
 from articad.interference.surface import Core, Surface, inwards, near_by, whole_surface
 from articad.interference.verdict import UNRELATED_VOLUME_MM3
-from articad.interference.work import TREE_TRIANGLES, Budget, look_price
+from articad.interference.work import TREE_TRIANGLES, WorkBudget, look_price
 from articad.kinematics.joints import JointType
 
 FloatArray = NDArray[np.float64]
@@ -106,9 +106,11 @@ class Prover:
         budget: Shared by all proofs.
     """
 
-    def __init__(self, scene: Scene, route: Route, joints: Sequence[str], *, epsilon: float = 1e-3, budget: Budget | None = None) -> None:
+    def __init__(
+        self, scene: Scene, route: Route, joints: Sequence[str], *, epsilon: float = 1e-3, budget: WorkBudget | None = None
+    ) -> None:
         self.scene, self.joints = scene, tuple(joints)
-        self.epsilon, self.budget = epsilon, budget or Budget(float("inf"))
+        self.epsilon, self.budget = epsilon, budget or WorkBudget(float("inf"))
         self.parts = route.parts[0], route.parts[-1]
         self.chain = Chain(route, joints, proving=True)
         self.body_a, self.body_b = (scene.bodies[name] for name in self.parts)

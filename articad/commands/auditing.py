@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from articad.auditing.mend import Mended
     from articad.auditing.report import Audit, Scoreboard
     from articad.commands.terminal import Report, Terminal
-    from articad.simulation.verdict import Outcome
+    from articad.simulation.verdict import EngineOutcome
 
 
 @command(
@@ -113,7 +113,7 @@ def _sim(options: argparse.Namespace, terminal: Terminal) -> Report:
     return report
 
 
-def _film(assembly: Assembly, outcomes: Sequence[Outcome]) -> bytes | None:
+def _film(assembly: Assembly, outcomes: Sequence[EngineOutcome]) -> bytes | None:
     """Return the filmstrip of the engine that kept frames."""
     from articad.simulation.film import film
 

@@ -65,7 +65,7 @@ _GIB = 2**30
 
 
 @dataclass(frozen=True)
-class Item:
+class Probe:
     """One line of the report: what was looked for, whether it is there, and what to do if not."""
 
     name: str
@@ -129,16 +129,16 @@ def require_libraries(load: Loader = _load_lazily) -> None:
         raise unavailable(missing)
 
 
-def examine(load: Loader = _load_lazily) -> tuple[Item, ...]:
+def examine(load: Loader = _load_lazily) -> tuple[Probe, ...]:
     """Look at everything articad needs or can use on this machine. Takes some seconds: it starts the B-rep kernel."""
     libraries = missing_libraries(load)
     return (
-        Item("articad", "ok", metadata.version("articad")),
-        Item("python", "ok", f"{platform.python_version()} at {sys.executable}"),
-        Item("machine", "ok", f"{platform.system()} {platform.machine()}, {os.cpu_count()} processors, {_disk_free()} free here"),
+        Probe("articad", "ok", metadata.version("articad")),
+        Probe("python", "ok", f"{platform.python_version()} at {sys.executable}"),
+        Probe("machine", "ok", f"{platform.system()} {platform.machine()}, {os.cpu_count()} processors, {_disk_free()} free here"),
         *_libraries(libraries),
         *_packages(),
-        _kernel() if not libraries else Item("build123d starts", "missing", "not tried: shared libraries are missing"),
+        _kernel() if not libraries else Probe("build123d starts", "missing", "not tried: shared libraries are missing"),
         _freecad(),
         _sandbox(),
         _renderer(),
@@ -147,7 +147,7 @@ def examine(load: Loader = _load_lazily) -> tuple[Item, ...]:
     )
 
 
-def examine_model(name: str, *, api_base: str | None = None) -> tuple[Item, ...]:
+def examine_model(name: str, *, api_base: str | None = None) -> tuple[Probe, ...]:
     """Say of a model whether its key is there and works, whether it keeps to forms and sees pictures, and what that costs."""
     from articad.agents.live import LiteLLM
 
@@ -155,10 +155,10 @@ def examine_model(name: str, *, api_base: str | None = None) -> tuple[Item, ...]
         return ask_once(LiteLLM(name, api_base=api_base, tries=2))
     except TransportError as error:
         (finding,) = error.findings
-        return (Item(f"model {name}", "missing", finding.message, finding.hint),)
+        return (Probe(f"model {name}", "missing", finding.message, finding.hint),)
 
 
-def ask_once(llm: LLM) -> tuple[Item, ...]:
+def ask_once(llm: LLM) -> tuple[Probe, ...]:
     """Ask a model one tiny question, with a picture and a form for the answer.
 
     Raises:
@@ -169,7 +169,7 @@ def ask_once(llm: LLM) -> tuple[Item, ...]:
     schema = {"type": "object", "properties": {"color": {"type": "string"}}, "required": ["color"], "additionalProperties": False}
     messages = (system("Answer with one JSON object."), user("Which colour is this square? One English word.", Image(_red_square())))
     reply = llm.complete(Request(role="doctor", step="doctor", messages=messages, response_schema=schema))
-    answers = Item(
+    answers = Probe(
         f"model {reply.model}", "ok", f"replies; {reply.usage.total} tokens{f', {reply.fingerprint}' if reply.fingerprint else ''}"
     )
     known = (
@@ -177,21 +177,21 @@ def ask_once(llm: LLM) -> tuple[Item, ...]:
         if reply.cost is None
         else f"${reply.cost:.6f} for this question"
     )
-    price = Item("model's price", "optional" if reply.cost is None else "ok", known)
+    price = Probe("model's price", "optional" if reply.cost is None else "ok", known)
     try:
         color = str(json.loads(reply.text)["color"])
     except (ValueError, KeyError, TypeError, RecursionError):
-        return (answers, Item("model's forms", "missing", f"not in the requested form: {reply.text[:80]!r}", "Try another model."), price)
+        return (answers, Probe("model's forms", "missing", f"not in the requested form: {reply.text[:80]!r}", "Try another model."), price)
     by_provider = getattr(llm, "takes_schemas", None)
     held = "" if by_provider is None else ", enforced by its provider" if by_provider() else ", requested in the prompt"
-    forms = Item("model's forms", "ok", f"returns the requested form{held}")
+    forms = Probe("model's forms", "ok", f"returns the requested form{held}")
     if "red" in color.lower():
-        return (answers, forms, Item("model's sight", "ok", "sees"), price)
+        return (answers, forms, Probe("model's sight", "ok", "sees"), price)
     blind = f"does not see well: it called a red square {color!r}"
-    return (answers, forms, Item("model's sight", "optional", blind, "Use --vision-model, or --no-look --no-inspection."), price)
+    return (answers, forms, Probe("model's sight", "optional", blind, "Use --vision-model, or --no-look --no-inspection."), price)
 
 
-def report(items: Iterable[Item]) -> dict[str, Any]:
+def report(items: Iterable[Probe]) -> dict[str, Any]:
     """Return the report `articad.doctor/1`."""
     rows = tuple(items)
     return {
@@ -202,84 +202,84 @@ def report(items: Iterable[Item]) -> dict[str, Any]:
     }
 
 
-def _libraries(missing: tuple[Library, ...]) -> Iterator[Item]:
+def _libraries(missing: tuple[Library, ...]) -> Iterator[Probe]:
     if sys.platform != "linux":
         return
     for library in LIBRARIES:
         if library in missing:
-            yield Item(library.soname, "missing", f"needed by {library.needed_by}", install_line([library]))
+            yield Probe(library.soname, "missing", f"needed by {library.needed_by}", install_line([library]))
         else:
-            yield Item(library.soname, "ok", f"for {library.needed_by}")
+            yield Probe(library.soname, "ok", f"for {library.needed_by}")
 
 
-def _packages() -> Iterator[Item]:
+def _packages() -> Iterator[Probe]:
     for name, purpose in _PACKAGES.items():
         try:
             version = metadata.version(name)
         except metadata.PackageNotFoundError:
-            yield Item(name, "missing", f"for {purpose}", f"pip install {name}")
+            yield Probe(name, "missing", f"for {purpose}", f"pip install {name}")
             continue
         if (name, version) in _COMPROMISED:
-            yield Item(name, "missing", f"{version} is a compromised release", f"pip install --upgrade {name}, and change your keys")
+            yield Probe(name, "missing", f"{version} is a compromised release", f"pip install --upgrade {name}, and change your keys")
         else:
-            yield Item(name, "ok", f"{version}, for {purpose}")
+            yield Probe(name, "ok", f"{version}, for {purpose}")
 
 
-def _kernel() -> Item:
+def _kernel() -> Probe:
     """Start the B-rep kernel in a process of its own, where a crash is only a line of the report."""
     name = "build123d starts"
     ended = launcher.run([], module="articad.kernels.trial_start", limits=launcher.Limits(seconds=_KERNEL_SECONDS))
     if ended.late:
-        return Item(name, "missing", f"no answer in {_KERNEL_SECONDS} s", "Check the machine's load and disk.")
+        return Probe(name, "missing", f"no answer in {_KERNEL_SECONDS} s", "Check the machine's load and disk.")
     if ended.code == 0:
-        return Item(name, "ok", "a box has the correct volume; Pinocchio imports beside it")
-    return Item(name, "missing", ended.last_line, "Run ./scripts/setup, or pip install --force-reinstall build123d pin")
+        return Probe(name, "ok", "a box has the correct volume; Pinocchio imports beside it")
+    return Probe(name, "missing", ended.last_line, "Run ./scripts/setup, or pip install --force-reinstall build123d pin")
 
 
-def _freecad() -> Item:
+def _freecad() -> Probe:
     from articad.kernels import freecad_install
 
     try:
         freecad = freecad_install.find()
     except KernelUnavailableError as error:
-        return Item("FreeCAD", "optional", f"{error.findings[0].message} Only needed for FreeCAD's own feature trees.", error.how_to_get)
-    return Item("FreeCAD", "ok", f"{freecad.version_text} at {freecad.where}")
+        return Probe("FreeCAD", "optional", f"{error.findings[0].message} Only needed for FreeCAD's own feature trees.", error.how_to_get)
+    return Probe("FreeCAD", "ok", f"{freecad.version_text} at {freecad.where}")
 
 
-def _sandbox() -> Item:
+def _sandbox() -> Probe:
     from articad.kernels import sandbox
 
     level, problems = sandbox.level(), "; ".join(sandbox.missing())
     if level == sandbox.WEAK:
         remedy = "apt-get install --no-install-recommends bubblewrap, or a kernel with Landlock; else --sandbox weak"
-        return Item("sandbox", "missing", f"part scripts are refused here: {problems}", remedy)
-    return Item("sandbox", "ok", f"{level} ({problems})" if problems else level)
+        return Probe("sandbox", "missing", f"part scripts are refused here: {problems}", remedy)
+    return Probe("sandbox", "ok", f"{level} ({problems})" if problems else level)
 
 
-def _renderer() -> Item:
+def _renderer() -> Probe:
     if not _installed("embreex"):
-        return Item("renderer", "missing", "embreex, which casts the rays, is not installed", "pip install embreex")
+        return Probe("renderer", "missing", "embreex, which casts the rays, is not installed", "pip install embreex")
     nicer = "VTK is installed too" if _installed("pyvista") else "pip install 'articad[render]' for the VTK renderer"
-    return Item("renderer", "ok", f"articad's own, on embreex {metadata.version('embreex')}; {nicer}")
+    return Probe("renderer", "ok", f"articad's own, on embreex {metadata.version('embreex')}; {nicer}")
 
 
 def _installed(name: str) -> bool:
     return importlib.util.find_spec(name) is not None
 
 
-def _cache() -> Item:
+def _cache() -> Probe:
     folder = Path(os.environ.get("ARTICAD_CACHE") or Path.home() / ".cache" / "articad")
     existing = next(path for path in (folder, *folder.absolute().parents) if path.exists())
     if os.access(existing, os.W_OK):
-        return Item("cache", "ok", str(folder))
-    return Item("cache", "missing", f"{folder} cannot be written", "Set ARTICAD_CACHE to a folder that you can write to.")
+        return Probe("cache", "ok", str(folder))
+    return Probe("cache", "missing", f"{folder} cannot be written", "Set ARTICAD_CACHE to a folder that you can write to.")
 
 
-def _keys() -> Item:
+def _keys() -> Probe:
     present = [name for name in _KEYS if os.environ.get(name)]
     if present:
-        return Item("model keys", "ok", ", ".join(f"{name} is set" for name in present))
-    return Item(
+        return Probe("model keys", "ok", ", ".join(f"{name} is set" for name in present))
+    return Probe(
         "model keys", "optional", "none set; only generate and edit need one", "Set your provider's variable, such as GEMINI_API_KEY."
     )
 

@@ -134,7 +134,7 @@ def _resume(options: argparse.Namespace, terminal: Terminal) -> Report:
     asked = Run.view(options.run).request.options
     if asked.get("task") == "build":
         message = f"{options.run} is a run of `articad build`, which asks no model: there are no calls to go on with."
-        raise RunError.told(options.run, message, f"Build it again: articad build PLAN_DIR --out {options.run}; built parts are kept.")
+        raise RunError.at(options.run, message, f"Build it again: articad build PLAN_DIR --out {options.run}; built parts are kept.")
     options.look, options.inspection = bool(asked.get("look")), bool(asked.get("inspection"))
     budget, _ = asked_model(options, terminal)
     with terminal.progress("Going on", note=lambda: _spent(budget)) as tell:

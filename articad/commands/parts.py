@@ -48,7 +48,7 @@ def _part(options: argparse.Namespace, terminal: Terminal) -> Report:
     try:
         script = read_file(file, SCRIPT_BYTES, root=file.parent.parent)
     except OSError as error:
-        raise ReadError.told(file, f"{file} cannot be read: {error.strerror}.", "Write the script there.") from None
+        raise ReadError.at(file, f"{file} cannot be read: {error.strerror}.", "Write the script there.") from None
     kernel = kernel_named(name, sandbox=sandbox_level(options))
     with terminal.progress("Building", total=1) as tell:
         made = build_source(resolved, options.name, script, kernel=kernel, cache=build_cache(options), deflection=DEFLECTION_MM)

@@ -59,7 +59,7 @@ def _verify_certificate(options: argparse.Namespace, terminal: Terminal) -> Repo
     file = Path(options.file)
     if not file.is_file():
         message = f"There is no file {file}."
-        raise ReadError.told(str(file), message, "Name the certificate.json that `articad certify RUN` wrote into the run.", said=message)
+        raise ReadError.at(str(file), message, "Name the certificate.json that `articad certify RUN` wrote into the run.", said=message)
     faults = verify_file(file, Path(options.meshes) if options.meshes else file.parent / "certificate")
     stated = [] if faults else _stated(json.loads(read_file(file, RECORD_BYTES)))
     for line in [*faults, *stated]:

@@ -105,7 +105,7 @@ def _text(path: Path) -> str:
         return read_file(path, RECORD_BYTES).decode()
     except (OSError, UnicodeDecodeError) as error:
         reason = error.strerror if isinstance(error, OSError) else "it is not UTF-8"
-        raise ReadError.told(path, f"{path} cannot be read: {reason}.", "Name a file that `articad memory export` wrote.") from None
+        raise ReadError.at(path, f"{path} cannot be read: {reason}.", "Name a file that `articad memory export` wrote.") from None
 
 
 def _import(store: ExperienceStore, options: argparse.Namespace, terminal: Terminal) -> Report:

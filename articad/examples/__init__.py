@@ -23,7 +23,7 @@ def folder(name: str) -> Path:
     """
     if name not in names():
         message = f"There is no example {name!r}.{did_you_mean(name, names())} There are {', '.join(names())}."
-        raise ReadError.told(name, message, "Name one of these.", said=message)
+        raise ReadError.at(name, message, "Name one of these.", said=message)
     return _root() / name
 
 

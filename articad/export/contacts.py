@@ -19,7 +19,7 @@ from articad.geometry.mesh import TriMesh
 from articad.geometry.part import Shape
 from articad.interference.boxes import meeting_boxes
 from articad.interference.scene import Scene
-from articad.interference.sweep import Sweep
+from articad.interference.sweep import MotionSampler
 
 if TYPE_CHECKING:
     from articad.kinematics.mechanism import Mechanism
@@ -37,7 +37,7 @@ def poses_in_motion(mechanism: Mechanism) -> FloatArray:
     These are poses of a sweep: endless drivers move until all that follows is back, and what a loop or a limit of another joint keeps
     from being reached is left out.
     """
-    sweep = Sweep(Scene.of({}, mechanism.joints), mechanism)
+    sweep = MotionSampler(Scene.of({}, mechanism.joints), mechanism)
     found = [mechanism.poses(mechanism.rest)[None].matrix]
     for freedom in sweep.ranges():
         with contextlib.suppress(KinematicsError):  # a loop that is open at rest has its rest pose

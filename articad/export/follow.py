@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from articad.export.lowering import Follows, Freedom, LoweredModel
+from articad.export.lowering import AxisMotion, Follows, LoweredModel
 
 
 def followers(model: LoweredModel, leaders: Iterable[str]) -> dict[str, Follows]:
@@ -14,7 +14,7 @@ def followers(model: LoweredModel, leaders: Iterable[str]) -> dict[str, Follows]
         model: Freedoms and the relations between them.
         leaders: Columns that are asked for as leaders, best first; else the first freedom of the tree leads.
     """
-    freedoms: dict[str, Freedom] = {freedom.name: freedom for joint in model.joints for freedom in joint.freedoms}
+    freedoms: dict[str, AxisMotion] = {freedom.name: freedom for joint in model.joints for freedom in joint.freedoms}
     relations = [(name, follows) for _, name, follows in model.couplings]
     relations += [(freedom.name, freedom.follows) for freedom in freedoms.values() if freedom.follows is not None]
     neighbours: dict[str, list[Follows]] = {}

@@ -16,13 +16,13 @@ from typing import TYPE_CHECKING, Any
 
 from articad.errors import ExportError, KernelUnavailableError
 from articad.export.bundle import Bundle
-from articad.export.freecad_file import Look, normalised
+from articad.export.freecad_file import Appearance, normalised
 from articad.export.freecad_job import Job
 from articad.export.freecad_native import document
 from articad.export.losses import refuse
 from articad.findings import Finding, Findings
 from articad.kernels import freecad_install
-from articad.kernels.freecad_install import FreeCAD, Limits
+from articad.kernels.freecad_install import FreeCAD, FreeCADLimits
 from articad.processes import scratch
 
 if TYPE_CHECKING:
@@ -59,16 +59,16 @@ def write_freecad(assembly: Assembly, *, strict: bool = False, freecad: FreeCAD 
     with scratch.folder("freecad") as name:
         folder = Path(name)
         job = Job(assembly, folder)
-        (folder / "job.json").write_text(json.dumps(job.told()))
+        (folder / "job.json").write_text(json.dumps(job.to_json()))
         if strict:
             refuse(job.losses)
         seconds = _SECONDS + _SECONDS_A_PART * len(assembly.parts)
-        ended = freecad.run(PROGRAM, folder=folder, limits=Limits(seconds=seconds))
+        ended = freecad.run(PROGRAM, folder=folder, limits=FreeCADLimits(seconds=seconds))
         if not ended.ok or not (folder / "report.json").is_file():
             raise _failed(ended.said, late=ended.late)
         report = json.loads((folder / "report.json").read_text())
         content = (folder / "assembly.FCStd").read_bytes()
-    look = Look(report["colors"], tuple(report["hidden"]), tuple(report["joints"]), report["grounded"], tuple(report["tips"]))
+    look = Appearance(report["colors"], tuple(report["hidden"]), tuple(report["joints"]), report["grounded"], tuple(report["tips"]))
     return Bundle({f"{job.name}.FCStd": normalised(content, look)}, job.losses, _opinion(report))
 
 
@@ -87,7 +87,7 @@ def write_freecad_alone(assembly: Assembly, *, strict: bool = False) -> Bundle:
     """
     with scratch.folder("freecad") as name:
         job = Job(assembly, Path(name), features=False)
-        content, look = document(job.told(), Path(name), job.names)
+        content, look = document(job.to_json(), Path(name), job.names)
     if strict:
         refuse(job.losses)
     unseen = Finding(

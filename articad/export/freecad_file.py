@@ -33,7 +33,7 @@ _GROUPS = ("App::Part", "App::Link", "Assembly::AssemblyObject", "Assembly::Join
 
 
 @dataclass(frozen=True)
-class Look:
+class Appearance:
     """What an opened document shows.
 
     Attributes:
@@ -51,7 +51,7 @@ class Look:
     tips: Sequence[str] = ()
 
 
-def normalised(content: bytes, look: Look | None = None) -> bytes:
+def normalised(content: bytes, look: Appearance | None = None) -> bytes:
     """Return a FreeCAD file with fixed dates, Uids and order, and with what it shows when opened.
 
     Args:
@@ -70,13 +70,13 @@ def normalised(content: bytes, look: Look | None = None) -> bytes:
     return packed(files)
 
 
-def _is_shown(name: str, kind: str, look: Look) -> bool:
+def _is_shown(name: str, kind: str, look: Appearance) -> bool:
     if name in look.hidden:
         return False
     return kind in _SHOWN or kind in _GROUPS or name in look.joints or name == look.grounded or name in look.tips
 
 
-def _show(root: etree._Element, types: Mapping[str, str], look: Look) -> None:
+def _show(root: etree._Element, types: Mapping[str, str], look: Appearance) -> None:
     """Set the Visibility that objects keep besides their view providers."""
     for item in root.iterfind("ObjectData/Object"):
         name = item.get("name")
@@ -84,7 +84,7 @@ def _show(root: etree._Element, types: Mapping[str, str], look: Look) -> None:
             flag.set("value", "true" if _is_shown(name, types.get(name, ""), look) else "false")
 
 
-def _gui(types: Mapping[str, str], look: Look) -> bytes:
+def _gui(types: Mapping[str, str], look: Appearance) -> bytes:
     providers = [_provider(name, kind, look) for name, kind in types.items()]
     lines = [
         "<?xml version='1.0' encoding='utf-8'?>",
@@ -100,7 +100,7 @@ def _gui(types: Mapping[str, str], look: Look) -> bytes:
     return "\n".join(lines).encode() + b"\n"
 
 
-def _provider(name: str, kind: str, look: Look) -> str:
+def _provider(name: str, kind: str, look: Appearance) -> str:
     shown = "true" if _is_shown(name, kind, look) else "false"
     properties = [f'<Property name="Visibility" type="App::PropertyBool"><Bool value="{shown}"/></Property>']
     if name in look.colors:

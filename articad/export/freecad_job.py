@@ -83,7 +83,7 @@ class Job:
         }
         self.followed = Followed(assembly.resolved)
 
-    def told(self) -> Json:
+    def to_json(self) -> Json:
         """Return the document's parameters, parts and joints, as JSON."""
         poses = self.assembly.at()
         parts = [self._part(name, part, poses[name]) for name, part in self.assembly.parts.items()]

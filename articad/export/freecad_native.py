@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from articad.connectors.se3 import SE3
 from articad.errors import ExportError
-from articad.export.freecad_file import Look
+from articad.export.freecad_file import Appearance
 from articad.export.names import Names
 from articad.findings import Finding
 from articad.kernels.freecad_file import packed
@@ -58,7 +58,7 @@ Json = dict[str, Any]
 FloatArray = NDArray[np.float64]
 
 
-def document(job: Json, folder: Path, names: Names) -> tuple[bytes, Look]:
+def document(job: Json, folder: Path, names: Names) -> tuple[bytes, Appearance]:
     """Return a document, and what is seen of it when it is opened.
 
     Args:
@@ -71,7 +71,7 @@ def document(job: Json, folder: Path, names: Names) -> tuple[bytes, Look]:
     """
     writer = _Writer(job, folder, names)
     writer.write()
-    look = Look(writer.colors, tuple(writer.hidden), tuple(joint["object"] for joint in job["joints"]), "GroundedJoint")
+    look = Appearance(writer.colors, tuple(writer.hidden), tuple(joint["object"] for joint in job["joints"]), "GroundedJoint")
     return packed({"Document.xml": writer.xml()} | writer.files), look
 
 

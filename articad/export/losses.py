@@ -24,7 +24,7 @@ _SHAPE = re.compile(r"(parts\..*)\.(?:visuals|collisions)\.\d+$")  # where somet
 MECHANISM_FORMATS: tuple[Format, ...] = ("urdf", "mjcf", "sdf", "usd")  # hold joints; the others hold shapes
 
 
-class Row(NamedTuple):
+class LossRow(NamedTuple):
     """What one feature becomes in one format.
 
     Attributes:
@@ -52,243 +52,250 @@ class Feature(NamedTuple):
     detail: str = ""
 
 
-TABLE: dict[str, dict[Format, Row]] = {
+TABLE: dict[str, dict[Format, LossRow]] = {
     # --- joints
     "fixed": {
-        "urdf": Row("a fixed joint"),
-        "mjcf": Row("a body without joint inside its parent"),
-        "sdf": Row("a fixed joint"),
-        "usd": Row("a fixed joint"),
+        "urdf": LossRow("a fixed joint"),
+        "mjcf": LossRow("a body without joint inside its parent"),
+        "sdf": LossRow("a fixed joint"),
+        "usd": LossRow("a fixed joint"),
     },
-    "revolute": {"urdf": Row("a revolute joint"), "mjcf": Row("a hinge"), "sdf": Row("a revolute joint"), "usd": Row("a revolute joint")},
+    "revolute": {
+        "urdf": LossRow("a revolute joint"),
+        "mjcf": LossRow("a hinge"),
+        "sdf": LossRow("a revolute joint"),
+        "usd": LossRow("a revolute joint"),
+    },
     "revolute.endless": {
-        "urdf": Row("a continuous joint"),
-        "mjcf": Row("a hinge without range"),
-        "sdf": Row("a continuous joint"),
-        "usd": Row("a revolute joint without limits"),
+        "urdf": LossRow("a continuous joint"),
+        "mjcf": LossRow("a hinge without range"),
+        "sdf": LossRow("a continuous joint"),
+        "usd": LossRow("a revolute joint without limits"),
     },
     "slider": {
-        "urdf": Row("a prismatic joint"),
-        "mjcf": Row("a slide joint"),
-        "sdf": Row("a prismatic joint"),
-        "usd": Row("a prismatic joint"),
+        "urdf": LossRow("a prismatic joint"),
+        "mjcf": LossRow("a slide joint"),
+        "sdf": LossRow("a prismatic joint"),
+        "usd": LossRow("a prismatic joint"),
     },
     "cylindrical": {
-        "urdf": Row("a prismatic joint, a carrier link and a revolute joint"),
-        "mjcf": Row("a slide and a hinge on one body"),
-        "sdf": Row("a prismatic joint, a carrier link and a revolute joint"),
-        "usd": Row("a generic joint that slides along and turns about z"),
+        "urdf": LossRow("a prismatic joint, a carrier link and a revolute joint"),
+        "mjcf": LossRow("a slide and a hinge on one body"),
+        "sdf": LossRow("a prismatic joint, a carrier link and a revolute joint"),
+        "usd": LossRow("a generic joint that slides along and turns about z"),
     },
     "ball": {
-        "urdf": Row(
+        "urdf": LossRow(
             "three revolute joints about x, y, z with two carrier links",
             "the cone becomes a box about x and y that contains it, and the twist's range is widened to contain the declared one",
             refused=True,
         ),
-        "mjcf": Row("a ball joint", "cone and twist become one limit on the total angle, which contains them", refused=True),
-        "sdf": Row("a ball joint", "cone and twist: a ball of SDFormat has no limits", refused=True),
-        "usd": Row("a spherical joint with a cone", "the range of its twist"),
+        "mjcf": LossRow("a ball joint", "cone and twist become one limit on the total angle, which contains them", refused=True),
+        "sdf": LossRow("a ball joint", "cone and twist: a ball of SDFormat has no limits", refused=True),
+        "usd": LossRow("a spherical joint with a cone", "the range of its twist"),
     },
     "ball.free": {
-        "urdf": Row("three revolute joints about x, y, z with two carrier links"),
-        "mjcf": Row("a ball joint"),
-        "sdf": Row("a ball joint"),
-        "usd": Row("a spherical joint"),
+        "urdf": LossRow("three revolute joints about x, y, z with two carrier links"),
+        "mjcf": LossRow("a ball joint"),
+        "sdf": LossRow("a ball joint"),
+        "usd": LossRow("a spherical joint"),
     },
     "ball.wide": {
-        "urdf": Row(
+        "urdf": LossRow(
             "three revolute joints about x, y, z with two carrier links",
             "the cone reaches 85° or more: where the second angle is ±90° the first and the third axis are the same (gimbal lock)",
             refused=True,
         ),
-        "mjcf": Row("a ball joint"),
-        "sdf": Row("a ball joint", "cone and twist: a ball of SDFormat has no limits", refused=True),
-        "usd": Row("a spherical joint with a cone", "the range of its twist"),
+        "mjcf": LossRow("a ball joint"),
+        "sdf": LossRow("a ball joint", "cone and twist: a ball of SDFormat has no limits", refused=True),
+        "usd": LossRow("a spherical joint with a cone", "the range of its twist"),
     },
     "screw": {
-        "urdf": Row(
+        "urdf": LossRow(
             "a prismatic joint that mimics a revolute joint, with a carrier link",
             "in readers that ignore <mimic>, the two move independently",
         ),
-        "mjcf": Row("a slide and a hinge on one body, tied by an equality of joints"),
-        "sdf": Row("a screw joint"),
-        "usd": Row("a generic joint that slides along and turns about z", "the lead: the two move independently", refused=True),
+        "mjcf": LossRow("a slide and a hinge on one body, tied by an equality of joints"),
+        "sdf": LossRow("a screw joint"),
+        "usd": LossRow("a generic joint that slides along and turns about z", "the lead: the two move independently", refused=True),
     },
     "planar": {
-        "urdf": Row("two prismatic joints and a revolute joint, with two carrier links"),
-        "mjcf": Row("two slides and a hinge on one body"),
-        "sdf": Row("two prismatic joints and a revolute joint, with two carrier links"),
-        "usd": Row("a generic joint that slides along x and y and turns about z"),
+        "urdf": LossRow("two prismatic joints and a revolute joint, with two carrier links"),
+        "mjcf": LossRow("two slides and a hinge on one body"),
+        "sdf": LossRow("two prismatic joints and a revolute joint, with two carrier links"),
+        "usd": LossRow("a generic joint that slides along x and y and turns about z"),
     },
     "universal": {
-        "urdf": Row("two revolute joints with a carrier link"),
-        "mjcf": Row("two hinges on one body"),
-        "sdf": Row("a universal joint"),
-        "usd": Row("a generic joint that turns about x and y"),
+        "urdf": LossRow("two revolute joints with a carrier link"),
+        "mjcf": LossRow("two hinges on one body"),
+        "sdf": LossRow("a universal joint"),
+        "usd": LossRow("a generic joint that turns about x and y"),
     },
     "free": {
-        "urdf": Row("a floating joint"),
-        "mjcf": Row("a freejoint on a body of the world"),
-        "sdf": Row("a link without a joint, posed at rest"),
-        "usd": Row("a body without a joint, the root of its own articulation"),
+        "urdf": LossRow("a floating joint"),
+        "mjcf": LossRow("a freejoint on a body of the world"),
+        "sdf": LossRow("a link without a joint, posed at rest"),
+        "usd": LossRow("a body without a joint, the root of its own articulation"),
     },
     "free.nested": {
-        "urdf": Row("a floating joint"),
-        "mjcf": Row("a freejoint on a body of the world", "the part from which its values are measured: they are measured from the world"),
-        "sdf": Row("a link without a joint, posed at rest"),
-        "usd": Row("a body without a joint, the root of its own articulation"),
+        "urdf": LossRow("a floating joint"),
+        "mjcf": LossRow(
+            "a freejoint on a body of the world", "the part from which its values are measured: they are measured from the world"
+        ),
+        "sdf": LossRow("a link without a joint, posed at rest"),
+        "usd": LossRow("a body without a joint, the root of its own articulation"),
     },
     "free.rest": {
-        "urdf": Row("a floating joint with zero where its frames coincide", "the rest value"),
-        "mjcf": Row("the key at rest"),
-        "sdf": Row("a link without a joint, posed at rest"),
-        "usd": Row("a body without a joint, posed at rest"),
+        "urdf": LossRow("a floating joint with zero where its frames coincide", "the rest value"),
+        "mjcf": LossRow("the key at rest"),
+        "sdf": LossRow("a link without a joint, posed at rest"),
+        "usd": LossRow("a body without a joint, posed at rest"),
     },
-    "loop.free": {name: Row("nothing: it constrains nothing that other joints do not constrain") for name in MECHANISM_FORMATS},
+    "loop.free": {name: LossRow("nothing: it constrains nothing that other joints do not constrain") for name in MECHANISM_FORMATS},
     "limits.open": {
-        "urdf": Row("a far limit, 1e6 rad or 1000 m away", "the joint is endless in that direction"),
-        "mjcf": Row("a far limit, 1e6 rad or 1000 m away", "the joint is endless in that direction"),
-        "sdf": Row("a limit in one direction only"),
-        "usd": Row("one infinite limit"),
+        "urdf": LossRow("a far limit, 1e6 rad or 1000 m away", "the joint is endless in that direction"),
+        "mjcf": LossRow("a far limit, 1e6 rad or 1000 m away", "the joint is endless in that direction"),
+        "sdf": LossRow("a limit in one direction only"),
+        "usd": LossRow("one infinite limit"),
     },
     "slide.endless": {
-        "urdf": Row("limits of ±1000 m", "the slide is endless"),
-        "mjcf": Row("a slide joint without range"),
-        "sdf": Row("a prismatic joint without limits"),
-        "usd": Row("infinite limits"),
+        "urdf": LossRow("limits of ±1000 m", "the slide is endless"),
+        "mjcf": LossRow("a slide joint without range"),
+        "sdf": LossRow("a prismatic joint without limits"),
+        "usd": LossRow("infinite limits"),
     },
     "velocity": {
-        "urdf": Row("the velocity of <limit>"),
-        "mjcf": Row("metadata", "MJCF has no limit on a joint's velocity"),
-        "sdf": Row("the velocity of <limit>"),
-        "usd": Row("nothing", "UsdPhysics has no limit on a joint's velocity"),
+        "urdf": LossRow("the velocity of <limit>"),
+        "mjcf": LossRow("metadata", "MJCF has no limit on a joint's velocity"),
+        "sdf": LossRow("the velocity of <limit>"),
+        "usd": LossRow("nothing", "UsdPhysics has no limit on a joint's velocity"),
     },
     "joint.damping": {
-        "urdf": Row("the damping of <dynamics>"),
-        "mjcf": Row("the damping of the joint"),
-        "sdf": Row("the damping of <dynamics>"),
-        "usd": Row("nothing", "damping: UsdPhysics has drives only"),
+        "urdf": LossRow("the damping of <dynamics>"),
+        "mjcf": LossRow("the damping of the joint"),
+        "sdf": LossRow("the damping of <dynamics>"),
+        "usd": LossRow("nothing", "damping: UsdPhysics has drives only"),
     },
     "joint.friction": {
-        "urdf": Row("the friction of <dynamics>"),
-        "mjcf": Row("the frictionloss of the joint"),
-        "sdf": Row("the friction of <dynamics>"),
-        "usd": Row("nothing", "friction in joints"),
+        "urdf": LossRow("the friction of <dynamics>"),
+        "mjcf": LossRow("the frictionloss of the joint"),
+        "sdf": LossRow("the friction of <dynamics>"),
+        "usd": LossRow("nothing", "friction in joints"),
     },
     "effort.assumed": {
-        name: Row("effort and velocity that carry the load", "the fact that the file states none; this format requires them")
+        name: LossRow("effort and velocity that carry the load", "the fact that the file states none; this format requires them")
         for name in MECHANISM_FORMATS
     },
     "rest.assumed": {
-        "urdf": Row("metadata"),
-        "mjcf": Row("the key home, at rest", "that the file states no such pose: zero is outside of its limits"),
-        "sdf": Row("metadata"),
-        "usd": Row("bodies that are posed at rest"),
+        "urdf": LossRow("metadata"),
+        "mjcf": LossRow("the key home, at rest", "that the file states no such pose: zero is outside of its limits"),
+        "sdf": LossRow("metadata"),
+        "usd": LossRow("bodies that are posed at rest"),
     },
     "chain.carriers": {
-        "urdf": Row("a chain of joints over carrier links", "that it is one joint; its carriers take a small share of the part's mass"),
-        "mjcf": Row("joints of one body"),
-        "sdf": Row("a joint, or a chain of joints"),
-        "usd": Row("a joint"),
+        "urdf": LossRow("a chain of joints over carrier links", "that it is one joint; its carriers take a small share of the part's mass"),
+        "mjcf": LossRow("joints of one body"),
+        "sdf": LossRow("a joint, or a chain of joints"),
+        "usd": LossRow("a joint"),
     },
     "contact.joined": {
-        "urdf": Row("collision meshes"),
-        "mjcf": Row("an excluded pair", "contacts between two parts that a joint connects: MuJoCo lets a body touch what stands still"),
-        "sdf": Row("collision meshes"),
-        "usd": Row("shapes to collide with"),
+        "urdf": LossRow("collision meshes"),
+        "mjcf": LossRow("an excluded pair", "contacts between two parts that a joint connects: MuJoCo lets a body touch what stands still"),
+        "sdf": LossRow("collision meshes"),
+        "usd": LossRow("shapes to collide with"),
     },
     "effort.zero": {
-        "urdf": Row("an effort of zero"),
-        "mjcf": Row("no actuatorfrcrange", "the fact that no force may drive the joint: MuJoCo reads an empty range as unlimited"),
-        "sdf": Row("an effort of zero"),
-        "usd": Row("nothing", "efforts"),
+        "urdf": LossRow("an effort of zero"),
+        "mjcf": LossRow("no actuatorfrcrange", "the fact that no force may drive the joint: MuJoCo reads an empty range as unlimited"),
+        "sdf": LossRow("an effort of zero"),
+        "usd": LossRow("nothing", "efforts"),
     },
     # --- loops and couplings
     "loop": {
-        "urdf": Row("metadata", "URDF holds trees only: this joint is left out and its loop is open", refused=True),
-        "mjcf": Row("equality constraints between sites"),
-        "sdf": Row("a joint like any other"),
-        "usd": Row("a joint that is excluded from the articulation"),
+        "urdf": LossRow("metadata", "URDF holds trees only: this joint is left out and its loop is open", refused=True),
+        "mjcf": LossRow("equality constraints between sites"),
+        "sdf": LossRow("a joint like any other"),
+        "usd": LossRow("a joint that is excluded from the articulation"),
     },
     "loop.points": {
-        "urdf": Row("points that two links share", "only the chosen reader closes the loop, and the closing joint has no limits there"),
-        "mjcf": Row("equality constraints between sites"),
-        "sdf": Row("a joint like any other"),
-        "usd": Row("a joint that is excluded from the articulation"),
+        "urdf": LossRow("points that two links share", "only the chosen reader closes the loop, and the closing joint has no limits there"),
+        "mjcf": LossRow("equality constraints between sites"),
+        "sdf": LossRow("a joint like any other"),
+        "usd": LossRow("a joint that is excluded from the articulation"),
     },
     "loop.mimic": {
-        "urdf": Row("<mimic> of the driver", "readers that ignore <mimic> open the loop"),
-        "mjcf": Row("equality constraints between sites"),
-        "sdf": Row("a joint like any other"),
-        "usd": Row("a joint that is excluded from the articulation"),
+        "urdf": LossRow("<mimic> of the driver", "readers that ignore <mimic> open the loop"),
+        "mjcf": LossRow("equality constraints between sites"),
+        "sdf": LossRow("a joint like any other"),
+        "usd": LossRow("a joint that is excluded from the articulation"),
     },
     "loop.ball": {
-        "urdf": Row("metadata"),
-        "mjcf": Row("an equality of two points", "the cone and twist of a ball that closes a loop", refused=True),
-        "sdf": Row("a ball joint", "cone and twist: a ball of SDFormat has no limits", refused=True),
-        "usd": Row("a spherical joint with a cone", "the range of its twist"),
+        "urdf": LossRow("metadata"),
+        "mjcf": LossRow("an equality of two points", "the cone and twist of a ball that closes a loop", refused=True),
+        "sdf": LossRow("a ball joint", "cone and twist: a ball of SDFormat has no limits", refused=True),
+        "usd": LossRow("a spherical joint with a cone", "the range of its twist"),
     },
     "coupling": {
-        "urdf": Row("<mimic>", "readers that ignore <mimic> let the joints move on their own"),
-        "mjcf": Row("an equality of joints"),
-        "sdf": Row("<mimic>", "readers that ignore <mimic> let the joints move on their own"),
-        "usd": Row("nothing", "UsdPhysics has no couplings: the joints move independently", refused=True),
+        "urdf": LossRow("<mimic>", "readers that ignore <mimic> let the joints move on their own"),
+        "mjcf": LossRow("an equality of joints"),
+        "sdf": LossRow("<mimic>", "readers that ignore <mimic> let the joints move on their own"),
+        "usd": LossRow("nothing", "UsdPhysics has no couplings: the joints move independently", refused=True),
     },
     "coupling.loop": {
-        "urdf": Row(
+        "urdf": LossRow(
             "metadata", "the coupling: it names a joint that closes a loop, or couples joints that are already coupled", refused=True
         ),
-        "mjcf": Row("an equality of joints"),
-        "sdf": Row(
+        "mjcf": LossRow("an equality of joints"),
+        "sdf": LossRow(
             "metadata", "the coupling: it names a joint that closes a loop, or couples joints that are already coupled", refused=True
         ),
-        "usd": Row("nothing", "UsdPhysics has no couplings: the joints move independently", refused=True),
+        "usd": LossRow("nothing", "UsdPhysics has no couplings: the joints move independently", refused=True),
     },
     "loop.rest": {
-        "urdf": Row("the tree with all values at zero"),
-        "mjcf": Row("a key at rest"),
-        "sdf": Row("a model posed at rest", "values are measured from rest, where the loops are closed, not from zero"),
-        "usd": Row("bodies posed at rest"),
+        "urdf": LossRow("the tree with all values at zero"),
+        "mjcf": LossRow("a key at rest"),
+        "sdf": LossRow("a model posed at rest", "values are measured from rest, where the loops are closed, not from zero"),
+        "usd": LossRow("bodies posed at rest"),
     },
     "loop.chain": {
-        "urdf": Row("metadata"),
-        "mjcf": Row("equality constraints between sites"),
-        "sdf": Row("metadata", "SDFormat has no joint of this kind, and a chain cannot close a loop: it is left out", refused=True),
-        "usd": Row("a generic joint that is excluded from the articulation"),
+        "urdf": LossRow("metadata"),
+        "mjcf": LossRow("equality constraints between sites"),
+        "sdf": LossRow("metadata", "SDFormat has no joint of this kind, and a chain cannot close a loop: it is left out", refused=True),
+        "usd": LossRow("a generic joint that is excluded from the articulation"),
     },
     # --- what formats of shapes make of motion and mass
     "motion": {
-        "glb": Row("an animation of every driver", "joints and their limits: glTF has none", refused=True),
-        "3mf": Row("parts one by one", "joints and limits: 3MF has none", refused=True),
-        "step": Row("parts placed as they rest", "joints and limits: STEP readers know none", refused=True),
+        "glb": LossRow("an animation of every driver", "joints and their limits: glTF has none", refused=True),
+        "3mf": LossRow("parts one by one", "joints and limits: 3MF has none", refused=True),
+        "step": LossRow("parts placed as they rest", "joints and limits: STEP readers know none", refused=True),
     },
     "mass": {
-        "glb": Row("nothing", "mass and inertia: glTF has none"),
-        "3mf": Row("nothing", "mass and inertia: 3MF has none"),
-        "step": Row("a solid without density", "mass and inertia"),
+        "glb": LossRow("nothing", "mass and inertia: glTF has none"),
+        "3mf": LossRow("nothing", "mass and inertia: 3MF has none"),
+        "step": LossRow("a solid without density", "mass and inertia"),
     },
     "brep.missing": {
-        "step": Row("a plane face for each triangle of its mesh", "smooth faces: the part has a mesh and no B-rep"),
+        "step": LossRow("a plane face for each triangle of its mesh", "smooth faces: the part has a mesh and no B-rep"),
     },
     # --- parts
     "link.frame": {
-        name: Row("a frame on the joint", "the original frame of the link: the joint does not pass through its origin")
+        name: LossRow("a frame on the joint", "the original frame of the link: the joint does not pass through its origin")
         for name in MECHANISM_FORMATS
     },
     "shape.primitive": {
-        "urdf": Row("a mesh", "the primitive: URDF 1.0 does not have it"),
-        "mjcf": Row("a geom of that kind"),
-        "sdf": Row("a mesh", "the primitive type"),
-        "usd": Row("a mesh", "the primitive type"),
+        "urdf": LossRow("a mesh", "the primitive: URDF 1.0 does not have it"),
+        "mjcf": LossRow("a geom of that kind"),
+        "sdf": LossRow("a mesh", "the primitive type"),
+        "usd": LossRow("a mesh", "the primitive type"),
     },
     "mass.missing": {
-        "urdf": Row("1e-4 kg", "the mass of a moving part is not known", refused=True),
-        "mjcf": Row("1e-4 kg", "the mass of a moving part is not known", refused=True),
-        "sdf": Row("1e-4 kg", "the mass of a moving part is not known", refused=True),
-        "usd": Row("1e-4 kg", "the mass of a moving part is not known", refused=True),
+        "urdf": LossRow("1e-4 kg", "the mass of a moving part is not known", refused=True),
+        "mjcf": LossRow("1e-4 kg", "the mass of a moving part is not known", refused=True),
+        "sdf": LossRow("1e-4 kg", "the mass of a moving part is not known", refused=True),
+        "usd": LossRow("1e-4 kg", "the mass of a moving part is not known", refused=True),
     },
     "mass.impossible": {
-        name: Row(
+        name: LossRow(
             "the nearest inertia that is physically possible",
             "the inertia as given, which is physically impossible and which engines refuse",
             refused=True,
@@ -296,115 +303,116 @@ TABLE: dict[str, dict[Format, Row]] = {
         for name in MECHANISM_FORMATS
     },
     "shape.flat": {
-        name: Row("a collision hull 1 mm thick", "a surface without thickness, with which engines cannot collide")
+        name: LossRow("a collision hull 1 mm thick", "a surface without thickness, with which engines cannot collide")
         for name in MECHANISM_FORMATS
     },
     "shape.missing": {
-        "urdf": Row("a link without shapes"),
-        "mjcf": Row("a body without geoms"),
-        "sdf": Row("a link without shapes"),
-        "usd": Row("a body without meshes"),
-        "step": Row("nothing", "its position and name: the part has no shape"),
+        "urdf": LossRow("a link without shapes"),
+        "mjcf": LossRow("a body without geoms"),
+        "sdf": LossRow("a link without shapes"),
+        "usd": LossRow("a body without meshes"),
+        "step": LossRow("nothing", "its position and name: the part has no shape"),
     },
     "hull": {
-        "urdf": Row(
+        "urdf": LossRow(
             "collision meshes",
             "readers that collide with convex hulls (MuJoCo, PyBullet) see these two parts overlap at rest or in motion, and URDF cannot exclude the pair",
         ),
-        "mjcf": Row(
+        "mjcf": LossRow(
             "an excluded pair",
             "MuJoCo collides with convex hulls; those of these two parts overlap at rest or in motion, so they do not collide at all",
         ),
-        "sdf": Row("collision meshes"),
-        "usd": Row("convex hulls for collision"),
+        "sdf": LossRow("collision meshes"),
+        "usd": LossRow("convex hulls for collision"),
     },
     "collision.hull": {
-        name: Row("a convex hull for collision", "dents, holes and slots of the part: other bodies cannot enter them", refused=True)
+        name: LossRow("a convex hull for collision", "dents, holes and slots of the part: other bodies cannot enter them", refused=True)
         for name in MECHANISM_FORMATS
     },
     "collision.pieces": {
-        name: Row("convex pieces inside the solid for collision", "what the pieces leave out of the solid") for name in MECHANISM_FORMATS
-    },
-    "collision.open": {
-        name: Row("its mesh for collision, of which engines take the hull", "convex pieces: the surface encloses no volume")
+        name: LossRow("convex pieces inside the solid for collision", "what the pieces leave out of the solid")
         for name in MECHANISM_FORMATS
     },
-    "color": {"urdf": Row("<material>"), "mjcf": Row("a material"), "sdf": Row("a material"), "usd": Row("displayColor")},
+    "collision.open": {
+        name: LossRow("its mesh for collision, of which engines take the hull", "convex pieces: the surface encloses no volume")
+        for name in MECHANISM_FORMATS
+    },
+    "color": {"urdf": LossRow("<material>"), "mjcf": LossRow("a material"), "sdf": LossRow("a material"), "usd": LossRow("displayColor")},
     "friction": {
-        "urdf": Row("metadata", "URDF has no friction between surfaces: readers use their own"),
-        "mjcf": Row("the geoms' friction"),
-        "sdf": Row("friction of the collision's surface"),
-        "usd": Row("nothing", "friction between surfaces"),
+        "urdf": LossRow("metadata", "URDF has no friction between surfaces: readers use their own"),
+        "mjcf": LossRow("the geoms' friction"),
+        "sdf": LossRow("friction of the collision's surface"),
+        "usd": LossRow("nothing", "friction between surfaces"),
     },
     "connector": {
-        "urdf": Row("metadata"),
-        "mjcf": Row("a site"),
-        "sdf": Row("metadata"),
-        "usd": Row("nothing", "connectors that no joint uses"),
+        "urdf": LossRow("metadata"),
+        "mjcf": LossRow("a site"),
+        "sdf": LossRow("metadata"),
+        "usd": LossRow("nothing", "connectors that no joint uses"),
     },
     "fit": {
-        "urdf": Row("metadata"),
-        "mjcf": Row("metadata"),
-        "sdf": Row("metadata"),
-        "usd": Row("nothing", "fits"),
+        "urdf": LossRow("metadata"),
+        "mjcf": LossRow("metadata"),
+        "sdf": LossRow("metadata"),
+        "usd": LossRow("nothing", "fits"),
     },
     "name": {
-        "urdf": Row("a name of letters, digits and underscores", "the name as given, which is kept in the metadata"),
-        "mjcf": Row("a name of letters, digits and underscores", "the name as given, which is kept in the metadata"),
-        "sdf": Row("a name of letters, digits and underscores", "the name as given, which is kept in the metadata"),
-        "usd": Row("a name of letters, digits and underscores", "the name as given"),
+        "urdf": LossRow("a name of letters, digits and underscores", "the name as given, which is kept in the metadata"),
+        "mjcf": LossRow("a name of letters, digits and underscores", "the name as given, which is kept in the metadata"),
+        "sdf": LossRow("a name of letters, digits and underscores", "the name as given, which is kept in the metadata"),
+        "usd": LossRow("a name of letters, digits and underscores", "the name as given"),
     },
 }
 
 
-_BALL = Row("a ball joint", "its cone and twist: a ball of FreeCAD has no limits")
-_FREECAD: dict[str, Row] = {
-    "fixed": Row("a fixed joint"),
-    "revolute": Row("a revolute joint with its limits"),
-    "revolute.endless": Row("a revolute joint without limits"),
-    "slider": Row("a slider joint with its limits"),
-    "cylindrical": Row("a cylindrical joint with its limits"),
+_BALL = LossRow("a ball joint", "its cone and twist: a ball of FreeCAD has no limits")
+_FREECAD: dict[str, LossRow] = {
+    "fixed": LossRow("a fixed joint"),
+    "revolute": LossRow("a revolute joint with its limits"),
+    "revolute.endless": LossRow("a revolute joint without limits"),
+    "slider": LossRow("a slider joint with its limits"),
+    "cylindrical": LossRow("a cylindrical joint with its limits"),
     "ball": _BALL,
-    "ball.free": Row("a ball joint"),
+    "ball.free": LossRow("a ball joint"),
     "ball.wide": _BALL,
-    "screw": Row("a cylindrical joint and a thread", "FreeCAD's solver does not enforce the lead", refused=True),
-    "planar": Row("a distance of zero between two planes", "its limits"),
-    "universal": Row("a ball and a perpendicular joint", "its two limits", refused=True),
-    "free": Row("no joint: its part is loose", "the joint, except in articad's record"),
-    "loop.free": Row("no joint: it constrains nothing", "the joint, except in articad's record"),
-    "limits.open": Row("a limit in one direction only"),
-    "slide.endless": Row("a joint without that limit"),
-    "velocity": Row("a record", "FreeCAD has no limit on a joint's velocity"),
-    "joint.damping": Row("a record", "damping: FreeCAD has none"),
-    "joint.friction": Row("a record", "friction in joints: FreeCAD has none"),
-    "coupling": Row("a suppressed joint of the same kind", "FreeCAD's solver does not enforce it", refused=True),
-    "fit": Row("a record", "fits: FreeCAD has none"),
-    "freecad.coupling": Row("a record", "FreeCAD has no such coupling", refused=True),
-    "freecad.color": Row("a link to its source", "its colour: it has the colour of its source"),
-    "freecad.features": Row("its B-rep", "its features: it follows no parameter; write with FreeCAD to keep them"),
-    "freecad.brep": Row("its B-rep", "editable features: it follows no parameter; build with the FreeCAD kernel to get them"),
-    "freecad.mesh": Row("a mesh", "coordinates beyond single precision, and an editable solid"),
-    "freecad.frame": Row("a fixed frame", "the link to parameters"),
-    "freecad.direction": Row("a fixed direction", "the link of its direction to parameters: its x is chosen by rule"),
+    "screw": LossRow("a cylindrical joint and a thread", "FreeCAD's solver does not enforce the lead", refused=True),
+    "planar": LossRow("a distance of zero between two planes", "its limits"),
+    "universal": LossRow("a ball and a perpendicular joint", "its two limits", refused=True),
+    "free": LossRow("no joint: its part is loose", "the joint, except in articad's record"),
+    "loop.free": LossRow("no joint: it constrains nothing", "the joint, except in articad's record"),
+    "limits.open": LossRow("a limit in one direction only"),
+    "slide.endless": LossRow("a joint without that limit"),
+    "velocity": LossRow("a record", "FreeCAD has no limit on a joint's velocity"),
+    "joint.damping": LossRow("a record", "damping: FreeCAD has none"),
+    "joint.friction": LossRow("a record", "friction in joints: FreeCAD has none"),
+    "coupling": LossRow("a suppressed joint of the same kind", "FreeCAD's solver does not enforce it", refused=True),
+    "fit": LossRow("a record", "fits: FreeCAD has none"),
+    "freecad.coupling": LossRow("a record", "FreeCAD has no such coupling", refused=True),
+    "freecad.color": LossRow("a link to its source", "its colour: it has the colour of its source"),
+    "freecad.features": LossRow("its B-rep", "its features: it follows no parameter; write with FreeCAD to keep them"),
+    "freecad.brep": LossRow("its B-rep", "editable features: it follows no parameter; build with the FreeCAD kernel to get them"),
+    "freecad.mesh": LossRow("a mesh", "coordinates beyond single precision, and an editable solid"),
+    "freecad.frame": LossRow("a fixed frame", "the link to parameters"),
+    "freecad.direction": LossRow("a fixed direction", "the link of its direction to parameters: its x is chosen by rule"),
 }
 """What a FreeCAD document holds for FreeCAD itself; its records hold the rest."""
 
-_PLAN: dict[str, Row] = {
-    "mass.missing": Row("a density of 1000 kg/m³", "the mass of a moving part is not known", refused=True),
-    "name": Row("a name of lower-case words", "the name as given"),
-    "joint.damping": Row("nothing", "damping: a plan has none, and exports compute it"),
-    "joint.friction": Row("nothing", "friction in joints: a plan has none"),
-    "plan.shape": Row(
+_PLAN: dict[str, LossRow] = {
+    "mass.missing": LossRow("a density of 1000 kg/m³", "the mass of a moving part is not known", refused=True),
+    "name": LossRow("a name of lower-case words", "the name as given"),
+    "joint.damping": LossRow("nothing", "damping: a plan has none, and exports compute it"),
+    "joint.friction": LossRow("nothing", "friction in joints: a plan has none"),
+    "plan.shape": LossRow(
         "the sides of each part's bounding box", "the shapes: a plan states what to build, and scripts build it", refused=True
     ),
-    "plan.mass": Row("a material whose density gives its mass", "centre of mass and inertia if they differ from those of a solid"),
-    "plan.density": Row("a density of 1000 kg/m³", "its mass: its shape encloses no volume", refused=True),
-    "plan.rest": Row("a rest at zero", "the rest value of the joint: ball, planar, universal and free joints of a plan rest at zero"),
-    "plan.endless": Row(
+    "plan.mass": LossRow("a material whose density gives its mass", "centre of mass and inertia if they differ from those of a solid"),
+    "plan.density": LossRow("a density of 1000 kg/m³", "its mass: its shape encloses no volume", refused=True),
+    "plan.rest": LossRow("a rest at zero", "the rest value of the joint: ball, planar, universal and free joints of a plan rest at zero"),
+    "plan.endless": LossRow(
         "a far limit, 1e6 mm or 100 turns away",
         "the fact that the coordinate is endless; in a plan only revolute and cylindrical joints can be",
     ),
-    "plan.capacity": Row("the first effort or velocity", "the others: a plan states one for rotation and one for translation"),
+    "plan.capacity": LossRow("the first effort or velocity", "the others: a plan states one for rotation and one for translation"),
 }
 """What a plan does not hold as it is; everything else that a mechanism has, it was made for."""
 
@@ -433,7 +441,7 @@ for _key, _rows in TABLE.items():
             )
         )
     ):
-        _rows["plan"] = _PLAN.get(_key, Row("the same"))
+        _rows["plan"] = _PLAN.get(_key, LossRow("the same"))
 
 
 def losses_of(format_name: Format, features: Iterable[Feature]) -> tuple[Loss, ...]:

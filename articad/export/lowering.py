@@ -58,7 +58,7 @@ class Follows:
 
 
 @dataclass(frozen=True, eq=False)
-class Freedom:
+class AxisMotion:
     """A one-freedom motion, in SI units.
 
     Attributes:
@@ -108,7 +108,7 @@ class LoweredJoint:
     child: str
     T_parent_joint: SE3
     T_child_joint: SE3
-    freedoms: tuple[Freedom, ...]
+    freedoms: tuple[AxisMotion, ...]
     carriers: tuple[str, ...]
     anchor: FloatArray = field(default_factory=lambda: np.zeros(3))
 
@@ -341,21 +341,21 @@ def _frames(joint: Joint, *, backwards: bool) -> tuple[SE3, SE3]:
     return joint.T_parent_connector, flip(joint.mate) @ joint.T_child_connector.inverse()
 
 
-def _freedom(joint: Joint, names: tuple[str, ...], index: int, load: Load) -> Freedom:
+def _freedom(joint: Joint, names: tuple[str, ...], index: int, load: Load) -> AxisMotion:
     step = motions(joint.type)[index]
     axis = np.array(step.vector)
     if joint.type is JointType.BALL:
         lower, upper = ball_box(joint)[index]
-        return Freedom(names[index], step.kind, axis, lower, upper, ball_angles(joint.rest)[index], load)
+        return AxisMotion(names[index], step.kind, axis, lower, upper, ball_angles(joint.rest)[index], load)
     if step.advances:  # the slide of a screw follows its turn
         ratio = joint.lead / math.tau / MM_PER_M
         ends = sorted((ratio * joint.limits.lower[0], ratio * joint.limits.upper[0]))
-        return Freedom(names[index], step.kind, axis, ends[0], ends[1], ratio * joint.rest[0], load, Follows(names[1], ratio, 0.0))
+        return AxisMotion(names[index], step.kind, axis, ends[0], ends[1], ratio * joint.rest[0], load, Follows(names[1], ratio, 0.0))
     unit = 1.0 if step.kind == "turn" else MM_PER_M
     assert step.coordinate is not None
     at = step.coordinate
     lower, upper, rest = joint.limits.lower[at] / unit, joint.limits.upper[at] / unit, joint.rest[at] / unit
-    return Freedom(names[index], step.kind, axis, lower, upper, rest, load, column=joint.column_names[at])
+    return AxisMotion(names[index], step.kind, axis, lower, upper, rest, load, column=joint.column_names[at])
 
 
 def ball_angles(xyzw: tuple[float, ...]) -> tuple[float, float, float]:

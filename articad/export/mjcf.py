@@ -20,8 +20,8 @@ from articad.export.inertia import Inertial
 from articad.export.loads import GRAVITY_M_S2
 from articad.export.losses import Feature, assumed_finding, kept_losses, losses_of, refuse
 from articad.export.lowering import (
+    AxisMotion,
     Follows,
-    Freedom,
     Link,
     LoweredJoint,
     LoweredModel,
@@ -306,7 +306,7 @@ class _Writer:
             self.qpos[freedom.name] = [freedom.rest]
 
     @staticmethod
-    def _still_true(kept: dict[str, str], freedom: Freedom) -> dict[str, str]:
+    def _still_true(kept: dict[str, str], freedom: AxisMotion) -> dict[str, str]:
         """Return what was kept of a joint; a range of forces only while its larger end is the joint's effort."""
         ends = [abs(float(word)) for word in kept.get("actuatorfrcrange", "").split()]
         stale = ends and not math.isclose(max(ends), freedom.load.effort, rel_tol=1e-12)
@@ -425,7 +425,7 @@ class _Writer:
         site1, site2 = (self._site(body, f"{name}__{side}", T) for side, (body, T) in (("near", near), ("far", far)))
         child(equality, kind, {"name": name, "site1": site1, "site2": site2} | EQUALITY)
 
-    def _actuators(self, root: Any, world: Any) -> list[Freedom]:
+    def _actuators(self, root: Any, world: Any) -> list[AxisMotion]:
         """Add a position servo and a rotor for every driver but balls; return the driven freedoms."""
         driven = {driver.name for driver in self.assembly.mechanism.drivers}
         freedoms = [freedom for joint in (*self.model.joints, *self.model.loops) for freedom in joint.freedoms]
@@ -439,7 +439,7 @@ class _Writer:
                 child(actuator, "position", _servo(freedom))
         return freedoms
 
-    def _home(self, root: Any, world: Any, servos: list[Freedom]) -> None:
+    def _home(self, root: Any, world: Any, servos: list[AxisMotion]) -> None:
         values = tidy(value for joint in world.iter("joint", "freejoint") for value in self.qpos[joint.get("name")])
         if self.again.active or (self.assembly.foreign and self._rests_at_zero()):  # an MJCF file has keys of its own
             return
@@ -486,17 +486,17 @@ def _half_sizes(form: Primitive) -> list[float]:
     return [sizes[0], sizes[1] / 2] if form.kind in {"cylinder", "capsule"} else sizes
 
 
-def _no_force(freedom: Freedom) -> bool:
+def _no_force(freedom: AxisMotion) -> bool:
     """True for a stated effort of zero: MuJoCo reads the range from 0 to 0 as none."""
     return freedom.load.effort == 0 and "effort" not in freedom.load.assumed
 
 
-def _dynamics(freedom: Freedom) -> dict[str, str]:
+def _dynamics(freedom: AxisMotion) -> dict[str, str]:
     friction = {"frictionloss": number(freedom.load.friction)} if freedom.load.friction else {}
     return {"damping": number(freedom.load.damping)} | friction
 
 
-def _joint(freedom: Freedom, *, foreign: bool = False) -> dict[str, str]:
+def _joint(freedom: AxisMotion, *, foreign: bool = False) -> dict[str, str]:
     """Return the attributes of a hinge or slide; the effort limits what actuators give it, where a foreign file states one."""
     turn = freedom.kind == "turn"
     attributes = {"name": freedom.name, "type": "hinge" if turn else "slide", "axis": numbers(tidy(freedom.axis))}
@@ -509,14 +509,14 @@ def _joint(freedom: Freedom, *, foreign: bool = False) -> dict[str, str]:
     return attributes | {"actuatorfrcrange": numbers([-effort, effort])} | _dynamics(freedom)
 
 
-def _range(freedom: Freedom) -> str | None:
+def _range(freedom: AxisMotion) -> str | None:
     if math.isinf(freedom.lower) and math.isinf(freedom.upper):
         return None
     far = FAR_RAD if freedom.kind == "turn" else FAR_M
     return numbers(tidy([max(freedom.lower, -far), min(freedom.upper, far)]))
 
 
-def _servo(freedom: Freedom) -> dict[str, str]:
+def _servo(freedom: AxisMotion) -> dict[str, str]:
     effort = freedom.load.effort
     gain = effort / (SERVO_ERROR_TURN if freedom.kind == "turn" else SERVO_ERROR_SLIDE)
     attributes = {"name": freedom.name, "joint": freedom.name, "kp": number(gain), "dampratio": "1"}

@@ -10,7 +10,7 @@ from lxml import etree
 
 from articad.errors import ExportError
 from articad.export.hulls import HullOverlap, Pair
-from articad.export.lowering import Freedom, LoweredModel
+from articad.export.lowering import AxisMotion, LoweredModel
 from articad.export.markup import child, document, number
 
 if TYPE_CHECKING:
@@ -79,7 +79,7 @@ def srdf(model: LoweredModel, mating: Iterable[Pair], rigid: Iterable[Pair], ove
 def add_control(root: Any, assembly: Assembly, model: LoweredModel) -> None:
     """Add a `<ros2_control>` system with a position command for every freedom that drives, on mock hardware."""
     driven = {driver.name for driver in assembly.mechanism.drivers}
-    freedoms: list[Freedom] = [freedom for joint in model.joints for freedom in joint.freedoms if _is_driven(freedom, driven)]
+    freedoms: list[AxisMotion] = [freedom for joint in model.joints for freedom in joint.freedoms if _is_driven(freedom, driven)]
     system = child(root, "ros2_control", {"name": model.name, "type": "system"})
     child(child(system, "hardware"), "plugin", text="mock_components/GenericSystem")
     for freedom in freedoms:
@@ -90,6 +90,6 @@ def add_control(root: Any, assembly: Assembly, model: LoweredModel) -> None:
         child(joint, "state_interface", {"name": "velocity"})
 
 
-def _is_driven(freedom: Freedom, driven: set[str]) -> bool:
+def _is_driven(freedom: AxisMotion, driven: set[str]) -> bool:
     """True for a driver's own coordinate; the angles of a ball have none, but they drive as well."""
     return freedom.column in driven or (freedom.column is None and freedom.follows is None)

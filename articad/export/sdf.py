@@ -16,7 +16,7 @@ from articad.export.features import primitive_features
 from articad.export.follow import followers
 from articad.export.inertia import Inertial
 from articad.export.losses import Feature, assumed_finding, kept_losses, losses_of, refuse
-from articad.export.lowering import Follows, Freedom, Link, LoweredJoint, LoweredModel, Placed, lower
+from articad.export.lowering import AxisMotion, Follows, Link, LoweredJoint, LoweredModel, Placed, lower
 from articad.export.markup import child, document, number, numbers, rgba, rpy, tidy
 from articad.export.meshes import MM_TO_M, MeshFiles, MeshKind
 from articad.export.metadata import dumps, records
@@ -205,7 +205,7 @@ class _Writer:
         return element
 
     def _joint(
-        self, model: Any, name: str, joint: LoweredJoint, parent: str, child_link: str, freedoms: tuple[Freedom, ...], pose: SE3 | None
+        self, model: Any, name: str, joint: LoweredJoint, parent: str, child_link: str, freedoms: tuple[AxisMotion, ...], pose: SE3 | None
     ) -> None:
         kind = joint.joint.type
         turning = freedoms[-1] if kind is JointType.SCREW and not joint.backwards else freedoms[0] if freedoms else None
@@ -226,7 +226,7 @@ class _Writer:
             if freedom is not None:
                 self._axis(element, tag, freedom)
 
-    def _axis(self, joint: Any, tag: str, freedom: Freedom) -> None:
+    def _axis(self, joint: Any, tag: str, freedom: AxisMotion) -> None:
         element = child(joint, tag)
         child(element, "xyz", text=numbers(freedom.axis))
         zero = freedom.rest if self.at_rest else 0.0
@@ -250,11 +250,11 @@ class _Writer:
             child(mimic, "reference", text="0")
 
 
-def _single(freedom: Freedom) -> JointType:
+def _single(freedom: AxisMotion) -> JointType:
     return JointType.SLIDER if freedom.kind == "slide" else JointType.REVOLUTE
 
 
-def _motion(freedom: Freedom) -> SE3:
+def _motion(freedom: AxisMotion) -> SE3:
     """Return the motion of one freedom at rest [m]."""
     if freedom.kind == "slide":
         return SE3.from_translation(freedom.axis * freedom.rest)

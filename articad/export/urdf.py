@@ -16,7 +16,7 @@ from articad.export.follow import followers
 from articad.export.hulls import HullOverlap, Pair, mating_pairs, same_group_pairs
 from articad.export.inertia import Inertial
 from articad.export.losses import Feature, assumed_finding, kept_losses, losses_of, refuse
-from articad.export.lowering import Follows, Freedom, Link, LoweredJoint, LoweredModel, Placed, lower
+from articad.export.lowering import AxisMotion, Follows, Link, LoweredJoint, LoweredModel, Placed, lower
 from articad.export.markup import child, document, number, numbers, rgba, rpy, tidy
 from articad.export.meshes import MM_TO_M, MeshFiles, MeshKind
 from articad.export.metadata import dumps, records
@@ -172,12 +172,12 @@ def _assumed(model: LoweredModel, keeper: _Keeper, *, all_of: bool = False) -> l
     return [row.joint.name for row in model.joints if any(_writes_assumed(freedom, keeper) for freedom in row.freedoms)]
 
 
-def _writes_assumed(freedom: Freedom, keeper: _Keeper) -> bool:
+def _writes_assumed(freedom: AxisMotion, keeper: _Keeper) -> bool:
     needed = freedom.load.assumed - ({"damping"} if keeper.foreign else set())
     return bool(needed) and not _says_no_limit(freedom, keeper)
 
 
-def _says_no_limit(freedom: Freedom, keeper: _Keeper) -> bool:
+def _says_no_limit(freedom: AxisMotion, keeper: _Keeper) -> bool:
     """True for an endless joint of a file that states neither effort nor velocity; nobody asks it for them."""
     return keeper.foreign and _type(freedom) == "continuous" and freedom.load.assumed >= {"effort", "velocity"}
 
@@ -313,13 +313,13 @@ def _ends(element: Any, T_parent_joint: SE3, parent: str, child_link: str) -> No
     child(element, "child", {"link": child_link})
 
 
-def _type(freedom: Freedom) -> str:
+def _type(freedom: AxisMotion) -> str:
     if freedom.kind == "slide":
         return "prismatic"
     return "continuous" if math.isinf(freedom.lower) and math.isinf(freedom.upper) else "revolute"
 
 
-def _limit(freedom: Freedom, keeper: _Keeper) -> dict[str, str]:
+def _limit(freedom: AxisMotion, keeper: _Keeper) -> dict[str, str]:
     bounds: dict[str, str] = {}
     if _says_no_limit(freedom, keeper):
         return bounds

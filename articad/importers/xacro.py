@@ -85,7 +85,7 @@ def main(arguments: list[str]) -> int:
 
     order: dict[str, Any] = json.loads(arguments[0])
     places = [*sandbox.readable_paths(), str(Path(xacro.__file__).parent), *order["readable"]]
-    sandbox.confine(sandbox.Limits(seconds=SECONDS, memory=2 * MEMORY), order["layers"], places)
+    sandbox.confine(sandbox.ScriptLimits(seconds=SECONDS, memory=2 * MEMORY), order["layers"], places)
     substitution_args._eval_find = lambda name: _find(name, order["readable"], order["file"])  # noqa: SLF001 - xacro's own looks for ROS 2
     try:
         document = xacro.process_file(order["file"])

@@ -21,7 +21,7 @@ from articad.interference.motion import Values
 from articad.interference.report import rounded
 from articad.interference.scene import Scene
 from articad.interference.surface import Surface, inwards, surface_distance
-from articad.interference.work import Budget
+from articad.interference.work import WorkBudget
 
 FloatArray = NDArray[np.float64]
 
@@ -181,7 +181,7 @@ class _Leaving:
         for share in (np.arange(GLANCES) + 1) / GLANCES:
             if distance((share**2 * length,)) <= CONTACT_MM:
                 return self._blocked(way, direction, share**2 * length)
-        cover = cover_line(distance, (0.0, length), 0.0, reach=1.0, epsilon=CONTACT_MM, budget=Budget(60.0), most=MOST_QUERIES)
+        cover = cover_line(distance, (0.0, length), 0.0, reach=1.0, epsilon=CONTACT_MM, budget=WorkBudget(60.0), most=MOST_QUERIES)
         if cover.out_of_budget:
             return Escape(self.part, way, free=None, blocker=None, travel=cover.upper)
         if cover.is_complete:

@@ -24,7 +24,7 @@ from articad.interference.overlap import distance, one_contains_the_other, se3_o
 from articad.interference.relations import Relation
 from articad.interference.report import Checks, Strength, rounded
 from articad.interference.scene import relatives
-from articad.interference.sweep import Sweep
+from articad.interference.sweep import MotionSampler
 
 FloatArray = NDArray[np.float64]
 
@@ -70,7 +70,7 @@ class Clearance:
         return {**told, "strength": self.strength.to_json()}
 
 
-def least_clearances(motion: Sweep, joints: Sequence[str] | None = None, *, together: bool = True) -> tuple[Clearance, ...]:
+def least_clearances(motion: MotionSampler, joints: Sequence[str] | None = None, *, together: bool = True) -> tuple[Clearance, ...]:
     """Return the smallest distance seen of each two parts that move against each other, the nearest first.
 
     Args:
@@ -90,7 +90,7 @@ def least_clearances(motion: Sweep, joints: Sequence[str] | None = None, *, toge
     return tuple(sorted((pair.clearance(motion, ranges) for pair in pairs), key=lambda one: one.gap))
 
 
-def searched(motion: Sweep, known: Checks) -> Checks:
+def searched(motion: MotionSampler, known: Checks) -> Checks:
     """Return a report on the pairs that a search near their nearest poses finds to collide, and of which a report knows no collision."""
     told = {frozenset(finding.parts) for finding in known.findings.of("E_MOTION_COLLISION")}
     report = Checks(Findings(), (), known.deflection, known.over, known.parts)
@@ -103,7 +103,7 @@ def searched(motion: Sweep, known: Checks) -> Checks:
     return report
 
 
-def _points(motion: Sweep, ranges: Sequence[Freedom], *, together: bool) -> FloatArray:
+def _points(motion: MotionSampler, ranges: Sequence[Freedom], *, together: bool) -> FloatArray:
     """Return values `(n, freedoms)`: along each, on grids of two, and scattered over all."""
     rest = np.array([freedom.rest for freedom in ranges])
     rows = [rest[None]]
@@ -144,7 +144,7 @@ class _Pair:
     poses: int
     step: float = FIRST_STEP
 
-    def clearance(self, motion: Sweep, ranges: Sequence[Freedom]) -> Clearance:
+    def clearance(self, motion: MotionSampler, ranges: Sequence[Freedom]) -> Clearance:
         names = list(motion.scene.bodies)
         pose = {f.name: float(value) for f, value in zip(ranges, self.at, strict=True) if value != f.rest}
         parts = names[self.i], names[self.j]
@@ -152,7 +152,7 @@ class _Pair:
 
 
 class _Search:
-    def __init__(self, motion: Sweep, ranges: Sequence[Freedom]) -> None:
+    def __init__(self, motion: MotionSampler, ranges: Sequence[Freedom]) -> None:
         self.motion, self.scene, self.ranges = motion, motion.scene, ranges
         self.names = list(self.scene.bodies)
         self.bodies = list(self.scene.bodies.values())

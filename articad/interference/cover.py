@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from articad.interference.motion import Distance
-from articad.interference.work import DISTANCE, Budget
+from articad.interference.work import DISTANCE, WorkBudget
 
 FloatArray = NDArray[np.float64]
 
@@ -70,7 +70,7 @@ def cover_line(
     reach: float,
     margin: float = 0.0,
     epsilon: float = 1e-3,
-    budget: Budget,
+    budget: WorkBudget,
     most: int = 100_000,
 ) -> Cover:
     """Clear a single coordinate from `start` outwards, up to its bounds or to contact.
@@ -94,7 +94,7 @@ def cover_line(
 
 
 class _Walk:
-    def __init__(self, distance: Distance, reach: float, margin: float, epsilon: float, budget: Budget, most: int) -> None:
+    def __init__(self, distance: Distance, reach: float, margin: float, epsilon: float, budget: WorkBudget, most: int) -> None:
         self.distance, self.reach, self.margin, self.epsilon = distance, max(reach, 1e-12), margin, epsilon
         self.budget, self.left = budget, most
         self.cover = Cover()

@@ -57,7 +57,7 @@ def _explained(scene: Scene, tree: KinematicTree, finding: Finding) -> Finding:
     known = all(name in scene.bodies and name not in scene.broken for name in finding.parts)
     if finding.code not in _EXPLAINED or len(finding.parts) != 2 or finding.cause is not None or not known:
         return finding
-    case = Case(scene, tree, finding)
+    case = PairCase(scene, tree, finding)
     moving: tuple[Callable[[], Finding | None], ...] = (case.pitch, case.pivot_on_face, case.overrun)
     standing: tuple[Callable[[], Finding | None], ...] = (case.unbored_hole, case.missing_slot, case.envelope)
     for cause in (*moving, *standing) if finding.code == "E_MOTION_COLLISION" else standing:
@@ -93,7 +93,7 @@ class _Region:
         return max((float(np.linalg.norm(points, axis=1).max()) for points in outline), default=0.0)
 
 
-class Case:
+class PairCase:
     """One finding with the geometry at its place."""
 
     def __init__(self, scene: Scene, tree: KinematicTree, finding: Finding) -> None:

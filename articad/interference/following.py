@@ -10,7 +10,7 @@ import numpy as np
 
 from articad.errors import KinematicsError
 from articad.interference.report import rounded
-from articad.interference.sweep import Sweep
+from articad.interference.sweep import MotionSampler
 
 ROWS = 9  # of a table, evenly over the driver's range, and one at rest
 _STILL = 1e-9  # rad or mm: what moves by less does not follow
@@ -42,7 +42,7 @@ class Following:
         }
 
 
-def what_follows(motion: Sweep, joints: Sequence[str] | None = None, *, rows: int = ROWS) -> tuple[Following, ...]:
+def what_follows(motion: MotionSampler, joints: Sequence[str] | None = None, *, rows: int = ROWS) -> tuple[Following, ...]:
     """Return a table for each driver that something follows.
 
     Args:

@@ -115,7 +115,7 @@ class PairCheck:
         }
 
 
-class Row(Protocol):
+class FitRow(Protocol):
     """What is known of one fit."""
 
     @property
@@ -143,7 +143,7 @@ class Checks:
     over: str | tuple[str, ...] = "rest"
     parts: tuple[str, ...] = field(default=())
     without_geometry: tuple[str, ...] = field(default=())
-    fits: tuple[Row, ...] = field(default=())
+    fits: tuple[FitRow, ...] = field(default=())
 
     @property
     def ok(self) -> bool:

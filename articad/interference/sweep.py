@@ -28,7 +28,7 @@ from articad.interference.report import Checks, PairCheck, Strength
 from articad.interference.scene import Scene, relatives
 from articad.interference.turning import Turning
 from articad.interference.verdict import UNRELATED_VOLUME_MM3, judge
-from articad.interference.work import CLOSED, PAIRS_PLACED, POSE, TREE_TRIANGLES, Budget, look_price
+from articad.interference.work import CLOSED, PAIRS_PLACED, POSE, TREE_TRIANGLES, WorkBudget, look_price
 from articad.kinematics.joints import Joint
 from articad.kinematics.mechanism import Mechanism
 from articad.kinematics.solution import Solution
@@ -87,10 +87,10 @@ def sweep(
         A report whose strengths all are "sampled"; a collision carries its pose.
     """
     scene = Scene.of(meshes, mechanism.joints, waivers=waivers, deflection=deflection, fits=fits)
-    return Sweep(scene, mechanism).run(joints, steps=steps, together=together, samples=samples)
+    return MotionSampler(scene, mechanism).run(joints, steps=steps, together=together, samples=samples)
 
 
-class Sweep:
+class MotionSampler:
     """Sampling of one scene; what it has seen of a relative pose it does not ask again.
 
     Args:
@@ -99,8 +99,8 @@ class Sweep:
         budget: Counts the work; a sweep does not stop by itself.
     """
 
-    def __init__(self, scene: Scene, mechanism: Mechanism, budget: Budget | None = None) -> None:
-        self.scene, self.mechanism, self.budget = scene, mechanism, budget or Budget(math.inf)
+    def __init__(self, scene: Scene, mechanism: Mechanism, budget: WorkBudget | None = None) -> None:
+        self.scene, self.mechanism, self.budget = scene, mechanism, budget or WorkBudget(math.inf)
         self.queries = 0
         self._known: dict[tuple[str, str], dict[bytes, float]] = {}
         self.driving: tuple[Joint, ...] = driving_joints(mechanism)  # free ones too, which stand at rest

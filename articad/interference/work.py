@@ -29,7 +29,7 @@ BRAKE = 20.0  # times the nominal seconds that the clock allows, …
 BRAKE_SECONDS = 60.0  # … and these beside
 
 
-class Budget:
+class WorkBudget:
     """Work that may be done, and a clock that stops it only when all goes wrong.
 
     Args:

@@ -31,7 +31,7 @@ from articad.kernels.contract import probe_findings, read_connectors, solid_find
 from articad.kernels.failures import poisoned, script_failure, unconfined
 from articad.kernels.kernel import BuildCache, BuiltPart, Inspect
 from articad.kernels.results import PoisonedError, number, numbers, read_bytes, read_lines, read_mesh
-from articad.kernels.zygote import Outcome, Zygote, ZygoteDiedError, ends_by
+from articad.kernels.zygote import JobOutcome, Zygote, ZygoteDiedError, ends_by
 from articad.processes import scratch
 
 ANGLE_DEG = 5.0  # of the mesh, where the deflection allows more
@@ -50,7 +50,7 @@ Json = dict[str, Any]
 class _Ran:
     """What is left of one job: how it ended, what it reported, what it said when it crashed."""
 
-    outcome: Outcome
+    outcome: JobOutcome
     report: list[Json]
     crash: str
 
@@ -85,7 +85,7 @@ class Build123dKernel:
         self.mode = sandbox or os.environ.get("ARTICAD_SANDBOX") or "strict"
         if self.mode not in ("strict", "weak"):
             raise SandboxError(f"Unknown sandbox {self.mode!r}; there are strict and weak.")
-        self.limits = isolation.Limits(seconds=timeout, probe_seconds=probe_timeout, memory=memory)
+        self.limits = isolation.ScriptLimits(seconds=timeout, probe_seconds=probe_timeout, memory=memory)
         self._chosen = layers
 
     @cached_property
@@ -238,7 +238,7 @@ class Build123dKernel:
     def _new_folder(self) -> Path:
         return Path(tempfile.mkdtemp(dir=self._scratch.name))
 
-    def _run(self, task: str, job: Path, request: Json, files: Mapping[str, str], limits: isolation.Limits) -> _Ran:
+    def _run(self, task: str, job: Path, request: Json, files: Mapping[str, str], limits: isolation.ScriptLimits) -> _Ran:
         """Run one task. A zygote that dies under it is replaced once.
 
         Args:

@@ -8,8 +8,8 @@ from typing import Any, TypeGuard
 
 from articad.errors import BuildError, SandboxError
 from articad.findings import Finding
-from articad.kernels.sandbox import HOW_TO_GET, Limits
-from articad.kernels.zygote import Outcome, ends_by
+from articad.kernels.sandbox import HOW_TO_GET, ScriptLimits
+from articad.kernels.zygote import JobOutcome, ends_by
 
 MEMORY_SHARE = 0.5  # a crash of a process that held this much of its limit is taken for want of memory
 _PATH = re.compile(r"(?:/[\w.+@~-]+)+/([\w.+@~-]+)")
@@ -23,7 +23,7 @@ Json = Mapping[str, Any]
 Frames = list[tuple[int, str]]
 
 
-def script_failure(part: str, script: str, report: Sequence[Json], outcome: Outcome, crash: str, limits: Limits) -> BuildError:
+def script_failure(part: str, script: str, report: Sequence[Json], outcome: JobOutcome, crash: str, limits: ScriptLimits) -> BuildError:
     """Return the error of a script that left no shape.
 
     Args:
@@ -65,7 +65,7 @@ def _printable(text: str) -> str:
 _ALONE = "A script may only compute a shape: no files, network, processes, or articad itself."
 
 
-def _died(part: str, script: str, outcome: Outcome, crash: str, limits: Limits) -> BuildError:
+def _died(part: str, script: str, outcome: JobOutcome, crash: str, limits: ScriptLimits) -> BuildError:
     """Return the error of a script whose process ended before it could report anything."""
     frames: Frames = [(int(line), function) for line, function in reversed(_CRASH_FRAME.findall(crash)[:20])]
     name = ends_by(outcome)
@@ -105,7 +105,7 @@ def _no_build(part: str, script: str, problems: list[str]) -> BuildError:
     return BuildError("\n".join(map(str, findings)), script=script, findings=findings, parts=(part,))
 
 
-def _memory(part: str, script: str, frames: Frames, limits: Limits | None) -> BuildError:
+def _memory(part: str, script: str, frames: Frames, limits: ScriptLimits | None) -> BuildError:
     bound = "" if limits is None else f" of {limits.memory / 2**30:.3g} GiB"
     hint = "Use fewer copies and coarser features; fuse as you go instead of collecting."
     return _error("E_SCRIPT_MEMORY", part, script, f"The script needed more than its memory{bound}", hint, frames)

@@ -35,10 +35,10 @@ from articad.kernels.build123d import Build123dKernel
 from articad.kernels.contract import probe_findings, read_connectors, solid_findings
 from articad.kernels.failures import poisoned, script_failure, scrubbed, unconfined
 from articad.kernels.freecad_file import rounded, settled, shortened
-from articad.kernels.freecad_install import Ended, FreeCAD, Limits
+from articad.kernels.freecad_install import FreeCAD, FreeCADEnded, FreeCADLimits
 from articad.kernels.kernel import BuiltPart, Inspect
 from articad.kernels.results import PoisonedError, numbers, read_bytes, read_lines
-from articad.kernels.zygote import Outcome
+from articad.kernels.zygote import JobOutcome
 
 DOCUMENT = "part.FCStd"
 SEAT = "seat.json"  # where the document's body stands in the part's frame: seven numbers
@@ -71,7 +71,7 @@ Json = dict[str, Any]
 class _Left(NamedTuple):
     """What one process left: how it ended, what it reported."""
 
-    ended: Ended
+    ended: FreeCADEnded
     report: list[Json]
 
 
@@ -152,7 +152,7 @@ class FreeCADKernel(Build123dKernel):
         (job / f"{program}.json").write_text(json.dumps(told))
         names = (f"{program}.json", *reads, f"{program}.report", *writes)
         with _opened(job, names, len(reads) + 1) as files:
-            limits = Limits(seconds=seconds + _START_SECONDS, memory=self.limits.memory + 2**30, file_size=self.limits.file_size)
+            limits = FreeCADLimits(seconds=seconds + _START_SECONDS, memory=self.limits.memory + 2**30, file_size=self.limits.file_size)
             ended = self.freecad.run(
                 _PROGRAMS / f"{program}.py", files=files, arguments=[str(file) for file in files], limits=limits, layers=self._layers
             )
@@ -351,12 +351,12 @@ def _opened(job: Path, names: tuple[str, ...], reads: int) -> Iterator[list[int]
             os.close(file)
 
 
-def _outcome(ended: Ended) -> Outcome:
+def _outcome(ended: FreeCADEnded) -> JobOutcome:
     """Return an end in the words of the worker; FreeCAD turns a crash into exit code 1 itself."""
     killed = ended.code - 128 if ended.code > 128 else -min(ended.code, 0)
     crashed = signal.SIGSEGV if "SIGSEGV" in ended.said or "Segmentation" in ended.said else 0
-    return Outcome(None if killed or crashed else ended.code, int(killed or crashed), ended.late, 0)
+    return JobOutcome(None if killed or crashed else ended.code, int(killed or crashed), ended.late, 0)
 
 
-def _crash(ended: Ended) -> str:
+def _crash(ended: FreeCADEnded) -> str:
     return "worker: MemoryError" if "MemoryError" in ended.said or "bad_alloc" in ended.said else ""

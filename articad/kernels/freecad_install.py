@@ -52,7 +52,7 @@ _TAIL = 8000  # bytes of what it wrote that are kept
 
 
 @dataclass(frozen=True)
-class Limits:
+class FreeCADLimits:
     """What a process inside FreeCAD may use.
 
     Attributes:
@@ -69,7 +69,7 @@ class Limits:
 
 
 @dataclass(frozen=True)
-class Ended:
+class FreeCADEnded:
     """How a process inside FreeCAD ended.
 
     Attributes:
@@ -126,9 +126,9 @@ class FreeCAD:
         folder: Path | None = None,
         files: Collection[int] = (),
         arguments: Sequence[str] = (),
-        limits: Limits | None = None,
+        limits: FreeCADLimits | None = None,
         layers: Collection[str] = sandbox.LAYERS,
-    ) -> Ended:
+    ) -> FreeCADEnded:
         """Run a Python file inside FreeCAD; it sees its arguments as `ARGUMENTS`, and no network.
 
         Args:
@@ -143,7 +143,7 @@ class FreeCAD:
         Raises:
             KernelUnavailableError: If it must run in a tree of its own and bubblewrap does not work.
         """
-        limits = limits or Limits()
+        limits = limits or FreeCADLimits()
         confined = sandbox.bubblewrap_problem() is None
         if self.root is not None and not confined:
             raise unavailable(f"FreeCAD in {self.root} needs bubblewrap, which does not work here ({sandbox.bubblewrap_problem()})")
@@ -165,7 +165,7 @@ class FreeCAD:
             os.close(faulty)
         return ended
 
-    def _confinement(self, folder: Path | None, limits: Limits, layers: Collection[str], faulty: int) -> str:
+    def _confinement(self, folder: Path | None, limits: FreeCADLimits, layers: Collection[str], faulty: int) -> str:
         """Return the words of Python that confine the process from inside, once nothing is left to be executed."""
         told = {
             "fault": faulty,
@@ -178,7 +178,7 @@ class FreeCAD:
         return f"exec(compile(open('/confinement/confinement.py').read(),'confinement.py','exec'),{{'CONFINEMENT':{told!r}}})"
 
     def _confined(
-        self, inner: Sequence[str], program: Path, folder: Path | None, limits: Limits, layers: Collection[str] = sandbox.LAYERS
+        self, inner: Sequence[str], program: Path, folder: Path | None, limits: FreeCADLimits, layers: Collection[str] = sandbox.LAYERS
     ) -> list[str]:
         work = ["--bind", str(folder), "/work", "--chdir", "/work"] if folder is not None else ["--chdir", "/tmp"]  # noqa: S108 - a private one
         variables = [word for name, value in _ENVIRONMENT.items() for word in ("--setenv", name, value)]
@@ -313,7 +313,7 @@ def _version_of(freecad: FreeCAD) -> tuple[int, int, int] | None:
     command = [freecad.program, "--version"]
     try:
         if freecad.root is not None:
-            command = freecad._confined(command, Path(__file__), None, Limits())  # noqa: SLF001 - of this module
+            command = freecad._confined(command, Path(__file__), None, FreeCADLimits())  # noqa: SLF001 - of this module
         ended = _ran(command, _ENVIRONMENT | {"PATH": "/usr/bin:/bin"}, None, (), _SECONDS)
     except OSError:
         return None
@@ -333,7 +333,7 @@ def _steady() -> list[str]:
     return [setarch, "-R"]
 
 
-def _limited(limits: Limits) -> list[str]:
+def _limited(limits: FreeCADLimits) -> list[str]:
     prlimit = launcher.which("prlimit")
     if prlimit is None:
         return []
@@ -341,7 +341,7 @@ def _limited(limits: Limits) -> list[str]:
     return [prlimit, *(f"--{name}={value}" for name, value in bounds.items())]
 
 
-def _cpu(limits: Limits) -> int:
+def _cpu(limits: FreeCADLimits) -> int:
     return int(max(limits.seconds, 0.0) * 2) + 1
 
 
@@ -351,7 +351,7 @@ def _confinement_files() -> dict[str, Path]:
     return {"confinement.py": _INSIDE_PROGRAMS / "confinement.py"} | modules
 
 
-def _ran(command: Sequence[str], environment: dict[str, str], folder: Path | None, files: Collection[int], seconds: float) -> Ended:
+def _ran(command: Sequence[str], environment: dict[str, str], folder: Path | None, files: Collection[int], seconds: float) -> FreeCADEnded:
     limits, place = launcher.Limits(seconds=seconds), None if folder is None else str(folder)
     ended = launcher.run(command, environment=environment, folder=place, files=files, limits=limits, merged=True)
-    return Ended(ended.code, ended.late, ended.out[-_TAIL:].decode(errors="replace"))
+    return FreeCADEnded(ended.code, ended.late, ended.out[-_TAIL:].decode(errors="replace"))

@@ -81,7 +81,7 @@ def _script(path: Path) -> bytes:
     try:
         return read_file(path, SCRIPT_BYTES, root=path.parent.parent)
     except OSError as error:
-        raise ReadError.told(path, f"{path} cannot be read: {error.strerror}.", "Write the script there.") from None
+        raise ReadError.at(path, f"{path} cannot be read: {error.strerror}.", "Write the script there.") from None
 
 
 def build_parts(

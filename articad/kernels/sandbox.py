@@ -51,7 +51,7 @@ _PROBE = launcher.Limits(seconds=20.0)  # bubblewrap answers in 0.02 s; a machin
 
 
 @dataclass(frozen=True)
-class Limits:
+class ScriptLimits:
     """What one script may use.
 
     Attributes:
@@ -184,7 +184,7 @@ def readable_paths() -> tuple[str, ...]:
     return (*python, *_SYSTEM_LIBRARIES, *_FONTS, *_LOADER, "/dev/null", "/dev/urandom")
 
 
-def confine(limits: Limits, layers: Collection[str], readable: Collection[str]) -> None:
+def confine(limits: ScriptLimits, layers: Collection[str], readable: Collection[str]) -> None:
     """Give up, in this process and for good, what computing a shape does not need.
 
     Called right after the fork, while there is one thread and before any code of a script is read.
@@ -230,7 +230,7 @@ def die_with_parent(signal_number: int, parent: int) -> None:
         os._exit(1)
 
 
-def _limit_resources(limits: Limits) -> None:
+def _limit_resources(limits: ScriptLimits) -> None:
     import resource  # noqa: PLC0415 - Windows has none, and this module is imported there
 
     # Twice the wall clock on every processor is only reached by threads that outlive the wall clock's own kill.

@@ -42,7 +42,7 @@ class _Job:
     late: bool = False
 
 
-class Zygote:
+class ZygoteServer:
     """Serves requests until its socket closes."""
 
     def __init__(self, control: socket.socket, tasks: Mapping[str, Callable[[Json, dict[str, int]], None]]) -> None:
@@ -118,7 +118,7 @@ class Zygote:
             signal.signal(signal.SIGCHLD, signal.SIG_DFL)
             _keep_only((*files.values(), faulty))
             _trace_crashes(files["crash"])
-            sandbox.confine(sandbox.Limits(**request["limits"]), request["layers"], self._readable)
+            sandbox.confine(sandbox.ScriptLimits(**request["limits"]), request["layers"], self._readable)
             os.close(faulty)
             confined = True
             self._tasks[request["task"]](request, files)
@@ -162,7 +162,7 @@ def main() -> None:
     gc.collect()
     gc.freeze()  # a collection in a child would copy every page of what is shared
     control.send(json.dumps({"ready": True}).encode())
-    zygote = Zygote(control, TASKS)
+    zygote = ZygoteServer(control, TASKS)
     try:
         zygote.serve()
     finally:

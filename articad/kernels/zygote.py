@@ -38,7 +38,7 @@ class ZygoteDiedError(Exception):
 
 
 @dataclass(frozen=True)
-class Outcome:
+class JobOutcome:
     """How a job's process ended.
 
     Attributes:
@@ -80,12 +80,12 @@ class Zygote:
         self._layers = tuple(layer for layer in sandbox.LAYERS if layer in layers)
         self._lock = threading.Lock()
         self._numbers = itertools.count(1)
-        self._waiting: dict[int, Future[Outcome]] = {}
+        self._waiting: dict[int, Future[JobOutcome]] = {}
         self._control: socket.socket | None = None
         self._process: launcher.Child | None = None
         self._owner = 0
 
-    def run(self, task: str, files: Mapping[str, int], limits: sandbox.Limits) -> Outcome:
+    def run(self, task: str, files: Mapping[str, int], limits: sandbox.ScriptLimits) -> JobOutcome:
         """Do one job and wait for its end.
 
         Args:
@@ -97,7 +97,7 @@ class Zygote:
             ZygoteDiedError: If the zygote died meanwhile.
             KernelUnavailableError: If it could not be started.
         """
-        answer: Future[Outcome] = Future()
+        answer: Future[JobOutcome] = Future()
         with self._lock:
             control = self._started()
             number = next(self._numbers)
@@ -202,12 +202,12 @@ class Zygote:
         return launcher.start(command, environment=sandbox.ENVIRONMENT, folder="/", stdin=control.fileno(), stdout=nowhere, stderr=nowhere)
 
 
-def _outcome(answer: dict[str, Any]) -> Outcome:
+def _outcome(answer: dict[str, Any]) -> JobOutcome:
     if "refused" in answer:
-        return Outcome(None, 0, late=False, peak=0, refused=str(answer["refused"]))
+        return JobOutcome(None, 0, late=False, peak=0, refused=str(answer["refused"]))
     status = int(answer["status"])
     signaled = os.WIFSIGNALED(status)
-    return Outcome(
+    return JobOutcome(
         None if signaled else os.WEXITSTATUS(status),
         os.WTERMSIG(status) if signaled else 0,
         late=bool(answer["late"]),
@@ -224,6 +224,6 @@ def _unavailable(problem: str) -> KernelUnavailableError:
     return KernelUnavailableError(f"{what} Run: {how}", looked_in=(sys.executable,), how_to_get=how, findings=[finding])
 
 
-def ends_by(outcome: Outcome) -> str:
+def ends_by(outcome: JobOutcome) -> str:
     """Return the name of the signal that ended a job, as `SIGSEGV`; empty if none did."""
     return signal.Signals(outcome.signal).name if outcome.signal else ""

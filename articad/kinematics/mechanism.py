@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -23,7 +24,7 @@ from articad.kinematics.joints import Coordinate, Coupling, Joint, JointType
 from articad.kinematics.layout import Layout
 from articad.kinematics.linkage_findings import askew_error, loop_findings
 from articad.kinematics.mobility import NEARLY_FREE, REALISED, Redundancy, redundancies
-from articad.kinematics.motion import FeasibleRange, Sweep, feasible_range, sweep
+from articad.kinematics.motion import DrivenMotion, FeasibleRange, drive, feasible_range
 from articad.kinematics.path import path
 from articad.kinematics.reach import Reach, reach
 from articad.kinematics.solution import Solution
@@ -321,10 +322,10 @@ class Mechanism:
 
     # --- motion
 
-    def sweep(
+    def drive(
         self, driver: str, lo: float, hi: float, steps: int = 60, *, at: Mapping[str, float] | None = None, certify: bool = False
-    ) -> Sweep:
-        """Move one driver evenly, the rest follows; where it cannot go on, the sweep ends there and says why.
+    ) -> DrivenMotion:
+        """Move one driver evenly, the rest follows; where it cannot go on, the motion ends there and says why.
 
         Args:
             driver: Name of a driver.
@@ -341,7 +342,12 @@ class Mechanism:
             UnknownJointError: If there is no such driver.
             LoopError: E_LOOP_OPEN.
         """
-        return sweep(self, driver, lo, hi, steps, at, certify=certify)
+        return drive(self, driver, lo, hi, steps, at, certify=certify)
+
+    def sweep(self, *args: Any, **options: Any) -> DrivenMotion:
+        """Deprecated name of `drive`."""
+        warnings.warn("Mechanism.sweep is named Mechanism.drive.", DeprecationWarning, stacklevel=2)
+        return self.drive(*args, **options)
 
     def feasible_range(self, driver: str, *, at: Mapping[str, float] | None = None) -> FeasibleRange:
         """Return how far a driver can go from rest: its own limits, dead points, and limits of the joints that follow.

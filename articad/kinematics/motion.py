@@ -52,7 +52,7 @@ class FeasibleRange:
 
 
 @dataclass(frozen=True, eq=False)
-class Sweep:
+class DrivenMotion:
     """A driver's motion at even steps.
 
     Attributes:
@@ -85,10 +85,12 @@ class Sweep:
         return self.mechanism.arrays.poses(self.configuration.columns)
 
 
-def sweep(mechanism: Mechanism, driver: str, lo: float, hi: float, steps: int, at: Mapping[str, float] | None, *, certify: bool) -> Sweep:
-    """Move one driver from `lo` to `hi`; see `Mechanism.sweep`."""
+def drive(
+    mechanism: Mechanism, driver: str, lo: float, hi: float, steps: int, at: Mapping[str, float] | None, *, certify: bool
+) -> DrivenMotion:
+    """Move one driver from `lo` to `hi`; see `Mechanism.drive`."""
     if steps < 1 or not math.isfinite(lo) or not math.isfinite(hi):
-        raise KinematicsError(f"A sweep needs finite ends and at least one step; given [{lo}, {hi}] in {steps} steps.")
+        raise KinematicsError(f"A motion needs finite ends and at least one step; given [{lo}, {hi}] in {steps} steps.")
     index = driver_index(mechanism, driver)
     coordinate = mechanism.drivers[index]
     values = np.linspace(lo, hi, steps)
@@ -99,7 +101,7 @@ def sweep(mechanism: Mechanism, driver: str, lo: float, hi: float, steps: int, a
         rows[:, index] = values
         configuration = mechanism.configuration(rows)
         findings = Findings(_limit_findings(coordinate, configuration, values))
-        return Sweep(mechanism, coordinate, values, configuration, "certified", "a tree has one branch", 0.0, findings)
+        return DrivenMotion(mechanism, coordinate, values, configuration, "certified", "a tree has one branch", 0.0, findings)
     Q, reached, proved = track.evaluate(values)
     found = [] if reached.all() else [_stop_finding(track, coordinate, float(v)) for v in (lo, hi)]
     base = mechanism.configuration(q).columns
@@ -111,7 +113,9 @@ def sweep(mechanism: Mechanism, driver: str, lo: float, hi: float, steps: int, a
     tube = track.largest_tube() if certified else 0.0
     reason = _reason(track, coordinate, values[reached], certify=certify, certified=certified)
     findings = Findings(f for f in found if f is not None)
-    return Sweep(mechanism, coordinate, values[reached], configuration, "certified" if certified else "sampled", reason, tube, findings)
+    return DrivenMotion(
+        mechanism, coordinate, values[reached], configuration, "certified" if certified else "sampled", reason, tube, findings
+    )
 
 
 def _reason(track: Track, coordinate: Coordinate, values: FloatArray, *, certify: bool, certified: bool) -> str:

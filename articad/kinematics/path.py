@@ -55,7 +55,7 @@ class _Tree:
         return found[::-1]
 
 
-class Planner:
+class PathPlanner:
     """Looks for ways.
 
     Args:
@@ -179,7 +179,7 @@ class Planner:
 def path(mechanism: Mechanism, start: npt.ArrayLike, goal: npt.ArrayLike, accept: Accept | None) -> FloatArray:
     """Return waypoints; see `Mechanism.path`."""
     ends = [np.asarray(q, dtype=np.float64) for q in (start, goal)]
-    planner = Planner(mechanism, accept)
+    planner = PathPlanner(mechanism, accept)
     for name, q in zip(("start", "goal"), ends, strict=True):
         if q.shape != (mechanism.nq,):
             raise KinematicsError(f"The {name} of a path is one configuration ({mechanism.nq},); it has shape {q.shape}.")

@@ -19,7 +19,7 @@ _ROUNDING = 1e-13  # of the largest coordinate: what couplings miss by rounding 
 
 
 @dataclass(frozen=True, eq=False)
-class Tie:
+class LinearTie:
     """Coordinates that couplings make linear in one number m: q = factor · m + offset.
 
     Attributes:
@@ -126,7 +126,7 @@ class Ties:
             self._bases[key] = Basis(matrix, None if moving else np.flatnonzero(free & ~self._tied))
         return self._bases[key]
 
-    def _motion(self, tie: Tie) -> FloatArray:
+    def _motion(self, tie: LinearTie) -> FloatArray:
         motion = np.zeros(self._n)
         motion[tie.freedoms] = tie.factor / self._scale[tie.freedoms]
         largest = float(np.abs(motion[self._in_loops]).max(initial=0.0))
@@ -179,7 +179,7 @@ class Ties:
         return ()
 
 
-def _ties(couplings: Sequence[Coupling], layout: Layout, in_loops: BoolArray) -> list[Tie]:
+def _ties(couplings: Sequence[Coupling], layout: Layout, in_loops: BoolArray) -> list[LinearTie]:
     """Walk every connected set of coupled coordinates from its first member: q_b = k q_a + c either way."""
     beside: dict[int, list[tuple[int, float, float]]] = {}
     for coupling in couplings:
@@ -206,7 +206,7 @@ def _ties(couplings: Sequence[Coupling], layout: Layout, in_loops: BoolArray) ->
         columns = np.array(members, dtype=np.intp)
         freedoms = np.array([layout.freedom_of(column) for column in members], dtype=np.intp)
         factor, shift = (np.array([found[column][i] for column in members]) for i in (0, 1))
-        ties.append(Tie(columns, freedoms, factor, shift, fixed))
+        ties.append(LinearTie(columns, freedoms, factor, shift, fixed))
     return ties
 
 

@@ -220,7 +220,7 @@ class Tools:
     async def _built(self, context: Context, folder: Path, kernel: str) -> Json:
         out = folder / "run"
         if out.is_symlink():
-            raise ReadError.told(out, f"{out.name} of {folder.name} is a link.", "Remove the link; a build makes the folder.")
+            raise ReadError.at(out, f"{out.name} of {folder.name} is a link.", "Remove the link; a build makes the folder.")
         if out.exists():
             shutil.rmtree(out)  # the design is the truth; its run is made of it
         words = ["--out", str(out), "--kernel", kernel, "--no-pictures"]

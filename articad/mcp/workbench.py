@@ -56,7 +56,7 @@ class Workbench:
         """
         path = (self.root / name).resolve()
         if not path.is_relative_to(self.root) or "\0" in name:
-            raise ReadError.told(name, f"{name} is outside the root.", "Name a file under it, relative to it.")
+            raise ReadError.at(name, f"{name} is outside the root.", "Name a file under it, relative to it.")
         return path
 
     def read(self, name: str) -> bytes:
@@ -68,7 +68,7 @@ class Workbench:
         try:
             return read_file(self.root / name, RECORD_BYTES, root=self.root)
         except OSError as error:
-            raise ReadError.told(name, f"{name} cannot be read: {error.strerror}.", "Name a file under the root that is no link.") from None
+            raise ReadError.at(name, f"{name} cannot be read: {error.strerror}.", "Name a file under the root that is no link.") from None
 
     def design(self, name: str, *, new: bool = False) -> Path:
         """Return the folder of a design.
@@ -77,13 +77,13 @@ class Workbench:
             ReadError: If it is no name, or there is no such design and it is not to be `new`.
         """
         if not _NAME.match(name):
-            raise ReadError.told(name, f"{name!r} is no name of a design.", "Use letters, digits, - and _, at most 60.")
+            raise ReadError.at(name, f"{name!r} is no name of a design.", "Use letters, digits, - and _, at most 60.")
         folder = self.path(name)
         if folder != self.root / name:
-            raise ReadError.told(name, f"The design {name!r} is a link.", "Copy the folder to the root.")
+            raise ReadError.at(name, f"The design {name!r} is a link.", "Copy the folder to the root.")
         if not new and not is_file(folder / "plan.json", root=self.root):
             known = sorted(file.parent.name for file in self.root.glob("*/plan.json") if is_file(file, root=self.root))
-            raise ReadError.told(
+            raise ReadError.at(
                 name, f"There is no design {name!r}; there are {', '.join(known) or 'none'}.", "Start one with check_plan."
             )
         return folder
@@ -96,7 +96,7 @@ class Workbench:
         """
         content = (json.dumps(plan, indent=1, ensure_ascii=False) + "\n").encode()
         if len(content) > PLAN_BYTES:
-            raise ReadError.told(name, f"The plan has {len(content)} bytes; at most {PLAN_BYTES} are accepted.", "Use derived parts.")
+            raise ReadError.at(name, f"The plan has {len(content)} bytes; at most {PLAN_BYTES} are accepted.", "Use derived parts.")
         file = self.design(name, new=True) / "plan.json"
         write_atomically(file, content)
         return file
@@ -111,7 +111,7 @@ class Workbench:
             self.design(name)
             plan = dict(json.loads(self.read(f"{name}/plan.json")))
         except ValueError as error:
-            raise ReadError.told(name, f"The plan of {name!r} cannot be read: {error}.", "Give the whole plan.") from error
+            raise ReadError.at(name, f"The plan of {name!r} cannot be read: {error}.", "Give the whole plan.") from error
         return self.write_plan(name, amended(plan, changes))
 
     def write_script(self, design: str, part: str, script: str, kernel: str) -> Path:
@@ -122,12 +122,12 @@ class Workbench:
         """
         content = script.encode()
         if len(content) > SCRIPT_BYTES:
-            raise ReadError.told(part, f"The script has {len(content)} bytes; at most {SCRIPT_BYTES} are accepted.", "Write it shorter.")
+            raise ReadError.at(part, f"The script has {len(content)} bytes; at most {SCRIPT_BYTES} are accepted.", "Write it shorter.")
         if not _NAME.match(part):
-            raise ReadError.told(part, f"{part!r} is no name of a part.", "Use the name that the plan gives it.")
+            raise ReadError.at(part, f"{part!r} is no name of a part.", "Use the name that the plan gives it.")
         file = self.design(design) / "parts" / f"{part}{'.freecad.py' if kernel == 'freecad' else '.py'}"
         if file.parent.is_symlink() or file.is_symlink():
-            raise ReadError.told(part, f"{file} leads out of the root.", "Remove the link.")
+            raise ReadError.at(part, f"{file} leads out of the root.", "Remove the link.")
         write_atomically(file, content)
         return file
 
@@ -137,7 +137,7 @@ class Workbench:
         if is_file(path / "run" / "request.json", root=self.root):
             return path / "run"
         if not path.exists():
-            raise ReadError.told(name, f"There is no {name} under the root.", "Name a design, or a file relative to the root.")
+            raise ReadError.at(name, f"There is no {name} under the root.", "Name a design, or a file relative to the root.")
         return path
 
     # ------------------------------------------------------------------ work
@@ -165,12 +165,12 @@ class Workbench:
             child.kill()
         if ended.late:
             message = f"`articad {arguments[0]}` was ended after {seconds:.0f} s."
-            raise ReadError.told(arguments[0], message, "Ask for less at once, or for more seconds.")
+            raise ReadError.at(arguments[0], message, "Ask for less at once, or for more seconds.")
         try:
             return dict(json.loads(ended.out))
         except ValueError as error:
             last = ended.err.decode(errors="replace").strip()[-400:]
-            raise ReadError.told(arguments[0], f"`articad {arguments[0]}` left no report: {last}", "Try it with fewer parts.") from error
+            raise ReadError.at(arguments[0], f"`articad {arguments[0]}` left no report: {last}", "Try it with fewer parts.") from error
 
     async def _finished(self, child: launcher.Child, command: str, tell: Tell | None) -> launcher.Ended:
         """Wait in a thread for the end of a command, and tell from time to time that it goes on."""

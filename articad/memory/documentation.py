@@ -178,7 +178,7 @@ class DocumentationStore:
             folder = Path(name)
             if self.dialect == "freecad":
                 folder.chmod(0o777)  # FreeCAD runs as nobody in there
-                ended = freecad_install.find().run(program, folder=folder, limits=freecad_install.Limits(seconds=_SECONDS))
+                ended = freecad_install.find().run(program, folder=folder, limits=freecad_install.FreeCADLimits(seconds=_SECONDS))
                 said, content = ended.said, (folder / "catalogue.json")
                 text = content.read_text(encoding="utf-8") if content.is_file() else ""
             else:

@@ -73,4 +73,4 @@ def _lost(address: str, step: str, known: list[str]) -> ReadError:
     hint = did_you_mean(step, known).strip() or (
         f"There are {', '.join(known[:20])}." if known else "A number or a text has nothing in it."
     )
-    return ReadError.told(address, message, hint)
+    return ReadError.at(address, message, hint)

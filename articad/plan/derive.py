@@ -37,7 +37,7 @@ _NORMAL_ZERO = 1e-9  # length below which a normal has no direction, as in artic
 
 
 @dataclass
-class Frame:
+class DraftConnector:
     """A connector while its plan is being resolved.
 
     Attributes:
@@ -88,7 +88,7 @@ class DraftPart:
     auto: bool = False
     T: SE3 | None = None
     S: FloatArray | None = None
-    frames: dict[str, Frame] = field(default_factory=dict)
+    frames: dict[str, DraftConnector] = field(default_factory=dict)
     connectors: dict[str, Connector] = field(default_factory=dict)
 
     @property

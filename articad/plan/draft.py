@@ -19,9 +19,9 @@ from articad.plan.couplings import TiedCoordinate, couple
 from articad.plan.derive import DraftPart, expand, trace, trace_joints
 from articad.plan.evaluation import Evaluation
 from articad.plan.joint_forms import Contact
-from articad.plan.motions import Motion, checked_fit, motion
+from articad.plan.motions import JointNumbers, checked_fit, motion
 from articad.plan.placing import Placing
-from articad.plan.schema import AssemblyPlan, Material, PartSpec
+from articad.plan.schema import AssemblyPlan, MaterialSpec, PartSpec
 
 _IDENTITY = SE3.identity()
 _WHOLE_TOLERANCE = 1e-9  # a computed count that is off a whole number by rounding is that number
@@ -55,9 +55,9 @@ class Draft:
         self.parts = {name: self.parts[name] for name in self.part_names}
         in_order = trace(self.parts, self.evaluation)
         self.lines = trace_joints(plan, self.parts, self.evaluation)
-        self.motions: dict[str, Motion] = {}
+        self.motions: dict[str, JointNumbers] = {}
         self.fits: dict[str, tuple[float | None, float | None, float | None, Contact | None]] = {}
-        self.materials: dict[str, tuple[Material, float, float]] = {}
+        self.materials: dict[str, tuple[MaterialSpec, float, float]] = {}
         self.dimensions: dict[str, dict[str, float | int]] = {}
         self.envelopes: dict[str, tuple[float, float, float]] = {}
         self.joints: list[Joint] = []
@@ -147,7 +147,7 @@ class Draft:
 
     def _read_motions(self) -> None:
         self._report_repeated("couplings", [coupling.name for coupling in self.plan.couplings])
-        read: dict[str, Motion | None] = {}
+        read: dict[str, JointNumbers | None] = {}
         for line in self.lines:
             root = line.root.name
             if root not in read:

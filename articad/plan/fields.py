@@ -27,7 +27,7 @@ NAME_RULE = (
 NUMBER_FORM = 'a finite number or an expression in quotes, such as 12.5 or "width / 2 - gap"'
 
 
-class Form(BaseModel):
+class PlanObject(BaseModel):
     """Base of every object in a plan: frozen, and without unknown keys."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", validate_by_name=True, validate_by_alias=True)

@@ -14,14 +14,14 @@ from typing import NamedTuple
 import numpy as np
 
 from articad.connectors import SE3, Connector, FloatArray, axis_findings, world_x
-from articad.plan.derive import DraftPart, Frame
+from articad.plan.derive import DraftConnector, DraftPart
 from articad.plan.evaluation import Evaluation, Triple
 
 _ACROSS_ZERO = 1e-9  # length of a projected x below which it has no direction: only where two z axes are far apart
 _PLAIN_LENGTH = 1e-3  # an axis this long is certainly one; shorter ones are looked at with care
 
 
-class Link(NamedTuple):
+class RestLink(NamedTuple):
     """A joint as far as rule 3 needs it.
 
     Attributes:
@@ -54,7 +54,7 @@ def read_frames(part: DraftPart, evaluation: Evaluation) -> None:
             evaluation.findings.extend(findings)
             if not findings.ok:
                 continue
-        frame = Frame(spec, where, np.array(o), _unit(np.array(z)), None if x is None else np.array(x))
+        frame = DraftConnector(spec, where, np.array(o), _unit(np.array(z)), None if x is None else np.array(x))
         if spec.frame == "assembly":
             if part.T is None:
                 continue
@@ -73,7 +73,7 @@ def _plainly_good(z: Triple, x: Triple | None) -> bool:
     return x is None or (math.hypot(*x) >= _PLAIN_LENGTH and x[0] * z[0] + x[1] * z[1] + x[2] * z[2] == 0.0)
 
 
-def settle(links: Iterable[Link], parts: Mapping[str, DraftPart]) -> None:
+def settle(links: Iterable[RestLink], parts: Mapping[str, DraftPart]) -> None:
     """Give an x to the connectors of these joints that have none, joint by joint in the order given."""
     for link in links:
         parent, child = (_side(part, connector, parts) for part, connector in (link.parent, link.child))
@@ -111,13 +111,13 @@ def finish(parts: Iterable[DraftPart]) -> None:
 class _Side:
     """One connector of a joint, seen from the assembly at rest."""
 
-    def __init__(self, part: DraftPart, frame: Frame | Connector) -> None:
+    def __init__(self, part: DraftPart, frame: DraftConnector | Connector) -> None:
         self.T = SE3.identity() if part.T is None else part.T
         self.frame = frame
 
     @property
     def x(self) -> FloatArray | None:
-        return self.frame.x if isinstance(self.frame, Frame) else self.frame.frame.x_axis
+        return self.frame.x if isinstance(self.frame, DraftConnector) else self.frame.frame.x_axis
 
     @property
     def world_x(self) -> FloatArray:
@@ -126,7 +126,7 @@ class _Side:
 
     @property
     def world_z(self) -> FloatArray:
-        return self.T.rotate(self.frame.z if isinstance(self.frame, Frame) else self.frame.frame.z_axis)
+        return self.T.rotate(self.frame.z if isinstance(self.frame, DraftConnector) else self.frame.frame.z_axis)
 
     def choose(self) -> None:
         """Take the world axis least parallel to z."""
@@ -134,7 +134,7 @@ class _Side:
 
     def take(self, x: FloatArray) -> None:
         """Take this direction of the assembly's frame, projected across z; the world axis if nothing is left of it."""
-        assert isinstance(self.frame, Frame)
+        assert isinstance(self.frame, DraftConnector)
         z = self.world_z
         across = x - (x @ z) * z
         self.frame.x = _across(self.T.inverse().rotate(x if across @ across > _ACROSS_ZERO**2 else world_x(z)), self.frame.z)

@@ -6,13 +6,13 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Discriminator, Field, Tag
 
-from articad.plan.fields import CoordinatePair, Form, Interval, Name, Number, NumberPair, Range, Reference, Truth
+from articad.plan.fields import CoordinatePair, Interval, Name, Number, NumberPair, PlanObject, Range, Reference, Truth
 
 MateName = Literal["aligned", "opposed"]
 Contact = Literal["allowed", "required", "forbidden"]
 
 
-class Fit(Form):
+class FitSpec(PlanObject):
     """How closely the two parts of a joint fit."""
 
     gap_mm: Interval | None = Field(
@@ -22,7 +22,7 @@ class Fit(Form):
     contact: Contact | None = None
 
 
-class JointForm(Form):
+class JointForm(PlanObject):
     """What all joints state."""
 
     name: Name
@@ -31,7 +31,7 @@ class JointForm(Form):
     child: Reference
     mate: MateName = Field("aligned", description="aligned: the two z axes agree at rest; opposed: they point against each other")
     driver: Truth = Field(default=False, description="Only with loops or couplings: a joint that is moved, the others follow")
-    fit: Fit | None = None
+    fit: FitSpec | None = None
     effort_n_mm: Number | None = Field(None, description="Largest torque of a turning joint")
     velocity_deg_s: Number | None = Field(None, description="Largest speed of a turning joint")
     effort_n: Number | None = Field(None, description="Largest force of a sliding joint")
@@ -110,14 +110,14 @@ class FreeSpec(JointForm):
     type: Literal["free"]
 
 
-class JointDerivation(Form):
+class JointDerivation(PlanObject):
     """The joint that a derived one copies."""
 
     source: Name = Field(alias="from")
     op: Literal["mirror", "rigid"]
 
 
-class DerivedJoint(Form):
+class DerivedJoint(PlanObject):
     """A joint copied from another, with the signs that a mirror needs."""
 
     name: Name
@@ -152,7 +152,7 @@ AnyJoint = Annotated[
 ]
 
 
-class CouplingForm(Form):
+class CouplingForm(PlanObject):
     """What all couplings state."""
 
     name: Name
@@ -212,7 +212,7 @@ __all__ = [
     "CouplingSpec",
     "CylindricalSpec",
     "DerivedJoint",
-    "Fit",
+    "FitSpec",
     "FixedSpec",
     "FreeSpec",
     "GearSpec",

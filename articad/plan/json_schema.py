@@ -14,6 +14,7 @@ from articad.plan.schema import SCHEMA, AssemblyPlan
 _DIALECT = "https://json-schema.org/draft/2020-12/schema"
 _REPEATED = 5  # a field that so many objects have is defined once …
 _WORTH_SHARING = 60  # … if its text is longer than a reference to it
+_RENAMED = {"FitSpec": "Fit", "MaterialSpec": "Material"}  # class -> definition
 _DROPPED = ("title", "default", "discriminator")  # titles repeat keys; null defaults say nothing; the other is not JSON Schema
 
 
@@ -26,7 +27,7 @@ def json_schema() -> dict[str, Any]:
 @lru_cache(maxsize=1)
 def _compact() -> dict[str, Any]:
     raw = AssemblyPlan.model_json_schema(by_alias=True, ref_template="#/$defs/{model}")
-    definitions = {**raw.pop("$defs"), **SHARED_DEFINITIONS}
+    definitions = {_RENAMED.get(name, name): definition for name, definition in raw.pop("$defs").items()} | SHARED_DEFINITIONS
     schema = _cleaned(raw)
     schema["description"] = str(schema["description"]).split("\n", maxsplit=1)[0]
     cleaned = {name: _demanding(_cleaned(definition)) for name, definition in sorted(definitions.items())}
@@ -69,6 +70,9 @@ def _cleaned(node: Any) -> Any:
     }
     if SHARED in cleaned:
         cleaned["$ref"] = f"#/$defs/{cleaned.pop(SHARED)}"
+    if "$ref" in cleaned:
+        path, _, name = str(cleaned["$ref"]).rpartition("/")
+        cleaned["$ref"] = f"{path}/{_RENAMED.get(name, name)}"
     options = cleaned.get("anyOf")
     if isinstance(options, list) and {"type": "null"} in options:
         others = [option for option in options if option != {"type": "null"}]

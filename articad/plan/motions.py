@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from articad.kinematics.joints import JointLimits, JointType
 from articad.plan.evaluation import Evaluation
-from articad.plan.schema import BallSpec, Fit, JointForm, JointSpec, ScrewSpec
+from articad.plan.schema import BallSpec, FitSpec, JointForm, JointSpec, ScrewSpec
 
 TWO_TURNS = 720.0  # degrees beyond which a turning joint's limit is hardly meant; screws turn more
 RADIANS_UP_TO = 6.3  # a full turn in radians is 6.283: limits that all stay below look like radians
@@ -40,7 +40,7 @@ AXES: dict[JointType, tuple[_Axis, ...]] = {
 
 
 @dataclass(frozen=True)
-class Motion:
+class JointNumbers:
     """A joint's numbers [rad, mm], not yet between any connectors.
 
     Attributes:
@@ -64,7 +64,7 @@ class Motion:
         """Angle [rad] about z by which the rest value turns the child; balls, planar, universal and free joints rest at zero."""
         return sum(value for value, unit in zip(self.rest, self.type.units, strict=True) if unit == "rad")
 
-    def mirrored(self) -> Motion:
+    def mirrored(self) -> JointNumbers:
         """Return the motion of the mirror image (kinematics: derive): signs of the type, and a screw's hand."""
         signs = self.type.mirror_signs()
         rest = tuple(float(value * sign) + 0.0 for value, sign in zip(self.rest, signs, strict=True))
@@ -77,7 +77,7 @@ def _without_minus_zero(values: tuple[float, ...]) -> tuple[float, ...]:
     return tuple(value + 0.0 for value in values)
 
 
-def motion(form: JointSpec, evaluation: Evaluation) -> Motion | None:
+def motion(form: JointSpec, evaluation: Evaluation) -> JointNumbers | None:
     """Return a joint's motion, reporting what is wrong with it; None if a number of it is missing or not one."""
     where, joint_type = f"joints.{form.name}", JointType(form.type)
     effort, velocity = _capacity(form, joint_type, where, evaluation)
@@ -93,7 +93,7 @@ def motion(form: JointSpec, evaluation: Evaluation) -> Motion | None:
         limits, rest = _limits(form, joint_type, where, evaluation)
     if limits is None or math.isnan(lead) or any(map(math.isnan, rest)):
         return None
-    return Motion(joint_type, limits, rest, lead, effort, velocity)
+    return JointNumbers(joint_type, limits, rest, lead, effort, velocity)
 
 
 def _limits(form: JointForm, joint_type: JointType, where: str, evaluation: Evaluation) -> tuple[JointLimits | None, tuple[float, ...]]:
@@ -229,7 +229,7 @@ def _capacity(
     return efforts, velocities
 
 
-def checked_fit(form: Fit, where: str, evaluation: Evaluation) -> tuple[float | None, float | None, float | None]:
+def checked_fit(form: FitSpec, where: str, evaluation: Evaluation) -> tuple[float | None, float | None, float | None]:
     """Return gap_min, gap_max and within [mm] of a fit, reporting a range that is impossible."""
     low = high = within = None
     if form.gap_mm is not None:

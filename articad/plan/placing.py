@@ -11,7 +11,7 @@ from articad.kinematics.tree import KinematicTree
 from articad.plan import frames
 from articad.plan.derive import DraftPart, JointLine, inherit, place
 from articad.plan.evaluation import Evaluation
-from articad.plan.motions import Motion
+from articad.plan.motions import JointNumbers
 from articad.plan.schema import PartSpec, Pose
 
 
@@ -36,7 +36,7 @@ class Placing:
         parts: Mapping[str, DraftPart],
         in_order: Sequence[DraftPart],
         lines: Sequence[JointLine],
-        motions: Mapping[str, Motion],
+        motions: Mapping[str, JointNumbers],
         ground: str,
         tree: KinematicTree | None,
         evaluation: Evaluation,
@@ -132,8 +132,8 @@ class Placing:
     def settle_frames(self) -> None:
         """Choose every x that is not stated (rule 3), and finish all connectors."""
         links = {line.name: self._link(line) for line in self.lines}
-        plain: list[frames.Link] = []
-        rest: list[frames.Link] = []
+        plain: list[frames.RestLink] = []
+        rest: list[frames.RestLink] = []
         for line in self.lines:
             ends = line.ends
             derived = any(part in self.parts and self.parts[part].derived for part, _ in ends)
@@ -154,10 +154,10 @@ class Placing:
             frames.settle_alone(part)
         frames.finish(others)
 
-    def _link(self, line: JointLine) -> frames.Link:
+    def _link(self, line: JointLine) -> frames.RestLink:
         parent, child = line.ends
         known = self.motions.get(line.name)
-        return frames.Link(parent, child, known.turn_at_rest if known else 0.0)
+        return frames.RestLink(parent, child, known.turn_at_rest if known else 0.0)
 
     def _mate(self, joint: str) -> Mate:
         return Mate(next(line.root.mate for line in self.lines if line.name == joint))

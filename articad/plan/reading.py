@@ -14,10 +14,10 @@ from pydantic_core import ErrorDetails
 from articad.errors import PlanError, ReadError, did_you_mean
 from articad.files import PLAN_BYTES, read_file
 from articad.findings import Finding, Findings
-from articad.plan.fields import NAME_RULE, Form, is_name
+from articad.plan.fields import NAME_RULE, PlanObject, is_name
 from articad.plan.joint_forms import JOINT_TYPES, JointForm
 
-F = TypeVar("F", bound=Form)
+F = TypeVar("F", bound=PlanObject)
 Location = tuple[str | int, ...]
 
 MOST_LEVELS: Final = 100  # of lists and objects within each other; a plan has ten
@@ -140,7 +140,7 @@ def _finding(code: str, where: str, message: str, hint: str) -> Finding:
 # ---------------------------------------------------------------- one of pydantic's errors
 
 
-def _translated(form: type[Form], document: Any, detail: ErrorDetails) -> Finding:
+def _translated(form: type[PlanObject], document: Any, detail: ErrorDetails) -> Finding:
     """Return the finding of one of pydantic's errors, in the words of the plan."""
     kind, context = detail["type"], detail.get("ctx") or {}
     location, owner, raw_owner = _resolved(form, document, detail["loc"], kind)
@@ -181,7 +181,7 @@ def _wrong_value(where: str, key: str, value: Any, detail: ErrorDetails, *, on_j
     return _finding("E_SCHEMA", where, f"{key} cannot be {_shown(value)}.", hint)
 
 
-def _missing(where: str, key: str, owner: type[Form] | None) -> Finding:
+def _missing(where: str, key: str, owner: type[PlanObject] | None) -> Finding:
     field = _field(owner, key)
     purpose = field.description if field else None
     hint = f"Add {key!r}{': ' + purpose if purpose else ''}."
@@ -191,7 +191,7 @@ def _missing(where: str, key: str, owner: type[Form] | None) -> Finding:
     return _finding("E_SCHEMA", where, f"{key!r} is missing.", hint)
 
 
-def _unknown_key(where: str, key: str, owner: type[Form] | None, raw_owner: Any) -> Finding:
+def _unknown_key(where: str, key: str, owner: type[PlanObject] | None, raw_owner: Any) -> Finding:
     allowed = _keys(owner) if owner else []
     if owner is not None and issubclass(owner, JointForm) and key in _LIMIT_KEYS:
         kind = raw_owner.get("type") if isinstance(raw_owner, Mapping) else None
@@ -230,12 +230,12 @@ def _is_key(detail: ErrorDetails) -> bool:
 # ---------------------------------------------------------------- places
 
 
-def _resolved(form: type[Form], document: Any, loc: Location, kind: str) -> tuple[Location, type[Form] | None, Any]:
+def _resolved(form: type[PlanObject], document: Any, loc: Location, kind: str) -> tuple[Location, type[PlanObject] | None, Any]:
     """Return the place of an error without the tags of unions, the form that holds it, and that form's raw value."""
     node: Any = document
-    owner: type[Form] | None = form
+    owner: type[PlanObject] | None = form
     raw_owner: Any = document
-    candidates: list[type[Form]] = []
+    candidates: list[type[PlanObject]] = []
     kept: list[str | int] = []
     for step in loc:
         if isinstance(step, int) and isinstance(node, Sequence):
@@ -256,7 +256,7 @@ def _resolved(form: type[Form], document: Any, loc: Location, kind: str) -> tupl
     return tuple(kept), owner, raw_owner
 
 
-def _chosen(candidates: list[type[Form]], raw: Mapping[str, Any]) -> type[Form] | None:
+def _chosen(candidates: list[type[PlanObject]], raw: Mapping[str, Any]) -> type[PlanObject] | None:
     """Return the form of a union that a raw object is meant to be."""
     for candidate in candidates:
         if ("derive" in candidate.model_fields) != ("derive" in raw) and any("derive" in other.model_fields for other in candidates):
@@ -267,8 +267,8 @@ def _chosen(candidates: list[type[Form]], raw: Mapping[str, Any]) -> type[Form] 
     return None
 
 
-def _forms_in(annotation: Any) -> Iterator[type[Form]]:
-    if isinstance(annotation, type) and issubclass(annotation, Form):
+def _forms_in(annotation: Any) -> Iterator[type[PlanObject]]:
+    if isinstance(annotation, type) and issubclass(annotation, PlanObject):
         yield annotation
     elif get_origin(annotation) in {Annotated, Union, UnionType, tuple, dict}:
         for argument in get_args(annotation):
@@ -281,7 +281,7 @@ def _field(owner: type[BaseModel] | None, key: str) -> Any:
     return next((field for name, field in owner.model_fields.items() if key in {name, field.alias}), None)
 
 
-def _keys(owner: type[Form]) -> list[str]:
+def _keys(owner: type[PlanObject]) -> list[str]:
     return [field.alias or name for name, field in owner.model_fields.items()]
 
 

@@ -12,7 +12,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Discriminator, Field, Tag
 
 from articad.plan import reading, writing
-from articad.plan.fields import Color, Form, Name, NamePair, Number, Text, Truth, Vector, Whole
+from articad.plan.fields import Color, Name, NamePair, Number, PlanObject, Text, Truth, Vector, Whole
 from articad.plan.joint_forms import (
     AnyJoint,
     BallSpec,
@@ -20,7 +20,7 @@ from articad.plan.joint_forms import (
     CouplingSpec,
     CylindricalSpec,
     DerivedJoint,
-    Fit,
+    FitSpec,
     FixedSpec,
     FreeSpec,
     GearSpec,
@@ -45,7 +45,7 @@ ConnectorKind = Literal[
 ]
 
 
-class Parameter(Form):
+class Parameter(PlanObject):
     """A named number that expressions use."""
 
     name: Name
@@ -56,7 +56,7 @@ class Parameter(Form):
     description: Text = ""
 
 
-class Material(Form):
+class MaterialSpec(PlanObject):
     """What parts are made of."""
 
     name: Name
@@ -65,7 +65,7 @@ class Material(Form):
     friction: Number = 0.6
 
 
-class Pose(Form):
+class Pose(PlanObject):
     """A rigid motion: p becomes R(p - about) + about + at."""
 
     at: Vector = Field((0.0, 0.0, 0.0), description="Shift in mm")
@@ -74,7 +74,7 @@ class Pose(Form):
     angle_deg: Number = 0.0
 
 
-class ConnectorSpec(Form):
+class ConnectorSpec(PlanObject):
     """A named frame on a part, where a joint attaches."""
 
     name: Name
@@ -95,7 +95,7 @@ def _rest_pose_tag(value: Any) -> str:
 RestPose = Annotated[Annotated[Pose, Tag("pose")] | Annotated[Literal["auto"], Tag("auto")], Discriminator(_rest_pose_tag)]
 
 
-class PartSpec(Form):
+class PartSpec(PlanObject):
     """A part that a script builds."""
 
     name: Name
@@ -113,14 +113,14 @@ class PartSpec(Form):
     kernel: KernelName | None = None
 
 
-class MirrorPlane(Form):
+class MirrorPlane(PlanObject):
     """A plane in the assembly's frame."""
 
     point: Vector
     normal: Vector
 
 
-class MirrorDerivation(Form):
+class MirrorDerivation(PlanObject):
     """The mirror image of a part."""
 
     source: Name = Field(alias="from")
@@ -128,7 +128,7 @@ class MirrorDerivation(Form):
     plane: MirrorPlane
 
 
-class RigidDerivation(Form):
+class RigidDerivation(PlanObject):
     """The same part elsewhere."""
 
     source: Name = Field(alias="from")
@@ -136,7 +136,7 @@ class RigidDerivation(Form):
     move: Pose = Field(description="In the assembly's frame, after the source's rest pose")
 
 
-class PatternDerivation(Form):
+class PatternDerivation(PlanObject):
     """Parts NAME_1 ... NAME_count, the i-th moved by step i times."""
 
     source: Name = Field(alias="from")
@@ -145,7 +145,7 @@ class PatternDerivation(Form):
     step: Pose
 
 
-class DerivedPart(Form):
+class DerivedPart(PlanObject):
     """A part with the geometry of another: no script of its own."""
 
     name: Name
@@ -162,7 +162,7 @@ def _part_tag(value: Any) -> str:
 AnyPart = Annotated[Annotated[PartSpec, Tag("part")] | Annotated[DerivedPart, Tag("derived")], Discriminator(_part_tag)]
 
 
-class Allow(Form):
+class Allow(PlanObject):
     """An overlap that is meant."""
 
     parts: NamePair
@@ -170,7 +170,7 @@ class Allow(Form):
     reason: Text
 
 
-class AssemblyPlan(Form):
+class AssemblyPlan(PlanObject):
     """A whole plan: parts with connectors, and the joints between them.
 
     Attributes:
@@ -189,7 +189,7 @@ class AssemblyPlan(Form):
     tree: Truth = Field(default=False, description="true asserts that the joints close no loop")
     kernel: KernelName = "build123d"
     parameters: tuple[Parameter, ...] = ()
-    materials: tuple[Material, ...]
+    materials: tuple[MaterialSpec, ...]
     parts: tuple[AnyPart, ...]
     joints: tuple[AnyJoint, ...]
     couplings: tuple[CouplingSpec, ...] = ()
@@ -256,7 +256,7 @@ __all__ = [
     "CylindricalSpec",
     "DerivedJoint",
     "DerivedPart",
-    "Fit",
+    "FitSpec",
     "FixedSpec",
     "FreeSpec",
     "GearSpec",
@@ -264,7 +264,7 @@ __all__ = [
     "JointSpec",
     "KernelName",
     "LinearSpec",
-    "Material",
+    "MaterialSpec",
     "MirrorDerivation",
     "MirrorPlane",
     "Parameter",

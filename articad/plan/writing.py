@@ -8,24 +8,24 @@ import tempfile
 from pathlib import Path
 from typing import Any
 
-from articad.plan.fields import Form
+from articad.plan.fields import PlanObject
 
 _LINE = 140  # a value that fits in a line is written in one
 _WHOLE = 2.0**53  # above this a float no longer holds every whole number
 
 
-def to_json(form: Form) -> dict[str, Any]:
+def to_json(form: PlanObject) -> dict[str, Any]:
     """Return the JSON object of a form: defaults left out, whole numbers as integers."""
     plain: dict[str, Any] = _plain(form.model_dump(mode="python", by_alias=True, exclude_defaults=True))
     return plain
 
 
-def dumps(form: Form) -> str:
+def dumps(form: PlanObject) -> str:
     """Return the canonical text of a form, ending in a newline."""
     return _laid_out(to_json(form), 0, 0) + "\n"
 
 
-def save(form: Form, path: Path, default_name: str) -> Path:
+def save(form: PlanObject, path: Path, default_name: str) -> Path:
     """Write the canonical text to a file, or to the default name in an existing folder; a reader never sees half of it."""
     file = path / default_name if path.is_dir() else path
     handle, temporary = tempfile.mkstemp(dir=file.parent, prefix=f".{file.name}.")

@@ -16,14 +16,14 @@ from articad.render.pictures import (
     render_views,
 )
 from articad.render.raycast import Buffers, cast
-from articad.render.scene import Item, Scene, Section
+from articad.render.scene import DrawnMesh, DrawnScene, Section
 
 __all__ = [
     "VIEWS",
     "Buffers",
     "Camera",
-    "Item",
-    "Scene",
+    "DrawnMesh",
+    "DrawnScene",
     "Section",
     "before_after",
     "best_view",

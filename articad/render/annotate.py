@@ -11,7 +11,7 @@ from PIL import Image, ImageDraw, ImageFont
 
 from articad.render.camera import Camera
 from articad.render.raycast import BACKGROUND, Buffers
-from articad.render.scene import Axis, Scene
+from articad.render.scene import AxisMark, DrawnScene
 
 FloatArray = NDArray[np.float64]
 Color = tuple[int, int, int]
@@ -43,7 +43,7 @@ _AXIS_SHARE = 0.13  # of the picture's width, to each side of the joint
 
 
 def annotate(
-    image: Image.Image, scene: Scene, camera: Camera, buffers: Buffers, *, labels: Labels, axes: bool, title: str | None
+    image: Image.Image, scene: DrawnScene, camera: Camera, buffers: Buffers, *, labels: Labels, axes: bool, title: str | None
 ) -> Image.Image:
     """Return the picture with its annotations; `buffers` may have more pixels than the picture."""
     draw = ImageDraw.Draw(image)
@@ -103,7 +103,7 @@ def _place(
     _text(draw, (left, top), text, color)
 
 
-def room_beside(scene: Scene) -> int:
+def room_beside(scene: DrawnScene) -> int:
     """Return the width of the column on each side of a picture whose names stand aside [pixels]."""
     names = {item.name for item in scene.items} | {axis.name for axis in scene.axes}
     return min(max((math.ceil(_measured(name)) for name in names), default=0), _WIDEST_NAME) + 10
@@ -136,7 +136,7 @@ def _columns(draw: ImageDraw.ImageDraw, names: list[_Name], camera: Camera) -> N
             _text(draw, (x, top), text, color)
 
 
-def _part_names(scene: Scene, camera: Camera, buffers: Buffers, most: int) -> list[_Name]:
+def _part_names(scene: DrawnScene, camera: Camera, buffers: Buffers, most: int) -> list[_Name]:
     """Return the names of the parts of which most is seen, and where; small ones are left out where names would hide the picture."""
     ratio = buffers.item.shape[1] / camera.width
     by_name: dict[str, list[int]] = {}
@@ -174,7 +174,7 @@ def _rings(draw: ImageDraw.ImageDraw, camera: Camera, buffers: Buffers, taken: l
 
 
 def _joint_axis(
-    draw: ImageDraw.ImageDraw, axis: Axis, camera: Camera, taken: list[tuple[float, float, float, float]]
+    draw: ImageDraw.ImageDraw, axis: AxisMark, camera: Camera, taken: list[tuple[float, float, float, float]]
 ) -> tuple[tuple[float, float], tuple[float, float]]:
     """Draw a joint's axis and its positive motion; return where its name belongs, and a point of the axis."""
     direction = np.array(axis.direction)

@@ -22,7 +22,7 @@ from articad.render.annotate import Labels, annotate, room_beside
 from articad.render.camera import Camera
 from articad.render.overlaps import overlap_meshes
 from articad.render.raycast import cast
-from articad.render.scene import Scene, Section, scene_of
+from articad.render.scene import DrawnScene, Section, scene_of
 from articad.render.shade import overlaid, reduced, shade
 
 if TYPE_CHECKING:
@@ -49,7 +49,7 @@ _GIF_MILLISECONDS = 60
 
 
 def picture(
-    scene: Scene,
+    scene: DrawnScene,
     camera: Camera,
     *,
     supersample: int = 2,
@@ -122,7 +122,7 @@ def render_views(
     if explode:
         scene = scene.exploded(explode)
     cut = Section.parse(section, scene.bounds) if isinstance(section, str) else section
-    scene = Scene(scene.items, scene.axes, cut)
+    scene = DrawnScene(scene.items, scene.axes, cut)
     beside = room_beside(scene) if labels == "aside" else 0
     return {
         view: picture(
@@ -222,7 +222,7 @@ def render_motion(
     ]
 
 
-def best_view(scenes: Sequence[Scene], candidates: Sequence[str] = MOTION_VIEWS) -> str:
+def best_view(scenes: Sequence[DrawnScene], candidates: Sequence[str] = MOTION_VIEWS) -> str:
     """Return the view that shows a motion best: what moves goes far across the picture, and much of it is seen to change.
 
     Both are measured in millimetres: a view that is nearer because the product is slim from there shows no more.
@@ -248,7 +248,9 @@ def best_view(scenes: Sequence[Scene], candidates: Sequence[str] = MOTION_VIEWS)
     return max(candidates, key=shown)
 
 
-def before_after(before: Scene, after: Scene, view: str = "iso", *, size: int = DEFAULT_SIZE, supersample: int = 2) -> Image.Image:
+def before_after(
+    before: DrawnScene, after: DrawnScene, view: str = "iso", *, size: int = DEFAULT_SIZE, supersample: int = 2
+) -> Image.Image:
     """Return two scenes side by side, drawn with one camera at one scale."""
     camera = Camera.fit(view, _envelope([before, after]), width=size, height=size)
     pair = [picture(scene, camera, supersample=supersample, title=title) for scene, title in ((before, "before"), (after, "after"))]
@@ -344,25 +346,25 @@ def _require_pyvista() -> None:
         )
 
 
-def _displacement(before: Scene, after: Scene) -> float:
+def _displacement(before: DrawnScene, after: DrawnScene) -> float:
     return sum(
         float(a.T_ground.distance_to(b.T_ground) + a.T_ground.angle_to(b.T_ground)) for a, b in zip(before.items, after.items, strict=True)
     )
 
 
-def _envelope(scenes: Sequence[Scene]) -> FloatArray:
+def _envelope(scenes: Sequence[DrawnScene]) -> FloatArray:
     """Return the box that holds every scene [mm], `(2, 3)`."""
     return np.array([np.min([scene.bounds[0] for scene in scenes], axis=0), np.max([scene.bounds[1] for scene in scenes], axis=0)])
 
 
-def _motion_scenes(assembly: Assembly, joint: str, q: FloatArray) -> list[Scene]:
+def _motion_scenes(assembly: Assembly, joint: str, q: FloatArray) -> list[DrawnScene]:
     """Return the scene of each configuration, with what stands still in all of them faded."""
     poses = [_poses(assembly, row) for row in q]
     moving = [name for name in assembly.parts if not all(poses[0][name].allclose(pose[name]) for pose in poses)]
     return [scene_of(assembly.parts, pose, joints=_of(assembly.joints, joint), only=moving or None) for pose in poses]
 
 
-def _shown(scenes: Sequence[Scene]) -> FloatArray:
+def _shown(scenes: Sequence[DrawnScene]) -> FloatArray:
     """Return the box that pictures of a motion show: all of it, or only the surroundings of what moves where that is small."""
     whole = _envelope(scenes)
     moving = [replace(scene, items=tuple(item for item in scene.items if item.manner == "solid")) for scene in scenes]

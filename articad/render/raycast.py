@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from articad.render.camera import Camera
-from articad.render.scene import Scene
+from articad.render.scene import DrawnScene
 
 FloatArray = NDArray[np.float64]
 FloatImage = NDArray[np.float32]
@@ -25,7 +25,7 @@ class Buffers:
     """What the rays of a picture met.
 
     Attributes:
-        item: Index into `Scene.items`, `BACKGROUND` where nothing is, `(height, width)`.
+        item: Index into `DrawnScene.items`, `BACKGROUND` where nothing is, `(height, width)`.
         depth: Distance in front of (negative: nearer than) the plane through the camera's centre [mm]; inf for background.
         normal: Unit normal towards the viewer, `(height, width, 3)`; zero for background.
         cut: True where the section plane cuts through a solid.
@@ -39,7 +39,7 @@ class Buffers:
     over: IndexImage
 
 
-def cast(scene: Scene, camera: Camera) -> Buffers:
+def cast(scene: DrawnScene, camera: Camera) -> Buffers:
     """Send one ray through the centre of each pixel.
 
     Vertices are taken relative to the camera's centre before they become float32, so that a scene far from the origin is
@@ -67,7 +67,7 @@ def cast(scene: Scene, camera: Camera) -> Buffers:
     )
 
 
-def _kept_interval(scene: Scene, camera: Camera, origins: FloatArray, end: FloatArray) -> tuple[FloatArray, FloatArray]:
+def _kept_interval(scene: DrawnScene, camera: Camera, origins: FloatArray, end: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return from where to where each ray runs through the half-space that a section keeps."""
     assert scene.section is not None
     normal = np.array(scene.section.normal) / np.linalg.norm(scene.section.normal)
@@ -84,7 +84,7 @@ def _kept_interval(scene: Scene, camera: Camera, origins: FloatArray, end: Float
 
 
 def _first_hits(
-    scene: Scene, indices: list[int], camera: Camera, origins: FloatArray, start: FloatArray, end: FloatArray, *, step: float
+    scene: DrawnScene, indices: list[int], camera: Camera, origins: FloatArray, start: FloatArray, end: FloatArray, *, step: float
 ) -> tuple[IndexImage, FloatArray, FloatArray, NDArray[np.bool_]]:
     """Return item, distance, normal and whether the ray began inside the item, for each ray."""
     count = len(origins)
@@ -122,7 +122,7 @@ def _first_hits(
 
 
 @lru_cache(maxsize=4)  # one scene is drawn from several sides; its tree costs as much as a picture
-def _embree_scene(scene: Scene, indices: tuple[int, ...], centre: tuple[float, ...]) -> Any:
+def _embree_scene(scene: DrawnScene, indices: tuple[int, ...], centre: tuple[float, ...]) -> Any:
     # Embree costs 0.1 s to load and is not on every platform.
     from embreex import rtcore_scene  # noqa: PLC0415
     from embreex.mesh_construction import TriangleMesh  # noqa: PLC0415

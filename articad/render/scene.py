@@ -20,7 +20,7 @@ Manner = Literal["solid", "faded", "highlight"]
 
 
 @dataclass(frozen=True, eq=False)
-class Item:
+class DrawnMesh:
     """One mesh in the ground frame.
 
     Attributes:
@@ -76,7 +76,7 @@ class Section:
 
 
 @dataclass(frozen=True)
-class Axis:
+class AxisMark:
     """A joint's axis to be drawn: where it is, along what, and what it is called."""
 
     name: str
@@ -86,7 +86,7 @@ class Axis:
 
 
 @dataclass(frozen=True)
-class Scene:
+class DrawnScene:
     """Items, and what is drawn over them.
 
     Attributes:
@@ -95,8 +95,8 @@ class Scene:
         section: Cutting plane, or None.
     """
 
-    items: tuple[Item, ...]
-    axes: tuple[Axis, ...] = ()
+    items: tuple[DrawnMesh, ...]
+    axes: tuple[AxisMark, ...] = ()
     section: Section | None = field(default=None)
 
     @cached_property
@@ -107,7 +107,7 @@ class Scene:
             return np.array([[-0.5] * 3, [0.5] * 3])
         return np.array([np.min([c.min(axis=0) for c in corners], axis=0), np.max([c.max(axis=0) for c in corners], axis=0)])
 
-    def exploded(self, factor: float) -> Scene:
+    def exploded(self, factor: float) -> DrawnScene:
         """Return the scene with every item moved away from the middle by `factor` times its own distance from it."""
         middle = self.bounds.mean(axis=0)
         moved = []
@@ -124,7 +124,7 @@ def scene_of(
     joints: Sequence[Joint] = (),
     only: Sequence[str] | None = None,
     highlights: Sequence[TriMesh] = (),
-) -> Scene:
+) -> DrawnScene:
     """Return the scene of parts in their poses.
 
     Args:
@@ -139,17 +139,17 @@ def scene_of(
         return "solid" if only is None or name in only else "faded"
 
     items = [
-        Item(name, shape.mesh, poses[name] @ shape.frame, shape.color or part.color, manner(name))
+        DrawnMesh(name, shape.mesh, poses[name] @ shape.frame, shape.color or part.color, manner(name))
         for name, part in parts.items()
         for shape in part.visuals or part.collisions
     ]
-    items += [Item(f"overlap {index + 1}", mesh, SE3.identity(), "#e5383b", "highlight") for index, mesh in enumerate(highlights)]
-    return Scene(tuple(items), axes=tuple(_axis(joint, poses) for joint in joints if joint.type.freedoms))
+    items += [DrawnMesh(f"overlap {index + 1}", mesh, SE3.identity(), "#e5383b", "highlight") for index, mesh in enumerate(highlights)]
+    return DrawnScene(tuple(items), axes=tuple(_axis(joint, poses) for joint in joints if joint.type.freedoms))
 
 
-def _axis(joint: Joint, poses: Mapping[str, SE3]) -> Axis:
+def _axis(joint: Joint, poses: Mapping[str, SE3]) -> AxisMark:
     frame = poses[joint.parent] @ joint.T_parent_connector
-    return Axis(
+    return AxisMark(
         joint.name,
         tuple(map(float, frame.translation)),  # type: ignore[arg-type]
         tuple(map(float, frame.z_axis)),  # type: ignore[arg-type]

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from articad.render.camera import Camera
 from articad.render.raycast import BACKGROUND, Buffers
-from articad.render.scene import Scene
+from articad.render.scene import DrawnScene
 
 FloatArray = NDArray[np.float64]
 Picture = NDArray[np.uint8]
@@ -25,7 +25,7 @@ _HATCH_PIXELS = 7  # distance of hatching lines on cut faces
 _OVER_OPACITY = 0.82
 
 
-def shade(scene: Scene, camera: Camera, buffers: Buffers) -> Picture:
+def shade(scene: DrawnScene, camera: Camera, buffers: Buffers) -> Picture:
     """Return the picture, `(height, width, 3)`."""
     colors = _legible(np.array([_rgb(item.color) for item in scene.items] or [[0.0, 0.0, 0.0]]))
     faded = np.array([item.manner == "faded" for item in scene.items] or [False])
@@ -44,7 +44,7 @@ def shade(scene: Scene, camera: Camera, buffers: Buffers) -> Picture:
     return overlaid(picture, scene, buffers)
 
 
-def overlaid(picture: NDArray[Any], scene: Scene, buffers: Buffers) -> Picture:
+def overlaid(picture: NDArray[Any], scene: DrawnScene, buffers: Buffers) -> Picture:
     """Return the picture with highlighted items drawn over everything, `(height, width, 3)`."""
     over = buffers.over != BACKGROUND
     if over.any():

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from articad.processes import launcher
 from articad.render.camera import Camera
-from articad.render.scene import Item, Scene
+from articad.render.scene import DrawnMesh, DrawnScene
 from articad.render.shade import INK, PAPER
 
 _PROBE_SECONDS = 60  # the first start of VTK on a slow disk
@@ -40,7 +40,7 @@ def _draws() -> bool:
     return bool(plotter.screenshot(return_img=True).min() < 250)
 
 
-def draw(scene: Scene, camera: Camera) -> NDArray[np.uint8]:
+def draw(scene: DrawnScene, camera: Camera) -> NDArray[np.uint8]:
     """Return the picture of a scene, `(height, width, 3)`, with the same camera as `articad.render.raycast`.
 
     Call it only where `available()` is true.
@@ -62,7 +62,7 @@ def draw(scene: Scene, camera: Camera) -> NDArray[np.uint8]:
     return pixels
 
 
-def _add(plotter: Any, pyvista: Any, item: Item, scene: Scene) -> None:
+def _add(plotter: Any, pyvista: Any, item: DrawnMesh, scene: DrawnScene) -> None:
     faces = np.hstack([np.full((len(item.mesh.triangles), 1), 3), item.mesh.triangles])
     surface = pyvista.PolyData(item.vertices, faces.ravel())
     if scene.section is not None and item.mesh.is_closed:

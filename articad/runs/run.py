@@ -456,7 +456,7 @@ class Run:
         folder = Path(_EXPORT) / kind
         for name, content in sorted(files.items()):
             if not (self.path / folder / name).resolve().is_relative_to((self.path / folder).resolve()):
-                raise RunError.told(self.path, f"{name} is outside {folder}.", "Export into the folder itself.")
+                raise RunError.at(self.path, f"{name} is outside {folder}.", "Export into the folder itself.")
             self._write(str(folder / name), content)
         self._write_json(str(folder / "losses.json"), report)
         return self.path / folder
@@ -570,7 +570,7 @@ class Run:
 
     def _require_lock(self) -> None:
         if self._lock is None:
-            raise RunError.told(self.path, f"{self.path} is open for reading only.", "Open it with Run.open.")
+            raise RunError.at(self.path, f"{self.path} is open for reading only.", "Open it with Run.open.")
 
 
 def write_atomically(path: Path, content: bytes) -> None:
@@ -622,7 +622,7 @@ def require_place(request: RunRequest, out: str | Path | None) -> None:
         return
     path = Path(out)
     if path.exists() and not path.is_dir():
-        raise RunError.told(path, f"{path} is a file; a run is a directory.", "Name a new directory with --out.")
+        raise RunError.at(path, f"{path} is a file; a run is a directory.", "Name a new directory with --out.")
     if not (path / REQUEST_FILE).exists():
         if path.is_dir() and (strangers := _strangers(path)):
             raise _not_empty(path, strangers)
@@ -633,7 +633,7 @@ def require_place(request: RunRequest, out: str | Path | None) -> None:
         task, own = there.options.get("task", "generate"), _words(there)
         repeat = f"repeat the command of the run: {own}" if own else f"resume it with `articad resume {path}`"
         message = f"{path} is a run of a different request, `articad {task}`{_difference(there, request)}."
-        raise RunError.told(path, message, f"Name another directory with --out, or {repeat}.")
+        raise RunError.at(path, message, f"Name another directory with --out, or {repeat}.")
 
 
 def _require_writable(path: Path) -> None:
@@ -660,7 +660,7 @@ def _strangers(path: Path) -> list[str]:
 
 
 def _not_empty(path: Path, strangers: Sequence[str]) -> RunError:
-    return RunError.told(path, f"{path} is not empty: it holds {strangers[0]}.", "Name a new directory with --out, or empty this one.")
+    return RunError.at(path, f"{path} is not empty: it holds {strangers[0]}.", "Name a new directory with --out, or empty this one.")
 
 
 def _difference(there: RunRequest, wanted: RunRequest) -> str:
@@ -698,7 +698,7 @@ def _new_directory(prompt: str) -> Path:
         path = DEFAULT_ROOT / f"{day}-{slug}-{secrets.token_hex(2)}"
         if not path.exists():
             return path
-    raise RunError.told(DEFAULT_ROOT, f"No free name for a run in {DEFAULT_ROOT}.", "Name a directory with --out.")
+    raise RunError.at(DEFAULT_ROOT, f"No free name for a run in {DEFAULT_ROOT}.", "Name a directory with --out.")
 
 
 def _require_plain(path: Path) -> None:
@@ -723,7 +723,7 @@ def _require_plain(path: Path) -> None:
                     waiting.append(entry)
                 elif not stat.S_ISREG(mode):
                     message = f"{entry} is neither a file nor a folder; a run holds nothing else."
-                    raise RunError.told(path, message, "Do not use this run, or remove what is in it.")
+                    raise RunError.at(path, message, "Do not use this run, or remove what is in it.")
 
 
 def _read_request(path: Path) -> RunRequest:
@@ -733,17 +733,17 @@ def _read_request(path: Path) -> RunRequest:
         hint = "Name a run directory."
         if (path / _PLAN).is_file() and stored is None:
             hint = f"It is a plan: build it first, by `articad build {path} --out RUN`, and name that run."
-        raise RunError.told(path, f"{path} is not a run: it has no {REQUEST_FILE} of the form {REQUEST_SCHEMA}.", hint)
+        raise RunError.at(path, f"{path} is not a run: it has no {REQUEST_FILE} of the form {REQUEST_SCHEMA}.", hint)
     try:
         prompt, options, named = stored["prompt"], stored["options"], [(image["file"], image.get("part")) for image in stored["images"]]
         whole = isinstance(prompt, str) and isinstance(options, dict) and all(isinstance(name, str) for name, _ in named)
     except (KeyError, TypeError, AttributeError):
         whole = False
     if not whole:
-        raise RunError.told(path, f"{path / REQUEST_FILE} is incomplete.", "Name another run directory.")
+        raise RunError.at(path, f"{path / REQUEST_FILE} is incomplete.", "Name another run directory.")
     for name, _ in named:  # a run may be a stranger's, and its pictures are sent to a model
         if not _IMAGE_FILE.fullmatch(name):
-            raise RunError.told(
+            raise RunError.at(
                 path, f"{path / REQUEST_FILE} names the picture {name[:100]!r}, which is not in the run.", "Do not use this run."
             )
     images = tuple(UserImage.read(path / name, None if part is None else str(part), path) for name, part in named)
@@ -758,7 +758,7 @@ def _locked(path: Path) -> int:
             fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError as error:
             os.close(handle)
-            raise RunError.told(path, f"Another process uses {path}.", "Wait for it to end, or name another directory.") from error
+            raise RunError.at(path, f"Another process uses {path}.", "Wait for it to end, or name another directory.") from error
         except OSError:  # pragma: no cover - a file system without locks: better unguarded than unusable
             pass
     return handle

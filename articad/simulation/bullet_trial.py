@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from articad.simulation.strokes import FREE_SLIDE_M, MOST_JOINTS, MOST_SPEED, PACE_M_S, PACE_RAD_S, STROKE_S, strokes
-from articad.simulation.verdict import Outcome, Reach, covered
+from articad.simulation.verdict import EngineOutcome, JointReach, covered
 
 STEPS_PER_S = 240
 HOLD_S = 1.0
@@ -36,13 +36,13 @@ class _Trial:
 
     bullet: Any
     client: int
-    outcome: Outcome
+    outcome: EngineOutcome
     bodies: list[int]
     rest: Mapping[str, float]
     mimics: Mapping[str, tuple[str, float, float]]
     opened: frozenset[str]
 
-    def run(self) -> Outcome:
+    def run(self) -> EngineOutcome:
         """Hold, then drive; return what was measured."""
         joints = list(self._joints())
         self._reset(joints)
@@ -71,7 +71,7 @@ class _Trial:
                 break
         return self.outcome
 
-    def _stroke(self, joint: _Joint, joints: list[_Joint]) -> Reach:
+    def _stroke(self, joint: _Joint, joints: list[_Joint]) -> JointReach:
         """Drive one joint over its range and hold the others."""
         self._reset(joints)
         targets = {other: other.start for other in joints}
@@ -85,7 +85,7 @@ class _Trial:
                 break
             here = self._value(joint)
             low, high = min(low, here), max(high, here)
-        return Reach(joint.name, joint.lower, joint.upper, low, high, covered(low, high, joint.lower, joint.upper), joint.unit)
+        return JointReach(joint.name, joint.lower, joint.upper, low, high, covered(low, high, joint.lower, joint.upper), joint.unit)
 
     def _joints(self) -> Iterator[_Joint]:
         """Yield hinges and slides; what is unlimited is driven through one turn or a little travel."""
@@ -135,7 +135,7 @@ def run(
     rest: Mapping[str, float] | None = None,
     mimics: Mapping[str, tuple[str, float, float]] | None = None,
     opened: frozenset[str] = frozenset(),
-) -> Outcome:
+) -> EngineOutcome:
     """Load, hold and drive a model; parts of one body do not collide, for PyBullet is asked as most people ask it.
 
     Args:
@@ -153,7 +153,7 @@ def run(
         else:
             bodies = list(bullet.loadMJCF(str(path), physicsClientId=client))
         return _Trial(
-            bullet, client, Outcome("pybullet", str(bullet.getAPIVersion(client))), bodies, rest or {}, mimics or {}, opened
+            bullet, client, EngineOutcome("pybullet", str(bullet.getAPIVersion(client))), bodies, rest or {}, mimics or {}, opened
         ).run()
     finally:
         bullet.disconnect(client)

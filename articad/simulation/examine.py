@@ -18,13 +18,13 @@ from articad.processes import scratch
 from articad.simulation.expected import held_to_kinematics
 from articad.simulation.loading import Engine
 from articad.simulation.trial import SECONDS, try_out
-from articad.simulation.verdict import Verdict
+from articad.simulation.verdict import SimulationVerdict
 
 ENGINES: tuple[Engine, ...] = ("mujoco", "pybullet")
 SIMULATED = (".urdf", ".xml", ".mjcf")
 
 
-def simulate_file(path: str | Path, *, engines: tuple[Engine, ...] = ENGINES, seconds: float = SECONDS) -> Verdict:
+def simulate_file(path: str | Path, *, engines: tuple[Engine, ...] = ENGINES, seconds: float = SECONDS) -> SimulationVerdict:
     """Hold, drive and let go the model of a URDF or MJCF file, as it stands.
 
     Args:
@@ -49,7 +49,7 @@ def simulate_file(path: str | Path, *, engines: tuple[Engine, ...] = ENGINES, se
         outcome = try_out(engine, path, root=root, rest=told.rest, opened=opened, mimics=told.mimics, seconds=seconds)
         outcome.open_loops = told.equalities if engine == "pybullet" and told.equalities else told.loops
         outcomes.append(outcome)
-    return Verdict(str(path), tuple(outcomes))
+    return SimulationVerdict(str(path), tuple(outcomes))
 
 
 class _Told(NamedTuple):
@@ -108,7 +108,9 @@ def _mimics(root: Any) -> dict[str, tuple[str, float, float]]:
     return found
 
 
-def simulate_assembly(assembly: Assembly, file: str, *, engines: tuple[Engine, ...] = ENGINES, seconds: float = SECONDS) -> Verdict:
+def simulate_assembly(
+    assembly: Assembly, file: str, *, engines: tuple[Engine, ...] = ENGINES, seconds: float = SECONDS
+) -> SimulationVerdict:
     """Export an assembly and hold, drive and let go what was exported: MJCF in MuJoCo, URDF in PyBullet, which leaves loops open."""
     drivers = driving(assembly)
     outcomes = []
@@ -123,7 +125,7 @@ def simulate_assembly(assembly: Assembly, file: str, *, engines: tuple[Engine, .
             else:
                 outcome.open_loops = len(assembly.mechanism.loop_joints)
             outcomes.append(outcome)
-    return Verdict(file, tuple(outcomes))
+    return SimulationVerdict(file, tuple(outcomes))
 
 
 def driving(assembly: Assembly) -> tuple[str, ...]:

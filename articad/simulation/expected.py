@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from articad.assembly import Assembly
-from articad.export.lowering import Freedom, LoweredModel, lower
+from articad.export.lowering import AxisMotion, LoweredModel, lower
 from articad.kinematics.configuration import Configuration
-from articad.simulation.verdict import SHARE, Outcome, Reach, covered
+from articad.simulation.verdict import SHARE, EngineOutcome, JointReach, covered
 
 FloatArray = NDArray[np.float64]
 
@@ -18,7 +18,7 @@ STEPS = 181  # of a driver's way: what lies farther between two of them is far l
 MM_PER_M = 1000.0
 
 
-def held_to_kinematics(assembly: Assembly, outcome: Outcome) -> Outcome:
+def held_to_kinematics(assembly: Assembly, outcome: EngineOutcome) -> EngineOutcome:
     """Return the outcome with followers held to what their drivers bring them to, and drivers told what their loops allow.
 
     Args:
@@ -42,24 +42,26 @@ def held_to_kinematics(assembly: Assembly, outcome: Outcome) -> Outcome:
     return replace(outcome, reaches=[_held(reach, brought, allowed) for reach in outcome.reaches if _known(reach, brought)])
 
 
-def _known(reach: Reach, brought: dict[str, tuple[float, float]]) -> bool:
+def _known(reach: JointReach, brought: dict[str, tuple[float, float]]) -> bool:
     """False for followers that are no joint of ours: bodies that a format needs to close a loop."""
     return reach.role != "follower" or reach.joint in brought
 
 
-def _held(reach: Reach, brought: dict[str, tuple[float, float]], allowed: dict[str, tuple[float, float]]) -> Reach:
+def _held(reach: JointReach, brought: dict[str, tuple[float, float]], allowed: dict[str, tuple[float, float]]) -> JointReach:
     if reach.role == "follower":
         low, high = brought[reach.joint]
         return replace(reach, lower=low, upper=high, share=covered(reach.low, reach.high, low, high))
     return replace(reach, allowed=allowed.get(reach.joint))
 
 
-def _ways(assembly: Assembly, model: LoweredModel, column: str, reach: Reach) -> tuple[tuple[float, float], dict[str, tuple[float, float]]]:
+def _ways(
+    assembly: Assembly, model: LoweredModel, column: str, reach: JointReach
+) -> tuple[tuple[float, float], dict[str, tuple[float, float]]]:
     """Return how far a driver goes of what it was driven over, and how far that brings every joint [rad or m]."""
     scale = MM_PER_M if reach.unit == "m" else 1.0
     free = assembly.feasible_range(column)
     low, high = max(free.lower, reach.lower * scale), min(free.upper, reach.upper * scale)
-    way = assembly.motion(column, low, high, steps=STEPS).configuration
+    way = assembly.drive(column, low, high, steps=STEPS).configuration
     ways = {name: (float(values.min()), float(values.max())) for name, values in _values(model, way).items()}
     return (low / scale, high / scale), ways
 
@@ -68,7 +70,7 @@ def _values(model: LoweredModel, way: Configuration) -> dict[str, FloatArray]:
     """Return the values of all one-freedom joints along a way [rad or m]."""
     found: dict[str, FloatArray] = {}
     names = [name for joint in way.joints for name in joint.column_names]
-    freedoms: list[Freedom] = [freedom for joint in (*model.joints, *model.loops) for freedom in joint.freedoms]
+    freedoms: list[AxisMotion] = [freedom for joint in (*model.joints, *model.loops) for freedom in joint.freedoms]
     for freedom in freedoms:
         if freedom.column is not None:
             values = way.columns[:, names.index(freedom.column)]

@@ -9,8 +9,8 @@ import numpy as np
 
 from articad.connectors.se3 import SE3
 from articad.render import Camera, filmstrip, picture, png
-from articad.render.scene import Scene, scene_of
-from articad.simulation.verdict import Frame, Outcome
+from articad.render.scene import DrawnScene, scene_of
+from articad.simulation.verdict import EngineOutcome, FilmFrame
 
 if TYPE_CHECKING:
     from articad.assembly import Assembly
@@ -21,7 +21,7 @@ SIZE = 240  # pixels of a frame
 _SUFFIXES = {"travel": "__t", "angle": "__r", "x": "__x", "y": "__y", "a": "__rx", "b": "__ry"}
 
 
-def film(assembly: Assembly, outcome: Outcome, *, size: int = SIZE) -> bytes | None:
+def film(assembly: Assembly, outcome: EngineOutcome, *, size: int = SIZE) -> bytes | None:
     """Return a filmstrip as PNG; None when nothing moved.
 
     Args:
@@ -40,12 +40,12 @@ def film(assembly: Assembly, outcome: Outcome, *, size: int = SIZE) -> bytes | N
     return png(filmstrip(pictures))
 
 
-def _chosen(frames: list[Frame]) -> list[Frame]:
+def _chosen(frames: list[FilmFrame]) -> list[FilmFrame]:
     """Return at most so many frames, those of some joints in whole rather than bits of all."""
     return frames[:MOST_FRAMES]
 
 
-def _scene(assembly: Assembly, frame: Frame) -> Scene:
+def _scene(assembly: Assembly, frame: FilmFrame) -> DrawnScene:
     q = np.array(assembly.mechanism.rest, dtype=np.float64)
     for column, driver in enumerate(assembly.drivers):
         value = _value(driver, frame)
@@ -55,7 +55,7 @@ def _scene(assembly: Assembly, frame: Frame) -> Scene:
     return scene_of(assembly.parts, dict(zip(assembly.mechanism.parts, poses, strict=True)))
 
 
-def _value(driver: Coordinate, frame: Frame) -> float | None:
+def _value(driver: Coordinate, frame: FilmFrame) -> float | None:
     """Return a driver's value [rad, mm] among those of the engine's joints [rad, m]."""
     joint, _, coordinate = driver.name.partition(".")
     names = (driver.name, joint + _SUFFIXES.get(coordinate or "angle", ""), joint)
@@ -63,7 +63,7 @@ def _value(driver: Coordinate, frame: Frame) -> float | None:
     return None if value is None or driver.unit == "1" else value * (1000.0 if driver.unit == "mm" else 1.0)
 
 
-def _shown(assembly: Assembly, frame: Frame) -> str:
+def _shown(assembly: Assembly, frame: FilmFrame) -> str:
     value = frame.values.get(frame.joint, 0.0)
     slides = any(driver.unit == "mm" and driver.name.partition(".")[0] == frame.joint.partition("__")[0] for driver in assembly.drivers)
     return f"{value * 1000:.1f} mm" if slides and not frame.joint.endswith("__r") else f"{math.degrees(value):.1f}°"

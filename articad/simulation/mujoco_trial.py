@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from articad.simulation.strokes import FREE_SLIDE_M, MOST_JOINTS, MOST_SPEED, PACE_M_S, PACE_RAD_S, STROKE_S, strokes
-from articad.simulation.verdict import Frame, Outcome, Reach, Role, covered
+from articad.simulation.verdict import EngineOutcome, FilmFrame, JointReach, Role, covered
 
 FloatArray = NDArray[np.float64]
 
@@ -50,7 +50,7 @@ class Trial:
 
     model: Any
     data: Any
-    outcome: Outcome
+    outcome: EngineOutcome
     start: FloatArray = field(default_factory=lambda: np.zeros(0))
     rest: Mapping[str, float] = field(default_factory=dict)
     mimics: Mapping[str, tuple[str, float, float]] = field(default_factory=dict)
@@ -69,12 +69,12 @@ class Trial:
         """
         model = mujoco.MjModel.from_xml_path(str(path))
         model.opt.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_ACTUATION)
-        trial = cls(model, mujoco.MjData(model), Outcome("mujoco", str(mujoco.__version__)), rest=rest or {}, mimics=mimics or {})
+        trial = cls(model, mujoco.MjData(model), EngineOutcome("mujoco", str(mujoco.__version__)), rest=rest or {}, mimics=mimics or {})
         trial.reset()
         trial.start = np.array(trial.data.qpos)
         return trial
 
-    def run(self, drivers: tuple[str, ...] | None = None, opened: frozenset[str] = frozenset()) -> Outcome:
+    def run(self, drivers: tuple[str, ...] | None = None, opened: frozenset[str] = frozenset()) -> EngineOutcome:
         """Hold, drive and let go; return what was measured.
 
         Args:
@@ -139,14 +139,14 @@ class Trial:
                 self.outcome.reaches.append(self._reach(joint, number, role, strokes_made))
                 self.outcome.reaches += self._followed(joint, number, strokes_made)
 
-    def _reach(self, joint: int, number: int, role: Role, made: dict[int, Stroke]) -> Reach:
+    def _reach(self, joint: int, number: int, role: Role, made: dict[int, Stroke]) -> JointReach:
         """Return how far a joint came in any stroke of its loop."""
         lower, upper, unit = self._range(joint)
         at = self.model.jnt_qposadr[joint]
         low, high = min(float(stroke.low[at]) for stroke in made.values()), max(float(stroke.high[at]) for stroke in made.values())
         share = covered(low, high, lower, upper)
         blocker = made[joint].blocker if joint in made and share < 1 else ""
-        return Reach(self._name(joint), lower, upper, low, high, share, unit, blocker, role, None if role == "free" else number)
+        return JointReach(self._name(joint), lower, upper, low, high, share, unit, blocker, role, None if role == "free" else number)
 
     def _leader(self, joint: int) -> int | None:
         """Return the hinge or slide that leads a joint by <mimic>; None where nothing does."""
@@ -159,7 +159,7 @@ class Trial:
         """Return the joints that follow one, each with its multiplier and offset."""
         return [(one, *self.mimics[self._name(one)][1:]) for one in self._single_joints() if self._leader(one) == joint]
 
-    def _followed(self, leader: int, number: int, made: dict[int, Stroke]) -> list[Reach]:
+    def _followed(self, leader: int, number: int, made: dict[int, Stroke]) -> list[JointReach]:
         """Return how far those came that follow a leader, of what it brings them to."""
         lower, upper, _ = self._range(leader)
         found = []
@@ -198,7 +198,7 @@ class Trial:
             if abs(value - here) > lag:
                 lag, blocker = abs(value - here), self._contact(joint)
             if step in shown:
-                self.outcome.frames.append(Frame(self._name(joint), self._values()))
+                self.outcome.frames.append(FilmFrame(self._name(joint), self._values()))
         return Stroke(low, high, blocker)
 
     def _let_go(self) -> None:

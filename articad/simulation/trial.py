@@ -11,7 +11,7 @@ from pathlib import Path
 from articad.kernels import sandbox
 from articad.processes import launcher
 from articad.simulation.loading import FILE_SIZE, MEMORY, Engine, answer_in, load, places
-from articad.simulation.verdict import Outcome
+from articad.simulation.verdict import EngineOutcome
 
 SECONDS = 300.0
 
@@ -26,7 +26,7 @@ def try_out(
     opened: tuple[str, ...] = (),
     mimics: Mapping[str, tuple[str, float, float]] | None = None,
     seconds: float = SECONDS,
-) -> Outcome:
+) -> EngineOutcome:
     """Have an engine load a model and move it, in a process of its own with bounded time and memory.
 
     Args:
@@ -41,7 +41,7 @@ def try_out(
     """
     loading = load(engine, path, root=root)
     if not loading.loads:
-        return Outcome(engine, loading.version, loads=loading.loads, message=loading.message)
+        return EngineOutcome(engine, loading.version, loads=loading.loads, message=loading.message)
     words = [
         engine,
         *places(path, root),
@@ -53,11 +53,11 @@ def try_out(
     limits = launcher.Limits(seconds=seconds, memory=MEMORY, file_size=FILE_SIZE)
     ended = launcher.run(words, module="articad.simulation.trial", limits=limits)
     if ended.late:
-        return Outcome(engine, loading.version, loads=False, message=f"it was not done after {seconds:g} s")
+        return EngineOutcome(engine, loading.version, loads=False, message=f"it was not done after {seconds:g} s")
     try:
-        return Outcome.from_json(answer_in(ended.out))
+        return EngineOutcome.from_json(answer_in(ended.out))
     except (ValueError, IndexError, TypeError):
-        return Outcome(engine, loading.version, loads=False, message=f"its process ended with {ended.how}")
+        return EngineOutcome(engine, loading.version, loads=False, message=f"its process ended with {ended.how}")
 
 
 def main(arguments: list[str]) -> int:

@@ -19,7 +19,7 @@ Role = Literal["free", "driver", "follower", "tied"]
 
 
 @dataclass(frozen=True)
-class Reach:
+class JointReach:
     """How far a joint came.
 
     Attributes:
@@ -55,7 +55,7 @@ def covered(low: float, high: float, lower: float, upper: float) -> float:
 
 
 @dataclass(frozen=True)
-class Frame:
+class FilmFrame:
     """A moment worth showing: which joint was driven, and the values of all [rad, m]."""
 
     joint: str
@@ -63,7 +63,7 @@ class Frame:
 
 
 @dataclass
-class Outcome:
+class EngineOutcome:
     """Measurements of one engine.
 
     Attributes:
@@ -94,21 +94,21 @@ class Outcome:
     exploded: bool = False
     residual: float = 0.0
     energy_growth: float | None = None
-    reaches: list[Reach] = field(default_factory=list)
+    reaches: list[JointReach] = field(default_factory=list)
     untried: int = 0
-    frames: list[Frame] = field(default_factory=list)
+    frames: list[FilmFrame] = field(default_factory=list)
     open_loops: int = 0
     passed_over: tuple[str, ...] = ()
 
     @property
-    def judged(self) -> list[Reach]:
+    def judged(self) -> list[JointReach]:
         """Joints that have to reach their range.
 
         Of a loop whose drivers nobody has named, any joint may be one that only follows: the joint that comes farthest stands for all.
         Where a driver falls short, that is told of the driver, not of all that follow it.
         """
         short = {reach.loop for reach in self.reaches if reach.role == "driver" and reach.share < SHARE}
-        best: dict[int | None, Reach] = {}
+        best: dict[int | None, JointReach] = {}
         for reach in self.reaches:
             if reach.role == "tied" and (reach.loop not in best or reach.share > best[reach.loop].share):
                 best[reach.loop] = reach
@@ -123,20 +123,20 @@ class Outcome:
         return row
 
     @classmethod
-    def from_json(cls, row: dict[str, Any]) -> Outcome:
+    def from_json(cls, row: dict[str, Any]) -> EngineOutcome:
         """Return what another process measured."""
-        reaches = [Reach(**reach | {"allowed": reach.get("allowed") and tuple(reach["allowed"])}) for reach in row.pop("reaches", [])]
-        frames = [Frame(**frame) for frame in row.pop("frames", [])]
+        reaches = [JointReach(**reach | {"allowed": reach.get("allowed") and tuple(reach["allowed"])}) for reach in row.pop("reaches", [])]
+        frames = [FilmFrame(**frame) for frame in row.pop("frames", [])]
         passed_over = tuple(row.pop("passed_over", ()))
         return cls(**row, reaches=reaches, frames=frames, passed_over=passed_over)
 
 
 @dataclass(frozen=True)
-class Verdict:
+class SimulationVerdict:
     """The verdict on one model."""
 
     file: str
-    outcomes: tuple[Outcome, ...]
+    outcomes: tuple[EngineOutcome, ...]
 
     @property
     def findings(self) -> Findings:
@@ -159,7 +159,7 @@ class Verdict:
         }
 
 
-def _findings(outcome: Outcome) -> Iterator[Finding]:
+def _findings(outcome: EngineOutcome) -> Iterator[Finding]:
     name = {"mujoco": "MuJoCo", "pybullet": "PyBullet"}.get(outcome.engine, outcome.engine)
     if outcome.loads is None:
         return
@@ -227,7 +227,7 @@ def _findings(outcome: Outcome) -> Iterator[Finding]:
         )
 
 
-def _short_reaches(outcome: Outcome, engine: str) -> Iterator[Finding]:
+def _short_reaches(outcome: EngineOutcome, engine: str) -> Iterator[Finding]:
     """Joints that do not reach their range."""
     for reach in outcome.judged:
         if reach.share >= SHARE:
@@ -253,7 +253,7 @@ def _short_reaches(outcome: Outcome, engine: str) -> Iterator[Finding]:
         )
 
 
-def _advice(reach: Reach) -> str:
+def _advice(reach: JointReach) -> str:
     if reach.allowed is not None and covered(reach.low, reach.high, *reach.allowed) >= SHARE:
         return "Declare the range that the loop allows; `articad check` says what ends it."
     if reach.blocker:

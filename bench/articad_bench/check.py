@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from articad.errors import ArticadError
-from articad.plan.fields import Form
+from articad.plan.fields import PlanObject
 from articad_bench.subject import Subject
 
 Bounds = tuple[float, float]
@@ -35,7 +35,7 @@ class Judgement:
         return {"kind": self.kind, "ok": self.ok, "wanted": self.wanted, "measured": self.measured}
 
 
-class Check(Form):
+class Check(PlanObject):
     """Base of all checks."""
 
     kind: str

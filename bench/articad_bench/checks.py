@@ -21,7 +21,7 @@ from articad.connectors import FloatArray
 from articad.interference.captivity import escapes
 from articad.interference.gauge import Gauge
 from articad.kinematics.joints import Joint, JointType
-from articad.plan.fields import Form
+from articad.plan.fields import PlanObject
 from articad.plan.resolve import Fit
 from articad.simulation.examine import simulate_assembly, simulate_file
 from articad_bench.check import Bounds, Vector, in_words
@@ -36,7 +36,7 @@ STROKE: Final = 9  # values of a driver at which what follows it is measured
 CLOSED_MM: Final = 1e-6
 
 
-class JointWanted(Form):
+class JointWanted(PlanObject):
     """Which joints are meant: by type, direction of axis at rest and range."""
 
     type: JointType
@@ -228,7 +228,7 @@ class ClearInMotion(Check):
         return f"no collision at {self.steps} poses of each driver"
 
     def measured(self, subject: Subject) -> tuple[bool, str]:
-        found = _bare(subject.assembly).sweep(steps=self.steps)
+        found = _bare(subject.assembly).check_motion(steps=self.steps)
         return found.ok and bool(_moving(subject)), "; ".join(finding.message for finding in found.findings.errors[:3]) or "none"
 
 

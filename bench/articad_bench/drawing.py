@@ -21,7 +21,7 @@ from articad.kinematics.joints import Joint, JointType
 from articad.render.annotate import font
 from articad.render.camera import Camera
 from articad.render.raycast import cast
-from articad.render.scene import Item, Scene, scene_of
+from articad.render.scene import DrawnMesh, DrawnScene, scene_of
 from articad.render.shade import reduced, shade
 from articad_bench.subject import Subject
 from articad_bench.task import Drawing
@@ -90,13 +90,15 @@ def _palette() -> Image.Image:
     return palette
 
 
-def _scene(subject: Subject) -> Scene:
+def _scene(subject: Subject) -> DrawnScene:
     scene = scene_of(subject.assembly.parts, subject.rest)
     order = {name: index for index, name in enumerate(dict.fromkeys(item.name for item in scene.items))}
-    return Scene(tuple(Item(item.name, item.mesh, item.T_ground, _SHADES[order[item.name] % len(_SHADES)]) for item in scene.items))
+    return DrawnScene(
+        tuple(DrawnMesh(item.name, item.mesh, item.T_ground, _SHADES[order[item.name] % len(_SHADES)]) for item in scene.items)
+    )
 
 
-def _cameras(scene: Scene, views: Sequence[str]) -> list[Camera]:
+def _cameras(scene: DrawnScene, views: Sequence[str]) -> list[Camera]:
     """Return the views' cameras; those straight on have one scale."""
     cameras = [Camera.fit(view, scene.bounds, width=PANE, height=PANE) for view in views]
     straight = max((camera.mm_per_pixel for view, camera in zip(views, cameras, strict=True) if view in _ALONG), default=1.0)
@@ -107,7 +109,7 @@ def _cameras(scene: Scene, views: Sequence[str]) -> list[Camera]:
     ]
 
 
-def _view(scene: Scene, view: str, camera: Camera, kinds: Sequence[JointKind], measured: set[str]) -> Image.Image:
+def _view(scene: DrawnScene, view: str, camera: Camera, kinds: Sequence[JointKind], measured: set[str]) -> Image.Image:
     fine = camera.scaled(_FINE)
     image = Image.fromarray(reduced(shade(scene, fine, cast(scene, fine)), _FINE))
     draw = ImageDraw.Draw(image)

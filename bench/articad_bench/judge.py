@@ -16,11 +16,11 @@ from typing import Any, Final, Self
 
 from pydantic import Field
 
-from articad.agents.forms import Form, ask, reader, schema_of
 from articad.agents.inspection import MOTIONS
 from articad.agents.llm import LLM, Image, Message, Reply, Request, system, user
 from articad.agents.pictures import assembly_picture, motion_picture, part_picture
 from articad.agents.prompts import prompt
+from articad.agents.replies import ReplyForm, ask, reader, schema_of
 from articad.errors import ArticadError, OutputError, TransportError
 from articad.runs.run import digest, write_atomically
 from articad_bench.scoring import model_of, subject_of
@@ -39,14 +39,14 @@ Judges = Mapping[str, Callable[[], LLM]]
 """Who scores: by name of the model, what gives it, once for each task."""
 
 
-class Scored(Form):
+class Scored(ReplyForm):
     """A score from 1 to 5, and why."""
 
     score: int = Field(ge=1, le=5, strict=True)
     reason: str = Field(min_length=1)
 
 
-class Opinion(Form):
+class Opinion(ReplyForm):
     """A judge's answer; the order of its fields is the order in which it is thought."""
 
     parts: str

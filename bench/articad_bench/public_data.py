@@ -279,4 +279,4 @@ def _beside(file: Path) -> tuple[str, ...]:
 
 
 def _refused(path: Path, message: str) -> ReadError:
-    return ReadError.told(path, message, "See `articad_bench.public_data` for the layouts that are known.", said=message)
+    return ReadError.at(path, message, "See `articad_bench.public_data` for the layouts that are known.", said=message)

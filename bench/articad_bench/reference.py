@@ -26,7 +26,7 @@ def reference_folder(folder: Path, task: Task) -> Path:
         ReadError: If it has none.
     """
     if task.reference is None:
-        raise ReadError.told(folder, f"{task.name} has no reference solution.", "Give it one: reference/plan.json and reference/parts/.")
+        raise ReadError.at(folder, f"{task.name} has no reference solution.", "Give it one: reference/plan.json and reference/parts/.")
     if task.reference.startswith(_EXAMPLE):
         return examples.folder(task.reference.removeprefix(_EXAMPLE))
     return folder / task.reference
@@ -60,7 +60,7 @@ def edited_reference(
     """
     edit = task.edit
     if edit is None or not (edit.values or edit.reference):
-        raise ReadError.told(folder, f"{task.name} has no edit that its reference makes.", "Give edit.values or edit.reference.")
+        raise ReadError.at(folder, f"{task.name} has no edit that its reference makes.", "Give edit.values or edit.reference.")
     if edit.reference is None:
         return before.with_parameters(**edit.values)
     place = folder / edit.reference

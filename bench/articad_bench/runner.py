@@ -15,9 +15,9 @@ from pathlib import Path
 from typing import Any
 
 from articad.agents.edit import edit
-from articad.agents.generation import REPAIRS
 from articad.agents.line import ROUNDS
 from articad.agents.llm import LLM
+from articad.agents.part_writer import REPAIRS
 from articad.agents.pipeline import Variant, generate
 from articad.agents.retrieval import Memory
 from articad.agents.review import trajectory

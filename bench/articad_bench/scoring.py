@@ -70,7 +70,7 @@ def model_of(name: str, folder: Path) -> Path:
     files = [file for suffix in formats.readable() for file in sorted(place.rglob(f"*{suffix}"))]
     if not files:
         message = f"There is no model of {name} in {folder}."
-        raise ReadError.told(folder, message, f"Write {name}.urdf there, for instance.", said=message)
+        raise ReadError.at(folder, message, f"Write {name}.urdf there, for instance.", said=message)
     return files[0]
 
 

@@ -37,7 +37,7 @@ from typing import Any, Final, Literal
 from pydantic import Field, ValidationError
 
 from articad.errors import ReadError, did_you_mean
-from articad.plan.fields import Form
+from articad.plan.fields import PlanObject
 from articad_bench.checks import AnyCheck, Judgement
 from articad_bench.subject import Subject
 
@@ -51,7 +51,7 @@ _MOVING: Final = frozenset({"freedoms", "joints", "loops", "ratio", "rise", "tra
 """Kinds of checks that say that something moves."""
 
 
-class Drawing(Form):
+class Drawing(PlanObject):
     """How a task's picture is drawn from its reference solution, by `articad bench draw`.
 
     Attributes:
@@ -67,7 +67,7 @@ class Drawing(Form):
     notes: tuple[str, ...] = ()
 
 
-class Edit(Form):
+class Edit(PlanObject):
     """A change that is asked for once the product stands; every check must hold again with its new numbers.
 
     Attributes:
@@ -83,7 +83,7 @@ class Edit(Form):
     reference: str | None = None
 
 
-class Task(Form):
+class Task(PlanObject):
     """One task of the benchmark.
 
     Attributes:
@@ -148,13 +148,13 @@ def read_task(folder: str | Path) -> Task:
     try:
         return Task.model_validate(json.loads(file.read_text(encoding="utf-8")))
     except OSError as error:
-        raise ReadError.told(file, f"There is no task: {error.strerror}.", "Name a folder with a task.json.") from error
+        raise ReadError.at(file, f"There is no task: {error.strerror}.", "Name a folder with a task.json.") from error
     except ValidationError as error:
         first: Any = error.errors()[0]
         where = ".".join(str(step) for step in first["loc"])
-        raise ReadError.told(file, f"{where}: {first['msg']}.", "Correct the field.") from error
+        raise ReadError.at(file, f"{where}: {first['msg']}.", "Correct the field.") from error
     except ValueError as error:
-        raise ReadError.told(file, f"It is no JSON: {error}.", "Correct it there.") from error
+        raise ReadError.at(file, f"It is no JSON: {error}.", "Correct it there.") from error
 
 
 def write_task(task: Task, folder: Path, *, beside: Path) -> tuple[Path, Task]:
@@ -182,7 +182,7 @@ def tasks_in(folder: str | Path = TASKS, *, names: Sequence[str] = (), kind: Kin
     found = {task.name: (path, task) for path, task in _all(Path(folder))}
     for name in names:
         if name not in found:
-            raise ReadError.told(
+            raise ReadError.at(
                 Path(folder), f"There is no task {name!r}.", did_you_mean(name, list(found)).strip() or f"There are {len(found)} tasks."
             )
     return [found[name] for name in (names or sorted(found)) if kind is None or found[name][1].kind == kind]

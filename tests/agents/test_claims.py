@@ -10,8 +10,8 @@ from typing import Any
 
 import pytest
 
-from articad.agents.generation import ROLE, messages_after, opening
 from articad.agents.llm import Request, Scripted
+from articad.agents.part_writer import ROLE, messages_after, opening
 from articad.agents.pipeline import generate
 from articad.agents.rollback import Router
 from articad.findings import Finding

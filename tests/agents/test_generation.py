@@ -10,8 +10,8 @@ from typing import Any
 
 import pytest
 
-from articad.agents.generation import ROLE, Attempt, messages_after, opening, specification
 from articad.agents.llm import LLM, Image, Request
+from articad.agents.part_writer import ROLE, Attempt, messages_after, opening, specification
 from articad.agents.pipeline import generate
 from articad.agents.requirements import Requirements
 from articad.agents.retrieval import NoDocumentation, NoMemory, Recalled

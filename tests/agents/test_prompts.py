@@ -26,7 +26,7 @@ from articad.agents.rollback import Decisions
 from articad.kinematics.joints import JointType
 from articad.plan.check import check_plan
 from articad.plan.expressions import FUNCTIONS
-from articad.plan.fields import Form
+from articad.plan.fields import PlanObject
 from articad.plan.joint_forms import COUPLING_TYPES, JOINT_TYPES
 from articad.plan.schema import AssemblyPlan, ConnectorKind, ConnectorSpec, PartSpec
 from articad.render import VIEWS
@@ -56,12 +56,12 @@ def test_the_example_says_of_each_part_every_dimension_that_it_has() -> None:
             assert missing == [], part.name
 
 
-def forms(root: type[Form]) -> set[type[Form]]:
+def forms(root: type[PlanObject]) -> set[type[PlanObject]]:
     """All forms that a plan can hold."""
-    found: set[type[Form]] = set()
+    found: set[type[PlanObject]] = set()
 
     def visit(annotation: object) -> None:
-        if isinstance(annotation, type) and issubclass(annotation, Form) and annotation not in found:
+        if isinstance(annotation, type) and issubclass(annotation, PlanObject) and annotation not in found:
             found.add(annotation)
             for field in annotation.model_fields.values():
                 visit(field.annotation)

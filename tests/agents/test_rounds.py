@@ -12,8 +12,8 @@ from typing import Any
 import pytest
 
 from articad.agents.design import _DIALECTS, Designer
-from articad.agents.generation import _EXAMPLES
 from articad.agents.llm import Image, Replay, Request, Scripted, closed_port, require_open_port
+from articad.agents.part_writer import _EXAMPLES
 from articad.agents.pipeline import generate, replay
 from articad.agents.requirements import Requirements
 from articad.errors import ContractError, TransportError

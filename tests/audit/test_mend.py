@@ -18,7 +18,7 @@ from articad.geometry.mesh_files import read_mesh, write_glb, write_stl
 from articad.geometry.shapes import box
 from articad.simulation.loading import load
 from articad.simulation.trial import try_out
-from articad.simulation.verdict import Verdict
+from articad.simulation.verdict import SimulationVerdict
 from tests.assemblies import all_joint_kinds
 from tests.audit import defects
 
@@ -104,7 +104,7 @@ def test_everything_else_that_needs_no_guess_is_mended(mended: Mended) -> None:
 
 
 def test_the_mended_model_loads_and_moves_in_mujoco(mended: Mended) -> None:
-    verdict = Verdict("mended", (try_out("mujoco", mended.file),))
+    verdict = SimulationVerdict("mended", (try_out("mujoco", mended.file),))
 
     assert verdict.ok, str(verdict.findings)
     (outcome,) = verdict.outcomes

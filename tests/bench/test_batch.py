@@ -20,7 +20,7 @@ import pytest
 
 from articad import __version__
 from articad.batches.batch import calls_of, read_batch, run_dask, run_local, summary
-from articad.batches.items import ITEM, Item, Json, make
+from articad.batches.items import ITEM, BatchItem, Json, make
 from articad.batches.pool import Worker
 from articad.cli import main
 from articad.errors import ReadError
@@ -40,8 +40,8 @@ def plan(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-def lifts(plan: Path, *values: float, **options: Any) -> list[Item]:
-    return [Item(str(plan), {"lift": value}, **options) for value in values]
+def lifts(plan: Path, *values: float, **options: Any) -> list[BatchItem]:
+    return [BatchItem(str(plan), {"lift": value}, **options) for value in values]
 
 
 def test_an_item_is_checked_exported_and_not_made_twice(plan: Path, tmp_path: Path) -> None:

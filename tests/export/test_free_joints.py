@@ -258,7 +258,7 @@ def test_a_free_base_is_held_at_rest_by_sweeps_and_certificates_which_say_so() -
     assembly = walker()
     assert assembly.mechanism.mobility == 7
     assert assembly.mechanism.driving_joints == ("shoulder",)
-    swept = assembly.sweep(steps=20)
+    swept = assembly.check_motion(steps=20)
     assert [finding.code for finding in swept.findings.errors] == ["E_MOTION_COLLISION"]
     assert {name for check in swept.pairs for name in check.over} == {"shoulder"}
     free = replace_limits(assembly, "shoulder", (-0.2, 0.2))

@@ -40,7 +40,7 @@ def placed(numbers: list[float]) -> SE3:
 def test_joints_of_a_document_fit_the_places_of_its_parts(seed: int, tmp_path: Path) -> None:
     assembly = assembled(with_digits(reframed(four_bar(), seed), 3, 4))
     assert assembly.mechanism.correction is not None
-    told = Job(assembly, tmp_path).told()
+    told = Job(assembly, tmp_path).to_json()
     places = {part["name"]: placed(part["placement"]) for part in told["parts"]}
     systems = {(part["name"], one["name"]): placed(one["placement"]) for part in told["parts"] for one in part["connectors"]}
     for joint in told["joints"]:
@@ -53,7 +53,7 @@ def test_joints_of_a_document_fit_the_places_of_its_parts(seed: int, tmp_path: P
 
 
 def test_exact_connectors_have_no_offsets(tmp_path: Path) -> None:
-    told = Job(assembled(reframed(four_bar(), 0)), tmp_path).told()
+    told = Job(assembled(reframed(four_bar(), 0)), tmp_path).to_json()
     assert all(placed(joint["offset_1"]) == SE3.identity() for joint in told["joints"])
 
 

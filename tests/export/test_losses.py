@@ -74,7 +74,7 @@ def test_a_loss_of_a_joint_kind_is_always_reported(kind: str, writer: Any) -> No
 @pytest.mark.parametrize("kind", JOINTS)
 def test_a_loss_of_a_joint_kind_in_freecad_is_always_reported(kind: str, tmp_path: Path) -> None:
     job = Job(pair(JOINTS[kind]), tmp_path)
-    job.told()
+    job.to_json()
     row = TABLE[kind]["freecad"]
     meshes = [f"parts.{part}: {TABLE['freecad.mesh']['freecad'].lost}" for part in ("base", "part")]
 
@@ -84,7 +84,7 @@ def test_a_loss_of_a_joint_kind_in_freecad_is_always_reported(kind: str, tmp_pat
 
 def test_a_coupling_of_freecad_is_a_loss(tmp_path: Path) -> None:
     job = Job(geared_pair(), tmp_path)
-    job.told()
+    job.to_json()
 
     assert [loss.where for loss in job.losses if loss.refused] == ["couplings.mesh", "couplings.pinion"]
 

@@ -52,7 +52,7 @@ def _declared_order(joint: lowering.LoweredJoint) -> lowering.LoweredJoint:
 
 
 def _screw(factor: float) -> Any:
-    def freedom(joint: Joint, *args: Any) -> lowering.Freedom:
+    def freedom(joint: Joint, *args: Any) -> lowering.AxisMotion:
         found = FREEDOM(joint, *args)
         return found if found.follows is None else replace(found, axis=found.axis * factor)
 
@@ -97,7 +97,7 @@ def _forgetful_metres(metres: Callable[[SE3], SE3]) -> Callable[[SE3], SE3]:
     return lambda T: metres(SE3.from_quaternion(T.quaternion))
 
 
-def _joint_with_axis_against(freedom: lowering.Freedom, **options: bool) -> dict[str, str]:
+def _joint_with_axis_against(freedom: lowering.AxisMotion, **options: bool) -> dict[str, str]:
     return JOINT(replace(freedom, axis=-freedom.axis), **options)
 
 

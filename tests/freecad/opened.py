@@ -52,7 +52,7 @@ def steps(content: bytes, *wanted: Json, freecad: FreeCAD | None = None) -> list
         folder = Path(scratch)
         (folder / "it.FCStd").write_bytes(content)
         (folder / "job.json").write_text(json.dumps({"file": "it.FCStd", "steps": wanted}))
-        ended = (freecad or freecad_install.find()).run(EXAMINE, folder=folder, limits=freecad_install.Limits(seconds=600.0))
+        ended = (freecad or freecad_install.find()).run(EXAMINE, folder=folder, limits=freecad_install.FreeCADLimits(seconds=600.0))
         assert (folder / "report.json").is_file(), ended.said
         report: Json = json.loads((folder / "report.json").read_text())
     return list(report["steps"])

@@ -24,10 +24,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from articad.agents.design import judged
-from articad.agents.forms import reader
 from articad.agents.inspection import Judgement, Look, Observations
 from articad.agents.llm import Replay, Request
-from articad.agents.replies import object_text, parse_script
+from articad.agents.replies import object_text, parse_script, reader
 from articad.agents.requirements import Requirements
 from articad.agents.rollback import Decisions
 from articad.certificates.verifier import verify_file
@@ -42,8 +41,8 @@ from articad.kernels.build123d import Build123dKernel
 from articad.kernels.contract import probe_findings, read_connectors, solid_findings
 from articad.kernels.failures import script_failure
 from articad.kernels.freecad import tree_findings
-from articad.kernels.sandbox import Limits
-from articad.kernels.zygote import Outcome
+from articad.kernels.sandbox import ScriptLimits
+from articad.kernels.zygote import JobOutcome
 from articad.memory.experience import ExperienceStore
 from articad.plan.check import check_plan
 from articad.plan.expressions import parse
@@ -159,7 +158,7 @@ def worker(content: bytes) -> None:
     with _file(".report", content) as path, contextlib.suppress(results.PoisonedError, ArticadError):
         lines = results.read_lines(path)
         said = lines[0] if lines else {}
-        script_failure("part", "x = 1\n", lines, Outcome(0, 0, late=False, peak=0), str(said.get("crash")), Limits())
+        script_failure("part", "x = 1\n", lines, JobOutcome(0, 0, late=False, peak=0), str(said.get("crash")), ScriptLimits())
         findings: list[Finding] = []
         with contextlib.suppress(results.PoisonedError, ArticadError):
             read_connectors(BRIEF, said.get("connectors"), findings)

@@ -32,7 +32,7 @@ from articad.interference.meridian import leaning, meeting, outline
 from articad.interference.motion import Chain, Route, motion_matrix, swing_and_twist
 from articad.interference.overlap import overlap
 from articad.interference.surface import Core, Surface, surface_distance
-from articad.interference.work import Budget
+from articad.interference.work import WorkBudget
 from articad.kinematics.joints import Joint, JointType
 from articad.kinematics.mechanism import Mechanism
 from tests.interference.mechanisms import (
@@ -470,7 +470,7 @@ def test_a_line_needs_few_more_distances_than_the_integral_says(gap: float) -> N
     def distance(q: Sequence[float] | np.ndarray) -> float:
         return gap + 20 * (1 - math.cos(float(q[0])))
 
-    budget = Budget(60)
+    budget = WorkBudget(60)
     cover = cover_line(distance, (-math.pi, math.pi), 0.3, reach=200.0, budget=budget)
     q = np.linspace(-math.pi, math.pi, 100_001)
     least = np.trapezoid(200 / (2 * (gap + 20 * (1 - np.cos(q)))), q)

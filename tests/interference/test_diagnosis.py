@@ -15,7 +15,7 @@ from articad.geometry import TriMesh, box, cylinder, merged
 from articad.interference.check import check_scene
 from articad.interference.diagnosis import diagnose
 from articad.interference.scene import Scene
-from articad.interference.sweep import Sweep
+from articad.interference.sweep import MotionSampler
 from articad.kinematics.joints import Joint
 from articad.kinematics.mechanism import Mechanism
 from tests.interference.mechanisms import at, block_with_bore, fixed, joint, manifold_mesh
@@ -134,7 +134,7 @@ def findings(meshes: dict[str, TriMesh], joints: Sequence[Joint]) -> Findings:
     ground = next(joint.parent for joint in joints)
     mechanism = Mechanism(tuple(meshes), ground, joints)
     scene = Scene.of(meshes, joints, deflection=0.01)
-    sampler = Sweep(scene, mechanism)
+    sampler = MotionSampler(scene, mechanism)
     found = (
         check_scene(scene, mechanism.rest_poses(), ground=ground).findings + sampler.run(None, steps=36, together=True, samples=0).findings
     )

@@ -37,7 +37,7 @@ def test_a_short_bucket_is_certified_for_every_two_drivers_together(short: tuple
 
 def test_a_long_bucket_meets_the_boom_and_the_two_cylinders_that_bring_it_there_are_named() -> None:
     assembly = excavator(LONG)
-    assert not assembly.sweep().findings.errors  # no driver alone brings them together
+    assert not assembly.check_motion().findings.errors  # no driver alone brings them together
     certificate = assembly.certify(budget=60)
     assert not certificate.ok
     (collision,) = certificate.findings.of("E_MOTION_COLLISION")

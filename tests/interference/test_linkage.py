@@ -14,7 +14,7 @@ import pytest
 
 from articad.certificates import linkage, verifier
 from articad.certificates.certificate import Certificate, certify, constrained_joints, driver_names, mechanism_json
-from articad.certificates.linkage import Piece, Way, driven_range
+from articad.certificates.linkage import DriverTrack, FollowedBox, driven_range
 from articad.certificates.verifier import PROOF, Checker
 from articad.connectors import SE3
 from articad.geometry import TriMesh, box, cylinder, merged
@@ -80,13 +80,13 @@ def checker_of(mechanism: Mechanism) -> Checker:
     return Checker(document, {PROOF: {}})
 
 
-def way_of(mechanism: Mechanism, driver: int = 0) -> Way:
+def way_of(mechanism: Mechanism, driver: int = 0) -> DriverTrack:
     checker = checker_of(mechanism)
     ends, _ = driven_range(mechanism, checker, driver)
-    return Way(checker, (mechanism.drivers[driver].name,), (ends,))
+    return DriverTrack(checker, (mechanism.drivers[driver].name,), (ends,))
 
 
-def halves_of(way: Way, piece: Piece) -> Sequence[Piece]:
+def halves_of(way: DriverTrack, piece: FollowedBox) -> Sequence[FollowedBox]:
     found = way.halves(piece, np.ones(len(way.drivers)))
     return () if found is None else found[2:]
 
@@ -153,7 +153,7 @@ def test_every_solution_lies_within_the_tube_of_its_box_of_two_drivers() -> None
         else joint(n, "revolute", p, c, at_parent=at(*xy), at_child=at(*xy), lower=(-math.inf,), upper=(math.inf,))
         for n, p, c, xy in pins
     ]  # fmt: skip
-    way = Way(checker_of(Mechanism(("base", "l1", "l2", "r1", "r2"), "base", joints)), ("a1", "a2"), ((-turn, turn), (-turn, turn)))
+    way = DriverTrack(checker_of(Mechanism(("base", "l1", "l2", "r1", "r2"), "base", joints)), ("a1", "a2"), ((-turn, turn), (-turn, turn)))
     assert way.whole is not None
     assert way.count <= 60
     rng = np.random.default_rng(7)
@@ -198,7 +198,7 @@ def test_links_of_one_layer_that_pass_each_other_are_certified_by_tubes() -> Non
     assert list(claim.vary) == ["crank"]  # whatever follows it
 
 
-def assert_on_its_line(mechanism: Mechanism, piece: Piece, value: float) -> None:
+def assert_on_its_line(mechanism: Mechanism, piece: FollowedBox, value: float) -> None:
     found = mechanism.configuration(np.array([value])).values
     for name, (middle, (rate,), near) in piece.line.items():
         assert abs(found[name][0] - middle - rate * (value - piece.middle[0])) <= near + 1e-9

@@ -156,7 +156,7 @@ def test_a_bump_between_two_samples_is_found_by_all_three(seed: int) -> None:
     assert (still ^ turned.rotate([0, 0, math.degrees(where)])).volume() > 0.01
 
     assembly = built(block, pin, Fit(gap_min=0.01, gap_max=0.06), -math.pi, math.pi)
-    for report in (assembly.check(), assembly.sweep(), assembly.certify()):
+    for report in (assembly.check(), assembly.check_motion(), assembly.certify()):
         assert not report.ok
         assert "E_FIT_TIGHT" in report.findings.codes
         (row,) = report.fits
@@ -168,7 +168,7 @@ def test_a_bump_beyond_the_limits_breaks_nothing_and_the_fit_is_proven(seed: int
     rng = np.random.default_rng([seed, 12])
     where = rng.uniform(2.0, 2.8)
     assembly = built(*bumpy(rng, where, 0.02, 0.05), Fit(gap_min=0.01, gap_max=0.06), -math.pi / 2, where - 0.2)
-    for report in (assembly.check(), assembly.sweep()):
+    for report in (assembly.check(), assembly.check_motion()):
         assert report.ok
         assert report.fits[0].strength.kind == "certified"  # type: ignore[attr-defined]
     certificate = assembly.certify()
@@ -195,7 +195,7 @@ def test_a_fit_counts_in_check_sweep_and_certify(hole: float, off: float, fit: F
     block, pin = block_with_bore(40, 20, hole, 256), cylinder(5, 30, 256).transformed(at(off))
     assembly = built(block, pin, fit, -math.pi, math.pi)
     assert assembly.check().ok is (code is None)
-    assert assembly.sweep().ok is (code is None)
+    assert assembly.check_motion().ok is (code is None)
     if code is not None:
         assert code in assembly.check().findings.codes
         assert not assembly.certify().ok

@@ -53,7 +53,7 @@ def test_no_certificate_is_ok_where_dense_sampling_finds_an_overlap(posted: Post
 def test_a_sweep_misses_only_what_is_between_its_samples(posted: Posted) -> None:
     mechanism = posted.assembly.mechanism
     names = [c.name for c in mechanism.drivers]
-    collisions = posted.assembly.sweep(steps=STEPS).findings.of("E_MOTION_COLLISION")
+    collisions = posted.assembly.check_motion(steps=STEPS).findings.of("E_MOTION_COLLISION")
     for finding in collisions:
         assert finding.pose is not None
         q = np.array([[finding.pose.get(name, rest) for name, rest in zip(names, mechanism.rest, strict=True)]])

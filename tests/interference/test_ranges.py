@@ -15,7 +15,7 @@ from articad.geometry import box, cylinder
 from articad.interference.clearance import least_clearances
 from articad.interference.ranges import ENDLESS_SAMPLED_MM, MOST_TURNS, sampled_ranges
 from articad.interference.scene import Scene
-from articad.interference.sweep import Sweep, sweep
+from articad.interference.sweep import MotionSampler, sweep
 from articad.kinematics import Coupling
 from articad.kinematics.joints import Joint
 from articad.kinematics.mechanism import Mechanism
@@ -152,7 +152,7 @@ def test_a_grid_keeps_a_ball_within_its_cone() -> None:
     meshes = {"bar": bar, "post": post}
     joints = [knuckle, fixed("held", "frame", "post")]
     assert sweep(meshes, mechanism, steps=100, together=True, samples=200).ok
-    (row,) = least_clearances(Sweep(Scene.of(meshes, joints), mechanism))
+    (row,) = least_clearances(MotionSampler(Scene.of(meshes, joints), mechanism))
     assert row.gap > 1
     assert math.hypot(row.pose.get("knuckle.sx", 0.0), row.pose.get("knuckle.sy", 0.0)) <= cone * (1 + 1e-6)
 
@@ -172,6 +172,6 @@ def test_the_least_clearance_of_a_ball_over_a_plate_is_the_closed_form(seed: int
     turns = np.stack(np.meshgrid(*(np.linspace(-lo, hi, 801) for lo, hi in limits), indexing="ij")).reshape(2, -1)
     corners = [np.array([fore + x, y]) for x in (-0.1, 0.1) for y in (-0.1, 0.1)]
     lowest = min(float((upper * np.sin(turns[0]) + c[0] * np.sin(turns.sum(0)) + c[1] * np.cos(turns.sum(0))).min()) for c in corners)
-    (row,) = least_clearances(Sweep(Scene.of(meshes, joints), mechanism))
+    (row,) = least_clearances(MotionSampler(Scene.of(meshes, joints), mechanism))
     assert row.gap == pytest.approx(height - 5 + lowest, abs=1e-2)
     assert row.to_json()["strength"]["kind"] == "sampled"

@@ -19,7 +19,7 @@ from articad.geometry import TriMesh
 from articad.interference.motion import Chain, Route
 from articad.interference.scene import Scene
 from articad.interference.surface import whole_surface
-from articad.interference.work import PIECES_PER_SECOND, Budget
+from articad.interference.work import PIECES_PER_SECOND, WorkBudget
 from articad.kinematics.joints import Joint
 from tests.interference.mechanisms import joint, manifold_mesh, random_rotation, verified
 from tests.interference.slides import cabinet
@@ -127,7 +127,7 @@ def search(mesh_a: TriMesh, mesh_b: TriMesh, chain: Chain, bounds: np.ndarray, *
     """Return whether two bodies are kept apart over a range, and in how many boxes."""
     a, b = (Forest.plain(whole_surface(mesh)) for mesh in (mesh_a, mesh_b))
     boxes = Ranges(Spread(chain), bounds)
-    found = clear(a, b, boxes, NEEDED, epsilon=1e-3, budget=Budget(math.inf), most=most)
+    found = clear(a, b, boxes, NEEDED, epsilon=1e-3, budget=WorkBudget(math.inf), most=most)
     return found.is_complete, len(boxes.spread)
 
 

@@ -11,7 +11,7 @@ import pytest
 from articad.geometry import box, cylinder
 from articad.interference.motion import freedoms, scattered
 from articad.interference.scene import Scene
-from articad.interference.sweep import Sweep, sweep
+from articad.interference.sweep import MotionSampler, sweep
 from articad.kinematics.mechanism import Mechanism
 from tests.interference.mechanisms import Waiver, at, block_with_bore, fixed, joint, without_triangle
 
@@ -77,7 +77,7 @@ def test_each_relative_pose_is_asked_once() -> None:
     joints = [joint(f"j{i}", "revolute", a, b, at_parent=at(9), lower=(-0.1,), upper=(0.1,)) for i, (a, b) in enumerate(pairwise(names))]
     mechanism = Mechanism(tuple(names), "p0", joints)
     scene = Scene.of(dict.fromkeys(names, box(10, 2, 2)), joints)
-    sampler = Sweep(scene, mechanism)
+    sampler = MotionSampler(scene, mechanism)
     sampler.run(["j0"], steps=20, together=False, samples=0)
     # neighbours across the other joints keep their relative pose: one query each; across j0 one per step
     assert sampler.queries <= 20 + 4
@@ -92,7 +92,7 @@ def test_cached_volumes_are_those_of_every_pose_asked_anew() -> None:
         (
             pair.volume
             for q in np.linspace(0, 1.2, 30)
-            for pair in Sweep(Scene.of(SCENE, JOINTS), mechanism).sampled([{"swing": float(q)}], ("swing",), None).pairs
+            for pair in MotionSampler(Scene.of(SCENE, JOINTS), mechanism).sampled([{"swing": float(q)}], ("swing",), None).pairs
         ),
     )
     assert sweep(SCENE, mechanism, steps=30).pairs[0].volume == pytest.approx(worst)

@@ -18,7 +18,7 @@ from articad.auditing.examine import AuditOptions, audit_file
 from articad.certificates import certificate as certifying
 from articad.certificates.certificate import Certificate, certify
 from articad.geometry import box, cylinder
-from articad.interference.work import BRAKE, BRAKE_SECONDS, PIECES_PER_SECOND, Budget, look_price
+from articad.interference.work import BRAKE, BRAKE_SECONDS, PIECES_PER_SECOND, WorkBudget, look_price
 from articad.kinematics.mechanism import Mechanism
 from tests.audit import defects
 from tests.interference.mechanisms import at, block_with_bore, joint
@@ -80,12 +80,12 @@ def test_the_verdict_and_the_work_are_the_same_beside_eight_busy_processes() -> 
 
 def test_the_verdict_and_the_work_do_not_follow_the_clock(monkeypatch: pytest.MonkeyPatch) -> None:
     still = verdict(arm(TIGHT_S))
-    monkeypatch.setattr(certifying, "Budget", partial(Budget, clock=jumping(0.01)))
+    monkeypatch.setattr(certifying, "Budget", partial(WorkBudget, clock=jumping(0.01)))
     assert verdict(arm(TIGHT_S)) == still
 
 
 def test_the_emergency_brake_says_that_the_clock_stopped_the_work(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(certifying, "Budget", partial(Budget, clock=jumping(BRAKE * TIGHT_S + BRAKE_SECONDS)))
+    monkeypatch.setattr(certifying, "Budget", partial(WorkBudget, clock=jumping(BRAKE * TIGHT_S + BRAKE_SECONDS)))
     stopped = arm(TIGHT_S)
     assert not stopped.ok
     assert all("stopped by the clock" in finding.message for finding in stopped.findings)
@@ -93,7 +93,7 @@ def test_the_emergency_brake_says_that_the_clock_stopped_the_work(monkeypatch: p
 
 
 def test_a_budget_ends_by_its_work_and_not_by_its_clock() -> None:
-    budget = Budget(1.0, clock=jumping(1e-3))
+    budget = WorkBudget(1.0, clock=jumping(1e-3))
     while not budget.is_spent:
         budget.spend(1000)
     assert budget.work == PIECES_PER_SECOND
@@ -102,7 +102,7 @@ def test_a_budget_ends_by_its_work_and_not_by_its_clock() -> None:
 
 
 def test_an_endless_budget_is_never_spent() -> None:
-    budget = Budget(math.inf, clock=jumping(1e9))
+    budget = WorkBudget(math.inf, clock=jumping(1e9))
     budget.spend(1e12)
     assert not budget.is_spent
 
@@ -116,7 +116,7 @@ def test_an_audit_looks_at_the_same_motion_whatever_the_clock_shows(tmp_path: An
     choices = AuditOptions(engines=False, budget=1e-4)
     alone = [finding.to_json() for finding in audit_file(path, choices).findings]
     assert "W_AUDIT_NOT_CHECKED" in str(alone)
-    monkeypatch.setattr(contact_motion, "Budget", partial(Budget, clock=jumping(0.01)))
+    monkeypatch.setattr(contact_motion, "Budget", partial(WorkBudget, clock=jumping(0.01)))
     assert [finding.to_json() for finding in audit_file(path, choices).findings] == alone
     with busy(BUSY):
         assert [finding.to_json() for finding in audit_file(path, choices).findings] == alone

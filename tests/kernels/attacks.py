@@ -20,11 +20,11 @@ from typing import Any, Self
 from articad.errors import BuildError, ContractError, KernelError
 from articad.kernels.build123d import Build123dKernel
 from articad.kernels.freecad import FreeCADKernel
-from articad.kernels.sandbox import Limits
+from articad.kernels.sandbox import ScriptLimits
 from tests.kernels.conftest import kernel_of_its_own
 
 MARK = "articad-secret-9f2c61"  # what no attack may see
-LIMITS = Limits(seconds=3.0, probe_seconds=0.0, memory=2 * 2**30, file_size=8 * 2**20)
+LIMITS = ScriptLimits(seconds=3.0, probe_seconds=0.0, memory=2 * 2**30, file_size=8 * 2**20)
 LEVELS: tuple[tuple[str, ...], ...] = (
     (),
     ("seccomp",),

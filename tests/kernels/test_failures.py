@@ -11,7 +11,7 @@ import pytest
 from articad.errors import BuildError
 from articad.kernels.build123d import Build123dKernel
 from articad.kernels.results import read_mesh
-from articad.kernels.sandbox import Limits
+from articad.kernels.sandbox import ScriptLimits
 from tests.kernels.conftest import HEAD, Build, kernel_of_its_own
 
 FIRST = len(HEAD.splitlines()) + 1  # line of the body's first line
@@ -22,7 +22,7 @@ def hasty(kernel: Build123dKernel) -> Build123dKernel:
     """The same zygote under narrower limits."""
     kernel.warm_up()
     other = copy.copy(kernel)
-    other.limits = Limits(seconds=1.0, probe_seconds=0.5, memory=2**31)
+    other.limits = ScriptLimits(seconds=1.0, probe_seconds=0.5, memory=2**31)
     return other
 
 

@@ -22,7 +22,7 @@ from articad.kernels.contract import TOLD_EXTRAS
 from articad.kernels.freecad import harmless
 from articad.kernels.freecad_file import rounded, shortened
 from articad.kernels.results import REPORT_BYTES, PoisonedError, numbers, read_lines, read_mesh
-from articad.kernels.zygote import Outcome
+from articad.kernels.zygote import JobOutcome
 
 CUBE = box(1, 1, 1)
 V, T, F = CUBE.vertices, CUBE.triangles, np.zeros(len(CUBE.triangles), np.int32)
@@ -168,7 +168,7 @@ class ForgingKernel(Build123dKernel):
             (job / name).write_bytes(content)
         path = job / "forged"
         path.write_text("".join(json.dumps(line) + "\n" for line in self.reports[task]))
-        return _Ran(Outcome(0, 0, late=False, peak=0), read_lines(path), "")
+        return _Ran(JobOutcome(0, 0, late=False, peak=0), read_lines(path), "")
 
 
 HONEST_FILES = {"part.npz": npz(), "part.brep": b"\nCASCADE Topology V1\n", "part.step": b"ISO-10303-21;\n", "shape.bin": b""}

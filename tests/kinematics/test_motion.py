@@ -42,7 +42,7 @@ def rocker_errors(values: np.ndarray, rocker: np.ndarray, lengths: tuple[float, 
 
 def test_a_full_turn_in_361_steps_stays_closed_and_on_its_branch() -> None:
     mechanism = four_bar()
-    sweep = mechanism.sweep("crank", 0.0, 2 * math.pi, 361)
+    sweep = mechanism.drive("crank", 0.0, 2 * math.pi, 361)
     assert sweep.ok
     assert len(sweep.values) == 361
     assert rocker_errors(sweep.values, sweep.configuration["rocker"][:, 0], (30, 90, 70, 100)) < 1e-12
@@ -57,17 +57,17 @@ def test_a_full_turn_in_361_steps_stays_closed_and_on_its_branch() -> None:
 def test_a_certified_sweep_says_so_and_is_the_same_motion(make: object) -> None:
     mechanism: Mechanism = make()  # type: ignore[operator]
     name, start = mechanism.drivers[0].name, float(mechanism.rest[0])
-    proved = mechanism.sweep(name, start, start + 0.5, 21, certify=True)
+    proved = mechanism.drive(name, start, start + 0.5, 21, certify=True)
     assert proved.strength == "certified"
     assert "Kantorovich" in proved.reason
     assert 0 < proved.tube < 0.04
-    sampled = mechanism.sweep(name, start, start + 0.5, 21)
+    sampled = mechanism.drive(name, start, start + 0.5, 21)
     assert np.allclose(proved.configuration.columns, sampled.configuration.columns, rtol=0, atol=1e-9)
 
 
 def test_a_certified_full_turn_takes_few_hundred_steps_and_its_tube_holds_the_motion() -> None:
     mechanism = four_bar()
-    sweep = mechanism.sweep("crank", 1.0, 1.0 + 2 * math.pi, 100, certify=True)
+    sweep = mechanism.drive("crank", 1.0, 1.0 + 2 * math.pi, 100, certify=True)
     assert sweep.strength == "certified"
     assert sweep.tube < 0.034
     track = mechanism.branch.groups[0].track(0, certify=True)
@@ -81,7 +81,7 @@ def test_a_certified_full_turn_takes_few_hundred_steps_and_its_tube_holds_the_mo
 @pytest.mark.parametrize("epsilon", [1e-2, 1e-4, 1e-6])
 def test_near_a_change_point_no_step_falls_onto_the_other_branch(epsilon: float) -> None:
     lengths = (30.0, 80.0, 50 + epsilon, 100.0)
-    sweep = four_bar(*lengths, crank=1.0).sweep("crank", 1 - 2 * math.pi, 1 + 2 * math.pi, 361)
+    sweep = four_bar(*lengths, crank=1.0).drive("crank", 1 - 2 * math.pi, 1 + 2 * math.pi, 361)
     assert sweep.ok
     assert rocker_errors(sweep.values, sweep.configuration["rocker"][:, 0], lengths) < 3e-9
 
@@ -96,7 +96,7 @@ def test_either_guard_alone_keeps_the_branch_and_none_loses_it(
     if not orientation:
         monkeypatch.setattr(Follower, "_orientation", lambda self, _, lin: (lin.U[:, : self.rank], 0.0))
     lengths = (30.0, 80.0, 50.0001, 100.0)
-    sweep = four_bar(*lengths, crank=1.0).sweep("crank", 1 - 2 * math.pi, 1 + 2 * math.pi, 181)
+    sweep = four_bar(*lengths, crank=1.0).drive("crank", 1 - 2 * math.pi, 1 + 2 * math.pi, 181)
     error = rocker_errors(sweep.values, sweep.configuration["rocker"][:, 0], lengths)
     assert (error < 3e-9) is stays
     if not stays:
@@ -142,13 +142,13 @@ def test_a_driver_traced_over_many_turns_first_follows_the_same_ratio_as_one_tra
 
 def test_a_sweep_ends_at_a_dead_point_and_says_where() -> None:
     mechanism = four_bar(60, 50, 50, 100, crank=0.3)
-    sweep = mechanism.sweep("crank", -math.pi / 2, math.pi / 2, 181)
+    sweep = mechanism.drive("crank", -math.pi / 2, math.pi / 2, 181)
     assert not sweep.ok
     assert sweep.findings.codes == ("E_DEAD_POINT", "E_DEAD_POINT")
     assert sorted(f.value or 0 for f in sweep.findings) == pytest.approx([-DEAD_POINT, DEAD_POINT], abs=1e-11)
     assert np.abs(sweep.values).max() <= DEAD_POINT
     assert len(sweep.values) == 145  # whole degrees up to 72
-    proof = mechanism.sweep("crank", 0.3, math.pi / 2, 30, certify=True)
+    proof = mechanism.drive("crank", 0.3, math.pi / 2, 30, certify=True)
     assert proof.findings.codes == ("E_DEAD_POINT",)
     assert proof.strength in {"certified", "sampled"}
 
@@ -167,14 +167,14 @@ def test_values_next_to_a_dead_point_are_on_the_side_of_the_rest_pose() -> None:
 def test_near_the_dead_point_the_proof_ends_and_says_why() -> None:
     mechanism = four_bar(60, 50, 50, 100, crank=0.3)
     trace = mechanism.branch.groups[0].track(0, certify=True).side(2.0)
-    sweep = mechanism.sweep("crank", 0.3, 0.3 + (trace.nodes[-1].s + trace.end) / 2, 20, certify=True)
+    sweep = mechanism.drive("crank", 0.3, 0.3 + (trace.nodes[-1].s + trace.end) / 2, 20, certify=True)
     assert sweep.strength == "sampled"
     assert "it holds up to 72.54" in sweep.reason
 
 
 def test_a_sweep_reports_limits_of_the_joints_that_follow() -> None:
     plain = slider_crank(travel=(80.0, 150.0))
-    sweep = plain.sweep("crank", 0.0, math.pi, 91)
+    sweep = plain.drive("crank", 0.0, math.pi, 91)
     (found,) = sweep.findings
     assert found.code == "E_LOOP_LIMIT"
     assert found.where == "joints.piston"
@@ -186,7 +186,7 @@ def test_a_sweep_reports_limits_of_the_joints_that_follow() -> None:
 
 def test_a_sweep_of_a_tree_is_exact() -> None:
     arm = Mechanism(("a", "b"), "a", [joint("j", "revolute", ("a", at(0)), ("b", at(5)), limits=[(-1.0, 1.0)])])
-    sweep = arm.sweep("j", -1.0, 1.0, 5)
+    sweep = arm.drive("j", -1.0, 1.0, 5)
     assert (sweep.strength, sweep.reason) == ("certified", "a tree has one branch")
     assert sweep.values.tolist() == [-1, -0.5, 0, 0.5, 1]
     assert sweep.poses()[2].allclose(arm.poses(arm.rest))
@@ -198,21 +198,21 @@ def test_a_sweep_of_a_tree_is_exact() -> None:
 @pytest.mark.parametrize(("lo", "hi", "steps"), [(0.0, math.inf, 5), (math.nan, 1.0, 5), (0.0, 1.0, 0)])
 def test_a_sweep_without_ends_or_steps_is_refused(lo: float, hi: float, steps: int) -> None:
     with pytest.raises(KinematicsError, match="finite ends"):
-        four_bar().sweep("crank", lo, hi, steps)
+        four_bar().drive("crank", lo, hi, steps)
 
 
 def test_a_driver_that_is_none_is_refused_by_name() -> None:
     with pytest.raises(UnknownJointError, match="Did you mean 'crank'"):
-        four_bar().sweep("crnk", 0, 1)
+        four_bar().drive("crnk", 0, 1)
     with pytest.raises(UnknownJointError):
         four_bar().feasible_range("rocker")
     with pytest.raises(UnknownJointError):
-        four_bar().sweep("crank", 0, 1, at={"rocker": 1.0})
+        four_bar().drive("crank", 0, 1, at={"rocker": 1.0})
 
 
 def test_a_sweep_starts_from_where_the_other_drivers_are() -> None:
     mechanism = stewart()
-    sweep = mechanism.sweep("leg0", 135.0, 145.0, 5, at={"leg3": 140.0})
+    sweep = mechanism.drive("leg0", 135.0, 145.0, 5, at={"leg3": 140.0})
     assert np.allclose(sweep.configuration["leg3"], 140.0)
     for i, value in enumerate(sweep.values):
         q = mechanism.rest.copy()
@@ -296,7 +296,7 @@ def test_a_singular_configuration_ends_the_range_of_a_scissor_and_of_a_parallelo
     assert (reached.lower, reached.upper) == pytest.approx((0, math.pi / 2), abs=1e-4)
     assert (reached.lower_reason, reached.upper_reason) == ("singular", "singular")
     assert set(reached.findings.codes) == {"E_SINGULAR"}
-    stopped = parallelogram(1.0).sweep("crank", 1.0, 4.0, 10)
+    stopped = parallelogram(1.0).drive("crank", 1.0, 4.0, 10)
     assert stopped.findings.codes == ("E_SINGULAR",)
     assert parallelogram(0.0).feasible_range("crank").upper_reason == "singular"
 
@@ -546,7 +546,7 @@ def test_a_sweep_that_misses_a_value_is_not_ok(monkeypatch: pytest.MonkeyPatch) 
     monkeypatch.setattr(Track, "evaluate", evaluate)
     mechanism = four_bar()
     driver = mechanism.drivers[0].name
-    found = mechanism.sweep(driver, float(mechanism.rest[0]), float(mechanism.rest[0]) + 0.3, 8)
+    found = mechanism.drive(driver, float(mechanism.rest[0]), float(mechanism.rest[0]) + 0.3, 8)
     assert len(found.values) == 7
     assert found.findings.codes == ("E_NOT_FOLLOWED",)
     assert not found.ok

@@ -44,5 +44,5 @@ def test_a_sweep_moves_what_is_above_its_driver_too(make: Callable[[], Assembly]
         values = np.linspace(-0.2, 0.2, 5) + mechanism.rest[index]
         q = np.tile(mechanism.rest, (5, 1))
         q[:, index] = values
-        swept = mechanism.sweep(driver.name, values[0], values[-1], 5)
+        swept = mechanism.drive(driver.name, values[0], values[-1], 5)
         assert np.abs(swept.poses().matrix - mechanism.poses(q).matrix).max() < 1e-9

@@ -54,7 +54,7 @@ def test_a_platform_on_parallel_rods_translates_over_the_whole_range_of_its_driv
 
 
 def test_a_sweep_of_a_multiple_root_is_sampled_and_says_why() -> None:
-    sweep = parallel_rods(4).sweep("foot0.a", -0.5, 0.5, 5, certify=True)
+    sweep = parallel_rods(4).drive("foot0.a", -0.5, 0.5, 5, certify=True)
     assert len(sweep.values) == 5
     assert sweep.strength == "sampled"
     assert "multiple root" in sweep.reason

@@ -71,7 +71,7 @@ def test_a_sweep_ends_where_the_equations_do(seed: int) -> None:
         if others or not end or name not in rest:
             continue  # a ball has neither
         value = end[0].s[case.equations.place[name]]
-        sweep = mechanism.sweep(name, rest[name], value, steps=5)
+        sweep = mechanism.drive(name, rest[name], value, steps=5)
         assert len(sweep.values) == 5, (name, sweep.findings, case.specimen.story)
         assert_close(case, sweep.poses().matrix[-1], end[0], way.drivers)
 

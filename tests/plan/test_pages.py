@@ -13,12 +13,12 @@ from pydantic import TypeAdapter, ValidationError
 from articad.findings.codes import CODES
 from articad.plan.check import check_plan
 from articad.plan.joint_forms import COUPLING_TYPES, JOINT_TYPES, AnyJoint, CouplingSpec
-from articad.plan.schema import Allow, AnyPart, AssemblyPlan, Material, Parameter
+from articad.plan.schema import Allow, AnyPart, AssemblyPlan, MaterialSpec, Parameter
 
 ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs" / "reference" / "plan.md").read_text()
 BLOCKS = [json.loads(text) for text in re.findall(r"^```json\n(.*?)^```$", PAGE, re.MULTILINE | re.DOTALL)]
-FORMS: list[Any] = [Parameter, Material, AnyPart, AnyJoint, CouplingSpec, Allow]
+FORMS: list[Any] = [Parameter, MaterialSpec, AnyPart, AnyJoint, CouplingSpec, Allow]
 
 
 def fits(form: Any, block: object) -> bool:

@@ -9,12 +9,12 @@ from numpy.typing import NDArray
 from articad.connectors.se3 import SE3
 from articad.geometry.mesh import TriMesh
 from articad.geometry.shapes import box, cylinder, sphere
-from articad.render import Camera, Item, Scene, Section, cast
+from articad.render import Camera, DrawnMesh, DrawnScene, Section, cast
 from articad.render.raycast import BACKGROUND
 
 
-def item(name: str, mesh: TriMesh, at: tuple[float, float, float] = (0, 0, 0)) -> Item:
-    return Item(name, mesh, SE3.from_translation(at), "#808080")
+def item(name: str, mesh: TriMesh, at: tuple[float, float, float] = (0, 0, 0)) -> DrawnMesh:
+    return DrawnMesh(name, mesh, SE3.from_translation(at), "#808080")
 
 
 def camera(view: str, *, width: int = 100, height: int = 80, mm_per_pixel: float = 1.0) -> Camera:
@@ -37,7 +37,7 @@ def test_a_box_covers_exactly_the_pixels_whose_centres_lie_in_its_face(view: str
     size = np.array([31.4, 17.8, 23.2])
     shot = camera(view)
 
-    seen = cast(Scene((item("block", box(*size)),)), shot).item != BACKGROUND
+    seen = cast(DrawnScene((item("block", box(*size)),)), shot).item != BACKGROUND
 
     x, y = pixel_centres(shot)
     expected = (np.abs(x) < size[across] / 2) & (np.abs(y) < size[up] / 2)
@@ -48,7 +48,7 @@ def test_a_sphere_covers_exactly_the_pixels_whose_centres_lie_in_its_circle() ->
     radius = 30.2
     shot = camera("top")
 
-    seen = cast(Scene((item("ball", sphere(radius, 512)),)), shot).item != BACKGROUND
+    seen = cast(DrawnScene((item("ball", sphere(radius, 512)),)), shot).item != BACKGROUND
 
     x, y = pixel_centres(shot)
     distance = np.hypot(x, y)
@@ -58,7 +58,7 @@ def test_a_sphere_covers_exactly_the_pixels_whose_centres_lie_in_its_circle() ->
 
 def test_x_is_right_and_z_is_up_in_the_front_view() -> None:
     shot = camera("front")
-    scene = Scene((item("right", box(4, 4, 4), (20, 0, 0)), item("up", box(4, 4, 4), (0, 0, 20))))
+    scene = DrawnScene((item("right", box(4, 4, 4), (20, 0, 0)), item("up", box(4, 4, 4), (0, 0, 20))))
 
     buffers = cast(scene, shot)
 
@@ -71,7 +71,7 @@ def test_the_nearer_of_two_parts_is_seen() -> None:
     front, behind = item("near", box(10, 10, 10), (0, -20, 0)), item("far", box(30, 10, 30), (0, 20, 0))
     shot = camera("front")
 
-    buffers = cast(Scene((behind, front)), shot)
+    buffers = cast(DrawnScene((behind, front)), shot)
 
     assert buffers.item[40, 50] == 1
     assert buffers.item[40, 62] == 0
@@ -80,7 +80,7 @@ def test_the_nearer_of_two_parts_is_seen() -> None:
 def test_depth_is_the_distance_from_the_plane_through_the_centre() -> None:
     shot = camera("top")
 
-    buffers = cast(Scene((item("slab", box(20, 20, 6), (0, 0, 4)),)), shot)
+    buffers = cast(DrawnScene((item("slab", box(20, 20, 6), (0, 0, 4)),)), shot)
 
     assert buffers.depth[40, 50] == pytest.approx(-7.0, abs=1e-4)
     assert buffers.normal[40, 50] == pytest.approx([0, 0, 1], abs=1e-6)
@@ -91,13 +91,13 @@ def test_depth_is_the_distance_from_the_plane_through_the_centre() -> None:
 def test_a_scene_far_from_the_origin_is_as_sharp(far: float) -> None:
     here = replace(camera("front"), centre=np.array([far, far, far]))
 
-    seen = cast(Scene((item("block", box(31.4, 17.8, 23.2), (far, far, far)),)), here).item != BACKGROUND
+    seen = cast(DrawnScene((item("block", box(31.4, 17.8, 23.2), (far, far, far)),)), here).item != BACKGROUND
 
-    assert (seen == (cast(Scene((item("block", box(31.4, 17.8, 23.2)),)), camera("front")).item != BACKGROUND)).all()
+    assert (seen == (cast(DrawnScene((item("block", box(31.4, 17.8, 23.2)),)), camera("front")).item != BACKGROUND)).all()
 
 
 def test_a_section_shows_the_cut_at_the_planes_depth() -> None:
-    scene = Scene((item("tube", cylinder(20, 40, 256)),), section=Section((0, 0, 5), (0, 0, 1)))
+    scene = DrawnScene((item("tube", cylinder(20, 40, 256)),), section=Section((0, 0, 5), (0, 0, 1)))
 
     buffers = cast(scene, camera("top"))
 
@@ -110,7 +110,7 @@ def test_a_section_shows_the_cut_at_the_planes_depth() -> None:
 
 def test_a_section_cuts_each_of_two_touching_parts() -> None:
     lower, upper = item("lower", box(40, 40, 20), (0, 0, -10)), item("upper", cylinder(10, 20, 64), (0, 0, 10))
-    scene = Scene((lower, upper), section=Section((0, 0, 0), (0, -1, 0)))
+    scene = DrawnScene((lower, upper), section=Section((0, 0, 0), (0, -1, 0)))
 
     buffers = cast(scene, camera("front"))
 
@@ -121,7 +121,7 @@ def test_a_section_cuts_each_of_two_touching_parts() -> None:
 
 
 def test_a_section_seen_edge_on_hides_what_it_takes_away() -> None:
-    scene = Scene((item("block", box(40, 40, 40)),), section=Section((0, 0, 0), (1, 0, 0)))
+    scene = DrawnScene((item("block", box(40, 40, 40)),), section=Section((0, 0, 0), (1, 0, 0)))
 
     buffers = cast(scene, camera("front"))
 
@@ -132,7 +132,7 @@ def test_a_section_seen_edge_on_hides_what_it_takes_away() -> None:
 
 def test_a_highlight_is_seen_through_what_hides_it() -> None:
     hidden = replace(item("overlap", sphere(5, 64)), manner="highlight")
-    scene = Scene((item("shell", box(40, 40, 40)), hidden))
+    scene = DrawnScene((item("shell", box(40, 40, 40)), hidden))
 
     buffers = cast(scene, camera("front"))
 
@@ -142,7 +142,7 @@ def test_a_highlight_is_seen_through_what_hides_it() -> None:
 
 
 def test_an_empty_scene_is_background() -> None:
-    assert (cast(Scene(()), camera("iso")).item == BACKGROUND).all()
+    assert (cast(DrawnScene(()), camera("iso")).item == BACKGROUND).all()
 
 
 @pytest.mark.parametrize("text", ["w", "xx", "", "z=deep"])

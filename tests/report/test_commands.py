@@ -53,7 +53,7 @@ def test_a_new_product_is_a_valid_plan_that_builds_without_findings(starter: Pat
     assert plan.name == "my_box"
     assert len(check_plan(plan)) == 0
     assert assembly.check().ok
-    assert assembly.sweep(steps=13).ok
+    assert assembly.check_motion(steps=13).ok
     assert "{name}" not in (starter / "README.md").read_text()
     assert all("#" in script.read_text() or '"""' in script.read_text() for script in (starter / "parts").iterdir())
 

@@ -15,7 +15,7 @@ from articad.plan.schema import AssemblyPlan
 from articad.simulation.examine import simulate_assembly, simulate_file
 from articad.simulation.film import film
 from articad.simulation.trial import try_out
-from articad.simulation.verdict import SHARE, Verdict
+from articad.simulation.verdict import SHARE, SimulationVerdict
 from tests.assemblies import all_joint_kinds, four_bar
 
 pytestmark = pytest.mark.engines
@@ -28,10 +28,10 @@ MODEL = """<mujoco><compiler angle="radian" autolimits="true"/><option timestep=
 
 def verdict_on(
     folder: Path, *, world: str = "", joint: str = "", arm: str = ARM, more: str = "", bodies: str = "", rest: str = ""
-) -> Verdict:
+) -> SimulationVerdict:
     path = folder / "model.xml"
     path.write_text(MODEL.format(world=world, joint=joint, arm=arm, more=more, bodies=bodies, rest=rest))
-    return Verdict(str(path), (try_out("mujoco", path),))
+    return SimulationVerdict(str(path), (try_out("mujoco", path),))
 
 
 def test_a_sound_model_stands_and_moves(tmp_path: Path) -> None:
@@ -114,7 +114,7 @@ def test_numbers_that_go_wild_are_an_explosion(tmp_path: Path) -> None:
         f'<geom type="sphere" size="0.01"/>{chain}</body></worldbody></mujoco>'
     )
 
-    verdict = Verdict(str(path), (try_out("mujoco", path),))
+    verdict = SimulationVerdict(str(path), (try_out("mujoco", path),))
 
     assert not verdict.ok
     assert {"E_SIM_EXPLODES", "E_SIM_UNSETTLED"} & set(verdict.findings.codes)
@@ -145,7 +145,7 @@ def test_each_joint_of_a_loop_is_held_to_what_its_drivers_bring_it_to() -> None:
     """A clamp has two: its handle moves arm and link, its spindle turns and travels by its lead; both are driven, the others follow."""
     folder = ROOT / "examples/toggle_clamp"
     assembly = Assembly.from_plan(AssemblyPlan.load(folder), folder / "parts")
-    arm = assembly.motion("handle", *(getattr(assembly.feasible_range("handle"), side) for side in ("lower", "upper")))
+    arm = assembly.drive("handle", *(getattr(assembly.feasible_range("handle"), side) for side in ("lower", "upper")))
 
     verdict = simulate_assembly(assembly, "toggle_clamp", engines=("mujoco",))
 
@@ -188,7 +188,7 @@ def test_one_loop_does_not_answer_for_another_nor_a_follower_for_its_driver(tmp_
     rest = f"<equality>{tie.format('b', 'turn')}{tie.format('d', 'c')}</equality>"
 
     verdict = verdict_on(tmp_path, bodies=bodies, rest=rest)
-    known = Verdict("known", (try_out("mujoco", tmp_path / "model.xml", drivers=("turn", "c")),))
+    known = SimulationVerdict("known", (try_out("mujoco", tmp_path / "model.xml", drivers=("turn", "c")),))
 
     assert [reach.role for reach in verdict.outcomes[0].reaches] == ["tied"] * 4
     assert [reach.joint in {"c", "d"} for reach in verdict.outcomes[0].judged] == [False, True]

@@ -71,7 +71,7 @@ class Attempt:
 
 
 @dataclass(frozen=True)
-class Modelled:
+class WrittenPart:
     """A part that keeps its contract.
 
     Attributes:
@@ -85,7 +85,7 @@ class Modelled:
     opinions: Findings = field(default_factory=Findings)
 
 
-class Modeller:
+class PartWriter:
     """Writes the script of one part.
 
     Args:
@@ -121,7 +121,7 @@ class Modeller:
         self._pictures = tuple(Image(image.content, image.media_type) for image in run.request.images if image.part == name)
         self._specification = specification(resolved, name)
 
-    def make(self, *, answered: int = 0, previous: Attempt | None = None) -> Modelled:
+    def make(self, *, answered: int = 0, previous: Attempt | None = None) -> WrittenPart:
         """Return the part as built.
 
         The same failure twice in a row asks for another approach; the third time ends it.
@@ -140,8 +140,8 @@ class Modeller:
             outcome = self._tried(reply.text, step, number)
             if isinstance(outcome, RealisedPart):
                 if best is not None and best.realised.script == outcome.script:  # its author stands by it
-                    return Modelled(outcome, number, best.opinions)
-                best = Modelled(outcome, number, self._opinions(outcome, number))
+                    return WrittenPart(outcome, number, best.opinions)
+                best = WrittenPart(outcome, number, self._opinions(outcome, number))
                 of_script = Findings(finding for finding in best.opinions if finding.route == "code")
                 if not of_script:
                     return best
@@ -151,7 +151,7 @@ class Modeller:
             if alike > 1:
                 break
         if best is not None:
-            return Modelled(best.realised, number, best.opinions)
+            return WrittenPart(best.realised, number, best.opinions)
         assert previous is not None
         assert previous.error is not None
         raise previous.error

@@ -1,4 +1,4 @@
-"""The workshop: makes the parts of a plan side by side, and keeps those whose entry did not change."""
+"""PartBuilder: builds the parts of a plan in parallel and keeps those whose plan entry did not change."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from dataclasses import dataclass, field, replace
 from typing import Any, Final
 
 from articad.agents.finetuning import absorbed, notes
-from articad.agents.generation import Attempt, Modeller, failure_text
 from articad.agents.llm import LLM, Image, closed_port
+from articad.agents.part_writer import Attempt, PartWriter, failure_text
 from articad.agents.retrieval import Documentation, Memory
 from articad.agents.rollback import Fate
 from articad.assembly import DEFLECTION_MM, Assembly
@@ -62,7 +62,7 @@ class _Made:
 
 
 @dataclass
-class Workshop:
+class PartBuilder:
     """Makes parts.
 
     Attributes:
@@ -121,7 +121,7 @@ class Workshop:
         """
         resolved = resolve(plan)
         self.make({name: resolved for name, part in resolved.parts.items() if part.derivation is None}, tuple(resolved.parts))
-        self.tell("assembly", "started")
+        self.announce("assembly", "started")
         with closed_port("assembly is deterministic"):
             return self.joined(plan, resolved)
 
@@ -168,7 +168,7 @@ class Workshop:
         """Return the script of a part that was made, as its author wrote it."""
         return self._shown(self.scripts[name])
 
-    def tell(self, what: str, event: str) -> None:
+    def announce(self, what: str, event: str) -> None:
         """Note what happens in the trace, and tell who waits."""
         self.run.trace("stage", name=what, state=event)
         if self.progress is not None:
@@ -187,7 +187,7 @@ class Workshop:
                 self.run.trace_finding(note)
             plan, resolved = tuned, resolve(tuned)
             realised = self._built(resolved)
-            self.tell("design", "connectors fine-tuned")
+            self.announce("design", "connectors fine-tuned")
         return plan, Assembly.from_realised(resolved, realised, kernel=self.kernel)
 
     def _built(self, resolved: ResolvedPlan) -> dict[str, RealisedPart]:
@@ -207,13 +207,13 @@ class Workshop:
                     previous = Attempt(self._shown(old.script), f"The specification has changed since. {failure_text(error)}", error=error)
                 else:
                     self.fates[name] = self._before.pop(name, "kept")
-                    self.tell(name, "kept")
+                    self.announce(name, "kept")
                     return
         elif name in self.begun:
             previous = Attempt(self._shown((old and old.script) or self.begun[name]), "", complaint="part_edit")
         self.fates[name] = "new" if old is None else "regenerated"
-        self.tell(name, "started")
-        modeller = Modeller(
+        self.announce(name, "started")
+        writer = PartWriter(
             resolved,
             name,
             llm=self.port,
@@ -226,10 +226,10 @@ class Workshop:
             documentation=self.documentation,
         )
         self.made[name] = _Made(digest, answers + self._options["repairs"] + 1, None)  # until it is made: the addresses that may be used
-        modelled = modeller.make(answered=answers, previous=previous)
-        assert modelled.realised.script is not None
-        self.made[name] = _Made(digest, modelled.answers, modelled.realised.script, modelled.opinions)
-        self.tell(name, "built")
+        written = writer.make(answered=answers, previous=previous)
+        assert written.realised.script is not None
+        self.made[name] = _Made(digest, written.answers, written.realised.script, written.opinions)
+        self.announce(name, "built")
 
     def _shown(self, script: bytes) -> str:
         return f"```python\n{script.removesuffix(self.ending).decode()}```"
