@@ -204,6 +204,7 @@ def test_a_certificate_is_verified_and_a_forged_one_refuted(chest: Path, tmp_pat
     assert (code, certified["ok"]) == (0, True)
     code, verified = report("verify-certificate", out / "certificate.json")
     assert (code, verified["stated"]) == (0, ["Proven while all of these joints move at once, each over its whole range: hinge."])
+    assert report("verify-certificate", out) == (code, verified)
     unasked = certified | {"asked": [], "together": False, "ok": False}
     unasked["pairs"] = [pair | {"strength": {"kind": "waived", "reason": "felt"}} for pair in certified["pairs"]]
     (out / "certificate.json").write_text(json.dumps(unasked))
@@ -216,9 +217,13 @@ def test_a_certificate_is_verified_and_a_forged_one_refuted(chest: Path, tmp_pat
     ]
     certified["claims"] = certified["claims"][:-1]
     (out / "certificate.json").write_text(json.dumps(certified))
-    code, verified = report("verify-certificate", out / "certificate.json")
+    code, verified = report("verify-certificate", out)
     assert (code, verified["ok"]) == (1, False)
     assert verified["faults"]
+    (out / "certificate.json").unlink()
+    code, refused = report("verify-certificate", out)
+    assert code == 3
+    assert f"articad certify {out}" in json.dumps(refused)
 
 
 def test_check_needs_no_script(chest: Path, report: Any) -> None:

@@ -28,6 +28,11 @@ if TYPE_CHECKING:
         help="what simulators collide with: convex pieces inside the parts, the parts' own meshes, or their hulls (pieces)",
     ),
     argument("--actuators", action="store_true", help="give every driver of an MJCF a servo"),
+    argument(
+        "--keep-frames",
+        action="store_true",
+        help="for URDF: give every link its part's frame, with a bare link and a fixed joint where the joint does not pass through it",
+    ),
     argument("--ros", metavar="PACKAGE", default=None, help="write URDF as a ROS 2 package, with SRDF and ros2_control"),
     argument(
         "--process", choices=["fdm", "sla", "sls"], default="fdm", help="the printing process for 3MF: gaps are checked against it (fdm)"
@@ -50,6 +55,7 @@ def _export(options: argparse.Namespace, terminal: Terminal) -> Report:
         "srdf": ros,
         "ros2_control": ros,
         "process": options.process,
+        "keep_frames": options.keep_frames,
     }
     exports: dict[str, Report] = {}
     if options.out is None:
@@ -75,13 +81,20 @@ def _export(options: argparse.Namespace, terminal: Terminal) -> Report:
         action="store_true",
         help="for URDF and MJCF: replace chains of joints over links without shape by one joint, such as a ball",
     ),
+    argument(
+        "--keep-frames",
+        action="store_true",
+        help="for URDF: give every link its part's frame, with a bare link and a fixed joint where the joint does not pass through it",
+    ),
 )
 def _convert(options: argparse.Namespace, terminal: Terminal) -> Report:
     from articad.commands import summaries
     from articad.formats import convert, format_of
 
     target = Path(options.target)
-    assembly, bundle = convert(options.source, target, strict=options.strict, fuse=options.fuse)
+    assembly, bundle = convert(
+        options.source, target, strict=options.strict, fuse=options.fuse, **({"keep_frames": True} if options.keep_frames else {})
+    )
     report = bundle.to_json() | {"folder": str(target.parent), "main": str(target)}
     terminal.findings(assembly.findings)
     summaries.print_exports({getattr(format_of(target), "name", ""): report}, terminal)

@@ -9,10 +9,12 @@ from typing import TYPE_CHECKING
 
 from articad.commands.command import argument, command
 from articad.commands.options import amount, names
-from articad.files import RECORD_BYTES, read_file
+from articad.files import RECORD_BYTES, is_file, read_file
 
 if TYPE_CHECKING:
     from articad.commands.terminal import Report, Terminal
+
+CERTIFICATE = "certificate.json"
 
 
 @command(
@@ -49,17 +51,23 @@ def _certify(options: argparse.Namespace, terminal: Terminal) -> Report:
 @command(
     "verify-certificate",
     "Check a certificate without trusting whoever wrote it.",
-    argument("file", metavar="FILE", help="certificate.json"),
+    argument("file", metavar="FILE", help="certificate.json, or the folder of a run that has one"),
     argument("--meshes", metavar="DIR", help="its meshes, <part>.npz (the folder certificate/ beside it)"),
 )
 def _verify_certificate(options: argparse.Namespace, terminal: Terminal) -> Report:
     from articad.certificates.verifier import verify_file
     from articad.errors import ReadError
 
-    file = Path(options.file)
-    if not file.is_file():
-        message = f"There is no file {file}."
-        raise ReadError.at(str(file), message, "Name the certificate.json that `articad certify RUN` wrote into the run.", said=message)
+    named = Path(options.file)
+    file = named / CERTIFICATE if named.is_dir() else named
+    if not is_file(file, root=named if named.is_dir() else None):
+        message = f"The folder {named} has no {CERTIFICATE}." if named.is_dir() else f"There is no file {file}."
+        hint = (
+            f"Write it: articad certify {named}."
+            if named.is_dir()
+            else "Name a run, or the certificate.json that `articad certify RUN` wrote into it."
+        )
+        raise ReadError.at(str(file), message, hint, said=message)
     faults = verify_file(file, Path(options.meshes) if options.meshes else file.parent / "certificate")
     stated = [] if faults else _stated(json.loads(read_file(file, RECORD_BYTES)))
     for line in [*faults, *stated]:

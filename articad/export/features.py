@@ -12,7 +12,7 @@ import numpy as np
 from articad.export.convex import hull_mesh
 from articad.export.inertia import MM_PER_M, is_possible
 from articad.export.losses import Feature
-from articad.geometry.mesh import TriMesh
+from articad.geometry.mesh import TriMesh, merged
 from articad.geometry.part import Part, Shape
 from articad.kinematics.joints import Joint, JointType
 
@@ -126,6 +126,15 @@ def primitive_features(assembly: Assembly) -> list[Feature]:
         for shape in (*part.visuals, *part.collisions)
         if shape.primitive is not None
     ]
+
+
+def body_mesh(part: Part) -> TriMesh | None:
+    """Return the mesh by which formats of shapes show a part: its solid's, else what is drawn, else what collides; None without a shape."""
+    if part.solid is not None:
+        return part.solid.mesh
+    shapes = part.visuals or part.collisions
+    mesh = merged([shape.placed for shape in shapes]) if shapes else None
+    return None if mesh is None or not len(mesh.triangles) else mesh
 
 
 def is_flat(mesh: TriMesh) -> bool:

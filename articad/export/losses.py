@@ -282,6 +282,10 @@ TABLE: dict[str, dict[Format, LossRow]] = {
         name: LossRow("a frame on the joint", "the original frame of the link: the joint does not pass through its origin")
         for name in MECHANISM_FORMATS
     },
+    "root.frame": {
+        name: LossRow("the frame of the world", "the frame of the ground part: the root link stands in the world's frame")
+        for name in MECHANISM_FORMATS
+    },
     "shape.primitive": {
         "urdf": LossRow("a mesh", "the primitive: URDF 1.0 does not have it"),
         "mjcf": LossRow("a geom of that kind"),
@@ -312,6 +316,8 @@ TABLE: dict[str, dict[Format, LossRow]] = {
         "sdf": LossRow("a link without shapes"),
         "usd": LossRow("a body without meshes"),
         "step": LossRow("nothing", "its position and name: the part has no shape"),
+        "glb": LossRow("a node without a mesh"),
+        "3mf": LossRow("nothing", "the part: it has no shape, so there is nothing to print"),
     },
     "hull": {
         "urdf": LossRow(
@@ -437,6 +443,7 @@ for _key, _rows in TABLE.items():
                 "rest.",
                 "contact.",
                 "link.frame",
+                "root.frame",
                 "shape.primitive",
             )
         )

@@ -99,6 +99,8 @@ class LoweredJoint:
         freedoms: Its motions, from the parent outwards.
         carriers: Names for links between its motions, and one for a link at its end.
         anchor: Where its axes pass through, in the child link's frame [m], `(3,)`; the origin unless `lower` was asked to keep frames.
+        end: Where the child link is not in the frame that the joint moves, which only `part_frames` does: a name for a fixed joint, and
+            the child link's frame in the moved one [m]. The link between the two joints has the last name of `carriers`.
     """
 
     name: str
@@ -111,6 +113,7 @@ class LoweredJoint:
     freedoms: tuple[AxisMotion, ...]
     carriers: tuple[str, ...]
     anchor: FloatArray = field(default_factory=lambda: np.zeros(3))
+    end: tuple[str, SE3] | None = None
 
     @property
     def is_free(self) -> bool:
@@ -193,7 +196,7 @@ def metres(T: SE3) -> SE3:
     return SE3.from_unit_array(T.data / np.array([MM_PER_M, MM_PER_M, MM_PER_M, 1.0, 1.0, 1.0, 1.0]))
 
 
-def lower(assembly: Assembly, reserved: Iterable[str] = (), *, as_it_came: bool = False) -> LoweredModel:
+def lower(assembly: Assembly, reserved: Iterable[str] = (), *, as_it_came: bool = False, part_frames: bool = False) -> LoweredModel:
     """Turn an assembly into links, frames and one-freedom motions in SI units.
 
     Names become valid, limits and rest values are converted, loads are computed, and each feature that a format may not hold is noted.
@@ -202,6 +205,7 @@ def lower(assembly: Assembly, reserved: Iterable[str] = (), *, as_it_came: bool 
         assembly: What is written.
         reserved: Names that no link may have.
         as_it_came: Keep the frame of every link and all names, for a format whose joints may pass anywhere and whose names are any text.
+        part_frames: Give every link the frame of its part; where the joint cannot stand there, the joint says so (`end`).
     """
     mechanism = assembly.mechanism
     names = _ValidNames(assembly, reserved, any_text=as_it_came)
@@ -209,13 +213,16 @@ def lower(assembly: Assembly, reserved: Iterable[str] = (), *, as_it_came: bool 
     T_link_part = {mechanism.ground: mechanism.T_ground}
     joints = []
     moved: list[Feature] = []
+    if part_frames and not mechanism.T_ground.allclose(SE3.identity(), mm=ON_AXIS_MM, rad=1e-9):
+        moved.append(_moved(mechanism.ground, mechanism.T_ground)._replace(key="root.frame"))
     for edge in mechanism.tree.edges:
         head, K = _frames(edge.joint, backwards=edge.reversed)
         T_link_part[edge.part] = K
-        keeps = assembly.foreign and _keeps_frame(edge.joint, K, anywhere=as_it_came)
-        if keeps:
+        keeps = (assembly.foreign or part_frames) and _keeps_frame(edge.joint, K, anywhere=as_it_came)
+        apart = not keeps and not K.allclose(SE3.identity(), mm=ON_AXIS_MM, rad=1e-9)
+        if keeps or (apart and part_frames):
             T_link_part[edge.part] = SE3.identity()
-        elif assembly.foreign and not K.allclose(SE3.identity(), mm=ON_AXIS_MM, rad=1e-9):
+        elif assembly.foreign and apart:
             moved.append(_moved(edge.part, K))
         T_parent_joint = metres(T_link_part[edge.parent] @ head @ (K if keeps else SE3.identity()))
         row = _lowered(edge.joint, edge.parent, edge.part, T_parent_joint, SE3.identity(), loads, names, backwards=edge.reversed)
@@ -223,7 +230,7 @@ def lower(assembly: Assembly, reserved: Iterable[str] = (), *, as_it_came: bool 
             row = replace(row, freedoms=tuple(replace(one, axis=_rounded(K.rotation.T @ one.axis)) for one in row.freedoms))
             if as_it_came:
                 row = replace(row, anchor=K.inverse().translation / MM_PER_M)
-        joints.append(row)
+        joints.append(replace(row, end=(names.end(edge.joint), metres(K))) if apart and part_frames else row)
     still = rigid_with_ground(assembly)
     loops = []
     for joint in mechanism.loop_joints:
@@ -261,7 +268,7 @@ def _keeps_frame(joint: Joint, K: SE3, *, anywhere: bool = False) -> bool:
 
 
 def _moved(part: str, K: SE3) -> Feature:
-    x, y, z = K.inverse().translation
+    x, y, z = np.round(K.inverse().translation, 9) + 0.0
     return Feature(
         "link.frame",
         f"parts.{part}",
@@ -296,6 +303,10 @@ class _ValidNames:
         base = self.joints[joint.name]
         count = len(motions(joint.type))
         return tuple(self._link_names.claim(f"{base}__d{number + 1}") for number in range(max(count, 1)))
+
+    def end(self, joint: Joint) -> str:
+        """Return the name of a fixed joint at a joint's end."""
+        return self._joint_names.claim(f"{self.joints[joint.name]}__fixed")
 
     def features(self, assembly: Assembly) -> list[Feature]:
         """Return the names that had to change."""

@@ -1,4 +1,6 @@
-"""STEP: one assembly file with a product per shape and an instance per part, placed as it rests, with names and colours.
+"""STEP AP242: one assembly file with a product per shape and an instance per part, placed as it rests, with names and colours.
+
+Parts that fixed joints hold together are instances in a sub-assembly of their own, which moves as one body in a CAD program.
 
 The parts' own STEP files, which the kernel's worker wrote, are merged as text: their entities are renumbered and an assembly
 structure is put above them (ISO 10303-44: next assembly usage occurrences with item-defined transformations), so that no B-rep enters
@@ -20,15 +22,19 @@ import numpy as np
 from articad.connectors.se3 import SE3
 from articad.errors import ExportError
 from articad.export.bundle import Bundle
+from articad.export.features import body_mesh
+from articad.export.hulls import rigid_groups
 from articad.export.losses import Feature, kept_losses, losses_of, refuse
-from articad.export.names import valid_name
-from articad.geometry.mesh import TriMesh, merged
+from articad.export.names import Names, valid_name
+from articad.geometry.mesh import TriMesh
 from articad.geometry.part import Part
 from articad.kinematics.joints import JointType
 
 if TYPE_CHECKING:
     from articad.assembly import Assembly
 
+SCHEMA = "AP242_MANAGED_MODEL_BASED_3D_ENGINEERING_MIM_LF {1 0 10303 442 1 1 4 }"  # ISO 10303-242
+PROTOCOL = "ap242_managed_model_based_3d_engineering"
 TIME = "2000-01-01T00:00:00"  # the same assembly gives the same bytes
 UNCERTAINTY_MM = 1e-7  # below which two points of the file are one
 MOST_FACETS = 50_000  # of one part without a B-rep: CAD readers need minutes for more plane faces
@@ -49,7 +55,10 @@ class _Component:
 
 
 def write_step(assembly: Assembly, *, strict: bool = False) -> Bundle:
-    """Write all parts that have a shape as one STEP assembly (AP214) in the rest pose, in mm.
+    """Write all parts that have a shape as one STEP assembly (AP242) in the rest pose, in mm.
+
+    Parts of the same shape and colour are instances of one product. Parts that fixed joints hold together, if not all are, stand in a
+    sub-assembly `<first part>_group` with the first part's frame.
 
     Args:
         assembly: What to write.
@@ -69,33 +78,49 @@ def write_step(assembly: Assembly, *, strict: bool = False) -> Bundle:
     root = writer.root(assembly.name)
     rest = assembly.mechanism.rest_poses()
     products: dict[tuple[str, str], _Component] = {}
-    for name, part in assembly.parts.items():
-        key = _shape_key(part)
-        if key is None:
-            continue
-        product = products.get((key, part.color))
-        if product is None:
-            product = products[key, part.color] = writer.product(part)
-        writer.place(product, root, name, rest[name])
+    for group in _groups(assembly):
+        above, place = root, SE3.identity()
+        if group.name:
+            above, place = writer.root(group.name), rest[group.parts[0]]
+            writer.place(above, root, group.name, place)
+        for name in group.parts:
+            part = assembly.parts[name]
+            key = str(_shape_key(part)), part.color
+            if key not in products:
+                products[key] = writer.product(part)
+            writer.place(products[key], above, name, place.inverse() @ rest[name])
     if not products:
         raise ExportError(f"No part of {assembly.name!r} has a shape, so there is nothing to write as STEP.")
     return Bundle({f"{valid_name(assembly.name)}.step": writer.document(assembly.name)}, losses)
 
 
-def _facets(part: Part) -> TriMesh | None:
-    """Return the mesh of a part without a B-rep: its solid's, else what is drawn, else what collides."""
-    if part.solid is not None:
-        return part.solid.mesh
-    shapes = part.visuals or part.collisions
-    return merged([shape.placed for shape in shapes]) if shapes else None
+@dataclass(frozen=True)
+class _Group:
+    """Parts that stand in one product: a sub-assembly of this name, or the whole where the name is empty."""
+
+    name: str
+    parts: tuple[str, ...]
+
+
+def _groups(assembly: Assembly) -> list[_Group]:
+    """Return the parts with a shape by the body that they move with, in the order of declaration."""
+    shaped = [name for name, part in assembly.parts.items() if _shape_key(part) is not None]
+    body = rigid_groups(assembly.mechanism.joints, tuple(assembly.parts))
+    members: dict[int, list[str]] = {}
+    for name in shaped:
+        members.setdefault(body[name], []).append(name)
+    if len(members) < 2:
+        return [_Group("", tuple(shaped))]
+    names = Names(assembly.parts, any_text=True)
+    return [_Group(names.claim(f"{parts[0]}_group") if len(parts) > 1 else "", tuple(parts)) for parts in members.values()]
 
 
 def _shape_key(part: Part) -> str | None:
     """Return the same text for parts of the same shape; None for a part without one."""
     if part.solid is not None and part.solid.step is not None:
         return str(part.solid.step)
-    mesh = _facets(part)
-    return None if mesh is None or not len(mesh.triangles) else mesh.digest
+    mesh = body_mesh(part)
+    return None if mesh is None else mesh.digest
 
 
 class _Writer:
@@ -103,6 +128,7 @@ class _Writer:
 
     def __init__(self) -> None:
         self.entities: list[str] = []
+        self._application: int | None = None
 
     def add(self, body: str) -> int:
         """Append an entity and return its number."""
@@ -117,7 +143,7 @@ class _Writer:
             "HEADER;",
             "FILE_DESCRIPTION(('articad assembly'),'2;1');",
             f"FILE_NAME({title},'{TIME}',(''),(''),'articad','articad','');",
-            "FILE_SCHEMA(('AUTOMOTIVE_DESIGN { 1 0 10303 214 1 1 1 1 }'));",
+            f"FILE_SCHEMA(('{SCHEMA}'));",
             "ENDSEC;",
             "DATA;",
         ]
@@ -140,14 +166,13 @@ class _Writer:
         """
         if part.solid is not None and part.solid.step is not None:
             return self.component(part.solid.step.read_text("utf-8"), part.name, part.color)
-        mesh = _facets(part)
+        mesh = body_mesh(part)
         assert mesh is not None
         return self.faceted(mesh, part.name, part.color)
 
     def _definition(self, name: str) -> tuple[int, int]:
         """Add a product; return its definition and what a shape is attached to."""
-        application = self.add("APPLICATION_CONTEXT('automotive design')")
-        self.add(f"APPLICATION_PROTOCOL_DEFINITION('international standard','automotive_design',2000,#{application})")
+        application = self.application()
         context = self.add(f"PRODUCT_CONTEXT('',#{application},'mechanical')")
         product = self.add(f"PRODUCT({_text(name)},{_text(name)},'',(#{context}))")
         self.add(f"PRODUCT_RELATED_PRODUCT_CATEGORY('part',$,(#{product}))")
@@ -155,6 +180,13 @@ class _Writer:
         stage = self.add(f"PRODUCT_DEFINITION_CONTEXT('part definition',#{application},'design')")
         definition = self.add(f"PRODUCT_DEFINITION('design','',#{formation},#{stage})")
         return definition, self.add(f"PRODUCT_DEFINITION_SHAPE('','',#{definition})")
+
+    def application(self) -> int:
+        """Return the application context of the file."""
+        if self._application is None:
+            self._application = self.add("APPLICATION_CONTEXT('Managed model based 3d engineering')")
+            self.add(f"APPLICATION_PROTOCOL_DEFINITION('international standard','{PROTOCOL}',2013,#{self._application})")
+        return self._application
 
     def _geometric_context(self) -> int:
         length = self.add("( LENGTH_UNIT() NAMED_UNIT(*) SI_UNIT(.MILLI.,.METRE.) )")
@@ -180,8 +212,13 @@ class _Writer:
             ExportError: If it is not the STEP file of one product.
         """
         found = {int(number): " ".join(body.split("\n")) for number, body in _ENTITY.findall(text.partition("DATA;")[2])}
+        application = self.application()  # the part's own names another protocol
+        own = [old for old, body in found.items() if body.startswith("APPLICATION_CONTEXT")]
+        found = {
+            old: body for old, body in found.items() if not body.startswith(("APPLICATION_CONTEXT", "APPLICATION_PROTOCOL_DEFINITION"))
+        }
         offset = len(self.entities)
-        number_of = {old: offset + place for place, old in enumerate(found, start=1)}
+        number_of = {old: offset + place for place, old in enumerate(found, start=1)} | dict.fromkeys(own, application)
         kinds: dict[str, list[int]] = {}
         for old, body in found.items():
             kind = body.partition("(")[0].strip()

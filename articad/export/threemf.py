@@ -11,7 +11,9 @@ from lxml import etree
 from numpy.typing import NDArray
 
 from articad.connectors.se3 import SE3
+from articad.errors import ExportError
 from articad.export.bundle import Bundle
+from articad.export.features import body_mesh
 from articad.export.losses import Feature, kept_losses, losses_of, refuse
 from articad.export.markup import child, document, number
 from articad.export.names import Names
@@ -48,7 +50,8 @@ def write_3mf(assembly: Assembly, *, strict: bool = False, process: Process = "f
     """Write one 3MF file per part, in mm, turned so that it stands on the largest flat face that it can stand on.
 
     Args:
-        assembly: What to write; parts without a closed mesh are left out with a finding.
+        assembly: What to write. A part whose mesh is open is left out with an error; a part without any shape is a loss, because there is
+            nothing to print.
         strict: Refuse losses of motion, mass or shape; a printed part is no joint, so only a single body passes.
         process: How it will be printed: joints whose declared gap is smaller than the process needs are findings.
 
@@ -57,6 +60,7 @@ def write_3mf(assembly: Assembly, *, strict: bool = False, process: Process = "f
 
     Raises:
         UnrepresentableError: If `strict` and there is such a loss.
+        ExportError: If no part has a shape.
     """
     losses = (*losses_of("3mf", _features(assembly)), *kept_losses("3mf", assembly.kept))
     if strict:
@@ -65,13 +69,18 @@ def write_3mf(assembly: Assembly, *, strict: bool = False, process: Process = "f
     findings = list(_clearances(assembly, process))
     names = Names()
     for name, part in assembly.parts.items():
-        if part.mesh is None or not part.mesh.is_closed:
-            message = f"Part {name!r} has no closed mesh, so it cannot be printed."
+        mesh = body_mesh(part)
+        if mesh is None:
+            continue
+        if not mesh.is_closed:
+            message = f"The mesh of part {name!r} is not closed, so it cannot be printed."
             findings.append(
                 Finding(code="E_MESH_OPEN", where=f"parts.{name}", parts=(name,), message=message, hint="Close the mesh.", stage="export")
             )
             continue
-        files[f"{names.claim(name)}.3mf"] = _package(lying(part.mesh), name, part.color)
+        files[f"{names.claim(name)}.3mf"] = _package(lying(mesh), name, part.color)
+    if not files and not findings:
+        raise ExportError(f"No part of {assembly.name!r} has a shape, so there is nothing to write as 3MF.")
     return Bundle(files, losses, Findings(findings))
 
 
@@ -168,4 +177,9 @@ def _clearances(assembly: Assembly, process: Process) -> list[Finding]:
 
 def _features(assembly: Assembly) -> list[Feature]:
     features = [Feature("motion", f"joints.{joint.name}") for joint in assembly.joints if joint.type is not JointType.FIXED]
-    return features + [Feature("mass", f"parts.{name}") for name, part in assembly.parts.items() if part.mass is not None]
+    for name, part in assembly.parts.items():
+        if part.mass is not None:
+            features.append(Feature("mass", f"parts.{name}"))
+        if body_mesh(part) is None:
+            features.append(Feature("shape.missing", f"parts.{name}"))
+    return features

@@ -47,11 +47,12 @@ def write_urdf(
     srdf: bool = False,
     ros2_control: bool = False,
     collision: Collision | None = None,
+    keep_frames: bool = False,
     cache: BuildCache | None = None,
 ) -> Bundle:
     """Write an assembly as URDF.
 
-    Link frames are joint frames, the root link is the ground part, and every joint's value is ours in rad or m, so all zero is q = 0.
+    Link frames are joint frames (of a file's links, their own where the joint can stand there), the root link is the ground part, and every joint's value is ours in rad or m, so all zero is q = 0.
     Joints of several freedoms become chains over carrier links (`<joint>__d1`) of small mass, which is taken out of the moved part.
     What URDF does not hold is kept in `<articad>` elements, which other readers ignore.
 
@@ -66,6 +67,8 @@ def write_urdf(
         ros2_control: Add a `<ros2_control>` system that commands the drivers' positions, on mock hardware.
         collision: Collide with convex pieces inside the parts ("pieces"), with the parts' own meshes ("solid"), of which engines take the
             hulls, or with hulls ("hull"). By default pieces; of a file that somebody else made, its own shapes.
+        keep_frames: Give every link the frame of its part. Where a joint's axis does not pass through its origin, the joint moves a bare
+            link `<joint>__d1`, to which the part's link is fixed.
         cache: Keeps convex pieces by shape; that of built parts by default.
 
     Returns:
@@ -77,7 +80,7 @@ def write_urdf(
     """
     if package is not None:
         require_package_name(package)
-    model = lower(assembly)
+    model = lower(assembly, part_frames=keep_frames)
     contacts: tuple[HullOverlap, ...] = ()
     if srdf or kind_of(assembly, collision) != "solid" or not assembly.foreign:  # a file's own collision meshes are what they are
         model, contacts = collide(assembly, model, collision, _skipped(assembly, model), cache)
@@ -210,6 +213,8 @@ def _tree(root: Any, model: LoweredModel, follows: dict[str, Follows], files: Me
         if joint is not None:
             for name in joint.carriers[:carriers]:
                 _inertial(child(root, "link", {"name": name}), carrier)
+            if joint.end is not None:
+                child(root, "link", {"name": joint.carriers[-1]})
         _link(root, link, whole, files, keeper)
         files.keep_all(link.part, link.name)
         if joint is not None:
@@ -289,9 +294,10 @@ def _joints(root: Any, joint: LoweredJoint, follows: dict[str, Follows], keeper:
     """Write a joint as a chain of one-freedom joints over its carriers."""
     if not joint.freedoms:
         element = child(root, "joint", {"name": joint.name, "type": "floating" if joint.is_free else "fixed"})
-        _ends(element, joint.T_parent_joint, joint.parent, joint.child)
+        _ends(element, joint.T_parent_joint, joint.parent, _end(joint))
+        _fix_to_end(root, joint)
         return
-    links = [joint.parent, *joint.carriers[: _carrier_count(joint)], joint.child]
+    links = [joint.parent, *joint.carriers[: _carrier_count(joint)], _end(joint)]
     T = joint.T_parent_joint
     for freedom, near, far in zip(joint.freedoms, links[:-1], links[1:], strict=True):
         element = child(root, "joint", {"name": freedom.name, "type": _type(freedom)})
@@ -305,6 +311,19 @@ def _joints(root: Any, joint: LoweredJoint, follows: dict[str, Follows], keeper:
             tie = follows[freedom.name]
             child(element, "mimic", {"joint": tie.leader, "multiplier": number(tie.ratio), "offset": number(tie.offset)})
         T = SE3.identity()
+    _fix_to_end(root, joint)
+
+
+def _end(joint: LoweredJoint) -> str:
+    """Return the link that the joint moves: its child, or a bare link to which that is fixed."""
+    return joint.child if joint.end is None else joint.carriers[-1]
+
+
+def _fix_to_end(root: Any, joint: LoweredJoint) -> None:
+    """Fix the child link to the bare link that the joint moves, where its own frame is elsewhere."""
+    if joint.end is not None:
+        name, T = joint.end
+        _ends(child(root, "joint", {"name": name, "type": "fixed"}), T, _end(joint), joint.child)
 
 
 def _ends(element: Any, T_parent_joint: SE3, parent: str, child_link: str) -> None:

@@ -57,13 +57,30 @@ def test_every_part_is_a_named_coloured_solid_where_it_rests(assembly: Assembly,
     rest = assembly.mechanism.rest_poses()
 
     assert read.label == "step_'test'"  # build123d shows spaces as underscores
-    assert [child.label for child in read.children] == [name.replace(" ", "_") for name in assembly.parts]
-    for child, (name, part) in zip(read.children, assembly.parts.items(), strict=True):
-        matrix = np.array([[child.location.wrapped.Transformation().Value(row, column) for column in (1, 2, 3, 4)] for row in (1, 2, 3)])
+    assert [child.label for child in read.children] == ["base", "arm_group"]
+    leaves = [read.children[0], *read.children[1].children]
+    assert [child.label for child in leaves] == [name.replace(" ", "_") for name in assembly.parts]
+    for child, (name, part) in zip(leaves, assembly.parts.items(), strict=True):
+        matrix = np.array(
+            [[child.global_location.wrapped.Transformation().Value(row, column) for column in (1, 2, 3, 4)] for row in (1, 2, 3)]
+        )
         assert part.solid is not None
         assert child.volume == pytest.approx(part.solid.volume, rel=1e-9)
         assert np.allclose(matrix, rest[name].matrix[:3], atol=1e-9)
         assert next(iter(child.color)) == pytest.approx(int(part.color[1:3], 16) / 255, abs=1e-6)
+
+
+def test_parts_that_are_fixed_together_are_a_sub_assembly_and_the_file_is_ap242(assembly: Assembly, tmp_path: Path) -> None:
+    bundle = write_step(assembly)
+    bundle.write(tmp_path)
+
+    assert instances_in(tmp_path / bundle.main)[1] == {"base": "", "arm": "arm_group", "it's ä \\ hollow": "arm_group"}
+    content = bundle.files[bundle.main]
+    assert b"AP242_MANAGED_MODEL_BASED_3D_ENGINEERING_MIM_LF" in content
+    assert (content.count(b"APPLICATION_PROTOCOL_DEFINITION"), content.count(b"AUTOMOTIVE_DESIGN")) == (1, 0)
+    from articad.importers.step import read_step
+
+    assert [name.replace("_", " ") for name in read_step(tmp_path / bundle.main).parts] == list(assembly.parts)
 
 
 def test_the_same_assembly_is_the_same_bytes(assembly: Assembly) -> None:
@@ -106,6 +123,13 @@ def joined(*parts: Part) -> Assembly:
 
 def read_by_occt(assembly: Assembly, folder: Path) -> dict[str, Any]:
     """Write an assembly and return what OpenCASCADE reads: instance name -> its placed shape and colour, and the product's shape."""
+    bundle = write_step(assembly)
+    bundle.write(folder)
+    return instances_in(folder / bundle.main)[0]
+
+
+def instances_in(path: Path) -> tuple[dict[str, Any], dict[str, str]]:
+    """Return what OpenCASCADE reads of a STEP file: its instances of shapes, and the sub-assembly that each stands in."""
     from OCP.collections import Sequence_TDF_Label
     from OCP.Quantity import Quantity_Color
     from OCP.STEPCAFControl import STEPCAFControl_Reader
@@ -113,35 +137,45 @@ def read_by_occt(assembly: Assembly, folder: Path) -> dict[str, Any]:
     from OCP.TDataStd import TDataStd_Name
     from OCP.TDF import TDF_Label
     from OCP.TDocStd import TDocStd_Document
+    from OCP.TopLoc import TopLoc_Location
     from OCP.TopoDS import TopoDS_Iterator
     from OCP.XCAFDoc import XCAFDoc_ColorGen, XCAFDoc_ColorSurf, XCAFDoc_DocumentTool, XCAFDoc_ShapeTool
 
-    bundle = write_step(assembly)
-    bundle.write(folder)
     document = TDocStd_Document(TCollection_ExtendedString("XCAF"))
     reader = STEPCAFControl_Reader()
     reader.SetNameMode(namemode=True)
     reader.SetColorMode(colormode=True)
-    reader.ReadFile(str(folder / bundle.main))
+    reader.ReadFile(str(path))
     reader.Transfer(document)
     tool = XCAFDoc_DocumentTool.ShapeTool_s(document.Main())
     colors = XCAFDoc_DocumentTool.ColorTool_s(document.Main())
-    free, components = Sequence_TDF_Label(), Sequence_TDF_Label()
+    free = Sequence_TDF_Label()
     tool.GetFreeShapes(free)
     assert free.Length() == 1
-    XCAFDoc_ShapeTool.GetComponents_s(free.Value(1), components)
     found: dict[str, Any] = {}
-    for index in range(1, components.Length() + 1):
-        label, product, name, color = components.Value(index), TDF_Label(), TDataStd_Name(), Quantity_Color()
-        XCAFDoc_ShapeTool.GetReferredShape_s(label, product)
-        assert label.FindAttribute(TDataStd_Name.GetID_s(), name)
-        solid = XCAFDoc_ShapeTool.GetShape_s(product)
-        # several solids of one product have a colour each
-        pieces = [solid, TopoDS_Iterator(solid).Value()]
-        assert any(colors.GetColor(piece, kind, color) for piece in pieces for kind in (XCAFDoc_ColorGen, XCAFDoc_ColorSurf))
-        found[str(name.Get().ToExtString())] = (XCAFDoc_ShapeTool.GetShape_s(label), color.Red(), solid)
-    assert len(found) == components.Length()
-    return found
+    above: dict[str, str] = {}
+
+    def walk(assembly: Any, group: str, place: Any) -> None:
+        components = Sequence_TDF_Label()
+        XCAFDoc_ShapeTool.GetComponents_s(assembly, components)
+        for index in range(1, components.Length() + 1):
+            label, product, text, color = components.Value(index), TDF_Label(), TDataStd_Name(), Quantity_Color()
+            XCAFDoc_ShapeTool.GetReferredShape_s(label, product)
+            assert label.FindAttribute(TDataStd_Name.GetID_s(), text)
+            name = str(text.Get().ToExtString())
+            if XCAFDoc_ShapeTool.IsAssembly_s(product):
+                walk(product, name, place.Multiplied(XCAFDoc_ShapeTool.GetLocation_s(label)))
+                continue
+            solid = XCAFDoc_ShapeTool.GetShape_s(product)
+            # several solids of one product have a colour each
+            pieces = [solid, TopoDS_Iterator(solid).Value()]
+            assert any(colors.GetColor(piece, kind, color) for piece in pieces for kind in (XCAFDoc_ColorGen, XCAFDoc_ColorSurf))
+            assert name not in found
+            found[name] = (XCAFDoc_ShapeTool.GetShape_s(label).Moved(place), color.Red(), solid)
+            above[name] = group
+
+    walk(free.Value(1), "", TopLoc_Location())
+    return found, above
 
 
 def volume_and_centre(shape: Any) -> tuple[float, list[float]]:
