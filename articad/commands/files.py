@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from articad.commands.command import argument, command
 from articad.commands.options import FORMATS, SANDBOX, formats
@@ -92,9 +92,8 @@ def _convert(options: argparse.Namespace, terminal: Terminal) -> Report:
     from articad.formats import convert, format_of
 
     target = Path(options.target)
-    assembly, bundle = convert(
-        options.source, target, strict=options.strict, fuse=options.fuse, **({"keep_frames": True} if options.keep_frames else {})
-    )
+    more: dict[str, Any] = {"keep_frames": True} if options.keep_frames else {}  # a format without frames of its own refuses it
+    assembly, bundle = convert(options.source, target, strict=options.strict, fuse=options.fuse, **more)
     report = bundle.to_json() | {"folder": str(target.parent), "main": str(target)}
     terminal.findings(assembly.findings)
     summaries.print_exports({getattr(format_of(target), "name", ""): report}, terminal)

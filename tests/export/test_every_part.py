@@ -180,10 +180,10 @@ def frames_and_shapes() -> Assembly:
     arm = block("arm", (9, 8, 30), root=frame(at=(0, 0, -10)), tip=frame(at=(1, 2, 15), z=(1, 0, 0)))
     S = np.diag([-1.0, 1.0, 1.0, 1.0])
     parts = [world, arm, arm.mirrored("mra", S)]
-    for name, kind in (("drawn", "visuals"), ("hit", "collisions")):
-        shape = Shape(cylinder(3.0, 20.0), SE3.trans(1, 0, 4), name=name)
-        parts.append(replace(block(name, root=frame(), tip=frame(at=(0, 0, 30))), solid=None, visuals=(), collisions=()))
-        parts[-1] = replace(parts[-1], **{kind: (shape, Shape(box(2, 3, 4), SE3.trans(0, 0, 20)))})
+    for name in ("drawn", "hit"):
+        shapes = Shape(cylinder(3.0, 20.0), SE3.trans(1, 0, 4), name=name), Shape(box(2, 3, 4), SE3.trans(0, 0, 20))
+        part = replace(block(name, root=frame(), tip=frame(at=(0, 0, 30))), solid=None, visuals=(), collisions=())
+        parts.append(replace(part, visuals=shapes) if name == "drawn" else replace(part, collisions=shapes))
     parts.append(Part.without_geometry("tcp", block("t", root=frame()).connectors))
     joints = [
         declare.fixed("stand", parts[0]["o"], parts[1]["root"]),
