@@ -9,6 +9,7 @@ import os
 import shutil
 import sys
 import tempfile
+import time
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -28,6 +29,7 @@ from articad.geometry.mesh import TriMesh
 from articad.geometry.part import Solid
 from articad.kernels import sandbox as isolation
 from articad.kernels.contract import probe_findings, read_connectors, solid_findings
+from articad.kernels.dimensions import failed_attempt, fingerprint, probed
 from articad.kernels.failures import poisoned, script_failure, unconfined
 from articad.kernels.kernel import BuildCache, BuiltPart, Inspect
 from articad.kernels.results import PoisonedError, number, numbers, read_bytes, read_lines, read_mesh
@@ -148,16 +150,20 @@ class Build123dKernel:
         """Run a script and hold its part to the contract; see `PartKernel.build`."""
         self._require_sandbox()
         part, source = str(brief["name"]), script.decode("utf-8", errors="replace")
-        limits = self.limits if probe else replace(self.limits, probe_seconds=0.0)
+        limits = replace(self.limits, probe_seconds=0.0)
         request = {"script": source, "part": dict(brief), "deflection_mm": deflection, "angle_deg": ANGLE_DEG}
         with self._job() as job:
             try:
+                started = time.monotonic()
                 ran = self._run("script", job, request, {"shape": "shape.bin"}, limits)
+                own = time.monotonic() - started
                 if not ran.report or ran.report[0].get("ok") is not True:
                     error: KernelError = script_failure(part, source, ran.report, ran.outcome, ran.crash, limits)
                     error.partial = self._pieces(job, deflection)
                     raise error
-                return self._judged(job, brief, ran, folder or self._new_folder(), deflection, inspect)
+                return self._judged(
+                    job, brief, ran, folder or self._new_folder(), deflection, inspect, probe=source if probe else None, own=own
+                )
             except PoisonedError as poison:
                 raise poisoned(part, source, str(poison)) from poison
 
@@ -300,24 +306,43 @@ class Build123dKernel:
         return shape
 
     def _judged(
-        self, job: Path, brief: Mapping[str, Any], ran: _Ran, folder: Path, deflection: float, inspect: Inspect | None
+        self,
+        job: Path,
+        brief: Mapping[str, Any],
+        ran: _Ran,
+        folder: Path,
+        deflection: float,
+        inspect: Inspect | None,
+        *,
+        probe: str | None,
+        own: float,
     ) -> BuiltPart:
-        """Measure what a script left, and hold it to the contract.
+        """Measure what a script left, probe its dimensions, and hold it to the contract.
+
+        Args:
+            job: Folder of the script's job.
+            brief: Of the part.
+            ran: What the script's process left.
+            folder: For the result.
+            deflection: Of the mesh [mm].
+            inspect: Further checks of connectors and bounding box.
+            probe: The script, to be run with each dimension moved; None leaves that out.
+            own: Wall clock of the script [s].
 
         Raises:
             ContractError: With every breach at once.
         """
         part, said = str(brief["name"]), ran.report[0]
+        if ran.report[1:]:
+            raise PoisonedError("its process reports more than one result")
         found: list[Finding] = []
         connectors = read_connectors(brief, said.get("connectors"), found)
         shape = self._measured(job, form="bin", name=part, deflection=deflection)
         found += solid_findings(brief, shape)
         if inspect is not None and "bbox_mm" in shape:
             found += inspect(connectors, numbers(shape["bbox_mm"], 2, 3))
-        if ran.report[1:] or ran.outcome.signal:
-            outcomes = [line["probe"] for line in ran.report[1:] if isinstance(line.get("probe"), dict)]
-            ended = any("probed" in line for line in ran.report)
-            found += probe_findings(brief, outcomes, ended=ended, crashed="" if ended else ends_by(ran.outcome))
+        if probe is not None and shape.get("solids") == 1 and shape.get("valid") is True:
+            found += probe_findings(brief, self._probed(probe, brief, fingerprint(shape, said["connectors"]), own), ended=True, crashed="")
         findings = Findings(found)
         if not findings.ok:
             error = ContractError("\n".join(map(str, findings.errors)), findings=findings, parts=(part,))
@@ -325,6 +350,29 @@ class Build123dKernel:
             raise error
         self._leave(job, folder, self._checked(job, shape, deflection), connectors, findings, brief, deflection, self.level)
         return BuiltPart.load(folder)
+
+    def _probed(self, script: str, brief: Mapping[str, Any], before: list[float], own: float) -> list[Json]:
+        """Build the part with each dimension moved; return an outcome for each that was done in time."""
+
+        def attempt(dimensions: Json, seconds: float) -> list[float] | Json | None:
+            limits = replace(self.limits, seconds=seconds, probe_seconds=0.0)
+            with self._job() as job:
+                ran = self._run(
+                    "script", job, {"script": script, "part": {**brief, "dimensions": dimensions}}, {"shape": "shape.bin"}, limits
+                )
+                said = ran.report[0] if ran.report else {}
+                if said.get("ok") is not True:
+                    return failed_attempt(said, ends_by(ran.outcome), late=ran.outcome.late)
+                judged = self._run("judge", job, {}, {"shape": "shape.bin"}, limits)
+                shape = judged.report[0] if judged.report else {}
+                if shape.get("ok") is not True:
+                    return {
+                        "outcome": "broken",
+                        "error": {"message": f"it gives {shape.get('solids', 'no')} solids, not one that is valid"},
+                    }
+                return fingerprint(shape, said.get("connectors", {}))
+
+        return list(probed(brief["dimensions"], before, attempt, seconds=self.limits.probe_seconds, own=own))
 
     def _pieces(self, job: Path, deflection: float) -> Path | None:
         """Return a folder with the mesh of whatever solids a failed script left."""

@@ -234,6 +234,9 @@ def probe_findings(brief: Json, outcomes: Iterable[Json], *, ended: bool, crashe
             message = f"The script fails when dimension {dimension!r} is moved by {step} either way: {_why(outcome)}."
             hint = "Write the geometry so that it follows its dimensions; pick edges and faces by position relative to them."
             yield _finding("E_NOT_EDITABLE", name, message, hint, dimension=dimension)
+        elif kind == "crashed":
+            message = f"The kernel crashes ({scrubbed(outcome.get('signal'))}) when dimension {dimension!r} is moved by {step}."
+            yield _finding("E_NOT_EDITABLE", name, message, "Write the geometry so that it follows its dimensions.", dimension=dimension)
     missed = [dimension for dimension in brief["dimensions"] if dimension not in reached]
     if crashed and crashed not in ("SIGALRM", "SIGKILL", "SIGXCPU") and missed:
         message = f"The kernel crashes ({crashed}) when dimension {missed[0]!r} is moved by 2 %."

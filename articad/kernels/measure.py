@@ -95,7 +95,7 @@ def measure(shape: TopoDS_Shape, *, deflection: float, angle: float, name: str, 
     solid = TopoDS.Solid(solids[0])
     if matrix is not None:
         solid = _moved(solid, matrix)
-    report |= properties(solid) | {"valid": BRepCheck_Analyzer(solid).IsValid(), "closed": False}
+    report |= properties(solid) | {"valid": is_valid(solid), "closed": False}
     if report["volume_mm3"] < EMPTY_MM3:
         return Measured(report, {})
     mesh = tessellate(solid, deflection, angle)
@@ -178,6 +178,11 @@ def binary(shape: TopoDS_Shape) -> bytes:
     stream = io.BytesIO()
     BinTools.Write_s(shape, stream)
     return stream.getvalue()
+
+
+def is_valid(shape: TopoDS_Shape) -> bool:
+    """Return whether OCCT's check of the topology and geometry finds no fault."""
+    return bool(BRepCheck_Analyzer(shape).IsValid())
 
 
 def solids_of(shape: TopoDS_Shape) -> list[TopoDS_Shape]:

@@ -1,13 +1,12 @@
 """Run one part script: untrusted code, in a confined process of its own that nothing else is asked of afterwards.
 
-What it leaves is a report, one JSON object a line, and the shape. Whoever reads them must not trust them.
+What it leaves is a report, a JSON object, and the shape. Whoever reads them must not trust them.
 """
 
 from __future__ import annotations
 
 import copy
 import signal
-import time
 import traceback
 from collections.abc import Callable, Iterator, Mapping
 from types import FrameType, SimpleNamespace
@@ -20,10 +19,6 @@ from articad.kernels import measure
 from articad.kernels.tessellation import Same
 
 FILE = "part.py"  # the name that a script's code bears: tracebacks are cut down to it
-PROBE_STEP = 0.02  # the contract's 2 %
-PROBE_ZERO_MM, PROBE_ZERO_DEG = 0.1, 1.0  # by which a dimension that is zero is moved
-PROBE_LEAST_SECONDS, PROBE_PATIENCE = 3.0, 10.0  # a dimension moved by 2 % does not make a script ten times as slow
-SAME = 1e-9  # relative change of a number that is rounding
 PARTIAL_SOLIDS = 32  # of a failed script that are kept
 _TEXT = 2000  # characters of a message that are kept
 
@@ -39,19 +34,17 @@ class NotAPart(Exception):  # noqa: N818 - it is not the script's error, but wha
         self.problems, self.shape = problems, shape
 
 
-def run(script: str, part: Json, *, seconds: float, probe_seconds: float, report: Write, shape: Callable[[bytes], None]) -> None:
-    """Run a script, hand over its shape and its report, then probe its dimensions.
+def run(script: str, part: Json, *, seconds: float, report: Write, shape: Callable[[bytes], None]) -> None:
+    """Run a script, hand over its shape and its report.
 
     Args:
         script: The source.
         part: The brief: contracts, part script.
         seconds: Wall clock for the script; the process is killed by SIGALRM after it.
-        probe_seconds: Wall clock for the probe; 0 leaves it out.
-        report: Takes each object of the report at once, so that a later crash loses nothing.
+        report: Takes the report.
         shape: Takes the shape, in the form that `measure.read_shape("bin", …)` reads.
     """
     signal.setitimer(signal.ITIMER_REAL, seconds)
-    started = time.monotonic()
     namespace: Json = {"__name__": "part", "__builtins__": __builtins__}
     try:
         exec(compile(script, FILE, "exec"), namespace)  # noqa: S102 - this is what the sandbox is for
@@ -68,14 +61,7 @@ def run(script: str, part: Json, *, seconds: float, probe_seconds: float, report
         report({"ok": False, "error": described(error), "partial": bool(held)})
         return
     shape(measure.binary(solid))
-    report({"ok": True, "connectors": connectors, "seconds": time.monotonic() - started})
-    if probe_seconds > 0 and _is_one_solid(solid):
-        own = time.monotonic() - started
-        probe_seconds = min(probe_seconds, max(PROBE_LEAST_SECONDS, PROBE_PATIENCE * own * (len(part["dimensions"]) + 1)))
-        signal.setitimer(signal.ITIMER_REAL, probe_seconds)
-        for outcome in _probe(namespace, part, _fingerprint(solid, connectors), probe_seconds):
-            report({"probe": outcome})
-        report({"probed": True})
+    report({"ok": True, "connectors": connectors})
     signal.setitimer(signal.ITIMER_REAL, 0)
 
 
@@ -167,69 +153,6 @@ def _vector(value: Any) -> list[float] | None:
 
 def _kind(value: Any) -> str:
     return "None" if value is None else f"a {type(value).__name__[:60]}"
-
-
-# ---------------------------------------------------------------------- the dimension probe
-
-
-def _probe(namespace: Json, part: Json, before: list[float], seconds: float) -> Iterator[Json]:
-    """Move each dimension by 2 % (a count by 1), up and, if that changes nothing or fails, down, and build again.
-
-    Outcomes: `changed`; `unused`, both ways give the same part; `refused`, the script itself raised a ValueError or
-    AssertionError both ways; `broken`, it failed otherwise both ways, with the error of the first.
-    """
-    until = time.monotonic() + 0.9 * seconds  # what is left over tells which dimensions were not reached
-    for name, value in part["dimensions"].items():
-        outcomes: list[Json] = []
-        for moved in _moves(name, value):
-            if time.monotonic() > until:
-                return
-            outcomes.append(_tried(namespace, {**part, "dimensions": {**part["dimensions"], name: moved}}, before))
-            if outcomes[-1]["outcome"] == "changed":
-                break
-        yield {"dimension": name} | min(outcomes, key=lambda outcome: ("changed", "unused", "refused", "broken").index(outcome["outcome"]))
-
-
-def _moves(name: str, value: float) -> Iterator[float]:
-    if name.endswith("_count"):
-        yield from (value + 1, value - 1) if value > 1 else (value + 1,)
-        return
-    step = abs(value) * PROBE_STEP or (PROBE_ZERO_DEG if name.endswith("_deg") else PROBE_ZERO_MM)
-    yield from (value + step, value - step)
-
-
-def _tried(namespace: Json, part: Json, before: list[float]) -> Json:
-    try:
-        shape, connectors = _built(namespace, part)
-        if not _is_one_solid(shape):
-            message = f"it gives {len(measure.solids_of(shape))} solids, not one that is valid"
-            return {"outcome": "broken", "error": {"type": "", "message": message, "line": None}}
-    except NotAPart as wrong:
-        return {"outcome": "broken", "error": {"type": "", "message": "; ".join(wrong.problems)[:_TEXT], "line": None}}
-    except Exception as error:  # noqa: BLE001 - a script may raise anything
-        what = described(error)
-        return {"outcome": "refused" if what["refused"] else "broken", "error": {key: what[key] for key in ("type", "message", "line")}}
-    after = _fingerprint(shape, connectors)
-    scale = max(map(abs, before), default=1.0)
-    same = len(after) == len(before) and all(
-        abs(a - b) <= SAME * max(abs(b), 1e-6 * scale, 1e-3) for a, b in zip(after, before, strict=True)
-    )
-    return {"outcome": "unused" if same else "changed"}
-
-
-def _is_one_solid(shape: Any) -> bool:
-    return len(measure.solids_of(shape)) == 1 and bool(BRepCheck_Analyzer(shape).IsValid())
-
-
-def _fingerprint(shape: Any, connectors: dict[str, Json]) -> list[float]:
-    """Return volume, centre, bounding box, connectors and the squares of the radii of gyration as numbers.
-
-    The last see what moves in a pattern, which leaves all the others alone.
-    """
-    numbers = measure.properties(shape)
-    gyration = [moment / numbers["volume_mm3"] for row in numbers["inertia_mm5"] for moment in row]
-    frames = [number for name in sorted(connectors) for axis in ("o", "z", "x") for number in connectors[name][axis] or ()]
-    return [numbers["volume_mm3"], *numbers["com_mm"], *numbers["bbox_mm"][0], *numbers["bbox_mm"][1], *gyration, *frames]
 
 
 # ---------------------------------------------------------------------- what a failed script held

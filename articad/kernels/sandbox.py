@@ -56,7 +56,7 @@ class ScriptLimits:
 
     Attributes:
         seconds: Wall clock until its shape must be there.
-        probe_seconds: Wall clock for the dimension probe after that.
+        probe_seconds: Wall clock for what follows: the dimension probe, or further checks of a shape that was measured.
         memory: Address space [bytes], libraries (1 GiB) included.
         file_size: Of each result [bytes].
     """

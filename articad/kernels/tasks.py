@@ -22,7 +22,6 @@ def run_script(request: Json, files: dict[str, int]) -> None:
         job["script"],
         job["part"],
         seconds=limits["seconds"],
-        probe_seconds=limits["probe_seconds"],
         report=lambda line: _write(files["report"], measure.to_json(line)),
         shape=lambda content: _write(files["shape"], content),
     )
@@ -50,6 +49,19 @@ def measure_shape(request: Json, files: dict[str, int]) -> None:
         _write(files["report"], measure.to_json(measure.self_intersection(measure.solids_of(shape)[0])))
 
 
+def judge_shape(request: Json, files: dict[str, int]) -> None:
+    """Task `judge`: whether a script's shape is one valid solid, and its properties; no mesh, no files."""
+    signal.setitimer(signal.ITIMER_REAL, request["limits"]["seconds"])
+    try:
+        shape = measure.read_shape("bin", _content(files["shape"]))
+    except (ValueError, RuntimeError) as error:
+        _write(files["report"], measure.to_json({"ok": False, "message": str(error)}))
+        return
+    solids = measure.solids_of(shape)
+    is_one = len(solids) == 1 and measure.is_valid(solids[0])
+    _write(files["report"], measure.to_json({"ok": is_one, "solids": len(solids)} | (measure.properties(solids[0]) if is_one else {})))
+
+
 def read_assembly(request: Json, files: dict[str, int]) -> None:
     """Task `assembly`: the products of a STEP file; the first line of the report says whether it could be read, each other one is a part."""
     job = json.loads(_content(files["job"]))
@@ -63,7 +75,7 @@ def read_assembly(request: Json, files: dict[str, int]) -> None:
     _write(files["report"], b"".join(measure.to_json(row) for row in ({"ok": True, "parts": len(rows)}, *rows)))
 
 
-TASKS = {"script": run_script, "measure": measure_shape, "pieces": measure_shape, "assembly": read_assembly}
+TASKS = {"script": run_script, "measure": measure_shape, "pieces": measure_shape, "judge": judge_shape, "assembly": read_assembly}
 
 
 def _content(file: int) -> bytes:

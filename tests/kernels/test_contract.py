@@ -162,6 +162,30 @@ def test_a_dimension_that_changes_nothing_is_told(build: Build) -> None:
     assert [finding.where for finding in found] == ["parts.lug.dimensions.dead", "parts.lug.dimensions.dead_count"]
 
 
+@pytest.mark.parametrize(
+    "body",
+    [
+        "import math\nn = getattr(math, 'runs', 0)\nmath.runs = n + 1\nreturn Box(10 + n, 10, 10), {}",
+        "import math\nmath.first = getattr(math, 'first', d['w'])\nreturn Box(10 + d['w'] - math.first, 10, 10), {}",
+        (
+            "import OCP.GProp\nclass Other(OCP.GProp.GProp_GProps):\n    def Mass(self):\n        return d['w']\n"
+            "OCP.GProp.GProp_GProps = Other\nimport sys\nfor m in list(sys.modules.values()):\n"
+            "    if hasattr(m, 'GProp_GProps'):\n        m.GProp_GProps = Other\nreturn Box(10, 10, 10), {}"
+        ),
+    ],
+    ids=["counts its runs", "remembers the first", "changes how it is measured"],
+)
+def test_a_script_cannot_pretend_to_use_a_dimension(build: Build, body: str) -> None:
+    """Every run has a process of its own, and another process measures what it leaves."""
+    assert build(body, dimensions={"w": 3.0}, probe=True).findings.codes == ("W_DIMENSION_UNUSED",)
+
+
+def test_a_dimension_at_which_the_kernel_crashes_hides_no_other(build: Build) -> None:
+    body = "if d['h'] != 3:\n    import ctypes\n    ctypes.string_at(0)\nreturn Box(d['h'], 5, 5), {}"
+    found = findings(build, body, dimensions={"h": 3.0, "dead": 10.0}, probe=True)
+    assert found.codes == ("E_NOT_EDITABLE", "W_DIMENSION_UNUSED")
+
+
 def test_a_dimension_that_may_move_one_way_only_is_fine(build: Build) -> None:
     """A bore as wide as the wall allows cannot grow by 2 %, but it can shrink: where that is valid, says the contract."""
     body = "if d['bore'] > 10:\n    raise RuntimeError('too wide')\nreturn Box(30, 30, 5) - Cylinder(d['bore'], 9), {}"

@@ -158,7 +158,7 @@ class ForgingKernel(Build123dKernel):
 
     def __init__(self, script_report: list[Any], measured: dict[str, Any], files: dict[str, bytes]) -> None:
         super().__init__()
-        self.reports = {"script": script_report, "measure": [measured], "pieces": []}
+        self.reports = {"script": script_report, "measure": [measured], "judge": [measured], "pieces": []}
         self.files = files
 
     def _run(self, task: str, job: Path, *_: Any) -> Any:

@@ -1,0 +1,114 @@
+"""The dimension probe: each dimension is moved, and the script runs again in a process of its own that knows nothing of other runs.
+
+What the moved part is like is measured by one more process, in which no script ran.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any, Final
+
+from articad.kernels.results import number, numbers
+
+__all__ = ["failed_attempt", "fingerprint", "probed"]
+
+STEP: Final = 0.02  # the contract's 2 %
+ZERO_MM, ZERO_DEG = 0.1, 1.0  # by which a dimension that is zero is moved
+LEAST_SECONDS, PATIENCE = 3.0, 10.0  # a dimension moved by 2 % does not make a script ten times as slow
+SAME: Final = 1e-9  # relative change of a number that is rounding
+_ORDER: Final = ("changed", "unused", "refused", "broken", "crashed")
+
+Json = dict[str, Any]
+Fingerprint = list[float]
+Attempt = Callable[[Json, float], Fingerprint | Json | None]
+"""Builds a part with other dimensions within some seconds: its fingerprint, why it fails (an outcome), or None if it was not done."""
+
+
+def probed(dimensions: Mapping[str, float], before: Fingerprint, attempt: Attempt, *, seconds: float, own: float) -> Iterator[Json]:
+    """Move each dimension by 2 % (a count by 1), up and, if that changes nothing or fails, down, and build again.
+
+    Outcomes: `changed`; `unused`, both ways give the same part; `refused`, the script itself raised a ValueError or
+    AssertionError both ways; `broken`, it failed otherwise both ways; `crashed`, the kernel's process died. A dimension that was not
+    done in time has no outcome.
+
+    Args:
+        dimensions: Of the part.
+        before: The fingerprint of the part as it is.
+        attempt: Builds it with other dimensions.
+        seconds: Wall clock for all dimensions.
+        own: Wall clock that the part itself took [s].
+    """
+    until = time.monotonic() + seconds
+    patience = max(LEAST_SECONDS, PATIENCE * own)
+    for name, value in dimensions.items():
+        outcomes: list[Json] = []
+        for moved in _moves(name, value):
+            left = until - time.monotonic()
+            result = attempt({**dimensions, name: moved}, min(left, patience)) if left > 0 else None
+            if result is None:
+                outcomes.clear()
+                break
+            outcomes.append(result if isinstance(result, dict) else {"outcome": "unused" if _is_same(result, before) else "changed"})
+            if outcomes[-1]["outcome"] == "changed":
+                break
+        if outcomes:
+            yield {"dimension": name} | min(outcomes, key=lambda outcome: _ORDER.index(outcome["outcome"]))
+
+
+def fingerprint(shape: Json, connectors: Mapping[str, Json]) -> Fingerprint:
+    """Return volume, centre, bounding box, connectors and the squares of the radii of gyration as numbers.
+
+    The last see what moves in a pattern, which leaves all the others alone.
+
+    Args:
+        shape: Properties of a solid, as a process that ran no script reports them.
+        connectors: As the script returned them.
+
+    Raises:
+        PoisonedError: If something is no number.
+    """
+    volume = number(shape.get("volume_mm3"))
+    box, inertia = numbers(shape.get("bbox_mm"), 2, 3), numbers(shape.get("inertia_mm5"), 3, 3)
+    frames = [
+        value
+        for name in sorted(connectors)
+        for axis in ("o", "z", "x")
+        if connectors[name].get(axis) is not None
+        for value in numbers(connectors[name][axis], 3)
+    ]
+    return [
+        float(value) for value in (volume, *numbers(shape.get("com_mm"), 3), *box.ravel(), *(inertia / (volume or 1.0)).ravel(), *frames)
+    ]
+
+
+def failed_attempt(said: Json, signal: str, *, late: bool) -> Json | None:
+    """Return the outcome of a run that left no part, or None if its time was up.
+
+    Args:
+        said: What the script's process reported, if anything; not to be trusted.
+        signal: That ended the process, or empty.
+        late: It was killed because its time was up.
+    """
+    if isinstance(said.get("problems"), list):
+        return {"outcome": "broken", "error": {"message": "; ".join(map(str, said["problems"][:20]))}}
+    if isinstance(error := said.get("error"), dict):
+        return {"outcome": "refused" if error.get("refused") is True else "broken", "error": error}
+    if late or signal in {"SIGALRM", "SIGKILL", "SIGXCPU"}:
+        return None
+    return {"outcome": "crashed", "signal": signal} if signal else {"outcome": "broken"}
+
+
+def _moves(name: str, value: float) -> Iterator[float]:
+    if name.endswith("_count"):
+        yield from (value + 1, value - 1) if value > 1 else (value + 1,)
+        return
+    step = abs(value) * STEP or (ZERO_DEG if name.endswith("_deg") else ZERO_MM)
+    yield from (value + step, value - step)
+
+
+def _is_same(after: Fingerprint, before: Fingerprint) -> bool:
+    scale = max(map(abs, before), default=1.0)
+    return len(after) == len(before) and all(
+        abs(a - b) <= SAME * max(abs(b), 1e-6 * scale, 1e-3) for a, b in zip(after, before, strict=True)
+    )
