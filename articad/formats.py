@@ -99,20 +99,21 @@ def format_of(path: str | Path) -> Format | None:
     return next((row for row in FORMATS if suffix in row.suffixes), None)
 
 
-def read(path: str | Path, *, root: str | Path | None = None, fuse: bool = False) -> Assembly:
+def read(path: str | Path, *, root: str | Path | None = None, fuse: bool = False, srdf: str | Path | None = None) -> Assembly:
     """Read an assembly from a file in any format that articad reads.
 
     Args:
         path: A URDF, MJCF, FreeCAD or STEP file, or a plan with its part scripts.
         root: Folder that meshes may be read from; the file's own by default.
         fuse: Of URDF and MJCF: make chains of joints over bare links the one joint that they stand for, such as a ball.
+        srdf: Of URDF: the SRDF that belongs to it; by default the one of its name beside it.
 
     Raises:
         ReadError: If the format is not read, or the file cannot be.
     """
     path = Path(path)
     if path.suffix.lower() == ".xacro":
-        return NAMED["urdf"].read(path, root=root, fuse=fuse)
+        return NAMED["urdf"].read(path, root=root, fuse=fuse, srdf=srdf)
     if path.is_dir():
         message, inside = f"{path} is a folder, and a file is read.", path / "plan.json"
         hint = f"Name the file: {inside}." if inside.is_file() else "Name a file in it."
@@ -120,7 +121,7 @@ def read(path: str | Path, *, root: str | Path | None = None, fuse: bool = False
     found = format_of(path)
     if found is None:
         raise _not_read(path)
-    return found.read(path, root=root, fuse=fuse)
+    return found.read(path, root=root, fuse=fuse, srdf=srdf)
 
 
 def write(assembly: Assembly, path: str | Path, *, strict: bool = False, **options: Any) -> Bundle:
@@ -148,7 +149,14 @@ def write(assembly: Assembly, path: str | Path, *, strict: bool = False, **optio
 
 
 def convert(
-    source: str | Path, target: str | Path, *, strict: bool = False, root: str | Path | None = None, fuse: bool = False, **options: Any
+    source: str | Path,
+    target: str | Path,
+    *,
+    strict: bool = False,
+    root: str | Path | None = None,
+    fuse: bool = False,
+    srdf: str | Path | None = None,
+    **options: Any,
 ) -> tuple[Assembly, Bundle]:
     """Read a file and write it in another format.
 
@@ -158,6 +166,7 @@ def convert(
         strict: Refuse losses of motion, mass or shape.
         root: Folder that meshes may be read from; the source's own by default.
         fuse: As for `read`.
+        srdf: As for `read`.
         options: As for `write`.
 
     Returns:
@@ -168,7 +177,7 @@ def convert(
         ExportError: As for `write`; the source is not read if the target's format is unknown.
     """
     _written_as(target)
-    assembly = read(source, root=root, fuse=fuse)
+    assembly = read(source, root=root, fuse=fuse, srdf=srdf)
     return assembly, write(assembly, target, strict=strict, **options)
 
 

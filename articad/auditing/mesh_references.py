@@ -65,7 +65,7 @@ class MeshReferences:
                 self._raw[path] = "format", f"{path.suffix or 'no suffix'} is not one of {', '.join(READABLE)}"
             else:
                 try:
-                    self._raw[path] = read_mesh(path, root=self.folder.root)
+                    self._raw[path] = read_mesh(path, root=self.folder.root_of(path))
                 except ArticadError as error:
                     self._raw[path] = "unreadable", error.message.removeprefix(f"{path}: ")
         return self._raw[path]

@@ -75,6 +75,8 @@ def _export(options: argparse.Namespace, terminal: Terminal) -> Report:
     "Convert a file into another format.",
     argument("source", metavar="IN", help="a .urdf, .xml (MJCF), .FCStd or .step file, or a plan.json"),
     argument("target", metavar="OUT", help="its suffix selects the format: .urdf .xml .FCStd .json .sdf .usda .step .glb .3mf"),
+    argument("--root", metavar="DIR", default=None, help="folder that meshes and included files may be read from (the file's own)"),
+    argument("--srdf", metavar="FILE", default=None, help="for URDF: the SRDF that belongs to it (the one of its name beside it)"),
     argument("--strict", action="store_true", help="fail on what the format cannot represent, instead of reporting it as lost"),
     argument(
         "--fuse",
@@ -93,7 +95,8 @@ def _convert(options: argparse.Namespace, terminal: Terminal) -> Report:
 
     target = Path(options.target)
     more: dict[str, Any] = {"keep_frames": True} if options.keep_frames else {}  # a format without frames of its own refuses it
-    assembly, bundle = convert(options.source, target, strict=options.strict, fuse=options.fuse, **more)
+    read = {"root": options.root, "fuse": options.fuse, "srdf": options.srdf}
+    assembly, bundle = convert(options.source, target, strict=options.strict, **read, **more)
     report = bundle.to_json() | {"folder": str(target.parent), "main": str(target)}
     terminal.findings(assembly.findings)
     summaries.print_exports({getattr(format_of(target), "name", ""): report}, terminal)

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
 from lxml import etree
 
 from articad.errors import ExportError
-from articad.export.hulls import HullOverlap, Pair
+from articad.export.hulls import Pair
 from articad.export.lowering import AxisMotion, LoweredModel
 from articad.export.markup import child, document, number
 
@@ -63,17 +63,39 @@ def package_files(package: str, robot: str, folders: Iterable[str]) -> dict[str,
     }
 
 
-def srdf(model: LoweredModel, mating: Iterable[Pair], rigid: Iterable[Pair], overlaps: Iterable[HullOverlap]) -> bytes:
-    """Return the SRDF that disables collision checks between parts that share a joint, never move, or overlap as hulls."""
-    names = {link.part.name: link.name for link in model.links}
-    root = etree.Element("robot", {"name": model.name})
-    reasons: dict[frozenset[str], tuple[Pair, str]] = {}
-    for reason, pairs in (("Adjacent", mating), ("Never", rigid), ("Default", (overlap.parts for overlap in overlaps))):
-        for pair in pairs:
-            reasons.setdefault(frozenset(pair), (pair, reason))
-    for (a, b), reason in reasons.values():
-        child(root, "disable_collisions", {"link1": names[a], "link2": names[b], "reason": reason})
+def srdf(name: str, links: Mapping[str, str], pairs: Iterable[tuple[str, Iterable[Pair]]] = (), kept: Iterable[Any] = ()) -> bytes:
+    """Return an SRDF.
+
+    Args:
+        name: Of the robot.
+        links: Name of the link by part.
+        pairs: Reasons, and the pairs of parts that need no collision check for each.
+        kept: Elements that come first, as they are.
+    """
+    root = etree.Element("robot", {"name": name})
+    root.extend(kept)
+    known = {frozenset((row.get("link1"), row.get("link2"))) for row in root.iterfind("disable_collisions")}
+    for reason, found in pairs:
+        for a, b in ((links[a], links[b]) for a, b in found):
+            if frozenset((a, b)) not in known:
+                known.add(frozenset((a, b)))
+                child(root, "disable_collisions", {"link1": a, "link2": b, "reason": reason})
     return document(root)
+
+
+def srdf_names(element: Any) -> tuple[set[str], set[str]]:
+    """Return the links and the joints that an element of an SRDF names."""
+    links: set[str] = set()
+    joints: set[str] = set()
+    for one in element.iter():
+        links |= {value for key, value in one.attrib.items() if key in _LINKS}
+        links |= {one.get("name", "")} if one.tag == "link" else set()
+        joints |= {one.get("joint_name", one.get("name", ""))} if one.tag in _JOINTS else set()
+    return links - {""}, joints - {""}
+
+
+_LINKS = frozenset({"link", "link1", "link2", "base_link", "tip_link", "parent_link", "child_link"})
+_JOINTS = frozenset({"joint", "passive_joint", "joint_property"})
 
 
 def add_control(root: Any, assembly: Assembly, model: LoweredModel) -> None:

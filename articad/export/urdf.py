@@ -21,8 +21,8 @@ from articad.export.markup import child, document, number, numbers, rgba, rpy, t
 from articad.export.meshes import MM_TO_M, MeshFiles, MeshKind
 from articad.export.metadata import dumps, records
 from articad.export.mimic import linear_followers
-from articad.export.ros import add_control, package_files, require_package_name
-from articad.export.ros import srdf as disabled_pairs
+from articad.export.ros import add_control, package_files, require_package_name, srdf_names
+from articad.export.ros import srdf as write_srdf
 from articad.findings import Findings
 from articad.geometry.part import Primitive
 from articad.kernels.cache import BuildCache
@@ -63,7 +63,8 @@ def write_urdf(
         loops: How closed loops are written besides the tree: not at all, as `<loop_joint>` for Isaac Sim, as `<drake:ball_constraint>`
             for Drake, or as `<mimic>` of the driver, where a linear relation is as good as 0.1 mm.
         package: Name of a ROS 2 package to lay out: `urdf/`, `meshes/`, a manifest, and meshes named `package://…`.
-        srdf: Add `<name>.srdf` with the pairs of links that need no collision check.
+        srdf: Add `<name>.srdf` with the pairs of links that need no collision check. What an SRDF said of the file that was read is written
+            in any case.
         ros2_control: Add a `<ros2_control>` system that commands the drivers' positions, on mock hardware.
         collision: Collide with convex pieces inside the parts ("pieces"), with the parts' own meshes ("solid"), of which engines take the
             hulls, or with hulls ("hull"). By default pieces; of a file that somebody else made, its own shapes.
@@ -108,7 +109,7 @@ def write_urdf(
         child(root, "articad", {"kind": str(record["kind"])}, dumps(record))
     if ros2_control:
         add_control(root, assembly, model)
-    documents = {"urdf": document(root)} | ({"srdf": _disabled_pairs(assembly, model, contacts)} if srdf else {})
+    documents = {"urdf": document(root)} | _semantics(assembly, model, keeper, contacts if srdf else None)
     if package is None:
         main = {f"{model.name}.{kind}": content for kind, content in documents.items()}
     else:
@@ -140,12 +141,26 @@ class _Keeper:
         self._places["model"] = ("robot", "")
         renamed = [old for where, (_, new) in self._places.items() if where != "model" and (old := where.partition(".")[2]) != new]
         self.written: list[Kept] = []
+        self.semantics: list[Any] = []  # elements of the SRDF that are written
+        self._keep_semantics([item for item in assembly.kept if item.format == "srdf" and item.xml], model)
         for item in assembly.kept:
             if item.format != "urdf" or not item.xml or item.where not in self._places or any(name in item.xml for name in renamed):
                 continue
             self.written.append(item)
             if item.where == "model" and item.xml.startswith("<robot "):
                 self.version = etree.fromstring(item.xml).get("version", "")
+
+    def _keep_semantics(self, items: list[Kept], model: LoweredModel) -> None:
+        """Take the elements of an SRDF whose links and joints are written under the names that it has for them."""
+        elements = [etree.fromstring(item.xml) for item in items]
+        links = {link.name for link in model.links}
+        joints = {freedom.name for row in model.joints for freedom in row.freedoms} | {row.name for row in model.joints}
+        joints |= {element.get("name") for element in elements if element.tag == "virtual_joint"}
+        for item, element in zip(items, elements, strict=True):
+            named_links, named_joints = srdf_names(element)
+            if named_links <= links and named_joints <= joints:
+                self.written.append(item)
+                self.semantics.append(element)
 
     @property
     def capsules(self) -> bool:
@@ -221,9 +236,19 @@ def _tree(root: Any, model: LoweredModel, follows: dict[str, Follows], files: Me
             _joints(root, joint, follows, keeper)
 
 
-def _disabled_pairs(assembly: Assembly, model: LoweredModel, contacts: Iterable[HullOverlap]) -> bytes:
+def _semantics(assembly: Assembly, model: LoweredModel, keeper: _Keeper, contacts: Iterable[HullOverlap] | None) -> dict[str, bytes]:
+    """Return the SRDF, with the pairs that need no collision check where contacts are given; nothing where it would be empty."""
+    if contacts is None and not keeper.semantics:
+        return {}
+    pairs = () if contacts is None else _disabled_pairs(assembly, contacts)
+    return {"srdf": write_srdf(model.name, {link.part.name: link.name for link in model.links}, pairs, keeper.semantics)}
+
+
+def _disabled_pairs(assembly: Assembly, contacts: Iterable[HullOverlap]) -> list[tuple[str, Iterable[Pair]]]:
+    """Return the pairs of parts that need no collision check: those that share a joint, never move, or overlap."""
     order, joints = assembly.mechanism.parts, assembly.mechanism.joints
-    return disabled_pairs(model, mating_pairs(joints, order), sorted(same_group_pairs(joints, order)), contacts)
+    never = sorted(same_group_pairs(joints, order))
+    return [("Adjacent", mating_pairs(joints, order)), ("Never", never), ("Default", [overlap.parts for overlap in contacts])]
 
 
 def _compiler(root: Any) -> None:

@@ -17,6 +17,7 @@ from articad.files import read_file
 from articad.findings import Finding
 from articad.geometry.mesh import TriMesh
 from articad.geometry.mesh_files import read_mesh
+from articad.importers.packages import environment_folders, find_package
 
 MAX_XML_BYTES = 64 << 20  # a robot of 10,000 links is 20 MB; more is a mistake or an attack
 MAX_LINKS = 20_000
@@ -25,6 +26,7 @@ MAX_ATTRIBUTES = 200  # of one element; the parser compares each with each
 MAX_DEPTH = 50_000  # of elements within elements: a chain of MAX_LINKS bodies, twice
 _FEW = 20_000  # equals signs, up to which a file is parsed without being counted before: half a second at worst
 MM_PER_M = 1000.0
+ELSEWHERE = "Put the mesh where the file names it, or name a folder above both as the root (--root)."
 LARGEST_MM = 1e12  # of a frame's place: with more, doubles no longer tell a millimetre
 
 
@@ -135,6 +137,7 @@ class Folder:
     here: Path
     findings: list[Finding] = field(default_factory=list)
     _meshes: dict[tuple[Path, float], TriMesh | ArticadError] = field(default_factory=dict)
+    _roots: dict[Path, Path] = field(default_factory=dict)
 
     @classmethod
     def of(cls, path: Path, root: Path | None) -> Folder:
@@ -143,33 +146,48 @@ class Folder:
         return cls((root or here).resolve(), here)
 
     def find(self, name: str) -> Path:
-        """Return the file that a name means: relative to the file or the root, `file://`, or `package://name/...`.
+        """Return the file that a name means: relative to the file or the root, `file://`, `package://name/...` or `model://name/...`.
+
+        Of `package://`, the package is looked for in the folders from the file up to the root, then where `ROS_PACKAGE_PATH` and
+        `AMENT_PREFIX_PATH` say that packages are; the file has to lie in the root, or in the package that the environment names.
 
         Raises:
-            ReadError: E_UNSAFE_PATH if it leads out of the root; E_READ if there is no such file.
+            ReadError: E_UNSAFE_PATH if it leads out; E_READ if there is no such file.
         """
-        for candidate in self._candidates(name):
+        for candidate, root in self._candidates(name):
             try:
                 target = candidate.resolve()
                 found = target.is_file()
             except (OSError, RuntimeError, ValueError):  # too long, a link to itself, a zero byte
                 raise unreadable(repr(name[:200]), "", "This is not a file name.") from None
-            if not target.is_relative_to(self.root):
-                raise unreadable(name, "", f"This name leads out of {self.root}.", "E_UNSAFE_PATH")
+            if not target.is_relative_to(root):
+                raise unreadable(name, "", f"This name leads out of {root}.", "E_UNSAFE_PATH")
             if found:
+                self._roots[target] = root
                 return target
-        raise unreadable(name, "", f"There is no such file below {self.root}.")
+        elsewhere = ", nor in ROS_PACKAGE_PATH or AMENT_PREFIX_PATH" if name.startswith("package://") else ""
+        raise unreadable(name, "", f"There is no such file below {self.root}{elsewhere}.")
 
-    def _candidates(self, name: str) -> list[Path]:
+    def root_of(self, target: Path) -> Path:
+        """Return the folder that confines a file which `find` returned."""
+        return self._roots.get(target, self.root)
+
+    def _candidates(self, name: str) -> list[tuple[Path, Path]]:
+        """Return the places where a named file may be, and the folder that each may not leave."""
         if "\0" in name or not name:
             raise unreadable(repr(name), "", "This is not a file name.")
-        if name.startswith("package://"):
-            package, _, rest = name.removeprefix("package://").partition("/")
+        scheme, _, path = name.partition("://")
+        if scheme in {"package", "model"}:
+            package, _, rest = path.partition("/")
             above = [folder for folder in (self.here, *self.here.parents) if folder.is_relative_to(self.root)]
-            named = [folder / rest for folder in above if folder.name == package]
-            return [*named, *(folder / package / rest for folder in above), *(folder / rest for folder in above)]
+            stated = find_package(package, above) if scheme == "package" else None
+            inside = [folder / rest for folder in above if folder.name == package]
+            inside += [] if stated is None else [stated / rest]
+            inside += [*(folder / package / rest for folder in above), *(folder / rest for folder in above)]
+            outside = find_package(package, (), environment_folders()) if scheme == "package" else None
+            return [*((place, self.root) for place in inside), *([] if outside is None else [(outside / rest, outside)])]
         plain = Path(name.removeprefix("file://"))
-        return [plain] if plain.is_absolute() else [self.here / plain, self.root / plain]
+        return [(plain, self.root)] if plain.is_absolute() else [(self.here / plain, self.root), (self.root / plain, self.root)]
 
     def mesh(self, name: str, scale: tuple[float, float, float], where: str) -> TriMesh | None:
         """Return a mesh in mm, or None and a finding.
@@ -192,7 +210,7 @@ class Folder:
             if any(finding.code == "E_UNSAFE_PATH" for finding in error.findings):
                 raise
             message = f"Mesh {name!r} is left out: {error.message}"
-            self.findings.append(Finding(code="W_IMPORT_MESH", where=where, message=message, hint="Put the mesh where the file names it."))
+            self.findings.append(Finding(code="W_IMPORT_MESH", where=where, message=message, hint=ELSEWHERE))
             return None
         if uniform == 1.0 and scale != (1.0, 1.0, 1.0):
             stretched = TriMesh(mesh.vertices * scale, mesh.triangles)
@@ -202,6 +220,6 @@ class Folder:
     def _read(self, path: Path, scale: float) -> TriMesh | ArticadError:
         """Return a mesh, or why it cannot be read: everything that wants it is told."""
         try:
-            return read_mesh(path, scale=scale, root=self.root)
+            return read_mesh(path, scale=scale, root=self.root_of(path))
         except ArticadError as error:
             return error

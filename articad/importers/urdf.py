@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import logging
 import math
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -21,10 +22,12 @@ from articad.geometry.mesh import TriMesh
 from articad.geometry.part import DEFAULT_COLOR, Primitive, Shape
 from articad.geometry.shapes import box, cylinder, sphere
 from articad.geometry.shapes import capsule as capsule_mesh
+from articad.importers.closure import package_of
 from articad.importers.fusing import fused, with_chains_named
 from articad.importers.raw import ENDLESS, IDENTITY, RawJoint, RawLink, RawModel, RawTie, aligned, assemble, require_links
 from articad.importers.reading import MAX_LINKS, MM_PER_M, Folder, color_text, parse_xml, read_xml, unreadable
 from articad.importers.records import assembly_of, read_records, stale
+from articad.importers.srdf import kept_semantics, semantics_beside
 from articad.importers.urdf_kept import kept_elements
 from articad.importers.xacro import expanded
 from articad.kinematics.joints import JointType
@@ -38,24 +41,30 @@ _SHAPES = {"box", "cylinder", "sphere", "mesh"}
 _JOINT_TYPES = {"fixed", "revolute", "continuous", "prismatic", "planar", "floating", "spherical"}
 
 
-def read_urdf(path: str | Path, *, root: str | Path | None = None, metadata: bool = True, fuse: bool = False) -> Assembly:
-    """Read a URDF file.
+def read_urdf(
+    path: str | Path, *, root: str | Path | None = None, metadata: bool = True, fuse: bool = False, srdf: str | Path | None = None
+) -> Assembly:
+    """Read a URDF file, and the SRDF of the same name beside it.
 
     Links become parts in their own frames, joints keep their names and values. `mimic` becomes a coupling, `planar` a planar joint,
     `floating` a free joint. Meshes that are missing are left out with a finding.
 
     Args:
         path: The file; one that ends in `.xacro` is expanded first (`articad.importers.xacro`).
-        root: Folder that meshes may be read from; the file's own by default. `package://name/…` is looked up below it.
+        root: Folder that meshes may be read from; by default the file's own, of a xacro file its ROS package. `package://name/…` is looked
+            for in it, upwards from the file, and then in the packages of `$ROS_PACKAGE_PATH` and `$AMENT_PREFIX_PATH`.
         metadata: Use the records that articad left in its own files, so that they come back as they were.
         fuse: Without metadata, make chains over bare links of small mass one joint: cylindrical, screw, universal, planar, ball.
+        srdf: The SRDF; by default `NAME.srdf` beside the file, or in the folder `srdf` beside its folder.
 
     Raises:
         ReadError: If the file is not URDF, names files outside the root, or is no mechanism.
     """
     path = Path(path)
-    folder = Folder.of(path, None if root is None else Path(root))
-    document = parse_xml(expanded(path, folder.root if root else None), path) if path.suffix.lower() == ".xacro" else read_xml(path)
+    is_xacro = path.suffix.lower() == ".xacro"
+    folder = Folder.of(path, Path(root) if root is not None else package_of(path) if is_xacro else None)
+    document = parse_xml(expanded(path, folder.root), path) if is_xacro else read_xml(path)
+    beside = semantics_beside(path, folder) if srdf is None else Path(srdf)
     if document.tag != "robot":
         raise unreadable(path, f"line {document.sourceline}", f"The root element is <{document.tag}>, not <robot>.")
     texts = [element.text or "" for element in document.iterfind("articad")]
@@ -64,8 +73,13 @@ def read_urdf(path: str | Path, *, root: str | Path | None = None, metadata: boo
         records = read_records(texts, path)
         edited = stale(records, [*document.iterfind("link"), *document.iterfind("joint")], path)
         if not edited:
-            return assembly_of(records, folder, path)
+            own = assembly_of(records, folder, path)
+            if beside is None:
+                return own
+            stated = kept_semantics(beside, own=True)  # what the file says now counts
+            return replace(own, kept=(*(item for item in own.kept if item.format != "srdf"), *stated))
     model = _model(document, folder, path)
+    model.kept += [] if beside is None else kept_semantics(beside)
     model.findings += edited
     require_links(model, path)
     return assemble(fused(model) if fuse else with_chains_named(model), path)

@@ -9,8 +9,6 @@ from __future__ import annotations
 
 import importlib.util
 import json
-import os
-import re
 import sys
 from pathlib import Path
 from typing import Any, Final
@@ -18,6 +16,7 @@ from typing import Any, Final
 from articad.errors import ReadError
 from articad.findings import Finding
 from articad.importers.closure import package_of
+from articad.importers.packages import environment_folders, find_package
 from articad.kernels import sandbox
 from articad.processes import launcher
 
@@ -34,7 +33,8 @@ def expanded(path: Path, root: Path | None = None) -> bytes:
 
     Args:
         path: The file.
-        root: Folder that it may read; by default its ROS package, else its own folder. Folders of `$ROS_PACKAGE_PATH` are readable, too.
+        root: Folder that it may read; by default its ROS package, else its own folder. Folders of
+            `$ROS_PACKAGE_PATH` and `$AMENT_PREFIX_PATH` are readable, too.
 
     Raises:
         ReadError: If xacro is not installed, cannot be confined, or fails.
@@ -49,13 +49,16 @@ def expanded(path: Path, root: Path | None = None) -> bytes:
             path, f"{path} is a program, and this machine cannot confine it: it has no Landlock.", f"Use Linux 5.13 or later, {BY_HAND}."
         )
     own = (root or package_of(path)).resolve()
-    named = [Path(entry).resolve() for entry in os.environ.get("ROS_PACKAGE_PATH", "").split(os.pathsep) if entry]
-    order = {"file": str(path.resolve()), "layers": layers, "readable": [str(own), *map(str, named)]}
+    order = {"file": str(path.resolve()), "layers": layers, "readable": [str(own), *map(str, environment_folders())]}
     limits = launcher.Limits(seconds=SECONDS, memory=MEMORY)
     ended = launcher.run([json.dumps(order)], module="articad.importers.xacro", limits=limits)
     if ended.late or ended.code != 0:
         why = f"it was not done after {SECONDS:g} s" if ended.late else ended.last_line
-        raise _error(path, f"{path}: xacro fails: {why}", "Correct the file; name folders of other packages in ROS_PACKAGE_PATH.")
+        raise _error(
+            path,
+            f"{path}: xacro fails: {why}",
+            "Correct the file; name folders of other packages in ROS_PACKAGE_PATH or AMENT_PREFIX_PATH.",
+        )
     return ended.out
 
 
@@ -67,15 +70,12 @@ def _error(path: Path, message: str, hint: str) -> ReadError:
 
 
 def _find(name: str, readable: list[str], file: str) -> str:
-    """Return the folder of a ROS package: above the file, or in or below a folder that may be read."""
+    """Return the folder of a ROS package: above the file, or in a folder that may be read."""
     above = [folder for folder in Path(file).parents if any(folder.is_relative_to(one) for one in readable)]
-    for folder in (*above, *(Path(one) for one in readable), *(Path(one) / name for one in readable)):
-        manifest = folder / "package.xml"
-        if manifest.is_file():
-            stated = re.search(r"<name>\s*([^<\s]+)\s*</name>", manifest.read_text(errors="replace"))
-            if name in {folder.name, stated[1] if stated else ""}:
-                return str(folder)
-    raise ValueError(f"there is no package {name!r} above {file} or in ROS_PACKAGE_PATH")
+    found = find_package(name, above, map(Path, readable))
+    if found is None:
+        raise ValueError(f"there is no package {name!r} above {file}, in ROS_PACKAGE_PATH or in AMENT_PREFIX_PATH")
+    return str(found)
 
 
 def main(arguments: list[str]) -> int:

@@ -83,9 +83,7 @@ class Workbench:
             raise ReadError.at(name, f"The design {name!r} is a link.", "Copy the folder to the root.")
         if not new and not is_file(folder / "plan.json", root=self.root):
             known = sorted(file.parent.name for file in self.root.glob("*/plan.json") if is_file(file, root=self.root))
-            raise ReadError.at(
-                name, f"There is no design {name!r}; there are {', '.join(known) or 'none'}.", "Start one with check_plan."
-            )
+            raise ReadError.at(name, f"There is no design {name!r}; there are {', '.join(known) or 'none'}.", "Start one with check_plan.")
         return folder
 
     def write_plan(self, name: str, plan: Mapping[str, Any]) -> Path:

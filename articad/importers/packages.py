@@ -1,0 +1,53 @@
+"""ROS packages by name: in a folder above a file, or where the environment says that packages are.
+
+A package is a folder with a `package.xml`, whose `<name>` counts, as the name of the folder does. `ROS_PACKAGE_PATH` (ROS 1) lists packages
+and folders of packages; `AMENT_PREFIX_PATH` (ROS 2) lists prefixes with packages in `share`.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Final
+
+from articad.files import read_file
+
+__all__ = ["MANIFEST", "environment_folders", "find_package"]
+
+MANIFEST: Final = "package.xml"
+_MOST: Final = 1 << 20  # bytes of a manifest
+_NAME: Final = re.compile(rb"<name>\s*([^<\s]+)\s*</name>")
+
+
+def environment_folders() -> list[Path]:
+    """Return the folders that may be packages or hold packages, as the environment lists them."""
+    ros1 = [Path(entry) for entry in os.environ.get("ROS_PACKAGE_PATH", "").split(os.pathsep) if entry]
+    ros2 = [Path(entry) / "share" for entry in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if entry]
+    return [folder.resolve() for folder in (*ros1, *ros2)]
+
+
+def find_package(name: str, above: Iterable[Path], folders: Iterable[Path] = ()) -> Path | None:
+    """Return the folder of a package.
+
+    Args:
+        name: Of the package.
+        above: Folders that may be the package, or hold it, the nearest first: those above a file.
+        folders: Further such folders, which count after these.
+    """
+    if not re.fullmatch(r"[A-Za-z0-9_.-]+", name) or set(name) == {"."}:
+        return None
+    for folder in (*above, *folders):
+        for candidate in (folder, folder / name):
+            if _is_package(candidate, name):
+                return candidate
+    return None
+
+
+def _is_package(folder: Path, name: str) -> bool:
+    try:
+        stated = _NAME.search(read_file(folder / MANIFEST, _MOST))
+    except OSError:
+        return False
+    return name in {folder.name, stated[1].decode(errors="replace") if stated else ""}

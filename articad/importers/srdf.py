@@ -1,0 +1,65 @@
+"""SRDF in: the groups, states, virtual joints and pairs without collisions that MoveIt keeps beside a URDF, word for word.
+
+An assembly has no fields for them, so each element is kept with it. `write_urdf` writes them into an SRDF again, where all that an element
+names is in the URDF; every other format reports them as losses.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any, Final
+
+from lxml import etree
+
+from articad.assembly import Kept
+from articad.importers.reading import Folder, read_xml, unreadable
+
+__all__ = ["COMPUTED", "kept_semantics", "semantics_beside"]
+
+COMPUTED: Final = frozenset({"Adjacent", "Never", "Default"})
+"""Reasons of `<disable_collisions>` that `write_urdf` gives to the pairs that it finds by itself."""
+
+
+def semantics_beside(path: Path, folder: Folder) -> Path | None:
+    """Return the SRDF of a URDF: `NAME.srdf` beside it, or in the folder `srdf` beside its folder, as a ROS package has it.
+
+    Args:
+        path: The URDF or xacro file.
+        folder: Where files may be read.
+    """
+    stem = path.name.removesuffix(".xacro").removesuffix(".urdf")
+    places = (folder.here / f"{stem}.srdf", folder.here.parent / "srdf" / f"{stem}.srdf")
+    for place in places:
+        target = place.resolve()
+        if target.is_file() and target.is_relative_to(folder.root):
+            return target
+    return None
+
+
+def kept_semantics(path: Path, *, own: bool = False) -> list[Kept]:
+    """Return the elements of an SRDF.
+
+    Args:
+        path: The file.
+        own: It lies beside a URDF that articad wrote: pairs with one of the reasons that articad gives are left out, because the writer
+            finds them again.
+
+    Raises:
+        ReadError: If it is not an SRDF.
+    """
+    document = read_xml(path)
+    if document.tag != "robot":
+        raise unreadable(path, f"line {document.sourceline}", f"The root element is <{document.tag}>, not <robot>: this is not SRDF.")
+    return [
+        Kept("srdf", "model", _words(element), etree.tostring(element, encoding="unicode", with_tail=False))
+        for element in document
+        if not (own and element.tag == "disable_collisions" and element.get("reason") in COMPUTED)
+    ]
+
+
+def _words(element: Any) -> str:
+    said = " ".join(str(value) for name, value in element.attrib.items() if name in _SAID)
+    return f"<{element.tag}{f' {said}' if said else ''}> of the SRDF"
+
+
+_SAID = frozenset({"name", "link1", "link2", "link", "group", "joint_name"})
