@@ -258,6 +258,47 @@ def test_the_sweep_leaves_what_is_in_use_or_not_ours(tmp_path: Path) -> None:
     assert not used.exists()
 
 
+WRITER = """
+import sys
+from pathlib import Path
+from articad.processes import scratch
+target = Path(sys.argv[1])
+if sys.argv[2] == "file":
+    Path.replace = lambda *_: (print("ready", flush=True), sys.stdin.read())
+    scratch.write(target, b"new")
+else:
+    with scratch.folder_beside(target) as folder:
+        (folder / "part").write_text("new")
+        print("ready", flush=True)
+        sys.stdin.read()
+"""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no such locks: nothing is swept there")
+@pytest.mark.parametrize("kind", ["file", "folder"])
+def test_what_a_killed_writer_left_beside_its_target_goes_with_the_next_writer(kind: str, tmp_path: Path) -> None:
+    def writer() -> subprocess.Popen[str]:
+        command = [sys.executable, "-c", WRITER, str(tmp_path / "target"), kind]
+        return subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+
+    with writer() as killed, writer() as alive_one:
+        for process in (killed, alive_one):
+            assert process.stdout is not None
+            assert process.stdout.readline() == "ready\n"
+        killed.kill()
+        killed.wait()
+        assert len(list(tmp_path.iterdir())) == 2
+        (tmp_path / ".articad-mine").write_text("not ours")
+        code = "import sys; from pathlib import Path; from articad.processes import scratch; scratch.write(Path(sys.argv[1]), b'other')"
+        subprocess.run([sys.executable, "-c", code, str(tmp_path / "other")], check=True)
+        left = {path.name for path in tmp_path.iterdir()} - {".articad-mine", "other"}
+        assert len(left) == 1, "only the one that is being written is there"
+        alive_one.communicate()
+    assert (tmp_path / ".articad-mine").exists()
+    subprocess.run([sys.executable, "-c", code, str(tmp_path / "other")], check=True)
+    assert {path.name for path in tmp_path.iterdir()} <= {"target", ".articad-mine", "other"}
+
+
 def test_a_program_is_never_taken_from_the_working_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "bwrap").write_text("#!/bin/sh\n")
     (tmp_path / "bwrap").chmod(0o755)

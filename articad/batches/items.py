@@ -9,8 +9,6 @@ from __future__ import annotations
 import contextlib
 import hashlib
 import json
-import shutil
-import tempfile
 import time
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
@@ -26,6 +24,7 @@ from articad.formats import NAMED
 from articad.kernels.choice import kernel_named
 from articad.kernels.kernel import BuildCache, PartKernel
 from articad.plan.schema import AssemblyPlan
+from articad.processes import scratch
 from articad.runs.run import digest
 
 Json = dict[str, Any]
@@ -117,16 +116,9 @@ def make(item: BatchItem, out: str | Path, *, cache_root: str | Path | None = No
     folder = Path(out) / item.digest[:2] / item.digest
     with contextlib.suppress(OSError, ValueError):
         return {**json.loads((folder / ITEM).read_text(encoding="utf-8")), "made": "before"}
-    folder.parent.mkdir(parents=True, exist_ok=True)
-    scratch = Path(tempfile.mkdtemp(prefix=".item-", dir=folder.parent))
-    try:
-        record = _made(item, scratch, cache_root)
-        (scratch / ITEM).write_text(json.dumps(record, indent=1, ensure_ascii=False, sort_keys=True) + "\n", encoding="utf-8")
-        scratch.chmod(0o755)
-        with contextlib.suppress(OSError):  # another process was first: its folder is the same
-            scratch.rename(folder)
-    finally:
-        shutil.rmtree(scratch, ignore_errors=True)
+    with scratch.folder_beside(folder) as empty:
+        record = _made(item, empty, cache_root)
+        (empty / ITEM).write_text(json.dumps(record, indent=1, ensure_ascii=False, sort_keys=True) + "\n", encoding="utf-8")
     return {**record, "made": "now"}
 
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import os
-import tempfile
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path, PurePosixPath
@@ -12,6 +10,7 @@ from typing import Any
 
 from articad.errors import ExportError
 from articad.findings import Finding, Findings
+from articad.processes import scratch
 
 
 @dataclass(frozen=True)
@@ -88,7 +87,7 @@ class Bundle:
         root = Path(folder)
         targets = {path: _inside(root, path) for path in self.files}
         for path, content in self.files.items():
-            _replace(targets[path], content)
+            scratch.write(targets[path], content)
         return list(targets.values())
 
 
@@ -107,22 +106,3 @@ def _inside(root: Path, path: str) -> Path:
         )
         raise ExportError(f"{path!r} leads out of the folder {root}.", findings=[finding])
     return target
-
-
-def _replace(target: Path, content: bytes) -> None:
-    target.parent.mkdir(parents=True, exist_ok=True)
-    handle, temporary = tempfile.mkstemp(dir=target.parent, prefix=".articad-")
-    try:
-        with os.fdopen(handle, "wb") as stream:
-            stream.write(content)
-        Path(temporary).chmod(0o666 & ~_umask())
-        Path(temporary).replace(target)
-    except BaseException:
-        Path(temporary).unlink(missing_ok=True)
-        raise
-
-
-def _umask() -> int:
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask

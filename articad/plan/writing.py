@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import json
-import os
-import tempfile
 from pathlib import Path
 from typing import Any
 
 from articad.plan.fields import PlanObject
+from articad.processes import scratch
 
 _LINE = 140  # a value that fits in a line is written in one
 _WHOLE = 2.0**53  # above this a float no longer holds every whole number
@@ -28,15 +27,7 @@ def dumps(form: PlanObject) -> str:
 def save(form: PlanObject, path: Path, default_name: str) -> Path:
     """Write the canonical text to a file, or to the default name in an existing folder; a reader never sees half of it."""
     file = path / default_name if path.is_dir() else path
-    handle, temporary = tempfile.mkstemp(dir=file.parent, prefix=f".{file.name}.")
-    try:
-        with os.fdopen(handle, "w", encoding="utf-8") as stream:
-            stream.write(dumps(form))
-        Path(temporary).chmod(0o644)
-        Path(temporary).replace(file)
-    except BaseException:
-        Path(temporary).unlink(missing_ok=True)
-        raise
+    scratch.write(file, dumps(form).encode())
     return file
 
 

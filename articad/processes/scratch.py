@@ -1,6 +1,7 @@
-"""Scratch folders. Those of one process lie in one folder, which is locked while the process lives.
+"""Scratch folders and files. Those of one process lie in one folder, which is locked while the process lives.
 
-A process that is killed leaves its folder behind, without the lock. The next process that starts removes it.
+A process that is killed leaves its folder behind, without the lock. The next process that starts removes it. What is written beside its
+target, to be renamed to it, is locked too: the next one that writes there removes what a killed one left.
 """
 
 from __future__ import annotations
@@ -11,12 +12,16 @@ import os
 import shutil
 import sys
 import tempfile
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Final
 
 PREFIX: Final = "articad-scratch-"
+BESIDE: Final = ".articad-unfinished-"
+"""What the names of files and folders begin with that are written beside their targets."""
 _TRIES: Final = 100
 
+_swept: set[Path] = set()
 _homes: dict[int, Path] = {}  # by process: a fork makes a folder of its own
 _locks: list[int] = []  # descriptors that hold the locks; the system releases them when the process ends
 
@@ -38,37 +43,95 @@ def sweep() -> None:
                 _remove_if_abandoned(place)
 
 
+def write(path: Path, content: bytes) -> None:
+    """Write a file so that a reader finds the old one or the new one, whole; its folder is made if there is none.
+
+    Raises:
+        OSError: If it cannot be written; the old file is intact, and nothing is left.
+    """
+    path.parent.mkdir(parents=True, exist_ok=True)
+    _sweep_beside(path.parent)
+    temporary, lock = _locked(lambda: _new_file(path.parent))
+    try:
+        temporary.write_bytes(content)
+        temporary.chmod(0o666 & ~_umask())
+        temporary.replace(path)
+    finally:
+        temporary.unlink(missing_ok=True)
+        _unlock(lock)
+
+
+@contextlib.contextmanager
+def folder_beside(target: Path) -> Iterator[Path]:
+    """Give an empty folder; when the block ends without an error it becomes the target, unless another process made that before.
+
+    Raises:
+        OSError: If it cannot be written.
+    """
+    target.parent.mkdir(parents=True, exist_ok=True)
+    _sweep_beside(target.parent)
+    temporary, lock = _locked(lambda: Path(tempfile.mkdtemp(prefix=BESIDE, dir=target.parent)))
+    try:
+        yield temporary
+        temporary.chmod(0o777 & ~_umask())
+        with contextlib.suppress(OSError):
+            temporary.rename(target)
+    finally:
+        shutil.rmtree(temporary, ignore_errors=True)
+        _unlock(lock)
+
+
+def _sweep_beside(folder: Path) -> None:
+    """Remove what killed processes left beside targets in a folder, once for each folder."""
+    if folder not in _swept:
+        _swept.add(folder)
+        for place in folder.glob(f"{BESIDE}*"):
+            _remove_if_abandoned(place)
+
+
+def _new_file(folder: Path) -> Path:
+    handle, name = tempfile.mkstemp(prefix=BESIDE, dir=folder)
+    os.close(handle)
+    return Path(name)
+
+
+def _umask() -> int:
+    mask = os.umask(0)
+    os.umask(mask)
+    return mask
+
+
 def _home() -> Path:
     """Return the folder of this process, made when it is first needed."""
     home = _homes.get(os.getpid())
     if home is None or not home.is_dir():
         sweep()
-        home = _homes[os.getpid()] = _locked()
+        home, lock = _locked(lambda: Path(tempfile.mkdtemp(prefix=PREFIX)))
+        if lock is not None:
+            _locks.append(lock)
+        _homes[os.getpid()] = home
         atexit.register(_remove, os.getpid(), home)
     return home
 
 
-def _locked() -> Path:
-    """Make a folder and lock it. A sweep of another process may come between the two; then there is another try."""
+def _locked(make: Callable[[], Path]) -> tuple[Path, int | None]:
+    """Make a file or folder and lock it. A sweep of another process may come between the two; then there is another try."""
     for _ in range(_TRIES):
-        place = Path(tempfile.mkdtemp(prefix=PREFIX))
+        place = make()
         lock = _lock(place)
-        if lock is not None:
-            _locks.append(lock)
-            return place
-        if place.is_dir():
-            break  # this file system has no locks: nothing sweeps here
-    return place
+        if lock is not None or place.exists():
+            break  # without a lock: this file system has none, and nothing sweeps here
+    return place, lock
 
 
 def _lock(place: Path) -> int | None:
-    """Return a descriptor that holds a folder's lock; None if it is not ours, is gone, or cannot be locked."""
+    """Return a descriptor that holds the lock of a file or folder; None if it is not ours, is gone, or cannot be locked."""
     if sys.platform == "win32":
         return None
     import fcntl  # noqa: PLC0415 - Windows has none
 
     try:
-        lock = os.open(place, os.O_RDONLY | os.O_DIRECTORY | os.O_NOFOLLOW | os.O_CLOEXEC)
+        lock = os.open(place, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC)
     except OSError:
         return None
     try:
@@ -85,7 +148,15 @@ def _lock(place: Path) -> int | None:
 def _remove_if_abandoned(place: Path) -> None:
     lock = _lock(place)
     if lock is not None:
-        shutil.rmtree(place, ignore_errors=True)
+        if place.is_dir():
+            shutil.rmtree(place, ignore_errors=True)
+        else:
+            place.unlink(missing_ok=True)
+        os.close(lock)
+
+
+def _unlock(lock: int | None) -> None:
+    if lock is not None:
         os.close(lock)
 
 

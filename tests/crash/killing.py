@@ -103,6 +103,12 @@ def points(count: int, took: float, calls: int, seed: int) -> list[Point]:
     return [Point(seconds=chance.uniform(0, took)) if n % 2 else Point(calls=chance.randint(1, calls)) for n in range(count)]
 
 
+def timed(count: int, took: float, seed: int) -> list[Point]:
+    """Return random times: for work that other processes do."""
+    chance = random.Random(seed)
+    return [Point(seconds=chance.uniform(0, took)) for _ in range(count)]
+
+
 def stages(calls: int) -> list[Point]:
     """Return every call once."""
     return [Point(calls=number) for number in range(1, calls + 1)]

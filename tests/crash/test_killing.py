@@ -19,6 +19,7 @@ import pytest
 from articad.errors import ArticadError, RunError, WriteError
 from articad.runs.run import Run, RunRequest
 from tests.crash import killing, works
+from tests.crash.endpoint import endpoint
 from tests.crash.killing import Point, Work
 
 SCRIPT = Path(__file__).resolve().parents[2] / "scripts" / "crash"
@@ -47,6 +48,19 @@ def work_named(name: str, recording: Path) -> Work:
     if name == "proven":
         return works.proven
     return works.build if name == "build" else lambda folder: works.generated(folder, recording=recording)
+
+
+@pytest.mark.parametrize("name", ["live", "batch"])
+def test_killed_with_processes_of_its_own_it_resumes_and_ends_equal(name: str, recording: Path, tmp_path: Path) -> None:
+    """Calls of models, and workers of a batch."""
+    with endpoint(recording) as address:
+        work = (lambda folder: works.live(folder, address)) if name == "live" else works.batch
+        (tmp_path / "whole").mkdir()
+        took, calls = killing.undisturbed(work, tmp_path / "whole")
+        expected = works.files(tmp_path / "whole")
+        points = killing.points(3, took, calls, seed=3) if name == "live" else killing.timed(2, took, seed=3)
+        killed = [killing.resumed(work, point, tmp_path, lambda folder: _same(folder, expected)) for point in points]
+    assert any(killed)
 
 
 @pytest.mark.parametrize("name", ["build", "generate", "edit", "proven"])

@@ -6,6 +6,7 @@ here: a function that commits numbered records to a folder and says so after eac
 
 from __future__ import annotations
 
+import hashlib
 import json
 import os
 from collections.abc import Callable, Mapping
@@ -14,16 +15,20 @@ from functools import cache
 from pathlib import Path
 
 from articad.agents.edit import edit
+from articad.agents.live import LiteLLM
 from articad.agents.llm import LLM, Replay, Reply, Request, Scripted
 from articad.agents.pipeline import generate
 from articad.assembly import Assembly
+from articad.batches.batch import run_local
+from articad.batches.items import ITEM, BatchItem
 from articad.kernels.build123d import Build123dKernel
 from articad.kernels.kernel import BuildCache, PartKernel
 from articad.memory.case import Case
 from articad.memory.experience import ExperienceStore
 from articad.plan.schema import AssemblyPlan
+from articad.processes import scratch
 from articad.runs.record import record_assembly, record_certificate, record_checks, record_export
-from articad.runs.run import Run, RunRequest, open_or_create
+from articad.runs.run import Run, RunRequest, digest, open_or_create
 from tests.agents import stories
 from tests.crash.stand_in import FixedKernel
 
@@ -79,6 +84,25 @@ def generated(folder: Path, kernel_name: str = "fixed", recording: Path | None =
     generate(stories.FLAP_PROMPT, llm=llm, out=folder / "run", kernel=kernel(kernel_name), cache=BuildCache(folder / "cache"), **OPTIONS)  # type: ignore[arg-type]
 
 
+def live(folder: Path, address: str) -> None:
+    """What `articad generate` does with an endpoint; each call is a process of its own."""
+    llm = Counted(LiteLLM("stub", api_base=address), folder / "calls")
+    generate(stories.FLAP_PROMPT, llm=llm, out=folder / "run", kernel=kernel("fixed"), cache=BuildCache(folder / "cache"), **OPTIONS)  # type: ignore[arg-type]
+
+
+def batch(folder: Path) -> None:
+    """What `articad batch` does: items in worker processes with the real kernel."""
+    os.environ["XDG_CACHE_HOME"] = str(folder / "cache")
+    plan = folder / "plan"
+    (plan / "parts").mkdir(parents=True, exist_ok=True)
+    (plan / "plan.json").write_text(json.dumps(stories.FLAP_PLAN))
+    for name, script in stories.FLAP_SCRIPTS.items():
+        (plan / "parts" / f"{name}.py").write_text(script)
+    items = [BatchItem(str(plan), {"lift": lift}, formats=("urdf", "step")) for lift in (1.0, 1.5, 2.0)]
+    records = run_local(items, folder / "run", workers=2)
+    assert all(record["ok"] for record in records), records
+
+
 def edited(folder: Path, recording: Path) -> None:
     """What `articad edit` does with a recorded run, answered by a script."""
     change = {"summary": "x", "touches": ["flap"], "changes": {"parts.flap.dimensions.thickness": 3}}
@@ -89,12 +113,32 @@ def edited(folder: Path, recording: Path) -> None:
 
 def files(folder: Path) -> Mapping[str, str]:
     """Return the hashes of everything in a run but its trace, and hold that nothing is half-written or left over."""
+    if not (folder / "run/request.json").exists():
+        return batch_files(folder / "run")
     hashes = Run.view(folder / "run").hashes()
     strangers = [name for name in hashes if ".tmp-" in name]
     assert not strangers, strangers
     for name in hashes:
         if name.endswith(".json"):
             json.loads((folder / "run" / name).read_bytes())
+    return hashes
+
+
+def batch_files(folder: Path) -> Mapping[str, str]:
+    """Return the hashes of everything in a batch; of the records of its items, what is not a time or a count of the cache."""
+    hashes = {}
+    for path in folder.rglob("*"):
+        name = path.relative_to(folder).as_posix()
+        assert scratch.BESIDE not in name, f"{name} was left behind"
+        if path.name == ITEM:
+            record = {
+                key: value
+                for key, value in json.loads(path.read_bytes()).items()
+                if key not in {"plan", "seconds", "parts_built", "parts_kept"}
+            }
+            hashes[name] = digest(record)
+        elif path.is_file():
+            hashes[name] = hashlib.sha256(path.read_bytes()).hexdigest()
     return hashes
 
 
