@@ -23,6 +23,7 @@ from articad.export.usd import write_usd
 from articad.findings import Finding
 from articad.importers.freecad import read_freecad
 from articad.importers.mjcf import read_mjcf
+from articad.importers.sdf import read_sdf
 from articad.importers.step import read_step
 from articad.importers.urdf import read_urdf
 from articad.plan.schema import AssemblyPlan
@@ -78,7 +79,7 @@ FORMATS: Final = (
     Format("step", (".step", ".stp"), write_step, read_step),
     Format("glb", (".glb",), write_glb),
     Format("3mf", (".3mf",), write_3mf),
-    Format("sdf", (".sdf",), write_sdf),
+    Format("sdf", (".sdf",), write_sdf, read_sdf),
     Format("usd", (".usda",), write_usd),
     Format("plan", (".json",), write_plan, read_plan),
 )
@@ -103,9 +104,9 @@ def read(path: str | Path, *, root: str | Path | None = None, fuse: bool = False
     """Read an assembly from a file in any format that articad reads.
 
     Args:
-        path: A URDF, MJCF, FreeCAD or STEP file, or a plan with its part scripts.
+        path: A URDF, MJCF, SDFormat, FreeCAD or STEP file, or a plan with its part scripts.
         root: Folder that meshes may be read from; the file's own by default.
-        fuse: Of URDF and MJCF: make chains of joints over bare links the one joint that they stand for, such as a ball.
+        fuse: Of URDF, MJCF and SDFormat: make chains of joints over bare links the one joint that they stand for, such as a ball.
         srdf: Of URDF: the SRDF that belongs to it; by default the one of its name beside it.
 
     Raises:

@@ -281,7 +281,8 @@ TABLE: dict[str, dict[Format, LossRow]] = {
     "link.frame": {
         name: LossRow("a frame on the joint", "the original frame of the link: the joint does not pass through its origin")
         for name in MECHANISM_FORMATS
-    },
+    }
+    | {"sdf": LossRow("its own frame, in which the joint is posed")},
     "root.frame": {
         name: LossRow("the frame of the world", "the frame of the ground part: the root link stands in the world's frame")
         for name in MECHANISM_FORMATS
@@ -289,7 +290,7 @@ TABLE: dict[str, dict[Format, LossRow]] = {
     "shape.primitive": {
         "urdf": LossRow("a mesh", "the primitive: URDF 1.0 does not have it"),
         "mjcf": LossRow("a geom of that kind"),
-        "sdf": LossRow("a mesh", "the primitive type"),
+        "sdf": LossRow("a body of that kind"),
         "usd": LossRow("a mesh", "the primitive type"),
     },
     "mass.missing": {

@@ -12,7 +12,6 @@ from lxml import etree
 from articad.connectors.se3 import SE3
 from articad.export.bundle import Bundle
 from articad.export.collisions import Collision, kind_of, shape_model
-from articad.export.features import primitive_features
 from articad.export.follow import followers
 from articad.export.inertia import Inertial
 from articad.export.losses import Feature, assumed_finding, kept_losses, losses_of, refuse
@@ -25,7 +24,7 @@ from articad.kernels.cache import BuildCache
 from articad.kinematics.joints import JointType
 
 if TYPE_CHECKING:
-    from articad.assembly import Assembly
+    from articad.assembly import Assembly, Kept
 
 RESERVED = ("world",)  # what SDFormat calls the frame of the world
 VERSION = "1.10"
@@ -46,6 +45,7 @@ _FORMS: dict[str, Callable[[tuple[float, ...]], dict[str, str]]] = {
     "sphere": lambda size: {"radius": number(size[0])},
     "cylinder": lambda size: {"radius": number(size[0]), "length": number(size[1])},
     "capsule": lambda size: {"radius": number(size[0]), "length": number(size[1])},
+    "ellipsoid": lambda size: {"radii": numbers(size)},
 }
 """What SDFormat says of a primitive body whose sizes are these [m]."""
 
@@ -60,7 +60,8 @@ def write_sdf(
 ) -> Bundle:
     """Write an assembly as an SDFormat model.
 
-    A tree is posed where all values are zero, as in URDF. A model with loops is posed at rest, where its loops are closed, and values and
+    Links of a file keep their frames; a ground part without shape and mass that is called world is the world. A tree is posed where all
+    values are zero, as in URDF. A model with loops is posed at rest, where its loops are closed, and values and
     limits are measured from there. Cylindrical and planar joints become chains over carrier links.
 
     Args:
@@ -78,16 +79,53 @@ def write_sdf(
         UnrepresentableError: If `strict` and there is such a loss.
     """
     kind = kind_of(assembly, collision)
-    model = shape_model(assembly, lower(assembly, RESERVED), kind, cache)
-    features = [*model.features, *([Feature("loop.rest", "joints")] if model.loops else []), *primitive_features(assembly)]
-    losses = (*losses_of("sdf", features), *kept_losses("sdf", assembly.kept))
+    lowered = lower(assembly, () if _has_world(assembly) else RESERVED, part_frames=assembly.foreign)
+    model = shape_model(assembly, lowered, kind, cache)
+    features = [*model.features, *([Feature("loop.rest", "joints")] if model.loops else [])]
+    writer = _Writer(assembly, model, MeshFiles(meshes, draws=kind != "solid"))
+    losses = (*losses_of("sdf", features), *kept_losses("sdf", assembly.kept, writer.kept.written))
     if strict:
         refuse(losses)
-    writer = _Writer(assembly, model, MeshFiles(meshes, draws=kind != "solid"))
     assumed = [] if assembly.foreign else [row.joint.name for row in model.joints if any(freedom.load.assumed for freedom in row.freedoms)]
     return Bundle(
         {f"{model.name}.sdf": document(writer.document()), **writer.files.files}, losses, Findings(assumed_finding(assumed, "sdf"))
     )
+
+
+class _Kept:
+    """What the SDFormat file that an assembly came from says beyond it, and where it is written again."""
+
+    def __init__(self, assembly: Assembly, model: LoweredModel) -> None:
+        self.written: list[Kept] = []
+        self._at: dict[str, list[Any]] = {}
+        joints = [row for row in (*model.joints, *model.loops) if row.joint.type in _NATIVE and not row.backwards]
+        there = {f"joints.{row.joint.name}" for row in joints} | {"model"}
+        for link in model.links:
+            if not link.T_link_part.allclose(SE3.identity(), mm=1e-9, rad=1e-9):
+                continue  # what stands in a link is posed in its frame, which is another one now
+            where = f"parts.{link.part.name}"
+            there |= {where, *(f"{where}.visuals.{n}" for n in range(len(link.part.visuals)))}
+            if link.collisions and all(a.shape is b for a, b in zip(link.collisions, link.part.collisions, strict=False)):
+                there |= {f"{where}.collisions.{n}" for n in range(len(link.part.collisions))}
+        for item in assembly.kept:
+            if item.format == "sdf" and item.xml and item.where in there:
+                self.written.append(item)
+                self._at.setdefault(item.where, []).append(etree.fromstring(item.xml))
+
+    def write(self, element: Any, where: str) -> None:
+        """Append what was said of something to its element."""
+        for kept in self._at.get(where, []):
+            _merge(element, kept)
+
+
+def _merge(element: Any, kept: Any) -> None:
+    """Append an element; where the element has such a child that is read again, what is in it goes into that child."""
+    there = element.find(kept.tag) if kept.tag in {"material", "axis", "axis2", "limit", "dynamics", "surface", "friction", "ode"} else None
+    if there is None:
+        element.append(kept)
+        return
+    for below in list(kept):
+        _merge(there, below)
 
 
 class _Writer:
@@ -97,6 +135,7 @@ class _Writer:
         self.at_rest = bool(model.loops)
         self.follows = followers(model, [driver.name for driver in assembly.mechanism.drivers])
         self.poses: dict[str, SE3] = {}
+        self.kept = _Kept(assembly, model)
         # links and joints share one space of names, so a joint that bears a link's name gives way
         self.taken = {link.name for link in model.links} | {name for joint in model.joints for name in joint.carriers}
 
@@ -104,17 +143,21 @@ class _Writer:
         root = etree.Element(
             "sdf", {"version": MIMIC_VERSION if self.assembly.mechanism.couplings else VERSION}, nsmap={"articad": ARTICAD}
         )
-        model = child(root, "model", {"name": self.model.name, "canonical_link": self.model.links[0].name})
+        first = self.model.links[1 if _has_world(self.assembly) else 0]
+        model = child(root, "model", {"name": self.model.name, "canonical_link": first.name})
         carried = {joint.child: joint for joint in self.model.joints}
         for link in self.model.links:
             joint = carried.get(link.name)
             if joint is None:
                 self.poses[link.name] = SE3.identity()
+                if _has_world(self.assembly):
+                    continue
                 self._link(model, link, link.inertial)
                 child(child(model, "joint", {"name": self._joint_name("to_world"), "type": "fixed"}), "parent", text="world")
                 child(model[-1], "child", text=link.name)
                 continue
             self._tree_joint(model, link, joint)
+        self.kept.write(model, "model")
         for loop in self.model.loops:
             if loop.joint.type in _NATIVE:  # at rest its two frames meet, so the child's is enough
                 self._joint(model, loop.name, loop, loop.parent, loop.child, loop.freedoms, loop.T_child_joint)
@@ -135,20 +178,22 @@ class _Writer:
         inertial = link.inertial or (Inertial.carrier() if link.moves else None)
         whole, carrier = (inertial, Inertial.carrier()) if inertial is None else inertial.without_carriers(count)
         T = self.poses[joint.parent] @ joint.T_parent_joint
+        T_end = SE3.identity() if joint.end is None else joint.end[1]
+        at = None if joint.end is None else T_end.inverse()  # the joint's frame in the child's
         if joint.is_free:  # no joint at all: what nothing holds is free
-            self.poses[link.name] = T @ joint.T_rest
+            self.poses[link.name] = T @ joint.T_rest @ T_end
             self._link(model, link, inertial)
             return
         if native:
-            self.poses[link.name] = T @ self._rest_motion(joint)
+            self.poses[link.name] = T @ self._rest_motion(joint) @ T_end
             self._link(model, link, whole)
-            self._joint(model, joint.name, joint, joint.parent, joint.child, joint.freedoms, None)
+            self._joint(model, joint.name, joint, joint.parent, joint.child, joint.freedoms, at)
             return
         names = [joint.parent, *joint.carriers[:count], joint.child]
         for index, freedom in enumerate(joint.freedoms):
             T = T @ (_motion(freedom) if self.at_rest else SE3.identity())
             name = names[index + 1]
-            self.poses[name] = T
+            self.poses[name] = T @ T_end if index == count else T
             if index < count:
                 element = child(model, "link", {"name": name})
                 child(element, "pose", text=_pose(T))
@@ -156,7 +201,7 @@ class _Writer:
             else:
                 self._link(model, link, whole)
             one = replace(joint, joint=replace(joint.joint, type=_single(freedom)))
-            self._joint(model, freedom.name, one, names[index], name, (freedom,), None)
+            self._joint(model, freedom.name, one, names[index], name, (freedom,), at if index == count else None)
 
     def _rest_motion(self, joint: LoweredJoint) -> SE3:
         """Return how far the joint has moved in the pose that is written."""
@@ -181,6 +226,7 @@ class _Writer:
             material = child(visual, "material")
             for kind in ("ambient", "diffuse"):
                 child(material, kind, text=rgba(placed.color))
+            self.kept.write(visual, f"parts.{link.part.name}.visuals.{index}")
         for index, placed in enumerate(link.collisions):
             collision = self._shape(element, "collision", index, placed, link.name)
             self.files.keep_all(link.part, link.name)
@@ -188,12 +234,14 @@ class _Writer:
                 ode = child(child(child(collision, "surface"), "friction"), "ode")
                 for name in ("mu", "mu2"):
                     child(ode, name, text=number(link.friction))
+            self.kept.write(collision, f"parts.{link.part.name}.collisions.{index}")
+        self.kept.write(element, f"parts.{link.part.name}")
 
     def _shape(self, link: Any, tag: str, index: int, placed: Placed, name: str) -> Any:
         element = child(link, tag, {"name": f"{tag}_{index}"})
         child(element, "pose", text=_pose(placed.T_link_shape))
         geometry, form = child(element, "geometry"), placed.shape.primitive
-        if tag == "collision" and form is not None and form.kind in _FORMS:
+        if form is not None:
             body = child(geometry, form.kind)
             for field, value in _FORMS[form.kind](tuple(size * MM_TO_M for size in form.size)).items():
                 child(body, field, text=value)
@@ -219,12 +267,11 @@ class _Writer:
             child(element, "pose", text=_pose(pose))
         if kind is JointType.SCREW:
             child(element, "screw_thread_pitch", text=number(joint.joint.lead / 1000.0))
-        if kind in {JointType.FIXED, JointType.BALL}:
-            return
-        axes = freedoms if kind is JointType.UNIVERSAL else (turning,)
+        axes = {JointType.UNIVERSAL: freedoms, JointType.FIXED: (), JointType.BALL: ()}.get(kind, (turning,))
         for tag, freedom in zip(("axis", "axis2"), axes, strict=False):
             if freedom is not None:
                 self._axis(element, tag, freedom)
+        self.kept.write(element, f"joints.{joint.joint.name}")
 
     def _axis(self, joint: Any, tag: str, freedom: AxisMotion) -> None:
         element = child(joint, tag)
@@ -248,6 +295,14 @@ class _Writer:
             child(mimic, "multiplier", text=number(tie.ratio))
             child(mimic, "offset", text=number(tie.offset))
             child(mimic, "reference", text="0")
+
+
+def _has_world(assembly: Assembly) -> bool:
+    """Return whether the ground part is the world itself: SDFormat has that without a link."""
+    ground = assembly.parts[assembly.mechanism.ground]
+    bare = not ground.visuals and not ground.collisions and ground.solid is None and ground.mass is None
+    still = assembly.mechanism.T_ground.allclose(SE3.identity(), mm=0.0, rad=0.0)
+    return bare and still and ground.name == RESERVED[0] and len(assembly.parts) > 1
 
 
 def _single(freedom: AxisMotion) -> JointType:
