@@ -73,7 +73,7 @@ def _export(options: argparse.Namespace, terminal: Terminal) -> Report:
 @command(
     "convert",
     "Convert a file into another format.",
-    argument("source", metavar="IN", help="a .urdf, .xml (MJCF), .FCStd or .step file, or a plan.json"),
+    argument("source", metavar="IN", help="a .urdf, .xacro, .xml (MJCF), .sdf, .FCStd or .step file, or a plan.json"),
     argument("target", metavar="OUT", help="its suffix selects the format: .urdf .xml .FCStd .json .sdf .usda .step .glb .3mf"),
     argument("--root", metavar="DIR", default=None, help="folder that meshes and included files may be read from (the file's own)"),
     argument("--srdf", metavar="FILE", default=None, help="for URDF: the SRDF that belongs to it (the one of its name beside it)"),
@@ -81,7 +81,7 @@ def _export(options: argparse.Namespace, terminal: Terminal) -> Report:
     argument(
         "--fuse",
         action="store_true",
-        help="for URDF and MJCF: replace chains of joints over links without shape by one joint, such as a ball",
+        help="for URDF, MJCF and SDF: replace chains of joints over links without shape by one joint, such as a ball",
     ),
     argument(
         "--keep-frames",
@@ -105,15 +105,15 @@ def _convert(options: argparse.Namespace, terminal: Terminal) -> Report:
 
 @command(
     "adopt",
-    "Turn a URDF, MJCF, FreeCAD or STEP file into a plan folder that builds at once.",
-    argument("source", metavar="FILE", help="a .urdf, .xml (MJCF), .FCStd or .step file"),
+    "Turn a URDF, MJCF, SDFormat, FreeCAD or STEP file into a plan folder that builds at once.",
+    argument("source", metavar="FILE", help="a .urdf, .xml (MJCF), .sdf, .FCStd or .step file"),
     argument("--out", metavar="DIR", required=True, help="the folder: plan.json, parts/*.py, meshes/*.stl; it must be empty or new"),
     argument("--root", metavar="DIR", default=None, help="folder that meshes may be read from (the file's own)"),
     argument("--script", metavar="FILE", default=None, help="the program that made the file; a copy is kept beside the plan"),
     argument(
         "--fuse",
         action="store_true",
-        help="for URDF and MJCF: replace chains of joints over links without shape by one joint, such as a ball",
+        help="for URDF, MJCF and SDF: replace chains of joints over links without shape by one joint, such as a ball",
     ),
     argument(
         "--no-build", dest="build", action="store_false", help="do not build the parts; those that cannot be built are not simplified"

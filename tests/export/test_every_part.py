@@ -128,7 +128,7 @@ def in_zip(path: Path, _bundle: Bundle) -> Shapes:
 
 def in_json(path: Path, _bundle: Bundle) -> Shapes:
     """A plan: its parts, those of a pattern by their numbers."""
-    found = {}
+    found: Shapes = {}
     for part in json.loads(path.read_text())["parts"]:
         count = part.get("derive", {}).get("count")
         found |= {f"{part['name']}_{number}" if count else part["name"]: 1 for number in range(1, (count or 1) + 1)}
