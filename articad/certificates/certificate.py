@@ -304,7 +304,7 @@ class _Certifying:
             self.budget.elapsed,
             {key: array for way in self._ways.values() if not isinstance(way, str) for key, array in way.arrays().items()},
             spans=self._spans(),
-            clearances=least_clearances(motion, self.asked, together=self.together),
+            clearances=least_clearances(motion, self.asked, together=self.together, quick=True),
             follows=what_follows(motion, self.asked),
         )
 

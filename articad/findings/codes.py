@@ -418,6 +418,9 @@ CODES: dict[str, Code] = {
         "interference", None, "The independent checker refutes a certificate that the prover accepts.", "Report it with the plan."
     ),
     "E_NOT_CHECKED": Code("interference", None, "A requested check was not done.", "Give it a larger budget, or what it requires."),
+    "I_NOT_SAMPLED": Code(
+        "motion", None, "Sampling leaves out part of what a mechanism can do.", "Nothing, or look at the named motion by itself."
+    ),
     "W_NOT_INSERTABLE": Code(
         "interference",
         "design",

@@ -1,9 +1,10 @@
 """Least clearance of each two parts over the motion: looked for by sampling, then by a search near the nearest pose.
 
-Poses along each driver, on a grid of every two, and scattered over all are looked at. Of each pair the distance is measured at the pose
-whose boxes are nearest first, until no box can be nearer than the distance found. From there a compass search (Kolda, Lewis, Torczon
-2003) moves one driver at a time by steps that shrink. The result is the smallest distance seen: the true one may be smaller, so every
-row says "sampled".
+Poses along each driver, on a grid of every two, and scattered over all are looked at. Each pair has a lower bound of its distance at each
+pose: the gap of the boxes about both parts, and any distance measured at another pose, minus how far the corners of a box move between
+the two (`_Known`). The pose of the smallest bound is measured next, until no bound is below the distance found by more than a tolerance (`_close`).
+From there a compass search (Kolda, Lewis, Torczon 2003) moves one driver at a time, and to the lowest point of a quadratic model of the
+distances just measured, by steps that shrink, until a step changes the distance by less than that. The result is the smallest distance seen: the true one may be smaller, so every row says "sampled".
 """
 
 from __future__ import annotations
@@ -11,7 +12,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -30,13 +31,20 @@ FloatArray = NDArray[np.float64]
 
 LINE, SIDE, SCATTERED = 17, 6, 96  # poses along one driver, on a side of a grid of two, and over all
 MOST_GRIDS = 60  # of two drivers
-NEAREST = 60  # pairs that are searched further, the nearest first
+NEAREST, QUICK_NEAREST = 60, 20  # pairs that are searched further, the nearest first
 ROUNDS = 24  # of that search
 FIRST_STEP = 1 / (LINE - 1)  # of a range
 LEAST_STEP = 1e-5  # of a range
+AROUND, LEAP = 3.5, 6.0  # steps: what is measured that near is part of a model; how far that leads at most
+MODELLED = 3  # freedoms of a pair, up to which a quadratic model of its distance is fitted: valleys need not run along a freedom
 JOINED = 9  # poses of two parts that a joint connects: they keep their fit, and distances of mating surfaces cost most
 _KEY_DIGITS = 6  # of mm and rotation entries: relative poses that agree so far are one
-FLAT_MM = 1e-6  # a distance that varies by less about a pose does not depend on it
+CLOSE_MM, CLOSE_SHARE = 1e-3, 1e-3  # mm, and of the distance: an improvement below both is not looked for
+QUICK_SHARE = 1e-2  # of the distance: the same of a quick search
+PATIENCE = 8  # poses in a row, measured without an improvement, after which a quick search leaves parts that are distant
+STEADY = 16  # poses at which the distance was the same, after which a quick search takes it for constant
+DISTANT_SHARE = 0.05  # of the diagonal of the smaller box: parts further apart are distant
+FLAT_MM = 1e-6  # distances that differ by less are equal
 _SAME_MM = 1e-3  # over which distances must vary for the parts to move against each other
 
 
@@ -70,23 +78,32 @@ class Clearance:
         return {**told, "strength": self.strength.to_json()}
 
 
-def least_clearances(motion: MotionSampler, joints: Sequence[str] | None = None, *, together: bool = True) -> tuple[Clearance, ...]:
+def least_clearances(
+    motion: MotionSampler, joints: Sequence[str] | None = None, *, together: bool = True, quick: bool = False
+) -> tuple[Clearance, ...]:
     """Return the smallest distance seen of each two parts that move against each other, the nearest first.
+
+    Near the pose that is found, the distance is the least within `CLOSE_MM` or, if that is less, within `CLOSE_SHARE` of itself.
 
     Args:
         motion: Sampling of the scene.
         joints: Names of those to move; all that drive by default.
         together: Whether several drivers move at once, too.
+        quick: Whether to search within a percent only, and not for ever where parts are distant or keep their distance: for use beside
+            a proof that nothing collides.
     """
     ranges = motion.ranges(joints)
     points = _points(motion, ranges, together=together)
     if not len(points):
         return ()
-    search = _Search(motion, ranges)
+    search = _Search(motion, ranges, quick=quick)
     kept, matrices = search.placed(points)
-    pairs = [found for i, j in search.pairs() if (found := search.nearest(i, j, points[kept], matrices)) is not None]
+    pairs = [found for i, j in search.pairs() if (found := search.pair(i, j, points[kept], matrices)) is not None]
+    for pair in pairs:
+        search.look(pair)
     pairs.sort(key=lambda pair: pair.gap)
-    search.refine([pair for pair in pairs if not search.are_joined(pair.i, pair.j)][:NEAREST], together=together)
+    apart = [pair for pair in pairs if not search.are_joined(pair.i, pair.j)]
+    search.refine(apart[: QUICK_NEAREST if quick else NEAREST], together=together)
     return tuple(sorted((pair.clearance(motion, ranges) for pair in pairs), key=lambda one: one.gap))
 
 
@@ -122,6 +139,62 @@ def _points(motion: MotionSampler, ranges: Sequence[Freedom], *, together: bool)
     return points[motion.within_cones(ranges, points)]
 
 
+def _lowest(offsets: FloatArray, rises: FloatArray) -> tuple[FloatArray, float] | None:
+    """Return where a quadratic function is lowest that fits values `(n,)` at offsets `(n, k)` from 0, and how far it falls to there.
+
+    None where no function with a minimum fits them.
+
+    With f(0) = 0: f(x) = g x + x'Hx/2 by least squares, and x = -H^-1 g, scaled so that no offset exceeds `LEAP`.
+    """
+    n, k = offsets.shape
+    ways = list(itertools.combinations_with_replacement(range(k), 2))
+    if n < k + len(ways):
+        return None
+    square = np.stack([offsets[:, a] * offsets[:, b] * (0.5 if a == b else 1.0) for a, b in ways], axis=1)
+    found, _, rank, _ = np.linalg.lstsq(np.concatenate([offsets, square], axis=1), rises, rcond=None)
+    H = np.zeros((k, k))
+    for (a, b), value in zip(ways, found[k:], strict=True):
+        H[a, b] = H[b, a] = value
+    if rank < k + len(ways) or np.linalg.eigvalsh(H)[0] <= 1e-9 * np.abs(H).max():
+        return None
+    x = -np.linalg.solve(H, found[:k])
+    return np.asarray(x / max(1.0, float(np.abs(x).max()) / LEAP)), float(-found[:k] @ x) / 2
+
+
+class _Known:
+    """Distances of two bodies measured so far, and the bounds of all other distances that follow from them.
+
+    The distance d(T) of two bodies at the relative pose T differs from d(T') by at most the largest |T x - T' x| over the points x of the
+    second body. That is a convex function of x, so no point of a box about the body exceeds all of its corners. The same holds for the
+    first body as seen from the second; the smaller of both displacements counts.
+
+    Args:
+        a: Corners of a box about the first body in its own frame, `(8, 3)` [mm].
+        b: The same of the second.
+    """
+
+    def __init__(self, a: FloatArray, b: FloatArray) -> None:
+        self.a, self.b = a, b
+        self.gaps: list[float] = []
+        self.corners: list[FloatArray] = []
+
+    def add(self, gap: float, T: FloatArray) -> None:
+        """Note the distance [mm] at one pose `(1, 3, 4)`."""
+        self.gaps.append(max(gap, 0.0))
+        self.corners.append(self._placed(T)[0])
+
+    def bounds(self, T: FloatArray, last: int = 0) -> FloatArray:
+        """Return lower bounds of the distances at poses `(n, 3, 4)`, `(n,)` [mm]; from the last few measurements only, if that is asked."""
+        gaps, known = np.array(self.gaps[-last:]), np.array(self.corners[-last:])
+        moved = np.linalg.norm(self._placed(T)[:, None] - known, axis=4).max(axis=3).min(axis=2)
+        return np.asarray((gaps - moved).max(axis=1))
+
+    def _placed(self, T: FloatArray) -> FloatArray:
+        """Return the corners of each box in the other body's frame, `(n, 2, 8, 3)`."""
+        R, t = T[..., :3], T[:, None, :, 3]
+        return np.stack([(self.a - t) @ R, self.b @ R.transpose(0, 2, 1) + t], axis=1)
+
+
 @dataclass
 class _Pair:
     """Two bodies, and the nearest pose that was seen of them.
@@ -129,20 +202,32 @@ class _Pair:
     Attributes:
         i: Place of the first among the bodies.
         j: Of the second.
-        gap: Distance there [mm]; negative where they overlap.
-        at: Values there `(freedoms,)`.
         movers: Which freedoms move one against the other.
+        points: Values of sampled poses `(n, freedoms)`.
+        relative: Relative poses there `(n, 3, 4)`, each different from the others.
+        bound: Lower bounds of the distances there `(n,)` [mm]; infinite where the distance was measured.
+        known: Distances measured so far.
         poses: How many relative poses were looked at.
+        gap: Smallest distance [mm]; negative where they overlap.
+        at: Values there `(freedoms,)`.
         step: Of the search, as a share of the ranges.
+        measured: Values and distances beside the nearest pose.
+        guess: Values at which a model of the distance is lowest, to be tried next.
     """
 
     i: int
     j: int
-    gap: float
-    at: FloatArray
     movers: list[int]
+    points: FloatArray
+    relative: FloatArray
+    bound: FloatArray
+    known: _Known
     poses: int
+    gap: float = math.inf
+    at: FloatArray = field(default_factory=lambda: np.empty(0))
     step: float = FIRST_STEP
+    measured: list[tuple[FloatArray, float]] = field(default_factory=list)
+    guess: FloatArray | None = None
 
     def clearance(self, motion: MotionSampler, ranges: Sequence[Freedom]) -> Clearance:
         names = list(motion.scene.bodies)
@@ -152,8 +237,8 @@ class _Pair:
 
 
 class _Search:
-    def __init__(self, motion: MotionSampler, ranges: Sequence[Freedom]) -> None:
-        self.motion, self.scene, self.ranges = motion, motion.scene, ranges
+    def __init__(self, motion: MotionSampler, ranges: Sequence[Freedom], *, quick: bool) -> None:
+        self.motion, self.scene, self.ranges, self.quick = motion, motion.scene, ranges, quick
         self.names = list(self.scene.bodies)
         self.bodies = list(self.scene.bodies.values())
         self.low, self.high = (np.array([getattr(freedom, end) for freedom in ranges]) for end in ("lower", "upper"))
@@ -173,8 +258,8 @@ class _Search:
             return np.empty(0, dtype=np.int64), np.empty((0, len(self.names), 3, 4))
         return kept, poses[:, [self.motion.mechanism.part_index(name) for name in self.names], :3]
 
-    def nearest(self, i: int, j: int, points: FloatArray, matrices: FloatArray) -> _Pair | None:
-        """Return the nearest of all poses; None where the two do not move against each other."""
+    def pair(self, i: int, j: int, points: FloatArray, matrices: FloatArray) -> _Pair | None:
+        """Return two bodies with their different relative poses; None where they do not move against each other."""
         relative = relatives(matrices[:, i], matrices[:, j])
         if not len(relative) or np.abs(relative - relative[0]).max() < _SAME_MM:
             return None
@@ -189,14 +274,30 @@ class _Search:
         order = np.argsort(bound, kind="stable")
         if self.are_joined(i, j):
             order = order[np.unique(np.linspace(0, len(order) - 1, JOINED).round().astype(np.int64))]
-        best, where, looked = math.inf, int(first[order[0]]), len(order)
-        for at in order.tolist():
-            if bound[at] >= best or best <= 0.0:
+        chosen = first[order]
+        known = _Known(self._box(i), self._box(j))
+        movers = movers or list(range(len(self.ranges)))
+        return _Pair(i, j, movers, points[chosen], relative[chosen], bound[order], known, len(order))
+
+    def look(self, pair: _Pair) -> None:
+        """Measure distances at the poses of smallest bounds, until no bound is below the smallest distance by more than the tolerance."""
+        distant = DISTANT_SHARE * 2 * min(float(np.linalg.norm(self.scene.local_boxes[1][k])) for k in (pair.i, pair.j))
+        stale, most = 0, -math.inf
+        while pair.gap > 0.0 and np.isfinite(pair.bound).any():
+            at = int(np.argmin(pair.bound))
+            if pair.gap < math.inf and pair.bound[at] >= pair.gap - self._close(pair.gap):
                 break
-            gap = self._distance(i, j, relative[first[at]])
-            if gap < best:
-                best, where = gap, int(first[at])
-        return _Pair(i, j, best, points[where].copy(), movers or list(range(len(self.ranges))), looked)
+            if self.quick and (
+                (stale >= PATIENCE and pair.gap > distant) or (stale >= STEADY and most - pair.gap <= self._close(pair.gap))
+            ):
+                break
+            gap = self._distance(pair.i, pair.j, pair.relative[at])
+            stale, most = 0 if gap < pair.gap - self._close(gap) else stale + 1, max(most, gap)
+            pair.known.add(gap, pair.relative[at : at + 1])
+            pair.bound = np.maximum(pair.bound, pair.known.bounds(pair.relative, last=1))
+            pair.bound[at] = math.inf
+            if gap < pair.gap:
+                pair.gap, pair.at = gap, pair.points[at].copy()
 
     def refine(self, pairs: Sequence[_Pair], *, together: bool) -> None:
         """Look for nearer poses beside those found, all pairs in one batch a round."""
@@ -207,35 +308,68 @@ class _Search:
             points = np.array([row for _, row in tried])
             inside = np.flatnonzero(self.motion.within_cones(self.ranges, points))
             kept, matrices = self.placed(points[inside])
-            before = {id(pair): pair.gap for pair in pairs}
-            flat = set(before)
+            places: dict[int, list[tuple[int, int]]] = {}
             for row, at in enumerate(inside[kept].tolist()):
-                pair = tried[at][0]
-                relative = relatives(matrices[row : row + 1, pair.i], matrices[row : row + 1, pair.j])
-                pair.poses += 1
-                if self.scene.boxes_gap(pair.i, pair.j, relative)[0] <= max(pair.gap, 0.0):
-                    gap = self._distance(pair.i, pair.j, relative[0])
-                    if abs(gap - before[id(pair)]) > FLAT_MM:
-                        flat.discard(id(pair))
-                    if gap < pair.gap:
-                        pair.gap, pair.at = gap, points[at]
-                else:
-                    flat.discard(id(pair))
+                places.setdefault(id(tried[at][0]), []).append((row, at))
             for pair in pairs:
-                if id(pair) in flat:  # such as two parts that turn about one axis
-                    pair.step = 0.0
-                elif pair.gap == before[id(pair)]:
-                    pair.step /= 3
+                if pair.step < LEAST_STEP:
+                    continue
+                rows = places.get(id(pair), [])
+                relative = relatives(matrices[[row for row, _ in rows], pair.i], matrices[[row for row, _ in rows], pair.j])
+                self._try(pair, points[[at for _, at in rows]], relative)
+
+    def _try(self, pair: _Pair, points: FloatArray, relative: FloatArray) -> None:
+        """Measure a pair at some poses `(n, freedoms)` beside its nearest one and go to the best, or make smaller steps."""
+        before, seen, is_modelled = pair.gap, list[float](), 1 < len(pair.movers) <= MODELLED
+        for k in range(len(points)):
+            pair.poses += 1
+            T = relative[k : k + 1]
+            if self.scene.boxes_gap(pair.i, pair.j, T)[0] > max(pair.gap, 0.0):
+                continue
+            if pair.gap > 0 and not is_modelled and pair.known.bounds(T)[0] > pair.gap - self._close(pair.gap):
+                continue
+            gap = self._distance(pair.i, pair.j, T[0])
+            pair.known.add(gap, T)
+            seen.append(gap)
+            pair.measured.append((points[k], gap))
+            if gap < pair.gap:
+                pair.gap, pair.at = gap, points[k]
+        is_flat = len(seen) == len(points) and all(abs(gap - before) <= self._close(before) for gap in seen)
+        low, high, size = self.low[pair.movers], self.high[pair.movers], pair.step * (self.high - self.low)[pair.movers]
+        pair.guess, fall = None, math.inf
+        if is_modelled and pair.measured:
+            offsets = (np.array([point for point, _ in pair.measured]) - pair.at)[:, pair.movers] / size
+            near = (np.abs(offsets) <= AROUND).all(axis=1)
+            lowest = _lowest(offsets[near], np.array([gap for _, gap in pair.measured])[near] - pair.gap)
+            if lowest is not None:
+                pair.guess, fall = pair.at.copy(), lowest[1]
+                pair.guess[pair.movers] = np.clip(pair.at[pair.movers] + lowest[0] * size, low, high)
+        if pair.gap == before:
+            pair.step = 0.0 if is_flat or fall < self._close(before) else pair.step / 3  # flat: as two parts that turn about one axis
 
     def _beside(self, pair: _Pair, *, together: bool) -> Iterator[FloatArray]:
-        """Yield values one step up and down each freedom that moves a pair."""
+        """Yield values one step up and down each freedom that moves a pair, up both of each two of a few, and where a model is lowest."""
         moved = [k for k in pair.movers if pair.at[k] != self.ranges[k].rest]
-        for k in pair.movers if together or not moved else moved[:1]:
-            for sign in (-1.0, 1.0):
-                row = pair.at.copy()
+        ways = [(k,) for k in (pair.movers if together or not moved else moved[:1])]
+        both = list(itertools.combinations(pair.movers, 2)) if together and 1 < len(pair.movers) <= MODELLED else []
+        for some, sign in [*itertools.product(ways, (-1.0, 1.0)), *((two, 1.0) for two in both)]:
+            row = pair.at.copy()
+            for k in some:
                 row[k] = np.clip(row[k] + sign * pair.step * (self.high[k] - self.low[k]), self.low[k], self.high[k])
-                if row[k] != pair.at[k]:
-                    yield row
+            if (row != pair.at).any():
+                yield row
+        if together and pair.guess is not None:
+            yield pair.guess
+
+    def _close(self, gap: float) -> float:
+        """Return the tolerance to which the least distance is found, near one that is known [mm]."""
+        gap = max(gap, 0.0)
+        return FLAT_MM + (QUICK_SHARE * gap if self.quick else min(CLOSE_MM, CLOSE_SHARE * gap))
+
+    def _box(self, at: int) -> FloatArray:
+        """Return the corners of the box about a body in its own frame, `(8, 3)` [mm]."""
+        centre, half = (sides[at] for sides in self.scene.local_boxes)
+        return np.asarray(centre + half * np.array(list(itertools.product((-1.0, 1.0), repeat=3))))
 
     def are_joined(self, i: int, j: int) -> bool:
         """Return whether a joint connects two bodies: then they may touch, and how deep they meet is not asked."""

@@ -6,7 +6,7 @@ A pair is asked again only where its relative pose is new: while one joint moves
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import combinations, compress, product
@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from articad.errors import KinematicsError
+from articad.errors import KinematicsError, LoopError
 from articad.findings import Finding, Findings
 from articad.geometry.mesh import TriMesh
 from articad.interference.boxes import meeting_boxes
@@ -29,7 +29,7 @@ from articad.interference.scene import Scene, relatives
 from articad.interference.turning import Turning
 from articad.interference.verdict import UNRELATED_VOLUME_MM3, judge
 from articad.interference.work import CLOSED, PAIRS_PLACED, POSE, TREE_TRIANGLES, WorkBudget, look_price
-from articad.kinematics.joints import Joint
+from articad.kinematics.joints import Joint, JointType
 from articad.kinematics.mechanism import Mechanism
 from articad.kinematics.solution import Solution
 
@@ -106,11 +106,17 @@ class MotionSampler:
         self.driving: tuple[Joint, ...] = driving_joints(mechanism)  # free ones too, which stand at rest
 
     def run(self, joints: Sequence[str] | None, *, steps: int, together: bool, samples: int) -> Checks:
-        """Sweep and report; see `sweep`."""
+        """MotionSampler and report; see `sweep`."""
         ranges = self.ranges(joints)
         over = tuple(freedom.name for freedom in ranges)
         broken = Findings(broken_finding(name, reason) for name, reason in self.scene.broken.items())
-        report = Checks(broken, tuple(unknown_pairs(self.scene, over).values()), self.scene.deflection, over, tuple(self.scene.bodies))
+        report = Checks(
+            broken + self._left_out(),
+            tuple(unknown_pairs(self.scene, over).values()),
+            self.scene.deflection,
+            over,
+            tuple(self.scene.bodies),
+        )
         for freedom in ranges:
             values = self.values(freedom, steps)
             step = float(values[1] - values[0])
@@ -159,6 +165,7 @@ class MotionSampler:
             findings += self._unreached(solution.findings, missed, over)
         if not len(kept):
             return Checks(Findings(findings), (), self.scene.deflection, over, tuple(self.scene.bodies))
+        findings += self._cut_short(points, kept, solution, over)
         points = [points[at] for at in kept]
         matrices = poses[:, [self.mechanism.part_index(name) for name in self.scene.bodies], :3]
         turning = Turning.of(self.scene, self.mechanism, over[0], poses[0], matrices[0]) if len(over) == 1 else None
@@ -291,6 +298,38 @@ class MotionSampler:
         baseline = min(track.volumes.values(), default=0.0)
         check, findings = judge(self.scene, parts, worst, over=over, strength=strength, pose=where, baseline=baseline)
         return check, findings
+
+    def _left_out(self) -> Findings:
+        """Name what can move and is not sampled: free joints, and parts that loops let move while all drivers stand."""
+        found = [
+            (f"joints.{joint.name}", (joint.child,), f"{joint.name} moves freely; it stands at rest in all samples.")
+            for joint in self.driving
+            if joint.type is JointType.FREE
+        ]
+        try:
+            groups = () if self.mechanism.is_tree else self.mechanism.branch.groups
+        except LoopError:  # whatever is sampled says so
+            groups = ()
+        for parts in (parts for group in groups for parts in group.idle):
+            message = f"{' and '.join(parts)} can move while all drivers stand, as a rod turns about itself. No sample moves it by itself."
+            found.append((f"parts.{parts[0]}", parts, message))
+        hint = "Nothing, where nothing is in its way; `certify` covers the turn of a rod between two balls."
+        return Findings(Finding(code="I_NOT_SAMPLED", where=where, message=said, parts=parts, hint=hint) for where, parts, said in found)
+
+    def _cut_short(
+        self, points: Sequence[Mapping[str, float]], kept: NDArray[np.int64], solution: Solution, over: tuple[str, ...]
+    ) -> Iterator[Finding]:
+        """Say over what of its range a single freedom is sampled, where the limits of what follows it end the motion before."""
+        if len(over) > 1 or len(kept) == int(solution.reached.sum()):
+            return
+        (name,), values = over, [point[over[0]] for point in points]
+        low, high = (end(values[at] for at in kept) for end in (min, max))
+        message = (
+            f"{name} is sampled at {low:.6g} to {high:.6g}, not at {min(values):.6g} to {max(values):.6g}: "
+            "elsewhere, what follows it leaves its limits."
+        )
+        hint = f"Set the limits of {name.split('.')[0]} to what the limits of its followers allow."
+        yield Finding(code="I_NOT_SAMPLED", where=f"joints.{name.split('.')[0]}", message=message, hint=hint)
 
     def _within_limits(self, columns: FloatArray) -> NDArray[np.bool_]:
         """Return in which configurations `(n, columns)` everything that follows drivers is within its limits."""

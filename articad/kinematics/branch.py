@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import cached_property
 from typing import NamedTuple, NoReturn
 
@@ -23,7 +24,7 @@ from articad.kinematics.inexact import shown_gap
 from articad.kinematics.joints import Coordinate, Coupling, Joint, JointType
 from articad.kinematics.layout import IndexArray, Layout
 from articad.kinematics.loops import CLOSED, ClosureSystem
-from articad.kinematics.mobility import Mobility, choose_drivers, mobility_of
+from articad.kinematics.mobility import Mobility, choose_drivers, idle_parts, mobility_of, null_space
 from articad.kinematics.roadmap import Roadmap
 from articad.kinematics.ties import BoolArray
 from articad.kinematics.track import Track
@@ -100,6 +101,12 @@ class Group:
         self.follower.start(self.analysis.Q)
         self._follows: BoolArray = (self.follower.basis.matrix != 0).any(axis=1) | ~self.system.active
         self._tracks: dict[tuple[int, bool], Track] = {}
+
+    @property
+    def idle(self) -> tuple[tuple[str, ...], ...]:
+        """Parts, or pairs that a joint connects, which can move while all drivers and all other parts stand."""
+        held = null_space(self.analysis.freedoms[self._driving])
+        return idle_parts(self.system, replace(self.analysis, mobility=held.shape[1], freedoms=self.analysis.freedoms @ held))
 
     # --- at rest
 

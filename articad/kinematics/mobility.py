@@ -349,13 +349,14 @@ def idle_parts(system: ClosureSystem, mobility: Mobility) -> tuple[tuple[str, ..
             continue
         inside = [names.index(name) for name in group]
         outside = [i for i in range(len(names)) if i not in inside]
-        still = _null_space(moved[outside].reshape(-1, moved.shape[2]))
+        still = null_space(moved[outside].reshape(-1, moved.shape[2]))
         if still.shape[1] and np.abs(moved[inside] @ still).max() > _STILL and len(outside) > 1:
             found.append(group)
     return tuple(found)
 
 
-def _null_space(A: FloatArray) -> FloatArray:
+def null_space(A: FloatArray) -> FloatArray:
+    """Return orthonormal vectors `(n, k)` that `A` `(m, n)` takes to 0."""
     s, Vt = right_singular(A)
     rank = int((s > _STILL * max(1.0, float(s[0]) if s.size else 1.0)).sum())
     null: FloatArray = Vt[rank:].T

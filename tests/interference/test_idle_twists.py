@@ -12,6 +12,7 @@ import pytest
 from articad.certificates.certificate import Certificate, certify
 from articad.connectors import SE3
 from articad.geometry import TriMesh, box
+from articad.interference.sweep import sweep
 from articad.kinematics.mechanism import Mechanism
 from tests.interference.mechanisms import at, joint, manifold_mesh, verified
 
@@ -101,3 +102,11 @@ def test_a_post_that_only_the_idle_twist_of_a_rod_leads_into_is_a_collision() ->
 
 def test_a_post_beyond_the_reach_of_the_lug_is_proven_clear() -> None:
     assert accepted(certificate := lugged(0, LUG + 8)), str(certificate.findings)
+
+
+def test_a_sweep_says_that_it_does_not_turn_the_rod_by_itself() -> None:
+    mechanism, _ = linkage(0)
+    report = sweep({"frame": box(4, 4, 4).transformed(at(0, 0, -60)), "rod": box(2, 2, 2)}, mechanism, steps=8)
+    (said,) = report.findings.of("I_NOT_SAMPLED")
+    assert said.parts == ("rod",)
+    assert report.ok

@@ -175,3 +175,31 @@ def test_the_least_clearance_of_a_ball_over_a_plate_is_the_closed_form(seed: int
     (row,) = least_clearances(MotionSampler(Scene.of(meshes, joints), mechanism))
     assert row.gap == pytest.approx(height - 5 + lowest, abs=1e-2)
     assert row.to_json()["strength"]["kind"] == "sampled"
+
+
+@pytest.mark.parametrize("quick", [False, True])
+@pytest.mark.parametrize("seed", range(6))
+def test_a_least_clearance_between_samples_is_the_closed_form(seed: int, quick: bool) -> None:
+    """The tip of two hinged links passes a needle beyond its reach: it is nearest where both links point at the needle, between samples."""
+    rng = np.random.default_rng([seed, 7])
+    upper, fore, room, bearing = rng.uniform(40, 80), rng.uniform(20, 40), rng.uniform(3, 6), rng.uniform(-0.5, 0.5)
+    rest = float(rng.uniform(0.2, 0.6))
+    joints = [
+        joint("shoulder", "revolute", "frame", "upper", lower=(-rng.uniform(1.2, 1.6),), upper=(rng.uniform(1.2, 1.6),)),
+        joint(
+            "elbow",
+            "revolute",
+            "upper",
+            "fore",
+            at_parent=at(upper),
+            lower=(-rng.uniform(0.8, 1.6),),
+            upper=(rng.uniform(0.8, 1.6),),
+            rest=(rest,),
+        ),
+    ]
+    mechanism = Mechanism(("frame", "upper", "fore"), "frame", joints)
+    needle = at(*((upper + fore + room) * np.array([math.cos(bearing), math.sin(bearing)])))
+    meshes = {"frame": cylinder(0.01, 40).transformed(needle), "fore": cylinder(0.01, 40).transformed(at(fore))}
+    (row,) = least_clearances(MotionSampler(Scene.of(meshes, joints), mechanism), quick=quick)
+    assert row.gap == pytest.approx(room, abs=0.02 + (0.01 * room if quick else 0.0))
+    assert quick or row.pose["shoulder"] == pytest.approx(bearing, abs=0.05)

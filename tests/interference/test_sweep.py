@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -12,6 +13,7 @@ from articad.geometry import box, cylinder
 from articad.interference.motion import freedoms, scattered
 from articad.interference.scene import Scene
 from articad.interference.sweep import MotionSampler, sweep
+from articad.kinematics import Coupling, JointLimits
 from articad.kinematics.mechanism import Mechanism
 from tests.interference.mechanisms import Waiver, at, block_with_bore, fixed, joint, without_triangle
 
@@ -134,3 +136,27 @@ def test_scattered_points_fill_a_square_more_evenly_than_chance() -> None:
     counts, _, _ = np.histogram2d(points[:, 0], points[:, 1], bins=8, range=[[0, 1], [0, 1]])
     assert counts.min() >= 2
     assert counts.max() <= 6
+
+
+@pytest.mark.parametrize(("limit", "is_cut"), [(1.0, True), (3.0, False)])
+def test_a_range_that_a_followers_limit_cuts_short_is_told(limit: float, is_cut: bool) -> None:
+    joints = [
+        joint("fast", "revolute", "frame", "crank", lower=(-3.0,), upper=(3.0,)),
+        joint("slow", "revolute", "frame", "arm", lower=(-limit,), upper=(limit,)),
+    ]
+    mechanism = Mechanism(("frame", "crank", "arm"), "frame", joints, [Coupling("gear", "linear", "fast", "slow", -1.0, 0.0)])
+    report = sweep({"arm": box(70, 6, 6), "crank": box(1, 1, 1).transformed(at(0, 0, 99))}, mechanism, steps=61)
+    found = [finding.message for finding in report.findings.of("I_NOT_SAMPLED")]
+    assert len(found) == is_cut
+    assert all("fast is sampled at -1 to 1, not at -3 to 3" in said for said in found)
+
+
+def test_a_sweep_names_the_joints_that_move_freely_and_stand() -> None:
+    mechanism = Mechanism(
+        ("frame", "boat", "mast"),
+        "frame",
+        [replace(joint("afloat", "free", "frame", "boat"), limits=JointLimits()), joint("step", "revolute", "boat", "mast")],
+    )
+    report = sweep({"mast": box(2, 2, 2), "frame": box(1, 1, 1).transformed(at(0, 0, 99))}, mechanism, steps=8)
+    (said,) = report.findings.of("I_NOT_SAMPLED")
+    assert said.where == "joints.afloat"
