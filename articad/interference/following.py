@@ -58,7 +58,8 @@ def what_follows(motion: MotionSampler, joints: Sequence[str] | None = None, *, 
     for freedom in motion.ranges(joints):
         if freedom.name not in driving:
             continue  # a swing or twist of a ball
-        values = np.unique([*np.linspace(freedom.lower, freedom.upper, rows), freedom.rest])
+        even = np.linspace(freedom.lower, freedom.upper, rows)
+        values = np.sort([*even[np.abs(even - freedom.rest) > _STILL * max(1.0, abs(freedom.rest))], freedom.rest])
         try:
             kept, _, solution = motion.placed([{freedom.name: value} for value in values.tolist()])
         except KinematicsError:

@@ -68,6 +68,8 @@ def all_sections(assembly: Assembly, documents: Documents) -> str:
             _section("Joints", _joints(assembly)),
             _section("Interference", _pairs(documents.checks, known)),
             _section("Proven motion", _certificate(documents.certificate, known)),
+            _section("Least clearances over the motion", _clearances(documents.certificate, known)),
+            _section("What follows the drivers", _follows(documents.certificate, known)),
             _section("Fits", _fits(assembly, documents.checks, known)),
             _section("Exports and what they cannot hold", _exports(documents.exports)),
             _section("Conversation with the model", _conversation(documents.replies)),
@@ -207,15 +209,69 @@ def _pair(pair: Json, known: set[str]) -> list[Cell]:
 def _certificate(certificate: Json | None, known: set[str]) -> str:
     if certificate is None:
         return ""
+    lengths = _lengths(certificate)
     ranges = [
-        [r["joint"], f"{r['free'][0]} … {r['free'][1]}", f"{r['declared'][0]} … {r['declared'][1]}"] for r in certificate.get("ranges", ())
+        [r["joint"], *(" … ".join(_quantity(r["joint"], end, lengths) for end in r[key]) for key in ("free", "declared"))]
+        for r in certificate.get("ranges", ())
     ]
-    told = f'<p class="quiet">Distances up to {certificate["epsilon_mm"]:g} mm count as contact. Ranges in rad and mm.</p>'
+    covers = certificate.get("covers", "")
+    told = f"<p>{escape(covers[:1].upper() + covers[1:])}</p>" if covers else ""
+    told += f'<p class="quiet">Distances up to {certificate["epsilon_mm"]:g} mm count as contact.</p>'
     return (
         told
         + _scroll(html_table(["joint", "proven free", "declared"], ranges))
         + _scroll(html_table(_PAIR_COLUMNS, [_pair(pair, known) for pair in certificate["pairs"]], numbers=(3, 4)))
     )
+
+
+def _clearances(certificate: Json | None, known: set[str]) -> str:
+    """Return the table of least clearances over the motion, the nearest first."""
+    if not certificate or not certificate.get("clearances"):
+        return ""
+    lengths = _lengths(certificate)
+    rows: list[list[Cell]] = []
+    for row in sorted(certificate["clearances"], key=lambda row: float(row["gap_mm"])):
+        at = ", ".join(f"{name} = {_quantity(name, value, lengths)}" for name, value in row["pose"].items()) or "rest"
+        joined = "joined" if row["relation"] == "mating" else ""
+        shown = _show(f"Least clearance of {' and '.join(row['parts'])}.", row["parts"], row["pose"], known)
+        rows.append([" – ".join(row["parts"]), joined, f"{row['gap_mm']:.4g}", at, row["strength"].get("poses"), shown])
+    told = (
+        '<p class="quiet">The smallest distance that was seen of each two parts over the motion, the nearest first. '
+        "It is sampled: the true one may be smaller. What is proven stands under “Proven motion”.</p>"
+    )
+    return told + _scroll(html_table(["parts", "", "gap mm", "at", "poses seen", ""], rows, numbers=(2, 4)))
+
+
+def _follows(certificate: Json | None, known: set[str]) -> str:
+    """Return a table for each driver: its values, and those of what follows it."""
+    found = []
+    for table in (certificate or {}).get("follows", ()):
+        followers, units = table["followers"], table["units"]
+        names = [table["driver"], *followers]
+        columns = [*(f"{name} {'°' if units[name] == 'rad' else 'mm'}" for name in names), ""]
+        rows: list[list[Cell]] = []
+        for at, value in enumerate(table["values"]):
+            numbers = [value, *(values[at] for values in followers.values())]
+            shown = _show(f"{table['driver']}.", (), {table["driver"]: value}, known)
+            rows.append([*(_plain(number, units[name]) for number, name in zip(numbers, names, strict=True)), shown])
+        found.append(_scroll(html_table(columns, rows, numbers=range(len(names)))))
+    told = '<p class="quiet">What follows each driver while the other drivers rest.</p>'
+    return told + "".join(found) if found else ""
+
+
+def _lengths(certificate: Json) -> set[str]:
+    """Return the names of the coordinates that are lengths; all others are angles."""
+    joints = certificate.get("mechanism", {}).get("joints", ())
+    return {freedom["name"] for joint in joints for freedom in joint["freedoms"] if not any(freedom["turn"])}
+
+
+def _quantity(name: str, value: float, lengths: set[str]) -> str:
+    return f"{_plain(value, 'mm')} mm" if name in lengths else f"{_plain(value, 'rad')}°"
+
+
+def _plain(value: float, unit: str) -> str:
+    """Return a value in degrees or mm, to a hundredth and no further."""
+    return f"{(math.degrees(value) if unit == 'rad' else value) + 0.0:.2f}".replace("-0.00", "0.00")
 
 
 def _fits(assembly: Assembly, checks: Json | None, known: set[str]) -> str:

@@ -377,3 +377,31 @@ def showcase() -> str:
     """Return the page of which the documentation shows a picture."""
     assembly = example("desk_lamp")
     return report_page(assembly, Documents(checks=assembly.check().to_json()))
+
+
+def test_least_clearances_and_followers_stand_in_degrees_and_mm(open_page: Open) -> None:
+    assembly = four_bar()
+    names = assembly.mechanism.parts[:2]
+    driver = assembly.drivers[0].name
+    clearance = {"parts": list(names), "relation": "unrelated", "gap_mm": 1.25, "pose": {driver: math.pi / 6}, "strength": {"poses": 40}}
+    table = {"driver": driver, "values": [0.0, math.pi / 2], "followers": {"other": [0.0, -3.5]}, "units": {driver: "rad", "other": "mm"}}
+    certificate = {
+        "ok": True,
+        "covers": "all.",
+        "epsilon_mm": 1e-3,
+        "pairs": [],
+        "clearances": [clearance],
+        "follows": [table],
+        "findings": [],
+    }
+    opened = open_page(report_page(assembly, Documents(certificate=certificate)))
+    text = "s => [...document.querySelectorAll('details.section')].find(d => d.querySelector('summary').textContent === s).textContent"
+    clearances, follows = (opened(text, title) for title in ("Least clearances over the motion", "What follows the drivers"))
+    assert f"{driver} = 30.00°" in clearances
+    assert "1.25" in clearances
+    assert f"{driver} °other mm" in follows
+    assert "90.00-3.50" in follows
+    opened.page.evaluate("document.querySelectorAll('details.section').forEach(d => { d.open = true })")
+    opened.page.locator("details.section", has_text="Least clearances").locator("button[data-show]").first.click()
+    assert configuration(opened, assembly)[0] == pytest.approx(math.pi / 6)
+    assert_silent(opened)
