@@ -2,7 +2,7 @@
 
 Unknown are the poses of all parts and the values of all joints at once. No joint closes a loop and none carries a tree: each one says
 `X_child C_c F = X_parent C_p J(s)`, six equations; each coupling is one more. Newton's method solves them from the rest pose on, in small
-steps of the drivers. Every joint but a ball is `J = T(x, y, z) Rx(a) Ry(b) Rz(c)` with some of these six values in use.
+steps of the drivers. Every joint is `J = T(x, y, z) Rx(a) Ry(b) Rz(c) R` with some of these six values in use, and a rotation R of a ball or a free joint.
 """
 
 from __future__ import annotations
@@ -21,7 +21,17 @@ from articad.kinematics import JointType, Mechanism
 FloatArray = NDArray[np.float64]
 
 FLIP = np.diag([1.0, -1.0, -1.0, 1.0])
-SLOTS = {"revolute": (5,), "slider": (2,), "cylindrical": (2, 5), "planar": (0, 1, 5), "universal": (3, 4), "screw": (5,), "fixed": ()}
+SLOTS = {
+    "revolute": (5,),
+    "slider": (2,),
+    "cylindrical": (2, 5),
+    "planar": (0, 1, 5),
+    "universal": (3, 4),
+    "screw": (5,),
+    "fixed": (),
+    "ball": (6, 7, 8),
+    "free": (0, 1, 2, 6, 7, 8),
+}
 STEP = 0.06  # rad, or sizes: of the driver that moves most, from one solution to the next
 CONVERGED = 3e-14
 WELL_POSED = 0.15  # of the smallest singular value at rest: below it a way is not followed
@@ -73,15 +83,15 @@ class PoseEquations:
         self.owner = np.array([k for k, j in enumerate(joints) for _ in range(j.type.freedoms)], dtype=int)
         self.place = {name: at for at, name in enumerate(name for j in joints for name in _freedom_names(j))}
         self.is_length = np.array([unit == "mm" for j in joints for unit in j.type.freedom_units], dtype=bool)
-        self.is_ball = np.array([joints[k].type is JointType.BALL for k in self.owner], dtype=bool)
         self.L = np.where(self.is_length, self.L_joint[self.owner] if len(self.owner) else 1.0, 1.0)
         self.M = np.zeros((len(joints), 9, len(self.owner)))  # values of J, and turns of a ball, per freedom
         for k, j in enumerate(joints):
             own = np.flatnonzero(self.owner == k)
-            for slot, at in zip((6, 7, 8) if j.type is JointType.BALL else SLOTS[j.type], own, strict=True):
+            for slot, at in zip(SLOTS[j.type], own, strict=True):
                 self.M[k, slot, at] = 1.0
             if j.type is JointType.SCREW:
                 self.M[k, 2, own[0]] = j.lead / (2 * math.pi)
+        self.is_turn = self.M[:, 6:].any(axis=(0, 1))  # turns of a quaternion, which have no value of their own
         self.C = np.zeros((len(mechanism.couplings), len(self.owner)))
         self.c = np.array([c.offset for c in mechanism.couplings])
         for row, c in zip(self.C, mechanism.couplings, strict=True):
@@ -98,10 +108,10 @@ class PoseEquations:
     def _solution(self, X: FloatArray, values: Sequence[Sequence[float]]) -> Solution:
         s, R = np.zeros(len(self.owner)), np.tile(np.eye(3), (len(self.joints), 1, 1))
         for k, (joint, own) in enumerate(zip(self.joints, values, strict=True)):
-            if joint.type is JointType.BALL:
-                R[k] = Rotation.from_quat(own).as_matrix()
-            else:
-                s[self.owner == k] = own
+            first = len(own) if joint.type.quaternion is None else joint.type.quaternion
+            s[np.flatnonzero(self.owner == k)[:first]] = own[:first]
+            if first < len(own):
+                R[k] = Rotation.from_quat(own[first:]).as_matrix()
         return Solution(X, s, R)
 
     def residual(self, at: Solution) -> FloatArray:
@@ -140,7 +150,7 @@ class PoseEquations:
         T = np.tile(np.eye(4), (m, 1, 1))
         T[:, :3, :3], T[:, :3, 3] = Rotation.from_rotvec(xi[:, 3:]).as_matrix(), xi[:, :3] * self.L_part[:, None]
         R = at.R @ Rotation.from_rotvec(self.M[:, 6:] @ ds).as_matrix() if len(self.joints) else at.R
-        return Solution(at.X @ T, at.s + ds * ~self.is_ball, R)
+        return Solution(at.X @ T, at.s + ds * ~self.is_turn, R)
 
     # --- following drivers
 
@@ -237,11 +247,11 @@ class PoseEquations:
 
 
 def _freedom_names(joint: object) -> tuple[str, ...]:
-    """Return the names of a joint's freedoms: as its coordinates', but a ball has three turns."""
-    if joint.type is JointType.BALL:  # type: ignore[attr-defined]
-        return tuple(f"{joint.name}.{axis}" for axis in ("rx", "ry", "rz"))  # type: ignore[attr-defined]
+    """Return the names of a joint's freedoms: as its coordinates', but a quaternion stands for three turns."""
     names: tuple[str, ...] = joint.column_names  # type: ignore[attr-defined]
-    return names
+    first = joint.type.quaternion  # type: ignore[attr-defined]
+    turns = tuple(f"{joint.name}.{axis}" for axis in ("rx", "ry", "rz"))  # type: ignore[attr-defined]
+    return names if first is None else (*names[:first], *turns)
 
 
 def motions(s: FloatArray, R: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -278,10 +288,10 @@ def inverse(T: FloatArray) -> FloatArray:
 def joint_motion(kind: JointType, values: Sequence[float], lead: float = 0.0) -> FloatArray:
     """Return J(q) `(4, 4)` of one joint."""
     s, R = np.zeros((1, 6)), np.eye(3)[None]
-    if kind is JointType.BALL:
-        R = Rotation.from_quat(values).as_matrix()[None]
-    else:
-        s[0, list(SLOTS[kind])] = values
+    first = len(values) if kind.quaternion is None else kind.quaternion
+    s[0, list(SLOTS[kind][:first])] = values[:first]
+    if first < len(values):
+        R = Rotation.from_quat(values[first:]).as_matrix()[None]
     if kind is JointType.SCREW:
         s[0, 2] = lead / (2 * math.pi) * values[0]
     J: FloatArray = motions(s, R)[0][0]

@@ -26,7 +26,8 @@ MOST_PARTS = 12
 LINES = (1.0, 1e4)  # mm: mechanisms are from 1 mm to 10 m large
 INF = math.inf
 RATIOS = (0.25, 0.5, 1.0, 2.0, math.sqrt(2), None)
-KINDS = tuple(kind for kind in JointType if kind is not JointType.FREE)  # a free joint has no range along which a test could follow it
+KINDS = tuple(kind for kind in JointType if kind is not JointType.FREE)
+AFLOAT = 100_000  # the first seed of mechanisms with free joints: one below all the rest, and others anywhere
 
 
 @dataclass(frozen=True)
@@ -49,9 +50,12 @@ class Specimen:
 
 
 def random_mechanism(seed: int) -> Specimen:
-    """Return the mechanism of a seed."""
-    garden = Garden(np.random.default_rng(seed))
+    """Return the mechanism of a seed; with free joints from `AFLOAT` on."""
+    afloat = seed >= AFLOAT
+    garden = Garden(np.random.default_rng(seed), kinds=(*KINDS, *[JointType.FREE] * 3) if afloat else KINDS)
     wanted = int(garden.rng.integers(2, MOST_PARTS + 1))
+    if afloat and garden.rng.random() < 0.6:
+        garden.float_off()
     while len(garden.rest) < wanted:
         garden.plant(str(garden.rng.choice(list(MOTIFS), p=np.array(list(MOTIFS.values())) / sum(MOTIFS.values()))))
     return garden.grown()
@@ -109,6 +113,13 @@ class Garden:
         if len(self.joints) > before:
             self.story.append(f"{motif} on {carrier}: {', '.join(list(self.joints)[before:])}")
 
+    def float_off(self) -> None:
+        """Put all that grows from now on onto a part that a free joint carries, but for what is planted on the ground by chance."""
+        at = self.rest["ground"] @ random_frame(self.rng, self.scale)
+        name = self.join("free", "ground", self.sprout(at, self.scale), at, self.scale)
+        self.freedoms += JointType.FREE.freedoms
+        self.story.append(f"{name} carries the rest")
+
     def sprout(self, at: FloatArray, size: float) -> str:
         """Return a new part with a random frame near a place."""
         name = f"part{len(self.rest)}"
@@ -137,7 +148,7 @@ class Garden:
             limits=random_limits(rng, joint_type, rest, size, free=free),
             rest=tuple(rest),
             lead=lead,
-            driver=driver and joint_type is not JointType.FIXED,
+            driver=driver and joint_type not in {JointType.FIXED, JointType.FREE},
         )
         self._groups[name] = len(self.joints)
         return name
@@ -212,7 +223,7 @@ class Garden:
         self._unite([a.split(".")[0], b.split(".")[0]])
 
     def _coordinate(self, wanted: Callable[[Joint], bool]) -> str | None:
-        names = [c.name for joint in self.joints.values() if joint.type is not JointType.BALL and wanted(joint) for c in joint.columns]
+        names = [c.name for joint in self.joints.values() if joint.type.quaternion is None and wanted(joint) for c in joint.columns]
         return str(self.rng.choice(names)) if names else None
 
     # --- planar loops
@@ -357,9 +368,9 @@ def random_rest(rng: np.random.Generator, kind: JointType, size: float) -> list[
     """Return rest values of a joint; a third of all joints rests at zero."""
     if rng.random() < 0.3:
         return list(kind.neutral)
-    if kind is JointType.BALL:
+    if kind.quaternion is not None:
         q = np.array([*rng.normal(size=3) * 0.3, 1.0])
-        return [float(x) for x in q / np.linalg.norm(q)]
+        return [*(float(x) for x in rng.uniform(-0.8, 0.8, kind.quaternion) * size), *(float(x) for x in q / np.linalg.norm(q))]
     return [float(rng.uniform(-0.8, 0.8) * (size if unit == "mm" else 1.0)) for unit in kind.units]
 
 
@@ -367,6 +378,8 @@ def random_limits(rng: np.random.Generator, kind: JointType, rest: Sequence[floa
     """Return limits about rest: finite, endless or endless to one side."""
     if kind is JointType.BALL:
         return JointLimits(cone=math.pi)
+    if kind is JointType.FREE:
+        return JointLimits()
     pairs = []
     for value, unit in zip(rest, kind.units, strict=True):
         reach = rng.uniform(0.4, 3.0, 2) * (size / 3 if unit == "mm" else 1.0)

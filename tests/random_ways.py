@@ -12,20 +12,24 @@ import pytest
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from articad.kinematics import JointType
 from tests.pose_equations import PoseEquations, Solution
-from tests.random_mechanisms import Specimen, random_mechanism
+from tests.random_mechanisms import AFLOAT, Specimen, random_mechanism
 
 FloatArray = NDArray[np.float64]
 
 SOME, ALL = 50, 1050
+SOME_AFLOAT, ALL_AFLOAT = 12, 150
 SAMPLES = 3  # of each way
 SPANS = (0.5, 1.5, 4.0, 8.0)  # rad: how far drivers are moved, some beyond a full turn
 
 
-def seeds(some: int = SOME) -> list[Any]:
-    """Seeds of random mechanisms; those beyond the first few are marked."""
-    return [seed if seed < some else pytest.param(seed, marks=pytest.mark.soak) for seed in range(ALL)]
+def seeds(some: int = SOME, *, afloat: bool = True) -> list[Any]:
+    """Seeds of random mechanisms, also of those with free joints; those beyond the first few are marked."""
+    fixed = [seed if seed < some else pytest.param(seed, marks=pytest.mark.soak) for seed in range(ALL)]
+    if not afloat:
+        return fixed
+    few = min(some, SOME_AFLOAT)
+    return [*fixed, *(AFLOAT + k if k < few else pytest.param(AFLOAT + k, marks=pytest.mark.soak) for k in range(ALL_AFLOAT))]
 
 
 @dataclass(frozen=True)
@@ -49,7 +53,7 @@ class Case:
         self.mechanism = self.specimen.mechanism
         self.equations = PoseEquations(self.mechanism, self.specimen.rest, self.specimen.size)
         self.rng = np.random.default_rng([seed, 1])
-        self.balls = [j for j in self.mechanism.joints if j.type is JointType.BALL and f"{j.name}.qw" in self._driving]
+        self.balls = [j for j in self.mechanism.joints if j.type.quaternion is not None and f"{j.name}.qw" in self._driving]
         self.ways = list(self._ways())
 
     @property

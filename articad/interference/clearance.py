@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -32,7 +32,7 @@ FloatArray = NDArray[np.float64]
 LINE, SIDE, SCATTERED = 17, 6, 96  # poses along one driver, on a side of a grid of two, and over all
 MOST_GRIDS = 60  # of two drivers
 NEAREST, QUICK_NEAREST = 60, 20  # pairs that are searched further, the nearest first
-ROUNDS = 24  # of that search
+ROUNDS = 60  # of that search
 FIRST_STEP = 1 / (LINE - 1)  # of a range
 LEAST_STEP = 1e-5  # of a range
 AROUND, LEAP = 3.5, 6.0  # steps: what is measured that near is part of a model; how far that leads at most
@@ -109,9 +109,14 @@ def least_clearances(
 
 def searched(motion: MotionSampler, known: Checks) -> Checks:
     """Return a report on the pairs that a search near their nearest poses finds to collide, and of which a report knows no collision."""
+    return collisions_at(motion, least_clearances(motion), known)
+
+
+def collisions_at(motion: MotionSampler, rows: Iterable[Clearance], known: Checks) -> Checks:
+    """Return a report on the pairs that collide at their nearest poses, and of which a report knows no collision."""
     told = {frozenset(finding.parts) for finding in known.findings.of("E_MOTION_COLLISION")}
     report = Checks(Findings(), (), known.deflection, known.over, known.parts)
-    for one in least_clearances(motion):
+    for one in rows:
         if one.gap <= 0 and one.pose and frozenset(one.parts) not in told:
             found = motion.sampled([one.pose], tuple(one.pose), None)
             mine = [pair for pair in found.pairs if set(pair.parts) == set(one.parts)]

@@ -301,7 +301,7 @@ class MotionSampler:
 
     def _left_out(self) -> Findings:
         """Name what can move and is not sampled: free joints, and parts that loops let move while all drivers stand."""
-        found = [
+        found: list[tuple[str, tuple[str, ...], str]] = [
             (f"joints.{joint.name}", (joint.child,), f"{joint.name} moves freely; it stands at rest in all samples.")
             for joint in self.driving
             if joint.type is JointType.FREE

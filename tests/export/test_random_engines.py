@@ -38,7 +38,7 @@ def bare(mechanism: Mechanism) -> Assembly:
     )
 
 
-@pytest.mark.parametrize("seed", seeds())
+@pytest.mark.parametrize("seed", seeds(afloat=False))
 def test_mujoco_places_every_part_where_the_equations_do(seed: int, tmp_path: Path) -> None:
     case = case_of(seed)
     assembly, bundle = bare(case.mechanism), write_mjcf(bare(case.mechanism))
@@ -51,7 +51,7 @@ def test_mujoco_places_every_part_where_the_equations_do(seed: int, tmp_path: Pa
         assert np.abs(engine.data.efc_pos[equalities]).max(initial=0.0) < tolerance(case, at) * max(1.0, large(case)), way.drivers
 
 
-@pytest.mark.parametrize("seed", seeds())
+@pytest.mark.parametrize("seed", seeds(afloat=False))
 def test_pinocchio_places_every_part_where_the_equations_do(seed: int, tmp_path: Path) -> None:
     """A URDF has no loops: of these the joints of the tree are set."""
     case = case_of(seed)
