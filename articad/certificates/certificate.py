@@ -20,7 +20,7 @@ import numpy as np
 
 from articad.certificates.claims import Claim
 from articad.certificates.clearing import MOST_PAIRS
-from articad.certificates.linkage import LinkageProver, Way, driven_range
+from articad.certificates.linkage import DriverTrack, LinkageProver, driven_range
 from articad.certificates.proof import Proof, Prover, beyond
 from articad.certificates.verifier import PROOF, Checker, Refuted, covered, widened
 from articad.connectors.mate import flip
@@ -34,7 +34,7 @@ from articad.interference.following import Following, what_follows
 from articad.interference.motion import Route, Values, freedoms, proven_freedoms, routes, slides_endlessly
 from articad.interference.overlap import NOTHING, Overlap, overlap
 from articad.interference.relations import FitLike, WaiverLike
-from articad.interference.report import Checks, PairCheck, Row, Strength, rounded
+from articad.interference.report import Checks, FitRow, PairCheck, Strength, rounded
 from articad.interference.scene import Scene
 from articad.interference.surface import Surface, surface_distance, whole_surface
 from articad.interference.sweep import MotionSampler
@@ -120,7 +120,7 @@ class Certificate:
     work: int = 0
     seconds: float = 0.0
     followed: Mapping[str, Any] = field(default_factory=dict)
-    fits: tuple[Row, ...] = ()
+    fits: tuple[FitRow, ...] = ()
     spans: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     clearances: tuple[Clearance, ...] = ()
     follows: tuple[Following, ...] = ()
@@ -263,7 +263,7 @@ class _Certifying:
     left: dict[tuple[str, ...], list[tuple[str, str]]] = field(default_factory=dict)
     _constrained: frozenset[str] = frozenset()
     _floating: frozenset[str] = frozenset()  # names of free joints, which stand at rest
-    _ways: dict[tuple[str, ...], Way | str] = field(default_factory=dict)
+    _ways: dict[tuple[str, ...], DriverTrack | str] = field(default_factory=dict)
     _reasons: dict[str, tuple[str, str]] = field(default_factory=dict)
     _checker: Checker = field(init=False)
     _groups: list[list[str]] = field(init=False)  # drivers of each group
@@ -491,7 +491,7 @@ class _Certifying:
             self._followed(prover, proof)
         return proof.is_complete
 
-    def _way(self, drivers: tuple[str, ...]) -> Way | str:
+    def _way(self, drivers: tuple[str, ...]) -> DriverTrack | str:
         if drivers not in self._ways:
             try:
                 self._ways[drivers] = self._new_way(drivers)
@@ -499,7 +499,7 @@ class _Certifying:
                 self._ways[drivers] = str(error)
         return self._ways[drivers]
 
-    def _new_way(self, drivers: tuple[str, ...]) -> Way | str:
+    def _new_way(self, drivers: tuple[str, ...]) -> DriverTrack | str:
         if len(drivers) == 1:
             names = [driver.name for driver in self.mechanism.drivers]
             if drivers[0] in names:
@@ -507,7 +507,7 @@ class _Certifying:
             else:  # the idle twist of a rod
                 low, high = self._checker.freedoms[drivers[0]]["range"]
                 ends, self._reasons[drivers[0]] = (low, high), ("limit", "limit")
-            way = Way(self._checker, drivers, (ends,))
+            way = DriverTrack(self._checker, drivers, (ends,))
             found = way.whole
             self.budget.spend(way.work)
             return way if found else "near rest nothing encloses what follows the driver"
@@ -519,7 +519,7 @@ class _Certifying:
         most = MOST_EXPECTED if len(drivers) == 2 else MOST_EXPECTED // 4  # each box of three takes five times as long
         if expected > most:
             return f"{' and '.join(drivers)} together would take about {expected} boxes, more than {most}"
-        way = Way(self._checker, drivers, tuple(way.whole.ends[0] for way in ways if not isinstance(way, str) and way.whole))
+        way = DriverTrack(self._checker, drivers, tuple(way.whole.ends[0] for way in ways if not isinstance(way, str) and way.whole))
         found = way.whole
         self.budget.spend(way.work)
         return way if found else f"{' and '.join(drivers)} do not reach all of their ranges together, or nothing encloses what follows"

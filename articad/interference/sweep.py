@@ -106,7 +106,7 @@ class MotionSampler:
         self.driving: tuple[Joint, ...] = driving_joints(mechanism)  # free ones too, which stand at rest
 
     def run(self, joints: Sequence[str] | None, *, steps: int, together: bool, samples: int) -> Checks:
-        """MotionSampler and report; see `sweep`."""
+        """Sweep and report; see `sweep`."""
         ranges = self.ranges(joints)
         over = tuple(freedom.name for freedom in ranges)
         broken = Findings(broken_finding(name, reason) for name, reason in self.scene.broken.items())
