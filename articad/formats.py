@@ -50,12 +50,16 @@ class Format:
         suffixes: Endings of its files, lower case; the first one is written.
         writer: `writer(assembly, *, strict=False, **options) -> Bundle`.
         reader: `reader(path, **options) -> Assembly`; None where the format is only written.
+        holds: What a reader of the file sees of an assembly, in words.
+        keeps: What a file of the format says that an assembly has no field for, and that the writer puts back; "" for nothing.
     """
 
     name: str
     suffixes: tuple[str, ...]
     writer: Callable[..., Bundle]
     reader: Callable[..., Assembly] | None = None
+    holds: str = ""
+    keeps: str = ""
 
     def write(self, assembly: Assembly, *, strict: bool = False, **options: Any) -> Bundle:
         """Return the files of an assembly; options that this format does not know are left out."""
@@ -73,15 +77,36 @@ class Format:
 
 
 FORMATS: Final = (
-    Format("urdf", (".urdf",), write_urdf, read_urdf),
-    Format("mjcf", (".xml", ".mjcf"), write_mjcf, read_mjcf),
-    Format("freecad", (".fcstd",), write_freecad, read_freecad),
-    Format("step", (".step", ".stp"), write_step, read_step),
-    Format("glb", (".glb",), write_glb),
-    Format("3mf", (".3mf",), write_3mf),
-    Format("sdf", (".sdf",), write_sdf, read_sdf),
-    Format("usd", (".usda",), write_usd),
-    Format("plan", (".json",), write_plan, read_plan),
+    Format(
+        "urdf",
+        (".urdf",),
+        write_urdf,
+        read_urdf,
+        "a tree of links and joints, mass, shapes; couplings as `<mimic>`; loops only for Isaac and Drake",
+        "elements of links, joints and the robot, and the SRDF",
+    ),
+    Format(
+        "mjcf",
+        (".xml", ".mjcf"),
+        write_mjcf,
+        read_mjcf,
+        "bodies, joints, mass, shapes, couplings and loops",
+        "attributes of joints, geoms and bodies, and the sections beside the bodies",
+    ),
+    Format("freecad", (".fcstd",), write_freecad, read_freecad, "parts with their features, an assembly with joints and limits"),
+    Format("step", (".step", ".stp"), write_step, read_step, "B-rep of the parts where they rest, names, colours, sub-assemblies"),
+    Format("glb", (".glb",), write_glb, None, "meshes, names, colours, and an animation for every joint that drives"),
+    Format("3mf", (".3mf",), write_3mf, None, "one closed mesh for each part, as it is printed"),
+    Format(
+        "sdf",
+        (".sdf", ".world"),
+        write_sdf,
+        read_sdf,
+        "links, joints, mass, shapes and loops; couplings as `<mimic>`",
+        "elements of models, links, joints and shapes that name no frames",
+    ),
+    Format("usd", (".usda",), write_usd, None, "bodies, joints, mass, shapes and loops"),
+    Format("plan", (".json",), write_plan, read_plan, "everything but shapes, which part scripts build"),
 )
 """All formats, in the order in which they are listed."""
 
@@ -142,7 +167,9 @@ def write(assembly: Assembly, path: str | Path, *, strict: bool = False, **optio
     """
     path, found = Path(path), _written_as(path)
     if unknown := set(options) - set(_known(found.writer, options)):
-        raise ExportError(f"{found.name} has no option {', '.join(sorted(unknown))}; it has {', '.join(_options(found.writer)) or 'none'}.")
+        raise ExportError(
+            f"{found.name} has no option {', '.join(sorted(unknown))}; it has {', '.join(options_of(found.writer)) or 'none'}."
+        )
     bundle = found.write(assembly, strict=strict, **options)
     bundle = replace(bundle, files={path.name if name == bundle.main else name: content for name, content in bundle.files.items()})
     bundle.write(path.parent)
@@ -191,17 +218,48 @@ def _written_as(path: str | Path) -> Format:
     return found
 
 
-def _options(function: Callable[..., object]) -> tuple[str, ...]:
+def options_of(function: Callable[..., object]) -> tuple[str, ...]:
     """Return the names of a reader's or writer's own options."""
     named = (parameter for parameter in inspect.signature(function).parameters.values() if parameter.kind is parameter.KEYWORD_ONLY)
     return tuple(parameter.name for parameter in named if parameter.name != "strict")
 
 
 def _known(function: Callable[..., object], options: dict[str, Any]) -> dict[str, Any]:
-    return {name: value for name, value in options.items() if name in _options(function)}
+    return {name: value for name, value in options.items() if name in options_of(function)}
 
 
 def _not_read(path: Path) -> ReadError:
+    suffix = path.suffix.lower()
     message = f"{path}: {path.suffix or 'no'} extension is not one of {', '.join(readable())}."
-    finding = Finding(code="E_READ", where=str(path), message=message, hint="Convert it first, or correct its name.")
-    return ReadError(message, path=str(path), findings=[finding])
+    advice = next((text for endings, text in ADVICE.items() if suffix in endings), "Convert it first, or correct its name.")
+    finding = Finding(code="E_READ", where=str(path), message=message, hint=advice)
+    return ReadError(f"{message} {advice}", path=str(path), findings=[finding])
+
+
+ADVICE: Final = {
+    (".usd", ".usda", ".usdc", ".usdz"): "Export URDF or MJCF from the program that made it; USD is only written.",
+    (
+        ".stl",
+        ".obj",
+        ".ply",
+        ".dae",
+        ".glb",
+        ".gltf",
+        ".3mf",
+    ): "A mesh is a part, not an assembly: Part.from_mesh reads it, and a URDF can name it.",
+    (
+        ".igs",
+        ".iges",
+        ".brep",
+        ".sldasm",
+        ".sldprt",
+        ".ipt",
+        ".iam",
+        ".f3d",
+        ".prt",
+        ".catpart",
+        ".x_t",
+    ): "Export STEP from the CAD program.",
+    (".srdf",): "An SRDF belongs to a URDF: read that, which takes the SRDF of its name beside it, or the one that --srdf names.",
+}
+"""What to do with files in formats that are not read, by their endings."""

@@ -10,10 +10,13 @@ from pathlib import Path
 from typing import get_args
 
 import articad.commands
+from articad import formats
 from articad.commands.command import COMMANDS
 from articad.export.losses import TABLE, Format
 from articad.findings.codes import CODES
+from articad.geometry.mesh_files import MESH_ENDINGS
 from articad.importers.mjcf_kept import READ as READ_MJCF
+from articad.importers.sdf_kept import READ_SDF
 from articad.importers.urdf_kept import READ as READ_URDF
 
 REFERENCE = Path(__file__).resolve().parent.parent / "docs" / "reference"
@@ -53,6 +56,10 @@ KEPT_URDF = (
     "Everything else is kept verbatim. `convert` writes it back into a URDF at the same place; in any other format it is a row of the losses, "
     "and so are textures, transparency and attributes of shapes, which cannot be written back into a URDF."
 )
+KEPT_SDF = (
+    "Paths begin below `<model>`. Everything else is kept. An SDF that is written has the elements of links, joints, shapes and models again, unless they name "
+    "frames or stand in what is written anew (masses, geometries); any other format reports them as losses. Files of the versions 1.4 to 1.12 are read."
+)
 KEPT_MJCF = (
     "MuJoCo's compiler resolves defaults, classes, frames, includes and copies first. Everything else is a row of the losses of every format, "
     "including MJCF, except for the rotor and the spring of a joint: its names refer to geoms, sites and tendons that an assembly does not have."
@@ -76,11 +83,55 @@ def losses() -> str:
             if format_name in rows:
                 row = rows[format_name]
                 lines.append(f"| `{key}` | {row.becomes} | {row.lost} | {'refused' if row.refused else ''} |")
-    for name, kept, read in (("URDF", KEPT_URDF, READ_URDF), ("MJCF", KEPT_MJCF, READ_MJCF)):
+    for name, kept, read in (("URDF", KEPT_URDF, READ_URDF), ("MJCF", KEPT_MJCF, READ_MJCF), ("SDF", KEPT_SDF, READ_SDF)):
         lines += ["", f"## What is read from {name}", "", kept, "", "| element | attributes |", "|---|---|"]
-        lines += [f"| `{key}` | {'all' if '*' in names else ', '.join(sorted(names)) or 'none'} |" for key, names in read.items()]
+        lines += [
+            f"| `{key or 'model'}` | {'all' if '*' in names else ', '.join(sorted(names)) or 'none'} |" for key, names in read.items()
+        ]
     lines[5:] = [re.sub(r"<\w+>", r"`\g<0>`", line) for line in lines[5:]]  # a tag in a cell is text, not HTML
     return "\n".join(lines) + "\n"
+
+
+ABOUT_FORMATS = """\
+`convert`, `read` and `write` know these formats by the ending of the file. What each holds of an assembly, feature by feature, is in
+[Formats and their losses](losses.md). An export reports what is lost; articad's own files come back as they were, because URDF, MJCF and SDF carry
+the rest in metadata that other programs ignore."""
+
+
+def all_formats() -> str:
+    """Return the page of all formats."""
+    lines = [
+        "# Formats",
+        "",
+        NOTE,
+        ABOUT_FORMATS,
+        "",
+        "| format | endings | read | written | holds | puts back of a file of the format | options |",
+    ]
+    lines += ["|---|---|---|---|---|---|---|"]
+    for row in formats.FORMATS:
+        endings = " ".join(f"`{suffix}`" for suffix in (*row.suffixes, *([".xacro"] if row.name == "urdf" else [])))
+        options = ", ".join(f"`{name}`" for name in formats.options_of(row.writer) if name not in {"cache", "freecad"})
+        read = "yes" if row.reader else "no"
+        lines.append(f"| {row.name.upper()} | {endings} | {read} | yes | {row.holds} | {row.keeps} | {options} |")
+    lines += [
+        "",
+        "## Meshes that files may name",
+        "",
+        f"{', '.join(f'`{ending}`' for ending in MESH_ENDINGS)}.",
+        "",
+        *ABOUT_MESHES.splitlines(),
+    ]
+    lines += ["", "## What is not read", "", "| endings | what to do |", "|---|---|"]
+    lines += [f"| {' '.join(f'`{ending}`' for ending in endings)} | {text} |" for endings, text in formats.ADVICE.items()]
+    return "\n".join(lines) + "\n"
+
+
+ABOUT_MESHES = """\
+A mesh of a URDF or SDF has the coordinates that its file states, in metres, times the `scale` of the element that names it; x, y and z of the file are those of
+the link. STL, OBJ and PLY state no unit. A DAE states one (`<unit meter=…>`), which counts (Pinocchio leaves it out). It also states which axis points up, and a
+glTF calls y up: neither counts, because readers of URDF (Pinocchio, and trimesh under yourdfpy) take the coordinates as they are, and a robot has to look
+the same in all of them. The nodes of a DAE or glTF are placed. Meshes of MJCF are those that MuJoCo compiles."""
 
 
 ABOUT_COMMANDS = """\
@@ -155,7 +206,7 @@ def _cell(text: str) -> str:
     return re.sub(r"<\w+>", r"`\g<0>`", text % {} if "%%" in text else text).replace("|", "\\|")
 
 
-PAGES = {"findings.md": findings, "losses.md": losses, "cli.md": commands}
+PAGES = {"findings.md": findings, "losses.md": losses, "formats.md": all_formats, "cli.md": commands}
 
 
 def main(arguments: list[str]) -> int:

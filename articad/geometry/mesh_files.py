@@ -1,7 +1,8 @@
 """Mesh files: STL, OBJ, GLB and PLY, read and written; COLLADA (DAE), read.
 
 STL and OBJ are read with NumPy, and so is everything written; trimesh is loaded only to read GLB, PLY and DAE.
-A DAE states its unit, which is applied, and an axis that points up, which is not: RViz, Gazebo and Pinocchio take coordinates as they are.
+A DAE states its unit, which is applied, and an axis that points up, which is not, no more than y of a glTF: readers of URDF take coordinates
+as they are (Pinocchio, and trimesh under yourdfpy).
 What is written depends on the mesh alone: no times, no names of programs, no order of dictionaries.
 A file is somebody else's: whatever is wrong with it becomes a `ReadError` that says where.
 """
@@ -374,3 +375,6 @@ _READERS: dict[str, Callable[[Path, bytes], TriMesh]] = {
     ".ply": _read_with_trimesh,
     ".dae": _read_with_trimesh,
 }
+
+MESH_ENDINGS = tuple(_READERS)
+"""Endings of the files that `read_mesh` reads."""

@@ -146,6 +146,8 @@ class _Reader:
                     continue
                 inner, path, version = opened
             name = inner.get("name") or ""
+            if not name:
+                raise scope.fault(element, "A <model> has no name.")
             static = scope.static or _flag(inner, "static") or _flag(place, "static")
             own = Scope(inner, path, f"{scope.prefix}{name}::" if prefix is None else prefix, scope, static, version)
             if name in scope.models:

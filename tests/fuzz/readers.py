@@ -35,6 +35,7 @@ from articad.findings import Finding, Findings
 from articad.geometry.mesh_files import read_mesh
 from articad.importers.freecad import read_freecad
 from articad.importers.mjcf import read_mjcf
+from articad.importers.sdf import read_sdf
 from articad.importers.urdf import read_urdf
 from articad.kernels import results
 from articad.kernels.build123d import Build123dKernel
@@ -88,6 +89,12 @@ def mjcf(content: bytes) -> None:
     """An MJCF file beside one mesh."""
     with _file(".xml", content) as path:
         _used(read_mjcf(path))
+
+
+def sdf(content: bytes) -> None:
+    """An SDFormat file beside one mesh."""
+    with _file(".sdf", content) as path:
+        _used(read_sdf(path))
 
 
 def fcstd(content: bytes) -> None:
@@ -227,6 +234,7 @@ READERS: Mapping[str, Callable[[bytes], None]] = {
     "expression": expression,
     "urdf": urdf,
     "mjcf": mjcf,
+    "sdf": sdf,
     "fcstd": fcstd,
     "stl": stl,
     "obj": obj,
