@@ -457,7 +457,7 @@ class Assembly:
         """
         if motion:
             if q is not None:
-                raise PlanError("A check of the motion begins at rest; leave out the configuration.")
+                raise PlanError("A check of the motion starts at rest; leave out the configuration.")
             moved = self._moved()
             checks = self._checked_at(None, known) + moved.run(None, steps=steps, together=True, samples=steps)
             return self._with_fits(checks + searched(moved, checks))

@@ -79,7 +79,7 @@ def open_file(path: str | Path, *, root: str | Path | None = None) -> int:
         raise
     if not is_regular:
         os.close(file)
-        raise _refused(path, "it is not a file but a folder, a pipe, a socket or a device")
+        raise _refused(path, "it is a folder, a pipe, a socket or a device, not a file")
     return file
 
 

@@ -141,7 +141,7 @@ def read(path: str | Path, *, root: str | Path | None = None, fuse: bool = False
     if path.suffix.lower() == ".xacro":
         return NAMED["urdf"].read(path, root=root, fuse=fuse, srdf=srdf)
     if path.is_dir():
-        message, inside = f"{path} is a folder, and a file is read.", path / "plan.json"
+        message, inside = f"{path} is a folder; a file is needed.", path / "plan.json"
         hint = f"Name the file: {inside}." if inside.is_file() else "Name a file in it."
         raise ReadError(message, path=str(path), findings=[Finding(code="E_READ", where=str(path), message=message, hint=hint)])
     found = format_of(path)

@@ -211,9 +211,9 @@ def test_a_certificate_is_verified_and_a_forged_one_refuted(chest: Path, tmp_pat
     code, verified = report("verify-certificate", out / "certificate.json")
     assert code == 0
     assert [line.partition(":")[0] for line in verified["stated"]] == [
-        "It does not call itself ok",
-        "These joints are not asked for",
-        *["Waived, so not looked at"] * len(certified["pairs"]),
+        "The certificate is not ok",
+        "These joints were not requested",
+        *["Waived, so not checked"] * len(certified["pairs"]),
     ]
     certified["claims"] = certified["claims"][:-1]
     (out / "certificate.json").write_text(json.dumps(certified))

@@ -156,7 +156,7 @@ def _too_many(count: int) -> Finding:
     return Finding(
         code="W_AUDIT_NOT_CHECKED",
         where="parts",
-        message=f"Contact and motion were not looked at: {count} parts have shapes; {MOST_BODIES} are the most.",
+        message=f"Contact and motion were not checked: {count} parts have shapes; the maximum is {MOST_BODIES}.",
         hint="Audit the file in pieces.",
         value=count,
         limit=MOST_BODIES,
@@ -167,9 +167,9 @@ def _unfinished(left: list[tuple[str, str]], count: int, budget: WorkBudget) -> 
     return Finding(
         code="W_AUDIT_NOT_CHECKED",
         where=f"parts.{left[0][0]}",
-        message=f"Overlap at rest of {len(left)} of {counted(count, 'pair')} of parts that are near each other was not looked at. "
+        message=f"Overlap at rest of {len(left)} of {counted(count, 'pair')} of parts that are near each other was not checked. "
         f"{budget.ended()}",
-        hint="Spread the parts: so many of them are hardly meant to stand in one place.",
+        hint="Spread the parts out: so many parts in one place are hardly intended.",
         value=len(left),
         limit=0,
     )

@@ -142,7 +142,10 @@ def _pairs(
         deepest = max(together, key=lambda finding: finding.value or 0.0)
         others = [" and ".join(finding.parts) for finding in together if finding is not deepest]
         together = [
-            replace(deepest, message=f"{deepest.message} {counted(len(others), 'other pair')} of parts collide likewise: {listed(others)}.")
+            replace(
+                deepest,
+                message=f"{deepest.message} {counted(len(others), 'other pair')} of parts collide in the same way: {listed(others)}.",
+            )
         ]
     found.findings += together
     return undone
@@ -174,7 +177,7 @@ def _together(finding: Finding, names: tuple[str, str]) -> Finding:
         route=None,
         stage=None,
         message=f"{finding.message} Neither of {names[0]} and {names[1]} does that alone.",
-        hint="Narrow one of the ranges, keep the two from moving so together, or make room.",
+        hint="Narrow one of the ranges, prevent this combination, or add clearance.",
     )
 
 
@@ -218,7 +221,7 @@ def _beginning(case: ContactCase, freedom: Freedom, finding: Finding, met: float
         value, bound, unit = math.degrees(value), math.degrees(bound), "deg"
     return replace(
         finding,
-        message=f"{finding.message} On the way from rest they first meet at {freedom.name} = {value:.5g} {unit}.",
+        message=f"{finding.message} Starting from rest, they first meet at {freedom.name} = {value:.5g} {unit}.",
         value=value,
         limit=bound,
         unit=unit,
@@ -245,7 +248,7 @@ def _unproven(findings: list[Finding]) -> Finding:
         code="W_AUDIT_NOT_CHECKED",
         where=first.where,
         message=f"{first.message}{others}",
-        hint="Give the proof more time with --certify, and repair meshes that are named.",
+        hint="Raise --certify, and repair the named meshes.",
         value=len(findings),
         limit=0,
     )
@@ -255,8 +258,8 @@ def _unfinished(late: list[str], count: int, budget: WorkBudget) -> Finding:
     return Finding(
         code="W_AUDIT_NOT_CHECKED",
         where=f"joints.{late[0]}",
-        message=f"The motion of {len(late)} of {counted(count, 'freedom')} was not looked at: {listed(late)}. {budget.ended()}",
-        hint="Give it more work with --budget.",
+        message=f"The motion of {len(late)} of {counted(count, 'freedom')} was not checked: {listed(late)}. {budget.ended()}",
+        hint="Raise --budget.",
         value=len(late),
         limit=0,
     )

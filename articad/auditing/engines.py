@@ -14,16 +14,16 @@ NAMES: Final = {"mujoco": "MuJoCo", "pinocchio": "Pinocchio", "pybullet": "PyBul
 _CAUSES: Final = (
     (r"mass and inertia of moving bodies", "no_inertia", "Give every body that moves a mass and an inertia; --fix computes them."),
     (r"no decoder found|unknown mesh file type|[Uu]nsupported.*mesh", "mesh_format", "MuJoCo reads STL, OBJ and MSH; convert the meshes."),
-    (r"package:", "package_uri", "It knows no ROS packages: name meshes relative to the file, as --fix does."),
-    (r"geometry specification not found", "geometry", "Use a box, a cylinder, a sphere or a mesh: engines differ in what else they take."),
-    (r"opening file|resource not found|not found", "mesh_absent", 'Put it there; MuJoCo drops folders from URDF names without <mujoco><compiler strippath="false"/></mujoco>.'),
-    (r"inertia must satisfy|A \+ B >= C|positive definite|inertia", "inertia", "Correct the inertia that is named."),
+    (r"package:", "package_uri", "It does not resolve ROS packages: name meshes relative to the file, as --fix does."),
+    (r"geometry specification not found", "geometry", "Use a box, a cylinder, a sphere or a mesh: engines differ in the other shapes they accept."),
+    (r"opening file|resource not found|not found", "mesh_absent", 'Add the file; MuJoCo drops folders from URDF names without <mujoco><compiler strippath="false"/></mujoco>.'),
+    (r"inertia must satisfy|A \+ B >= C|positive definite|inertia", "inertia", "Correct the named inertia."),
     (r"repeated name|duplicate", "name_twice", "Rename one of the two."),
     (r"number of faces should be between", "mesh_size", "Reduce the mesh to fewer than 200,000 triangles, or split it."),
     (r"bad format in attribute|to a double|not a number", "number", "Write plain decimal numbers; expand xacro first."),
     (r"No valid root|two parents|multiple|root link", "structure", "Give the file one root link."),
     (r"mesh volume is too small|volume", "mesh_flat", "Give the mesh a thickness."),
-    (r"qhull", "mesh_flat", "Give the mesh a thickness, or collide with a box."),
+    (r"qhull", "mesh_flat", "Give the mesh a thickness, or use a box for collision."),
     (r"was not done after", "time", "Use fewer or smaller meshes."),
 )  # fmt: skip
 

@@ -89,7 +89,7 @@ def audit_file(path: str | Path, choices: AuditOptions | None = None) -> Audit:
     if kind is None:
         raise ReadError(f"{path}: {path.suffix or 'no'} extension is not one of {', '.join(AUDITED)}.", path=str(path))
     if not path.is_file():
-        raise ReadError(f"There is no file {path}.", path=str(path))
+        raise ReadError(f"{path} does not exist.", path=str(path))
     start, found = time.monotonic(), _Found()
     try:
         _AUDITORS[kind](path, choices, found)
@@ -157,7 +157,7 @@ def _urdf(path: Path, choices: AuditOptions, found: _Found) -> None:
     if document.tag != "robot":
         raise ReadError(f"{path}: The root element is <{document.tag}>, not <robot>.", path=str(path), findings=[_no_robot(path, document)])
     if (count := max(len(document.findall("link")), len(document.findall("joint")))) > MAX_LINKS:
-        raise unreadable(path, "", f"It has {count} links or joints; {MAX_LINKS} are the most.")
+        raise unreadable(path, "", f"It has {count} links or joints; the maximum is {MAX_LINKS}.")
     root = choices.root or package_of(path)
     text = UrdfText(MeshReferences(Folder.of(path, root)))
     found.declared = text.declared(document, path)
@@ -257,8 +257,8 @@ def _carriers(declared: Declared, assembly: Assembly) -> Iterator[Finding]:
         yield Finding(
             code="I_AUDIT_CARRIERS",
             where=finding.where,
-            message=f"{finding.message} Links without shape carry it.",
-            hint="Nothing for URDF, which has no such joint; MJCF and CAD hold it as one: use `articad convert --fuse`.",
+            message=f"{finding.message} Links without shape represent it.",
+            hint="Nothing for URDF, which has no such joint; for MJCF and CAD, merge them with `articad convert --fuse`.",
             cause="carrier",
         )
 

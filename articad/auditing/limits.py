@@ -27,7 +27,7 @@ def reversed_limits(declared: Declared) -> Iterator[Finding]:
             yield Finding(
                 code="E_AUDIT_LIMITS_ORDER",
                 where=joint.where,
-                message=f"Joint {joint.name!r} has a lower bound of {lower:.6g} {unit} above its upper bound of {upper:.6g} {unit}.",
+                message=f"Joint {joint.name!r} has a lower limit of {lower:.6g} {unit}, above its upper limit of {upper:.6g} {unit}.",
                 hint="Exchange the two.",
                 value=lower,
                 limit=upper,
@@ -46,8 +46,8 @@ def no_limits(declared: Declared) -> Iterator[Finding]:
             yield Finding(
                 code="W_AUDIT_NO_LIMITS",
                 where=joint.where,
-                message=f"Joint {joint.name!r} is {joint.type} and has no lower or upper bound: the standard takes 0 for both, so that it cannot move; "
-                "PyBullet takes it for endless.",
+                message=f"Joint {joint.name!r} is {joint.type} and has no lower or upper limit: the standard takes 0 for both, so it cannot move; "
+                "PyBullet treats it as endless.",
                 hint="Give lower and upper" + (", or make it continuous." if joint.turns else "."),
             )
 
@@ -62,7 +62,7 @@ def locked(declared: Declared) -> Iterator[Finding]:
             yield Finding(
                 code="W_AUDIT_LOCKED",
                 where=joint.where,
-                message=f"Joint {joint.name!r} has both bounds at {lower:.6g} {unit}, so that it cannot move.",
+                message=f"Joint {joint.name!r} has both limits at {lower:.6g} {unit}, so it cannot move.",
                 hint="Make it fixed, or open its range.",
                 value=0.0,
                 limit=0.0,
@@ -103,7 +103,7 @@ def endless(declared: Declared) -> Iterator[Finding]:
             yield Finding(
                 code="W_AUDIT_ENDLESS",
                 where=joint.where,
-                message=f"Joint {joint.name!r} is bounded but spans {math.degrees(span):.5g}°, {span / math.tau:.3g} turns.",
+                message=f"Joint {joint.name!r} is limited but spans {math.degrees(span):.5g}°, {span / math.tau:.3g} turns.",
                 hint="Make it continuous (--fix does), unless a cable or a thread stops it after so many turns.",
                 value=math.degrees(span),
                 limit=360.0,
@@ -128,7 +128,7 @@ def zero_outside(declared: Declared) -> Iterator[Finding]:
                 where=where,
                 message=f"Readers place joints at 0, which is outside of {counted(len(rows), 'range')}, by up to {out:.4g} {unit}: "
                 f"{listed([row[1] for row in rows])}.",
-                hint="Turn or shift their origins, so that zero is within their range, or place them inside before simulating.",
+                hint="Rotate or shift their origins so that zero is within their range, or move them into their range before simulating.",
                 value=out,
                 limit=0.0,
                 unit=unit,
@@ -148,14 +148,14 @@ def no_effort(declared: Declared) -> Iterator[Finding]:
                 code="W_AUDIT_NO_EFFORT",
                 where=f"joints.{bad[0]}",
                 message=f"{len(bad)} of {counted(len(moving), 'moving joint')} have no {what} above zero: {listed(bad)}.",
-                hint=f"Give each the {what} of its drive, or what its load asks for.",
+                hint=f"Give each the {what} of its drive, or what its load requires.",
                 value=len(bad),
                 limit=0,
             )
 
 
 def placeholders(declared: Declared) -> Iterator[Finding]:
-    """Joints that all have the same round effort and velocity, whatever they carry."""
+    """Joints that all have the same round effort and velocity, whatever their load."""
     if declared.format != "urdf":
         return
     moving = [joint for joint in declared.joints if joint.type in {"revolute", "continuous", "prismatic"} and joint.mimics is None]
@@ -173,8 +173,8 @@ def placeholders(declared: Declared) -> Iterator[Finding]:
                 yield Finding(
                     code="W_AUDIT_PLACEHOLDER",
                     where="joints",
-                    message=f"All {count} joints that {kind} have the same {what} of {shown:g} {unit}, whatever they carry.",
-                    hint="Give each the number of its drive; articad's own export computes both from mass and worst pose.",
+                    message=f"All {count} joints that {kind} have the same {what} of {shown:g} {unit}, whatever their load.",
+                    hint="State the value of each drive; articad's own export computes both from mass and worst pose.",
                     value=shown,
                     unit=unit,
                     cause="placeholder",

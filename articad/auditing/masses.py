@@ -52,7 +52,7 @@ def _without_mass(declared: Declared, *, shaped: bool) -> Iterator[Finding]:
     else:
         code, what = "E_AUDIT_MASSLESS", "carries joints but has" if len(groups) == 1 else "carry joints but have"
         what += " neither mass nor shape"
-        hint = "Give each a small mass and inertia, or make the chain one joint; simulators refuse massless bodies that move."
+        hint = "Give each a small mass and inertia, or merge the chain into one joint; simulators refuse massless bodies that move."
     yield Finding(
         code=code,
         where=links[names[0]].where,
@@ -95,7 +95,7 @@ def zero(declared: Declared) -> Iterator[Finding]:
             code="E_AUDIT_INERTIA",
             where=found[0][0].where,
             parts=names,
-            message=f"{counted(len(found), 'link')} of altogether {sum(mass for _, mass in found):.4g} kg have an inertia of zero: {listed(names)}.",
+            message=f"{counted(len(found), 'link')} with a total mass of {sum(mass for _, mass in found):.4g} kg have zero inertia: {listed(names)}.",
             hint="Compute it from the shape; --fix does.",
             value=0.0,
             limit=0.0,
@@ -134,8 +134,8 @@ def triangle(declared: Declared) -> Iterator[Finding]:
                 code="E_AUDIT_INERTIA_TRIANGLE",
                 where=link.where,
                 parts=(link.name,),
-                message=f"The inertia of {link.name} is that of no body: its largest moment is {large * 1e-6:.4g} kg·m², "
-                f"the two others together are {(small + middle) * 1e-6:.4g}.",
+                message=f"The inertia of {link.name} is physically impossible: its largest moment is {large * 1e-6:.4g} kg·m², "
+                f"the sum of the other two is {(small + middle) * 1e-6:.4g}.",
                 hint="Compute it from the shape; --fix does.",
                 value=large / (small + middle),
                 limit=1.0,
@@ -161,10 +161,10 @@ def beyond_shape(declared: Declared) -> Iterator[Finding]:
             code="W_AUDIT_INERTIA_SHAPE",
             where=link.where,
             parts=(link.name, *others),
-            message=f"{link.name} weighs {mass:.4g} kg and reaches {reach:.4g} mm from its centre of mass, so that no moment can exceed "
+            message=f"{link.name} weighs {mass:.4g} kg and reaches {reach:.4g} mm from its centre of mass, so no moment can exceed "
             f"{bound * 1e-6:.4g} kg·m²; it has {large * 1e-6:.4g}."
-            + (f" So have {listed(others)}, too much for their shapes as well." if others else ""),
-            hint="Compute it from the shape (--fix does); was it given in another unit or about another point?",
+            + (f" So have {listed(others)}, also too much for their shapes." if others else ""),
+            hint="Compute it from the shape (--fix does); check its unit and its reference point.",
             value=large * 1e-6,
             limit=bound * 1e-6,
             unit="kg·m²",
@@ -220,7 +220,7 @@ def density(declared: Declared) -> Iterator[Finding]:
             code="W_AUDIT_DENSITY",
             where=link.where,
             parts=(link.name,),
-            message=f"{link.name} weighs {mass:.4g} kg and its shapes, hollows filled, take {volume:.4g} mm³: {found:.4g} kg/m³, {'more than osmium' if heavy else 'less than air'}.",
+            message=f"{link.name} weighs {mass:.4g} kg and its shapes, with cavities filled, have {volume:.4g} mm³: {found:.4g} kg/m³, {'more than osmium' if heavy else 'less than air'}.",
             hint="Check the units of mass and mesh; steel is 7850 kg/m³, wood 700. --fix --density computes masses.",
             value=found,
             limit=limit,

@@ -106,7 +106,7 @@ def mend_assembly(assembly: Assembly, out: str | Path, *, density: float | None 
             weighed[name] = part.solid.mass(density).mass
     bundle = write_urdf(replace(assembly, parts=parts))
     bundle.write(out)
-    done = [f"weighed {counted(len(weighed), 'part')} at {density:g} kg/m³: {listed(list(weighed))}"] if weighed else []
+    done = [f"computed the mass of {counted(len(weighed), 'part')} at {density:g} kg/m³: {listed(list(weighed))}"] if weighed else []
     done.append("written as URDF")
     mended = Mended(out / bundle.main, done, weighed)
     mended.rest = audit_file(mended.file, replace(choices, root=out))
@@ -134,7 +134,7 @@ class _Mender:
         if self.root.find("mujoco") is None:
             settings = {"strippath": "false", "discardvisual": "false", "fusestatic": "false", "balanceinertia": "false"}
             child(child(self.root, "mujoco"), "compiler", settings)
-            self.mended.done.append("told MuJoCo to keep folders in mesh names")
+            self.mended.done.append("set MuJoCo to keep folders in mesh names")
 
     def _endless(self) -> None:
         """Make bounded turns of 2π or more continuous."""
@@ -173,7 +173,7 @@ class _Mender:
                 self.mended.masses[link.name] = mass.mass
             self._write_inertial(self.links[link.name], mass)
         if weighed:
-            self.mended.done.append(f"weighed {counted(len(weighed), 'link')} at {self.density:g} kg/m³: {listed(weighed)}")
+            self.mended.done.append(f"computed the mass of {counted(len(weighed), 'link')} at {self.density:g} kg/m³: {listed(weighed)}")
         if corrected:
             self.mended.done.append(
                 f"computed the inertia of {counted(len(corrected), 'link')} from shape and stated mass: {listed(corrected)}"
@@ -206,7 +206,7 @@ class _Mender:
                     self.links[name].append(element)
                 added.append(name)
         if added:
-            self.mended.done.append(f"gave {counted(len(added), 'link')} the drawn shape to collide with: {listed(added)}")
+            self.mended.done.append(f"gave {counted(len(added), 'link')} its visual shape for collision: {listed(added)}")
 
     def _raise(self) -> None:
         """Put a base link at the lowest point, and the robot on it."""

@@ -42,11 +42,14 @@ def unread_meshes(declared: Declared) -> Iterator[Finding]:
         if shape.kind != "mesh":
             code, hint = "E_AUDIT_NUMBER", "Give it a positive size, or leave the shape out."
         elif problem == "absent":
-            code, hint = "E_AUDIT_MESH_ABSENT", "Put the file there, correct the name, or say with --root where packages are."
+            code, hint = "E_AUDIT_MESH_ABSENT", "Add the file, correct the name, or give the folder of packages with --root."
         elif problem == "unsafe":
             code, hint = "W_AUDIT_MESH_OUTSIDE", "Keep meshes below the file's own folder, or name the folder that holds both with --root."
         elif problem == "format":
-            code, hint = "I_AUDIT_MESH_FORMAT", f"Convert it to one of {', '.join(READABLE)}; simulators differ in what else they read."
+            code, hint = (
+                "I_AUDIT_MESH_FORMAT",
+                f"Convert it to one of {', '.join(READABLE)}; simulators differ in the other formats they read.",
+            )
         else:
             code, hint = "E_AUDIT_MESH_UNREADABLE", "Export the mesh again."
         yield Finding(
@@ -72,8 +75,8 @@ def no_collision(declared: Declared) -> Iterator[Finding]:
             code="W_AUDIT_NO_COLLISION",
             where=bare[0].where,
             parts=names,
-            message=f"{len(bare)} of {counted(len(drawn), 'drawn link')} {'has' if len(bare) == 1 else 'have'} no collision shape, so that everything passes through them: {listed(names)}.",
-            hint="Collide with the same mesh or a simpler one; --fix adds the closed visual meshes.",
+            message=f"{len(bare)} of {counted(len(drawn), 'drawn link')} {'has' if len(bare) == 1 else 'have'} no collision shape, so everything passes through: {listed(names)}.",
+            hint="Use the same mesh or a simpler one for collision; --fix adds the closed visual meshes.",
             value=len(bare),
             limit=0,
             cause="no_collision",
@@ -104,7 +107,7 @@ def _broken(shape: DeclaredShape, what: str) -> Finding | None:
         return Finding(
             code="W_AUDIT_MESH_OPEN",
             where=shape.where,
-            message=f"{what} is open: {mesh.open_edges} edges of {len(mesh.triangles)} triangles have no partner, so that it has no volume.",
+            message=f"{what} is open: {mesh.open_edges} edges of {len(mesh.triangles)} triangles belong to only one triangle, so it has no volume.",
             hint="Close the mesh: every edge must belong to two triangles.",
             value=mesh.open_edges,
             limit=0,
@@ -126,7 +129,7 @@ def _broken(shape: DeclaredShape, what: str) -> Finding | None:
             where=shape.where,
             message=f"{what} is inside out: its volume is {mesh.volume:.6g} mm³.",
             hint="Reverse the order of the corners of all its triangles"
-            + ("; is one factor of its scale negative?" if min(shape.scale) < 0 else "."),
+            + ("; check for a negative scale factor." if min(shape.scale) < 0 else "."),
             value=mesh.volume,
             limit=0.0,
             unit="mm³",
@@ -164,8 +167,8 @@ def _apart(link: DeclaredLink, own: list[Body], fixed: list[Body], *, whole: boo
             code="W_AUDIT_PIECES",
             where=link.where,
             parts=(link.name,),
-            message=f"{link.name} is {len(sets)} bodies that do not touch each other; the farthest is {gap:.4g} mm from the largest.",
-            hint="Make each a link of its own, or join them; one rigid link cannot hold what nothing connects.",
+            message=f"{link.name} consists of {len(sets)} bodies that do not touch each other; the farthest is {gap:.4g} mm from the largest.",
+            hint="Make each body a separate link, or join them; unconnected bodies cannot be one rigid link.",
             value=gap,
             limit=APART_MM,
             unit="mm",
@@ -176,7 +179,7 @@ def _apart(link: DeclaredLink, own: list[Body], fixed: list[Body], *, whole: boo
             code="I_AUDIT_UNFUSED",
             where=link.where,
             parts=(link.name,),
-            message=f"The mesh of {link.name} is {len(own)} bodies that touch or overlap but are not fused: where they overlap, its volume counts twice.",
+            message=f"The mesh of {link.name} consists of {len(own)} bodies that touch or overlap but are not fused: where they overlap, its volume counts twice.",
             hint="Fuse the bodies into one.",
             value=len(own),
             limit=1,
@@ -259,7 +262,7 @@ def visual_against_collision(declared: Declared) -> Iterator[Finding]:
                 code="W_AUDIT_UNITS",
                 where=link.where,
                 parts=(link.name,),
-                message=f"{link.name} is {larger} {factor:.4g} times as large as it is {'collided with' if ratio > 1 else 'drawn'}.",
+                message=f"{link.name} is {larger} {factor:.4g} times as large as its {'collision shape' if ratio > 1 else 'visual shape'}.",
                 hint="Give both meshes the same unit by their scale.",
                 value=factor,
                 limit=SCALE_RATIO,
@@ -268,7 +271,7 @@ def visual_against_collision(declared: Declared) -> Iterator[Finding]:
 
 
 def base_below(declared: Declared) -> Iterator[Finding]:
-    """A robot that reaches below the origin of its base: placed at z = 0 it stands in the floor."""
+    """A robot that reaches below the origin of its base: spawned at z = 0, it penetrates the floor."""
     if declared.format != "urdf" or declared.states_frames or len(declared.roots) != 1 or len(declared.by_name) < 2:
         return
     lowest = (0.0, "")
@@ -282,7 +285,7 @@ def base_below(declared: Declared) -> Iterator[Finding]:
             code="I_AUDIT_BASE",
             where=declared.by_name[declared.roots[0]].where,
             parts=(lowest[1],),
-            message=f"{lowest[1]} reaches {below:.4g} mm below the origin of the base {declared.roots[0]}: placed at z = 0 it stands in the floor.",
+            message=f"{lowest[1]} reaches {below:.4g} mm below the origin of the base {declared.roots[0]}: spawned at z = 0, it penetrates the floor.",
             hint=f"Add a base link {below / 1000:.6g} m below it (--fix does), or spawn the robot that high.",
             value=below,
             limit=BELOW_MM,
@@ -303,7 +306,7 @@ def gltf_units(declared: Declared) -> Iterator[Finding]:
             where=files[first].where,
             parts=tuple(dict.fromkeys(link.name for link in files.values())),
             message=f"{counted(len(files), 'glTF mesh', 'glTF meshes')} in millimetres, such as {first!r}, with scale 0.001; glTF is in metres, Y up.",
-            hint="Write STL or OBJ, or glTF in metres; MuJoCo reads no glTF at all.",
+            hint="Write STL or OBJ, or glTF in metres; MuJoCo does not read glTF.",
             value=len(files),
             limit=0,
             cause="units",

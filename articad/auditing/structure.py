@@ -25,7 +25,7 @@ def repeated_names(declared: Declared) -> Iterator[Finding]:
                     where=f"{kind}.{name}",
                     parts=(name,),
                     message=f"{count} {kind} have the name {name!r}: {', '.join(found)}.",
-                    hint="Rename all but one, and what refers to them.",
+                    hint="Rename all but one, and update references to them.",
                     value=count,
                     limit=1,
                 )
@@ -72,7 +72,7 @@ def carried_twice(declared: Declared) -> Iterator[Finding]:
                 where=f"links.{link}",
                 parts=(link,),
                 message=f"Link {link!r} is the child of {counted(count, 'joint')}: {listed(carriers)}.",
-                hint="Keep one of them; a closed loop needs a format that holds loops, such as MJCF.",
+                hint="Keep one of them; a closed loop needs a format with loops, such as MJCF.",
                 value=count,
                 limit=1,
             )
@@ -84,10 +84,10 @@ def roots(declared: Declared) -> Iterator[Finding]:
     if len(found) == 1 or not declared.links:
         return
     if not found:
-        message = f"Every one of the {len(declared.by_name)} links is the child of a joint: the joints go round in a circle."
+        message = f"Every one of the {len(declared.by_name)} links is the child of a joint: the joints form a circle."
         hint = "Remove the joint that closes the circle."
     else:
-        message = f"{len(found)} links are no joint's child: {listed(found)}. All but one of them are not connected."
+        message = f"{len(found)} links are not the child of any joint: {listed(found)}. All but one of them are not connected."
         hint = "Connect each of them with a joint, or remove it."
     yield Finding(
         code="E_AUDIT_ROOTS",
@@ -119,7 +119,7 @@ def circles(declared: Declared) -> Iterator[Finding]:
                 code="E_AUDIT_CIRCLE",
                 where=parents[link].where,
                 parts=tuple(circle),
-                message=f"The links {listed(circle)} carry each other in a circle.",
+                message=f"The links {listed(circle)} form a circle.",
                 hint="Remove one of the joints between them.",
                 value=len(circle),
                 limit=0,
@@ -134,7 +134,7 @@ def unknown_leaders(declared: Declared) -> Iterator[Finding]:
         if joint.mimics is not None and (joint.mimics not in moving or joint.mimics == joint.name):
             asked += 1
             meant = did_you_mean(joint.mimics, moving - {joint.name}) if asked <= MOST_GUESSES else ""
-            what = "itself" if joint.mimics == joint.name else f"{joint.mimics!r}, which is no joint that moves"
+            what = "itself" if joint.mimics == joint.name else f"{joint.mimics!r}, which is not a moving joint"
             yield Finding(
                 code="E_AUDIT_MIMIC",
                 where=joint.where,

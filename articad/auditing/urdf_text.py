@@ -137,7 +137,7 @@ class UrdfText:
         try:
             numbers = tuple(float(word) for word in (text.replace(",", " ") if key in {"size", "scale"} else text).split())
         except ValueError:
-            self._unreadable(element, key, text, "is not a number; was xacro not expanded?" if "$" in text else "is not a number")
+            self._unreadable(element, key, text, "is not a number; expand xacro first" if "$" in text else "is not a number")
             return default
         if key in _COUNTS and len(numbers) not in _COUNTS[key]:
             self._unreadable(element, key, text, f"has {len(numbers)} numbers, not {_COUNTS[key][-1]}")

@@ -42,7 +42,7 @@ def read_batch(path: str | Path) -> list[BatchItem]:
     except OSError as error:
         raise _refused(file, f"It cannot be read: {error.strerror}.") from error
     except (ValueError, KeyError, TypeError, AttributeError) as error:
-        raise _refused(file, f"It is no batch: {error!r}.") from error
+        raise _refused(file, f"It is not a valid batch: {error!r}.") from error
 
 
 def _sampled(sample: Mapping[str, Any], folder: Path) -> Iterator[Json]:

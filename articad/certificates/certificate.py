@@ -133,7 +133,7 @@ class Certificate:
     def to_json(self) -> dict[str, Any]:
         """Return the report `articad.certificate/2`."""
         report = self._report()
-        return {**report, "covers": covered(report) if self.ok else "not all that was asked for is proven; see the findings."}
+        return {**report, "covers": covered(report) if self.ok else "not everything that was requested is proven; see the findings."}
 
     def _report(self) -> dict[str, Any]:
         return {
@@ -169,8 +169,8 @@ class Certificate:
         reason = self.refutation() if self.ok else None
         if reason is None:
             return self
-        message = f"The checker of certificates refutes what was proven: {reason}."
-        hint = "Report this with the plan: prover and checker disagree, so that nothing is certified."
+        message = f"The certificate checker refutes the proof: {reason}."
+        hint = "Report this with the plan: prover and checker disagree, so nothing is certified."
         refuted = Finding(code="E_CERTIFICATE_REFUTED", where="certificate", message=message, hint=hint)
         return replace(self, findings=Findings([*self.findings, refuted]))
 
@@ -351,7 +351,7 @@ class _Certifying:
         a, b = route.parts[0], route.parts[-1]
         if self._floating & self._constrained and tied:
             named = ", ".join(sorted(self._floating & self._constrained))
-            self._refuse((a, b), tuple(tied), f"the free joint {named} is part of a loop or coupling, which is not followed")
+            self._refuse((a, b), tuple(tied), f"the free joint {named} is part of a loop or coupling, which cannot be followed")
             return
         if not self._is_driven((a, b), tied) or (not wanted and not drivers):
             return
@@ -383,7 +383,7 @@ class _Certifying:
             group = self._checker.groups[at]
             is_asked = any(self._is_asked(self._joint_of(name)) for name in group)
             if is_asked and not self._groups[at] and not self._checker.is_rigid(group):
-                self._refuse(parts, tuple(tied), f"nothing drives {', '.join(group)}, and it is not proven that they cannot move")
+                self._refuse(parts, tuple(tied), f"no driver moves {', '.join(group)}, and it is not proven that they cannot move")
                 return False
         return True
 
@@ -510,7 +510,7 @@ class _Certifying:
             way = DriverTrack(self._checker, drivers, (ends,))
             found = way.whole
             self.budget.spend(way.work)
-            return way if found else "near rest nothing encloses what follows the driver"
+            return way if found else "near rest, no tube encloses the followers of the driver"
         ways = [self._way((name,)) for name in drivers]
         bad = [way for way in ways if isinstance(way, str)]
         if bad:
@@ -522,7 +522,7 @@ class _Certifying:
         way = DriverTrack(self._checker, drivers, tuple(way.whole.ends[0] for way in ways if not isinstance(way, str) and way.whole))
         found = way.whole
         self.budget.spend(way.work)
-        return way if found else f"{' and '.join(drivers)} do not reach all of their ranges together, or nothing encloses what follows"
+        return way if found else f"{' and '.join(drivers)} do not reach all of their ranges together, or no tube encloses the followers"
 
     def _followed(self, prover: LinkageProver, proof: Proof) -> None:
         parts = prover.parts
@@ -573,15 +573,15 @@ class _Certifying:
 
     def _collision(self, parts: tuple[str, str], joints: tuple[str, ...], proof: Proof, looks: Looks, seen: Finding) -> Finding:
         if len(joints) != 1 or proof.lower is None or proof.upper is None or not proof.contacts:
-            return replace(seen, message=f"{seen.message} Seen while {' and '.join(joints)} move.")
+            return replace(seen, message=f"{seen.message} This occurs while {' and '.join(joints)} move.")
         name, first, proven = looks.entry(self.scene.tolerated(*parts), seen.pose)
         unit, scale = (" mm", 1.0) if name in self._sliding() else ("°", 180 / np.pi)
         return replace(
             seen,
             where=f"joints.{joints[0]}",
             message=f"{parts[0]} and {parts[1]} collide from {name} = {first * scale:.7g}{unit}; up to {proven * scale:.7g}{unit} they are proven "
-            f"apart (an interval of {abs(first - proven) * scale:.2g}{unit}). Beyond, they overlap up to {seen.value:.3g} mm.",
-            hint=f"Set the limits of {joints[0]} to [{_up(proof.lower * scale):g}, {-_up(-proof.upper * scale):g}]{unit}, or make room.",
+            f"apart (an interval of {abs(first - proven) * scale:.2g}{unit}). Beyond that, they overlap by up to {seen.value:.3g} mm.",
+            hint=f"Set the limits of {joints[0]} to [{_up(proof.lower * scale):g}, {-_up(-proof.upper * scale):g}]{unit}, or add clearance.",
             value=first,
             limit=proven,
             unit=unit.strip() if unit == " mm" else "rad",
@@ -628,7 +628,7 @@ class _Certifying:
                 where=f"joints.{joints[0]}",
                 parts=parts,
                 message=f"{parts[0]} and {parts[1]} are not proven apart over {', '.join(joints)}: {reason}.",
-                hint="Repair what is named; a sampled sweep may still look at them.",
+                hint="Repair the named cause; a sampled sweep can still check them.",
             )
         )
 
@@ -653,7 +653,7 @@ class _Certifying:
                             code="E_NOT_CHECKED",
                             where=f"joints.{joint}",
                             message=f"{name} is proven up to {end:.6g} only, not to {wanted:.6g}: {reason}.",
-                            hint=f"Set the limit of {joint} to what the linkage can do.",
+                            hint=f"Set the limit of {joint} to what the linkage can reach.",
                             value=end,
                             limit=wanted,
                             unit=unit,
@@ -662,7 +662,7 @@ class _Certifying:
 
     def _ended(self) -> str:
         """Return the sentence that says why work ended: a pair is given up after so many pieces, before the budget is spent."""
-        return self.budget.ended() if self.budget.is_spent else f"The search was given up after {MOST_PAIRS} pieces of a pair."
+        return self.budget.ended() if self.budget.is_spent else f"The search stopped after {MOST_PAIRS} pieces of a pair."
 
     def _report_left(self) -> None:
         for joints, pairs in self.left.items():
@@ -670,7 +670,7 @@ class _Certifying:
                 self._verdict(
                     parts,
                     joints,
-                    Strength.not_checked(self.budget.reason if self.budget.is_spent else "the search for a pair was given up"),
+                    Strength.not_checked(self.budget.reason if self.budget.is_spent else "the search for a pair stopped"),
                     NOTHING,
                     "unknown",
                 )
@@ -857,9 +857,9 @@ def _unproven(parts: tuple[str, str], joints: tuple[str, ...], worst: Overlap, a
         code="W_NOT_CERTIFIED",
         where=f"joints.{joints[0]}",
         parts=parts,
-        message=f"{parts[0]} and {parts[1]} are too close over {' and '.join(joints)} to be proven apart: at {count} poses they overlap "
+        message=f"{parts[0]} and {parts[1]} are too close over {' and '.join(joints)} to prove that they stay apart: at {count} poses they overlap "
         f"{worst.depth:.3g} mm at most (allowed {allowed:.3g} mm).",
-        hint="Give them a clearance if the motion is to be proven.",
+        hint="Add clearance to allow a proof of the motion.",
         value=worst.depth,
         limit=allowed,
         unit="mm",

@@ -424,7 +424,7 @@ def _unproven(row: FitCheck) -> Finding:
         parts=row.parts,
         message=f"The fit of joint {row.joint!r} is not proven over its motion: at {row.strength.poses} poses the gap is {row.least:.4g} mm "
         f"or more{where}.",
-        hint="Give a joint that slides without limits some, raise the budget, declare a smaller least gap, or widen the gap.",
+        hint="Give limits to a slide that has none, raise the budget, declare a smaller least gap, or widen the gap.",
         value=row.least,
         limit=row.declared.gap_min,
         unit="mm",
@@ -443,8 +443,8 @@ def _unresolved(row: FitCheck) -> list[Finding]:
             code="W_FIT_UNRESOLVED",
             where=f"joints.{row.joint}.fit",
             parts=row.parts,
-            message=f"Joint {row.joint!r}: {measured:.4g} mm were measured on meshes that may be off by {off:.4g} mm together; that does not "
-            f"tell whether the gap is between {fit.gap_min or 0:g} and {fit.gap_max:g} mm.",
+            message=f"Joint {row.joint!r}: {measured:.4g} mm were measured on meshes that may be off by {off:.4g} mm together; this does not "
+            f"show whether the gap is between {fit.gap_min or 0:g} and {fit.gap_max:g} mm.",
             hint=f"Mesh the two parts with a deflection of {(fit.gap_max - (fit.gap_min or 0.0)) / 8:.2g} mm or less.",
             value=off,
             limit=(fit.gap_max - (fit.gap_min or 0.0)) / 2,

@@ -360,11 +360,11 @@ def _period(mechanism: Mechanism, checker: Checker, index: int, sign: int) -> fl
             whole = np.where(turns, np.round(count * rates), 0.0)
             if (np.abs(count * rates - whole) <= FLOAT / 2 * np.maximum(1.0, np.abs(whole))).all():
                 return 2 * math.pi * count
-        raise ValueError(f"what follows {driver.name} does not come back within {MOST_TURNS} of its turns")
+        raise ValueError(f"the followers of {driver.name} do not return within {MOST_TURNS} of its turns")
     track = track_of(mechanism, index, mechanism.rest)
     period = None if track is None else track.period(sign)
     if period is None:
-        raise ValueError(f"what follows {driver.name} is not known to come back after some of its turns")
+        raise ValueError(f"the followers of {driver.name} are not known to return after a number of its turns")
     return period.length
 
 

@@ -73,11 +73,11 @@ def verify_file(file: Path, folder: Path) -> list[str]:
     try:
         certificate, arrays = json.loads(content(file)), dict[str, Any]()
         for name in [*certificate["meshes"], PROOF]:
-            need(Path(name).name == name, "a mesh bears the name of no file")
+            need(Path(name).name == name, "a mesh has a name that is not a file name")
             with io.BytesIO(content(folder / f"{name}.npz")) as stream, np.load(stream, allow_pickle=False) as found:
                 arrays[name] = {key: widened(array) for key, array in found.items()}
         left = sorted({found.stem for found in folder.glob("*.npz")} - set(arrays))
-        need(not left, f"it says nothing of {', '.join(left)}")
+        need(not left, f"it omits {', '.join(left)}")
         Checker(certificate, arrays).check()
     except Refuted as reason:
         return [str(reason)]
@@ -90,7 +90,7 @@ def content(file: Path) -> bytes:
     """Return the bytes of a regular file; refuse a pipe or a device, which might never end."""
     handle = os.open(file, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
     with os.fdopen(handle, "rb") as stream:
-        need(stat.S_ISREG(os.fstat(handle).st_mode), f"{file.name} is no file")
+        need(stat.S_ISREG(os.fstat(handle).st_mode), f"{file.name} is not a file")
         need(os.fstat(handle).st_size <= BYTES, f"{file.name} is larger than {BYTES} bytes")
         return stream.read(BYTES)
 
@@ -108,7 +108,7 @@ def digest(vertices: Any, triangles: Any) -> str:
 
 def shells(V: Any, F: Any) -> Any:
     """Return one vertex index of each connected component of a closed mesh; refute an open mesh."""
-    need(V.shape[1:] == F.shape[1:] == (3,) and np.abs(V).max() < LARGEST, "a mesh is none")
+    need(V.shape[1:] == F.shape[1:] == (3,) and np.abs(V).max() < LARGEST, "a mesh is not valid")
     label = np.arange(len(V))
     forth, back = (np.sort((F * len(V) + np.roll(F, step, 1)).ravel()) for step in (1, -1))  # edges, by their two ends
     need(np.array_equal(forth, back), "a mesh is open")
@@ -131,7 +131,7 @@ def is_inside(points: Any, corners: Any) -> bool:
 
 def ordered(corners: Any, order: Any) -> Any:
     """Return the triangles in another order; refute an order that is not a permutation."""
-    need(np.array_equal(np.sort(order), np.arange(len(corners))), "a triangle is left out")
+    need(np.array_equal(np.sort(order), np.arange(len(corners))), "a triangle is missing")
     return corners[order]
 
 
@@ -203,7 +203,7 @@ def follow(rows: Any, codes: Any, directions: Any, A: Any, B: Any, how: Any, cle
         told, codes = codes[: len(level)], codes[len(level) :]
         need(len(told) == len(level), "rows are missing")
         for (*row, box), code in zip(level[told < CUT].tolist(), told[told < CUT].tolist(), strict=True):
-            need(kept(code, slice(*row[:2]), slice(*row[2:]), box) > clear, "pieces come too near")
+            need(kept(code, slice(*row[:2]), slice(*row[2:]), box) > clear, "pieces come too close")
         settled, by = level[told >= 0], told[told >= 0]
         for start in range(0, len(settled), BULK):
             some, code = settled[start : start + BULK], by[start : start + BULK]
@@ -213,7 +213,7 @@ def follow(rows: Any, codes: Any, directions: Any, A: Any, B: Any, how: Any, cle
             for k in np.flatnonzero(~(apart(u, p, q, [part[box] for part in moving]) > clear)).tolist():
                 one, x, y = slice(k, k + 1), slice(*some[k, :2]), slice(*some[k, 2:4])  # all corners tell more than those of the box
                 gap = apart(u[one], A[x].reshape(1, -1, 3), B[y].reshape(1, -1, 3), [part[box[one]] for part in moving])
-                need(gap[0] > clear, "pieces come too near")
+                need(gap[0] > clear, "pieces come too close")
         is_cut = (told >= CUT) & (told < 0)
         kind, level = np.repeat(told[is_cut], 2), np.repeat(level[is_cut], 2, axis=0)
         second = np.arange(len(level)) % 2
@@ -324,7 +324,7 @@ def covered(certificate: dict[str, Any]) -> str:
     """Return, in a sentence, what moves at once in the claims of a certificate that calls itself ok, and what does not."""
     asked = ", ".join(certificate["asked"]) or "none"
     free = [joint["name"] for joint in certificate["mechanism"]["joints"] if joint["type"] == "free"]
-    still = f" Not covered: what moves freely stands at rest throughout ({', '.join(free)})." if free else ""
+    still = f" Not covered: free joints stay at rest throughout ({', '.join(free)})." if free else ""
     left = [f"{a}/{b}" for a, b, _ in Checker(certificate, {PROOF: {}}).missing()]
     some = f"{', '.join(left[:4])}{f' and {len(left) - 4} more' if len(left) > 4 else ''}"
     if not left:
@@ -357,7 +357,7 @@ class Checker:
         """Check every claim; if the certificate is marked ok, check that no claim is missing."""
         whole, claims = self.certificate, self.certificate["claims"]
         for name, entry in whole["meshes"].items():
-            need(digest(**self.meshes[name]) == entry["sha256"], f"mesh of {name} is missing or another")
+            need(digest(**self.meshes[name]) == entry["sha256"], f"mesh of {name} is missing or different")
         self.check_joints(*(whole["mechanism"][key] for key in ("parts", "joints", "couplings")))
         for number, claim in enumerate(claims):
             try:
@@ -374,12 +374,14 @@ class Checker:
             driving, moving = ({self.freedoms[name]["joint"] for name in group if not few or name in self.drivers} for few in (True, False))
             need(
                 {*whole["asked"]} & moving <= driving or driving <= {*whole["asked"]},
-                f"not all that drives {', '.join(group)} is asked for",
+                f"not every driver of {', '.join(group)} was requested",
             )
-            need(driving or not {*whole["asked"]} & moving or self.is_rigid(group), f"nothing drives {', '.join(group)}, yet they may move")
+            need(
+                driving or not {*whole["asked"]} & moving or self.is_rigid(group), f"no driver moves {', '.join(group)}, but they may move"
+            )
         for count in (1, 2) if whole["together"] else (1,):
             for a, b, over in self.missing(count):
-                raise Refuted(f"{a}/{b} over {over}: no claim, yet the certificate calls itself ok")
+                raise Refuted(f"{a}/{b} over {over}: no claim, but the certificate is marked ok")
 
     def missing(self, count: int | None = None) -> Iterator[tuple[str, str, str]]:
         """Yield two parts, and the joints of which so many, or all, can move them together without a claim that says so."""
@@ -404,29 +406,32 @@ class Checker:
     def check_joints(self, parts: Any, joints: Any, couplings: Any) -> None:
         """Refute a malformed mechanism, and one whose loops and couplings are declared wrongly."""
         freedoms = [f for j in joints for f in j["freedoms"]]
-        need((len(self.joints), len(self.freedoms)) == (len(joints), len(freedoms)), "a name stands twice")
+        need((len(self.joints), len(self.freedoms)) == (len(joints), len(freedoms)), "a name occurs twice")
         is_tree = sum(not j["loop"] for j in joints) == len(parts) - 1 and all(self.way(parts[0], part) is not None for part in parts)
-        need(is_tree, "a loop is said to be none")
-        need(all(f["joint"] == j["name"] for j in joints for f in j["freedoms"]), "a coordinate is said to be another joint's")
+        need(is_tree, "a loop is declared not to be one")
+        need(all(f["joint"] == j["name"] for j in joints for f in j["freedoms"]), "a coordinate is assigned to another joint")
         frames = np.array([np.eye(4), *(j[side] for j in joints for side in ("parent_frame", "child_frame"))])
         R, turns, slides = frames[:, :3, :3], *(np.array([f[key] for f in freedoms]).reshape(-1, 3) for key in ("turn", "slide"))
         off = np.abs(R @ R.swapaxes(1, 2) - np.eye(3)).max() + np.abs(frames[:, 3] - [0, 0, 0, 1]).max()
-        need(off < ROUNDING and np.linalg.det(R).min() > 0 and np.abs(frames).max() < LARGEST, "a frame is none")
+        need(off < ROUNDING and np.linalg.det(R).min() > 0 and np.abs(frames).max() < LARGEST, "a frame is not valid")
         sizes = np.linalg.norm(np.where(turns.any(1, keepdims=True), turns, slides), axis=1)
-        need((np.abs([sizes - 1, *np.cross(turns, slides).T]) < ROUNDING).all(), "a joint neither turns, slides nor screws")
+        need((np.abs([sizes - 1, *np.cross(turns, slides).T]) < ROUNDING).all(), "a joint neither rotates, slides nor screws")
         numbers = [end for f in freedoms for end in (*f["range"], f["rest"], *f["limits"]) if end is not None]
-        need(all(-LARGEST < end < LARGEST for end in numbers) and all(f["range"][0] <= f["range"][1] for f in freedoms), "a range is none")
+        need(
+            all(-LARGEST < end < LARGEST for end in numbers) and all(f["range"][0] <= f["range"][1] for f in freedoms),
+            "a range is not valid",
+        )
         for f in freedoms:
             open_ends = [end is None for end in f["limits"]]
             same = all(is_open or end == limit for is_open, end, limit in zip(open_ends, f["range"], f["limits"], strict=True))
-            need(len(open_ends) == 2 and same, f"the range of {f['name']} is not what its limits are")
+            need(len(open_ends) == 2 and same, f"the range of {f['name']} differs from its limits")
         for ball in (j for j in joints if j["cone"] is not None):
             turn, slide, ends = (np.array([f[key] for f in ball["freedoms"]]) for key in ("turn", "slide", "range"))
             is_ball = np.array_equal(turn, np.eye(3)) and not slide.any() and (np.abs(ends).max(1) <= [np.pi, np.pi / 2, LARGEST]).all()
-            need(is_ball and 0 <= ball["cone"] <= np.pi, "what has a cone is no ball")  # turns about x, y and z
+            need(is_ball and 0 <= ball["cone"] <= np.pi, "a joint with a cone is not a ball")  # turns about x, y and z
         tied = {joint["name"] for way, _ in self.loops for joint, _ in way}
         tied |= {j["name"] for j in joints for f in j["freedoms"] for c in couplings if f["name"] in (c["a"], c["b"])}
-        need(self.certificate["linkage"] == sorted(tied), "what is linked is said to move by itself, or the other way round")
+        need(self.certificate["linkage"] == sorted(tied), "a linked joint is declared independent, or an independent joint linked")
         self.begin(self.linked, 0)  # which also looks at loops in which nothing moves
 
     def way(self, a: str, b: str, names: Any = None, *, whole: bool = True) -> Any:
@@ -663,7 +668,7 @@ class Checker:
             names, key = self.followers(drivers), "+".join(drivers)
             found = self.begin(names, len(drivers))
             ends, values, wide, others = (self.proof[f"{key}.{what}"] for what in ("ends", "values", "wide", "other"))
-            need(len(ends) == len(values) == len(wide) == len(others), "a piece of a driver's range is left out")
+            need(len(ends) == len(values) == len(wide) == len(others), "a piece of a driver's range is missing")
             for start in range(0, len(ends), TUBES):
                 some = slice(start, start + TUBES)
                 bounds = self.enclosures(names, ends[some].reshape(-1, len(drivers), 2), values[some])
@@ -687,7 +692,7 @@ class Checker:
                     found.append(one)
                     continue
                 cut, place = parted[one]
-                need(one[cut][0] < place < one[cut][1], "a part of the range is left out")
+                need(one[cut][0] < place < one[cut][1], "a part of the range is missing")
                 todo += [(*one[:cut], half, *one[cut + 1 :]) for half in ((one[cut][0], place), (place, one[cut][1]))]
             middle, slopes, near = joined(np.array(found), [pieces[one][1:4] for one in found])
             self.rows[drivers, box] = dict(zip(self.followers(drivers), zip(middle, slopes.T, near, strict=True), strict=True))
@@ -701,7 +706,7 @@ class Checker:
         if least is None or most is None:
             need(is_turn and not is_slide, f"{name} slides without limits")
             need(high - low > 2 * math.pi - ROUNDING, f"not over a whole turn of {name}")
-            need(not is_driver or self.is_repeated(name, low, high), f"what follows {name} does not come back over its range")
+            need(not is_driver or self.is_repeated(name, low, high), f"the followers of {name} do not return over its range")
 
     def is_repeated(self, driver: str, low: float, high: float) -> bool:
         """Return whether all that follows a driver is at the end of a range what it is at its beginning, but for whole turns.
@@ -747,8 +752,8 @@ class Checker:
         here, way = V + moved, self.way(a, b, claim["via"])
         T, steps = self.place(way, self.rest)
         least = [whole["meshes"][name]["deflection_mm"] for name in (a, b)]
-        need(min(least) >= 0 and claim["clear_mm"] >= sum(least) - ROUNDING, "it keeps less than the deflection of the meshes")
-        need(claim["shrink_mm"] <= self.said({a, b}) + ROUNDING or not whole["ok"], "it allows more overlap than it says")
+        need(min(least) >= 0 and claim["clear_mm"] >= sum(least) - ROUNDING, "its clearance is less than the deflection of the meshes")
+        need(claim["shrink_mm"] <= self.said({a, b}) + ROUNDING or not whole["ok"], "it allows more overlap than it states")
         need(here.shape == V.shape and np.linalg.norm(here - V, axis=1).max() <= claim["shrink_mm"] + ROUNDING, "it moves vertices further")
         lines = self.driven(way, vary)
         for name, (low, high) in vary.items():
@@ -767,13 +772,16 @@ class Checker:
         near, far = zip(*(radii(local @ plane(axis)) for local in both), strict=True) if proof["codes"].min() <= ROUND else ((), ())
         outside = [swung(local, steps[turns[0]["freedoms"][-1]["name"]][0], cone) for local in both if cone and cone <= np.pi / 2]
         spans = [list(itertools.pairwise(proof[key].tolist())) for key in ("parts_a", "parts_b")]
-        need([(own[0][0], own[-1][1]) for own in spans] == [(0, len(A)), (0, len(B))], "a triangle is left out")
+        need([(own[0][0], own[-1][1]) for own in spans] == [(0, len(A)), (0, len(B))], "a triangle is missing")
 
         def kept(code: int, x: slice, y: slice, number: int) -> Any:
             box, is_steady = boxes[number]
             if code == OUTSIDE:
                 return math.inf if any(is_outside(joint, box) for joint, _ in way if joint["cone"] is not None) else 0.0
-            need(is_steady and (code == ROUND or (code == LEAN and angles) or (code == SWUNG and outside)), "what is compared is not kept")
+            need(
+                is_steady and (code == ROUND or (code == LEAN and angles) or (code == SWUNG and outside)),
+                "the compared invariant does not hold",
+            )
             if code == ROUND:
                 return max(near[0][x].min() - far[1][y].max(), near[1][y].min() - far[0][x].max())
             if code == SWUNG:
@@ -802,7 +810,7 @@ class Checker:
                 halves.append((-1, -1))
             else:
                 (low, high), name = box[names[cut]], names[cut]
-                need(low < place < high, "a part of the range is left out")
+                need(low < place < high, "a part of the range is missing")
                 halves.append((len(todo), len(todo) + 1))
                 todo += [{**box, name: (low, place)}, {**box, name: (place, high)}]  # they become more
         spans = {name: np.array([box[name] for box in todo]) for name in names}

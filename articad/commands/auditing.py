@@ -166,7 +166,7 @@ def _print_audit(audit: Audit, terminal: Terminal, *, findings: bool) -> None:
     if findings:
         terminal.findings(audit.findings)
         for line in audit.undone:
-            terminal.detail(f"  not looked at: {line}")
+            terminal.detail(f"  not checked: {line}")
     engines = loaded_in(audit)
     terminal.say(
         f"{audit.file}: {audit.links} links, {audit.joints} joints that move; {summaries.counted(audit.findings)}; motion {audit.motion}"
@@ -190,7 +190,7 @@ def _print_board(board: Scoreboard, terminal: Terminal) -> None:
 
 def _print_mended(mended: Mended, terminal: Terminal) -> None:
     for line in mended.done:
-        terminal.say(f"  mended: {line}")
+        terminal.say(f"  repaired: {line}")
     if mended.rest is not None:
         terminal.say(f"Left in {mended.file}:")
         _print_audit(mended.rest, terminal, findings=True)

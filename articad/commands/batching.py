@@ -35,7 +35,7 @@ def _batch(options: argparse.Namespace, terminal: Terminal) -> Report:
         else:
             records = run_local(items, options.out, workers=options.jobs, memory_gb=options.memory, told=told)
     report = summary(records)
-    terminal.say(f"{report['passed']} of {report['items']} passed; {report['made_before']} were there already.")
+    terminal.say(f"{report['passed']} of {report['items']} passed; {report['made_before']} existed already.")
     for code, count in report["refused_by"].items():
         terminal.say(f"  {code}: {count}")
     spent = ", ".join(f"{stage} {seconds:.1f} s" for stage, seconds in report["seconds"].items())

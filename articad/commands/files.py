@@ -160,6 +160,6 @@ def _audit_of(source: Path, root: str | None, terminal: Terminal) -> Report:
     from articad.auditing.examine import AuditOptions, audit_file
 
     found = audit_file(source, AuditOptions(root=None if root is None else Path(root)))
-    terminal.say(f"What is wrong with {source.name}: {'nothing found' if found.ok else ''}")
+    terminal.say(f"Faults of {source.name}: {'none found' if found.ok else ''}")
     terminal.findings(found.findings)
     return found.to_json()

@@ -161,7 +161,7 @@ def asked_model(options: argparse.Namespace, terminal: Terminal) -> tuple[Budget
     model = LiteLLM(name, api_base=options.api_base, vision_model=options.vision_model, judge_model=options.judge_model)
     sees = bool(getattr(model, "sees", True))
     if not sees and (options.look or options.inspection or getattr(options, "review", False)):
-        terminal.say(f"{options.vision_model or name} does not see: parts and assembly are held to exact checks alone.")
+        terminal.say(f"{options.vision_model or name} has no vision: only the exact checks judge parts and assembly.")
     return Budget(model, **limits(options)), sees
 
 
@@ -193,7 +193,7 @@ def _told(run: Run, options: argparse.Namespace, terminal: Terminal, budget: Bud
     remembered = budget is not None and recalls(run.request.options.get("variant", "full"))
     try:
         if remembered and (case := remember(run, store)) is not None:
-            terminal.detail(f"Remembered as {case.id[:8]}, {case.kind}, in {store.folder}.")
+            terminal.detail(f"Stored as case {case.id[:8]}, {case.kind}, in {store.folder}.")
     except BudgetError as error:  # the run is finished; only the vectors of a provider are missing
         terminal.say(f"Not remembered: {error.spent}")
     if options.pictures:
@@ -254,7 +254,7 @@ def _replay(options: argparse.Namespace, terminal: Terminal) -> Report:
     recorded = Run.view(options.run)
     if not recorded.replies() and recorded.base() is None:
         raise ReadError(
-            f"{options.run} holds no answers of a model, so there is nothing to replay. Use `articad build` on its plan.", path=options.run
+            f"{options.run} holds no replies of a model, so there is nothing to replay. Use `articad build` on its plan.", path=options.run
         )
     with terminal.progress("Replaying") as tell:
         replayed = replay(
@@ -274,9 +274,9 @@ def _replay(options: argparse.Namespace, terminal: Terminal) -> Report:
     for name in replayed.results_that_differ:
         terminal.say(f"differs: {name}")
     if drifted:
-        terminal.say(f"{len(drifted)} prompts are not the recorded ones any more; the recorded replies were used (-v lists them).")
+        terminal.say(f"{len(drifted)} prompts differ from the recorded ones; the recorded replies were used (-v lists them).")
     different = len(replayed.results_that_differ)
-    verdict = f"{different} files differ" if different else "every result is equal" if drifted else "every file but the trace is equal"
+    verdict = f"{different} files differ" if different else "every result is equal" if drifted else "every file except the trace is equal"
     terminal.say(f"Replay of {options.run}: {verdict}.")
     findings = [finding.to_json() for finding in replayed.findings]
     return report | {"ok": report["ok"] and replayed.ok, "differences": list(replayed.differences), "findings": findings}

@@ -83,10 +83,10 @@ def _stated(certificate: Report) -> list[str]:
     moving = [joint["name"] for joint in certificate["mechanism"]["joints"] if joint["freedoms"]]
     still = [name for name in moving if name not in certificate["asked"]]
     sentence = covered(certificate)
-    refused = "It does not call itself ok: what it claims holds, but something that was asked for is not proven."
+    refused = "The certificate is not ok: its claims hold, but something that was requested is not proven."
     lines = [sentence[0].upper() + sentence[1:] if certificate["ok"] else refused]
     if still:
-        lines.append(f"These joints are not asked for: {', '.join(still)}.")
+        lines.append(f"These joints were not requested: {', '.join(still)}.")
     waived = {"/".join(pair["parts"]): pair["strength"] for pair in certificate["pairs"] if pair["strength"]["kind"] == "waived"}
-    lines += [f"Waived, so not looked at: {parts} ({how.get('reason') or 'no reason given'})." for parts, how in waived.items()]
+    lines += [f"Waived, so not checked: {parts} ({how.get('reason') or 'no reason given'})." for parts, how in waived.items()]
     return lines

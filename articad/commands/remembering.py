@@ -46,7 +46,7 @@ def _memory(options: argparse.Namespace, terminal: Terminal) -> Report:
 
     store = experience(options)
     if _WHAT[options.action] and not options.what:
-        raise ReadError(f"`articad memory {options.action}` needs one more word: {_WHAT[options.action]}.", path="memory")
+        raise ReadError(f"`articad memory {options.action}` needs one more argument: {_WHAT[options.action]}.", path="memory")
     report = _ACTIONS[options.action](store, options, terminal)
     return {"schema": "articad.memory/1", "ok": True, "store": str(store.folder), "findings": []} | report
 
@@ -61,7 +61,7 @@ def _list(store: ExperienceStore, _options: argparse.Namespace, terminal: Termin
 def _show(store: ExperienceStore, options: argparse.Namespace, terminal: Terminal) -> Report:
     case = store.case(options.what)
     terminal.say(f"{case.id}, {case.kind}: {case.request}\n\n{case.design}")
-    for title, lines in (("Defects", case.defects), ("Mended on the way", case.repairs), ("Learned", case.lessons)):
+    for title, lines in (("Defects", case.defects), ("Repaired on the way", case.repairs), ("Learned", case.lessons)):
         if lines:
             terminal.say("\n".join(["", f"{title}:", *lines]))
     terminal.say(f"\nScripts: {', '.join(f'{part.name} ({part.kernel})' for part in case.parts)}")
@@ -121,7 +121,7 @@ def _remove(store: ExperienceStore, options: argparse.Namespace, terminal: Termi
 
 def _prune(store: ExperienceStore, options: argparse.Namespace, terminal: Terminal) -> Report:
     count = store.prune(options.keep)
-    terminal.say(f"{count} cases forgotten, {len(store)} left.")
+    terminal.say(f"{count} cases removed, {len(store)} left.")
     return {"removed": count}
 
 

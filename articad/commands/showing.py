@@ -52,7 +52,7 @@ def _show(options: argparse.Namespace, terminal: Terminal) -> Report:
         page = _written(Path(options.out or Path(tempfile.mkdtemp(prefix="articad-")) / f"{_file_name(assembly.name)}.html"), text)
     terminal.say(str(page))
     if options.browser and not webbrowser.open(page.resolve().as_uri()):
-        terminal.say("No browser could be opened; open the file yourself.")
+        terminal.say("No browser could be started; open the file yourself.")
     return {"schema": "articad.page/1", "ok": True, "file": str(page), "findings": []}
 
 

@@ -51,9 +51,9 @@ def print_checks(report: Report, terminal: Terminal) -> None:
     told = _counts(pair["verdict"] for pair in pairs)
     known = _counts(pair["strength"]["kind"].replace("_", " ") for pair in pairs)
     near = (
-        f"{counted_things(len(pairs), 'pair', 'pairs')} of parts near each other ({told}; {known})"
+        f"{counted_things(len(pairs), 'pair', 'pairs')} of adjacent parts ({told}; {known})"
         if pairs
-        else "no two parts are near each other"
+        else "no two parts are close to each other"
     )
     terminal.say(f"Interference: {'ok' if report['ok'] else 'NOT ok'}; {near}.")
     deepest = max(pairs, key=lambda pair: pair["depth_mm"], default=None)

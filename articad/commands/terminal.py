@@ -129,7 +129,7 @@ class Terminal:
             return
         told = "\n".join(f"{finding}\n{finding.message}" for finding in error.findings)
         news = [line for line in error.message.splitlines() if line not in told]  # a message may list its own findings
-        headline = "\n".join(news) or f"cannot go on, because of the {error.stage}:"
+        headline = "\n".join(news) or f"cannot continue; stage {error.stage}:"
         print(self._painted("articad: ", "31;1", self.err) + plain(headline), file=self.err)
         for finding in error.findings:
             print(self._line_of(finding.to_json(), self.err), file=self.err)

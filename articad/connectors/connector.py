@@ -37,7 +37,7 @@ class Plane:
             raise _plane_error("E_NONFINITE", "A plane needs a point and a normal of three finite numbers each.")
         length = np.linalg.norm(normal)
         if length < _NORMAL_ZERO:
-            raise _plane_error("E_AXIS_ZERO", "The plane's normal has no direction.")
+            raise _plane_error("E_AXIS_ZERO", "The plane's normal has zero length.")
         for name, vector in (("point", point), ("normal", normal / length)):
             vector.setflags(write=False)
             object.__setattr__(self, name, vector)

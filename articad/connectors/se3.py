@@ -36,7 +36,7 @@ def _floats(values: npt.ArrayLike, tail: tuple[int, ...], name: str) -> FloatArr
     if array.shape[len(array.shape) - len(tail) :] != tail:
         raise ConnectorError(f"{name} has shape {array.shape}; its shape must end in {tail}.")
     if not np.isfinite(array).all():
-        _refuse("E_NONFINITE", name, f"{name} holds NaN or infinity.", "Give finite numbers.")
+        _refuse("E_NONFINITE", name, f"{name} contains NaN or infinity.", "Give finite numbers.")
     return array
 
 
@@ -360,7 +360,7 @@ def axis_findings(o: npt.ArrayLike, z: npt.ArrayLike, x: npt.ArrayLike | None = 
         if not np.isfinite(vector).all():
             findings.append(_axis_finding("E_NONFINITE", f"{where}.{key}", f"{_text(vector)} is not finite.", "Give finite numbers."))
         elif key != "o" and np.linalg.norm(vector) < _AXIS_ZERO:
-            hint = "Give a direction, such as (0, 0, 1)." if key == "z" else "Give a direction across z."
+            hint = "Give a direction, such as (0, 0, 1)." if key == "z" else "Give a direction perpendicular to z."
             findings.append(_axis_finding("E_AXIS_ZERO", f"{where}.{key}", f"{_text(vector)} has no direction.", hint))
     if not findings and "x" in given:
         findings.extend(_right_angle_findings(_unit(given["z"]), _unit(given["x"]), f"{where}.x"))
@@ -371,7 +371,7 @@ def _right_angle_findings(z: FloatArray, x: FloatArray, where: str) -> list[Find
     along = float(x @ z)
     angle = float(np.degrees(np.arctan2(np.linalg.norm(quaternion.cross(z, x)), along)))
     if np.linalg.norm(quaternion.cross(z, x)) < _AXIS_PARALLEL:
-        hint = f"Choose x across z, such as {_text(_across(world_x(z), z))}."
+        hint = f"Choose x perpendicular to z, such as {_text(_across(world_x(z), z))}."
         return [_axis_finding("E_AXIS_PARALLEL", where, f"x {_text(x)} is parallel to z {_text(z)}.", hint)]
     if abs(along) <= _AXIS_SILENT:
         return []

@@ -100,7 +100,7 @@ def _inside(root: Path, path: str) -> Path:
         finding = Finding(
             code="E_UNSAFE_PATH",
             where=repr(path),
-            message="This path leads out of the folder that is written.",
+            message="This path leads out of the output folder.",
             hint="Use a relative path.",
             stage="export",
         )

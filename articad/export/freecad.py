@@ -93,7 +93,7 @@ def write_freecad_alone(assembly: Assembly, *, strict: bool = False) -> Bundle:
     unseen = Finding(
         code="I_FREECAD_UNSEEN",
         where="assembly",
-        message="The document was written without FreeCAD: its shapes are B-rep, and FreeCAD's solver has not been asked.",
+        message="The document was written without FreeCAD: its shapes are B-rep, and FreeCAD's solver did not check it.",
         hint=f"{freecad_install.HOW_TO_GET}.",
     )
     return Bundle({f"{job.name}.FCStd": normalised(content, look)}, job.losses, Findings([unseen]))
@@ -107,7 +107,7 @@ def _opinion(report: Mapping[str, Any]) -> Findings:
             Finding(
                 code="E_FREECAD",
                 where="assembly",
-                message=f"FreeCAD finds objects invalid: {', '.join(report['invalid'][:10])}.",
+                message=f"FreeCAD reports invalid objects: {', '.join(report['invalid'][:10])}.",
                 hint="Open the document and look at the marked objects.",
             )
         )
@@ -120,7 +120,7 @@ def _opinion(report: Mapping[str, Any]) -> Findings:
                 code="W_FREECAD_SOLVER",
                 where="assembly",
                 message=f"FreeCAD's solver {said} at the placements of the plan, which are exact and were kept.",
-                hint="Nothing in the file is wrong for that: the solver gives up on long chains, and takes redundant loops for conflicts.",
+                hint="The file is correct: the solver gives up on long chains and mistakes redundant loops for conflicts.",
                 value=worst,
                 limit=SOLVED_MM,
                 unit="mm",
@@ -131,7 +131,7 @@ def _opinion(report: Mapping[str, Any]) -> Findings:
 
 def _failed(said: str, *, late: bool) -> ExportError:
     lines = [line.strip() for line in said.splitlines() if not _PROGRESS.search(line) and line.strip()]
-    words = "it ran out of time" if late else (lines or ["it left no word"])[-1][:300]
+    words = "it ran out of time" if late else (lines or ["it gave no reason"])[-1][:300]
     finding = Finding(
         code="E_FREECAD", where="assembly", message=f"FreeCAD could not write the document: {words}.", hint="Run articad doctor."
     )

@@ -31,7 +31,7 @@ def linear_followers(assembly: Assembly, model: LoweredModel) -> dict[str, Follo
     """
     mechanism = assembly.mechanism
     if len(mechanism.drivers) != 1:
-        raise _refused(assembly, f"It has {len(mechanism.drivers)} drivers, and a mimic follows one.", None)
+        raise _refused(assembly, f"It has {len(mechanism.drivers)} drivers, and a mimic joint follows only one.", None)
     driver = mechanism.drivers[0]
     freedoms = {freedom.column: freedom for joint in model.joints for freedom in joint.freedoms if freedom.column is not None}
     if driver.name not in freedoms:

@@ -291,7 +291,7 @@ def _rested(mechanism: Mechanism) -> Mechanism:
             return Mechanism(mechanism.parts, mechanism.ground, joints, mechanism.couplings, T_ground=mechanism.T_ground)
         except KinematicsError:
             pass
-    lost = "a ball, planar or universal joint of a plan rests at zero, and this one cannot"
+    lost = "a ball, planar or universal joint of a plan rests at zero, which this one cannot"
     finding = Finding(code="E_UNREPRESENTABLE", where=f"joints.{first}", message=f"plan: {lost}.", hint="Let it rest at zero.")
     raise UnrepresentableError(f"joints.{first}", "plan", lost, findings=[finding])
 
@@ -313,6 +313,6 @@ def _pose(T: SE3) -> dict[str, Any]:
 
 def _described(part: Part) -> str:
     if part.mesh is None:
-        return "No shape: a frame that joints hold."
+        return "No shape: a frame for joints."
     sides = " x ".join(f"{side:.6g}" for side in part.mesh.bounds[1] - part.mesh.bounds[0])
     return f"As it was read: a mesh of {len(part.mesh.triangles)} triangles, {sides} mm."

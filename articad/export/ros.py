@@ -51,7 +51,7 @@ def require_package_name(package: str) -> None:
     """
     if not _PACKAGE_NAME.fullmatch(package):
         raise ExportError(
-            f"{package!r} is no name for a ROS package: use lower-case letters, digits and single underscores, such as 'desk_lamp'."
+            f"{package!r} is not a valid name for a ROS package: use lower-case letters, digits and single underscores, such as 'desk_lamp'."
         )
 
 

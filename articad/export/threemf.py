@@ -168,8 +168,8 @@ def _clearances(assembly: Assembly, process: Process) -> list[Finding]:
                 value=fit.gap_min,
                 limit=needed,
                 unit="mm",
-                message=f"Joint {joint.name!r} is promised a gap of {fit.gap_min:.6g} mm; {process.upper()} prints {needed:.6g} mm apart.",
-                hint="Widen the gap, print the parts one by one and finish them, or use another process.",
+                message=f"Joint {joint.name!r} requires a gap of {fit.gap_min:.6g} mm; {process.upper()} needs {needed:.6g} mm to print the parts apart.",
+                hint="Widen the gap, print the parts separately and finish them, or use another process.",
             )
         )
     return findings

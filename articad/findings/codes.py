@@ -413,7 +413,7 @@ CODES: dict[str, Code] = {
         "A mesh is not closed, so overlap cannot be measured.",
         "Repair the mesh; every edge must belong to two triangles.",
     ),
-    "I_WAIVED": Code("interference", None, "An overlap is allowed by a waiver of the plan.", "Nothing, while the reason holds."),
+    "I_WAIVED": Code("interference", None, "An overlap is allowed by a waiver of the plan.", "Nothing, as long as the reason holds."),
     "E_CERTIFICATE_REFUTED": Code(
         "interference", None, "The independent checker refutes a certificate that the prover accepts.", "Report it with the plan."
     ),

@@ -47,7 +47,9 @@ class MassProperties:
         if not (np.isfinite(mass) and np.isfinite(com).all() and np.isfinite(inertia).all()):
             raise InvalidSolidError("Mass properties are not finite.", status="nonfinite")
         if mass < 0:
-            raise InvalidSolidError(f"A mass is not negative, but this one is {mass:.6g} kg; is the mesh inside out?", status="negative")
+            raise InvalidSolidError(
+                f"A mass must not be negative, but this one is {mass:.6g} kg; check whether the mesh is inside out.", status="negative"
+            )
         if np.abs(inertia - inertia.T).max() > SYMMETRY_TOLERANCE * max(np.abs(inertia).max(), np.finfo(float).tiny):
             raise InvalidSolidError("An inertia must be symmetric.", status="asymmetric")
         inertia = (inertia + inertia.T) / 2

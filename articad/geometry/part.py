@@ -113,7 +113,7 @@ class Solid:
             InvalidSolidError: If the mesh is open or inside out.
         """
         if not mesh.is_closed:
-            raise InvalidSolidError(f"The mesh is not closed: {mesh.open_edges} of its edges have no partner.", status="open")
+            raise InvalidSolidError(f"The mesh is not closed: {mesh.open_edges} of its edges belong to only one triangle.", status="open")
         volume, com, inertia = mesh.solid_integrals()
         if volume <= 0:
             raise InvalidSolidError(

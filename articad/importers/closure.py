@@ -78,11 +78,11 @@ class _Closure:
         self._seen.append(path)
         document = read_xml(path)
         if (bodies := sum(1 for _ in document.iter("body"))) > MAX_LINKS:
-            raise unreadable(path, "", f"It has {bodies} bodies; {MAX_LINKS} are the most.")
+            raise unreadable(path, "", f"It has {bodies} bodies; the maximum is {MAX_LINKS}.")
         copies = _copies(document, path, times)
         self._copied += sum(copies.values())
         if self._copied > MAX_COPIED:
-            raise unreadable(path, "", f"With all copies it has {self._copied} elements; {MAX_COPIED} are the most.")
+            raise unreadable(path, "", f"With all copies it has {self._copied} elements; the maximum is {MAX_COPIED}.")
         for element in _read_by_engines(document):
             names = [(value, path, element.sourceline) for name, value in element.attrib.items() if name.startswith("file") and value]
             named += names
@@ -101,7 +101,7 @@ class _Closure:
             if target not in self._seen:
                 self._collect(target, here, named, folders, models, times)
             elif number == 0:
-                raise unreadable(path, f"line {element.sourceline}", f"{name!r} is included again; includes must not go round.")
+                raise unreadable(path, f"line {element.sourceline}", f"{name!r} is included again; includes must not form a circle.")
 
     def _checked(self, base: Path, name: str, file: Path, line: int) -> Path:
         """Return the file that a name means, which lies inside the root."""
@@ -148,7 +148,7 @@ def _copies(document: Any, path: Path, times: int) -> dict[Any, int]:
         above = copies.get(element.getparent(), times)
         copies[element] = count = above * (_count(element, path) if "count" in element.attrib else 1)
         if count > MAX_COPIES:
-            raise unreadable(path, f"line {element.sourceline}", f"It asks for {count} copies; {MAX_COPIES} are the most.")
+            raise unreadable(path, f"line {element.sourceline}", f"It requests {count} copies; the maximum is {MAX_COPIES}.")
     return copies
 
 
@@ -159,4 +159,4 @@ def _count(element: Any, path: Path) -> int:
         return math.prod(max(math.ceil(number), 1) for number in numbers)
     except (ValueError, OverflowError):
         text = element.get("count")[:40]
-        raise unreadable(path, f"line {element.sourceline}", f"{text!r} is no count of copies.") from None
+        raise unreadable(path, f"line {element.sourceline}", f"{text!r} is not a valid number of copies.") from None

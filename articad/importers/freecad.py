@@ -120,7 +120,7 @@ class _Document:
         except ValueError:
             raise unreadable(self.path, f"{name}.{key}", "It is not a number.") from None
         if not abs(number) <= LARGEST_MM:  # NaN is not either
-            raise unreadable(self.path, f"{name}.{key}", "It is beyond reason.")
+            raise unreadable(self.path, f"{name}.{key}", "It is not a plausible number.")
         return number
 
     def choice(self, name: str, key: str) -> str:
@@ -161,7 +161,7 @@ class _Document:
         except (TypeError, ValueError, ArticadError):
             raise unreadable(self.path, f"{name}.{key}", "It is not a placement.") from None
         if max(map(abs, numbers[:3])) > LARGEST_MM:
-            raise unreadable(self.path, f"{name}.{key}", "It stands beyond reason.")
+            raise unreadable(self.path, f"{name}.{key}", "Its position is not plausible.")
         return placed
 
     def reference(self, name: str, key: str) -> list[str]:
@@ -183,7 +183,7 @@ class _Model:
         self.document, self.deflection = document, deflection
         assemblies = [name for name, kind in document.types.items() if kind == "Assembly::AssemblyObject"]
         if not assemblies:
-            raise unreadable(document.path, "Document.xml", "It holds no assembly.")
+            raise unreadable(document.path, "Document.xml", "It contains no assembly.")
         self.assembly = assemblies[0]
         members = document.links(self.assembly, "Group")
         self.parts = {
@@ -274,7 +274,11 @@ class _Model:
             name = document.text(item, "ArticadJoint") or _plain(document.text(item, "Label") or item)
             if kind not in _TYPES or None in sides:
                 if not document.text(item, "ArticadJoint"):
-                    why = "has no type of articad's" if kind not in _TYPES else "has a side that is no part of the assembly"
+                    why = (
+                        "has a type that articad does not support"
+                        if kind not in _TYPES
+                        else "has a side that is not a part of the assembly"
+                    )
                     self.findings.append(
                         Finding(
                             code="W_FREECAD_JOINT",
@@ -368,7 +372,7 @@ class _Model:
         try:
             made = Assembly.from_parts(_plain(title), parts=parts, joints=joints, ground=self.ground, T_ground=self.poses[self.ground])
         except ArticadError as error:
-            raise unreadable(self.document.path, self.assembly, f"It is no mechanism: {error.message}") from error
+            raise unreadable(self.document.path, self.assembly, f"It is not a valid mechanism: {error.message}") from error
         return replace(made, findings=Findings(self.findings), foreign=True)
 
 

@@ -21,9 +21,9 @@ def read_mesh_kernel(content: bytes) -> TriMesh:
         InvalidSolidError: If it is no such file, or ends early.
     """
     if len(content) < _HEADER + 8 or struct.unpack_from("<II", content)[0] != _MAGIC:
-        raise InvalidSolidError("This is no mesh of FreeCAD.", status="format")
+        raise InvalidSolidError("This is not a FreeCAD mesh.", status="format")
     if struct.unpack_from("<I", content, 4)[0] not in _VERSIONS:
-        raise InvalidSolidError("This mesh is of a version of FreeCAD that is not known.", status="format")
+        raise InvalidSolidError("This mesh comes from an unknown version of FreeCAD.", status="format")
     points, facets = struct.unpack_from("<II", content, _HEADER)
     start = _HEADER + 8
     middle, end = start + points * _POINT, start + points * _POINT + facets * _FACET
@@ -32,5 +32,5 @@ def read_mesh_kernel(content: bytes) -> TriMesh:
     vertices = np.frombuffer(content[start:middle], dtype="<f4").reshape(-1, 3).astype(np.float64)
     indices = np.frombuffer(content[middle:end], dtype="<u4").reshape(-1, 6)[:, :3]
     if len(indices) and indices.max() >= points:
-        raise InvalidSolidError("A facet of a mesh names a point that is not there.", status="index")
+        raise InvalidSolidError("A facet of a mesh names a point that does not exist.", status="index")
     return TriMesh(vertices, indices.astype(np.int32))

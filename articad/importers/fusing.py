@@ -43,7 +43,7 @@ def with_chains_named(model: RawModel) -> RawModel:
         Finding(
             code="I_IMPORT_CHAIN",
             where=f"joints.{joint.name}",
-            message=f"{' and '.join(repr(part.name) for part in chain)} make one {joint.type} joint together; they are kept apart.",
+            message=f"{' and '.join(repr(part.name) for part in chain)} together form one {joint.type} joint; they are kept apart.",
             hint="Read with fuse to merge them.",
         )
         for joint, chain in _chains(model).values()
@@ -311,7 +311,7 @@ def _replaced(model: RawModel, found: dict[str, tuple[RawJoint, tuple[RawJoint, 
         Finding(
             code="I_IMPORT_FUSED",
             where=f"joints.{joint.name}",
-            message=f"{' and '.join(repr(part.name) for part in chain)} are one {joint.type} joint {joint.name!r}.",
+            message=f"{' and '.join(repr(part.name) for part in chain)} were merged into one {joint.type} joint {joint.name!r}.",
             hint="Read without fuse to keep them apart.",
         )
         for joint, chain in found.values()

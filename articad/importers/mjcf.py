@@ -80,7 +80,7 @@ def read_mjcf(path: str | Path, *, root: str | Path | None = None, metadata: boo
     model = _Reader(compiled, document.get("model") or path.stem, whole).model()
     model.findings += edited
     for text in dict.fromkeys(compiled.warnings):
-        hint = "Correct what it names: simulators read the file the same way."
+        hint = "Correct what it names: simulators read the file in the same way."
         model.findings.append(Finding(code="W_IMPORT_MUJOCO", where=path.name, message=f"MuJoCo warns: {text}", hint=hint))
     require_links(model, path)
     return assemble(fused(model) if fuse else with_chains_named(model), path)
@@ -265,7 +265,7 @@ class _Reader:
             reach = min(high, math.pi) if limited else math.pi
             if limited:
                 self._drop(
-                    f"joints.{name}", f"The limit of {high:.6g} rad on the whole turn of ball {name!r} becomes its cone and its twist."
+                    f"joints.{name}", f"The limit of {high:.6g} rad on the total rotation of ball {name!r} becomes its cone and its twist."
                 )
             twist = (-reach, reach) if limited else None
             rest = _xyzw(qpos[at : at + 4])

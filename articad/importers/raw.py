@@ -159,13 +159,13 @@ def assemble(model: RawModel, path: Path) -> Assembly:
         ReadError: If it is too large, or is no mechanism.
     """
     if len(model.links) > MAX_LINKS:
-        raise unreadable(path, "", f"It has {len(model.links)} links; {MAX_LINKS} are the most.")
+        raise unreadable(path, "", f"It has {len(model.links)} links; the maximum is {MAX_LINKS}.")
     require_links(model, path)
     connectors: dict[str, dict[str, Connector]] = {name: {} for name in model.links}
     for joint in model.joints:
         for link, frame in ((joint.parent, joint.frame_p), (joint.child, joint.frame_c)):
             if not np.abs(frame.translation).max() <= LARGEST_MM:  # NaN is not either
-                raise unreadable(path, f"joint {joint.name!r}", "It stands beyond reason.")
+                raise unreadable(path, f"joint {joint.name!r}", "Its position is not plausible.")
             connectors[link][joint.name] = Connector(joint.name, frame)
     ties = _consistent_ties(model)
     rests = _rest_values(model.joints, ties)
@@ -225,7 +225,7 @@ def _joint(joint: RawJoint, rest: tuple[float, ...], findings: list[Finding]) ->
     ranges = []
     for (low, high), value in zip(joint.ranges, rest, strict=False):
         if not low <= value <= high:
-            message = f"Joint {joint.name!r} follows another out of its limits [{low:.6g}, {high:.6g}] at rest; they were widened."
+            message = f"Joint {joint.name!r} follows another joint and is outside its limits [{low:.6g}, {high:.6g}] at rest; the limits were widened."
             findings.append(Finding(code="W_IMPORT_LIMITS", where=f"joints.{joint.name}", message=message, hint="Correct the limits."))
         ranges.append((min(low, value), max(high, value)))
     return Joint(

@@ -69,7 +69,7 @@ def parse_xml(content: bytes, path: Path) -> Any:
     except (etree.XMLSyntaxError, ValueError) as error:
         raise unreadable(path, f"line {getattr(error, 'lineno', 1)}", f"It is not XML: {error}.") from None
     if root is None:
-        raise unreadable(path, "line 1", "It holds no element.")
+        raise unreadable(path, "line 1", "It contains no element.")
     if root.getroottree().docinfo.internalDTD is not None and root.getroottree().docinfo.internalDTD.entities():
         raise unreadable(path, "line 1", "It declares entities, which are not expanded.")
     return root
@@ -107,7 +107,7 @@ class _Counter:
         self._elements += 1
         self._depth += 1
         if len(attributes) > 2 * MAX_ATTRIBUTES:
-            self._refuse(f"An element has {len(attributes) // 2} attributes; {MAX_ATTRIBUTES} are the most.")
+            self._refuse(f"An element has {len(attributes) // 2} attributes; the maximum is {MAX_ATTRIBUTES}.")
         if self._elements > MAX_ELEMENTS:
             self._refuse(f"It has more than {MAX_ELEMENTS} elements.")
         if self._depth > MAX_DEPTH:

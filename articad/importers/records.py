@@ -61,7 +61,7 @@ def stale(records: list[Record], elements: Iterable[Any], path: Path) -> list[Fi
     if written is None or written == fingerprint(elements):
         return []
     message = f"{path.name} was edited after articad wrote it, so it is read like any other file, without articad's records."
-    hint = "Edit the plan instead and export again, or take the <articad> records out of the file."
+    hint = "Edit the plan instead and export again, or remove the <articad> records from the file."
     return [Finding(code="W_IMPORT_STALE", where=str(path), message=message, hint=hint)]
 
 
@@ -78,7 +78,7 @@ def assembly_of(records: list[Record], folder: Folder, path: Path) -> Assembly:
     except ArticadError as error:
         if any(finding.code == "E_UNSAFE_PATH" for finding in error.findings):
             raise
-        raise unreadable(path, "articad metadata", f"The records make no assembly: {error.message}") from error
+        raise unreadable(path, "articad metadata", f"The records do not form an assembly: {error.message}") from error
 
 
 def _assembly(records: list[Record], folder: Folder) -> Assembly:
@@ -190,7 +190,7 @@ def _coupling(record: Record) -> Coupling:
 def _frame(numbers: list[float]) -> SE3:
     x, y, z, *xyzw = (float(number) for number in numbers)
     if max(abs(x), abs(y), abs(z)) > LARGEST_MM:
-        raise ValueError("a frame stands beyond reason")
+        raise ValueError("the position of a frame is not plausible")
     if len(numbers) != 7 or not all(map(math.isfinite, numbers)) or not abs(math.hypot(*xyzw) - 1) < 1e-12:
         return SE3.from_quaternion(xyzw, [x, y, z])  # refuses what is no rotation
     return SE3.from_unit_array(np.array([x, y, z, *xyzw]))

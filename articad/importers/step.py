@@ -36,10 +36,13 @@ def read_step(path: str | Path, *, root: str | Path | None = None, deflection: f
     read = StepReader().read_assembly(path, deflection=deflection)
     parts = {part.name: _part(part, deflection) for part in read if part.valid and part.mesh is not None}
     if not parts:
-        raise unreadable(path, "", "It holds no valid solid.")
+        raise unreadable(path, "", "It contains no valid solid.")
     findings = [
         Finding(
-            code="W_IMPORT_DROPPED", where=part.where, message=f"{part.name} is no valid solid; it is left out.", hint="Repair it in CAD."
+            code="W_IMPORT_DROPPED",
+            where=part.where,
+            message=f"{part.name} is not a valid solid; it is left out.",
+            hint="Repair it in CAD.",
         )
         for part in read
         if part.name not in parts

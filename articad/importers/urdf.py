@@ -34,7 +34,7 @@ from articad.kinematics.joints import JointType
 
 FloatArray = NDArray[np.float64]
 
-EXPAND = "Run `xacro FILE.urdf.xacro > FILE.urdf` (pip install xacro) and read what it writes."
+EXPAND = "Run `xacro FILE.urdf.xacro > FILE.urdf` (pip install xacro) and read its output."
 _XACRO = {"http://www.ros.org/wiki/xacro", "http://ros.org/wiki/xacro", "http://wiki.ros.org/xacro"}
 _CAPSULE = "capsule:"  # before the name of a shape that is one
 _SHAPES = {"box", "cylinder", "sphere", "mesh"}
@@ -128,7 +128,7 @@ def _parse(document: Any, path: Path) -> Any:
 def _strip(document: Any, path: Path) -> list[Finding]:
     """Take out what other programs' elements hold, and shapes that have no mesh; return what was lost."""
     if len(document) > 8 * MAX_LINKS:
-        raise unreadable(path, "", f"It has {len(document)} elements; {8 * MAX_LINKS} are the most.")
+        raise unreadable(path, "", f"It has {len(document)} elements; the maximum is {8 * MAX_LINKS}.")
     findings = []
     for element in list(document):
         if element.tag not in {"link", "joint", "material"}:
@@ -177,7 +177,7 @@ def _quaternions_to_angles(document: Any, path: Path) -> None:
         xyzw = [float(word) for word in text.split()]
         length = math.hypot(*xyzw)
         if not length > 1e-9:
-            raise unreadable(path, f"line {origin.sourceline}", f"quat_xyzw={text!r} is no rotation.")
+            raise unreadable(path, f"line {origin.sourceline}", f"quat_xyzw={text!r} is not a rotation.")
         origin.set("rpy", " ".join(repr(angle) for angle in _angles(SE3.from_quaternion([number / length for number in xyzw]).rotation)))
 
 
@@ -237,7 +237,7 @@ def _require_numbers(document: Any, path: Path) -> None:
                 raise unreadable(path, f"line {element.sourceline}", f"{name}={text!r} has {len(numbers)} numbers.")
             infinite_limit = element.tag == "limit"  # an infinite limit is none
             if any(math.isnan(number) or (abs(number) > _LARGEST and not infinite_limit) for number in numbers):
-                raise unreadable(path, f"line {element.sourceline}", f"{name}={text!r} is beyond reason.")
+                raise unreadable(path, f"line {element.sourceline}", f"{name}={text!r} is not a plausible number.")
 
 
 _COUNTS = {"xyz": (3,), "rpy": (3,), "quat_xyzw": (4,), "size": (3,), "scale": (1, 3)}
@@ -354,7 +354,7 @@ def _add_joint(model: RawModel, joint: Any, types: dict[str, str], path: Path) -
     for name in ("effort", "velocity"):
         value = None if limit is None else getattr(limit, name)
         if value is not None and value < 0:
-            message = f"Joint {joint.name!r} has the {name} {value:g}; {-value:g} is taken."
+            message = f"Joint {joint.name!r} has the {name} {value:g}; {-value:g} is used."
             model.findings.append(
                 Finding(code="W_IMPORT_LIMITS", where=f"joints.{joint.name}", message=message, hint="Give a positive one.")
             )
@@ -383,9 +383,9 @@ def _range(model: RawModel, joint: Any, unit: float) -> tuple[float, float]:
         return ENDLESS
     lower, upper = (None, None) if limit is None else (limit.lower, limit.upper)
     if lower is None and upper is None:
-        message = f"Joint {joint.name!r} has no limits; it is taken as endless."
+        message = f"Joint {joint.name!r} has no limits; it is treated as endless."
     elif (lower or 0.0) > (upper or 0.0):
-        message = f"Joint {joint.name!r} has limits [{lower}, {upper}] that are reversed; it is taken as endless."
+        message = f"Joint {joint.name!r} has limits [{lower}, {upper}] that are reversed; it is treated as endless."
     else:
         return (lower or 0.0) * unit, (upper or 0.0) * unit
     model.findings.append(Finding(code="W_IMPORT_LIMITS", where=f"joints.{joint.name}", message=message, hint="Give lower and upper."))

@@ -49,7 +49,7 @@ class Body:
         if self.is_empty:
             return "the mesh has no triangles"
         if not self.mesh.is_closed:
-            return f"the mesh is open: {self.mesh.open_edges} edges have no partner"
+            return f"the mesh is open: {self.mesh.open_edges} edges belong to only one triangle"
         if self.mesh.volume <= 0:
             return f"the mesh encloses {self.mesh.volume:.6g} mm³: it is flat or inside out"
         if self._shell_outside_all is not None:

@@ -87,7 +87,7 @@ class InsertionOrder:
                     code="W_NOT_INSERTABLE",
                     where=f"parts.{self.stuck[0]}",
                     parts=self.stuck,
-                    message=f"{', '.join(self.stuck)} cannot be put in place in a straight line: blocked are {ways}.",
+                    message=f"{', '.join(self.stuck)} cannot be put in place in a straight line; blocked: {ways}.",
                     hint="Open one side, split a part, or let it snap or rotate into place.",
                 )
             ]

@@ -129,7 +129,7 @@ class PairCase:
         return self._because(
             "unbored_hole",
             "code",
-            f"{self._other(solid)} stands {high - low:.4g} mm deep in solid material of {solid}, which has no hole there.",
+            f"{self._other(solid)} is {high - low:.4g} mm deep in solid material of {solid}, which has no hole there.",
             f"Bore {solid} along the axis with a diameter of {bore:.4g} mm, {high - low:.4g} mm deep (the pin's is {2 * radius:.4g} mm).",
             value=2 * radius,
             limit=bore,
@@ -154,8 +154,8 @@ class PairCase:
                 return self._because(
                     "missing_slot",
                     "code",
-                    f"{self._other(name)}, {thickness:.4g} mm thick, stands in solid material of {name}.",
-                    f"Cut a slot {width:.4g} mm wide into {name} where {self._other(name)} turns.",
+                    f"{self._other(name)}, {thickness:.4g} mm thick, is inside solid material of {name}.",
+                    f"Cut a slot {width:.4g} mm wide into {name} where {self._other(name)} rotates.",
                     value=thickness,
                     limit=width,
                     culprit=name,
@@ -182,7 +182,7 @@ class PairCase:
             "envelope",
             "design",
             f"{name} is {length:.6g} mm long in its {'xyz'[k]} and ends {depth:.4g} mm inside {self._other(name)}.",
-            f"Make {name} {depth:.4g} mm shorter in its {'xyz'[k]}, {room:.6g} mm, less a gap; or move it by as much.",
+            f"Make {name} {depth:.4g} mm shorter in its {'xyz'[k]}, {room:.6g} mm, minus a gap; or move it by the same amount.",
             value=length,
             limit=room,
         )
@@ -209,7 +209,7 @@ class PairCase:
             "design",
             f"The axes of {turning[0].name} and {turning[-1].name} are {between:.4g} mm apart, but {self.a} and {self.b} reach "
             f"{reach:.4g} mm together.",
-            f"Move the axes {reach - between:.4g} mm further apart, to more than {reach:.4g} mm, or shorten what turns.",
+            f"Move the axes {reach - between:.4g} mm further apart, to more than {reach:.4g} mm, or shorten the rotating part.",
             value=between,
             limit=reach,
         )
@@ -231,9 +231,9 @@ class PairCase:
         return self._because(
             "pivot_on_face",
             "design",
-            f"The axis of {joint.name} lies {inset:.4g} mm from a face of {name}, so that its edge turns into {self._other(name)} "
+            f"The axis of {joint.name} lies {inset:.4g} mm from a face of {name}, so its edge rotates into {self._other(name)} "
             f"up to {deepest:.4g} mm deep.",
-            f"Move the axis {deepest:.4g} mm out of the face, towards the side it opens to, or round the edge by as much.",
+            f"Move the axis {deepest:.4g} mm out of the face, towards the side to which it opens, or round the edge by the same amount.",
             value=inset,
             limit=inset + deepest,
         )
@@ -253,8 +253,8 @@ class PairCase:
         return self._because(
             "envelope",
             "design",
-            f"{joint.name} runs to {bound:.6g} mm, but there is room to {value:.6g} mm only.",
-            f"Shorten the travel by {excess:.4g} mm, or make {self.b} as much shorter.",
+            f"{joint.name} runs to {bound:.6g} mm, but there is space only up to {value:.6g} mm.",
+            f"Shorten the travel by {excess:.4g} mm, or shorten {self.b} by the same amount.",
             value=bound,
             limit=value,
         )
@@ -356,7 +356,7 @@ def _in_pieces(name: str, body: Body) -> Finding | None:
         code="E_NOT_ONE_SOLID",
         where=f"parts.{name}",
         parts=(name,),
-        message=f"{name} is {len(solids)} solids, the first two {apart}.",
+        message=f"{name} consists of {len(solids)} solids; the first two are {apart}.",
         hint="Fuse the bodies so that they overlap" + (f": close the gap of {gap:.4g} mm." if gap > 0 else ", by at least 0.01 mm."),
         value=gap,
         limit=0.0,

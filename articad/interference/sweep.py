@@ -161,7 +161,7 @@ class MotionSampler:
         except KinematicsError as error:
             return Checks(self._unreached(error.findings, error.message, over), (), self.scene.deflection, over, tuple(self.scene.bodies))
         if not solution.ok:
-            missed = f"{int((~solution.reached).sum())} of {len(points)} poses are not reached."
+            missed = f"{int((~solution.reached).sum())} of {len(points)} poses cannot be reached."
             findings += self._unreached(solution.findings, missed, over)
         if not len(kept):
             return Checks(Findings(findings), (), self.scene.deflection, over, tuple(self.scene.bodies))
@@ -343,7 +343,7 @@ class MotionSampler:
         finding = Finding(
             code="E_NOT_CHECKED",
             where=f"joints.{over[0].split('.')[0]}",
-            message=f"The motion over {', '.join(over)} is not all sampled: {what}",
+            message=f"The motion over {', '.join(over)} is not completely sampled: {what}",
             hint="Narrow the limits to what the mechanism can reach.",
         )
         return Findings([*causes, finding])

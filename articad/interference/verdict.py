@@ -79,7 +79,7 @@ def _overlap_finding(scene: Scene, parts: tuple[str, str], found: Overlap, *, co
     smaller = min(scene.bodies[a].volume, scene.bodies[b].volume)
     waiver = scene.relations.waiver(a, b)
     measure = f"{a} and {b} overlap by {found.volume:.4g} mm³, {found.depth:.3g} mm deep (allowed {allowed:.3g} mm)"
-    beyond_waiver = "" if waiver is None else f" The waiver covers {waiver.max_depth:g} mm only."
+    beyond_waiver = "" if waiver is None else f" The waiver covers only {waiver.max_depth:g} mm."
     if collides:
         code, message = "E_MOTION_COLLISION", f"{measure}{_at(pose)}."
         hint = f"Keep them apart there, or move one by {found.depth:.3g} mm."
@@ -87,7 +87,7 @@ def _overlap_finding(scene: Scene, parts: tuple[str, str], found: Overlap, *, co
         much = found.volume > min(STATIC_SHARE * smaller, STATIC_CAP_MM3) or found.depth > STATIC_CAP_MM
         code = "E_STATIC_OVERLAP" if much else "W_STATIC_OVERLAP"
         joint = scene.relations.between(a, b)[0]
-        message = f"{measure}; joint {joint.name!r} connects them, and a fit needs no more than {allowed:.3g} mm."
+        message = f"{measure}; joint {joint.name!r} connects them, and a fit needs at most {allowed:.3g} mm."
         hint = f"Remove {found.depth:.3g} mm from one of them where they meet: bore the hole, or cut the slot."
     else:
         code, message = "E_OVERLAP", f"{measure}."
@@ -112,7 +112,7 @@ def _waived_finding(scene: Scene, parts: tuple[str, str], found: Overlap, waiver
         parts=parts,
         message=f"{parts[0]} and {parts[1]} overlap {found.depth:.3g} mm deep ({found.volume:.4g} mm³), allowed up to {waiver.max_depth:g} mm: "
         f"{waiver.reason}.",
-        hint="Nothing, while the reason holds.",
+        hint="Nothing, as long as the reason holds.",
         value=found.depth,
         limit=waiver.max_depth,
         unit="mm",

@@ -72,11 +72,11 @@ class StepReader(Build123dKernel):
                 head = ran.report[0] if ran.report else {}
                 if head.get("ok") is not True:
                     why = head.get("message") or ends_by(ran.outcome) or ran.crash
-                    raise ReadError(f"{path.name} is no STEP file that can be read: {str(why)[:200]}.", path=str(path))
+                    raise ReadError(f"{path.name} is not a readable STEP file: {str(why)[:200]}.", path=str(path))
                 mesh = read_mesh(read_bytes(job / "part.npz"))
                 return _parts(ran.report[1:], mesh)
         except (PoisonedError, InvalidSolidError) as error:
-            raise ReadError(f"{path.name} is no STEP file that can be read: {error}", path=str(path)) from error
+            raise ReadError(f"{path.name} is not a readable STEP file: {error}", path=str(path)) from error
 
 
 def _parts(rows: list[dict[str, Any]], whole: TriMesh) -> tuple[StepPart, ...]:

@@ -277,7 +277,7 @@ class Group:
         place = self.system.layout.column_of_freedom(freedom)
         end = float(self.system.move(Q[0], step[0] * trace.end)[place])
         asked = float(wanted[0, place])
-        row += "no way round was found; " if self._closable(wanted)[0] else "nothing that closes was found there; "
+        row += "no way around was found; " if self._closable(wanted)[0] else "no closed configuration was found there; "
         return failure(trace, self.system.layout.coordinates[place], end, asked, row)
 
     def velocities(self, Q_all: FloatArray, G: FloatArray) -> None:
@@ -439,7 +439,7 @@ class Branch:
         if len(q) > 1:
             named = "; ".join(f"row {i} ({self._values(q[i])})" for i in rows[:_ROWS_NAMED].tolist())
             more = f" and {len(rows) - _ROWS_NAMED} more" if len(rows) > _ROWS_NAMED else ""
-            row = f"{len(rows)} of {len(q)} rows are not reached: {named}{more}. Row {first}: "
+            row = f"{len(rows)} of {len(q)} rows cannot be reached: {named}{more}. Row {first}: "
         group = next(group for group in self.groups if not group.solve(Q_all).reached[0])
         return group.failure(Q_all[0], row)
 
@@ -498,14 +498,14 @@ def failure(trace: Trace, coordinate: Coordinate, end: float, asked: float, row:
         finding = Finding(code="E_DEAD_POINT", where=where, message=message, hint=hint, value=end, unit=coordinate.unit)
         return DeadPointError(str(finding), driver=coordinate.name, q=end, findings=[finding])
     if trace.stop is Stop.SINGULAR:
-        what = f"the mechanism is singular at {coordinate.name} = {there}: its branch is not determined beyond."
+        what = f"the mechanism is singular at {coordinate.name} = {there}: its branch is not determined beyond that."
         code, hint = "E_SINGULAR", "Keep the driver away from there."
     elif trace.stop is Stop.MULTIPLE:
         what = f"the mechanism is not followed beyond {coordinate.name} = {there}: its constraints have a multiple root."
-        code, hint = "E_NOT_FOLLOWED", "Use fewer links, or links that are not parallel or equal; nothing is known to bar the way beyond."
+        code, hint = "E_NOT_FOLLOWED", "Use fewer links, or links that are not parallel or equal; no obstacle is known beyond that."
     else:
-        what = f"the mechanism was followed to {coordinate.name} = {there} and not further: the way takes too many steps."
-        code, hint = "E_NOT_FOLLOWED", f"Ask for a value nearer than {there}; nothing is known to bar the way beyond."
+        what = f"the mechanism was followed to {coordinate.name} = {there} and not further: the path takes too many steps."
+        code, hint = "E_NOT_FOLLOWED", f"Request a value nearer than {there}; no obstacle is known beyond it."
     finding = Finding(code=code, where=where, message=f"{row}on the way to {wanted} {what}", hint=hint, value=end, unit=coordinate.unit)
     return KinematicsError(str(finding), findings=[finding])
 

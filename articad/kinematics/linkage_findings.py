@@ -78,7 +78,7 @@ def inconsistency(needed: Correction) -> tuple[str, str]:
     """Say what keeps loops from closing and moving that are nearly consistent, and what to do about it."""
     if needed.askew is not None and needed.askew[2] > ANGLE_TOLERANCE:
         a, b, angle = needed.askew
-        cause = f"the axes of {b.part}.{b.connector} and {a.part}.{a.connector} are {math.degrees(angle):.3f}° askew"
+        cause = f"the axes of {b.part}.{b.connector} and {a.part}.{a.connector} are {math.degrees(angle):.3f}° out of parallel"
         return cause, f"Turn one of the two axes by {math.degrees(angle):.3f}°, or release a joint of the loop."
     far = max(needed.moved, key=lambda one: one.distance)
     cause = f"{far.part}.{far.connector} would have to move by {shown_gap(far.distance)} (tolerance {needed.distance_tolerance:.1e} mm)"
@@ -97,10 +97,8 @@ def _coupling_findings(group: Group) -> list[Finding]:
     found = []
     for train in _connected(locked):
         names, joints = ", ".join(repr(c.name) for c in train), ", ".join(dict.fromkeys(n for c in train for n in (c.a, c.b)))
-        message = f"Coupling(s) {names} cannot move: with the rest of the mechanism they hold {joints} fast."
-        hint = (
-            "Remove a coupling, or correct a ratio: round a closed train the product of the ratios must be 1, so gears need an even number."
-        )
+        message = f"Coupling(s) {names} cannot move: together with the rest of the mechanism they lock {joints}."
+        hint = "Remove a coupling, or correct a ratio: around a closed train, the product of the ratios must be 1, so a ring of gears needs an even number."
         parts = tuple(
             dict.fromkeys(
                 part
@@ -130,7 +128,7 @@ def _driver_findings(group: Group, beyond: Correction | None) -> list[Finding]:
     names = ", ".join(c.name for c in group.drivers)
     found = []
     for joint in group.refused:
-        message = f"Joint {joint.name!r} is marked as a driver, but the {analysis.mobility} freedom(s) are driven already by {names}."
+        message = f"Joint {joint.name!r} is marked as a driver, but {names} already drive(s) the {analysis.mobility} freedom(s)."
         hint = "Mark one independent joint as driver for each freedom."
         found.append(Finding(code="E_DRIVER", where=f"joints.{joint.name}", message=message, hint=hint, value=analysis.mobility))
     return found
@@ -178,7 +176,7 @@ def _mobility_findings(group: Group) -> list[Finding]:
     elif analysis.multiple:
         message = (
             f"The linkage has {analysis.first_order} freedoms to first order at rest and {analysis.mobility} in truth: nearby, "
-            f"{analysis.multiple} more stay(s) free to first order, though no finite motion follows. Play of the joints lets parts move there."
+            f"{analysis.multiple} more stay(s) free to first order, although no finite motion follows. Play in the joints lets parts move there."
         )
         hint = "Use fewer links, or links that are not parallel or equal."
         if not group.follower.simple:
@@ -190,12 +188,12 @@ def _mobility_findings(group: Group) -> list[Finding]:
         found.append(Finding(code="W_NEAR_SINGULAR", where=where, message=message, hint=hint, parts=parts, value=0.0, limit=NEAR_SINGULAR))
     elif analysis.near < NEAR_SINGULAR:
         message = f"The rest pose is near-singular: σ = {analysis.near:.2g} of the largest."
-        hint = "Look for a misaligned axis or a dead point nearby."
+        hint = "Check for a misaligned axis or a dead point nearby."
         found.append(
             Finding(code="W_NEAR_SINGULAR", where=where, message=message, hint=hint, parts=parts, value=analysis.near, limit=NEAR_SINGULAR)
         )
     for idle in idle_parts(system, analysis):
-        message = f"{' and '.join(idle)} can move while all other parts stand still."
+        message = f"{' and '.join(idle)} can move while all other parts stay at rest."
         hint = "This is correct for a leg that may spin; otherwise fix it."
         found.append(Finding(code="W_IDLE_FREEDOM", where=f"parts.{idle[0]}", message=message, hint=hint, parts=idle))
     return found
@@ -211,7 +209,9 @@ def _redundancy_findings(mechanism: Mechanism) -> list[Finding]:
         message = f"Loop {'-'.join(one.loop)} has {one.count} constraint(s) that it does not need: {', '.join(one.directions)}."
         changes = " and ".join(f"{name!r} to {new}" for name, new in one.release)
         hint = (
-            f"In real life, release {changes}." if changes else "In real life, release joints of the loop to balls or cylindrical joints."
+            f"In the real mechanism, release {changes}."
+            if changes
+            else "In the real mechanism, replace joints of the loop by ball or cylindrical joints."
         )
         found.append(Finding(code="I_REDUNDANT", where=f"joints.{one.joint}", message=message, hint=hint, parts=one.loop, value=one.count))
     return found

@@ -117,7 +117,7 @@ class ClosureSystem:
         self.length = characteristic_length(self.layout.joints)
         self.lengths: FloatArray = np.array([characteristic_length(loop.joints) for loop in self.loops])  # L of each loop
         if not np.isfinite([self.length, *self.lengths]).all():
-            raise KinematicsError("E_NONFINITE: the distances between joints are beyond what numbers can hold.")
+            raise KinematicsError("E_NONFINITE: the distances between joints exceed the floating-point range.")
         self.arrays = TreeArrays(subtree.parts, subtree, self.layout, SE3.identity(), loop_joints)
         self.scale: FloatArray = np.where(self.layout.is_length, self._travels(), 1.0)
         self._closures = closures(self.arrays, loop_joints, self.scale, self.lengths)

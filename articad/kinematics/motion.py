@@ -124,7 +124,7 @@ def _reason(track: Track, coordinate: Coordinate, values: FloatArray, *, certify
     if not certify:
         return "followed by predictor and corrector with three guards; certify=True proves the branch"
     if not track.follower.certifiable:
-        return "the constraints have a multiple root, for which there is no proof of the branch"
+        return "the constraints have a multiple root, so the branch cannot be proven"
     if not values.size:
         return "no value was reached"
     ends = [track.value(sign, track.side(float(v)).nodes[-1].s) for sign, v in ((1, values.max()), (-1, values.min()))]
@@ -290,7 +290,7 @@ def _range_findings(c: Coordinate, lower: float, upper: float, lower_reason: str
         whys = {
             "E_DEAD_POINT": "a dead point",
             "E_SINGULAR": "a singular configuration",
-            "E_NOT_FOLLOWED": "the way beyond takes too many steps,",
+            "E_NOT_FOLLOWED": "the path beyond takes too many steps,",
         }
         if reason == Stop.MULTIPLE:
             whys["E_NOT_FOLLOWED"] = "the constraints have a multiple root,"
@@ -324,7 +324,7 @@ def _gap_finding(c: Coordinate, missed: FloatArray, steps: int) -> Finding:
     """Return the finding about values that are not reached although the linkage was followed past them."""
     first = float(missed[0])
     message = f"{len(missed)} of {steps} values of driver {c.name!r} were not solved, the first at {shown(first, c.unit)}."
-    hint = "Ask for values beside it: the linkage is near-singular there."
+    hint = "Request values beside it: the linkage is near-singular there."
     return Finding(code="E_NOT_FOLLOWED", where=f"joints.{c.joint}", message=message, hint=hint, value=first, unit=c.unit)
 
 

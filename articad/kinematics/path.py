@@ -186,15 +186,15 @@ def path(mechanism: Mechanism, start: npt.ArrayLike, goal: npt.ArrayLike, accept
         configuration = mechanism.configuration(q)
         configuration.require_within_limits()
         if accept is not None and not accept(configuration):
-            raise KinematicsError(f"The {name} of the path is not free itself: parts overlap there.")
+            raise KinematicsError(f"The {name} of the path is not collision-free: parts overlap there.")
     found = planner.find(*ends)
     if found is None:
-        kinds = "limits, the branch and parts in the way" if accept is not None else "limits and the branch"
+        kinds = "limits, the branch and colliding parts" if accept is not None else "limits and the branch"
         finding = Finding(
             code="E_NO_PATH",
             where="joints",
-            message=f"No way from start to goal was found among {_SAMPLES} random values of the drivers: {kinds} bar those tried.",
-            hint="Go there by waypoints of your own, or widen limits; a narrow way may exist that was not found.",
+            message=f"No path from start to goal was found among {_SAMPLES} random values of the drivers: {kinds} block those that were tried.",
+            hint="Provide waypoints, or widen limits; a narrow path may exist that was not found.",
         )
         raise KinematicsError(str(finding), findings=[finding])
     return found

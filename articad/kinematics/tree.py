@@ -66,7 +66,7 @@ class KinematicTree:
                 stack += carried[part][::-1]
         if len(order) != len(parts):
             lost = sorted({*parts} - reached)
-            raise KinematicsError(f"The joints are not a tree: {', '.join(lost)} do not hang from the ground {ground!r}.")
+            raise KinematicsError(f"The joints are not a tree: {', '.join(lost)} are not connected to the ground {ground!r}.")
         self.joints = tuple([joints[at] for at in order])
         self.parents = tuple([parents[at] for at in order])
         self.parts = (ground, *[parts[at] for at in order])

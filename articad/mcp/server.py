@@ -198,7 +198,7 @@ class Tools:
         entry = CODES.get(code)
         if entry is None:
             raise ToolError(f"There is no code {code!r}.{did_you_mean(code, CODES)}")
-        return f"{code} (stage {entry.stage}, to be mended in the {entry.route or 'request'}): {entry.meaning} {entry.remedy}"
+        return f"{code} (stage {entry.stage}, to be fixed in the {entry.route or 'request'}): {entry.meaning} {entry.remedy}"
 
     async def docs(
         self,

@@ -96,8 +96,8 @@ class Case:
             content["parts"] = tuple(PartExample(**part) for part in content["parts"])
             words = [content["prompt"], *(content.get(name, "") for name in ("requirements", "design", "articad"))]
             words += [word for part in content["parts"] for word in (part.name, part.specification, part.kernel, part.script)]
-            _require(all(isinstance(word, str) for word in words), "a text is none")
-            _require(all(_is_number(value) for value in dict(content.get("scores", {})).values()), "a score is no number")
+            _require(all(isinstance(word, str) for word in words), "a text field is not a text")
+            _require(all(_is_number(value) for value in dict(content.get("scores", {})).values()), "a score is not a number")
             texts = [name for name in ("repairs", "defects", "lessons") if name in content]
             return cls(**content | {name: tuple(map(str, content[name])) for name in texts})
         except (KeyError, TypeError, ValueError, OverflowError) as error:

@@ -188,7 +188,7 @@ class DocumentationStore:
         try:
             return dict(json.loads(text))
         except ValueError as error:
-            message = f"The documentation of {self.dialect} could not be written down: {said.strip()[-500:]}"
+            message = f"The documentation of {self.dialect} could not be extracted: {said.strip()[-500:]}"
             finding = Finding(code="E_READ", where=self.dialect, message=message, hint="Run `articad doctor`.")
             raise ReadError(message, path=self.dialect, findings=[finding]) from error
 

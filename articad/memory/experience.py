@@ -288,7 +288,7 @@ def _topic_of_parts(kernel: str) -> str:
 def _refused(path: Path, error: Exception, *, writing: bool) -> ReadError | WriteError:
     doing = "write" if writing else "read"
     message = f"Cannot {doing} the experience store {path}: {error}."
-    hint = "Name another folder with --memory; if the file is damaged, put it aside and import an export of it."
+    hint = "Name another folder with --memory; if the file is damaged, move it away and import an export of it."
     finding = Finding(code="E_WRITE" if writing else "E_READ", where=str(path), message=message, hint=hint)
     kind = WriteError if writing else ReadError
     return kind(f"{message} {hint}", path=str(path), findings=[finding])

@@ -149,7 +149,7 @@ def _without_frames(assembly: Assembly) -> tuple[Assembly, list[Finding]]:
             return assembly, findings
         bare, kept, T_kept_bare, joint = found
         assembly = _merged(assembly, bare, kept, T_kept_bare, joint)
-        message = f"{bare!r} has no shape and is fixed to {kept!r}; it is part of it now."
+        message = f"{bare!r} has no shape and is fixed to {kept!r}; it was merged into it."
         hint = "Give it a shape in the file to keep it apart."
         findings.append(Finding(code="I_ADOPT_MERGED", where=f"parts.{bare}", parts=(kept,), message=message, hint=hint))
 
@@ -209,7 +209,7 @@ def _missing_fits(assembly: Assembly) -> list[Finding]:
     if not without:
         return []
     named = ", ".join(without[:10]) + (f" and {len(without) - 10} more" if len(without) > 10 else "")
-    message = f"No fit is declared for {named}: no file says how much play a joint needs."
+    message = f"No fit is declared for {named}: the file does not state how much play a joint needs."
     return [Finding(code="I_ADOPT_FITS", where="joints", message=message, hint='Give each a "fit" with gap_mm and contact.')]
 
 
@@ -342,8 +342,8 @@ class _Writer:
         self.drawn.append(sphere(PLACEHOLDER_MM))
         radius = self._size("placeholder", "radius", PLACEHOLDER_MM)
         self.terms.append(f"Sphere({radius})")
-        self.words.append(f"a ball of {PLACEHOLDER_MM:g} mm as a placeholder, since the file gives it no shape")
-        self._warn("W_ADOPT_PLACEHOLDER", "The file gives it no shape; a small ball stands for it.", f"Draw it in parts/{self.name}.py.")
+        self.words.append(f"a ball of {PLACEHOLDER_MM:g} mm as a placeholder, because the file gives it no shape")
+        self._warn("W_ADOPT_PLACEHOLDER", "The file gives it no shape; a small ball represents it.", f"Draw it in parts/{self.name}.py.")
 
     def _warn(self, code: str, message: str, hint: str) -> None:
         self.findings.append(Finding(code=code, where=f"parts.{self.name}", parts=(self.name,), message=message, hint=hint))

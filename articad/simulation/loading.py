@@ -94,7 +94,7 @@ def places(path: Path, root: Path | None) -> tuple[str, str]:
 
 def _answer(engine: Engine, ended: launcher.Ended, seconds: float) -> Loading:
     if ended.late:
-        return Loading(engine, "?", loads=False, message=f"it was not done after {seconds:g} s")
+        return Loading(engine, "?", loads=False, message=f"it did not finish within {seconds:g} s")
     try:
         answer = answer_in(ended.out)
     except (ValueError, IndexError):

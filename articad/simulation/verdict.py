@@ -175,8 +175,8 @@ def _findings(outcome: EngineOutcome) -> Iterator[Finding]:
         yield Finding(
             code="E_SIM_EXPLODES",
             where=outcome.engine,
-            message=f"In {name} the numbers went wild: a joint reached {outcome.top_speed:.4g} rad/s or m/s.",
-            hint="Look for overlap at rest and for impossible inertias with `articad audit`.",
+            message=f"In {name} the simulation diverged: a joint reached {outcome.top_speed:.4g} rad/s or m/s.",
+            hint="Check for overlap at rest and for impossible inertias with `articad audit`.",
             value=outcome.top_speed,
         )
         return
@@ -185,7 +185,7 @@ def _findings(outcome: EngineOutcome) -> Iterator[Finding]:
         yield Finding(
             code="E_SIM_UNSETTLED",
             where=outcome.engine,
-            message=f"In {name}, held at rest, a joint "
+            message=f"In {name}, with all joints held at rest, a joint "
             + (
                 f"still moves at {outcome.speed_at_rest:.4g} rad/s or m/s"
                 if speed
@@ -219,7 +219,7 @@ def _findings(outcome: EngineOutcome) -> Iterator[Finding]:
         yield Finding(
             code="E_SIM_ENERGY",
             where=outcome.engine,
-            message=f"In {name}, let go, the model gains {100 * (outcome.energy_growth or 0.0):.4g} % of its largest kinetic energy.",
+            message=f"In {name}, after release, the model gains {100 * (outcome.energy_growth or 0.0):.4g} % of its largest kinetic energy.",
             hint="Use a smaller time step, and check inertias and springs.",
             value=100 * (outcome.energy_growth or 0.0),
             limit=100 * GROWTH,
@@ -236,7 +236,7 @@ def _short_reaches(outcome: EngineOutcome, engine: str) -> Iterator[Finding]:
         low, high, lower, upper = (value * scale for value in (reach.low, reach.high, reach.lower, reach.upper))
         of = f"of {lower:.4g} to {upper:.4g} {unit}"
         if reach.role == "follower":
-            of += ", to which its drivers would bring it"
+            of += ", which follows from its drivers"
         message = f"In {engine} {reach.joint} reaches {100 * reach.share:.3g} % of its range: {low:.4g} to {high:.4g} {of}"
         if reach.allowed is not None:
             message += f", of which its loop allows {reach.allowed[0] * scale:.4g} to {reach.allowed[1] * scale:.4g}"
@@ -255,7 +255,7 @@ def _short_reaches(outcome: EngineOutcome, engine: str) -> Iterator[Finding]:
 
 def _advice(reach: JointReach) -> str:
     if reach.allowed is not None and covered(reach.low, reach.high, *reach.allowed) >= SHARE:
-        return "Declare the range that the loop allows; `articad check` says what ends it."
+        return "Declare the range that the loop allows; `articad check` names what limits it."
     if reach.blocker:
-        return "Make room or narrow the range; MuJoCo collides with the convex hulls of meshes, which fill holes and slots."
-    return "Look for a limit, spring or constraint that stops it."
+        return "Add clearance or narrow the range; MuJoCo uses the convex hulls of meshes for collision, which fill holes and slots."
+    return "Check for a limit, spring or constraint that stops it."

@@ -85,4 +85,4 @@ def test_more_links_than_are_read_are_one_finding(tmp_path: Path) -> None:
 
     (finding,) = audit_file(tmp_path / "a.urdf", QUIET).findings
     assert finding.code == "E_READ"
-    assert "are the most" in finding.message
+    assert "the maximum is" in finding.message

@@ -143,7 +143,7 @@ def test_a_sound_file_is_left_as_it_is(tmp_path: Path) -> None:
     result = mend(path, tmp_path / "out", density=DENSITY, choices=QUICK)
 
     assert result.masses == {}
-    assert result.done == ["told MuJoCo to keep folders in mesh names"]
+    assert result.done == ["set MuJoCo to keep folders in mesh names"]
     assert audit_file(result.file, QUICK).ok
 
 

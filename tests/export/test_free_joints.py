@@ -265,7 +265,7 @@ def test_a_free_base_is_held_at_rest_by_sweeps_and_certificates_which_say_so() -
     certificate = free.certify()
     assert certificate.ok
     assert certificate.asked == ("shoulder",)
-    assert "what moves freely stands at rest throughout (root)" in certificate.to_json()["covers"]
+    assert "free joints stay at rest throughout (root)" in certificate.to_json()["covers"]
     assert certificate.refutation() is None
 
 

@@ -50,7 +50,7 @@ def test_pinocchio_reads_a_package_unchanged(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("name", ["My_Rack", "a__b", "1a", "", "a-b", "a/b"])
 def test_names_that_ros_does_not_take_are_refused(name: str) -> None:
-    with pytest.raises(ExportError, match="no name for a ROS package"):
+    with pytest.raises(ExportError, match="not a valid name for a ROS package"):
         write_urdf(geared_pair(), package=name)
 
 

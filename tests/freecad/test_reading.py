@@ -108,7 +108,7 @@ def with_axis_askew(path: Path, frame: str, degrees: float) -> Path:
 def test_a_crank_slider_with_an_axis_askew_is_refused_with_the_angle(frame: str, tmp_path: Path) -> None:
     (path,) = write_freecad(assembly("slider_crank")).write(tmp_path)
     (found,) = read_freecad(with_axis_askew(path, frame, 1.206), metadata=False).mechanism.findings().of("E_LOOP_OPEN")
-    assert "1.206° askew" in found.message
+    assert "1.206° out of parallel" in found.message
     assert "Turn one of the two axes by 1.206°" in str(found.hint)
     assert "Lengthen" not in str(found)
 

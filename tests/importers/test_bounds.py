@@ -62,7 +62,7 @@ def test_copies_are_counted_before_they_are_made(tag: str, count: str, tmp_path:
     monkeypatch.setattr("articad.importers.mjcf.compiled_mjcf", never)
     path = tmp_path / "a.xml"
     path.write_text(WORLD.format(f'<{tag} count="{count}">{GEOM}</{tag}>'))
-    with pytest.raises(ReadError, match=r"copies; 1000 are the most|no count of copies"):
+    with pytest.raises(ReadError, match=r"copies; the maximum is 1000|not a valid number of copies"):
         read_mjcf(path)
 
 

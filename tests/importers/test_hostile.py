@@ -46,8 +46,8 @@ URDFS = {
     "an unknown link": (joint("", ends='<parent link="a"/><child link="nowhere"/>'), "Its link 'nowhere' is not in the file"),
     "an unknown type": (joint("", "helical"), "not one of"),
     "no axis": (joint('<axis xyz="0 0 0"/><limit lower="0" upper="1"/>'), "no direction"),
-    "NaN": (joint('<origin xyz="nan 0 0"/><limit lower="0" upper="1"/>'), "beyond reason"),
-    "a huge number": (joint('<origin xyz="1e300 0 0"/><limit lower="0" upper="1"/>'), "beyond reason"),
+    "NaN": (joint('<origin xyz="nan 0 0"/><limit lower="0" upper="1"/>'), "not a plausible number"),
+    "a huge number": (joint('<origin xyz="1e300 0 0"/><limit lower="0" upper="1"/>'), "not a plausible number"),
     "not a number": (joint('<origin xyz="x 0 0"/>'), "not a number"),
     "two numbers": (joint('<origin xyz="1 2"/>'), "has 2 numbers"),
     "records of no form": (robot("<articad>{}</articad>"), "no object with a kind|not an object"),
@@ -72,12 +72,12 @@ def test_a_broken_urdf_is_a_named_error(name: str, tmp_path: Path) -> None:
 
 MJCFS = {
     "another root": ("<robot/>", "not <mujoco>"),
-    "not MJCF": ("<mujoco><nonsense/></mujoco>", "MuJoCo does not take it"),
+    "not MJCF": ("<mujoco><nonsense/></mujoco>", "MuJoCo does not load it"),
     "a file outside": ('<mujoco><asset><mesh name="m" file="../../etc/passwd"/></asset></mujoco>', "leads out"),
     "an absolute file": ('<mujoco><asset><hfield name="m" file="/etc/passwd"/></asset></mujoco>', "leads out"),
     "an outside folder": ('<mujoco><compiler meshdir="../.."/><asset><mesh name="m" file="x.stl"/></asset></mujoco>', "leads out"),
     "an outside include": ('<mujoco><include file="../b.xml"/></mujoco>', "leads out"),
-    "an include of itself": ('<mujoco><include file="a.xml"/></mujoco>', "must not go round"),
+    "an include of itself": ('<mujoco><include file="a.xml"/></mujoco>', "must not form a circle"),
     "many copies": ('<mujoco><worldbody><replicate count="1000000"><body/></replicate></worldbody></mujoco>', "copies"),
     "many copies in three directions": ('<mujoco><worldbody><flexcomp count="100 100 100"/></worldbody></mujoco>', "copies"),
 }
@@ -178,7 +178,7 @@ def test_a_hundred_thousand_links(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
     monkeypatch.setattr(urdf, "MAX_LINKS", 1000)
     (tmp_path / "a.urdf").write_text(robot("".join(f'<link name="l{i}"/>' for i in range(100_000))))
 
-    with pytest.raises(ReadError, match="are the most"):
+    with pytest.raises(ReadError, match="the maximum is"):
         read_urdf(tmp_path / "a.urdf")
 
 

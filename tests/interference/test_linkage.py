@@ -281,7 +281,7 @@ def test_a_driver_that_cannot_be_followed_at_all_leaves_loops_unchecked_and_says
     meshes, joints = four_bar((0.0, 5.0, 0.0))
     certificate = certify(meshes, Mechanism(tuple(meshes), "frame", joints))
     assert not certificate.ok
-    assert "nothing encloses what follows" in str(certificate.findings.of("E_NOT_CHECKED"))
+    assert "no tube encloses the followers" in str(certificate.findings.of("E_NOT_CHECKED"))
 
 
 def test_a_joint_beside_the_loop_is_proven_together_with_its_driver() -> None:

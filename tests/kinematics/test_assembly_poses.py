@@ -97,7 +97,7 @@ def test_solve_returns_what_is_reached_and_names_what_is_not() -> None:
     assert [f.code for f in found.findings] == ["E_DEAD_POINT"]
     assert "row 1" in str(found.findings[0])
     assert assembly.solve(q[1]).ok
-    with pytest.raises(DeadPointError, match=r"1 of 4 rows are not reached: row 1"):
+    with pytest.raises(DeadPointError, match=r"1 of 4 rows cannot be reached: row 1"):
         assembly.poses(q)
 
 

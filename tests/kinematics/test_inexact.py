@@ -153,11 +153,11 @@ def test_axes_askew_beyond_the_tolerance_are_named_with_their_angle(degrees: flo
     plain = slider_crank(crank=0.5)
     joints = [replace(j, T_child_connector=j.T_child_connector @ tilt) if j.name == "small_end" else j for j in plain.joints]
     mechanism = Mechanism(plain.parts, plain.ground, joints)
-    with pytest.raises(LoopError, match=rf"piston\.\w+ and piston\.\w+ are {degrees:.3f}° askew") as caught:
+    with pytest.raises(LoopError, match=rf"piston\.\w+ and piston\.\w+ are {degrees:.3f}° out of parallel") as caught:
         mechanism.poses(plain.rest)
     assert "0.000 mm" not in str(caught.value)
     assert "Lengthen" not in str(caught.value)
-    with pytest.raises(LoopError, match=rf"coupler\.\w+ and coupler\.\w+ are {degrees:.3f}° askew"):
+    with pytest.raises(LoopError, match=rf"coupler\.\w+ and coupler\.\w+ are {degrees:.3f}° out of parallel"):
         four_bar(tilt=math.radians(degrees)).poses([1.0])
     assert math.radians(degrees) > ANGLE_TOLERANCE
 

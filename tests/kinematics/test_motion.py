@@ -417,7 +417,7 @@ def test_a_released_loop_closes_in_spite_of_a_tilted_axis() -> None:
 def test_redundancy_of_couplings_larger_mechanisms_and_trees() -> None:
     assert gear_train().redundancy() == ()
     assert len(scissor(10).findings().of("I_REDUNDANT")) == 11
-    assert "balls or cylindrical" in scissor(10).findings().of("I_REDUNDANT")[0].hint
+    assert "ball or cylindrical" in scissor(10).findings().of("I_REDUNDANT")[0].hint
     assert Mechanism(("a",), "a", []).redundancy() == ()
     crank = slider_crank().redundancy()[0]
     assert sum({"ball": 2, "cylindrical": 1}[new] for _, new in crank.release) == 3

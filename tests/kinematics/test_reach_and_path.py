@@ -92,7 +92,7 @@ def test_a_batch_names_the_rows_it_cannot_reach() -> None:
     mechanism = five_bar()
     q = np.array([[0.1, 0.1], [1.5, -1.5], [0.2, 0.1]])
     assert apart(q[1]) > 120
-    with pytest.raises(KinematicsError, match=r"1 of 3 rows are not reached: row 1 \(a = 85\.944°, d = -85\.944°\)"):
+    with pytest.raises(KinematicsError, match=r"1 of 3 rows cannot be reached: row 1 \(a = 85\.944°, d = -85\.944°\)"):
         mechanism.poses(q)
 
 

@@ -126,8 +126,8 @@ def test_a_long_certificate_can_be_cancelled_and_leaves_no_process(tmp_path: Pat
 @pytest.mark.parametrize(
     ("tool", "arguments", "words"),
     [
-        ("check_plan", {"design": "../else", "plan": {}}, "no name of a design"),
-        ("build_part", {"design": "chest", "part": "../../x", "script": ""}, "no name of a part"),
+        ("check_plan", {"design": "../else", "plan": {}}, "not a valid name of a design"),
+        ("build_part", {"design": "chest", "part": "../../x", "script": ""}, "not a valid name of a part"),
         ("build_part", {"design": "chest", "part": "lid", "script": "#" * 300_000}, "at most 200000"),
         ("audit", {"design": "/etc/passwd"}, "outside the root"),
         ("render", {"design": "link"}, "outside the root"),

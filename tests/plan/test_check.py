@@ -172,7 +172,7 @@ CASES = [
         "E_AXIS_PARALLEL",
         chest_with(lambda p: connector(p, "box", "hinge").update(x=[2, 0, 0])),
         "parts.box.connectors.hinge.x",
-        "Choose x across z, such as (0, 1, 0).",
+        "Choose x perpendicular to z, such as (0, 1, 0).",
     ),
     Case(
         "E_AXIS_NOT_ORTHOGONAL",
