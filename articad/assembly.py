@@ -1,4 +1,4 @@
-"""Assembly: what users hold. Parts, a mechanism that moves them, and what was promised about their fits."""
+"""Assembly: parts, the mechanism that moves them, and the fits declared between them."""
 
 from __future__ import annotations
 
@@ -75,11 +75,11 @@ class Poses(Mapping[str, SE3]):
 
 @dataclass(frozen=True)
 class Kept:
-    """Something that a file said and that an assembly has no field for.
+    """Data of a file for which an assembly has no field.
 
     Attributes:
         format: Of the file, such as "urdf".
-        where: What it was said of: `joints.elbow`, `parts.arm`, or `model`.
+        where: What it belongs to: `joints.elbow`, `parts.arm`, or `model`.
         what: In words, for reports.
         xml: The element, to be written below `where` into a file of the same format; empty where that is not possible.
     """
@@ -103,11 +103,11 @@ class Assembly:
         waivers: Overlaps that the plan allows.
         resolved: The plan with its numbers; None when made in Python or imported.
         realised: How each part was built; empty when made in Python or imported.
-        findings: Warnings of the plan's check, and what the builds had to say.
+        findings: Warnings of the plan's check and of the builds.
         deflection: Largest distance of meshes from their solids [mm].
-        foreign: True when it was read from a file that articad did not write: where its base stands and its joints rest is what that
-            file happened to have.
-        kept: What that file said beyond this.
+        foreign: True when it was read from a file that articad did not write. The pose of its base and the rest values of its joints are
+            then whatever the file happened to have.
+        kept: Data of that file for which an assembly has no field.
     """
 
     name: str
@@ -123,14 +123,14 @@ class Assembly:
     foreign: bool = False
     kept: tuple[Kept, ...] = ()
     _kernel: PartKernel | None = None
-    _cache: BuildCache | None = None  # a temporary one, and the B-rep files in it, go with whoever holds it last
+    _cache: BuildCache | None = None  # a temporary cache; it and its B-rep files are deleted with the last object that refers to it
 
     def __post_init__(self) -> None:
         for attribute in ("parts", "materials", "fits", "realised"):
             object.__setattr__(self, attribute, MappingProxyType(dict(getattr(self, attribute))))
 
     def __reduce__(self) -> tuple[object, ...]:
-        """Let an assembly cross to another process; its kernel and its cache stay: the copy builds parts with those by default."""
+        """Support pickling. The kernel and the cache are not copied; the copy builds parts with the default ones."""
         given = {entry.name: getattr(self, entry.name) for entry in fields(self) if entry.name not in {"_kernel", "_cache"}}
         return _restored, (
             type(self),
@@ -163,13 +163,13 @@ class Assembly:
             jobs: How many parts at once; by default the number of processors.
             deflection: Largest distance of a mesh from its solid [mm].
             cache: Keeps built parts; by default `$ARTICAD_CACHE` or `~/.cache/articad`.
-            progress: Told of each part's fate.
+            progress: Called with the outcome of each part.
             parameters: Values that replace the plan's own [mm, degrees].
 
         Raises:
             PlanError: With every finding of `check_plan` if one is an error; no script has run then.
             ContractError: If a part cannot be built; holds the findings of all that failed.
-            SandboxError: If the isolation asked for is not available.
+            SandboxError: If the requested isolation is not available.
         """
         resolved, findings = admitted(plan, **dict(parameters or {}))
         kernel = kernel or kernel_named(resolved.plan.kernel, sandbox=sandbox)
@@ -179,7 +179,7 @@ class Assembly:
             scripts = find_scripts(Path(parts), resolved, kernel.name)
         cache = cache or BuildCache()
         realised = build_parts(resolved, scripts, kernel=kernel, cache=cache, deflection=deflection, jobs=jobs, progress=progress)
-        warnings = Findings(finding for finding in findings if finding.severity == "warning")  # notes are what `check_plan` is asked for
+        warnings = Findings(finding for finding in findings if finding.severity == "warning")  # notes are returned by `check_plan` only
         return cls.from_realised(resolved, realised, kernel=kernel, cache=cache, deflection=deflection, findings=warnings)
 
     @classmethod
@@ -193,15 +193,15 @@ class Assembly:
         deflection: float = DEFLECTION_MM,
         findings: Findings = Findings(),  # noqa: B008 - immutable
     ) -> Self:
-        """Assemble parts that are built already; no model, no kernel.
+        """Assemble parts that are already built; this calls no model and no kernel.
 
         Args:
             resolved: The plan with its numbers.
             realised: Its parts, by name.
-            kernel: Builds parts anew when parameters change.
-            cache: Holds their files, and those of parts that are built anew.
+            kernel: Rebuilds parts when parameters change.
+            cache: Holds the files of these parts and of rebuilt ones.
             deflection: Largest distance of their meshes from the solids [mm].
-            findings: What is to be known of the plan.
+            findings: Findings about the plan.
         """
         mechanism = resolved.mechanism
         return cls(
@@ -260,7 +260,7 @@ class Assembly:
             values: By name, in the unit that the plan gives them: mm, degrees or none.
 
         Raises:
-            PlanError: If there is no plan, a parameter is unknown, or the plan does not hold at these values.
+            PlanError: If there is no plan, a parameter is unknown, or the plan is not valid at these values.
         """
         if self.resolved is None:
             raise PlanError("This assembly was not made from a plan, so it has no parameters.")
@@ -295,7 +295,7 @@ class Assembly:
     # ------------------------------------------------------------------ where things are
 
     def q(self, **by_joint: JointValue) -> FloatArray:
-        """Return the configuration with these joints set and all other drivers at rest; what follows them is within its limits.
+        """Return the configuration with these joints set and all other drivers at rest; limits of joints that follow are checked.
 
         Args:
             by_joint: A number for a joint of one coordinate, else a sequence in the order of its coordinates [rad, mm];
@@ -306,8 +306,9 @@ class Assembly:
 
         Raises:
             UnknownJointError: If a name is not that of a joint that drives.
-            LimitError: If a value is outside its limits, or a joint that follows would be; it says how far the driver may go.
-            DeadPointError: If a loop does not reach it.
+            LimitError: If a value is outside its limits or moves a following joint outside its own; the message says how far the driver
+                may go.
+            DeadPointError: If a loop cannot be closed there.
             PlanError: If a joint gets more or fewer values than it has coordinates.
         """
         q = np.array(self.mechanism.rest, dtype=np.float64)
@@ -334,7 +335,7 @@ class Assembly:
         return Poses(self.mechanism.parts, self.poses(self.q(**by_joint)))
 
     def poses(self, q: ArrayLike) -> SE3:
-        """Place every part in the ground frame, whatever the limits of joints; `q` and `at` hold to them.
+        """Place every part in the ground frame. Limits of joints are not checked here; `q` and `at` check them.
 
         Args:
             q: Coordinates of the drivers [rad, mm], `(*batch, nq)`.
@@ -343,12 +344,12 @@ class Assembly:
             `T_ground_part` of all parts in the order of `parts`, `(*batch, N, 7)` [mm, quaternion xyzw].
 
         Raises:
-            KinematicsError: If loops do not reach a row; of a batch it names which. `solve` returns those that are reached.
+            KinematicsError: If loops cannot be closed; for a batch, the message names the rows. `solve` returns the rows that can.
         """
         return self.mechanism.poses(np.asarray(q, dtype=np.float64))
 
     def solve(self, q: ArrayLike) -> Solution:
-        """Place every part where the mechanism reaches the drivers' values, and say where it does not; see `Mechanism.solve`.
+        """Place every part, and mark the configurations in which loops cannot be closed; see `Mechanism.solve`.
 
         Args:
             q: Coordinates of the drivers [rad, mm], `(*batch, nq)`.
@@ -358,7 +359,7 @@ class Assembly:
     def path(self, start: ArrayLike, goal: ArrayLike, *, clear: bool = False) -> FloatArray:
         """Return waypoints of the drivers from one configuration to another; straight lines between them keep to branch and limits.
 
-        Args:
+        Return waypoints of the drivers from one configuration to another; on the straight lines between them, branch and limits hold.
             start: Values of the drivers `(nq,)` [rad, mm].
             goal: Values of the drivers `(nq,)` [rad, mm].
             clear: Whether parts must not meet on the way either: poses every 0.1 rad or lengths of a link are looked at, which
@@ -369,7 +370,7 @@ class Assembly:
 
         Raises:
             LimitError: If start or goal is outside limits, followers included.
-            KinematicsError: E_NO_PATH if no way was found.
+            KinematicsError: E_NO_PATH if no path was found.
         """
         return self.mechanism.path(start, goal, accept=self._is_clear if clear else None)
 
@@ -425,10 +426,10 @@ class Assembly:
             part: Name of the part that carries the frame.
             target: A pose in the ground frame, or a point `(3,)` [mm], which leaves the orientation free.
             frame: Frame in the part, or the name of one of its connectors; the part's own frame by default.
-            clear: Whether parts must not meet in the configuration either.
+            clear: Whether parts must also be free of collisions in the configuration.
 
         Raises:
-            KinematicsError: E_REACH_BARRED if the target is reached only where parts meet.
+            KinematicsError: E_REACH_BARRED if parts collide in every configuration found that reaches the target.
         """
         accept = (lambda q: self._is_clear(self.mechanism.configuration(q))) if clear else None
         return self.mechanism.reach(part, target, self._frame(part, frame), accept=accept)
@@ -443,17 +444,17 @@ class Assembly:
         steps: int = DEFAULT_STEPS,
         known: Mapping[tuple[str, str], PairCheck] | None = None,
     ) -> Checks:
-        """Check one pose for overlap, floating parts and broken meshes; at rest the declared fits, too, also over their motion.
+        """Check one pose for overlap, floating parts and broken meshes; at rest also the declared fits, over the motion of their joints.
 
         Args:
             q: Configuration `(nq,)` [rad, mm]; the rest pose by default.
-            motion: Whether to sample the motion as well: each driver alone, every two on a grid, all at scattered poses, and then by a
-                search for the nearest pose of each two parts. A sample proves nothing between two poses; `certify` does.
+            motion: Whether to sample the motion as well: each driver alone, every two on a grid, all together at scattered poses, then a
+                search for the closest pose of every two parts. Nothing is proven between two samples; `certify` proves.
             steps: Poses per driver, with `motion`.
-            known: Verdicts of an earlier check by pair of parts: they are taken over without measuring, and without findings.
+            known: Verdicts of an earlier check by pair of parts; they are reused without measurement and without findings.
 
         Raises:
-            PlanError: If a configuration is given and `motion` asked for.
+            PlanError: If both a configuration and `motion` are given.
         """
         if motion:
             if q is not None:
@@ -476,7 +477,7 @@ class Assembly:
     ) -> Checks:
         """Sample the motion of every driver over its range, the others at rest; a sample proves nothing between two poses.
 
-        Declared fits are held over the motion of their joints, too; each row of `fits` says whether that is proven or sampled.
+        Declared fits are also checked over the motion of their joints; each row of `fits` says whether it is proven or sampled.
 
         Args:
             joints: Names of the joints to move; all that drive by default.
@@ -493,9 +494,9 @@ class Assembly:
         return self.check_motion(*args, **options)
 
     def clearances(self, joints: Sequence[str] | None = None, *, together: bool = True) -> tuple[Clearance, ...]:
-        """Return the smallest distance seen of each two parts that move against each other, with its pose, the nearest first.
+        """Return the smallest distance found between every two parts that move relative to each other, with its pose, the nearest first.
 
-        Poses are sampled and searched, so that the true least distance may be smaller; `certify` proves that parts do not meet.
+        Poses are sampled and searched, so the true minimum may be smaller; `certify` proves that parts do not meet.
 
         Args:
             joints: Names of the joints to move; all that drive by default.
@@ -504,11 +505,11 @@ class Assembly:
         return least_clearances(self._moved(), joints, together=together)
 
     def follows(self, joints: Sequence[str] | None = None, *, rows: int = ROWS) -> tuple[Following, ...]:
-        """Return a table of what follows each driver of loops and couplings, the other drivers at rest.
+        """Return a table of the joints that loops and couplings move with each driver, the other drivers at rest.
 
         Args:
             joints: Names of the joints that drive; all by default.
-            rows: Values of each driver, evenly over its range, beside the rest value.
+            rows: Values of each driver, evenly over its range, in addition to the rest value.
         """
         return what_follows(self._moved(), joints, rows=rows)
 
@@ -520,16 +521,16 @@ class Assembly:
         epsilon: float = DEFAULT_EPSILON_MM,
         budget: float = DEFAULT_BUDGET_S,
     ) -> Certificate:
-        """Prove that no parts meet while joints move over their whole ranges; what the budget does not suffice for is "not checked".
+        """Prove that no parts meet while joints move over their whole ranges; what the budget does not cover is "not checked".
 
-        Declared fits are proven, too. A fit that only samples speak for is `W_NOT_CERTIFIED`, which is not ok.
+        Declared fits are proven, too. A fit that was only sampled gives `W_NOT_CERTIFIED`, which is not ok.
 
         Args:
             joints: Names of the joints to be proven; all that move by default.
             pairs: Whether joints are also moved two at a time.
-            epsilon: Distances up to here are contact [mm].
-            budget: Nominal seconds of work, the same work on every machine; what is not proven by then is "not checked", which is not ok.
-                Each declared fit has as much again for itself.
+            epsilon: Distances up to this count as contact [mm].
+            budget: Nominal seconds of work, the same amount on every machine; claims that are not proven by then are "not checked",
+                which is not ok. Each declared fit has the same budget again for itself.
         """
         certificate = certify(
             self._meshes(),
@@ -576,12 +577,12 @@ class Assembly:
         return Dynamics(self.mechanism, masses, gravity=gravity)
 
     def to_plan(self) -> AssemblyPlan:
-        """Return the plan it was made from, with its parameters as they are, or a plan that tells it anew.
+        """Return the plan it was made from with the current parameters, or else a newly written plan that describes it.
 
-        What such a plan cannot hold, shapes above all, `articad.export.plan.write_plan` lists.
+        `articad.export.plan.write_plan` lists what such a plan cannot hold, shapes above all.
 
         Raises:
-            UnrepresentableError: If it rests where a plan cannot let it rest.
+            UnrepresentableError: If a plan cannot express its rest pose.
         """
         from articad.export.plan import plan_of  # noqa: PLC0415 - above this module
 
@@ -594,13 +595,13 @@ class Assembly:
         return render_views(self, views, **options)
 
     def _repr_html_(self) -> str:
-        """Return the element by which a notebook shows the assembly: the page of a report, with a slider for each driver."""
+        """Return the HTML by which a notebook shows the assembly: the page of a report, with a slider for each driver."""
         from articad.report import notebook_page  # noqa: PLC0415 - only where one looks
 
         return notebook_page(self)
 
     def _repr_mimebundle_(self, **_wanted: object) -> dict[str, str]:
-        """Return what a notebook may choose from: the page, and plain text where nothing can be drawn."""
+        """Return the forms a notebook may choose from: the page, and plain text if nothing can be drawn."""
         return {"text/plain": repr(self), "text/html": self._repr_html_()}
 
     def __repr__(self) -> str:
@@ -620,7 +621,7 @@ class Assembly:
     def _held_fits(
         self, joints: Sequence[str] | None, spans: Mapping[str, tuple[float, float]] | None = None, *, seconds: float = PROOF_SECONDS
     ) -> FitReport:
-        """Hold the fits of some joints, and of those that move with them in loops and couplings; of all by default."""
+        """Check the fits of some joints and of those that move with them in loops and couplings; by default of all joints."""
         if joints is not None:
             tied = constrained_joints(self.mechanism)
             joints = [*joints, *(sorted(tied) if tied & set(joints) else ())]
@@ -638,7 +639,7 @@ class Assembly:
         return SE3.identity() if frame is None else frame
 
     def _is_clear(self, configuration: Configuration) -> bool:
-        """Tell whether no two parts overlap in a configuration beyond what joints, fits and waivers allow."""
+        """Return whether no two parts overlap in a configuration beyond what joints, fits and waivers allow."""
         poses = Poses(self.mechanism.parts, self.mechanism.arrays.poses(configuration.columns))
         checks = check_scene(self.scene(), poses, over="pose", ground=self.ground)
         return all(pair.verdict in {"clear", "contact"} for pair in checks.pairs)
@@ -656,7 +657,7 @@ class Assembly:
             raise LimitError(error.joint, error.value, error.lower, error.upper, error.unit, self._advice(driver, q, names))
 
     def _advice(self, driver: Coordinate, q: FloatArray, names: Iterable[str]) -> str:
-        """Say how far a driver may go, the other drivers that were set standing where they are asked for."""
+        """Say how far a driver may go while the other drivers that were set keep their values."""
         if driver.unit == "1":
             return f"It follows {driver.joint!r}."
         others = {
@@ -664,7 +665,7 @@ class Assembly:
         }
         try:
             feasible = self.mechanism.feasible_range(driver.name, at=others)
-        except KinematicsError:  # the drivers set beside it are out of reach without it
+        except KinematicsError:  # without this driver, the values of the others cannot be reached
             return f"It follows {driver.name!r}."
         return f"It follows {driver.name!r}, which may go from {feasible.lower:.6g} to {feasible.upper:.6g} {driver.unit} there."
 
@@ -693,7 +694,7 @@ def build(
     """Build every part script of a plan in the sandbox and assemble the result; see `Assembly.from_plan`.
 
     Args:
-        plan: What is to be built.
+        plan: The plan.
         parts: Folder of the part scripts, or their sources by part.
         kernel: Builds them; the plan's own choice by default.
         sandbox: "weak" runs scripts with less isolation than Landlock or bubblewrap give.

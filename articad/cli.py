@@ -64,7 +64,7 @@ def _add_global_flags(parser: argparse.ArgumentParser, *, default: Any) -> None:
 
 
 def _parsed(arguments: Sequence[str] | None) -> argparse.Namespace:
-    """Parse, or end with exit code 2 and a word that may have been meant."""
+    """Parse the command line; on an error, exit with code 2 and suggest the closest known word."""
     parser = _parser()
     options, unknown = parser.parse_known_args(arguments)
     if options.command is None and not unknown:
@@ -91,7 +91,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     Args:
         arguments: Without the program's name; those of the process by default.
     """
-    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # more wait for each other by turning: on busy processors 100 times as long
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # more BLAS threads busy-wait: on busy processors 100 times as long
     options = _parsed(arguments)
 
     from articad.commands.terminal import Terminal
@@ -101,7 +101,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     try:
         with _prompt_interrupts(terminal), safe_path():
             return _run(COMMANDS[options.command], options, terminal)
-    except BrokenPipeError:  # the reader of our output went away, as `head` does: nothing is left to be said, at exit neither
+    except BrokenPipeError:  # the reader of our output went away, as `head` does: print nothing more, not even at exit
         with contextlib.suppress(OSError, ValueError):
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return CANNOT_GO_ON
@@ -111,8 +111,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
 def _prompt_interrupts(terminal: Terminal) -> Iterator[None]:
     """Make the first Ctrl-C end the program soon, even where threads wait for a part script or a model.
 
-    Python raises KeyboardInterrupt in the main thread, which then waits for the others. What was finished is on the disk,
-    whole, and the kernel's processes die with this one, so there is nothing to wait for.
+    Python raises KeyboardInterrupt in the main thread, which then waits for the others. Finished work is on disk and complete, and the
+    kernel's processes die with this one, so there is nothing to wait for.
     """
     if threading.current_thread() is not threading.main_thread():
         yield

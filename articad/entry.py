@@ -39,9 +39,9 @@ def read(
     Args:
         source: A URDF, MJCF, FreeCAD or STEP file; a plan, `plan.json` or its folder, with part scripts beside it; or a run folder.
         root: Folder that meshes of a file may be read from; the file's own by default.
-        fuse: Of URDF and MJCF: make chains of joints over bare links the one joint that they stand for, such as a ball.
+        fuse: For URDF and MJCF: replace chains of joints over links without shapes by the one joint that they stand for, such as a ball.
         sandbox: "weak" runs part scripts with less isolation than Landlock or bubblewrap give.
-        progress: Called with the fate of each part that is built.
+        progress: Called with the outcome of each part that is built.
 
     Raises:
         ReadError: If the source cannot be read.
@@ -67,7 +67,7 @@ def audit(target: str | Path | Assembly, options: AuditOptions | None = None) ->
         options: What to look at; everything but proofs by default.
 
     Raises:
-        ReadError: If it is no file, plan or run.
+        ReadError: If it is not a file, plan or run.
     """
     if isinstance(target, Assembly):
         return audit_assembly(target, target.name, "plan", options)
@@ -90,7 +90,7 @@ def certify(
         target: As for `read`, or an assembly.
         joints: Names of the joints to be proven; all that move by default.
         pairs: Whether joints are also moved two at a time.
-        epsilon: Distances up to here are contact [mm].
+        epsilon: Distances up to this count as contact [mm].
         budget: Nominal seconds of work, the same work on every machine.
     """
     assembly = target if isinstance(target, Assembly) else read(target)
@@ -101,8 +101,8 @@ def simulate(target: str | Path | Assembly, *, engines: tuple[Engine, ...] = ENG
     """Hold, drive and let go a model in simulators.
 
     Args:
-        target: As for `read`, or an assembly. A URDF or MJCF file is simulated as it stands; anything else as it is exported.
-        engines: Which to ask; those that are not installed are passed over.
+        target: As for `read`, or an assembly. A URDF or MJCF file is simulated as it is; anything else as articad exports it.
+        engines: Engines to use; those that are not installed are skipped.
         seconds: Time limit of each engine.
     """
     if isinstance(target, Assembly):

@@ -73,7 +73,7 @@ class PlanError(ArticadError):
 
 
 class ConnectorError(ArticadError):
-    """A frame, axis or rotation that is not one."""
+    """A malformed frame, axis or rotation."""
 
 
 class KinematicsError(ArticadError):
@@ -107,7 +107,7 @@ class LoopError(KinematicsError):
 
 
 class DeadPointError(KinematicsError):
-    """A driver asked to go beyond a dead point, which is at `q` [rad or mm]."""
+    """A driver that was to go beyond a dead point, which is at `q` [rad or mm]."""
 
     def __init__(self, message: str, *, driver: str, q: float, findings: Iterable[Finding] = ()) -> None:
         self.driver, self.q = driver, q
@@ -155,7 +155,7 @@ class SandboxError(KernelError):
 
 
 class KernelUnavailableError(KernelError):
-    """A kernel that is not installed; says where it was looked for and how to get it."""
+    """A kernel that is not installed; the message says where it was looked for and how to install it."""
 
     def __init__(self, message: str, *, looked_in: Iterable[str] = (), how_to_get: str = "", findings: Iterable[Finding] = ()) -> None:
         self.looked_in, self.how_to_get = tuple(looked_in), how_to_get
@@ -179,7 +179,7 @@ class ReadError(ArticadError):
 
 
 class WriteError(ArticadError):
-    """A file that cannot be written; `path` says which. What was written before is intact."""
+    """A file that cannot be written; `path` says which. Files that were written before are intact."""
 
     default_stage = "export"
 
@@ -189,7 +189,7 @@ class WriteError(ArticadError):
 
 
 class RunError(ArticadError):
-    """A run directory that cannot be used: none, of another request, or in use by another process."""
+    """A run directory that cannot be used: it is not one, belongs to another request, or is in use by another process."""
 
     default_stage = "import"
 
@@ -211,7 +211,7 @@ class ExportError(ArticadError):
 
 
 class UnrepresentableError(ExportError):
-    """Something that the format cannot hold, when `strict` was asked for."""
+    """Something that the format cannot hold; raised if `strict` was requested."""
 
     def __init__(self, joint: str, format_name: str, lost: str, *, findings: Iterable[Finding] = ()) -> None:
         self.joint, self.format_name, self.lost = joint, format_name, lost
@@ -225,7 +225,7 @@ class AgentError(ArticadError):
 
 
 class OutputError(AgentError):
-    """A reply that does not have the form asked for; `raw` is the reply."""
+    """A reply that does not have the required form; `raw` is the reply."""
 
     def __init__(self, message: str, *, raw: str, findings: Iterable[Finding] = ()) -> None:
         self.raw = raw

@@ -1,10 +1,10 @@
-"""Every file of a stranger is opened here: a regular file, of a bounded size, reached through no link.
+"""All untrusted files are opened here: regular files only, of a bounded size, reached through no link.
 
-A path that the user names may be a link; what lies below a folder that the user names may not lead out of it. With `root`, each
-component below the root is opened by itself without following links, so that nothing can be exchanged between a look and a read.
-`ARTICAD_ROOT` in the environment is such a root for everything that a process reads of others: the server of tools sets it.
+A path that the user names may be a link; a path below a folder that the user names may not lead out of it. With `root`, each component
+below the root is opened by itself without following links, so nothing can be exchanged between a check and a read. `ARTICAD_ROOT` in the
+environment is such a root for all untrusted files that a process reads: the MCP server sets it.
 
-Every refusal is an `OSError` with its reason in `strerror`, as those of the operating system. Standard library only.
+Every refusal is an `OSError` with its reason in `strerror`, like those of the operating system. Standard library only.
 """
 
 from __future__ import annotations
@@ -18,10 +18,10 @@ from typing import Final
 ROOT_VARIABLE: Final = "ARTICAD_ROOT"
 PLAN_BYTES: Final = 16 << 20  # a plan of a thousand parts has 0.4 MB
 SCRIPT_BYTES: Final = 4 << 20
-RECORD_BYTES: Final = 512 << 20  # of a file in a run: meshes, replies, certificates
+RECORD_BYTES: Final = 512 << 20  # largest file in a run: meshes, replies, certificates
 _PIECE: Final = 1 << 20
 _FOLDER: Final = getattr(os, "O_DIRECTORY", 0) | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_CLOEXEC", 0)
-# O_NONBLOCK: the opening of a pipe that nobody writes does not wait. O_NOCTTY: a terminal does not become ours.
+# O_NONBLOCK: opening a pipe without a writer does not block. O_NOCTTY: a terminal does not become the controlling one.
 _FILE: Final = (
     os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_NOCTTY", 0) | getattr(os, "O_CLOEXEC", 0) | getattr(os, "O_BINARY", 0)
 )
@@ -29,7 +29,7 @@ _BY_FOLDER: Final = os.open in os.supports_dir_fd
 
 
 class UnsafeFileError(OSError):
-    """A file that is not read: it is no regular file, is too large, or a link leads to it."""
+    """A file that is refused: it is not a regular file, is too large, or is reached through a link."""
 
 
 def read_file(path: str | Path, most: int, *, root: str | Path | None = None) -> bytes:
@@ -38,10 +38,10 @@ def read_file(path: str | Path, most: int, *, root: str | Path | None = None) ->
     Args:
         path: The file.
         most: The largest size that is read [bytes].
-        root: A folder above the file; no component of the path below it may be a link. Without it the user has named the path.
+        root: A folder above the file; no component of the path below it may be a link. None if the user named the path.
 
     Raises:
-        UnsafeFileError: If it is no regular file, is larger, or a link leads to it.
+        UnsafeFileError: If it is not a regular file, is larger, or a link leads to it.
         OSError: If it is missing or cannot be read.
     """
     file = open_file(path, root=root)
@@ -64,7 +64,7 @@ def open_file(path: str | Path, *, root: str | Path | None = None) -> int:
     """Return a descriptor of a regular file, opened for reading; see `read_file`.
 
     Raises:
-        UnsafeFileError: If it is no regular file, or a link leads to it.
+        UnsafeFileError: If it is not a regular file, or a link leads to it.
         OSError: If it is missing or cannot be read.
     """
     path = Path(path)
@@ -84,7 +84,7 @@ def open_file(path: str | Path, *, root: str | Path | None = None) -> int:
 
 
 def is_file(path: str | Path, *, root: str | Path | None = None) -> bool:
-    """Return whether `open_file` opens it."""
+    """Return whether `open_file` would open it."""
     try:
         os.close(open_file(path, root=root))
     except OSError:
@@ -93,10 +93,10 @@ def is_file(path: str | Path, *, root: str | Path | None = None) -> bool:
 
 
 def _root_of(path: Path, root: str | Path | None) -> str | Path | None:
-    """Return the root that counts for a path: the one that is given, unless all that this process reads has to lie below another.
+    """Return the root that applies to a path: the given one, unless everything that this process reads has to lie below another.
 
     Raises:
-        UnsafeFileError: If the path is not below the latter.
+        UnsafeFileError: If the path is not below that other root.
     """
     outermost = os.environ.get(ROOT_VARIABLE)
     if not outermost:
@@ -112,7 +112,7 @@ def _opened_below(root: Path, path: Path) -> int:
     if not path.is_relative_to(root) or path == root:
         raise _refused(path, f"it is outside {root}")
     *folders, name = path.relative_to(root).parts
-    if not _BY_FOLDER:  # Windows: the look and the opening are two steps
+    if not _BY_FOLDER:  # Windows: check and open are two steps
         if any(part.is_symlink() for part in (path, *path.parents) if part.is_relative_to(root) and part != root):
             raise _linked(path)
         return os.open(path, _FILE)

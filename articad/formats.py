@@ -46,7 +46,7 @@ class Format:
     """A file format.
 
     Attributes:
-        name: Word for it on the command line and in reports.
+        name: Its name on the command line and in reports.
         suffixes: Endings of its files, lower case; the first one is written.
         writer: `writer(assembly, *, strict=False, **options) -> Bundle`.
         reader: `reader(path, **options) -> Assembly`; None where the format is only written.
@@ -62,14 +62,14 @@ class Format:
     keeps: str = ""
 
     def write(self, assembly: Assembly, *, strict: bool = False, **options: Any) -> Bundle:
-        """Return the files of an assembly; options that this format does not know are left out."""
+        """Return the files of an assembly; options that this format does not have are ignored."""
         return self.writer(assembly, strict=strict, **_known(self.writer, options))
 
     def read(self, path: Path, **options: Any) -> Assembly:
-        """Return the assembly of a file; options that this format does not know are left out.
+        """Return the assembly of a file; options that this format does not have are ignored.
 
         Raises:
-            ReadError: If the format is only written, or the file cannot be read.
+            ReadError: If the format cannot be read, or the file cannot.
         """
         if self.reader is None:
             raise _not_read(path)
@@ -135,7 +135,7 @@ def read(path: str | Path, *, root: str | Path | None = None, fuse: bool = False
         srdf: Of URDF: the SRDF that belongs to it; by default the one of its name beside it.
 
     Raises:
-        ReadError: If the format is not read, or the file cannot be.
+        ReadError: If the format cannot be read, or the file cannot.
     """
     path = Path(path)
     if path.suffix.lower() == ".xacro":
@@ -157,13 +157,13 @@ def write(assembly: Assembly, path: str | Path, *, strict: bool = False, **optio
         assembly: What to write.
         path: The file; its ending says the format.
         strict: Refuse losses of motion, mass or shape.
-        options: Of the format's writer, such as `collision="hull"` for `write_urdf`.
+        options: Options of the format's writer, such as `collision="hull"` for `write_urdf`.
 
     Returns:
         What was written, with the losses.
 
     Raises:
-        ExportError: If the format is not written, an option is unknown to its writer, or `strict` refuses a loss.
+        ExportError: If the format cannot be written, an option is unknown to its writer, or `strict` refuses a loss.
     """
     path, found = Path(path), _written_as(path)
     if unknown := set(options) - set(_known(found.writer, options)):

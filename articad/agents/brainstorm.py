@@ -1,4 +1,4 @@
-"""Brainstorm: what an open request could become, as alternatives that differ in structure, held to that in code."""
+"""Brainstorm: alternatives for an open request; code checks that they differ in structure."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ def propose(request: RunRequest, llm: LLM, *, count: int = COUNT) -> tuple[tuple
         The alternatives, the best first, and `W_ALTERNATIVES` if fewer than `count` are structurally distinct.
 
     Raises:
-        OutputError: If no answer has the form.
+        OutputError: If no answer has the required form.
     """
     opening = (system(prompt("brainstorm", count=str(count))), user(_words(request), *pictures_of(request)))
     read = reader(Alternatives)
@@ -94,7 +94,7 @@ def propose(request: RunRequest, llm: LLM, *, count: int = COUNT) -> tuple[tuple
 
 
 def problems(proposed: Sequence[Alternative], count: int) -> list[str]:
-    """Return what is wrong with alternatives: too few of them, joints to nowhere, loose parts, and two that are the same."""
+    """Return what is wrong with alternatives: too few of them, joints to unknown parts, loose parts, and duplicates."""
     found = [] if len(proposed) == count else [f"{count} alternatives are wanted, not {len(proposed)}."]
     for number, one in enumerate(proposed, 1):
         found += [f"Alternative {number} ({one.name}): {problem}" for problem in _faults(one)]
@@ -108,7 +108,7 @@ def problems(proposed: Sequence[Alternative], count: int) -> list[str]:
 
 
 def distinct(proposed: Sequence[Alternative]) -> tuple[Alternative, ...]:
-    """Return those that are whole and differ from all before them."""
+    """Return the alternatives that have no fault and differ from all before them."""
     kept: list[Alternative] = []
     for one in proposed:
         if not _faults(one) and not any(same_structure(one, other) for other in kept):
@@ -123,7 +123,7 @@ def structure(one: Alternative) -> str:
 
 
 def same_structure(one: Alternative, other: Alternative) -> bool:
-    """Return whether two joint graphs are equal but for the names of the parts."""
+    """Return whether two joint graphs are equal up to the names of the parts."""
     if len(one.parts) != len(other.parts) or Counter(t.type for t in one.joints) != Counter(t.type for t in other.joints):
         return False
     edges, others = _edges(one), _edges(other)
@@ -158,7 +158,7 @@ _Edges = dict[frozenset[str], tuple[str, ...]]
 
 
 def _edges(one: Alternative) -> _Edges:
-    """Return the joints' types by the pair of parts that they connect."""
+    """Return the types of the joints by the pair of parts that they connect."""
     found: dict[frozenset[str], list[str]] = {}
     for tie in one.joints:
         found.setdefault(frozenset(tie.between), []).append(tie.type)
@@ -166,7 +166,7 @@ def _edges(one: Alternative) -> _Edges:
 
 
 def _colors(parts: Sequence[str], edges: _Edges) -> dict[str, str]:
-    """Return a mark for each part that equal graphs share: refined by the neighbours' marks, as often as there are parts."""
+    """Return a colour for each part, the same in equal graphs: refined by the neighbours' colours once per part (Weisfeiler-Leman)."""
     colors = dict.fromkeys(parts, "")
     for _ in parts:
         around = {

@@ -1,6 +1,6 @@
-"""Calls of models, each in a process of its own with a deadline and a bound on memory; the other end is `provider.py`.
+"""Calls of models, each in a process of its own with a deadline and a memory limit; `provider.py` is the other end.
 
-LiteLLM is imported once, in a process that this module starts, and never in the process that the user runs.
+LiteLLM is imported once, in a process that this module starts, and never in the user's process.
 """
 
 from __future__ import annotations
@@ -21,22 +21,24 @@ from articad.processes import launcher
 Json = dict[str, Any]
 
 START_S: Final = 180.0  # the import takes 2 s, on a cold and busy disk 10 s
-DESCRIBE_S: Final = 30.0  # to look up what LiteLLM knows of some models: no network
-_GRACE_S: Final = 0.5  # after a deadline, for what the kernel ended to be seen as ended
-_LARGEST: Final = 64 * 2**20  # bytes of an answer between the two processes; escapes and vectors of numbers need more than a body
+DESCRIBE_S: Final = 30.0  # to look up LiteLLM's data about some models, without network
+_GRACE_S: Final = 0.5  # after a deadline, until the end of a killed process is visible
+_LARGEST: Final = (
+    64 * 2**20
+)  # bytes of an answer between the two processes; JSON escapes and vectors of numbers need more than the body itself
 _LOST: Final = {"error": {"kind": "lost", "status": None, "text": "its process ended without an answer", "retry_after": ""}}
 _LATE: Final = {"error": {"kind": "late", "status": None, "text": "", "retry_after": ""}}
 
 
 class Calls:
-    """One process that has LiteLLM imported and forks another one for each call. Calls may come from many threads."""
+    """A process that has imported LiteLLM and forks another one for each call. Many threads may call it."""
 
     _shared: ClassVar[Calls | None] = None
     _shared_lock = threading.Lock()
 
     @classmethod
     def shared(cls) -> Calls:
-        """Return the calls of this process."""
+        """Return the `Calls` object of this process."""
         with cls._shared_lock:
             if cls._shared is None:
                 cls._shared = cls()
@@ -50,16 +52,16 @@ class Calls:
 
     @property
     def pid(self) -> int | None:
-        """The process that was started, which leads the group of all calls; None before the first one."""
+        """Id of the process that was started, which leads the process group of all calls; None before the first call."""
         return None if self._process is None else self._process.pid
 
     def ask(self, do: str, seconds: float, **words: Any) -> Json:
-        """Have a task of `provider.py` done and return its answer, or `{"error": {...}}`.
+        """Run a task of `provider.py` and return its answer, or `{"error": {...}}`.
 
         Args:
             do: The task.
-            seconds: When it is ended, however far it is. The start of the process that imports LiteLLM is not counted.
-            words: What the task needs, JSON.
+            seconds: Time after which the task is killed. The time to start the process that imports LiteLLM is not counted.
+            words: Arguments of the task, as JSON.
 
         Raises:
             OSError: If no process can be started, or LiteLLM cannot be imported there.
@@ -82,12 +84,12 @@ class Calls:
         return _LATE if time.monotonic() >= until - _GRACE_S / 2 else _LOST
 
     def close(self) -> None:
-        """End the process and all calls; the next call starts another one."""
+        """End the process and all calls; the next call starts a new process."""
         with self._lock:
             self._stop()
 
     def _hand_over(self, line: socket.socket) -> None:
-        """Give the far end of a line to the process, started now if none runs or if this process is a fork of its owner."""
+        """Send the far end of a socket to the process; start one if none runs or if this process is a fork of its owner."""
         with self._lock:
             for is_last in (False, True):
                 control = self._started()
@@ -110,14 +112,14 @@ class Calls:
             raise OSError(f"models are not called on {sys.platform}; use Linux, WSL 2 or a container")
         self._owner = os.getpid()
         ready: Future[socket.socket] = Future()
-        # A thread of its own lives as long as the process: the kernel ends a child with the thread that started it.
+        # This thread lives as long as the process: the kernel kills a child when the thread that started it ends.
         threading.Thread(target=self._attend, args=(ready,), name="articad-models", daemon=True).start()
         self._control = ready.result()
         atexit.register(self.close)
         return self._control
 
     def _attend(self, ready: Future[socket.socket]) -> None:
-        """Start the process, and stay until it ends."""
+        """Start the process, and wait until it ends."""
         ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         try:
             with theirs:
@@ -156,10 +158,10 @@ class Calls:
 
 
 def _exchanged(line: socket.socket, order: bytes, until: float) -> bytes:
-    """Send an order and return the answer, empty if there is none.
+    """Send a request and return the answer, empty if there is none.
 
     Raises:
-        TimeoutError: If the time is up.
+        TimeoutError: If the time is over.
     """
     line.settimeout(_left(until))
     line.sendall(order)

@@ -17,8 +17,8 @@ from articad.plan.check import check_plan
 from articad.plan.schema import AssemblyPlan
 from articad.runs.run import RunRequest
 
-TRIES: Final = 5  # answers until a plan validates; the findings of each go back
-SHOWN_FINDINGS: Final = 40  # more at once is not read; the next answer brings the rest
+TRIES: Final = 5  # answers until a plan is valid; the findings of each go back to the model
+SHOWN_FINDINGS: Final = 40  # more at once are not read; the next answer brings the rest
 ROLE: Final = "design"
 ANALYSIS: Final = "Its analysis, made before there was a plan (where numbers differ, what the request states binds, then the plan):"
 _DIALECTS: Final = {
@@ -27,19 +27,19 @@ _DIALECTS: Final = {
     "slots in planes across X, Y or Z that are padded, pocketed, revolved or lofted; patterns, fillets, chamfers. There is no ready "
     "function for a sweep, a helix or thread, an arc or spline in an outline, or a tilted plane: order shapes that do without.",
 }
-"""What a designer is told of the language of the part scripts, by kernel."""
+"""What a designer is told about the language of the part scripts, by kernel."""
 
 Judged = tuple[AssemblyPlan | None, Findings, OutputError | None]
-"""The plan of a reply, if it could be read; what is to be said of it; and the problem if it is not even JSON."""
+"""The plan of a reply, if it could be read; the findings about it; and the problem if it is not even JSON."""
 
 Tell = Callable[[AssemblyPlan | None, Findings], None]
-"""Told of each answer: the plan, if it could be read, and what was found in it."""
+"""Called with each answer: the plan, if it could be read, and its findings."""
 
 
 def response_schema() -> dict[str, Any]:
     """Return the JSON schema of a reply: the plan's top level only.
 
-    Providers differ in what depth and which unions they take; the prompt teaches the whole form, and `check_plan` holds it.
+    Providers differ in the depth and the unions that they accept; the prompt describes the whole form, and `check_plan` checks it.
     """
     text, items = {"type": "string"}, {"type": "array", "items": {"type": "object"}}
     properties = {
@@ -60,17 +60,17 @@ def response_schema() -> dict[str, Any]:
 
 
 class Designer:
-    """Designs one product: the first plan, and new versions of it when geometry shows what was wrong.
+    """Designs one product: the first plan, and new versions of it when geometry shows faults.
 
     Args:
         request: What the user asked for.
-        requirements: How it was understood.
-        llm: Who designs.
-        tries: Answers until a plan must validate.
-        tell: Told of each answer.
-        memory: Knows earlier runs.
-        instructions: What the role is and does; by default the design prompt.
-        judge: Reads an answer and its step.
+        requirements: The analysis of the request.
+        llm: The model that designs.
+        tries: Answers within which a plan must be valid.
+        tell: Called with each answer.
+        memory: Cases of earlier runs.
+        instructions: The system prompt; by default the design prompt.
+        judge: Function that reads an answer and its step.
     """
 
     def __init__(
@@ -95,24 +95,24 @@ class Designer:
         self._opening = (system(instructions or _instructions()), user(words, *pictures_of(request)))
 
     def first(self) -> AssemblyPlan:
-        """Return a plan that has no errors.
+        """Return a plan without errors.
 
         Raises:
-            PlanError: If the last answer still has errors; it holds them.
-            OutputError: If the last answer is no plan at all.
+            PlanError: If the last answer still has errors; `findings` holds them.
+            OutputError: If the last answer is not a plan at all.
         """
         return self._until_valid(self._opening)
 
     def again(
         self, plan: AssemblyPlan, findings: Iterable[Finding], *, pictures: Sequence[Image] = (), stubborn: Iterable[Finding] = ()
     ) -> AssemblyPlan:
-        """Return another plan, after the parts of this one were built and findings came up.
+        """Return another plan, after the parts of this one were built and findings resulted.
 
         Args:
-            plan: The one that was built.
-            findings: What came up.
-            pictures: Of the places of the findings.
-            stubborn: Those of them that came back although the plan was changed for them.
+            plan: The plan that was built.
+            findings: The findings to resolve.
+            pictures: Pictures of the places of the findings.
+            stubborn: Findings that came back although the plan was changed for them.
 
         Raises:
             PlanError, OutputError: As `first`.
@@ -155,7 +155,7 @@ class Designer:
 
 
 def listed(findings: Iterable[Finding]) -> str:
-    """Return findings as a list for a prompt: what is wrong where, and what would be right."""
+    """Return findings as a list for a prompt: what is wrong, where, and what would be valid."""
     several = tuple(findings)
     lines = [f"- {finding}" for finding in several[:SHOWN_FINDINGS]]
     if len(several) > SHOWN_FINDINGS:
@@ -164,7 +164,7 @@ def listed(findings: Iterable[Finding]) -> str:
 
 
 def judged(text: str, step: str) -> Judged:
-    """Return the plan of a reply, what is to be said of it, and the problem if it is not even JSON."""
+    """Return the plan of a reply, its findings, and the problem if it is not even JSON."""
     try:
         plan = AssemblyPlan.loads(object_text(text, step=step))
     except OutputError as error:
@@ -179,20 +179,20 @@ def _instructions() -> str:
 
 
 def task(request: RunRequest, requirements: Requirements) -> str:
-    """Return a request and its analysis in words."""
+    """Return a request and its analysis as text."""
     analysis = json.dumps({name: value for name, value in requirements.to_json().items() if name != "schema"}, indent=1, ensure_ascii=False)
     words = request.prompt.strip() or "(no words; see the pictures)"
     return f"The customer's request:\n\n{words}\n\n{ANALYSIS}\n\n```json\n{analysis}\n```"
 
 
 def _dialect(request: RunRequest) -> str:
-    """Return in what language the parts will be written, and what it lacks."""
+    """Return the text about the script language and its limits."""
     told = _DIALECTS.get(str(request.options.get("kernel")))
     return "" if told is None else f"\n\n{told}"
 
 
 def _recalled(memory: Memory, request: RunRequest, requirements: Requirements) -> str:
-    """Return what earlier runs teach; of none, nothing at all."""
+    """Return the text of cases from earlier runs; empty if there are none."""
     recalled = memory.for_design(request.prompt, requirements)
     return listed_cases("Of earlier products that turned out well:", recalled.heuristics) + listed_cases(
         "Defects of earlier products, to be avoided:", recalled.constraints

@@ -1,4 +1,4 @@
-"""What a replay made otherwise than the recording, and why: another version, kernel or platform, or files that were changed since."""
+"""Drift: where a replay differs from its recording, and why: another version, kernel or platform, or files changed since."""
 
 from __future__ import annotations
 
@@ -13,19 +13,19 @@ from articad.kernels.kernel import PartKernel
 from articad.kernels.results import PoisonedError, read_mesh
 from articad.runs.run import Run
 
-SAME_MM = 1e-6  # by which geometry may differ that another kernel or platform made
+SAME_MM = 1e-6  # tolerance for geometry made by another kernel or platform
 _NOTE = "made_with"
 _SHOWN = 3  # files that a finding names
 _GEOMETRY = ("part.npz", "part.brep", "part.step", "part.stl", "part.FCStd", "part.json", "connectors.json")
 
 
 def note(run: Run, kernel: PartKernel) -> None:
-    """Write into the trace, which is never compared, what a run is made with."""
+    """Write the versions that a run is made with into its trace, which is never compared."""
     run.trace("note", **{_NOTE: made_with(kernel)})
 
 
 def made_with(kernel: PartKernel) -> dict[str, str]:
-    """Return the versions and the platform that a run's files depend on."""
+    """Return the versions and the platform on which a run's files depend."""
     from articad import __version__  # noqa: PLC0415 - the package's own version, without a cycle at import
 
     return {
@@ -42,7 +42,7 @@ def drift(recorded: Run, again: Run, names: Sequence[str]) -> Findings:
     Args:
         recorded: The recording.
         again: Its replay.
-        names: Files that are not equal in both, by their paths in a run.
+        names: Files that are not equal in both runs, by their paths.
     """
     kinds: dict[str, list[str]] = {}
     for name in names:
@@ -72,7 +72,7 @@ def _finding(kind: str, files: list[str], recorded: Run, again: Run, why: str, *
 
 def _kind(name: str) -> str:
     if name.startswith("llm/"):
-        return "answers"  # each is told as a prompt that drifted
+        return "answers"  # each is reported as a prompt that drifted
     if name.startswith("plan"):
         return "the plan"
     if name.endswith("script.py"):
@@ -83,13 +83,13 @@ def _kind(name: str) -> str:
 
 
 def _noted(run: Run) -> Mapping[str, str]:
-    """Return what a run was made with, as far as its trace says so; the last note counts."""
+    """Return what a run was made with according to its trace; the last note counts."""
     notes = [event[_NOTE] for event in run.events() if isinstance(event.get(_NOTE), dict)]
     return {str(key): str(value) for key, value in notes[-1].items()} if notes else {}
 
 
 def _why(before: Mapping[str, str], now: Mapping[str, str]) -> tuple[str, bool]:
-    """Return the reason in words, and whether anything that geometry depends on was other, or is not known."""
+    """Return the reason in words, and whether anything on which geometry depends has changed or is unknown."""
     if not before:
         return "The recording does not say what it was made with.", True
     changed = [
@@ -103,7 +103,7 @@ def _why(before: Mapping[str, str], now: Mapping[str, str]) -> tuple[str, bool]:
 
 
 def _distance(recorded: Run, again: Run, files: Sequence[str]) -> float:
-    """Return the largest distance between vertices of the same number [mm]; infinite if a mesh has others, 0 if none differs."""
+    """Return the largest distance between corresponding vertices [mm]; infinite if the numbers of vertices differ, 0 if no mesh differs."""
     return max((_apart(*pair) for pair in _meshes(recorded, again, files)), default=0.0)
 
 

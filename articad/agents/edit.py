@@ -1,8 +1,8 @@
-"""Edit: a finished run changed by words or by numbers, and nothing of it that the change does not reach.
+"""Edit: change a finished run by words or numbers, and leave everything else as it is.
 
-A designer who sees the whole plan answers with changes to it, by address; what they reach is worked out before anything is
-built, and held against what they were meant to reach. Scripts and solids of all other parts stay as they are, verdicts of
-pairs that cannot have changed are carried over, and the report proves both.
+A designer who sees the whole plan answers with changes to it, by address. Before anything is built, the parts that these changes reach
+are computed and compared with the parts that the designer named. Scripts and solids of all other parts are kept, verdicts of pairs that
+cannot have changed are carried over, and the report proves both.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ from articad.plan.schema import AssemblyPlan
 from articad.runs.run import Run, RunRequest, UserImage, open_or_create
 
 ROLE: Final = "edit"
-_RULES: Final = ("# 1. Units", "# 7. Example")  # the sections of the design prompt that are rules of every plan, from and to
+_RULES: Final = ("# 1. Units", "# 7. Example")  # first and last heading of those sections of the design prompt that hold for every plan
 
 
 def edit(
@@ -64,26 +64,26 @@ def edit(
     jobs: int | None = None,
     progress: Progress | None = None,
 ) -> Run:
-    """Change a finished run; the run that is edited stays as it is.
+    """Change a finished run; the original run is not modified.
 
-    Called again with the same arguments and the same `out`, it goes on where it was interrupted and repeats no call.
+    Calling it again with the same arguments and the same `out` resumes an interrupted edit; no call to the model is repeated.
 
     Args:
-        run: The finished run, made by a model or built.
-        text: What shall be otherwise.
-        llm: Who answers; not needed where there are only `values`, as long as all scripts build with them.
-        values: Parameters of the plan that get other values, in mm and degrees.
+        run: The finished run, made by a model or by `build`.
+        text: The change, in words.
+        llm: The model; not needed with `values` alone, as long as all scripts build with them.
+        values: New values of parameters of the plan, in mm and degrees.
         images: Pictures that belong to the text.
         out: The directory of the new run; by default a new one under `runs/`.
         kernel: Builds the part scripts; the run's own by default.
         sandbox: As for `generate`.
         cache: As for `generate`.
         formats: As for `generate`.
-        designs: Answers until a changed plan must validate.
+        designs: Answers within which a changed plan must be valid.
         repairs: As for `generate`.
         rounds: As for `generate`.
-        look: As for `generate`; only parts that are written anew are looked at.
-        inspection: As for `generate`; without a text nobody inspects.
+        look: As for `generate`; only parts that are written anew are inspected.
+        inspection: As for `generate`; without a text, nothing is inspected.
         review: As for `generate`.
         memory: As for `generate`.
         documentation: As for `generate`.
@@ -94,12 +94,12 @@ def edit(
         The new run, closed; `run.edit()` says what has changed and proves that nothing else has.
 
     Raises:
-        ReadError: If the run is not finished, or nothing is asked for.
+        ReadError: If the run is not finished, or no change is given.
         PlanError, ContractError, AgentError: As `generate`.
     """
     finished = run if isinstance(run, Run) else Run.view(run)
     if not text.strip() and not values:
-        raise ReadError("Nothing is to be changed: give a text, or values of parameters.", path=str(finished.path))
+        raise ReadError("No change is given: give a text, or values of parameters.", path=str(finished.path))
     base = Base.of(finished)
     worded = bool(text.strip())
     options: dict[str, Any] = {"task": "edit", "base": base.mark, "set": dict(sorted((values or {}).items()))}
@@ -119,13 +119,13 @@ def edit(
 
 
 class EditLine(Line):
-    """An edit at work: the line from a finished run on."""
+    """An edit in progress: the pipeline from a finished run on."""
 
     def __init__(self, builder: PartBuilder, chooser: Chooser, memory: Memory | None) -> None:
         super().__init__(builder, chooser, memory)
         stored = self.run.base()
         if stored is None:
-            raise ReadError(f"{self.run.path} is an edit that has lost what it began with.", path=str(self.run.path))
+            raise ReadError(f"{self.run.path} is an edit whose base is missing.", path=str(self.run.path))
         self.base = Base(stored)
         request = builder.run.request
         changed = f"\n\nChanged since: {request.prompt}" if request.prompt else ""
@@ -135,7 +135,7 @@ class EditLine(Line):
         builder.adopt(dict.fromkeys(self.base.scripts, self.base.resolved), self.base.scripts)
 
     def requirements(self) -> Requirements:
-        """Return what was wanted when the run was made."""
+        """Return the requirements of the original run."""
         requirements = self.base.requirements
         self.run.save_requirements(requirements.to_json())
         return requirements
@@ -150,7 +150,7 @@ class EditLine(Line):
         return Editor(self.base, self.run.request, self.port, tries=self.options["designs"], tell=self.tell_of_plan)
 
     def examined(self, assembly: Assembly) -> Evidence:
-        """Return what is measured of an assembly; pairs that cannot have changed are not looked at again."""
+        """Return the measurements of an assembly; pairs that cannot have changed are not checked again."""
         self._known = self.base.known(assembly, self.run.version)
         return examine(assembly, self._known)
 
@@ -177,14 +177,14 @@ class Editor:
     """Changes the plan of a finished product.
 
     Args:
-        base: The product.
-        request: What is asked for.
-        llm: Who is asked; nobody where there are only numbers.
-        tries: Answers until the changed plan must validate.
-        tell: Told of each answer.
+        base: The finished product.
+        request: The change that is requested.
+        llm: The model; `Nobody` if only numbers change.
+        tries: Answers within which the changed plan must be valid.
+        tell: Called with each answer.
 
     Attributes:
-        summary: What was changed, in a sentence.
+        summary: What was changed, in one sentence.
     """
 
     def __init__(self, base: Base, request: RunRequest, llm: LLM, *, tries: int, tell: Any) -> None:
@@ -196,7 +196,7 @@ class Editor:
 
     @cached_property
     def _begin(self) -> AssemblyPlan:
-        """The plan with the values that were given."""
+        """The plan with the given values."""
         return with_values(self._base.plan, self._values) if self._values else self._base.plan
 
     @cached_property
@@ -213,8 +213,8 @@ class Editor:
         """Return the changed plan.
 
         Raises:
-            PlanError: If the last answer still has errors, or the plan does not hold with the values that were given.
-            OutputError: If the last answer has no form.
+            PlanError: If the last answer still has errors, or the plan is not valid with the given values.
+            OutputError: If the last answer does not have the required form.
         """
         if self._request.prompt:
             return self._until_valid(self._opening)
@@ -226,13 +226,13 @@ class Editor:
 
     def again(
         self,
-        plan: AssemblyPlan,  # noqa: ARG002 - an answer is told from the plan as it was, not from the last one
+        plan: AssemblyPlan,  # noqa: ARG002 - changes refer to the original plan, not to the last one
         findings: Iterable[Finding],
         *,
         pictures: Sequence[Image] = (),
         stubborn: Iterable[Finding] = (),
     ) -> AssemblyPlan:
-        """Return another changed plan, after this one was built and findings came up; see `Designer.again`."""
+        """Return another changed plan, after this one was built and findings resulted; see `Designer.again`."""
         if not self._request.prompt:
             every = Findings(findings)
             raise PlanError("\n".join(map(str, every)), findings=every)
@@ -272,10 +272,10 @@ class Editor:
         raise AssertionError("the last try either returns or raises")
 
     def _changed(self, change: Change) -> tuple[AssemblyPlan, Findings]:
-        """Return the changed plan, and what is to be said of it: what it is, and what it reaches.
+        """Return the changed plan and its findings: errors in it, and parts that it reaches without naming them.
 
         Raises:
-            ReadError, PlanError: If it cannot be made.
+            ReadError, PlanError: If the plan cannot be made.
         """
         plan = AssemblyPlan.from_json(amended(document_of(self._begin), change.changes))
         findings = check_plan(plan)
@@ -284,7 +284,7 @@ class Editor:
         return plan, findings + self._out_of_reach(plan, change.touches)
 
     def _out_of_reach(self, plan: AssemblyPlan, touches: Sequence[str]) -> Iterable[Finding]:
-        """Yield the parts that a plan changes and was not to change."""
+        """Yield a finding for each part that a plan changes although the change does not name it."""
         before, after = resolve(self._begin), resolve(plan)
         every = list(dict.fromkeys((*before.parts, *after.parts)))
         patterns = {part.name for part in plan.parts} | {part.name for part in self._begin.parts}
@@ -306,7 +306,7 @@ class Editor:
 
 
 class Nobody:
-    """Who answers where no model was named."""
+    """Stands in where no model was named."""
 
     def complete(self, request: Request) -> Reply:
         """Refuse.

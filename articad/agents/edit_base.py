@@ -1,4 +1,4 @@
-"""The base of an edit: a finished run as it was, so that what stays the same can be proved, and need not be checked again."""
+"""The base of an edit: a finished run as it was. What stays the same can be proved, and need not be checked again."""
 
 from __future__ import annotations
 
@@ -23,23 +23,31 @@ Json = dict[str, Any]
 Pair = tuple[str, str]
 
 SCHEMA: Final = "articad.base/1"
-_LISTS: Final = ("parameters", "materials", "parts", "joints", "couplings", "allow", "assumptions")  # of a plan; empty ones are left out
+_LISTS: Final = (
+    "parameters",
+    "materials",
+    "parts",
+    "joints",
+    "couplings",
+    "allow",
+    "assumptions",
+)  # lists of a plan; empty ones are left out
 _SAME_MM, _SAME_RAD = 1e-9, 1e-12  # poses this close are the same pose, computed twice
 
 
 @dataclass(frozen=True)
 class Base:
-    """A finished run, as an edit begins with it.
+    """A finished run, as the start of an edit.
 
     Attributes:
-        stored: The form `articad.base/1`.
+        stored: The document `articad.base/1`.
     """
 
     stored: Json
 
     @classmethod
     def of(cls, run: Run) -> Self:
-        """Return the base that a finished run is.
+        """Return the base made from a finished run.
 
         Raises:
             ReadError: If it is not finished.
@@ -49,7 +57,7 @@ class Base:
             raise ReadError(f"{run.path} is not finished, so it cannot be edited: resume it first.", path=str(run.path))
         plan = AssemblyPlan.loads(text)
         given: Mapping[str, float] = run.request.options.get("parameters") or {}
-        if given:  # of a build with --set: the values that it was built with become the plan's own
+        if given:  # a build with --set: the values that it was built with become the plan's own
             plan = with_values(plan, given)
         records = {name: run.part(name) or {} for name in run.part_names()}
         edited = run.base() or {}
@@ -73,7 +81,7 @@ class Base:
 
     @property
     def mark(self) -> str:
-        """The sha256 of all of it."""
+        """The sha256 of the whole document."""
         return digest(self.stored)
 
     @cached_property
@@ -93,7 +101,7 @@ class Base:
 
     @property
     def requirements(self) -> Requirements:
-        """What was wanted; of a run that nobody asked for in words, what its plan says of itself."""
+        """The requirements; for a run without a prompt, what its plan says of itself."""
         if self.stored["requirements"] is not None:
             return Requirements.model_validate(self.stored["requirements"])
         components = tuple(
@@ -105,14 +113,14 @@ class Base:
     # ------------------------------------------------------------------ what need not be checked again
 
     def known(self, assembly: Assembly, version: str) -> Known:
-        """Return the verdicts that hold for an edited assembly too.
+        """Return the verdicts that are also valid for the edited assembly.
 
-        A pair's verdict holds where both meshes are the same, their poses against each other at rest are, and the joints
-        between them are, with all that couplings tie to these; with loops, where all joints are. Only pairs in order are carried.
+        The verdict of a pair stays valid if both meshes, their relative pose at rest, and the joints between them with all joints
+        coupled to these are unchanged; with closed loops, if all joints are unchanged. Only pairs without faults are carried over.
 
         Args:
-            assembly: As edited.
-            version: Of articad: what another one has found is not relied on.
+            assembly: The edited assembly.
+            version: Version of articad; verdicts of another version are not used.
         """
         if version != self.stored["articad"] or assembly.resolved is None:
             return Known()
@@ -139,13 +147,13 @@ class Base:
                 continue
             if pair.over == "rest":
                 rest[pair.parts] = pair
-            elif isinstance(pair.over, tuple) and self.stored["task"] != "build":  # a build samples motion otherwise, if at all
+            elif isinstance(pair.over, tuple) and self.stored["task"] != "build":  # a build samples in another way
                 motion.setdefault(pair.over[0], {})[pair.parts] = pair
         joints = {joint.name for joint in assembly.joints if self._same_joint(joint)}
         return Known(rest, {joint: pairs for joint, pairs in motion.items() if joint in joints})
 
     def _held_alike(self, assembly: Assembly, a: str, b: str) -> bool:
-        """Whether two parts are and move against each other as before."""
+        """Return whether two parts and their relative motion are unchanged."""
         before, after = self.resolved.mechanism, assembly.mechanism
         now, then = ({name: mechanism.rest_poses()[name] for name in (a, b)} for mechanism in (after, before))
         if not (now[a].inverse() @ now[b]).allclose(then[a].inverse() @ then[b], mm=_SAME_MM, rad=_SAME_RAD):
@@ -164,7 +172,7 @@ class Base:
         )
 
     def _same_joint(self, joint: Joint) -> bool:
-        """Whether a joint is as it was."""
+        """Return whether a joint is unchanged."""
         old = next((one for one in self.resolved.joints if one.name == joint.name), None)
         if old is None:
             return False
@@ -175,12 +183,12 @@ class Base:
 
 
 def _ends(coupling: Coupling) -> set[str]:
-    """Return the joints that a coupling ties; it names columns of theirs."""
+    """Return the joints that a coupling connects; it names their columns."""
     return {column.split(".", maxsplit=1)[0] for column in (coupling.a, coupling.b)}
 
 
 def _tied(joints: Iterable[str], couplings: Sequence[Coupling]) -> set[str]:
-    """Return joints and all that move with them by couplings."""
+    """Return joints and all joints that move with them through couplings."""
     tied = set(joints)
     while more := {end for one in couplings if _ends(one) & tied for end in _ends(one)} - tied:
         tied |= more
@@ -188,7 +196,7 @@ def _tied(joints: Iterable[str], couplings: Sequence[Coupling]) -> set[str]:
 
 
 def document_of(plan: AssemblyPlan) -> Json:
-    """Return a plan's JSON with all its lists, so that addresses lead into empty ones too."""
+    """Return a plan's JSON with all its lists, so that addresses into empty lists are valid too."""
     document: Json = json.loads(plan.dumps())
     return document | {name: document.get(name, []) for name in _LISTS}
 
@@ -205,7 +213,7 @@ def with_values(plan: AssemblyPlan, values: Mapping[str, float]) -> AssemblyPlan
 
 
 def _pair(stored: Mapping[str, Any]) -> PairCheck:
-    """Return a verdict of `checks.json`."""
+    """Return a verdict read from `checks.json`."""
     kept = stored["strength"]
     strength = Strength(kept["kind"], kept.get("epsilon_mm"), kept.get("poses"), kept.get("step"), kept.get("reason", ""))
     over: Sequence[str] | str = stored["over"]

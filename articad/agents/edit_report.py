@@ -1,7 +1,7 @@
 """The report of an edit: what has changed in the plan and in the parts, and the proof that nothing else has.
 
-The proof is by bytes: the sha256 of every file of every part, before and after. Which parts an edit may touch follows from
-the plans alone, before anything is built: those whose scripts are told something else.
+The proof compares bytes: the sha256 of every file of every part, before and after. Which parts an edit may change follows from the plans
+alone, before anything is built: those whose script input differs.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ _SHOWN = 60  # characters of a value in a sentence
 
 
 def reach(before: ResolvedPlan, after: ResolvedPlan) -> dict[str, Reach]:
-    """Return the parts that another plan touches, and how: a part that only moves or changes its colour is not among them."""
+    """Return the parts that another plan changes, and how; a part that only moves or changes its colour is not among them."""
     touched: dict[str, Reach] = {name: "removed" for name in before.parts if name not in after.parts}
     for name, part in after.parts.items():
         old = before.parts.get(name)
@@ -56,7 +56,7 @@ def reach(before: ResolvedPlan, after: ResolvedPlan) -> dict[str, Reach]:
 
 
 def told_otherwise(before: ResolvedPlan, after: ResolvedPlan, name: str) -> str:
-    """Return in words what a part's script is told otherwise."""
+    """Return in words how the input of a part's script differs."""
     if name not in before.parts or name not in after.parts or after.parts[name].derivation is not None:
         return ""
     changes = list(_compared("", brief(before, name), brief(after, name)))
@@ -74,7 +74,7 @@ def _derived_alike(old: ResolvedPart, new: ResolvedPart) -> bool:
 
 
 def _same_bits(old: ResolvedPart, new: ResolvedPart) -> bool:
-    """Whether two mirrors are the same to the last bit; where a part stands elsewhere, its mirror may be rounded otherwise."""
+    """Return whether two mirrored parts are equal to the last bit; a part at another place may be rounded differently when mirrored."""
     a, b = (part.derivation.S if part.derivation is not None else None for part in (old, new))
     return a is None or b is None or np.array_equal(a, b)
 
@@ -83,7 +83,7 @@ def _same_bits(old: ResolvedPart, new: ResolvedPart) -> bool:
 
 
 def changes(before: AssemblyPlan, after: AssemblyPlan) -> list[Json]:
-    """Return what two plans state otherwise: address, and the value before and after, None where there is none."""
+    """Return the differences between two plans: address, and the value before and after, None where there is none."""
     return list(_compared("", before.to_json(), after.to_json()))
 
 
@@ -103,7 +103,7 @@ def _compared(where: str, before: Any, after: Any) -> Iterator[Json]:
 
 
 def _by_name(value: Any) -> dict[str, Any] | None:
-    """Return the entries of a list by their names; None of what is not such a list. A list that is left out is empty."""
+    """Return the entries of a list by their names, or None if the value is not such a list. A missing list is empty."""
     if value is None:
         return {}
     if not isinstance(value, list) or not all(isinstance(entry, dict) and "name" in entry for entry in value):
@@ -119,7 +119,7 @@ def _quoted(value: Any) -> str:
 
 
 def _plain(value: Any) -> Any:
-    """Return a value without the last bits of its numbers, which differ between machines and may stand in a prompt."""
+    """Return a value with its numbers rounded: the last bits differ between machines, and may be part of a prompt."""
     if isinstance(value, float):
         return int(value) if value.is_integer() else round(value, _DIGITS)
     return [_plain(one) for one in value] if isinstance(value, list) else value
@@ -132,10 +132,10 @@ def report(base: Base, run: Run, after: ResolvedPlan, checks: Checks, known: Kno
     """Return the report `articad.edit/1` of a run whose parts are recorded.
 
     Args:
-        base: What the edit began with.
+        base: The base of the edit.
         run: The edit's run.
         after: Its plan with numbers.
-        checks: What was found of its assembly.
+        checks: Findings about its assembly.
         known: The verdicts that were carried over.
         summary: What was changed, in a sentence.
     """
@@ -172,7 +172,7 @@ def report(base: Base, run: Run, after: ResolvedPlan, checks: Checks, known: Kno
 
 
 def _fate(base: Base, run: Run, name: str, touched: Mapping[str, str], different: Mapping[str, Any]) -> str:
-    """Return what became of a part: what the plans say of it, or where its files tell more, that."""
+    """Return what became of a part according to the plans, or according to its files if these show more."""
     why = touched.get(name)
     if why in {"new", "removed"}:
         return str(why)

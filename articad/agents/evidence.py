@@ -1,7 +1,7 @@
-"""Evidence: what can be measured of an assembly before anybody is asked how it looks.
+"""Evidence: the measurements of an assembly, made before any model is asked how it looks.
 
-The rest pose first; when it is right, the declared fits, and every joint on its own through its range, the others at rest.
-Every verdict says how strong it is, and every finding has its root cause where geometry tells it.
+First the rest pose; if it has no fault, the declared fits, and each joint through its range with the others at rest. Every verdict says
+how strong it is, and every finding names its root cause if geometry shows it.
 """
 
 from __future__ import annotations
@@ -24,12 +24,12 @@ from articad.interference.scene import Scene
 from articad.kinematics.joints import Joint, JointType
 from articad.render.pictures import motion_frames
 
-POSES: Final = 9  # of each joint's range: enough for a flap that digs in, quick enough for every round
+POSES: Final = 9  # samples of each joint's range: enough for a flap that collides, quick enough for every round
 
 
 @dataclass(frozen=True)
 class Evidence:
-    """What was measured.
+    """Measurements of an assembly.
 
     Attributes:
         checks: The rest pose with the declared fits and, if nothing overlaps there, samples of each joint's range.
@@ -46,17 +46,17 @@ class Evidence:
 
     @property
     def findings(self) -> Findings:
-        """All of them, with their causes."""
+        """All findings, with their causes."""
         return self.checks.findings
 
 
 @dataclass(frozen=True)
 class Known:
-    """Verdicts that hold already, because neither the two parts nor their motion against each other have changed.
+    """Verdicts that need no new check, because neither the two parts nor their relative motion have changed.
 
     Attributes:
-        rest: At rest, by pair.
-        motion: Of samples of a joint's range, by joint and pair.
+        rest: Verdicts at rest, by pair.
+        motion: Verdicts of samples of a joint's range, by joint and pair.
     """
 
     rest: Mapping[tuple[str, str], PairCheck] = field(default_factory=dict)
@@ -64,14 +64,14 @@ class Known:
 
 
 def examine(assembly: Assembly, known: Known | None = None) -> Evidence:
-    """Check an assembly at rest and, if that holds, its fits and samples of each joint's range.
+    """Check an assembly at rest and, if it has no fault there, its fits and samples of each joint's range.
 
     Args:
         assembly: As built.
-        known: Pairs that need not be looked at again.
+        known: Pairs that need not be checked again.
 
     Returns:
-        The checks of the rest pose, and with them a sampled verdict for every pair that meets in motion.
+        The checks of the rest pose, and a sampled verdict for every pair that meets in motion.
     """
     scene = assembly.scene()
     checks = assembly.check(known=None if known is None else known.rest)
@@ -83,7 +83,7 @@ def examine(assembly: Assembly, known: Known | None = None) -> Evidence:
 
 
 def told(assembly: Assembly, evidence: Evidence) -> str:
-    """Return what was measured as a judge reads it: numbers rounded, nothing of the machine."""
+    """Return the measurements as text for a judge: numbers rounded, nothing that depends on the machine."""
     mechanism = assembly.mechanism
     lines = [f"Exact checks: {'passed' if evidence.ok else 'NOT passed'}."]
     lines += [f"- {finding}" for finding in evidence.findings] or ["- no findings"]
@@ -129,7 +129,7 @@ def _with_motion(checks: Checks, assembly: Assembly, joint: str, scene: Scene, c
 
 
 def _pairs_at(assembly: Assembly, q: FloatArray, scene: Scene, carried: Mapping[tuple[str, str], PairCheck]) -> Iterable[PairCheck]:
-    """Return the verdicts at a configuration `(nq,)`, but for those that are carried."""
+    """Return the verdicts at a configuration `(nq,)`, except for known ones."""
     if not carried:
         return assembly.check(q).pairs
     poses = Poses(assembly.mechanism.parts, assembly.poses(q))
@@ -162,7 +162,7 @@ def _collision(pair: PairCheck, joint: str, caption: str) -> Finding:
 
 
 def pose_of(assembly: Assembly, q: FloatArray) -> dict[str, float]:
-    """Return where every freedom of every joint is at a configuration `(nq,)`, those that follow included [rad, mm]."""
+    """Return the coordinates of all joints at a configuration `(nq,)`, followers included [rad, mm]."""
     columns = assembly.mechanism.configuration(q).columns.tolist()
     pose: dict[str, float] = {}
     for joint in assembly.joints:
@@ -173,7 +173,7 @@ def pose_of(assembly: Assembly, q: FloatArray) -> dict[str, float]:
 
 
 def _freedom_values(joint: Joint, values: list[float]) -> dict[str, float]:
-    """Return a joint's coordinates under the names of its freedoms; a ball's quaternion as a swing after a twist."""
+    """Return a joint's coordinates by the names of its freedoms; a ball's quaternion is split into a twist, then a swing."""
     names = [freedom.name for freedom in freedoms(joint)]
     if joint.type is JointType.FREE:
         return dict(zip(joint.column_names, map(float, values), strict=True))

@@ -1,8 +1,8 @@
-"""Fine-tuning: a connector that a script placed slightly beside the plan's, taken into a new version of the plan.
+"""Fine-tuning: a connector that a script placed slightly off the plan's position is taken into a new version of the plan.
 
-The mechanism is always the plan's. Where a modeller found a better place for a connector, within the bounds that are a
-warning, the plan follows: the connector moves, and what hangs on it moves along. Expressions stay expressions, so that
-parameters go on working. Where the plan would no longer hold, the script has to give way instead.
+The mechanism is always the plan's. Where a script placed a connector better, within the bounds of a warning, the plan follows: the
+connector moves, and the parts attached to it move along. Expressions stay expressions, so that parameters keep their effect. Where the
+plan would become invalid, the script has to change instead.
 """
 
 from __future__ import annotations
@@ -27,9 +27,9 @@ Json = dict[str, Any]
 
 
 def absorbed(resolved: ResolvedPlan, realised: Mapping[str, RealisedPart]) -> AssemblyPlan | None:
-    """Return the plan with connectors where these parts have them, or None where it would not hold.
+    """Return the plan with the connectors where these parts have them, or None if that plan would be invalid.
 
-    A turned connector is not taken over, nor the one by which a part hangs: there the whole part was built elsewhere.
+    A rotated connector is not taken over, nor the one that places the part: in that case the whole part was built elsewhere.
 
     Args:
         resolved: The plan with its numbers.
@@ -45,7 +45,7 @@ def absorbed(resolved: ResolvedPlan, realised: Mapping[str, RealisedPart]) -> As
             _move(_connector(entries[name], connector), "o", _in_frame(entries[name], connector, shift, rest.rotate(shift)))
             for follower in _followers(resolved, name, connector):
                 if "derive" in entries.get(follower, {"derive": None}):
-                    continue  # it follows its source; where that is not so, the check below says no
+                    continue  # it follows its source; if that fails, the check below rejects it
                 _carry(entries[follower], rest.rotate(shift))
     try:
         plan = AssemblyPlan.from_json(document)
@@ -55,7 +55,7 @@ def absorbed(resolved: ResolvedPlan, realised: Mapping[str, RealisedPart]) -> As
 
 
 def notes(realised: Mapping[str, RealisedPart]) -> Iterator[Finding]:
-    """Yield what was absorbed."""
+    """Yield a finding for each connector that was taken over."""
     for part in realised.values():
         for drift in part.findings.of("W_CONNECTOR_DRIFT"):
             hint = "The next version of the plan has it where the script does."
@@ -63,7 +63,7 @@ def notes(realised: Mapping[str, RealisedPart]) -> Iterator[Finding]:
 
 
 def _drifts(resolved: ResolvedPlan, name: str, part: RealisedPart) -> Iterator[tuple[str, FloatArray, float]]:
-    """Yield connectors that are off, by how much in the part's frame [mm], and how far they are turned [rad]."""
+    """Yield connectors that are off, with the offset in the part's frame [mm] and the angle of rotation [rad]."""
     target = resolved.parts[name]
     T = seating(target, part.built.connectors, primary_connector(target, part.built.brief))
     for finding in part.findings.of("W_CONNECTOR_DRIFT"):
@@ -75,7 +75,7 @@ def _drifts(resolved: ResolvedPlan, name: str, part: RealisedPart) -> Iterator[t
 
 
 def _followers(resolved: ResolvedPlan, name: str, connector: str) -> list[str]:
-    """Return the parts that hang on a connector, seen from the ground."""
+    """Return the parts that are attached to a connector, seen from the ground."""
     tree = resolved.mechanism.tree
     followers: list[str] = []
     for joint, side in resolved.joints_at.get((name, connector), ()):
@@ -95,7 +95,7 @@ def _in_frame(entry: Json, connector: str, in_part: FloatArray, in_assembly: Flo
 
 
 def _carry(entry: Json, shift: FloatArray) -> None:
-    """Move a part at rest, and what it states in the assembly's frame."""
+    """Move a part at rest, together with what it states in the assembly's frame."""
     if entry.get("rest_pose") != "auto":
         pose = entry["rest_pose"] = dict(entry.get("rest_pose") or {})
         pose.setdefault("at", [0, 0, 0])

@@ -1,7 +1,7 @@
-"""Inspection: models look at what was built; what can be measured has been measured before, and overrules them.
+"""Inspection: models look at what was built. What can be measured has been measured before, and overrules them.
 
-A part: one model compares its pictures with its specification. The assembly: one model observes pictures and keyframes,
-another judges its observations beside the measurements.
+Part: one model compares its pictures with its specification. Assembly: one model describes pictures and keyframes, another judges this
+    description beside the measurements.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ from articad.plan.resolve import ResolvedPart, ResolvedPlan
 from articad.runs.run import RunRequest
 
 VERDICT_SCHEMA: Final = "articad.verdict/1"
-MOTIONS: Final = 6  # keyframe sheets for one observer: more pictures at once are not looked at closely
+MOTIONS: Final = 6  # keyframe sheets for one observer; more pictures at once are not looked at closely
 Aspect = Literal["placement", "interference", "motion"]
 _ASPECTS: Final = ("placement", "interference", "motion")
 _CODES: Final = {aspect: f"E_VERDICT_{aspect.upper()}" for aspect in _ASPECTS}
@@ -67,21 +67,21 @@ class Look(ReplyForm):
 
 
 def look(specification: str, name: str, realised: RealisedPart, llm: LLM, *, step: str, pictures: Sequence[Image] = ()) -> Findings:
-    """Have a part's pictures compared with its specification.
+    """Ask a model to compare a part's pictures with its specification.
 
     Args:
-        specification: As its modeller was told.
+        specification: The text that the script's author was given.
         name: The part.
         realised: As built.
-        llm: Who looks; it must see.
+        llm: The model; it must accept images.
         step: Address of the request.
-        pictures: The user's own of this part.
+        pictures: The user's own pictures of this part.
 
     Returns:
-        A warning for each aspect that does not agree, its route the model's opinion of whose fault it is; a note for what could not be seen.
+        A warning for each aspect that does not agree, routed to whom the model blames; a note for what could not be seen.
 
     Raises:
-        OutputError: If no reply has the form.
+        OutputError: If no reply has the required form.
     """
     given = f"\n\nFirst {len(pictures)} picture(s) of what the customer wants, then" if pictures else ""
     words = f"The specification:\n\n{specification}{given or chr(10) + chr(10) + 'Now'} the sheet of what was built:"
@@ -178,14 +178,14 @@ class Judgement(ReplyForm):
 
 @dataclass(frozen=True)
 class Verdict:
-    """What was decided about an assembly.
+    """The decision about an assembly.
 
     Attributes:
-        findings: Errors for what must be mended; notes for opinions that measurements overrule.
-        by: "geometry" when exact checks had the last word, else "judge".
-        round: Which one, from 1.
-        observations: What the observer saw; None if nobody looked.
-        rulings: The judge's, by aspect; empty if there was no judge.
+        findings: Errors for what must be fixed; notes for opinions that measurements overrule.
+        by: "geometry" if exact checks decided, else "judge".
+        round: The round, from 1.
+        observations: The observer's description; None if there was no observer.
+        rulings: The judge's rulings, by aspect; empty if there was no judge.
     """
 
     findings: Findings
@@ -196,7 +196,7 @@ class Verdict:
 
     @property
     def ok(self) -> bool:
-        """True when nothing must be mended."""
+        """True when nothing must be fixed."""
         return self.findings.ok
 
     def to_json(self) -> dict[str, Any]:
@@ -213,18 +213,18 @@ class Verdict:
 
 
 def inspect(assembly: Assembly, evidence: Evidence, request: RunRequest, requirements: Requirements, llm: LLM, *, number: int) -> Verdict:
-    """Have an assembly observed and judged.
+    """Have an assembly described and judged by models.
 
     Args:
         assembly: As built.
-        evidence: What was measured.
+        evidence: The measurements.
         request: What the user asked for.
-        requirements: How it was understood.
-        llm: Who observes and judges.
+        requirements: The analysis of the request.
+        llm: The model that describes and judges.
         number: The round, from 1.
 
     Raises:
-        OutputError: If no reply has the form.
+        OutputError: If no reply has the required form.
     """
     product = f"{asked_for(request, requirements)}\n\n{structure(assembly)}{_assumed(assembly)}"
     observations = _observed(assembly, [product, *wanted(request)], llm, number)
@@ -238,13 +238,13 @@ def inspect(assembly: Assembly, evidence: Evidence, request: RunRequest, require
 
 
 def _assumed(assembly: Assembly) -> str:
-    """Return what the designer took for granted, such as motions that exclude one another."""
+    """Return the designer's assumptions, such as motions that exclude one another."""
     assumptions = () if assembly.plan is None else assembly.plan.assumptions
     return "" if not assumptions else "\n\nThe designer's assumptions:\n" + "\n".join(f"- {assumption}" for assumption in assumptions)
 
 
 def verdict_of(evidence: Evidence, number: int) -> Verdict:
-    """Return the verdict of geometry alone: its errors, and nobody was asked."""
+    """Return the verdict from geometry alone: its errors; no model was asked."""
     return Verdict(Findings(evidence.findings.errors), "geometry", number)
 
 
@@ -268,7 +268,7 @@ def _observed(assembly: Assembly, product: Sequence[str | Image], llm: LLM, numb
 
 
 def _judgement_of(assembly: Assembly) -> Any:
-    """Return what reads a judge's answer: the parts that it names exist."""
+    """Return a function that reads a judge's answer and rejects unknown parts."""
 
     def read(text: str, step: str) -> Judgement:
         judgement = reader(Judgement)(text, step)
@@ -284,7 +284,7 @@ def _judgement_of(assembly: Assembly) -> Any:
 
 
 def _weighed(problems: Iterable[Problem], evidence: Evidence) -> Iterable[Finding]:
-    """Yield findings of problems; interference that exact checks have looked for and not found is a note."""
+    """Yield findings for problems; interference that exact checks looked for and did not find is only a note."""
     for problem in problems:
         overruled = problem.aspect == "interference" and evidence.ok
         yield Finding(
@@ -298,20 +298,20 @@ def _weighed(problems: Iterable[Problem], evidence: Evidence) -> Iterable[Findin
 
 
 def wanted(request: RunRequest) -> tuple[str | Image, ...]:
-    """Return the customer's own pictures of the whole, with a word that says so; without any, nothing."""
+    """Return the customer's own pictures of the whole with an introduction; empty if there are none."""
     pictures = pictures_of(request)
     return ("The customer's own pictures of what is wanted, not of what was built:", *pictures) if pictures else ()
 
 
 def asked_for(request: RunRequest, requirements: Requirements) -> str:
-    """Return a request and its analysis in words."""
+    """Return a request and its analysis as text."""
     analysis = json.dumps({name: value for name, value in requirements.to_json().items() if name != "schema"}, indent=1, ensure_ascii=False)
     words = request.prompt.strip() or "(no words; there were pictures)"
     return f"The customer's request:\n\n{words}\n\n{ANALYSIS}\n\n```json\n{analysis}\n```"
 
 
 def structure(assembly: Assembly) -> str:
-    """Return the parts and joints of an assembly in words."""
+    """Return the parts and joints of an assembly as text."""
     resolved: ResolvedPlan | None = assembly.resolved
     lines = ["Parts:"]
     for name in assembly.parts:
@@ -329,7 +329,7 @@ def structure(assembly: Assembly) -> str:
 
 
 def _coupled(coupling: Coupling, units: Mapping[str, str]) -> str:
-    """Return what a coupling does, in degrees and mm."""
+    """Return the effect of a coupling, in degrees and mm."""
     turns = {name: units[name] == "rad" for name in (coupling.a, coupling.b)}
     ratio = coupling.ratio * (math.degrees(1.0) if turns[coupling.b] else 1.0) / (math.degrees(1.0) if turns[coupling.a] else 1.0)
     led, followed = ("degree" if turns[name] else "mm" for name in (coupling.a, coupling.b))
@@ -337,7 +337,7 @@ def _coupled(coupling: Coupling, units: Mapping[str, str]) -> str:
 
 
 def _role(part: ResolvedPart, resolved: ResolvedPlan | None) -> str:
-    """Return what a part is for; of a copy its own description where it has one, not its source's role."""
+    """Return the role of a part; for a copy its own description if it has one, not its source's role."""
     source = None if part.derivation is None or resolved is None else resolved.parts.get(part.derivation.source)
     own = source is not None and part.description != source.description
     return (part.description if own else part.role or part.description).split(". ")[0][:160]

@@ -1,7 +1,7 @@
-"""Late: the paper's ablation in which nobody plans how parts connect before they exist.
+"""Late: the paper's ablation in which connections are planned only after the parts exist.
 
-The designer lists parts, without connectors and joints; each is modelled for itself; then one agent reads their scripts and
-shapes and writes connectors and joints onto them. All the rest is as in the full pipeline.
+The designer lists parts without connectors and joints, and each is modelled by itself. Then one agent reads their scripts and shapes and
+adds connectors and joints. The rest is the full pipeline.
 """
 
 from __future__ import annotations
@@ -40,11 +40,11 @@ def build(part, _geometry=build):  # connectors are where the plan, made after t
     return shape, {name: {"o": c.o, "z": c.z, "x": c.x} for name, c in part.connectors.items()}
 """
 _JOINING: Final = ("joints", "couplings", "allow")
-_LATER: Final = {"E_DISCONNECTED", "E_NO_CONNECTORS", "E_DOF_MISMATCH"}  # findings of a plan that has no joints yet
+_LATER: Final = {"E_DISCONNECTED", "E_NO_CONNECTORS", "E_DOF_MISMATCH"}  # findings that a plan without joints must have
 
 
 class LateLine(Line):
-    """The line of a run whose connections are planned late."""
+    """The pipeline of a run whose connections are planned late."""
 
     def planner(self, requirements: Requirements) -> PlanAuthor:
         """Return who lists the parts, has them made and connects them."""
@@ -66,11 +66,11 @@ class Connections(ReplyForm):
 
 
 class LatePlanner:
-    """Makes plans of parts that exist already.
+    """Makes plans from parts that already exist.
 
     Args:
-        line: The run at work.
-        requirements: What is wanted.
+        line: The run in progress.
+        requirements: The analysis of the request.
     """
 
     def __init__(self, line: Line, requirements: Requirements) -> None:
@@ -79,7 +79,7 @@ class LatePlanner:
         self._connected = 0
         self._said = ""
         self._parts: AssemblyPlan | None = None
-        self._alone: dict[str, ResolvedPlan] = {}  # by part, what its script was written for
+        self._alone: dict[str, ResolvedPlan] = {}  # by part, the plan for which its script was written
         self._designer = Designer(
             line.run.request,
             requirements,
@@ -92,10 +92,10 @@ class LatePlanner:
         )
 
     def first(self) -> AssemblyPlan:
-        """Return a plan of made parts.
+        """Return a plan of parts that are made.
 
         Raises:
-            PlanError, OutputError: If no answer validates.
+            PlanError, OutputError: If no answer is valid.
             PartsError: If parts cannot be made in any round.
         """
         return self._joined(self._designer.first(), ())
@@ -103,7 +103,7 @@ class LatePlanner:
     def again(
         self, plan: AssemblyPlan, findings: Iterable[Finding], *, pictures: Sequence[Image] = (), stubborn: Iterable[Finding] = ()
     ) -> AssemblyPlan:
-        """Return another plan: the parts are listed anew, and connected anew; see `Designer.again`."""
+        """Return another plan: the parts are listed again, and connected again; see `Designer.again`."""
         several = tuple(findings)
         parts = self._designer.again(self._parts or plan, several, pictures=pictures, stubborn=stubborn)
         return self._joined(parts, several)
@@ -169,7 +169,7 @@ class LatePlanner:
 
 
 def _told(name: str, part: RealisedPart, resolved: ResolvedPlan, script: str) -> str:
-    """Return what is to be known of a part that was made."""
+    """Return the text about a part that was made."""
     solid = part.built.solid
     measured = (
         f"Measured, in its own frame: from {listed_numbers(solid.bbox[0])} to {listed_numbers(solid.bbox[1])} mm, "
@@ -179,7 +179,7 @@ def _told(name: str, part: RealisedPart, resolved: ResolvedPlan, script: str) ->
 
 
 def _connected(parts: AssemblyPlan, text: str, step: str) -> Judged:
-    """Return the plan that an answer completes, what is to be said of it, and the problem if it has no form."""
+    """Return the plan that an answer completes, its findings, and the problem if it does not have the form."""
     try:
         answer = reader(Connections)(text, step)
     except OutputError as error:
@@ -204,7 +204,7 @@ def _connected(parts: AssemblyPlan, text: str, step: str) -> Judged:
 
 
 def _judged(text: str, step: str) -> Judged:
-    """Return the list of parts that an answer is, without what it says of connections, and what is to be said of it."""
+    """Return the list of parts in an answer, without its connections, and its findings."""
     plan, findings, problem = judged(text, step)
     if plan is None:
         return plan, findings, problem

@@ -1,6 +1,6 @@
-"""The line: what every run does in turn, with its one edge back from what the checks find to who must mend it.
+"""The pipeline: the steps of every run, with one edge back from the findings of the checks to whoever must fix them.
 
-The variants of the pipeline, and an edit of a finished run, are lines of their own that begin elsewhere or leave something out.
+The variants of the pipeline and edits of a finished run are subclasses that begin elsewhere or leave steps out.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ from articad.runs.record import record_assembly, record_checks, record_export
 
 ROUNDS: Final = 3
 FORMATS: Final = ("urdf", "mjcf")
-_SHOWN_PLACES: Final = 3  # pictures of offending places that one agent gets at once
+_SHOWN_PLACES: Final = 3  # pictures of places of findings that one agent gets at once
 
 Chooser = Callable[[Sequence[Alternative]], tuple[int, str]]
 """Given alternatives, returns the number of the chosen one, from 1, and who chose: "user" or "articad"."""
@@ -45,15 +45,15 @@ class PlanAuthor(Protocol):
     def again(
         self, plan: AssemblyPlan, findings: Iterable[Finding], *, pictures: Sequence[Image] = (), stubborn: Iterable[Finding] = ()
     ) -> AssemblyPlan:
-        """Return another one, after this one was built and findings came up."""
+        """Return another plan, after this one was built and findings resulted."""
         ...
 
 
 class Line:
-    """One run at work: the straight line with its edge back.
+    """One run in progress: the steps in order, with the edge back.
 
     Attributes:
-        asked: What inspectors are told was asked for.
+        asked: What inspectors are told was requested.
     """
 
     def __init__(self, builder: PartBuilder, chooser: Chooser, memory: Memory | None) -> None:
@@ -66,10 +66,10 @@ class Line:
         self.repaired: tuple[int, Repair] | None = None
 
     def work(self) -> None:
-        """Go through the whole line.
+        """Run all steps.
 
         Raises:
-            ArticadError: As whatever stands on it.
+            ArticadError: The error of whatever step fails.
         """
         requirements = self.requirements()
         planner = self.planner(requirements)
@@ -99,7 +99,7 @@ class Line:
                 self.builder.announce("parts", f"again, round {number + 1}")
         self.finish(assembly, evidence, requirements)
 
-    # ------------------------------------------------------------------ what variants do otherwise
+    # ------------------------------------------------------------------ steps that variants replace
 
     def requirements(self) -> Requirements:
         """Return what is wanted."""
@@ -119,11 +119,11 @@ class Line:
         return Designer(self.run.request, requirements, self.port, tries=tries, tell=tell, memory=self.memory)
 
     def examined(self, assembly: Assembly) -> Evidence:
-        """Return what is measured of an assembly."""
+        """Return the measurements of an assembly."""
         return examine(assembly)
 
     def finish(self, assembly: Assembly, evidence: Evidence, requirements: Requirements | None) -> None:
-        """Have the result reviewed, if that was asked for, and write what the run is for."""
+        """Review the result if requested, and write the exports."""
         if "review" in self.options:
             self.builder.announce("review", "started")
             who = self.port if self.options["review"] == "model" else None
@@ -135,7 +135,7 @@ class Line:
                 self.builder.announce(f"export {name}", "written")
 
     def tell_of_plan(self, plan: AssemblyPlan | None, findings: Findings) -> None:
-        """Note what was found in an answer of the planner."""
+        """Note the findings of an answer of the planner."""
         for finding in findings:
             self.run.trace_finding(finding)
         what = "unreadable" if plan is None else f"{len(plan.parts)} parts, {len(plan.joints)} joints"
@@ -160,7 +160,7 @@ class Line:
     # ------------------------------------------------------------------ one round
 
     def _save(self, plan: AssemblyPlan) -> None:
-        """Keep a plan that differs from the last one as its next version."""
+        """Save a plan that differs from the last one as its next version."""
         text = plan.dumps()
         if self.versions == 0 or text != self.run.plan_text():
             self.run.save_plan(text, self.versions)
@@ -182,7 +182,7 @@ class Line:
         return plan, assembly
 
     def _judged(self, assembly: Assembly, requirements: Requirements, number: int) -> tuple[Evidence, Verdict]:
-        """Return what was measured, and what is wrong: what geometry finds, and where that finds nothing, what models see."""
+        """Return the measurements and the verdict: what geometry finds, and if that finds nothing, what models see."""
         with closed_port("assembly and checks are deterministic"):
             evidence = self.examined(assembly)
             record_checks(self.run, evidence.checks)
@@ -211,7 +211,7 @@ class Line:
         return repair
 
     def _complain(self, assembly: Assembly, repair: Repair) -> None:
-        """Leave for the authors of scripts what was found of their parts, and where."""
+        """Pass on to the authors of scripts the findings about their parts, with pictures."""
         for name, findings in repair.code.items():
             pictures = _places(assembly, findings, most=1)
             self.builder.complaints[name] = listed(findings), pictures[0] if pictures else None
@@ -222,14 +222,14 @@ class Line:
         return planner.again(plan, repair.design, pictures=pictures, stubborn=repair.stubborn)
 
     def _give_up(self, verdict: Verdict, repair: Repair) -> None:
-        """Say that nothing more is tried."""
+        """Record the findings for which nothing more is tried."""
         stalled = [
             Finding(
                 code="W_STALLED",
                 where=finding.where,
                 parts=finding.parts,
                 message=f"{finding.code} came back after every strategy.",
-                hint="Mend the plan or the script by hand and use `articad build`.",
+                hint="Correct the plan or the script by hand and use `articad build`.",
             )
             for finding in repair.stalled
         ]

@@ -1,6 +1,6 @@
-"""LiteLLM: real models, of any provider that litellm knows, and any OpenAI-compatible endpoint.
+"""LiteLLM: models of any provider that litellm supports, and any OpenAI-compatible endpoint.
 
-Each call runs in a process of its own (`calls.py`), with a deadline and a bound on memory: an endpoint may be hostile. Keys come
+Each call runs in a process of its own (`calls.py`), with a deadline and a memory limit, because an endpoint may be hostile. Keys come
 from the provider's environment variables; no key enters a request, a record, the trace or an error.
 """
 
@@ -25,23 +25,23 @@ from articad.memory.embedding import FloatArray, normalised
 
 Json = dict[str, Any]
 
-DEFAULT_MODEL: Final = "gemini/gemini-3-flash-preview"  # the paper's backbone: it sees, keeps to schemas, and its price is known
-TIMEOUT_S: Final = 600.0  # one answer; a thinking model writes a large plan in minutes
+DEFAULT_MODEL: Final = "gemini/gemini-3-flash-preview"  # the paper's backbone: it accepts images and schemas, and its price is known
+TIMEOUT_S: Final = 600.0  # for one answer; a thinking model writes a large plan in minutes
 TRIES: Final = 6
 FIRST_WAIT_S: Final = 1.0  # doubled after each try: 31 s in all
 LONGEST_WAIT_S: Final = 60.0
 _RETRIED_STATUS: Final = frozenset({408, 409, 425, 429, 500, 502, 503, 504, 529})
 _RETRIED_KINDS: Final = frozenset({"late", "unreachable", "empty", "lost"})
-_LOOKING: Final = frozenset({"look", "observe"})  # roles that are nothing without sight
+_LOOKING: Final = frozenset({"look", "observe"})  # roles that make no sense without images
 _LONGEST_ANSWER: Final = 4_000_000  # characters; the plan of a thousand parts has a tenth of that
-_BATCH: Final = 64  # texts that are embedded at once; providers take about a hundred
+_BATCH: Final = 64  # texts that are embedded at once; providers accept about a hundred
 _LONGEST_MARK: Final = 200  # characters
 _SHOWN_CHARACTERS: Final = 300  # of a provider's own message
 _LOCAL_HOSTS: Final = frozenset({"localhost", "127.0.0.1", "::1", "0.0.0.0", "host.docker.internal"})  # noqa: S104 - compared, never bound
 _SECRET_NAME = re.compile(r"KEY|TOKEN|SECRET|PASSWORD|CREDENTIAL", re.IGNORECASE)
 _SECRET_SHAPE = re.compile(r"(?i)\b(?:sk|pk|rk|key|api|gsk|xai|AIza)[-_][\w*.-]{6,}|\bbearer\s+[^\s,;]+|//[^/@\s]+:[^/@\s]+@")
 _SHORTEST_SECRET = 6  # characters; shorter values of such variables are words like "none"
-_TOLD: Final = "one JSON object and nothing else"  # stands in every prompt that tells the form of its answer
+_TOLD: Final = "one JSON object and nothing else"  # every prompt that describes the form of its answer contains these words
 _FORM = (
     "Answer with one JSON object and nothing else: no Markdown fence, no text before or after it. "
     "It must be valid against this JSON schema:\n"
@@ -52,22 +52,22 @@ _SIGHT = "Name one that does with --vision-model, or do without: --no-look --no-
 
 
 class LiteLLM:
-    """A model behind litellm.
+    """A model called through litellm.
 
     Args:
-        model: In litellm's spelling, such as `gemini/gemini-3-flash`; with `api_base`, any name that the endpoint knows.
+        model: In litellm's spelling, such as `gemini/gemini-3-flash`; with `api_base`, any name that the endpoint accepts.
         api_base: Address of an OpenAI-compatible endpoint, such as `http://127.0.0.1:8000/v1`.
         models: Other models for some roles, by role.
         vision_model: Model for requests with pictures; `model` by default.
         judge_model: Model for the role "judge"; the same as `models={"judge": …}`.
         temperature: Left to the provider by default.
         timeout: Longest time of one call, from its start to the last byte of its answer [s].
-        tries: How often to ask when the provider is busy or out of reach.
-        sleep: Waits; for tests.
+        tries: How often to ask when the provider is busy or unreachable.
+        sleep: Function that waits; replaced in tests.
 
     Raises:
-        TransportError: `E_KEY_MISSING`, naming the environment variable, if the provider needs one that is not set;
-            `E_TRANSPORT`, if models cannot be called on this machine.
+        TransportError: `E_KEY_MISSING`, naming the environment variable, if the provider needs one that is not set; `E_TRANSPORT` if
+            models cannot be called on this machine.
     """
 
     def __init__(
@@ -86,7 +86,7 @@ class LiteLLM:
         self._calls = Calls.shared()
         self._api_base = api_base
         self._is_local = api_base is not None and urlsplit(api_base).hostname in _LOCAL_HOSTS
-        self._known: dict[str, Json] = {}  # what litellm knows of each model, by qualified name
+        self._known: dict[str, Json] = {}  # litellm's data about each model, by qualified name
         self._model = self._qualified(model)
         self._models = {
             role: self._qualified(name) for role, name in (dict(models or {}) | ({"judge": judge_model} if judge_model else {})).items()
@@ -103,16 +103,16 @@ class LiteLLM:
         return f"LiteLLM({self._model!r})"
 
     def model_for(self, request: Request) -> str:
-        """Return the model that answers a request: its role's, else the one that sees, else the default."""
+        """Return the model that answers a request: that of its role, else the vision model for pictures, else the default."""
         if request.role in self._models:
             return self._models[request.role]
         return self._vision_model if self._vision_model and request.has_images else self._model
 
     def complete(self, request: Request) -> Reply:
-        """Ask the model, again after a pause when it is busy.
+        """Ask the model; if it is busy, again after a pause.
 
         Raises:
-            TransportError: If it cannot be reached, refuses, or its answer is no completion.
+            TransportError: If it cannot be reached, refuses, or its answer is not a completion.
         """
         return self.complete_within(request, Meter())
 
@@ -121,7 +121,7 @@ class LiteLLM:
 
         Raises:
             TransportError: As `complete`.
-            BudgetError: If nothing is left for another try.
+            BudgetError: If the budget allows no further try.
         """
         require_open_port()
         model = self.model_for(request)
@@ -135,15 +135,15 @@ class LiteLLM:
                 raise self._failure(answer["error"], model, 1)
 
     def vectors(self, texts: Sequence[str], meter: Meter | None = None) -> list[list[float]]:
-        """Return the vector of each text, from a model for embeddings; the port may be closed: nothing is decided by them.
+        """Return the vector of each text from an embedding model. A closed port does not forbid this: vectors decide nothing.
 
         Args:
-            texts: What is embedded.
+            texts: The texts to embed.
             meter: Counts the calls and limits their time.
 
         Raises:
             TransportError: As `complete`.
-            BudgetError: If nothing is left for another call.
+            BudgetError: If the budget allows no further call.
         """
         rows: list[list[float]] = []
         for start in range(0, len(texts), _BATCH):
@@ -155,22 +155,22 @@ class LiteLLM:
 
     @property
     def sees(self) -> bool:
-        """Whether the model that gets pictures is known, or may be hoped, to see; an endpoint of one's own is asked."""
+        """Return whether the model for pictures accepts images, as litellm states; for an unknown endpoint this is assumed."""
         return self._api_base is not None or bool(self._known[self._vision_model or self._model]["sees"])
 
     def takes_schemas(self, model: str | None = None) -> bool:
-        """Whether a model is held to a schema by its provider, rather than asked for the form in words."""
+        """Return whether the provider enforces a schema, rather than being asked for the form in words."""
         name = self._qualified(model) if model else self._model
         return name not in self._takes_no_schema and (self._api_base is not None or bool(self._known[name]["takes_schemas"]))
 
     # ------------------------------------------------------------------ one call
 
     def _patiently(self, do: str, model: str, arguments: Json, meter: Meter, **more: Any) -> Json:
-        """Call, again after a pause when the provider is busy; return the answer, or the error of a form that is refused.
+        """Call, again after a pause if the provider is busy; return the answer, or the error if it rejects the form of the request.
 
         Raises:
             TransportError: If it fails, or stays busy.
-            BudgetError: If the meter has nothing left.
+            BudgetError: If the meter allows no further call.
         """
         arguments = {"model": model} | arguments | ({} if self._api_base is None else {"api_base": self._api_base})
         for number in range(1, self._tries + 1):
@@ -184,21 +184,21 @@ class LiteLLM:
                 return answer
             is_passing = failure["kind"] != "key" and (failure["kind"] in _RETRIED_KINDS or failure["status"] in _RETRIED_STATUS)
             pause = _pause(failure, number) if is_passing and number < self._tries else 0.0
-            meter.require(pause)  # a call that was ended by the budget is told as such
+            meter.require(pause)  # a call that was ended by the budget is reported as such
             if not is_passing or number == self._tries:
                 raise self._failure(failure, model, number)
             self._sleep(pause)
         raise AssertionError("the last try either answers or raises")
 
     def _is_blind(self, model: str, request: Request) -> bool:
-        """Return whether a model is asked without the pictures of a request, because it takes none; refuse a request about pictures."""
+        """Return whether the pictures of a request are left out because the model accepts none; refuse a request about pictures."""
         blind = model in self._blind or (self._api_base is None and request.has_images and not self._known[model]["sees"])
         if blind and request.role in _LOOKING:
             raise transport_error("E_TRANSPORT", f"{model} cannot see, and {request.step} is about pictures.", _SIGHT)
         return blind
 
     def _conversation(self, model: str, request: Request, *, blind: bool) -> Json:
-        """Return what a request says, in the form of chats."""
+        """Return the messages of a request in chat format."""
         arguments: Json = {"messages": [_as_chat(_in_words(message) if blind else message) for message in request.messages]}
         if self._temperature is not None:
             arguments["temperature"] = self._temperature
@@ -212,7 +212,7 @@ class LiteLLM:
         return arguments
 
     def _learned(self, model: str, said: str, arguments: Json, request: Request, *, blind: bool) -> bool:
-        """Note what a model does not take, from how it refused; return whether to ask again without it."""
+        """Note from a refusal what a model does not accept; return whether to ask again without it."""
         if "response_format" in arguments and re.search(r"response_format|schema", said):
             self._takes_no_schema.add(model)
             return True
@@ -227,17 +227,17 @@ class LiteLLM:
         if len(text) > _LONGEST_ANSWER:
             message = f"{model} answered with {len(text)} characters; {_LONGEST_ANSWER} are the most that are read."
             raise transport_error("E_TRANSPORT", message, "Name another model; no plan and no script is as long.")
-        cost = None if self._api_base is not None else answer["cost"]  # the endpoint's owner sets the price, whatever it calls the model
+        cost = None if self._api_base is not None else answer["cost"]  # the endpoint's owner sets the price, whatever name the model has
         fingerprint = answer["fingerprint"]
         return Reply(text, model, Usage(*answer["usage"]), cost, fingerprint and fingerprint[:_LONGEST_MARK])
 
     # ------------------------------------------------------------------ names and keys
 
     def _qualified(self, model: str) -> str:
-        """Return the model with its provider; behind `api_base` an unknown name is the endpoint's own.
+        """Return the model with its provider; with `api_base`, an unknown name is one of the endpoint's own.
 
         Raises:
-            TransportError: If litellm knows no such provider and there is no endpoint of one's own, or cannot be asked.
+            TransportError: If litellm does not know the provider and there is no own endpoint, or litellm cannot be called.
         """
         if model not in self._known and f"openai/{model}" in self._known:
             return f"openai/{model}"
@@ -253,7 +253,7 @@ class LiteLLM:
         if told["models"][model]["provider"] is None:
             if self._api_base is None:
                 known = "openai/…, anthropic/…, gemini/…, mistral/…, ollama/…"
-                message = f"Model {model!r} names no provider that litellm knows."
+                message = f"Model {model!r} does not name a provider that litellm supports."
                 raise transport_error("E_TRANSPORT", message, f"Write provider/model ({known}), or give --api-base.")
             name = f"openai/{model}"
         self._known[name] = told["models"][name]
@@ -297,7 +297,7 @@ class LiteLLM:
 
 
 class LiteLLMEmbedder:
-    """A provider's own vectors, for the experience store: nearer to what is meant than the offline ones, at its price.
+    """Vectors from a provider for the experience store: closer in meaning than the offline ones, at the provider's price.
 
     Args:
         model: A model for embeddings in litellm's spelling, such as `gemini/gemini-embedding-001`.
@@ -314,18 +314,18 @@ class LiteLLMEmbedder:
 
         Raises:
             TransportError: If the provider cannot be reached.
-            BudgetError: If the meter has nothing left.
+            BudgetError: If the meter allows no further call.
         """
         return normalised(self._llm.vectors(texts, self._meter) if texts else np.zeros((0, 1)))
 
 
 def _no_calls(problem: object) -> TransportError:
-    """Return the error of a machine on which no model can be called."""
+    """Return the error for a machine on which no model can be called."""
     return transport_error("E_TRANSPORT", f"No model can be called here: {problem}.", "Run articad doctor.")
 
 
 def without_secrets(text: str) -> str:
-    """Return text from outside without anything that is, or looks like, a key of this environment."""
+    """Return text from outside with everything removed that is, or looks like, a key of this environment."""
     for name, value in os.environ.items():
         if _SECRET_NAME.search(name) and len(value) >= _SHORTEST_SECRET:
             text = text.replace(value, "[key]")
@@ -333,7 +333,7 @@ def without_secrets(text: str) -> str:
 
 
 def _pause(failure: Json, number: int) -> float:
-    """Return how long to wait after a failed try [s]: what the provider asks for, else twice the last time."""
+    """Return the pause after a failed try [s]: what the provider requests, else twice the last one."""
     asked = failure["retry_after"]
     if re.fullmatch(r"\d+(\.\d+)?", asked):
         return min(float(asked), LONGEST_WAIT_S)
@@ -346,7 +346,7 @@ def _is_drawn(part: Text | Image) -> bool:
 
 
 def _in_words(message: Message) -> Message:
-    """Return a message without the pictures that articad drew: they help, but the words beside them say enough."""
+    """Return a message without the pictures that articad drew: they help, but the text beside them suffices."""
     return Message(message.speaker, tuple(Text("(not shown)") if _is_drawn(part) else part for part in message.parts))
 
 
@@ -363,7 +363,7 @@ def _as_content(part: Text | Image) -> Json:
 
 
 def _with_form(messages: list[Json], schema: Json) -> list[Json]:
-    """Add the form of the answer for a model that cannot be held to a schema; a prompt that tells it in prose is left alone."""
+    """Add the form of the answer for a model that does not enforce a schema; a prompt that already describes it is left alone."""
     if _TOLD in str(messages[0]["content"]):
         return messages
     told = _FORM + json.dumps(schema, ensure_ascii=False)

@@ -1,8 +1,7 @@
-"""The port to language models, and its doubles: scripted, recorded, replayed, budgeted.
+"""The interface to language models, and its test doubles: scripted, recorded, replayed, limited by a budget.
 
-A request is addressed by its `step` in the run and verified by its `key`. The doubles are for users too: a run
-directory is its own cassette, and a script of replies makes every path of the agents testable without a model.
-Forms: `docs/reference/run.md`.
+A request is addressed by its `step` in the run and verified by its `key`. The doubles are for users too: a run directory is its own
+recording, and a script of replies makes every path of the agents testable without a model. Forms: `docs/reference/run.md`.
 """
 
 from __future__ import annotations
@@ -31,12 +30,12 @@ Speaker = Literal["system", "user", "assistant"]
 RECORD_SCHEMA: Final = "articad.llm/1"
 
 
-# ---------------------------------------------------------------------- what is asked and answered
+# ---------------------------------------------------------------------- requests and replies
 
 
 @dataclass(frozen=True)
 class Text:
-    """Words in a message."""
+    """Text in a message."""
 
     text: str
 
@@ -50,10 +49,10 @@ class Image:
     """A picture in a message.
 
     Attributes:
-        source: The bytes of the file, or what draws them when they are needed: a replay never looks at a picture.
+        source: The bytes of the file, or a function that draws them when they are needed: a replay draws no picture.
         media_type: "image/png" and the like.
-        recipe: How articad drew it (digests, views, options, version of the recipe), JSON; None if the user gave it.
-            A drawn picture enters the key by its recipe: its pixels differ between machines.
+        recipe: How articad drew it (digests, views, options, version of the recipe), JSON; None if the user gave it. A drawn picture
+            enters the key by its recipe, because its pixels differ between machines.
     """
 
     source: bytes | Callable[[], bytes] = field(repr=False)
@@ -74,7 +73,7 @@ class Image:
 
 @dataclass(frozen=True)
 class Message:
-    """What one side says: words and pictures, in order."""
+    """One message: text and pictures, in order."""
 
     speaker: Speaker
     parts: tuple[Text | Image, ...]
@@ -85,7 +84,7 @@ class Message:
 
 
 def system(text: str) -> Message:
-    """Return the message that says what the role is and does."""
+    """Return the system message, which describes the role and its task."""
     return Message("system", (Text(text),))
 
 
@@ -95,7 +94,7 @@ def user(*parts: str | Image) -> Message:
 
 
 def assistant(text: str) -> Message:
-    """Return what the model said before."""
+    """Return an earlier reply of the model."""
     return Message("assistant", (Text(text),))
 
 
@@ -116,7 +115,7 @@ class Request:
     response_schema: Mapping[str, Any] | None = None
 
     def to_json(self) -> Json:
-        """Return what the key is taken of: nothing of the model, the time or the machine."""
+        """Return the data that the key is computed from: it does not depend on the model, the time or the machine."""
         return {
             "role": self.role,
             "step": self.step,
@@ -131,20 +130,20 @@ class Request:
 
     @property
     def has_images(self) -> bool:
-        """Whether the model must be able to see."""
+        """Whether the model must accept images."""
         return any(isinstance(part, Image) for message in self.messages for part in message.parts)
 
 
 @dataclass(frozen=True)
 class Usage:
-    """Tokens that went in and came out."""
+    """Tokens in and out."""
 
     input_tokens: int = 0
     output_tokens: int = 0
 
     @property
     def total(self) -> int:
-        """Both together."""
+        """Sum of both."""
         return self.input_tokens + self.output_tokens
 
 
@@ -153,11 +152,11 @@ class Reply:
     """A model's answer.
 
     Attributes:
-        text: What it said.
-        model: Which one.
+        text: Its content.
+        model: The model that answered.
         usage: Tokens.
         cost: In US dollars; None when the price is unknown, which is not zero.
-        fingerprint: The provider's mark of the system that answered, if it gives one.
+        fingerprint: The provider's identifier of the system that answered, if it gives one.
     """
 
     text: str
@@ -178,10 +177,10 @@ class Reply:
 
     @classmethod
     def from_json(cls, stored: Mapping[str, Any]) -> Reply:
-        """Return the reply of a record.
+        """Return the reply stored in a record.
 
         Raises:
-            ReadError: If it is of another form.
+            ReadError: If it does not have the right form.
         """
         try:
             used, cost = stored["usage"], stored["cost"]
@@ -197,25 +196,25 @@ class Reply:
 
 
 class LLM(Protocol):
-    """Whatever answers requests. Called from several threads at once."""
+    """Whatever answers requests. Several threads call it at once."""
 
     def complete(self, request: Request) -> Reply:
-        """Answer.
+        """Answer a request.
 
         Raises:
-            AgentError: If there is no answer to be had.
+            AgentError: If there is no answer.
         """
         ...
 
 
 class Meter:
-    """What a request may still use. This one counts nothing and has no limit; that of a `Budget` does and has."""
+    """What a request may still use. This one counts nothing and has no limit; the meter of a `Budget` does both."""
 
     def begin(self) -> float:
         """Count one call that is about to be made, and return how long it may take [s].
 
         Raises:
-            BudgetError: If nothing is left for it.
+            BudgetError: If the budget allows no call.
         """
         return math.inf
 
@@ -238,7 +237,7 @@ class MeteredLLM(LLM, Protocol):
         """Answer within the limits of a meter.
 
         Raises:
-            AgentError: If there is no answer to be had.
+            AgentError: If there is no answer.
         """
         ...
 
@@ -253,7 +252,7 @@ _closed_because: ContextVar[str | None] = ContextVar("_closed_because", default=
 def closed_port(reason: str) -> Iterator[None]:
     """Refuse live calls from this thread until the block ends.
 
-    Assembly and checks run under it: they are deterministic, and this holds them to it. Other runs in the same process go on.
+    Assembly and checks run in such a block, which enforces that they are deterministic. Other runs in the same process continue.
     """
     token = _closed_because.set(reason)
     try:
@@ -263,7 +262,7 @@ def closed_port(reason: str) -> Iterator[None]:
 
 
 def require_open_port() -> None:
-    """Raise if live calls are forbidden now; adapters to real models call this first.
+    """Raise if live calls are forbidden now; adapters of real models call this first.
 
     Raises:
         TransportError: If a `closed_port` block is running.
@@ -285,10 +284,10 @@ Answer = str | Reply | Callable[[Request], "str | Reply"]
 
 
 class Scripted:
-    """Answers by a script: step, or pattern of steps such as `part/*/1`, to a reply or a function of the request.
+    """Answers from a script: a step, or a pattern of steps such as `part/*/1`, maps to a reply or a function of the request.
 
     Attributes:
-        requests: What was asked, in order of arrival.
+        requests: The requests, in order of arrival.
     """
 
     def __init__(self, answers: Mapping[str, Answer | Sequence[Answer]], *, model: str = "scripted") -> None:
@@ -299,11 +298,11 @@ class Scripted:
 
     @property
     def steps(self) -> list[str]:
-        """The steps that were asked, in order of arrival."""
+        """The steps of the requests, in order of arrival."""
         return [request.step for request in self.requests]
 
     def complete(self, request: Request) -> Reply:
-        """Answer by the script; an exact step goes before a pattern.
+        """Answer from the script; an exact step has priority over a pattern.
 
         Raises:
             ReplayMissError: If the script has no answer to this step.
@@ -324,14 +323,14 @@ class Scripted:
 
 
 class Recorded:
-    """Keeps every reply in the run, and answers again what the run has already: a resumed run repeats no call."""
+    """Stores every reply in the run and reuses those that the run already has: a resumed run repeats no call."""
 
     def __init__(self, llm: LLM, run: Run) -> None:
         self._llm = llm
         self._run = run
 
     def complete(self, request: Request) -> Reply:
-        """Answer from the run if it has this very request, else ask and record."""
+        """Answer from the run if it holds this very request, else ask and record."""
         stored = self._run.reply(request.step)
         if stored is not None and stored.get("key") == request.key:
             return Reply.from_json(stored.get("reply") or {})
@@ -355,7 +354,7 @@ class Replay:
     """Answers from a recorded run, by step: no key, no network.
 
     Attributes:
-        run: The recording, viewed.
+        run: The recording, opened for reading.
     """
 
     def __init__(self, run: Run | str | Path, *, strict: bool = False) -> None:
@@ -366,7 +365,7 @@ class Replay:
 
     @property
     def findings(self) -> Findings:
-        """The prompts that were not the recorded ones."""
+        """A finding for each prompt that differs from the recorded one."""
         return Findings(self._drift)
 
     def complete(self, request: Request) -> Reply:
@@ -397,17 +396,17 @@ class Replay:
 
 
 class Budget:
-    """Asks until a budget is spent; checked before each call, so that it ends in time rather than too late.
+    """Asks until a budget is used up; checked before each call, so that the limit is not exceeded by a call.
 
-    A `MeteredLLM` is counted by each of its tries, and each try may take what is left of the minutes.
+    Each try of a `MeteredLLM` counts as a call, and may take what is left of the minutes.
 
     Args:
-        llm: Who answers.
-        calls: Most calls.
-        tokens: Most tokens, in and out together.
-        cost: Most US dollars. A model of unknown price cannot be held to it: the call after its first is refused.
-        minutes: Most time since this object was made.
-        clock: Seconds, never going backwards.
+        llm: The model.
+        calls: Largest number of calls.
+        tokens: Largest number of tokens, in and out together.
+        cost: Largest cost in US dollars. If a model's price is unknown, the call after its first is refused.
+        minutes: Longest time since this object was made.
+        clock: Returns seconds; monotonic.
     """
 
     def __init__(
@@ -431,10 +430,10 @@ class Budget:
         self.cost_unknown_of: str | None = None
 
     def complete(self, request: Request) -> Reply:
-        """Ask, if something is left.
+        """Ask, if the budget allows it.
 
         Raises:
-            BudgetError: If nothing is.
+            BudgetError: If it does not.
         """
         meter = self.meter(request.step)
         if isinstance(self._llm, MeteredLLM):
@@ -443,7 +442,7 @@ class Budget:
             meter.begin()
             reply = self._llm.complete(request)
         with self._guard:
-            # what an endpoint says of itself may be wrong, but gives nothing back
+            # numbers from an endpoint may be wrong, but can only add to what was used
             self.tokens += max(reply.usage.input_tokens, 0) + max(reply.usage.output_tokens, 0)
             if reply.cost is None or not math.isfinite(reply.cost):
                 self.cost_unknown_of = reply.model
@@ -474,7 +473,7 @@ class Budget:
 
         Args:
             seconds: The length of the pause.
-            step: Whose call it is.
+            step: Address of the request that calls.
 
         Raises:
             BudgetError: If they are not.
@@ -542,7 +541,7 @@ def _miss(who: str, request: Request, known: Mapping[str, Any] | Sequence[str]) 
 
 
 def _first_difference(stored: Mapping[str, Any], request: Request) -> str:
-    """Say where a prompt leaves the recorded one."""
+    """Say where a prompt first differs from the recorded one."""
     now = request.to_json()
     for name in ("role", "response_schema"):
         if canonical_json(stored.get(name)) != canonical_json(now[name]):

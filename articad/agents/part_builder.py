@@ -25,14 +25,14 @@ from articad.plan.resolve import ResolvedPlan, resolve
 from articad.plan.schema import AssemblyPlan
 from articad.runs.run import Run
 
-CALLS_AT_ONCE: Final = 8  # parts that are asked for side by side; a model's answer takes minutes, and providers limit the rate
+CALLS_AT_ONCE: Final = 8  # parts requested in parallel; a model's answer takes minutes, and providers limit the rate
 
 Progress = Callable[[str, str], None]
-"""Called with a stage or a part and what became of it; from several threads."""
+"""Called with a stage or a part and its outcome; from several threads."""
 
 
 class PartsError(ContractError):
-    """Parts that could not be made; `failures` says why, by part."""
+    """Parts that could not be made; `failures` holds the reason by part."""
 
     def __init__(self, failures: Mapping[str, ArticadError], total: int) -> None:
         self.failures = dict(failures)
@@ -42,7 +42,7 @@ class PartsError(ContractError):
 
     @property
     def for_design(self) -> Findings:
-        """What the designer is told: no script was found for these entries."""
+        """Findings for the designer: no script was found for these entries."""
         return Findings(
             replace(finding, code=_as_error(finding.code), route="design", parts=(name,), message=_unbuilt(name, finding))
             for name, error in self.failures.items()
@@ -53,7 +53,7 @@ class PartsError(ContractError):
 
 @dataclass
 class _Made:
-    """A part that was made, or was tried: with which entry of the plan, by how many answers, and as what."""
+    """A part that was made or tried: its entry in the plan, the number of answers, and the result."""
 
     brief: str
     answers: int
@@ -66,20 +66,20 @@ class PartBuilder:
     """Makes parts.
 
     Attributes:
-        run: Keeps what is made.
-        port: Who is asked.
+        run: Stores what is made.
+        port: The model.
         kernel: Builds scripts.
-        cache: Keeps built parts.
+        cache: Stores built parts.
         jobs: How many parts are built at once.
-        progress: Told of each part.
-        memory: Knows worked examples.
-        documentation: Knows the kernel's API.
-        complaints: What the authors of scripts are told in the next round, by part.
+        progress: Called for each part.
+        memory: Source of worked examples.
+        documentation: Source of the kernel's API.
+        complaints: Findings for the authors of scripts in the next round, by part.
         fates: What became of each part in this round.
         begun: Scripts that were written for other entries of these parts, for their authors to change.
-        ending: What follows every script that is written.
+        ending: Text that is appended to every script.
         planned: The parts of the last plan.
-        made: What was made or tried, by part.
+        made: The parts that were made or tried, by name.
     """
 
     run: Run
@@ -109,11 +109,11 @@ class PartBuilder:
 
     @property
     def opinions(self) -> Findings:
-        """What inspectors have against parts as they are."""
+        """Complaints of inspectors about parts as they are."""
         return Findings(finding for made in self.made.values() for finding in made.opinions)
 
     def assembled(self, plan: AssemblyPlan) -> tuple[AssemblyPlan, Assembly]:
-        """Return the assembly of a plan, and the plan: a new version of it where connectors were fine-tuned.
+        """Return the assembly of a plan, and the plan: a new version of it if connectors were fine-tuned.
 
         Raises:
             PartsError: If parts could not be made; the others are finished.
@@ -126,12 +126,12 @@ class PartBuilder:
             return self.joined(plan, resolved)
 
     def adopt(self, resolved: Mapping[str, ResolvedPlan], scripts: Mapping[str, bytes], fates: Mapping[str, Fate] | None = None) -> None:
-        """Take scripts for what these plans say of their parts; each is kept as long as that stays the same and builds.
+        """Take over scripts for the entries of their parts in these plans; each is kept while its entry is the same and it builds.
 
         Args:
             resolved: By part, the plan that has its entry.
             scripts: By part.
-            fates: What became of them before in this round; without it they count as kept.
+            fates: What became of them before in this round; by default they count as kept.
         """
         self._before = dict(fates or {})
         for name, script in scripts.items():
@@ -140,7 +140,7 @@ class PartBuilder:
             self.made[name] = _Made(brief_digest(resolved[name], name), answers, script, opinions)
 
     def make(self, resolved: Mapping[str, ResolvedPlan], planned: tuple[str, ...]) -> None:
-        """Make parts side by side, or keep them as they are.
+        """Make parts in parallel, or keep them as they are.
 
         Args:
             resolved: By part, the plan that has its entry.
@@ -161,11 +161,11 @@ class PartBuilder:
         _raise_failures(futures, len(sources))
 
     def alone(self, resolved: Mapping[str, ResolvedPlan]) -> dict[str, RealisedPart]:
-        """Return made parts as these plans of single parts have them."""
+        """Return finished parts as these plans of single parts describe them."""
         return {name: self._build(plan, name, self.scripts[name]) for name, plan in resolved.items()}
 
     def shown(self, name: str) -> str:
-        """Return the script of a part that was made, as its author wrote it."""
+        """Return the script of a finished part, as its author wrote it."""
         return self._shown(self.scripts[name])
 
     def announce(self, what: str, event: str) -> None:
@@ -175,7 +175,7 @@ class PartBuilder:
             self.progress(what, event)
 
     def joined(self, plan: AssemblyPlan, resolved: ResolvedPlan) -> tuple[AssemblyPlan, Assembly]:
-        """Return the assembly of parts whose scripts are there, and the plan as `assembled` does.
+        """Return the assembly of parts whose scripts exist, and the plan as `assembled` does.
 
         Raises:
             ContractError: With the findings of every part that could not be built.
@@ -235,7 +235,7 @@ class PartBuilder:
         return f"```python\n{script.removesuffix(self.ending).decode()}```"
 
     def _build(self, resolved: ResolvedPlan, name: str, script: bytes) -> RealisedPart:
-        """Build a script; a connector that is off is taken into the plan if it holds there, else the script must build it in place."""
+        """Build a script; a connector that is off is taken into the plan if that is valid, else the script must be corrected."""
         with self._building:
             part = build_source(resolved, name, script, kernel=self.kernel, cache=self.cache, deflection=DEFLECTION_MM)
         if drift := part.findings.of("W_CONNECTOR_DRIFT"):
@@ -254,7 +254,7 @@ def _as_error(code: str) -> str:
 
 
 def _raise_failures(futures: Mapping[str, Future[None]], total: int) -> None:
-    """Raise what went wrong with the parts, all of it at once; a model that cannot be asked goes first."""
+    """Raise the failures of all parts at once; an error of the model has priority."""
     errors = {name: error for name, future in futures.items() if (error := future.exception()) is not None}
     for error in errors.values():
         if not isinstance(error, ArticadError) or (isinstance(error, AgentError) and not isinstance(error, OutputError)):

@@ -1,4 +1,4 @@
-"""Generation: one part, from its entry in the plan to a solid that keeps its contract and looks as it was specified.
+"""Generation: one part, from its entry in the plan to a solid that keeps its contract and looks as specified.
 
 A request depends on the part's own entry, its own connectors, the kernel and what was retrieved: never on another part.
 """
@@ -29,26 +29,28 @@ ROLE: Final = "part"
 REPAIRS: Final = 3
 ATTEMPT_SCHEMA: Final = "articad.attempt/1"
 _DIGITS = 6  # decimals of mm in a prompt: the last bits of a cosine differ between machines
-_SHOWN_CHARACTERS = 6000  # of a failure; tracebacks hold the script's own frames only, so this is rarely reached
+_SHOWN_CHARACTERS = 6000  # of a failure; tracebacks contain only the script's own frames, so this limit is rarely reached
 _EXAMPLES: Final = {"build123d": "lid_left.txt", "freecad": "door_left_freecad.txt"}
 
 Build = Callable[[str, bytes], RealisedPart]
 """Builds the script of a part, or raises `KernelError`."""
 
 Complaint = Literal["part_repair", "part_again", "part_edit", "look_repair"]
-"""The prompt by which an answer is given back: its script failed, the assembly did, its entry is another now, or an inspector complains."""
+"""The prompt that returns an answer to its author: the script failed, the assembly failed, the entry has changed, or an inspector
+complains.
+"""
 
 
 @dataclass(frozen=True)
 class Attempt:
-    """An answer that did not do.
+    """An answer that was rejected.
 
     Attributes:
         said: The answer.
         failure: What was wrong with it, as its author is told.
-        picture: What its script had made.
+        picture: What its script built.
         error: The same as an exception.
-        complaint: How it is given back.
+        complaint: The prompt that returns it.
     """
 
     said: str
@@ -64,7 +66,7 @@ class Attempt:
 
     @property
     def signature(self) -> object:
-        """What two failures of one cause have in common: where they are, and of a crash what it said."""
+        """Return what two failures of the same cause have in common: their places, and for a crash its message."""
         if self.error is None or isinstance(self.error, OutputError):
             return self.complaint, None if self.error is None else "unreadable"
         return tuple((f.code, f.where, f.message if f.code == "E_SCRIPT_ERROR" else "") for f in self.error.findings.errors)
@@ -76,8 +78,8 @@ class WrittenPart:
 
     Attributes:
         realised: The part.
-        answers: How many were given in all: the address of the next one follows.
-        opinions: What an inspector still has against it; no exact check agrees or disagrees.
+        answers: Number of answers in all; the address of the next one follows from it.
+        opinions: Complaints of an inspector; exact checks neither confirm nor refute them.
     """
 
     realised: RealisedPart
@@ -91,14 +93,14 @@ class PartWriter:
     Args:
         resolved: The plan with its numbers; only the part's own entry is read.
         name: The part.
-        llm: Who writes, and looks.
-        run: Keeps the attempts that failed, and knows those of a run that was interrupted.
-        build: Builds a script and holds it to its contract.
-        kernel: The kernel: its name is the dialect of the script.
-        repairs: How often a failed script may be mended.
+        llm: The model that writes and inspects.
+        run: Stores failed attempts, and holds those of an interrupted run.
+        build: Builds a script and checks its contract.
+        kernel: The kernel; its name is the dialect of the script.
+        repairs: How often a failed script may be repaired.
         looks: Whether pictures of the built part are compared with the specification.
-        memory: Knows worked examples.
-        documentation: Knows the kernel's API.
+        memory: Source of worked examples.
+        documentation: Source of the kernel's API.
     """
 
     def __init__(
@@ -124,14 +126,14 @@ class PartWriter:
     def make(self, *, answered: int = 0, previous: Attempt | None = None) -> WrittenPart:
         """Return the part as built.
 
-        The same failure twice in a row asks for another approach; the third time ends it.
+        After the same failure twice in a row, another approach is requested; the third time ends the attempts.
 
         Args:
-            answered: Answers that were given before: the address of the next one follows.
+            answered: Answers that were given before; the address of the next one follows from it.
             previous: The last of these, and what is wrong with it.
 
         Raises:
-            BuildError, ContractError, OutputError: As the last answer failed, when all repairs are used up.
+            BuildError, ContractError, OutputError: The failure of the last answer, when all repairs are used up.
         """
         first, alike, best = self._opening(), 0, None
         for number in range(answered + 1, answered + self._repairs + 2):
@@ -163,7 +165,7 @@ class PartWriter:
         return opening(self._resolved, self._name, kernel, self._pictures, examples=examples, snippets=snippets)
 
     def _opinions(self, realised: RealisedPart, number: int) -> Findings:
-        """Return what an inspector has against a part; one whose answers have no form has nothing to say."""
+        """Return an inspector's complaints about a part; none if its answers do not have the form."""
         if not self._looks:
             return Findings()
         step = f"look/{self._name}/{number}"
@@ -175,7 +177,7 @@ class PartWriter:
             return Findings()
         for finding in opinions:
             self._run.trace_finding(finding)
-        return Findings(finding for finding in opinions if finding.severity == "warning")  # what nobody could see is no complaint
+        return Findings(finding for finding in opinions if finding.severity == "warning")  # what no picture shows is not a complaint
 
     def _picture(self, realised: RealisedPart) -> Image:
         return part_picture(realised.part, realised.digests["build"])
@@ -188,7 +190,7 @@ class PartWriter:
             return Attempt.of(said, error)
         mark = build_digest(self._resolved, self._name, script, self._kernel.name, self._kernel.version, DEFLECTION_MM)
         known = self._run.attempt(self._name, number)
-        if known is not None and known["build"] == mark:  # an interrupted run has built it before, in vain
+        if known is not None and known["build"] == mark:  # an interrupted run has already built it and failed
             return _remembered(known, self._run.attempt_picture(self._name, number), said, self._name)
         try:
             return self._build(self._name, script)
@@ -214,7 +216,7 @@ def opening(
     examples: Sequence[str] = (),
     snippets: Sequence[str] = (),
 ) -> tuple[Message, ...]:
-    """Return what a part's engineer is told first: the contract of a script, what was retrieved, and the part's own entry."""
+    """Return the first messages to a part's author: the contract of a script, what was retrieved, and the part's own entry."""
     instructions = prompt(f"part_{kernel}", example=prompt_file(_EXAMPLES[kernel]))
     instructions += listed_cases("# Parts of other products that were built well", examples)
     instructions += listed_cases("# From the documentation", snippets)
@@ -233,7 +235,7 @@ def messages_after(first: tuple[Message, ...], previous: Attempt | None, *, anew
 
 
 def specification(resolved: ResolvedPlan, name: str) -> str:
-    """Return a part's entry in the plan as its engineer reads it, with numbers; other parts are not named."""
+    """Return a part's entry in the plan as its author reads it, with numbers; other parts are not named."""
     target, told = resolved.parts[name], brief(resolved, name)
     lines = [f"name: {name}", f"material: {target.material.name}"]
     lines += [f"{field}: {text}" for field, text in (("role", target.role), ("orientation", target.orientation)) if text]
@@ -247,7 +249,7 @@ def specification(resolved: ResolvedPlan, name: str) -> str:
 
 
 def failure_text(error: KernelError | OutputError) -> str:
-    """Return what went wrong as its author is told: no path, no address, no time."""
+    """Return a failure as its author is told it: no path, no address, no time."""
     if isinstance(error, OutputError):
         return f"It could not be read: {error.message}"
     lines = [f"- {finding}" for finding in error.findings if finding.severity != "info"] or [error.message]
@@ -283,7 +285,7 @@ def _number(value: float) -> str:
 
 
 def _outcome(error: KernelError, mark: str, picture: Image | None) -> dict[str, Any]:
-    """Return what is kept of a failed attempt: all that is needed to ask for a better one."""
+    """Return the record of a failed attempt: all that is needed to ask for a better one."""
     trace = {"line": error.line, "traceback": error.traceback} if isinstance(error, BuildError) else {}
     recipe = None if picture is None or picture.recipe is None else dict(picture.recipe)
     findings = error.findings.to_json()["findings"]

@@ -1,4 +1,4 @@
-"""Pictures for models: a part, what a failed script had made, an assembly, its motion, and the place of a fault.
+"""Pictures for models: a part, the result of a failed script, an assembly, its motion, and the place of a fault.
 
 Each is drawn when its bytes are needed, and enters a request's key by its recipe: a replay draws nothing.
 """
@@ -27,13 +27,13 @@ if TYPE_CHECKING:
 
 VIEWS: Final = ("iso", "front", "right", "top")
 PART_VIEWS: Final = (*VIEWS, "iso_back_left", "iso_below_left")  # hollows, bores and lugs may be on any side
-SIZE: Final = 320  # pixels of each view: a feature of a hundredth of the part is still seen
-ASSEMBLY_SIZE: Final = 448  # pixels of each view of the whole: its parts' names must be legible
-KEYFRAMES: Final = 6  # of each coordinate of a joint
+SIZE: Final = 320  # pixels of each view: a feature of a hundredth of the part is still visible
+ASSEMBLY_SIZE: Final = 448  # pixels of each view of the whole: the names of parts must be legible
+KEYFRAMES: Final = 6  # for each coordinate of a joint
 _COLOR = "#c8a46e"
 _MESH = "part.npz"
 _RECIPE = "articad.picture/4"  # of `articad.render`, which is loaded only where something is drawn; a test compares the two
-_drawing = threading.Lock()  # pictures for several parts at once would only take each other's processor
+_drawing = threading.Lock()  # one picture at a time: several would only compete for the processor
 
 
 def partial_picture(folder: Path | None, name: str, build: str) -> Image | None:
@@ -42,10 +42,10 @@ def partial_picture(folder: Path | None, name: str, build: str) -> Image | None:
     Args:
         folder: Where the kernel left them; None if there were none.
         name: The part.
-        build: Digest of the build that failed: with the views it is the picture's recipe.
+        build: Digest of the build that failed; with the views it is the picture's recipe.
 
     Returns:
-        One sheet, or None if there is nothing to be seen.
+        One sheet, or None if there is nothing to draw.
     """
     if folder is None:
         return None
@@ -95,7 +95,7 @@ def motion_picture(assembly: Assembly, joint: str) -> Image:
 
 
 def offence_picture(assembly: Assembly, finding: Finding) -> Image | None:
-    """Draw the place of a finding: its parts in full, the others faded, what they have in common in red, in the pose in which it is so."""
+    """Draw the place of a finding in its pose: its parts in full, the others faded, their common volume in red."""
     parts = [name for name in finding.parts if name in assembly.parts]
     if not parts:
         return None
@@ -110,11 +110,11 @@ def offence_picture(assembly: Assembly, finding: Finding) -> Image | None:
 
 
 def assembly_mark(assembly: Assembly) -> str:
-    """Return the digest of a plan and all that was built of it."""
+    """Return the digest of a plan and of everything built from it."""
     builds = {name: dict(realised.digests) or realised.derived_from for name, realised in assembly.realised.items()}
     if assembly.plan is not None:
         return digest({"plan": assembly.plan.dumps(), "parts": builds})
-    # Read from a file: known by its shapes, where they are at rest, and its joints.
+    # Read from a file: identified by its shapes, their poses at rest, and its joints.
     shapes = {name: [shape.digest for shape in part.visuals or part.collisions] for name, part in assembly.parts.items()}
     rest = assembly.poses(assembly.mechanism.rest).data.round(6).tolist()
     return digest({"shapes": shapes, "rest": rest, "joints": [f"{joint.name} {joint.type} {joint.limits}" for joint in assembly.joints]})

@@ -1,8 +1,7 @@
-"""The pipeline: a request in, a run directory with a checked and exported assembly out.
+"""The pipeline: turns a request into a run directory with a checked and exported assembly.
 
-One straight line, requirements - design - parts - assembly - checks - exports, with one edge back: what the checks find
-goes to the designer, and only parts whose entry changed are written anew. A killed run is gone on with by the same call:
-every answer that was paid for is in the run.
+The steps are requirements - design - parts - assembly - checks - exports, with one edge back: findings of the checks go to the designer,
+and only parts whose entry changed are written anew. Calling it again resumes a killed run; paid replies are read back from disk.
 """
 
 from __future__ import annotations
@@ -61,44 +60,44 @@ def generate(
     jobs: int | None = None,
     progress: Progress | None = None,
 ) -> Run:
-    """Make an articulated assembly of words, pictures or both.
+    """Make an articulated assembly from words, pictures or both.
 
-    Called again with the same arguments and the same `out`, it goes on where it was interrupted and repeats no call.
+    Calling it again with the same arguments and the same `out` resumes an interrupted run; no call to the model is repeated.
 
     Args:
-        prompt: What is wanted.
-        llm: Who answers; wrap it in `Budget` to limit calls, tokens, money or time.
-        images: Pictures of what is wanted, PNG, JPEG, GIF or WebP.
-        part_images: Pictures of single parts, by the part's name; they reach only that part's requests.
+        prompt: The request.
+        llm: The model; wrap it in `Budget` to limit calls, tokens, money or time.
+        images: Pictures of the product, PNG, JPEG, GIF or WebP.
+        part_images: Pictures of single parts, by the part's name; they enter only the requests of that part.
         out: The run directory; by default a new one under `runs/`.
         kernel: Builds the part scripts; build123d by default.
         sandbox: "weak" accepts less isolation than landlock or bwrap give.
         cache: Keeps built parts; by default `$ARTICAD_CACHE` or `~/.cache/articad`.
-        formats: What to export.
-        designs: Answers until a plan must validate.
-        repairs: How often a failed part script may be mended.
-        rounds: How often parts are assembled and checked; what the last check finds stays in the report.
-        look: Whether a model compares each part's pictures with its specification. It must see.
-        inspection: Whether a model observes the assembly in pictures, and one judges it. It must see.
-        ideas: Whether alternatives are proposed first: "auto" where the request leaves open what is to be built.
-        pick: The alternative to make, from 1; asks for alternatives in any case.
+        formats: Formats to export.
+        designs: Answers within which a plan must be valid.
+        repairs: How often a failed part script may be repaired.
+        rounds: How often parts are assembled and checked; findings of the last check stay in the report.
+        look: Whether a model compares each part's pictures with its specification. It must accept images.
+        inspection: Whether one model describes the assembly from pictures and one judges it. It must accept images.
+        ideas: Whether alternatives are proposed first; "auto" does so if the request leaves open what to build.
+        pick: The alternative to make, from 1; alternatives are then always proposed.
         choose: Called with the alternatives, returns the number of the one to make; without it and `pick` the first is made.
-        review: Who scores the finished assembly: "rules" what was measured, "model" also one that sees.
-        variant: The paper's ablations: "late" plans connectors and joints when the parts exist; "no-rollback" neither looks nor
-            judges, and sends nothing back that was assembled; "no-memory" recalls no cases; and its baseline: "single-loop" has
-            one script make and assemble all parts, and only what fails to run goes back.
-        memory: What earlier runs teach; nothing by default.
-        documentation: What the kernel's API says; nothing by default.
+        review: Who scores the finished assembly: "rules" uses measurements, "model" also a model that sees pictures.
+        variant: The paper's ablations: "late" plans connectors and joints after the parts exist; "no-rollback" neither inspects nor
+            judges, and sends nothing back after assembly; "no-memory" recalls no cases. And its baseline: in "single-loop", one script
+            makes and assembles all parts, and goes back only if it fails to run.
+        memory: Source of cases from earlier runs; none by default.
+        documentation: Source of the kernel's API documentation; none by default.
         jobs: How many parts are built at once; by default the number of processors.
-        progress: Told of each stage and part.
+        progress: Called for each stage and part.
 
     Returns:
         The run, closed: `run.path`, `run.checks()`, `articad.runs.record.assembly_of(run)`.
 
     Raises:
-        PlanError: If no valid plan came of all tries.
+        PlanError: If no answer is a valid plan.
         ContractError: If a part could not be built.
-        AgentError: If the model cannot be asked, the budget is spent or answers have no form. Finished work is kept.
+        AgentError: If the model cannot be asked, the budget is used up or answers do not have the required form. Finished work is kept.
     """
     pictures = [UserImage.read(image) for image in images]
     pictures += [UserImage.read(image, part) for part, image in sorted((part_images or {}).items())]
@@ -107,7 +106,7 @@ def generate(
     options: dict[str, Any] = {"task": "generate", "designs": designs, "repairs": repairs, "rounds": rounds, "formats": list(formats)}
     options |= {"kernel": kernel.name, "variant": variant, "look": look and rolls_back, "inspection": inspection and rolls_back}
     options |= {"ideas": "always" if pick is not None else ideas, "pick": pick, "finetune": True}
-    options |= {} if review == "none" else {"review": review}  # not asked for, it is not mentioned: older recordings stay what they are
+    options |= {} if review == "none" else {"review": review}  # left out by default, so that older recordings stay valid
     request = RunRequest(prompt=prompt, images=tuple(pictures), options=options)
     with open_or_create(request, out) as run:
         taught = _taught(run, variant, memory, documentation)
@@ -128,15 +127,15 @@ def resume(
     jobs: int | None = None,
     progress: Progress | None = None,
 ) -> Run:
-    """Go on with a run of `generate` or `edit` where it was interrupted; no call is repeated, no part built twice.
+    """Resume a run of `generate` or `edit` where it was interrupted; no call is repeated, no part built twice.
 
-    What was asked for, and how, stands in the run; who answers and what may be spent is said anew.
+    The request and its options are stored in the run; the model and its budget are given anew.
 
     Args:
         path: The run directory.
-        llm: As for `generate`; not needed where all answers are there.
+        llm: As for `generate`; not needed if all answers are stored.
         sandbox: As for `generate`.
-        kernel: As for `generate`; the one that the run asked for by default.
+        kernel: As for `generate`; by default that of the run's request.
         cache: As for `generate`.
         choose: As for `generate`.
         memory: As for `generate`.
@@ -145,10 +144,10 @@ def resume(
         progress: As for `generate`.
 
     Returns:
-        The run, closed; a finished one as it was.
+        The run, closed; a finished run is returned unchanged.
 
     Raises:
-        RunError: If there is no run of a model's, its request lacks options, or another process works in it.
+        RunError: If it is not a run of a model, its request lacks options, or another process works in it.
         PlanError, ContractError, AgentError: As `generate`.
     """
     with Run.open(path) as run:
@@ -165,14 +164,14 @@ _NEEDED: Final[Mapping[str, type | tuple[type, ...]]] = {
     "rounds": int,
     "formats": (list, tuple),
 }
-_UNSAID: Final[Mapping[str, str]] = {"kernel": "build123d", "variant": "full"}  # of runs that were begun when there was no other
+_UNSAID: Final[Mapping[str, str]] = {"kernel": "build123d", "variant": "full"}  # for runs that were begun when there was no other choice
 
 
 def _options_of(run: Run) -> Mapping[str, Any]:
-    """Return the options of a model's run, which somebody else may have written.
+    """Return the options of a model's run; the file is not trusted.
 
     Raises:
-        RunError: Naming what is missing.
+        RunError: Naming the options that are missing.
     """
     options = {**_UNSAID, **run.request.options}
     wrong = [key for key, kind in {**_NEEDED, **dict.fromkeys(_UNSAID, str)}.items() if not isinstance(options.get(key), kind)]
@@ -187,12 +186,12 @@ _Taught = tuple[KeptMemory, KeptDocumentation]
 
 
 def recalls(variant: str) -> bool:
-    """Return whether runs of a variant are told of earlier ones, and remembered."""
+    """Return whether runs of a variant read earlier ones from memory, and are remembered."""
     return variant not in {"no-memory", "single-loop"}
 
 
 def _taught(run: Run, variant: str, memory: Memory | None, documentation: Documentation | None) -> _Taught:
-    """Return what a run of a variant may look up."""
+    """Return the memory that a run of a variant may use."""
     memory = memory if recalls(variant) else None
     return KeptMemory(run, memory), KeptDocumentation(run, None if variant == "single-loop" else documentation)
 
@@ -207,7 +206,7 @@ def _work(
     jobs: int | None,
     progress: Progress | None,
 ) -> None:
-    """Do what a run's request asks for."""
+    """Carry out a run's request."""
     note(run, kernel)
     builder = PartBuilder(run, Recorded(llm, run), kernel, cache or BuildCache(), jobs, progress, *taught)
     _line(builder, chooser, taught[0]).work()
@@ -224,7 +223,7 @@ _LINES: Final[Mapping[str, type[Line]]] = {"late": LateLine, "single-loop": Sing
 
 
 def _chosen_by_user(pick: int | None, choose: Choose | None, alternatives: Sequence[Alternative]) -> tuple[int, str]:
-    """Return the alternative that was asked for, or the first."""
+    """Return the alternative that the user picked, or the first."""
     if pick is None and choose is None:
         return 1, "articad"
     number = pick if pick is not None else choose(alternatives) if choose is not None else 1
@@ -236,12 +235,12 @@ def _chosen_by_user(pick: int | None, choose: Choose | None, alternatives: Seque
 
 @dataclass(frozen=True)
 class Replayed:
-    """A recording, made again.
+    """The replay of a recording.
 
     Attributes:
         run: The new run, closed.
-        differences: Files, the trace apart, that are not equal to the recording's.
-        findings: Prompts that differ from the recorded ones; what of the files differs, by how much, and why.
+        differences: Files, except for the trace, that are not equal to the recording's.
+        findings: Prompts that differ from the recorded ones; files that differ, by how much, and why.
     """
 
     run: Run
@@ -250,12 +249,12 @@ class Replayed:
 
     @property
     def ok(self) -> bool:
-        """Whether every result is the same, or differs by another kernel's or platform's rounding alone; prompts may have changed since."""
+        """True if every result is the same, or differs only by the rounding of another kernel or platform; prompts may differ."""
         return not self.results_that_differ or (self.findings.ok and "W_REPLAY_DRIFT" in self.findings.codes)
 
     @property
     def results_that_differ(self) -> tuple[str, ...]:
-        """Files that are not equal, without the requests that `findings` tells of as drifted prompts."""
+        """Files that are not equal, except for requests that `findings` reports as changed prompts."""
         steps = (finding.where.removeprefix("llm.") for finding in self.findings.of("I_PROMPT_DRIFT"))
         drifted = {f"llm/{step.replace('/', '.')}.json" for step in steps}
         return tuple(name for name in self.differences if name not in drifted)
@@ -272,12 +271,12 @@ def replay(
     jobs: int | None = None,
     progress: Progress | None = None,
 ) -> Replayed:
-    """Make a recorded run again, from its replies and what was retrieved for it: no key, no network, no store.
+    """Repeat a recorded run from its replies and its retrieved texts: no key, no network, no store.
 
     Args:
         recording: The run to repeat.
         out: Where to; by default a new directory under `runs/`.
-        strict: Refuse a prompt that is not the recorded one, instead of reporting it.
+        strict: Refuse a prompt that differs from the recorded one, instead of reporting it.
         kernel: As for `generate`.
         sandbox: As for `generate`.
         cache: As for `generate`; `BuildCache(None)` builds every part anew.

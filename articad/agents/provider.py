@@ -1,11 +1,11 @@
-"""The process that talks to models. It imports LiteLLM once and forks a bounded process for each call. Started by `calls.py`.
+"""The process that talks to models. It imports LiteLLM once and forks a process with limits for each call. Started by `calls.py`.
 
-A call is one connected socket, handed over on stdin. The forked process
+A call is one connected socket, passed over stdin. The forked process
 - reads one JSON object to the end of the stream: `do`, `seconds`, `environment`, and the arguments of the task;
 - is killed by the kernel when `seconds` have passed (`ITIMER_REAL`: a monotonic clock), whatever it waits for;
-- may allocate `MEMORY` bytes beside what the import and the request took;
+- may allocate `MEMORY` bytes in addition to what the import and the request took;
 - sends one request over HTTP, follows no redirect, and reads at most `LARGEST_BODY` bytes, decompressed, in small pieces;
-- answers with one JSON object, or dies, which its socket shows as an end without an answer.
+- answers with one JSON object, or dies, in which case its socket ends without an answer.
 
 Tasks: `describe` models, `complete` a conversation, `embed` texts. The answer to a call that fails is `{"error": {...}}` with a `kind`:
 `key`, `form`, `late`, `unreachable`, `empty`, `redirect`, `body`, `memory` or `other`.
@@ -50,16 +50,16 @@ class BodyError(Exception):
 
 
 class EmptyAnswerError(ValueError):
-    """A completion without text: models give one now and then."""
+    """A completion without text, which models give now and then."""
 
 
 def main() -> None:
     """Serve calls until stdin closes."""
     litellm = load()
     control = socket.socket(fileno=os.dup(0))
-    signal.signal(signal.SIGCHLD, signal.SIG_IGN)  # nobody waits for a call: its socket says how it went
+    signal.signal(signal.SIGCHLD, signal.SIG_IGN)  # nobody waits for a call: its socket says how it ended
     parent = os.getpid()
-    gc.freeze()  # the forked processes share what is imported
+    gc.freeze()  # the forked processes share the imported modules
     control.send(b"ready")
     while True:
         message, files, _, _ = socket.recv_fds(control, 16, 1)
@@ -73,10 +73,10 @@ def main() -> None:
 
 
 def load() -> Any:
-    """Import LiteLLM with its telemetry, its downloads and its reading of `.env` files turned off, and bound what it reads."""
-    os.environ.setdefault("LITELLM_LOCAL_MODEL_COST_MAP", "True")  # else the import fetches a price list
+    """Import LiteLLM with its telemetry, its downloads and its reading of `.env` files turned off, and limit what it reads."""
+    os.environ.setdefault("LITELLM_LOCAL_MODEL_COST_MAP", "True")  # otherwise the import fetches a price list
     os.environ.setdefault("LITELLM_LOG", "ERROR")
-    os.environ["LITELLM_MODE"] = "PRODUCTION"  # else the import loads the nearest .env, which may name another host for the user's key
+    os.environ["LITELLM_MODE"] = "PRODUCTION"  # otherwise the import loads the nearest .env, which may name another host for the user's key
     import litellm  # noqa: PLC0415 - only in the process that calls models
 
     litellm.suppress_debug_info = True
@@ -92,7 +92,7 @@ def load() -> Any:
 
 
 def _become(litellm: Any, line: socket.socket, parent: int) -> NoReturn:
-    """Do what the line asks for, answer, end."""
+    """Carry out the request that the socket brings, answer, and exit."""
     try:
         ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, int(signal.SIGKILL), 0, 0, 0) if sys.platform == "linux" else None
         if os.getppid() != parent:
@@ -113,14 +113,14 @@ def _become(litellm: Any, line: socket.socket, parent: int) -> NoReturn:
     except MemoryError:
         with contextlib.suppress(BaseException):
             line.sendall(b'{"error": {"kind": "memory"}}')
-    except BaseException:  # noqa: BLE001, S110 - an end without an answer says that it failed
+    except BaseException:  # noqa: BLE001, S110 - an end without an answer means that it failed
         pass
     finally:
         os._exit(0)
 
 
 def _limit_memory(more: int) -> None:
-    """Bound the private data of this process to what it has now and some more (Linux; macOS knows no such limit)."""
+    """Limit the private data of this process to its present size plus `more` (Linux only; macOS has no such limit)."""
     import resource  # noqa: PLC0415 - Windows has none
 
     with contextlib.suppress(OSError), open("/proc/self/status") as status:  # noqa: PTH123 - no pathlib is needed for it
@@ -139,7 +139,7 @@ def _answer(litellm: Any, order: Json) -> Json:
 
 
 def _describe(litellm: Any, order: Json) -> Json:
-    """Say of each model: its provider, the variables of its key, whether they are set, whether it sees and is held to schemas."""
+    """Return for each model: its provider, the variables of its key, whether they are set, whether it accepts images and schemas."""
     return {"models": {name: _description(litellm, name) for name in order["models"]}}
 
 
@@ -152,7 +152,7 @@ def _description(litellm: Any, name: str) -> Json:
     return {
         "provider": provider,
         "missing": [str(variable) for variable in told["missing_keys"]],
-        "has_key": bool(told["keys_in_environment"]),  # an unknown provider has one: its own answer will tell
+        "has_key": bool(told["keys_in_environment"]),  # an unknown provider counts as having one: its own answer will show
         "sees": bool(_tried(lambda: litellm.supports_vision(model=name), fallback=False)),
         "takes_schemas": bool(_tried(lambda: litellm.supports_response_schema(model=name), fallback=False)),
     }
@@ -165,7 +165,7 @@ def _complete(litellm: Any, order: Json) -> Json:
     if not isinstance(text, str) or not text.strip():
         raise EmptyAnswerError
     used = getattr(response, "usage", None)
-    marks = (getattr(response, "system_fingerprint", None), getattr(response, "model", None))  # the second says which version it was
+    marks = (getattr(response, "system_fingerprint", None), getattr(response, "model", None))  # the second names the version
     cost = _tried(lambda: litellm.completion_cost(completion_response=response, model=model), fallback=None)
     return {
         "text": text,
@@ -184,7 +184,7 @@ def _embed(litellm: Any, order: Json) -> Json:
 
 
 def _arguments(litellm: Any, order: Json) -> Json:
-    """Return the arguments of a call; a local endpoint reads no key, and the client library insists on one."""
+    """Return the arguments of a call. A local endpoint reads no key, but the client library requires one."""
     arguments = {"timeout": order["seconds"], "num_retries": 0, "max_retries": 0} | order["arguments"]
     has_key = _tried(lambda: litellm.validate_environment(arguments["model"])["keys_in_environment"], fallback=True)
     complete: Json = arguments | ({} if has_key or not order["is_local"] else {"api_key": "local"})
@@ -192,7 +192,7 @@ def _arguments(litellm: Any, order: Json) -> Json:
 
 
 def _failure(litellm: Any, error: Exception) -> Json:
-    """Return what is told of a failed call."""
+    """Return the description of a failed call."""
     status = getattr(error, "status_code", None)
     status = status if isinstance(status, int) else None
     causes = list(_causes(error))
@@ -227,7 +227,7 @@ def _failure(litellm: Any, error: Exception) -> Json:
 
 
 def _causes(error: BaseException | None) -> Iterable[BaseException]:
-    """Yield an error and what it was raised from."""
+    """Yield an error and the errors that caused it."""
     for _ in range(20):
         if error is None:
             return
@@ -236,18 +236,18 @@ def _causes(error: BaseException | None) -> Iterable[BaseException]:
 
 
 def _tried(ask: Callable[[], Any], fallback: Any) -> Any:
-    """Return what LiteLLM says of a model, or the fallback for one that it does not know."""
+    """Return LiteLLM's answer about a model, or the fallback if it does not know the model."""
     try:
         return ask()
-    except Exception:  # noqa: BLE001 - of many kinds
+    except Exception:  # noqa: BLE001 - of many types
         return fallback
 
 
-# ---------------------------------------------------------------------- what is read from the network
+# ---------------------------------------------------------------------- reading from the network
 
 
 def _bound_transport() -> None:
-    """Have httpx, which all providers' clients use, read bounded bodies and follow no redirect."""
+    """Make httpx, which all providers' clients use, read bodies of limited size and follow no redirect."""
     import httpx  # noqa: PLC0415 - with litellm
 
     send = httpx.HTTPTransport.handle_request
@@ -285,21 +285,21 @@ def whole(pieces: Iterable[bytes]) -> bytes:
 
 
 def decoded(body: bytes, encoding: str) -> bytes:
-    """Return a body without its compression.
+    """Return a decompressed body.
 
     Raises:
-        BodyError: If it is too long, spoiled, or compressed in a way that was not asked for.
+        BodyError: If it is too long, damaged, or compressed by a method that was not requested.
     """
     names = [name.strip().lower() for name in encoding.split(",")]
     for name in reversed([name for name in names if name not in ("", "identity")]):
         if name not in ("gzip", "x-gzip", "deflate"):
-            raise BodyError(f"its answer is compressed by {name[:20]!r}, which was not asked for")
+            raise BodyError(f"its answer is compressed by {name[:20]!r}, which was not requested")
         body = _inflated(body)
     return body
 
 
 def _inflated(body: bytes) -> bytes:
-    """Decompress gzip, zlib or raw deflate piece by piece, to no more than a body may have."""
+    """Decompress gzip, zlib or raw deflate piece by piece, up to the size that a body may have."""
     raw = len(body) < 2 or (body[:2] != b"\x1f\x8b" and int.from_bytes(body[:2], "big") % 31 != 0)
     reader = zlib.decompressobj(-zlib.MAX_WBITS if raw else _GZIP_OR_ZLIB)
     plain = bytearray()
@@ -309,7 +309,7 @@ def _inflated(body: bytes) -> bytes:
             if len(plain) > LARGEST_BODY:
                 raise BodyError(_TOO_LARGE)
     except zlib.error as error:
-        raise BodyError("its answer is compressed and spoiled") from error
+        raise BodyError("its answer is compressed and damaged") from error
     if not reader.eof:
         raise BodyError("its answer is compressed and ends too early")
     return bytes(plain)

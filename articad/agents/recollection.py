@@ -1,8 +1,7 @@
-"""Recollection: the stores of experience and documentation as the agents ask for them, and what a run keeps of the answers.
+"""Recollection: what the agents ask the stores of experience and documentation, and the answers that a run keeps.
 
-What was retrieved is part of what was asked, so it is kept in the run: a replay needs no store, and a store that has
-grown since changes nothing. Cases and snippets are data to whoever reads them: they are shown as records, on lines that
-cannot end the section they stand in.
+Retrieved text is part of a prompt, so it is kept in the run: a replay needs no store, and a store that has grown since changes nothing.
+Cases and snippets are data to whoever reads them: they are shown as records, on lines that cannot end the section that contains them.
 """
 
 from __future__ import annotations
@@ -29,17 +28,17 @@ from articad.runs.run import Run
 
 Json = dict[str, Any]
 
-_LEAST: Final = 0.2  # likeness below which a case says nothing about a request; unrelated products are under 0.15
-_CASES: Final = 2  # of each kind that a designer is told
-_EXAMPLES: Final = 1  # parts that a modeller is shown
+_LEAST: Final = 0.2  # similarity below which a case is not used; unrelated products are under 0.15
+_CASES: Final = 2  # of each kind, for a designer
+_EXAMPLES: Final = 1  # parts that an author of scripts is shown
 _DESIGN_CHARACTERS: Final = 4000  # of a case's design
 _SCRIPT_CHARACTERS: Final = 6000
-_REPAIRS: Final = 8  # findings of a case that were mended on the way
-_NAMES: Final = 12  # of an API that are looked up at once
+_REPAIRS: Final = 8  # findings of a case that were resolved on the way
+_NAMES: Final = 12  # names of an API that are looked up at once
 
 
 class StoredMemory:
-    """Experience from a store: designers are told of good and bad runs, modellers of good ones only.
+    """Experience from a store: designers see good and bad runs, authors of scripts only good ones.
 
     Args:
         store: The store.
@@ -49,13 +48,13 @@ class StoredMemory:
         self._store = store
 
     def for_design(self, prompt: str, requirements: Requirements) -> Recalled:
-        """Return the cases most like a request: good ones as heuristics, issues as constraints."""
+        """Return the cases most similar to a request: good ones as heuristics, bad ones as constraints."""
         text = f"{prompt}\n{requirements.summary}".strip()
         good, issue = (self._store.like_request(text, kind, limit=_CASES, least=_LEAST) for kind in ("good", "issue"))
         return Recalled([_heuristic(hit.case) for hit in good], [_constraint(hit.case) for hit in issue])
 
     def for_part(self, specification: str, kernel: str) -> Sequence[str]:
-        """Return worked parts whose specification is alike, in the kernel's dialect, of good cases only."""
+        """Return example parts with a similar specification, in the kernel's dialect, from good cases only."""
         hits = self._store.like_part(specification, kernel, limit=_EXAMPLES, least=_LEAST)
         parts = [next(part for part in hit.case.parts if part.name == hit.item and part.kernel == kernel) for hit in hits]
         return [f"Specification: {_quoted(part.specification)}\n\n{_fenced(part.script)}" for part in parts]
@@ -71,7 +70,7 @@ class StoredDocumentation:
     """A kernel's documentation: a model says which names it would use, the store answers with exact signatures."""
 
     def for_part(self, name: str, specification: str, kernel: str, llm: LLM) -> Sequence[str]:
-        """Ask which names a part would need, and return what the kernel's own documentation says of them."""
+        """Ask which names a part would need, and return what the kernel's own documentation says about them."""
         store = DocumentationStore("freecad" if kernel == "freecad" else "build123d")
         messages = (system(prompt("docs", kernel=kernel)), user(f"The specification:\n\n{specification}"))
         wanted = ask(llm, "docs", f"docs/{name}", messages, reader(_Names), schema=schema_of(_Names))
@@ -79,12 +78,12 @@ class StoredDocumentation:
 
 
 class KeptMemory:
-    """Experience as a run keeps it: asked once, and the same again when the run is resumed or replayed.
+    """Experience as a run keeps it: retrieved once, and the same again when the run is resumed or replayed.
 
     Args:
         run: Where it is kept.
-        memory: Who knows cases.
-        recorded: A run whose retrievals are taken instead, for a replay.
+        memory: Source of cases.
+        recorded: A run whose retrieved texts are used instead, for a replay.
     """
 
     def __init__(self, run: Run, memory: Memory | None = None, *, recorded: Run | None = None) -> None:
@@ -101,7 +100,7 @@ class KeptMemory:
         return Recalled(kept.get("heuristics", ()), kept.get("constraints", ()))
 
     def for_part(self, specification: str, kernel: str) -> Sequence[str]:
-        """Return worked examples of parts alike."""
+        """Return worked examples of similar parts."""
         label = f"part.{_mark(kernel, specification)}"
         kept = _kept(self._run, self._recorded, label, lambda: {"examples": list(self._memory.for_part(specification, kernel))})
         return list(kept.get("examples", ()))
@@ -123,13 +122,15 @@ class KeptDocumentation:
 
 
 def remember(run: Run, store: ExperienceStore) -> Case | None:
-    """Distil a finished run into a case and add it to a store; return it, or None of a run without an assembly."""
+    """Summarise a finished run as a case and add it to a store; return the case, or None if the run has no assembly."""
     text, checks = run.plan_text(), run.checks()
     if text is None or checks is None:
         return None
     resolved = resolve(AssemblyPlan.loads(text))
     scripts = {name: script for name in run.part_names() if (script := run.script(name)) is not None}
-    scripts = {name: script for name, script in scripts.items() if not script.endswith(ENDING)}  # no examples: they know no connectors
+    scripts = {
+        name: script for name, script in scripts.items() if not script.endswith(ENDING)
+    }  # those are no examples: they define no connectors
     verdict, review = run.verdict() or {}, run.review() or {}
     measured = [finding for finding in checks["findings"] if finding["severity"] == "error"]
     judged = [finding for finding in verdict.get("findings", ()) if finding["severity"] == "error" and finding not in measured]
@@ -150,12 +151,12 @@ def remember(run: Run, store: ExperienceStore) -> Case | None:
 
 
 def _kept(run: Run, recorded: Run | None, label: str, asked: Callable[[], Json]) -> Json:
-    """Return what was retrieved under a label; whoever is asked is asked once."""
+    """Return what was retrieved under a label; the source is asked only once."""
     stored = run.recalled(label)
     if stored is not None:
         return stored
     retrieved = asked() if recorded is None else recorded.recalled(label) or {}
-    if any(retrieved.values()):  # nothing retrieved leaves nothing: an empty store is as none
+    if any(retrieved.values()):  # an empty result is not stored: an empty store equals none
         run.save_recalled(label, retrieved)
     return retrieved
 
@@ -165,7 +166,7 @@ def _mark(*texts: str) -> str:
 
 
 def _wanted(run: Run) -> str:
-    """Return what a run was asked for; of an edit, with what it began with."""
+    """Return the request of a run; for an edit, with the request of its base."""
     base = run.base()
     return run.prompt if base is None else f"{base['prompt']}\n\nChanged since: {run.prompt}"
 
@@ -184,7 +185,7 @@ def _learned(case: Case) -> str:
 
 
 def _quoted(text: str) -> str:
-    """Return text as one JSON string: whatever it says, it stays within its quotation marks and on its line."""
+    """Return text as one JSON string: whatever it contains, it stays within its quotation marks and on its line."""
     return json.dumps(text, ensure_ascii=False)
 
 
@@ -198,7 +199,7 @@ def _defect(finding: Mapping[str, Any]) -> str:
 
 
 def _repairs(run: Run) -> list[str]:
-    """Return what went wrong on the way: the findings of attempts that were mended, each once."""
+    """Return what went wrong on the way: the findings of failed attempts, each once."""
     told: dict[str, None] = {}
     for name in run.part_names():
         number = 1

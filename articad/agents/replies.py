@@ -26,7 +26,7 @@ def object_text(text: str, *, step: str) -> str:
     """Return the text of the JSON object of a reply, without the Markdown fence or the words around it.
 
     Raises:
-        OutputError: `E_REPLY_SCHEMA`, saying at which line and column the text is not JSON.
+        OutputError: `E_REPLY_SCHEMA`, with the line and column at which the text is not JSON.
     """
     first_problem: ValueError | None = None
     for candidate in _candidates(text):

@@ -1,4 +1,4 @@
-"""Requirements: what a customer's words and pictures ask for, as a typed form."""
+"""Requirements: the content of a customer's words and pictures, as a typed form."""
 
 from __future__ import annotations
 
@@ -90,15 +90,15 @@ def response_schema() -> dict[str, Any]:
 
 
 def analyse(request: RunRequest, llm: LLM, *, concept: BaseModel | None = None) -> Requirements:
-    """Ask what a request, in words, pictures or both, wants built.
+    """Ask a model what a request, in words, pictures or both, wants built.
 
     Args:
         request: The words and pictures.
-        llm: Who reads them.
-        concept: What the customer chose of several proposals, where the request left it open.
+        llm: The model.
+        concept: The customer's choice among several proposals, if the request left it open.
 
     Raises:
-        OutputError: If the model does not find the form.
+        OutputError: If no reply has the required form.
     """
     chosen = (
         ""

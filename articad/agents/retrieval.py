@@ -1,7 +1,7 @@
-"""Retrieval: what earlier runs and the kernels' documentation have to say, as the agents ask for it.
+"""Retrieval: what the agents ask of earlier runs and of the kernels' documentation.
 
-The agents know these protocols only. What they are given by default remembers nothing, and a request that retrieved
-nothing is the same, to its key, as one that was made without a store.
+The agents depend on these protocols only. By default nothing is retrieved, and a request for which nothing was retrieved has the same
+key as one made without a store.
 """
 
 from __future__ import annotations
@@ -16,11 +16,11 @@ from articad.agents.requirements import Requirements
 
 @dataclass(frozen=True)
 class Recalled:
-    """What a designer is told of earlier runs.
+    """Cases of earlier runs for a designer.
 
     Attributes:
-        heuristics: Of runs that ended well: what to do.
-        constraints: Of runs that ended with a measured defect: what to avoid.
+        heuristics: From runs that ended well: what to do.
+        constraints: From runs that ended with a measured defect: what to avoid.
     """
 
     heuristics: Sequence[str] = ()
@@ -28,14 +28,14 @@ class Recalled:
 
 
 class Memory(Protocol):
-    """Experience: designers are told of good and bad runs, modellers of good ones only."""
+    """Experience: designers see good and bad runs, authors of scripts only good ones."""
 
     def for_design(self, prompt: str, requirements: Requirements) -> Recalled:
-        """Return what helps to design a product."""
+        """Return cases that help to design a product."""
         ...
 
     def for_part(self, specification: str, kernel: str) -> Sequence[str]:
-        """Return worked examples of parts alike: specification and script, never of a run that ended badly."""
+        """Return worked examples of similar parts: specification and script, never from a run that ended badly."""
         ...
 
 
@@ -43,7 +43,7 @@ class Documentation(Protocol):
     """Signatures and snippets of a kernel's own API."""
 
     def for_part(self, name: str, specification: str, kernel: str, llm: LLM) -> Sequence[str]:
-        """Return what helps to write a part's script; may ask the model, at steps `docs/<name>`, which names it would use."""
+        """Return documentation for a part's script; may ask the model, at steps `docs/<name>`, which names it would use."""
         ...
 
 
@@ -60,7 +60,7 @@ class NoMemory:
 
 
 class NoDocumentation:
-    """Knows nothing beyond the prompts."""
+    """Has nothing beyond the prompts."""
 
     def for_part(self, name: str, specification: str, kernel: str, llm: LLM) -> Sequence[str]:  # noqa: ARG002 - the protocol's
         """Return nothing."""
@@ -68,5 +68,5 @@ class NoDocumentation:
 
 
 def listed_cases(title: str, cases: Sequence[str]) -> str:
-    """Return cases as a section of a prompt; of none, nothing at all."""
+    """Return cases as a section of a prompt; empty if there are none."""
     return "" if not cases else "\n\n".join(["", title, *cases])

@@ -1,7 +1,7 @@
-"""Review: how good a finished assembly is, by rules over what was measured and by a model that looks at all of it.
+"""Review: how good a finished assembly is, by rules over the measurements and by a model that looks at all of it.
 
-The scores are for people and for the store of experience. Nothing is decided by them: whether a run is a good case or an
-issue is decided by its measured defects alone.
+The scores are for people and for the store of experience; they decide nothing. Whether a run is a good case or a bad one depends on its
+measured defects alone.
 """
 
 from __future__ import annotations
@@ -23,8 +23,8 @@ from articad.errors import OutputError
 from articad.runs.run import Run, RunRequest
 
 SCHEMA: Final = "articad.review/1"
-PARTS: Final = 8  # parts that a reviewer sees one by one: more pictures at once are not looked at closely
-_STILL: Final = 5  # motion of a product that has none
+PARTS: Final = 8  # parts that a reviewer sees one by one; more pictures at once are not looked at closely
+_STILL: Final = 5  # score for the motion of a product that has none
 
 
 class Scored(ReplyForm):
@@ -51,10 +51,10 @@ def review(
     Args:
         run: The run.
         assembly: As built.
-        evidence: What was measured.
+        evidence: The measurements.
         request: What the user asked for.
-        requirements: How it was understood; None where nobody analysed it.
-        llm: Who looks; None for rules alone. An answer without a form leaves the rules alone, too.
+        requirements: The analysis of the request; None if there was none.
+        llm: The model; None for rules alone. If its answers do not have the form, the rules alone count as well.
     """
     opinion = None if llm is None else _opinion(run, assembly, evidence, request, requirements, llm)
     scored = None if opinion is None else {name: getattr(opinion, name).model_dump() for name in ("geometry", "detail", "motion")}
@@ -63,7 +63,7 @@ def review(
     defects = [*evidence.findings.errors]
     return {
         "schema": SCHEMA,
-        "ok": True,  # a review decides nothing; what is wrong is in the checks and the verdict
+        "ok": True,  # a review decides nothing; faults are in the checks and the verdict
         "findings": [],
         "kind": "issue" if defects or not (run.verdict() or {"ok": True})["ok"] else "good",
         "rules": scores(run),
@@ -88,11 +88,11 @@ def trajectory(run: Run) -> dict[str, Any]:
 
 
 def scores(run: Run) -> dict[str, float]:
-    """Return what the rules say of a finished run, each between 0 and 1.
+    """Return the scores of a finished run by rules, each between 0 and 1.
 
-    `geometric_fidelity` is the share of parts that neither a check nor an inspector has anything against; `kinematic_health`
-    the share of pairs of parts that were found clear, at rest and in motion, of those looked at; `first_shot` the share of
-    scripts that kept their contract at once.
+    `geometric_fidelity` is the share of parts without a complaint by a check or an inspector; `kinematic_health` the share of checked
+    pairs of parts that were found clear, at rest and in motion; `first_shot` the share of scripts whose first version kept their
+    contract.
     """
     names = run.part_names()
     checks, verdict = run.checks() or {}, run.verdict() or {}

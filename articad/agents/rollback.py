@@ -1,8 +1,8 @@
-"""Rollback: whose fault a failure is, and what is to be made again.
+"""Rollback: who must fix a failure, and what is to be made again.
 
-Geometry decides first: a finding with a root cause knows who must act, and a breach of a contract is its script's. A model is
-asked only about what geometry leaves open. A finding that comes back is not sent the same way again: what a script did not mend
-goes to the designer, what a designer did not mend goes back with the demand for another solution, and the third time ends it.
+Geometry decides first: a finding with a root cause says who must act, and a breach of a contract belongs to its script. A model is asked
+only where geometry leaves this open. A finding that comes back takes another way: if a script did not resolve it, it goes to the
+designer; if the designer did not, it goes back with the demand for another solution; the third time ends the attempts.
 """
 
 from __future__ import annotations
@@ -44,10 +44,10 @@ class Repair:
     """What is to be made again.
 
     Attributes:
-        design: What the designer is told; empty when the plan stands.
-        code: What the authors of scripts are told, by part.
-        stubborn: Those of `design` that came back after another attempt: they need another solution, not another number.
-        stalled: Those that came back after every strategy; when there are any, nothing more is tried.
+        design: Findings for the designer; empty if the plan stays.
+        code: Findings for the authors of scripts, by part.
+        stubborn: Those of `design` that came back after an attempt: they need another solution, not another number.
+        stalled: Those that came back after every strategy; if there are any, nothing more is tried.
     """
 
     design: Findings = field(default_factory=Findings)
@@ -56,11 +56,11 @@ class Repair:
     stalled: Findings = field(default_factory=Findings)
 
     def to_json(self, number: int, fates: Mapping[str, Fate]) -> dict[str, Any]:
-        """Return `rounds/<number>.json`: what was found, who mended it, and what became of each part.
+        """Return `rounds/<number>.json`: the findings, who resolved them, and what became of each part.
 
         Args:
-            number: The round whose findings these are, from 1.
-            fates: By part, of the round after it.
+            number: The round of these findings, from 1.
+            fates: What became of each part in the round after it.
         """
         by_fate = {fate: [name for name, found in fates.items() if found == fate] for fate in ("kept", "regenerated", "new", "removed")}
         return {
@@ -73,10 +73,10 @@ class Repair:
 
 
 class Router:
-    """Sends failures of one run to who must mend them, and knows what was tried.
+    """Routes the failures of a run to whoever must fix them, and remembers what was tried.
 
     Args:
-        llm: Who is asked where geometry does not tell.
+        llm: The model that decides where geometry does not.
     """
 
     def __init__(self, llm: LLM) -> None:
@@ -84,7 +84,7 @@ class Router:
         self._tried: dict[_Signature, list[str]] = {}
 
     def due(self, findings: Iterable[Finding]) -> list[Finding]:
-        """Return what must be sent to somebody: errors, and once each what an inspector has against a part's entry in the plan."""
+        """Return the findings to be routed: errors, and once each an inspector's complaints about a part's entry in the plan."""
         return [
             finding
             for finding in findings
@@ -93,7 +93,7 @@ class Router:
         ]
 
     def decide(self, number: int, findings: Iterable[Finding], resolved: ResolvedPlan, scripts: Mapping[str, bytes]) -> Repair:
-        """Decide about what is due of a round.
+        """Decide who must act on a round's findings.
 
         Args:
             number: The round, from 1.
@@ -102,7 +102,7 @@ class Router:
             scripts: Of the parts that were built, by name.
 
         Raises:
-            OutputError: If a model must be asked and does not find the form.
+            OutputError: If a model must be asked and its replies do not have the form.
         """
         failures = self.due(findings)
         routes = {index: _route(finding, resolved, scripts) for index, finding in enumerate(failures)}
@@ -133,7 +133,7 @@ class Router:
     def _asked(
         self, number: int, faults: Sequence[int], failures: Sequence[Finding], resolved: ResolvedPlan, scripts: Mapping[str, bytes]
     ) -> dict[int, str]:
-        """Return whose script each fault is, or an empty name where it is the plan, as a model decides."""
+        """Return the part whose script causes each fault, or an empty name for the plan, as a model decides."""
         concerned = list(
             dict.fromkeys(_source(name, resolved) for index in faults for name in failures[index].parts if name in resolved.parts)
         )
@@ -157,7 +157,7 @@ class Router:
 
 
 def _route(finding: Finding, resolved: ResolvedPlan, scripts: Mapping[str, bytes]) -> str | None:
-    """Return whose script a finding is, an empty name where it is the plan's, or None where that is open."""
+    """Return the part whose script must be fixed, an empty name for the plan, or None if that is open."""
     if finding.route == "design":
         return ""
     if finding.route is None:
@@ -167,7 +167,7 @@ def _route(finding: Finding, resolved: ResolvedPlan, scripts: Mapping[str, bytes
 
 
 def _culprit(finding: Finding, resolved: ResolvedPlan) -> str | None:
-    """Return the part whose script must be mended: the one that is named, the only one, or of two the one with the bore."""
+    """Return the part whose script must be fixed: the one that is named, the only one, or of two the one with the bore."""
     named = finding.where.removeprefix("parts.").split(".", maxsplit=1)[0]
     if finding.where.startswith("parts.") and named in resolved.parts:
         return _source(named, resolved)
@@ -185,7 +185,7 @@ def _culprit(finding: Finding, resolved: ResolvedPlan) -> str | None:
 
 
 def _source(name: str, resolved: ResolvedPlan) -> str:
-    """Return the part that has the script: a derived part's faults are its source's."""
+    """Return the part that has the script: a derived part's faults belong to its source."""
     while (derivation := resolved.parts[name].derivation) is not None:
         name = derivation.source
     return name
@@ -196,6 +196,6 @@ def _is_opinion(finding: Finding) -> bool:
 
 
 def _signature(finding: Finding) -> _Signature:
-    """Return what makes a finding the same as an earlier one: a fault that has become smaller is another."""
+    """Return what identifies a finding with an earlier one; a fault that has become smaller counts as a new one."""
     value = "" if finding.value is None else f"{finding.value:.2g}"
     return finding.code, tuple(sorted(finding.parts)), finding.cause, value

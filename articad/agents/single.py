@@ -1,7 +1,7 @@
-"""Single loop: the paper's baseline. One model writes one script that makes and assembles all parts; what fails to run goes back.
+"""Single loop: the paper's baseline. One model writes one script that makes and assembles all parts; if it fails to run, it goes back.
 
-There is no plan before it, no contract, no inspection, no memory: only the same loop of writing, running and repairing.
-What the finished assembly is like is measured and reported, as of any other run.
+There is no plan, no contract, no inspection and no memory: only the loop of writing, running and repairing. The finished assembly is
+measured and reported like that of any other run.
 """
 
 from __future__ import annotations
@@ -57,13 +57,13 @@ class Whole(ReplyForm):
 
 
 class SingleLine(Line):
-    """The line of the baseline: one step, again until it runs."""
+    """The pipeline of the baseline: one step, repeated until it runs."""
 
     def work(self) -> None:
-        """Ask for the script until it runs, then measure and export what it made.
+        """Ask for the script until it runs, then measure and export its assembly.
 
         Raises:
-            OutputError, PlanError, KernelError: As the last answer failed.
+            OutputError, PlanError, KernelError: The failure of the last answer.
         """
         self.builder.announce("design", "started")
         assembly = self._written()
@@ -109,7 +109,7 @@ class SingleLine(Line):
 
 
 def _whole(script: bytes, text: str, step: str) -> Whole:
-    """Return what a script says of the assembly; it is read, never run."""
+    """Return what a script states about the assembly; it is parsed, never run."""
     try:
         tree = ast.parse(script)
         values = [node.value for node in tree.body if isinstance(node, ast.Assign) and [ast.unparse(one) for one in node.targets] == [NAME]]
@@ -129,7 +129,7 @@ def _plan(whole: Whole, kernel: str) -> AssemblyPlan:
     """Return the plan of an assembly whose parts are all drawn in place.
 
     Raises:
-        PlanError: If it does not hold.
+        PlanError: If it is not valid.
     """
     parts: dict[str, Json] = {
         one.name: {"name": one.name, "material": one.material, "description": one.description or one.name, "connectors": []}
@@ -153,7 +153,7 @@ def _plan(whole: Whole, kernel: str) -> AssemblyPlan:
     plan = AssemblyPlan.from_json(json.loads(json.dumps(document)))
     findings = check_plan(plan)
     counted = findings.of("E_DOF_MISMATCH")
-    if counted and counted[0].limit is not None:  # nobody declares freedoms here, so nothing is wrong with their number
+    if counted and counted[0].limit is not None:  # nobody declares freedoms here, so their number cannot be wrong
         plan = AssemblyPlan.from_json(json.loads(plan.dumps()) | {"freedoms": int(counted[0].limit)})
         findings = check_plan(plan)
     if not findings.ok:

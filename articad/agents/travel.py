@@ -1,4 +1,4 @@
-"""Travel: how far each joint goes while the drivers move one at a time, those that follow in loops and couplings included."""
+"""Travel: how far each joint goes while the drivers move one at a time, followers in loops and couplings included."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _STILL: Final = 1e-6  # rad, mm: what moves less stands still
 
 
 def travels(assembly: Assembly) -> list[str]:
-    """Return a line for each joint that moves, driven or following: how far it goes, in degrees and mm."""
+    """Return a line for each joint that moves, driven or following: its range, in degrees and mm."""
     driving = set(assembly.mechanism.driving_joints)
     sweeps = _sweeps(assembly) if driving and not assembly.mechanism.is_tree else []
     lines, start = [], 0
@@ -63,7 +63,7 @@ def _driven(assembly: Assembly, joint: Joint) -> list[str]:
 
 
 def _following(joint: Joint, sweeps: list[FloatArray]) -> list[str]:
-    """Return what a joint does while others drive; `sweeps` are its own coordinates, `(poses, columns)` each."""
+    """Return the motion of a joint that follows; `sweeps` holds its own coordinates, `(poses, columns)` for each driver."""
     if joint.type is JointType.BALL:
         (_, tilt), (low, high) = _extremes([swing(rows) for rows in sweeps]), _extremes([twist(rows) for rows in sweeps])
         return [f"- {joint.name}: swivels to {_figure(math.degrees(tilt))} degrees from its axis, turns {_span(low, high, 'rad')} about it"]
@@ -76,7 +76,7 @@ def _following(joint: Joint, sweeps: list[FloatArray]) -> list[str]:
 
 
 def _extremes(sweeps: list[FloatArray]) -> tuple[float, float]:
-    """Return the smallest and largest value of a coordinate, also where a turning point lies between two poses."""
+    """Return the smallest and largest value of a coordinate; a turning point between two poses is interpolated."""
     high = max(_summit(values) for values in sweeps)
     low = min(-_summit(-values) for values in sweeps)
     return low, high
@@ -103,5 +103,5 @@ def _span(lower: float, upper: float, unit: str) -> str:
 
 
 def _figure(value: float) -> str:
-    """Return an angle in degrees or a length in mm, to a hundredth: three digits would hide a missing millimetre of a long travel."""
+    """Return an angle in degrees or a length in mm to a hundredth: three digits would hide a missing millimetre of a long travel."""
     return f"{round(value, 2) + 0.0:.10g}"

@@ -376,9 +376,7 @@ class Checker:
                 {*whole["asked"]} & moving <= driving or driving <= {*whole["asked"]},
                 f"not every driver of {', '.join(group)} was requested",
             )
-            need(
-                driving or not {*whole["asked"]} & moving or self.is_rigid(group), f"no driver moves {', '.join(group)}, but they may move"
-            )
+            need(driving or not {*whole["asked"]} & moving or self.is_rigid(group), f"nothing drives {', '.join(group)}, yet they may move")
         for count in (1, 2) if whole["together"] else (1,):
             for a, b, over in self.missing(count):
                 raise Refuted(f"{a}/{b} over {over}: no claim, but the certificate is marked ok")
@@ -417,10 +415,7 @@ class Checker:
         sizes = np.linalg.norm(np.where(turns.any(1, keepdims=True), turns, slides), axis=1)
         need((np.abs([sizes - 1, *np.cross(turns, slides).T]) < ROUNDING).all(), "a joint neither rotates, slides nor screws")
         numbers = [end for f in freedoms for end in (*f["range"], f["rest"], *f["limits"]) if end is not None]
-        need(
-            all(-LARGEST < end < LARGEST for end in numbers) and all(f["range"][0] <= f["range"][1] for f in freedoms),
-            "a range is not valid",
-        )
+        need(all(-LARGEST < end < LARGEST for end in numbers) and all(f["range"][0] <= f["range"][1] for f in freedoms), "invalid range")
         for f in freedoms:
             open_ends = [end is None for end in f["limits"]]
             same = all(is_open or end == limit for is_open, end, limit in zip(open_ends, f["range"], f["limits"], strict=True))
@@ -778,10 +773,7 @@ class Checker:
             box, is_steady = boxes[number]
             if code == OUTSIDE:
                 return math.inf if any(is_outside(joint, box) for joint, _ in way if joint["cone"] is not None) else 0.0
-            need(
-                is_steady and (code == ROUND or (code == LEAN and angles) or (code == SWUNG and outside)),
-                "the compared invariant does not hold",
-            )
+            need(is_steady and (code == ROUND or (code == LEAN and angles) or (code == SWUNG and outside)), "its invariant does not hold")
             if code == ROUND:
                 return max(near[0][x].min() - far[1][y].max(), near[1][y].min() - far[0][x].max())
             if code == SWUNG:

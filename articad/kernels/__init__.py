@@ -1,4 +1,4 @@
-"""Part scripts to solids, in confined processes of their own; B-rep never enters this one.
+"""Build solids from part scripts, in confined processes of their own; B-rep never enters the calling process.
 
-Nothing is imported here: the sandboxed worker is a module of this package and must start light.
+Nothing is imported here: the sandboxed worker is a module of this package and must start fast.
 """

@@ -1,4 +1,4 @@
-"""Zip files of unknown origin: unpacked within bounds, whatever their headers claim, and written again in one spelling."""
+"""Zip files of unknown origin: unpacked within bounds, whatever their headers claim, and written again in one canonical form."""
 
 from __future__ import annotations
 
@@ -7,12 +7,12 @@ import zipfile
 from collections.abc import Mapping
 
 _CHUNK = 1 << 20  # bytes unpacked at once
-_ENTRY = b"PK\x01\x02"  # with which each entry of the table begins
-_TIME = (2000, 1, 1, 0, 0, 0)  # of every entry that is written: equal content gives equal bytes
+_ENTRY = b"PK\x01\x02"  # first bytes of each entry of the table
+_TIME = (2000, 1, 1, 0, 0, 0)  # date of every entry that is written: equal content gives equal bytes
 
 
 class BadArchiveError(Exception):
-    """A file that is no zip, or that would unpack to more than was allowed."""
+    """A file that is not a zip, or that would unpack to more than the limit."""
 
 
 class Archive:
@@ -26,35 +26,35 @@ class Archive:
         """Read the table of contents.
 
         Args:
-            content: The file.
-            entries: How many it may hold.
-            unpacked: How much may be read from it in all [bytes].
+            content: The bytes of the file.
+            entries: Largest number of entries.
+            unpacked: Largest total size of what is read from it [bytes].
 
         Raises:
-            BadArchiveError: If it is no zip, or states to be larger.
+            BadArchiveError: If it is not a zip, or its headers exceed the limits.
         """
         if content.count(_ENTRY) > entries:  # before a list of them is made
             raise BadArchiveError("it is too large")
         try:
             self._zip = zipfile.ZipFile(io.BytesIO(content))
         except Exception as error:  # noqa: BLE001 - zipfile raises whatever it stumbles over: struct.error, ValueError, IndexError
-            raise BadArchiveError(f"it is no zip file: {error}") from None
+            raise BadArchiveError(f"it is not a zip file: {error}") from None
         self.names = tuple(entry.filename for entry in self._zip.infolist())
         if len(self.names) > entries or sum(entry.file_size for entry in self._zip.infolist()) > unpacked:
             raise BadArchiveError("it is too large")
         if len(set(self.names)) != len(self.names):
-            raise BadArchiveError("it holds two entries of one name")
+            raise BadArchiveError("it holds two entries of the same name")
         self._left = unpacked
 
     def read(self, name: str, most: int | None = None) -> bytes:
-        """Return the content of an entry, unpacked piece by piece: a bomb is noticed before it fills memory.
+        """Return the content of an entry, unpacked piece by piece: a zip bomb is noticed before it fills memory.
 
         Args:
-            name: Of the entry.
-            most: Its largest size [bytes]; by default what is left of the allowance.
+            name: Name of the entry.
+            most: Largest size of the entry [bytes]; by default what is left of the limit.
 
         Raises:
-            BadArchiveError: If there is none of this name, it is spoiled, or the allowance is used up.
+            BadArchiveError: If there is no entry of this name, it is damaged, or the limit is exceeded.
         """
         content, left = bytearray(), self._left if most is None else min(most, self._left)
         try:
@@ -72,8 +72,8 @@ class Archive:
 def packed(entries: Mapping[str, bytes]) -> bytes:
     """Return a zip file of these entries, in this order.
 
-    Programs that read a zip from its front and those that read its table at the end find the same in it, which need not
-    be so in a file of unknown origin.
+    Programs that read a zip from its front and those that read its table at the end find the same entries in it, which need not be so
+    for a file of unknown origin.
     """
     stream = io.BytesIO()
     with zipfile.ZipFile(stream, "w") as archive:

@@ -1,4 +1,4 @@
-"""The embedded kernel: part scripts in build123d, from PyPI alone."""
+"""The build123d kernel: part scripts in build123d, installed from PyPI."""
 
 from __future__ import annotations
 
@@ -36,13 +36,13 @@ from articad.kernels.results import PoisonedError, number, numbers, read_bytes, 
 from articad.kernels.zygote import JobOutcome, Zygote, ZygoteDiedError, ends_by
 from articad.processes import scratch
 
-ANGLE_DEG = 5.0  # of the mesh, where the deflection allows more
-WORKER = 5  # raised when the worker measures or meshes otherwise, so that what it built before is built again
-MESH_VOLUME_SHARE = 1.0  # times area and deflection: by which a mesh's volume may differ from the solid's
+ANGLE_DEG = 5.0  # angular deflection of the mesh, if the linear deflection allows more
+WORKER = 5  # increased when the worker measures or meshes differently, so that cached parts are built again
+MESH_VOLUME_SHARE = 1.0  # factor of area and deflection by which a mesh's volume may differ from the solid's
 RESULT_FILES = {"npz": "part.npz", "brep": "part.brep", "step": "part.step"}
 _MAGIC = {"brep": b"\nCASCADE Topology", "step": b"ISO-10303-21;"}
-MEASURE_SPARE_SECONDS = 30.0  # beyond a script's own, for the checks that follow once the files are written
-_ATTEMPTS = 2  # a zygote that dies under a job is started again once
+MEASURE_SPARE_SECONDS = 30.0  # beyond a script's own, for the checks after the files are written
+_ATTEMPTS = 2  # a zygote that dies during a job is started again once
 _CRASH_BYTES = 65536
 
 Json = dict[str, Any]
@@ -50,7 +50,7 @@ Json = dict[str, Any]
 
 @dataclass(frozen=True)
 class _Ran:
-    """What is left of one job: how it ended, what it reported, what it said when it crashed."""
+    """The results of one job: how it ended, its report, and its output if it crashed."""
 
     outcome: JobOutcome
     report: list[Json]
@@ -60,8 +60,8 @@ class _Ran:
 class Build123dKernel:
     """Builds part scripts with build123d in a sandbox.
 
-    Nothing is started before the first part. Threads may share a kernel, and kernels share the worker's process: it is
-    started once, which takes two seconds, and ends with this process if not by `close`.
+    Nothing is started before the first part. Threads may share a kernel, and kernels share the worker's process: it is started once,
+    which takes two seconds, and ends with this process unless `close` ends it before.
     """
 
     name = "build123d"
@@ -78,11 +78,12 @@ class Build123dKernel:
         """Choose how scripts are run.
 
         Args:
-            sandbox: `strict` refuses to run scripts below Landlock or bubblewrap, `weak` does not; by default `$ARTICAD_SANDBOX`, else strict.
+            sandbox: `strict` refuses to run scripts if neither Landlock nor bubblewrap works, `weak` does not; by default
+                `$ARTICAD_SANDBOX`, else strict.
             timeout: Wall clock of a script [s].
             probe_timeout: Wall clock of its dimension probe [s].
             memory: Address space of a script [bytes].
-            layers: Isolation to put on, of what is available; all by default. Fewer is for measuring what each one holds.
+            layers: Layers of isolation to apply, if available; all by default. Fewer serve to measure the effect of each.
         """
         self.mode = sandbox or os.environ.get("ARTICAD_SANDBOX") or "strict"
         if self.mode not in ("strict", "weak"):
@@ -92,17 +93,17 @@ class Build123dKernel:
 
     @cached_property
     def version(self) -> str:
-        """build123d, its OCCT, and the worker's own recipe."""
+        """build123d, its OCCT, and the version of the worker."""
         return f"{_version('build123d')}+ocp{_version('cadquery-ocp-novtk')}+worker{WORKER}"
 
     @property
     def level(self) -> str:
-        """The isolation that scripts run under."""
+        """The isolation under which scripts run."""
         return isolation.level_of(self._layers)
 
     @property
     def pid(self) -> int | None:
-        """The worker's process, or bubblewrap's round it; None before it is started."""
+        """The worker's process, or that of bubblewrap around it; None before it is started."""
         zygote = self.__dict__.get("_zygote")
         return None if zygote is None else zygote.pid
 
@@ -125,7 +126,7 @@ class Build123dKernel:
         """Start the worker's process now, so that the first part need not wait for it.
 
         Raises:
-            KernelUnavailableError: If build123d cannot be loaded; says which library is missing.
+            KernelUnavailableError: If build123d cannot be loaded; the message names the missing library.
         """
         self._zygote.start()
 
@@ -147,7 +148,7 @@ class Build123dKernel:
         probe: bool = True,
         inspect: Inspect | None = None,
     ) -> BuiltPart:
-        """Run a script and hold its part to the contract; see `PartKernel.build`."""
+        """Run a script and check its part against the contract; see `PartKernel.build`."""
         self._require_sandbox()
         part, source = str(brief["name"]), script.decode("utf-8", errors="replace")
         limits = replace(self.limits, probe_seconds=0.0)
@@ -195,10 +196,10 @@ class Build123dKernel:
         Args:
             path: The file.
             deflection: Largest distance of the mesh from the solid [mm].
-            cache: Keeps what was read, by the file's content; by default the user's own.
+            cache: Stores what was read, by the file's content; by default the user's cache.
 
         Raises:
-            ReadError: If it is not STEP or does not hold exactly one valid solid.
+            ReadError: If it is not STEP or does not contain exactly one valid solid.
         """
         self._require_sandbox()
         cache = cache or BuildCache()
@@ -250,9 +251,9 @@ class Build123dKernel:
         Args:
             task: Its name.
             job: Folder of the job.
-            request: What the task is told: `job.json`.
-            files: The task's names for files of the folder; those that are there are read, the others written.
-            limits: What it may use.
+            request: Arguments of the task: `job.json`.
+            files: The task's names for files of the folder; existing files are read, the others written.
+            limits: Resources that it may use.
         """
         (job / "job.json").write_text(json.dumps({"schema": "articad.job/1", "kernel": self.name, "task": task} | request))
         report, crash = f"{task}.report", f"{task}.crash"
@@ -282,7 +283,7 @@ class Build123dKernel:
         return _Ran(outcome, read_lines(job / report), said)
 
     def _measured(self, job: Path, *, form: str, name: str, deflection: float, matrix: list[list[float]] | None = None) -> Json:
-        """Have a shape measured, meshed and written by a process that ran no script; return its report.
+        """Measure, mesh and write a shape in a process that ran no script; return its report.
 
         Raises:
             BuildError: If the kernel fails on it.
@@ -375,7 +376,7 @@ class Build123dKernel:
         return list(probed(brief["dimensions"], before, attempt, seconds=self.limits.probe_seconds, own=own))
 
     def _pieces(self, job: Path, deflection: float) -> Path | None:
-        """Return a folder with the mesh of whatever solids a failed script left."""
+        """Return a folder with the mesh of the solids that a failed script left, if any."""
         try:
             if not (job / "shape.bin").stat().st_size:
                 return None
@@ -392,10 +393,10 @@ class Build123dKernel:
         return folder
 
     def _checked(self, job: Path, shape: Json, deflection: float) -> Json:
-        """Return the shape's numbers, validated, and agreeing with the mesh that came with them.
+        """Return the shape's numbers, validated, and consistent with the mesh.
 
         Raises:
-            PoisonedError: If they do not.
+            PoisonedError: If they are not valid.
         """
         mesh = read_mesh(read_bytes(job / RESULT_FILES["npz"]))
         checked = {
@@ -414,7 +415,7 @@ class Build123dKernel:
         for kind, magic in _MAGIC.items():
             with (job / RESULT_FILES[kind]).open("rb") as file:
                 if not file.read(len(magic)) == magic:
-                    raise PoisonedError(f"{RESULT_FILES[kind]} is of another form")
+                    raise PoisonedError(f"{RESULT_FILES[kind]} has the wrong form")
         return checked
 
     def _leave(
@@ -428,7 +429,7 @@ class Build123dKernel:
         deflection: float,
         level: str,
     ) -> None:
-        """Write the folder of a built part; result.json holds nothing but what was validated."""
+        """Write the folder of a built part; result.json contains only validated data."""
         hashes = {}
         for file in RESULT_FILES.values():
             content = read_bytes(job / file)
@@ -451,12 +452,12 @@ class Build123dKernel:
 
 
 def _require_agreement(mesh: TriMesh, shape: Json, deflection: float) -> None:
-    """Hold the numbers of a solid against its mesh: a process that measures wrongly, or was made to, is noticed here.
+    """Compare the numbers of a solid with its mesh: this detects a process that measures wrongly, or was manipulated.
 
-    The mesh is within the deflection of the surface, so that the shell between both holds at most area · deflection.
+    The mesh is within the deflection of the surface, so the volume between both is at most about area · deflection.
 
     Raises:
-        PoisonedError: If they differ by more than the mesh can.
+        PoisonedError: If they differ by more than the mesh allows.
     """
     volume, com, inertia = mesh.solid_integrals()
     shell = MESH_VOLUME_SHARE * shape["area_mm2"] * deflection

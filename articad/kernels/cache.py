@@ -1,4 +1,4 @@
-"""Built parts by digest, on disk: a folder appears whole or not at all, and is checked by its hashes when it is used."""
+"""Built parts on disk, by digest: a folder appears complete or not at all, and its hashes are checked when it is used."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from articad.processes import scratch
 
 _SEAL = "seal.json"  # sha256 of every other file of the folder
 _TEMPORARY = ".building-"
-_STALE_SECONDS = 86400.0  # of a folder that some process left half-written
+_STALE_SECONDS = 86400.0  # for a folder that some process left half-written
 
 
 def default_root() -> Path:
@@ -35,7 +35,7 @@ class BuildCache:
         """Open a cache.
 
         Args:
-            *root: Its folder; nothing for the user's own, None for one that is new and goes with this object.
+            *root: Its folder; nothing for the user's own cache, None for a temporary one that is deleted with this object.
         """
         self._own: tempfile.TemporaryDirectory[str] | None = None
         if root and root[0] is None:
@@ -44,7 +44,7 @@ class BuildCache:
         self.root = Path(self._own.name) if self._own is not None else Path(given or default_root())
 
     def get(self, digest: str) -> Path | None:
-        """Return the folder of a digest if it is there and each file is what it was; a spoiled one is removed."""
+        """Return the folder of a digest if it exists and its files are unchanged; a damaged one is removed."""
         folder = self.root / digest
         if not folder.is_dir():
             return None
@@ -55,9 +55,9 @@ class BuildCache:
 
     @contextlib.contextmanager
     def writing(self, digest: str) -> Iterator[Path]:
-        """Give a new folder to write to; when the block ends without an error it becomes the folder of the digest.
+        """Yield a new folder to write to; if the block ends without an error, it becomes the folder of the digest.
 
-        Where another process was first, its folder stays. After an error nothing is left.
+        If another process was first, its folder stays. After an error nothing is left.
 
         Raises:
             KernelError: If the disk is full or the folder cannot be written.
@@ -76,7 +76,7 @@ class BuildCache:
             try:
                 folder.rename(self.root / digest)
             except OSError:
-                if self.get(digest) is None:  # what stood in the way was spoiled and is gone now
+                if self.get(digest) is None:  # the damaged folder that was in the way has been removed
                     folder.rename(self.root / digest)
         except OSError as error:
             raise self._unwritable(error) from error
@@ -89,7 +89,7 @@ class BuildCache:
         )
 
     def keep_failed(self, digest: str, files: dict[str, bytes]) -> Path:
-        """Keep what a failed build left, for a picture; the latest of each digest."""
+        """Keep the files of a failed build for a picture; the latest of each digest."""
         folder = self.root / f"{digest}.failed"
         folder.mkdir(parents=True, exist_ok=True)
         for name, content in files.items():

@@ -1,4 +1,4 @@
-"""The kernel that a name means."""
+"""Selects a kernel by name."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The contract of a part script: what was promised, held against what was built, all breaches at once."""
+"""The contract of a part script: compares what was promised with what was built, and reports all breaches at once."""
 
 from __future__ import annotations
 
@@ -19,19 +19,19 @@ from articad.plan.resolve import ResolvedPart
 
 ENVELOPE_TOLERANCE = 0.02  # of each side: the contract's 2 %
 EMPTY_MM3 = 1e-3  # below this a solid has no volume
-DRIFT_RADIAL_MM, DRIFT_RADIAL_SHARE = 0.2, 0.002  # free of comment up to the larger of the two; the share is of the part's diagonal
+DRIFT_RADIAL_MM, DRIFT_RADIAL_SHARE = 0.2, 0.002  # drift below the larger of both passes; the share is of the part's diagonal
 DRIFT_ALONG_MM, DRIFT_ALONG_SHARE = 0.5, 0.005
 DRIFT_ANGLE = math.radians(0.25)  # 2.2 mm at a reach of 500 mm
-TOLD_EXTRAS = 20  # connectors that nobody asked for, each with a finding of its own; a script may return any number
+TOLD_EXTRAS = 20  # unrequested connectors that get a finding each; a script may return any number
 _NAME_CHARACTERS = 60  # of a name that a script chose
-DRIFT_ERROR = 10.0  # times these bounds is what is still a warning
+DRIFT_ERROR = 10.0  # up to this multiple of these bounds, drift is a warning
 
 FloatArray = NDArray[np.float64]
 Json = Mapping[str, Any]
 
 
 def solid_findings(brief: Json, shape: Json) -> Iterator[Finding]:
-    """Yield what is wrong with the solid that was measured: `shape` is the worker's report."""
+    """Yield what is wrong with the measured solid; `shape` is the worker's report."""
     name, solids, loose = brief["name"], int(number(shape.get("solids"))), int(number(shape.get("loose", 0)))
     if solids == 0 and loose == 0:
         yield _finding("E_EMPTY_SOLID", name, "The shape is empty.", "Check that cuts do not remove everything.")
@@ -63,7 +63,7 @@ def solid_findings(brief: Json, shape: Json) -> Iterator[Finding]:
         yield _finding("E_INVALID_SOLID", name, "The solid's surface cannot be meshed without gaps.", advice)
     elif shape.get("intersects_itself") is None:
         message = "Whether the solid's faces cut each other could not be determined."
-        yield _finding("I_BUILD_UNCHECKED", name, message, "Simplify swept, lofted and lettered features if overlap volumes look wrong.")
+        yield _finding("I_BUILD_UNCHECKED", name, message, "Simplify swept, lofted and lettered features if overlap volumes seem wrong.")
     yield from _envelope_findings(name, brief.get("envelope_mm"), numbers(shape.get("bbox_mm"), 2, 3))
 
 
@@ -82,13 +82,13 @@ def _envelope_findings(name: str, envelope: Sequence[float] | None, bbox: FloatA
 
 
 def read_connectors(brief: Json, entries: object, findings: list[Finding]) -> dict[str, Connector]:
-    """Return the connectors that a script stated, in the plan's order, and add what is wrong with them to `findings`.
+    """Return the connectors that a script stated, in the plan's order, and add their faults to `findings`.
 
     Raises:
         PoisonedError: If the entries do not have the form that the worker gives them.
     """
     if not isinstance(entries, dict):
-        raise PoisonedError("connectors are expected where there are none")
+        raise PoisonedError("connectors are missing")
     name, planned = brief["name"], brief["connectors"]
     for missing in (key for key in planned if key not in entries):
         hint = f'Return "{missing}": {{"o": …, "z": …, "x": …}} where the feature is; the plan has it at {_tuple(planned[missing]["o"])}.'
@@ -105,7 +105,7 @@ def read_connectors(brief: Json, entries: object, findings: list[Finding]) -> di
             continue
         entry = entries[key]
         if not isinstance(entry, dict):
-            raise PoisonedError("a connector is expected where there is none")
+            raise PoisonedError("a connector is missing")
         o, z = numbers(entry.get("o"), 3), numbers(entry.get("z"), 3)
         x = reference["x"] if entry.get("x") is None else numbers(entry["x"], 3)
         where = f"parts.{name}.connectors.{key}"
@@ -118,7 +118,7 @@ def read_connectors(brief: Json, entries: object, findings: list[Finding]) -> di
 
 
 def primary_connector(target: ResolvedPart, brief: Json) -> str | None:
-    """Return the connector by which a part hangs in the tree; None for the ground."""
+    """Return the connector that joins a part to its parent in the tree; None for the ground."""
     for name, connector in brief.get("connectors", {}).items():
         if any(joint["name"] == target.parent_joint for joint in connector["joints"]):
             return str(name)
@@ -126,9 +126,9 @@ def primary_connector(target: ResolvedPart, brief: Json) -> str | None:
 
 
 def seating(target: ResolvedPart, realised: Mapping[str, Connector], primary: str | None) -> SE3:
-    """Return the motion that brings the realised primary connector to where the plan has it: C*·C⁻¹.
+    """Return the motion that moves the realised primary connector to its place in the plan: C*·C⁻¹.
 
-    Where nothing states the turn about its axis, none is made.
+    If nothing states the angle about its axis, the part is not turned.
     """
     if primary is None or primary not in realised or primary not in target.connectors:
         return SE3.identity()
@@ -139,7 +139,7 @@ def seating(target: ResolvedPart, realised: Mapping[str, Connector], primary: st
 
 
 def drift_findings(target: ResolvedPart, brief: Json, realised: Mapping[str, Connector], bbox: FloatArray) -> Findings:
-    """Return how far connectors are from the plan once the part is seated (kinematics §1, connector realisation drift)."""
+    """Return how far connectors are from the plan after the part is seated (connector drift)."""
     diagonal = float(np.linalg.norm(bbox[1] - bbox[0]))
     primary = primary_connector(target, brief)
     T = seating(target, realised, primary)
@@ -165,7 +165,7 @@ def _only_ball(brief: Json, name: str) -> bool:
 
 
 def _shares(drift: Drift, diagonal: float, *, roll_matters: bool) -> tuple[float, ...]:
-    """Return each component of a drift as a multiple of what passes without comment."""
+    """Return each component of a drift as a multiple of what passes without a finding."""
     return (
         drift.radial / max(DRIFT_RADIAL_MM, DRIFT_RADIAL_SHARE * diagonal),
         drift.along / max(DRIFT_ALONG_MM, DRIFT_ALONG_SHARE * diagonal),
@@ -196,7 +196,7 @@ def _drift_finding(target: ResolvedPart, name: str, drift: Drift, *, error: bool
 
 
 def _moved_finding(part: str, name: str, drift: Drift, diagonal: float, *, roll_matters: bool) -> list[Finding]:
-    """The primary connector is where the plan has it, because the part was moved: worth a word when it was moved far."""
+    """The primary connector is at its place in the plan because the part was moved; report it if it was moved far."""
     worst = max(_shares(drift, diagonal, roll_matters=roll_matters))
     if worst <= 1.0:
         return []
@@ -206,13 +206,13 @@ def _moved_finding(part: str, name: str, drift: Drift, diagonal: float, *, roll_
 
 
 def probe_findings(brief: Json, outcomes: Iterable[Json], *, ended: bool, crashed: str) -> Iterator[Finding]:
-    """Yield what moving each dimension showed.
+    """Yield the findings of the dimension probe.
 
     Args:
-        brief: What the script was told.
-        outcomes: The worker's reports, one a dimension.
-        ended: The probe came to its end, though perhaps not to all dimensions.
-        crashed: The signal that ended it instead, or empty.
+        brief: Input of the script.
+        outcomes: The worker's reports, one for each dimension.
+        ended: Whether the probe ended regularly, though perhaps without all dimensions.
+        crashed: The signal that ended it, or empty.
     """
     name, reached = brief["name"], set()
     for outcome in outcomes:

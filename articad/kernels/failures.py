@@ -1,4 +1,4 @@
-"""Why a script left no shape, told so that it can be mended: the code, the line, and the script's own frames."""
+"""Why a script left no shape: the code, the line, and the script's own frames, so that its author can correct it."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from articad.findings import Finding
 from articad.kernels.sandbox import HOW_TO_GET, ScriptLimits
 from articad.kernels.zygote import JobOutcome, ends_by
 
-MEMORY_SHARE = 0.5  # a crash of a process that held this much of its limit is taken for want of memory
+MEMORY_SHARE = 0.5  # a crash of a process that used this share of its limit is ascribed to lack of memory
 _PATH = re.compile(r"(?:/[\w.+@~-]+)+/([\w.+@~-]+)")
 _ADDRESS = re.compile(r" at 0x[0-9a-fA-F]+|0x[0-9a-fA-F]{6,}")
 _CRASH_FRAME = re.compile(r'File "part\.py", line (\d{1,6}) in (\w{1,80}|<module>)')
-_END_OF_LINE = re.compile(r"\r\n?|\n")  # as Python counts lines; str.splitlines knows more ends
+_END_OF_LINE = re.compile(r"\r\n?|\n")  # as Python counts lines; str.splitlines splits at more characters
 _LINE = 500  # characters of a script's line that are shown
 _MEMORY_TYPES = ("MemoryError", "Standard_OutOfMemory")
 
@@ -29,10 +29,10 @@ def script_failure(part: str, script: str, report: Sequence[Json], outcome: JobO
     Args:
         part: Name of the part.
         script: Its source, for the lines of the traceback.
-        report: What the script's process reported; not to be trusted.
+        report: Report of the script's process; untrusted.
         outcome: How that process ended.
-        crash: What it wrote when a signal ended it.
-        limits: What it was allowed.
+        crash: Its output when a signal ended it.
+        limits: The limits of its resources.
     """
     said = report[0] if report else {}
     if isinstance(said.get("problems"), list):
@@ -43,18 +43,18 @@ def script_failure(part: str, script: str, report: Sequence[Json], outcome: JobO
 
 
 def unconfined(why: str) -> SandboxError:
-    """Return the error of a process that ended because the sandbox could not be put on; nothing of a script ran."""
-    finding = Finding(code="E_SANDBOX", where="sandbox", message=f"The sandbox could not be put on: {scrubbed(why)}.", hint=HOW_TO_GET)
+    """Return the error for a process that ended because the sandbox could not be set up; no line of a script ran."""
+    finding = Finding(code="E_SANDBOX", where="sandbox", message=f"The sandbox could not be set up: {scrubbed(why)}.", hint=HOW_TO_GET)
     return SandboxError(f"{finding.message} {HOW_TO_GET}.", findings=[finding])
 
 
 def poisoned(part: str, script: str, what: str) -> BuildError:
-    """Return the error of a script whose process left results that no honest run leaves."""
+    """Return the error for a script whose process left results that no honest run leaves."""
     return _error("E_SCRIPT_FORBIDDEN", part, script, f"The script tampered with its results: {scrubbed(what)}", _ALONE, [])
 
 
 def scrubbed(text: object, limit: int = 500) -> str:
-    """Return untrusted text without paths, addresses and control characters, and not too long."""
+    """Return untrusted text without paths, addresses and control characters, and shortened."""
     return _ADDRESS.sub("", _PATH.sub(r"\1", _printable(str(text)[: 4 * limit])))[:limit].strip()
 
 
@@ -96,7 +96,7 @@ def _raised(part: str, script: str, error: Json) -> BuildError:
         return _memory(part, script, frames, None)
     if error.get("denied") is True or module.partition(".")[0] == "articad":
         return _error("E_SCRIPT_FORBIDDEN", part, script, f"The script did what a part script may not: {what}", _ALONE, frames)
-    return _error("E_SCRIPT_ERROR", part, script, what, "Mend this line.", frames)
+    return _error("E_SCRIPT_ERROR", part, script, what, "Correct this line.", frames)
 
 
 def _no_build(part: str, script: str, problems: list[str]) -> BuildError:
@@ -122,7 +122,7 @@ def _error(code: str, part: str, script: str, message: str, hint: str, frames: F
 
 
 def _frames(value: object) -> Frames:
-    """Return the frames that a script's process reported, as far as they are frames."""
+    """Return the frames that a script's process reported, without anything that is not a frame."""
     frames: Frames = []
     for entry in value if isinstance(value, list) else ():
         if isinstance(entry, list) and len(entry) == 2 and _is_line(entry[0]):

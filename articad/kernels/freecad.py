@@ -1,9 +1,9 @@
 """The FreeCAD kernel: part scripts that leave native, editable feature trees.
 
-Two confined FreeCAD processes a part: one runs the script and saves its document; a second opens that document, as a
-person would, judges its tree and moves each of its dimensions. The solid is then measured and meshed as every other
-kernel's is, by a process that ran no script. Nothing of FreeCAD's standard output is read, and no exit code is believed
-alone: a script succeeded when its document holds one valid body with nothing invalid in it.
+Each part takes two confined FreeCAD processes: one runs the script and saves its document; a second opens that document, as a person
+would, checks its tree and changes each of its dimensions. The solid is then measured and meshed, as with every other kernel, by a
+process that ran no script. FreeCAD's standard output is not read, and an exit code alone proves nothing: a script has succeeded when its
+document contains one valid body without invalid features.
 """
 
 from __future__ import annotations
@@ -41,15 +41,15 @@ from articad.kernels.results import PoisonedError, numbers, read_bytes, read_lin
 from articad.kernels.zygote import JobOutcome
 
 DOCUMENT = "part.FCStd"
-SEAT = "seat.json"  # where the document's body stands in the part's frame: seven numbers
-RECIPE = 2  # raised when documents come out otherwise, so that what was built before is built again
+SEAT = "seat.json"  # pose of the document's body in the part's frame: seven numbers
+RECIPE = 2  # increased when documents are written differently, so that cached parts are built again
 MAX_DOCUMENT_BYTES, MAX_UNPACKED_BYTES, MAX_ENTRIES = 64 * 2**20, 512 * 2**20, 10_000
 _PROGRAMS = Path(__file__).parent / "inside_freecad"
-_FAMILIES = ("PartDesign::", "Sketcher::", "Part::", "Spreadsheet::")  # of objects that a part may be made of
-_READING = re.compile(r"Python|Part::(Import|CurveNet)")  # objects that run Python, or read files by their names
+_FAMILIES = ("PartDesign::", "Sketcher::", "Part::", "Spreadsheet::")  # prefixes of the types that a part may consist of
+_READING = re.compile(r"Python|Part::(Import|CurveNet)")  # types that run Python, or read files by their names
 _MODULE = r"(App|Materials|Part|PartDesign|Sketcher|Spreadsheet)"
-# Types that elements beside objects may be of, by their tags: FreeCAD imports the module that a type's name begins with, and
-# takes whatever is made of it for what the tag says.
+# Tags beside objects that state a type: FreeCAD imports the module with which the type's name begins, and treats whatever it creates as
+# what the tag says.
 _TYPES = {
     "Property": re.compile(rf"{_MODULE}::Property\w*"),
     "_Property": re.compile(rf"{_MODULE}::Property\w*"),
@@ -69,41 +69,41 @@ Json = dict[str, Any]
 
 
 class _Left(NamedTuple):
-    """What one process left: how it ended, what it reported."""
+    """The result of one process: how it ended, and its report."""
 
     ended: FreeCADEnded
     report: list[Json]
 
 
 class FreeCADKernel(Build123dKernel):
-    """Builds part scripts with FreeCAD in a sandbox; what it leaves besides the usual files is `part.FCStd`."""
+    """Builds part scripts with FreeCAD in a sandbox; in addition to the usual files it leaves `part.FCStd`."""
 
     name = "freecad"
 
     @cached_property
     def freecad(self) -> FreeCAD:
-        """The FreeCAD that is used.
+        """The FreeCAD in use.
 
         Raises:
-            KernelUnavailableError: If there is none of 1.0 or later.
+            KernelUnavailableError: If there is none of version 1.0 or later.
         """
         return freecad_install.find()
 
     @cached_property
     def version(self) -> str:
-        """FreeCAD, the recipe of its documents, and whatever measures and meshes their solids."""
+        """FreeCAD, the version of its documents, and that of the process that measures and meshes their solids."""
         return f"freecad{self.freecad.version_text}.{RECIPE}+{super().version}"
 
     @property
     def level(self) -> str:
-        """The isolation that scripts run under; without bubblewrap there is none."""
+        """The isolation under which scripts run; without bubblewrap there is none."""
         return isolation.level_of(self._layers) if "bwrap" in isolation.available() else isolation.WEAK
 
     def warm_up(self) -> None:
-        """Find FreeCAD, so that its absence is told before anything is built.
+        """Find FreeCAD, so that its absence is reported before anything is built.
 
         Raises:
-            KernelUnavailableError: If there is none of 1.0 or later.
+            KernelUnavailableError: If there is none of version 1.0 or later.
         """
         _ = self.freecad
 
@@ -117,7 +117,7 @@ class FreeCADKernel(Build123dKernel):
         probe: bool = True,
         inspect: Inspect | None = None,
     ) -> BuiltPart:
-        """Run a script and hold its part to the contract; see `PartKernel.build`."""
+        """Run a script and check its part against the contract; see `PartKernel.build`."""
         self._require_sandbox()
         part, source = str(brief["name"]), script.decode("utf-8", errors="replace")
         with self._job() as job:
@@ -126,7 +126,7 @@ class FreeCADKernel(Build123dKernel):
                 said = ran.report[0] if ran.report else {}
                 if said.get("ok") is not True:
                     raise script_failure(part, source, ran.report, _outcome(ran.ended), _crash(ran.ended), self.limits)
-                # written anew: the next process reads it from its front, we from its end, and both are to see the same
+                # written anew: the next process reads it from its front, this one from its end, and both must see the same
                 (job / DOCUMENT).write_bytes(harmless(read_bytes(job / DOCUMENT, MAX_DOCUMENT_BYTES)))
                 return self._judged_document(job, brief, said, folder or self._new_folder(), deflection, inspect, probe=probe)
             except PoisonedError as poison:
@@ -148,7 +148,7 @@ class FreeCADKernel(Build123dKernel):
         return result
 
     def _inside(self, program: str, job: Path, told: Json, reads: tuple[str, ...], writes: tuple[str, ...], seconds: float) -> _Left:
-        """Run one of our programs inside FreeCAD on files of the job's folder."""
+        """Run one of articad's programs inside FreeCAD on files of the job's folder."""
         (job / f"{program}.json").write_text(json.dumps(told))
         names = (f"{program}.json", *reads, f"{program}.report", *writes)
         with _opened(job, names, len(reads) + 1) as files:
@@ -163,14 +163,14 @@ class FreeCADKernel(Build123dKernel):
     def _judged_document(
         self, job: Path, brief: Mapping[str, Any], said: Json, folder: Path, deflection: float, inspect: Inspect | None, *, probe: bool
     ) -> BuiltPart:
-        """Open the document in a second process, measure its solid, and hold both to the contract.
+        """Open the document in a second process, measure its solid, and check both against the contract.
 
         Raises:
             ContractError: With every breach at once.
         """
         part, entries = str(brief["name"]), said.get("connectors")
         if not isinstance(entries, dict):
-            raise PoisonedError("connectors are expected where there are none")
+            raise PoisonedError("connectors are missing")
         seconds = self.limits.probe_seconds if probe else 0.0
         told = {"connectors": entries, "dimensions": brief["dimensions"], "seconds": seconds}
         looked = self._inside("probe", job, told, (DOCUMENT,), ("shape.bin",), seconds + self.limits.seconds)
@@ -206,13 +206,13 @@ class BrepReader(Build123dKernel):
 
         Args:
             content: The B-rep, as text.
-            name: Of the part, for messages.
-            T: Where it stands.
+            name: Name of the part, for messages.
+            T: Its pose.
             deflection: Largest distance of the mesh from it [mm].
-            folder: Where the solid's B-rep stays; without one the solid has no file.
+            folder: Folder for the solid's B-rep file; without one the solid has no file.
 
         Raises:
-            ReadError: If it is not B-rep or does not hold exactly one valid solid.
+            ReadError: If it is not B-rep or does not contain exactly one valid solid.
         """
         self._require_sandbox()
         kept, folder = folder is not None, folder or self._new_folder()
@@ -230,7 +230,7 @@ class BrepReader(Build123dKernel):
         solid = BuiltPart.load(folder).solid
         for file in (file for file in folder.iterdir() if kept and file != solid.brep):
             file.unlink()
-        return replace(solid, brep=solid.brep if kept else None, step=None)  # its own folder goes with the worker
+        return replace(solid, brep=solid.brep if kept else None, step=None)  # the worker's own folder is deleted
 
 
 def tree_findings(part: str, tree: Mapping[str, Any]) -> Iterator[Finding]:
@@ -240,14 +240,14 @@ def tree_findings(part: str, tree: Mapping[str, Any]) -> Iterator[Finding]:
         return
     if tree.get("ok") is not True:
         if tree.get("problem"):
-            yield _not_editable(part, f"FreeCAD cannot make sense of the saved document: {scrubbed(tree['problem'], 300)}.")
+            yield _not_editable(part, f"FreeCAD cannot interpret the saved document: {scrubbed(tree['problem'], 300)}.")
         return
     for name in _names(tree.get("off_tip")):
         yield Finding(
             code="E_FEATURE_OFF_TIP",
             where=f"parts.{part}",
             parts=(part,),
-            message=f"Feature {name!r} is in the body but not in its solid: it is no ancestor of the tip.",
+            message=f"Feature {name!r} is in the body but not in its solid: it is not an ancestor of the tip.",
             hint="After each pattern, set body.Tip to it before the next feature is added, or use the functions of `part`, which do.",
         )
     if invalid := _names(tree.get("invalid"), 200):
@@ -259,7 +259,7 @@ def tree_findings(part: str, tree: Mapping[str, Any]) -> Iterator[Finding]:
 
 
 def _names(value: object, characters: int = 60) -> list[str]:
-    """Return the names that a process reported, as far as they are a list; a script chose them."""
+    """Return the names that a process reported, if they are a list; a script chose them."""
     return [scrubbed(name, characters) for name in value[:20]] if isinstance(value, list) else []
 
 
@@ -273,12 +273,12 @@ def _breach(found: list[Finding], part: str) -> ContractError:
 
 
 def harmless(content: bytes) -> bytes:
-    """Return a document with nothing in it but features, written anew; people will open it with no sandbox round them.
+    """Return a document with nothing in it but features, written anew; people will open it without a sandbox.
 
     Opening a document imports modules by the names in it, and may read files that it names.
 
     Raises:
-        PoisonedError: If it is more than features.
+        PoisonedError: If it contains more than features.
     """
     try:
         archive = Archive(content, entries=MAX_ENTRIES, unpacked=MAX_UNPACKED_BYTES)
@@ -293,12 +293,12 @@ def harmless(content: bytes) -> bytes:
     try:
         shapes = {name: archive.read(name) for name in archive.names if name in named and _SHAPE_FILE.fullmatch(name)}
     except BadArchiveError as error:
-        raise PoisonedError("the document is spoiled") from error
+        raise PoisonedError("the document is damaged") from error
     return packed({_DOCUMENT_XML: document} | shapes)
 
 
 def _harms(root: Any) -> Iterator[str]:
-    """Yield what in a document is more than features."""
+    """Yield what a document contains beyond features."""
     about = root.getroottree().docinfo
     if about.doctype:
         yield "definitions of its own"
@@ -314,7 +314,7 @@ def _harms(root: Any) -> Iterator[str]:
 
 
 def _harms_of_type(element: Any) -> Iterator[str]:
-    """Yield what an element makes FreeCAD import, or take for something that it is not."""
+    """Yield what an element makes FreeCAD import, or interpret as another type."""
     if element.prefix or element.nsmap:  # FreeCAD takes <a:Object> for <Object>
         yield "names of another vocabulary"
     wanted, found = _TYPES.get(str(element.tag)), element.get("type") or ""
@@ -322,7 +322,7 @@ def _harms_of_type(element: Any) -> Iterator[str]:
         yield "Python objects"
     elif element.tag != "Object" and not (wanted.fullmatch(found) if wanted else "::" not in found):
         yield f"something of type {scrubbed(found, 60)}"
-    if element.get("ViewType"):  # of an object: what shows it on the screen, imported likewise
+    if element.get("ViewType"):  # of an object: its view provider, imported likewise
         yield "a view of its own"
 
 

@@ -1,7 +1,7 @@
-"""What differs from one FreeCAD file to the next though nothing else does: dates, people, Uids, order, and the last bits.
+"""What differs between FreeCAD files of equal content: dates, people, Uids, order, and the last bits of numbers.
 
-FreeCAD's sketch solver leaves corners that coincide apart by 1e-15 mm, in one process otherwise than in the next. Shapes are
-kept to 12 decimals of a millimetre, which is beyond what they are exact to and makes the same file of the same part.
+FreeCAD's sketch solver leaves coincident corners 1e-15 mm apart, differently in each process. Shapes are rounded to 12 decimals of a
+millimetre, which is finer than their accuracy and makes equal files of equal parts.
 """
 
 from __future__ import annotations
@@ -16,27 +16,27 @@ from lxml import etree
 
 EPOCH = "2000-01-01T00:00:00Z"
 DIGITS = 12  # decimals of mm kept of a shape
-# Both look for a number from its first digit on alone: from every digit of a long one it would take the square of its length.
+# Both match a number from its first digit only; matching from every digit of a long number would take time quadratic in its length.
 _NUMBER = re.compile(rb"(?<!\d)-?\d+(?:\.\d+)?e[+-]?\d+|(?<!\d)-?\d+\.\d{%d,}" % (DIGITS + 1))
 _LONG = re.compile(rb"(?<!\d)-?\d{30,}\.\d+")  # FreeCAD writes 2e100, where a surface has no end, with all its digits
 _ZIP_TIME = (2000, 1, 1, 0, 0, 0)
-_NAMESPACE = uuid.UUID("6d1d9a3e-0c1b-5b6e-9b35-0a2f4f1c7c11")  # of the Uids that stand in for random ones
+_NAMESPACE = uuid.UUID("6d1d9a3e-0c1b-5b6e-9b35-0a2f4f1c7c11")  # for the Uids that replace random ones
 _DATES = {"CreationDate", "LastModifiedDate"}
 _PEOPLE = {"CreatedBy", "LastModifiedBy", "Company"}
 
 
 def rounded(brep: bytes) -> bytes:
-    """Return a B-rep as text with its numbers to 12 decimals."""
+    """Return a B-rep as text with its numbers rounded to 12 decimals."""
     return _NUMBER.sub(lambda number: b"%r" % (round(float(number[0]), DIGITS) + 0.0), brep)
 
 
 def shortened(brep: bytes) -> bytes:
-    """Return a B-rep as text without numbers so long that OCCT 7.9 overruns its buffer on reading them."""
+    """Return a B-rep as text without numbers so long that OCCT 7.9 overruns its buffer when it reads them."""
     return _LONG.sub(lambda number: b"%r" % float(number[0]), brep)
 
 
 def settled(content: bytes) -> bytes:
-    """Return a part's document as it comes out each time: no date, no random Uid, shapes to 12 decimals."""
+    """Return a part's document in reproducible form: no date, no random Uid, shapes to 12 decimals."""
     with zipfile.ZipFile(io.BytesIO(content)) as archive:
         files = {name: archive.read(name) for name in archive.namelist()}
     root = etree.fromstring(files["Document.xml"], xml_parser())
@@ -46,10 +46,10 @@ def settled(content: bytes) -> bytes:
 
 
 def packed(files: Mapping[str, bytes]) -> bytes:
-    """Return a zip of files, all of one date, in the order in which FreeCAD reads them.
+    """Return a zip of files, all with the same date, in the order in which FreeCAD reads them.
 
-    Document.xml comes first and GuiDocument.xml after all shapes: FreeCAD reads forwards only, so that with GuiDocument.xml
-    before them every shape stays empty, though only where there is a display.
+    Document.xml comes first and GuiDocument.xml after all shapes: FreeCAD reads forwards only, and with GuiDocument.xml before them
+    every shape stays empty if there is a display.
     """
     stream = io.BytesIO()
     with zipfile.ZipFile(stream, "w", zipfile.ZIP_DEFLATED, compresslevel=6) as archive:
@@ -68,7 +68,7 @@ def xml_parser() -> etree.XMLParser:
 
 
 def settle(root: etree._Element) -> None:
-    """Replace what differs from run to run: dates, people, Uids, paths."""
+    """Replace what differs between runs: dates, people, Uids, paths."""
     for name in _DATES | _PEOPLE | {"TransientDir", "FileName"}:
         for text in root.iterfind(f"Properties/Property[@name='{name}']/String"):
             text.set("value", EPOCH if name in _DATES else "")

@@ -1,8 +1,8 @@
-"""Find FreeCAD 1.0 or later, and run programs inside it: each in a process of its own, confined where bubblewrap works.
+"""Find FreeCAD 1.0 or later, and run programs inside it: each in a process of its own, confined if bubblewrap works.
 
-FreeCAD may be the system's own, an extracted AppImage, a conda environment, or a whole Debian tree, as
-`scripts/install-freecad` makes where the distribution's FreeCAD is older. What runs inside it never imports articad;
-results come back through files, for FreeCAD writes what it likes to its standard output.
+FreeCAD may be the system's own, an extracted AppImage, a conda environment, or a whole Debian tree, as `scripts/install-freecad` makes
+if the distribution's FreeCAD is older. Programs inside it never import articad; results come back through files, because FreeCAD writes
+to its standard output as it likes.
 """
 
 from __future__ import annotations
@@ -21,14 +21,14 @@ from articad.findings import Finding
 from articad.kernels import landlock, sandbox, seccomp
 from articad.processes import launcher
 
-OLDEST = (1, 0)  # the first FreeCAD with assemblies of its own
+OLDEST = (1, 0)  # the first FreeCAD with an assembly workbench
 HOW_TO_GET = "Run scripts/install-freecad as root (2.3 GB, about 3 minutes), or set ARTICAD_FREECAD to FreeCAD 1.0 or later"
 _NAMES = ("freecadcmd", "FreeCADCmd", "freecad.cmd")
 _INSIDE = ("usr/bin", "bin", ".")  # where a tree, an AppImage and a conda environment have the program
 _SECONDS = 60.0  # for its version; a cold disk needs 5 s
 _VERSION = re.compile(r"FreeCAD,?\s+(?:Version:?\s+)?(\d+)\.(\d+)(?:\.(\d+))?")
 _ENVIRONMENT = {
-    "HOME": "/tmp",  # noqa: S108 - a private one inside; FreeCAD keeps its settings at home
+    "HOME": "/tmp",  # noqa: S108 - a private one inside; FreeCAD keeps its settings in the home folder
     "LANG": "C.UTF-8",
     "LC_ALL": "C.UTF-8",  # without it FreeCAD crashes at start
     "PYTHONHASHSEED": "0",
@@ -44,11 +44,11 @@ _SETTINGS = (
     "/etc/ld.so.conf.d",
     "/etc/alternatives",
     "/etc/fonts",
-)  # the rest of /etc is nobody's business
+)  # the rest of /etc stays hidden
 _INSIDE_PROGRAMS = Path(__file__).parent / "inside_freecad"
 _OPEN_FILES = 256
-_turns = itertools.count(os.getpid())  # of processes inside FreeCAD
-_TAIL = 8000  # bytes of what it wrote that are kept
+_turns = itertools.count(os.getpid())  # counter of processes inside FreeCAD
+_TAIL = 8000  # bytes of its output that are kept
 
 
 @dataclass(frozen=True)
@@ -58,8 +58,8 @@ class FreeCADLimits:
     Attributes:
         seconds: Wall clock.
         memory: Address space [bytes]; FreeCAD itself takes 1 GiB of it.
-        file_size: Of each file it writes [bytes].
-        scratch: Of its private /tmp [bytes].
+        file_size: Largest size of each file it writes [bytes].
+        scratch: Size of its private /tmp [bytes].
     """
 
     seconds: float = 120.0
@@ -74,9 +74,9 @@ class FreeCADEnded:
 
     Attributes:
         code: Its exit code; negative for a signal.
-        late: It was killed at its deadline.
-        said: The end of what it wrote, for people only.
-        unconfined: Why the sandbox could not be put on, so that nothing of the program ran; empty if it was.
+        late: Whether it was killed at its deadline.
+        said: The end of its output, for people only.
+        unconfined: Why the sandbox could not be set up, so that nothing of the program ran; empty if it was.
     """
 
     code: int
@@ -86,18 +86,18 @@ class FreeCADEnded:
 
     @property
     def ok(self) -> bool:
-        """True when it came to its end; whether it did its work, only its result can say."""
+        """True if it ended regularly; only its result can say whether it did its work."""
         return self.code == 0
 
 
 @dataclass(frozen=True)
 class FreeCAD:
-    """One FreeCAD on this machine.
+    """An installation of FreeCAD on this machine.
 
     Attributes:
         program: Its command-line program, as seen from inside `root`.
-        root: A whole system's tree that it lives in; None for a program of this system.
-        prefix: A folder outside the system's own that it needs; None for the system's.
+        root: The tree of a whole system that contains it; None for a program of this system.
+        prefix: A folder outside the system's own that it needs; None if it needs none.
     """
 
     program: str
@@ -116,7 +116,7 @@ class FreeCAD:
 
     @property
     def where(self) -> str:
-        """The program, for people."""
+        """The program's path, for people."""
         return self.program if self.root is None else f"{self.root}{self.program}"
 
     def run(
@@ -133,12 +133,11 @@ class FreeCAD:
 
         Args:
             program: The Python file; standard library and FreeCAD's modules only.
-            folder: Shown to it as its working folder, to read and to write; without it there is nothing to write but a
-                private /tmp.
+            folder: Its working folder, to read and to write; without it only a private /tmp can be written.
             files: Open files that it inherits under the same numbers.
-            arguments: Words for it.
-            limits: What it may use.
-            layers: Those to put on besides bubblewrap's, of what is available.
+            arguments: Its arguments.
+            limits: Resources that it may use.
+            layers: Layers to apply in addition to bubblewrap's, if available.
 
         Raises:
             KernelUnavailableError: If it must run in a tree of its own and bubblewrap does not work.
@@ -187,23 +186,23 @@ class FreeCAD:
             *self._mounts(),
             *("--size", str(limits.scratch), "--tmpfs", "/tmp", *self._processes(layers), "--dev", "/dev", "--remount-ro", "/dev"),  # noqa: S108 - a private one
             *("--ro-bind", str(program.resolve()), "/program.py"),
-            *("--ro-bind", str(_INSIDE_PROGRAMS / "passwd"), "/etc/passwd"),  # one line, ours: without a home in it FreeCAD crashes
+            *("--ro-bind", str(_INSIDE_PROGRAMS / "passwd"), "/etc/passwd"),  # one line of ours: without a home in it FreeCAD crashes
             *(word for name, file in _confinement_files().items() for word in ("--ro-bind", str(file), f"/confinement/{name}")),
             *("--unshare-all", "--unshare-user", "--uid", "65534", "--gid", "65534", "--cap-drop", "ALL"),
             *sandbox.disable_user_namespaces(),
             *("--new-session", "--die-with-parent", "--hostname", "sandbox", "--clearenv"),
             *("--setenv", "PATH", "/usr/bin:/bin", *variables),
             *work,
-            *("--remount-ro", "/"),  # bubblewrap's own root is memory, of no bounded size
+            *("--remount-ro", "/"),  # bubblewrap's own root is in memory, of unlimited size
             *inner,
         ]
 
     def _processes(self, layers: Collection[str]) -> tuple[str, ...]:
-        """Return what is mounted at /proc.
+        """Return the mount options for /proc.
 
-        Landlock closes all of it but a process's own folder. Without Landlock there is none: whoever runs as root could set
-        the kernel there, and whoever does not could write into the memory of bubblewrap's own process, which seccomp does not bind.
-        FreeCAD only asks where its program is.
+        Landlock hides all of it except for a process's own folder. Without Landlock it is not mounted: a process of root could change
+        kernel settings there, and any other could write into the memory of bubblewrap's own process, which seccomp does not restrict.
+        FreeCAD only needs it to find the path of its program.
         """
         if "landlock" in layers and "landlock" in sandbox.available():
             return ("--proc", "/proc")
@@ -220,7 +219,7 @@ class FreeCAD:
         return path
 
     def _mounts(self) -> Iterator[str]:
-        """Yield what is shown: the libraries and settings of a system, never its homes or data."""
+        """Yield the mounts: the libraries and settings of a system, never its homes or data."""
         root = self.root or Path("/")
         for path in (*_SYSTEM, *_SETTINGS):
             source = root / path[1:]
@@ -236,7 +235,7 @@ def find() -> FreeCAD:
     """Return the FreeCAD to use: `$ARTICAD_FREECAD`, the PATH, the tree that scripts/install-freecad makes, conda, an AppImage.
 
     Raises:
-        KernelUnavailableError: If there is none of 1.0 or later; says where it was looked for and how to get it.
+        KernelUnavailableError: If there is none of version 1.0 or later; says where it was looked for and how to install it.
     """
     return _found(os.environ.get("ARTICAD_FREECAD", ""), os.environ.get("PATH", ""), os.environ.get("CONDA_PREFIX", ""), str(tree()))
 
@@ -260,7 +259,7 @@ def _found(asked: str, path: str, conda: str, data: str) -> FreeCAD:
         looked_in.append(label)
         if candidate is None:
             if label.startswith("$"):
-                older.append(f"{asked} holds none")
+                older.append(f"{asked} contains no FreeCAD")
                 break
             continue
         version = candidate.version
@@ -268,7 +267,7 @@ def _found(asked: str, path: str, conda: str, data: str) -> FreeCAD:
             return candidate
         older.append(f"{candidate.where} {'is ' + candidate.version_text if version else 'does not start'}")
         if label.startswith("$"):
-            break  # what was asked for by name is not replaced by something else
+            break  # what the user named is not replaced by something else
     why = f"FreeCAD 1.0 or later was not found{': ' + ', '.join(older) if older else ''}"
     raise unavailable(why, looked_in)
 
@@ -288,7 +287,7 @@ def _candidates(asked: str, path: str, conda: str, data: str) -> Iterator[tuple[
 
 
 def _at(place: Path) -> FreeCAD | None:
-    """Return the FreeCAD in a program, a system's tree, an extracted AppImage or an environment."""
+    """Return the FreeCAD for a program, a system's tree, an extracted AppImage or an environment."""
     if place.is_file():
         return _program(place)
     whole = (place / "etc").is_dir() and (place / "usr" / "lib").is_dir() and not (place / "AppRun").exists()
@@ -323,9 +322,9 @@ def _version_of(freecad: FreeCAD) -> tuple[int, int, int] | None:
 
 @cache
 def _steady() -> list[str]:
-    """Return what starts a program at the same addresses each time: FreeCAD's sketch solver orders numbers by theirs.
+    """Return the command that starts a program at the same addresses each time: FreeCAD's sketch solver orders numbers by address.
 
-    What a sketch is solved to then differs in the last bits from one process to the next, and so do all files made of it.
+    Otherwise solved sketches differ in the last bits between processes, and so do all files made from them.
     """
     setarch = launcher.which("setarch")
     if setarch is None or _ran([setarch, "-R", "true"], {"PATH": "/usr/bin:/bin"}, None, (), _SECONDS).code != 0:
@@ -346,7 +345,7 @@ def _cpu(limits: FreeCADLimits) -> int:
 
 
 def _confinement_files() -> dict[str, Path]:
-    """Return what is shown in /confinement."""
+    """Return the files that are visible in /confinement."""
     modules = {f"{module.__name__.rpartition('.')[2]}.py": Path(str(module.__file__)) for module in (landlock, seccomp)}
     return {"confinement.py": _INSIDE_PROGRAMS / "confinement.py"} | modules
 

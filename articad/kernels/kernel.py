@@ -1,4 +1,4 @@
-"""The seam between plans and B-rep kernels: what a kernel is asked, what it hands back, and how that is seated in the plan."""
+"""The interface between plans and B-rep kernels: what a kernel is asked for, what it returns, and how a part is seated in the plan."""
 
 from __future__ import annotations
 
@@ -26,11 +26,11 @@ from articad.plan.resolve import ResolvedPart, ResolvedPlan
 __all__ = ["BuildCache", "BuiltPart", "Inspect", "PartKernel", "build_part", "mirror_part", "realise"]
 
 FloatArray = NDArray[np.float64]
-_OF_NUMBERS = {"W_CONNECTOR_DRIFT"}  # found of this plan's numbers, not of the script: never carried over to other numbers
-SEATED_MM, SEATED_RAD = 1e-7, 1e-10  # a seat this close is rounding of what a script wrote down; the files stay as they are
+_OF_NUMBERS = {"W_CONNECTOR_DRIFT"}  # findings about this plan's numbers, not about the script: never carried over to other numbers
+SEATED_MM, SEATED_RAD = 1e-7, 1e-10  # a smaller seat is rounding of numbers in a script; the files stay as they are
 
 Inspect = Callable[[Mapping[str, Connector], FloatArray], Findings]
-"""What a caller holds the realised connectors to, given the bounding box `(2, 3)`; its findings join the kernel's own."""
+"""Checks the realised connectors, given the bounding box `(2, 3)`; its findings join the kernel's own."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,11 +40,11 @@ class BuiltPart:
     Attributes:
         folder: Holds result.json, part.npz, part.brep, part.step.
         solid: Its mesh and exact numbers.
-        connectors: Where the features really are, in the part's frame.
+        connectors: The actual places of the features, in the part's frame.
         findings: Warnings of the build and of the dimension probe.
-        sandbox: The level of isolation that the script ran under.
+        sandbox: The level of isolation under which the script ran.
         cached: True when nothing had to be built.
-        brief: What the script was told; `connectors` of it names the joints at each connector.
+        brief: The input of the script; its `connectors` name the joints at each connector.
     """
 
     folder: Path
@@ -57,7 +57,7 @@ class BuiltPart:
 
     @classmethod
     def load(cls, folder: Path, *, cached: bool = False) -> BuiltPart:
-        """Read a folder that a kernel has left."""
+        """Read a folder that a kernel has written."""
         result = json.loads((folder / "result.json").read_text())
         shape = result["shape"]
         solid = Solid(
@@ -80,7 +80,7 @@ class BuiltPart:
 
 
 class PartKernel(Protocol):
-    """What turns part scripts into solids."""
+    """Converts part scripts to solids."""
 
     @property
     def name(self) -> str:
@@ -89,7 +89,7 @@ class PartKernel(Protocol):
 
     @property
     def version(self) -> str:
-        """Of everything that a part's geometry depends on besides its script."""
+        """Version of everything that a part's geometry depends on besides its script."""
         ...
 
     def build(
@@ -102,24 +102,24 @@ class PartKernel(Protocol):
         probe: bool = True,
         inspect: Inspect | None = None,
     ) -> BuiltPart:
-        """Run a script and hold its part to the contract.
+        """Run a script and check its part against the contract.
 
         Args:
             script: Its source.
-            brief: What it is told (`articad.plan.brief`).
-            folder: Empty; takes the files.
+            brief: Its input (`articad.plan.brief`).
+            folder: An empty folder for the files.
             deflection: Largest distance of the mesh from the solid [mm].
-            probe: Whether to move each dimension and build again.
-            inspect: What else the connectors are held to.
+            probe: Whether to change each dimension and build again.
+            inspect: A further check of the connectors.
 
         Raises:
             BuildError: If the script fails; `partial` holds the solids that it had.
-            ContractError: With every breach at once; `partial` as well.
+            ContractError: With every breach at once; it has `partial` as well.
         """
         ...
 
     def moved(self, built: BuiltPart, matrix: ArrayLike, folder: Path) -> BuiltPart:
-        """Return the part under a rigid motion or a reflection `(4, 4)`, files and all, in an empty folder."""
+        """Return the part under a rigid motion or a reflection `(4, 4)`, with its files, in an empty folder."""
         ...
 
 
@@ -128,20 +128,20 @@ def build_part(
 ) -> BuiltPart:
     """Build a part of a plan, or take it from the cache.
 
-    Its files are in the plan's frame: where the script put the connector to the tree parent elsewhere, the whole part is
-    moved so that it is where the plan has it. A script's dimensions are probed once, not again for other numbers.
+    Its files are in the plan's frame: if the script put the connector to the tree parent elsewhere, the whole part is moved to match the
+    plan. A script's dimensions are probed once, not again for other numbers.
 
     Args:
         resolved: The plan with its numbers.
         name: A part that a script builds.
         script: Its source.
         kernel: Builds it.
-        cache: Keeps it, by build digest.
+        cache: Stores it, by build digest.
         deflection: Largest distance of the mesh from the solid [mm].
 
     Raises:
         BuildError: If the script fails.
-        ContractError: If what it builds breaks the contract.
+        ContractError: If the result breaks the contract.
     """
     target = resolved.parts[name]
     digest = build_digest(resolved, name, script, kernel.name, kernel.version, deflection)
@@ -182,11 +182,11 @@ def mirror_part(kernel: PartKernel, built: BuiltPart, S: ArrayLike) -> BuiltPart
 def realise(resolved_part: ResolvedPart, built: BuiltPart) -> tuple[Part, Findings]:
     """Seat a built part in the plan.
 
-    Its connectors are the plan's: the mechanism never follows a script. The geometry is seated by the connector to the
-    tree parent, C*·C⁻¹·G, and what is left at the others is drift (kinematics §1).
+    Its connectors are the plan's: the mechanism never follows a script. The geometry is seated by the connector to the tree parent,
+    C*·C⁻¹·G; the remaining deviation at the other connectors is drift.
 
     Returns:
-        The part and what of its drift `built.findings` does not say already, `E_CONNECTOR_DRIFT` where it is beyond the table.
+        The part, and the drift findings that `built.findings` does not already contain; `E_CONNECTOR_DRIFT` if it exceeds the bounds.
     """
     T = seating(resolved_part, built.connectors, primary_connector(resolved_part, built.brief))
     solid = built.solid if T.allclose(SE3.identity(), mm=SEATED_MM, rad=SEATED_RAD) else built.solid.moved(T)
@@ -204,7 +204,7 @@ def realise(resolved_part: ResolvedPart, built: BuiltPart) -> tuple[Part, Findin
 
 
 def finding_from_json(form: Mapping[str, Any]) -> Finding:
-    """Return a finding from its own JSON."""
+    """Return the finding stored as JSON."""
     names = ("code", "where", "message", "hint", "value", "limit", "unit", "cause", "pose", "stage", "route")
     return Finding(**{name: form[name] for name in names}, parts=tuple(form["parts"]))
 
@@ -228,7 +228,7 @@ def _moved(kernel: PartKernel, built: BuiltPart, matrix: FloatArray) -> BuiltPar
 
 
 def _add_findings(folder: Path, known: list[dict[str, Any]]) -> None:
-    """Add what an earlier probe of the same script found."""
+    """Add the findings of an earlier probe of the same script."""
     if known:
         path = folder / "result.json"
         result = json.loads(path.read_text())

@@ -1,7 +1,7 @@
-"""Landlock: a process gives up the file system, TCP, and signals to others, for good and without privileges.
+"""Landlock: a process gives up the file system, TCP, and signals to others, permanently and without privileges.
 
-Linux 5.13 and later, where the kernel was started with it. Standard library only: this runs inside the sandbox.
-Source of the numbers: linux/landlock.h; the three system calls have the same numbers on every architecture.
+Linux 5.13 and later, if the kernel was started with it. Standard library only: this runs inside the sandbox. The numbers are from
+linux/landlock.h; the three system calls have the same numbers on every architecture.
 """
 
 from __future__ import annotations
@@ -34,14 +34,14 @@ class _PathBeneath(ctypes.Structure):
 
 
 def abi() -> int:
-    """Return the version of Landlock that this kernel offers; 0 when there is none."""
+    """Return the version of Landlock that this kernel offers; 0 if none."""
     return max(0, int(ctypes.CDLL(None, use_errno=True).syscall(_CREATE_RULESET, None, ctypes.c_size_t(0), _VERSION_QUERY)))
 
 
 def restrict(readable: Iterable[str], writable: Iterable[str] = ()) -> None:
-    """Give up every file but those beneath `readable`, which may be read only, and `writable`; files that are open stay open.
+    """Give up every file except those below `readable`, which may only be read, and below `writable`; open files stay open.
 
-    Everything else that this kernel's Landlock knows is given up with no exception: writing, making, removing, executing, TCP,
+    Every other right that this kernel's Landlock covers is given up without exception: writing, making, removing, executing, TCP,
     abstract unix sockets, signals. `no_new_privs` must be set.
 
     Raises:

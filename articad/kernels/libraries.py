@@ -1,4 +1,4 @@
-"""The system libraries that the B-rep kernel is linked against; asked of the dynamic loader, without importing the kernel."""
+"""The system libraries that the B-rep kernel is linked against, looked up by the dynamic loader without importing the kernel."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ import sys
 from collections.abc import Collection
 
 PACKAGES = {"libGL.so.1": "libgl1", "libX11.so.6": "libx11-6", "libexpat.so.1": "libexpat1", "libgomp.so.1": "libgomp1"}
-"""Shared library to the Debian and Ubuntu package that has it."""
+"""Shared library to the Debian and Ubuntu package that contains it."""
 
 
 def missing_libraries() -> list[str]:
-    """Return the names of the libraries that the loader does not find; none on systems other than Linux."""
+    """Return the names of the libraries that the loader does not find; empty on systems other than Linux."""
     return [name for name in PACKAGES if not _loads(name)] if sys.platform == "linux" else []
 
 

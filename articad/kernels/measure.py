@@ -1,6 +1,6 @@
-"""Measure, mesh and write a shape that a script or a file left. Runs inside the sandbox, in a process that ran no script.
+"""Measure, mesh and write a shape from a script or a file. Runs inside the sandbox, in a process that ran no script.
 
-So a script that tampers with the kernel can spoil its own shape, but not what is measured of it.
+So a script that tampers with the kernel can spoil its own shape, but not the measurements.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ Json = dict[str, Any]
 
 
 class Measured(NamedTuple):
-    """What is left of a shape: numbers for `result.json`, and files by name."""
+    """Results for a shape: numbers for `result.json`, and files by name."""
 
     report: Json
     files: dict[str, bytes]
@@ -55,11 +55,11 @@ def read_shape(form: str, content: bytes) -> TopoDS_Shape:
     """Read a shape.
 
     Args:
-        form: `bin` (between two processes of ours), `brep` or `step`.
+        form: `bin` (between two processes of articad), `brep` or `step`.
         content: The file.
 
     Raises:
-        ValueError: If it holds no shape.
+        ValueError: If it contains no shape.
     """
     shape = TopoDS_Shape()
     if form == "bin":
@@ -82,8 +82,8 @@ def measure(shape: TopoDS_Shape, *, deflection: float, angle: float, name: str, 
 
     Args:
         shape: As read.
-        deflection: Of the mesh [mm].
-        angle: Of the mesh [rad].
+        deflection: Linear deflection of the mesh [mm].
+        angle: Angular deflection of the mesh [rad].
         name: Product name in the STEP file.
         matrix: Rigid motion or reflection `(4, 4)` to apply first.
     """
@@ -105,7 +105,7 @@ def measure(shape: TopoDS_Shape, *, deflection: float, angle: float, name: str, 
 
 
 def pieces(shape: TopoDS_Shape, *, deflection: float, angle: float) -> Measured:
-    """Mesh all solids of what a failed script held, as one mesh, for a picture of how far it came."""
+    """Mesh all solids that a failed script had made, as one mesh, for a picture of its progress."""
     solids = [solid for solid in found(shape, TopAbs_SOLID) if _volume(solid).Mass() > EMPTY_MM3]
     meshes = [mesh for mesh in (tessellate(solid, deflection, angle) for solid in solids) if is_closed(mesh.triangles)]
     report = {"ok": True, "solids": len(meshes)}
@@ -135,9 +135,9 @@ def properties(solid: TopoDS_Shape) -> Json:
 
 
 def self_intersection(solid: TopoDS_Shape) -> Json:
-    """Say whether faces or edges of a solid cut each other; None where the kernel gives up, as it does on some spline faces.
+    """Return whether faces or edges of a solid intersect each other; None if the kernel gives up, as it does on some spline faces.
 
-    A face that cuts itself, as in a sweep along too tight a bend, is not found. May take long: a caller bounds it.
+    A face that intersects itself, as in a sweep along too tight a bend, is not found. May take long: the caller limits the time.
     """
     analyzer = BOPAlgo_ArgumentAnalyzer()
     analyzer.SetShape1(solid)
@@ -154,9 +154,9 @@ def self_intersection(solid: TopoDS_Shape) -> Json:
 
 
 def step_file(shape: TopoDS_Shape, name: str) -> bytes:
-    """Return a shape as STEP AP214; the same shape gives the same bytes, for the header holds a fixed time."""
+    """Return a shape as STEP AP214; the same shape gives the same bytes, because the header has a fixed time."""
     writer, stream = STEPControl_Writer(), io.BytesIO()
-    Interface_Static.SetCVal_s("write.step.product.name", name)  # only known once there is a writer
+    Interface_Static.SetCVal_s("write.step.product.name", name)  # only defined once there is a writer
     writer.Transfer(shape, STEPControl_AsIs)
     writer.WriteStream(stream)
     head, data, body = stream.getvalue().partition(b"DATA;")
@@ -174,7 +174,7 @@ def compound(shapes: list[TopoDS_Shape]) -> TopoDS_Compound:
 
 
 def binary(shape: TopoDS_Shape) -> bytes:
-    """Return a shape in the form in which it goes from one process of the worker to the next."""
+    """Return a shape in the form in which one process of the worker passes it to the next."""
     stream = io.BytesIO()
     BinTools.Write_s(shape, stream)
     return stream.getvalue()
@@ -240,7 +240,7 @@ def _moved(solid: TopoDS_Shape, matrix: list[list[float]]) -> TopoDS_Shape:
 
 
 def npz(mesh: Mesh) -> bytes:
-    """Return what `numpy.load` reads, the same bytes under every version of Python and NumPy, whose `savez` differ."""
+    """Return the bytes of an `.npz` file, the same under every version of Python and NumPy, whose `savez` differ."""
     stream = io.BytesIO()
     with zipfile.ZipFile(stream, "w") as archive:
         for name, array in (("vertices", mesh.vertices), ("triangles", mesh.triangles), ("face", mesh.face)):

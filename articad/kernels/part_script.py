@@ -1,4 +1,4 @@
-"""Run one part script: untrusted code, in a confined process of its own that nothing else is asked of afterwards.
+"""Run one part script: untrusted code, in a confined process of its own that does nothing else afterwards.
 
 What it leaves is a report, a JSON object, and the shape. Whoever reads them must not trust them.
 """
@@ -26,8 +26,8 @@ Write = Callable[[dict[str, Any]], None]
 Json = dict[str, Any]
 
 
-class NotAPart(Exception):  # noqa: N818 - it is not the script's error, but what the script is told
-    """The script has no `build(part)`, or what that returns is not `(shape, connectors)`; `problems` says in which ways."""
+class NotAPart(Exception):  # noqa: N818 - not an error in the script's code, but a message to its author
+    """The script has no `build(part)`, or what that returns is not `(shape, connectors)`; `problems` lists the faults."""
 
     def __init__(self, *problems: str, shape: Any = None) -> None:
         super().__init__(*problems)
@@ -39,7 +39,7 @@ def run(script: str, part: Json, *, seconds: float, report: Write, shape: Callab
 
     Args:
         script: The source.
-        part: The brief: contracts, part script.
+        part: The brief of the part.
         seconds: Wall clock for the script; the process is killed by SIGALRM after it.
         report: Takes the report.
         shape: Takes the shape, in the form that `measure.read_shape("bin", …)` reads.
@@ -66,7 +66,7 @@ def run(script: str, part: Json, *, seconds: float, report: Write, shape: Callab
 
 
 def described(error: BaseException) -> Json:
-    """Return an exception as data: type, message, and the frames of the script alone, outermost first."""
+    """Return an exception as data: type, message, and the frames of the script only, outermost first."""
     frames = [(line, frame.f_code.co_name) for frame, line in traceback.walk_tb(error.__traceback__) if frame.f_code.co_filename == FILE]
     line = frames[-1][0] if frames else None
     if isinstance(error, SyntaxError) and error.filename == FILE:
@@ -77,7 +77,7 @@ def described(error: BaseException) -> Json:
         "message": str(error)[:_TEXT],
         "line": line,
         "frames": frames[-20:],
-        # a script has no business with the system: whatever failed there was forbidden; build123d's exporters hide the cause
+        # a script may not use the operating system: whatever failed there was forbidden; build123d's exporters hide the cause
         "denied": isinstance(error, OSError) or str(error).startswith("Failed to write"),
         "module": error.name if isinstance(error, ImportError) else None,
         "refused": own and isinstance(error, (ValueError, AssertionError)),
@@ -105,7 +105,7 @@ def _built(namespace: Json, part: Json) -> tuple[Any, dict[str, Json]]:
 
 
 def _as_object(part: Json) -> SimpleNamespace:
-    """Return the brief as the object that scripts are given, fresh for each call."""
+    """Return the brief as the object that scripts get, newly made for each call."""
     fields = copy.deepcopy({key: part[key] for key in ("name", "description", "material", "dimensions")})
     connectors = {
         name: SimpleNamespace(
@@ -159,7 +159,7 @@ def _kind(value: Any) -> str:
 
 
 def _last_solids(error: BaseException) -> list[Any]:
-    """Return the valid solids in the local variables of the script's innermost frame that holds any."""
+    """Return the valid solids in the local variables of the script's innermost frame that has any."""
     frames = [frame for frame, _ in traceback.walk_tb(error.__traceback__) if frame.f_code.co_filename == FILE]
     for frame in reversed(frames):
         try:

@@ -1,6 +1,6 @@
-"""All parts of a plan: scripts found, parts built side by side, derived parts made from their sources.
+"""All parts of a plan: scripts are found, parts built in parallel, derived parts made from their sources.
 
-Every failure of every part is reported at once; what was built stays in the cache.
+Every failure of every part is reported at once; finished parts stay in the cache.
 """
 
 from __future__ import annotations
@@ -27,10 +27,10 @@ class RealisedPart:
     """A part of the plan with its geometry.
 
     Attributes:
-        part: What assemblies, checks and exports use; its connectors are the plan's.
+        part: The part that assemblies, checks and exports use; its connectors are the plan's.
         built: The kernel's files and the connectors as the script realised them.
         script: Source of the part script; None for a derived part.
-        digests: `brief` and `build` (contracts, Digests); empty for a derived part.
+        digests: `brief` and `build`; empty for a derived part.
         derived_from: Name of the source part, if derived.
         cached: True when nothing had to be built.
         findings: Warnings of the build.
@@ -76,7 +76,7 @@ def _script(path: Path) -> bytes:
     """Return a part's script.
 
     Raises:
-        ReadError: If it is no file of a script's size, or a link.
+        ReadError: If it is not a file, is too large, or is a link.
     """
     try:
         return read_file(path, SCRIPT_BYTES, root=path.parent.parent)
@@ -94,16 +94,16 @@ def build_parts(
     jobs: int | None = None,
     progress: Progress | None = None,
 ) -> dict[str, RealisedPart]:
-    """Build every part, independent ones side by side, in the order of the plan.
+    """Build every part, independent ones in parallel, in the order of the plan.
 
     Args:
         resolved: The plan with its numbers.
         scripts: Source of each part script by part name.
         kernel: Builds a script.
-        cache: Keeps what was built by its build digest.
+        cache: Stores what was built, by its build digest.
         deflection: Largest distance of a mesh from its solid [mm].
         jobs: How many parts at once; by default the number of processors.
-        progress: Told of each part's fate.
+        progress: Called with the outcome of each part.
 
     Raises:
         ContractError: With the findings of every part that failed.
@@ -139,11 +139,11 @@ def build_parts(
 def build_source(
     resolved: ResolvedPlan, name: str, script: bytes, *, kernel: PartKernel, cache: BuildCache, deflection: float
 ) -> RealisedPart:
-    """Build one part that is not derived and hold it to its contract.
+    """Build one part that is not derived and check it against its contract.
 
     Raises:
         BuildError: If its script fails.
-        ContractError: If what it builds breaks the contract, connector drift included.
+        ContractError: If the result breaks the contract, connector drift included.
     """
     built = build_part(resolved, name, script, kernel=kernel, cache=cache, deflection=deflection)
     part, drift = realise(resolved.parts[name], built)
@@ -182,7 +182,7 @@ def _with_files(part: Part, built: BuiltPart) -> Part:
 
 
 def _derived_in_order(resolved: ResolvedPlan) -> Iterator[str]:
-    """Yield derived parts, each after its source; `resolve` has refused circles."""
+    """Yield derived parts, each after its source; `resolve` has refused cycles."""
     done = {name for name, part in resolved.parts.items() if part.derivation is None}
     waiting = [name for name in resolved.parts if name not in done]
     while waiting:
@@ -211,4 +211,4 @@ def _script_missing(name: str, file: str, present: list[str]) -> Finding:
 
 
 def _silent(name: str, event: str) -> None:
-    """Tell nobody."""
+    """Ignore an event."""

@@ -1,4 +1,4 @@
-"""Read what a confined process left, and believe nothing of it: sizes first, then form, then every number."""
+"""Read the results of a confined process without trusting them: first sizes, then form, then every number."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ from articad.geometry.mesh import TriMesh
 
 REPORT_BYTES = 2**20
 MESH_BYTES = 2**28
-MAX_ROWS = 20_000_000  # of an array; 5 million triangles are the most that a checked part has had
-MAX_MM = 1e7  # a coordinate beyond 10 km is none
+MAX_ROWS = 20_000_000  # of an array; the largest checked part so far has had 5 million triangles
+MAX_MM = 1e7  # a coordinate beyond 10 km is invalid
 _HEADER_BYTES = 4096  # of an array in a .npz: magic, version, shape
 _ARRAYS: dict[str, tuple[np.dtype[Any], int]] = {
     "vertices": (np.dtype("<f8"), 2),
@@ -30,11 +30,11 @@ Json = dict[str, Any]
 
 
 class PoisonedError(Exception):
-    """A result that no honest worker would leave; says in what."""
+    """A result that no honest worker would leave; the message says what is wrong."""
 
 
 def read_lines(path: Path) -> list[Json]:
-    """Read a report: one JSON object a line, an unfinished last line left out.
+    """Read a report: one JSON object per line; an unfinished last line is ignored.
 
     Raises:
         PoisonedError: If it is too large or not JSON.
@@ -46,7 +46,7 @@ def read_lines(path: Path) -> list[Json]:
     except (ValueError, RecursionError) as error:
         raise PoisonedError(f"{path.name} is not JSON") from error
     if not all(isinstance(line, dict) for line in lines):
-        raise PoisonedError(f"{path.name} holds something else than objects")
+        raise PoisonedError(f"{path.name} contains values that are not objects")
     return lines
 
 
@@ -59,7 +59,7 @@ def numbers(value: Any, *shape: int) -> NDArray[np.float64]:
     try:
         array = np.array(value, dtype=np.float64)
     except (TypeError, ValueError, OverflowError) as error:
-        raise PoisonedError("numbers are expected where there are none") from error
+        raise PoisonedError("numbers are missing") from error
     if array.shape != shape or not np.isfinite(array).all():
         raise PoisonedError(f"{shape} finite numbers are expected")
     return array
@@ -74,16 +74,16 @@ def number(value: Any) -> float:
     try:
         if not isinstance(value, bool) and isinstance(value, (int, float)) and math.isfinite(value):
             return float(value)
-    except OverflowError:  # JSON knows integers of any length
+    except OverflowError:  # JSON allows integers of any length
         pass
-    raise PoisonedError("a finite number is expected where there is none")
+    raise PoisonedError("a finite number is missing")
 
 
 def read_mesh(content: bytes) -> TriMesh:
-    """Read `part.npz`, without pickles and without believing what its headers claim.
+    """Read `part.npz`, without pickles and without trusting its headers.
 
     Raises:
-        PoisonedError: If it is not the mesh that the contract names.
+        PoisonedError: If it is not the mesh that the contract requires.
     """
     try:
         arrays = _arrays(content)
@@ -106,7 +106,7 @@ def _arrays(content: bytes) -> dict[str, NDArray[Any]]:
     with zipfile.ZipFile(io.BytesIO(content)) as archive:
         members = {member.filename: member for member in archive.infolist()}
         if set(members) != {f"{name}.npy" for name in _ARRAYS} or len(archive.infolist()) != len(_ARRAYS):
-            raise PoisonedError("part.npz holds other arrays than vertices, triangles and face")
+            raise PoisonedError("part.npz has other arrays than vertices, triangles and face")
         if any(member.compress_type != zipfile.ZIP_STORED or member.file_size > len(content) for member in members.values()):
             raise PoisonedError("part.npz is compressed")
         return {name: _array(archive.read(f"{name}.npy"), *_ARRAYS[name]) for name in _ARRAYS}
@@ -116,7 +116,7 @@ def _array(content: bytes, dtype: np.dtype[Any], dimensions: int) -> NDArray[Any
     """Return an array whose header promises exactly the bytes that follow it."""
     stream = io.BytesIO(content)
     if np.lib.format.read_magic(stream) != (1, 0):
-        raise PoisonedError("part.npz is of another version")
+        raise PoisonedError("part.npz has an unknown version")
     shape, fortran, found = np.lib.format.read_array_header_1_0(stream, max_header_size=_HEADER_BYTES)
     if found != dtype or fortran or len(shape) != dimensions or (dimensions == 2 and shape[1] != 3) or shape[0] > MAX_ROWS:
         raise PoisonedError(f"part.npz holds an array {shape} of {found}")
@@ -137,4 +137,4 @@ def read_bytes(path: Path, limit: int = MESH_BYTES) -> bytes:
 
 
 def _refuse(constant: str) -> None:
-    raise ValueError(f"{constant} is no number of JSON")
+    raise ValueError(f"{constant} is not a JSON number")

@@ -1,11 +1,10 @@
-"""The sandbox of part scripts: which layers this machine has, and how a process puts them on.
+"""The sandbox of part scripts: which layers this machine has, and how a process applies them.
 
-From the outside in: an empty environment and a session of its own (zygote.py); bubblewrap's namespaces round the zygote;
-and in the process forked for one script: no capabilities, resource limits, Landlock, seccomp. A script is handed open
-files for what it may read and write and can open none but the libraries, so no layer needs a path that is writable.
-
-The level names the layers reached, such as `bwrap+landlock+seccomp`. With neither Landlock nor bubblewrap it is `weak`,
-and scripts are refused unless that was asked for. Standard library only: this module also runs inside the sandbox.
+From the outside in: an empty environment and a session of its own (zygote.py); bubblewrap's namespaces around the zygote; and in the
+process forked for one script: no capabilities, resource limits, Landlock, seccomp. A script gets open files for its input and output and
+can open no others but libraries, so no layer needs a writable path. The level names the layers in effect, such as
+`bwrap+landlock+seccomp`. With neither Landlock nor bubblewrap it is `weak`, and scripts are refused unless the user accepts that.
+Standard library only: this module also runs inside the sandbox.
 """
 
 from __future__ import annotations
@@ -31,7 +30,7 @@ HOW_TO_GET = (
     "or use a kernel with Landlock (Linux 5.13 or later, 'landlock' in /sys/kernel/security/lsm)"
 )
 
-# Empty but for what makes two runs equal: hashes, locale, and one thread where BLAS would start several before the fork.
+# Empty except for what makes two runs equal: hash seed, locale, and one thread where BLAS would start several before the fork.
 ENVIRONMENT = {
     "HOME": "/nonexistent",
     "LANG": "C.UTF-8",
@@ -68,10 +67,10 @@ class ScriptLimits:
 
 
 def level(layers: Collection[str] | None = None) -> str:
-    """Return the level that this machine reaches, `weak` when it has neither Landlock nor bubblewrap.
+    """Return the level of isolation on this machine, `weak` if it has neither Landlock nor bubblewrap.
 
     Args:
-        layers: Those to consider; by default all that are available.
+        layers: Layers to consider; by default all that are available.
     """
     return level_of(available() if layers is None else frozenset(layers) & available())
 
@@ -85,7 +84,7 @@ def level_of(layers: Collection[str]) -> str:
 
 @cache
 def available() -> frozenset[str]:
-    """Return the layers that work here, each one tried."""
+    """Return the layers that work here; each one is tried."""
     if sys.platform != "linux":
         return frozenset()
     works = {"bwrap": bubblewrap_problem() is None, "landlock": landlock.abi() > 0, "seccomp": seccomp.available()}
@@ -93,7 +92,7 @@ def available() -> frozenset[str]:
 
 
 def missing() -> tuple[str, ...]:
-    """Return, for each layer that does not work here, why not."""
+    """Return, for each layer that does not work here, the reason."""
     if sys.platform != "linux":
         return (f"part scripts run on Linux only, not on {sys.platform}: use a Linux container or WSL 2",)
     reasons = []
@@ -121,9 +120,9 @@ def bubblewrap_problem() -> str | None:
 
 
 def bubblewrap_command(command: list[str]) -> list[str]:
-    """Return the command that runs another one in namespaces of its own: no network, nothing but libraries to read, nowhere to write.
+    """Return the command that runs another one in namespaces of its own: no network, only libraries to read, nowhere to write.
 
-    It must itself be started with an empty environment: /proc/1/environ inside would show whatever it was given.
+    It must itself be started with an empty environment, because /proc/1/environ inside shows its environment.
     """
     mounts: list[str] = []
     for path in _visible_paths():
@@ -140,7 +139,7 @@ def bubblewrap_command(command: list[str]) -> list[str]:
 
 
 def bubblewrap() -> str:
-    """Return the path of bubblewrap; where there is none, one that cannot be started."""
+    """Return the path of bubblewrap; if there is none, a path that cannot be started."""
     return launcher.which("bwrap") or "/nonexistent/bwrap"
 
 
@@ -152,7 +151,7 @@ def disable_user_namespaces() -> tuple[str, ...]:
 
 
 def _visible_paths() -> list[str]:
-    """Return what bubblewrap shows, parents first: system libraries, this Python with its packages, fonts, this package."""
+    """Return the paths visible in bubblewrap, parents first: system libraries, this Python with its packages, fonts, this package."""
     python = [sys.base_prefix, sys.base_exec_prefix, sys.prefix, sys.exec_prefix, *_executable_homes(), *site.getsitepackages()]
     package = str(Path(__file__).parents[1])
     wanted = ["/usr", *_SYSTEM_LIBRARIES[3:], *_LOADER, "/etc/fonts", *python, package]
@@ -164,9 +163,9 @@ def _visible_paths() -> list[str]:
 
 
 def _executable_homes() -> Iterator[str]:
-    """Yield the folders that the interpreter's links pass through: an environment links to a Python that may link on."""
+    """Yield the folders that the interpreter's links pass through: an environment links to a Python that may itself be a link."""
     path = Path(sys.executable)
-    with contextlib.suppress(OSError):  # a link into a folder that may not be looked into
+    with contextlib.suppress(OSError):  # a link into a folder without read permission
         for _ in range(8):
             if not path.is_symlink():
                 return
@@ -176,9 +175,9 @@ def _executable_homes() -> Iterator[str]:
 
 
 def readable_paths() -> tuple[str, ...]:
-    """Return what a confined process may still read: the libraries that Python and the kernel load when first used, and fonts.
+    """Return the paths that a confined process may still read: libraries that Python and the kernel load lazily, and fonts.
 
-    Packages installed as links to a folder of sources are left out, for such a folder may hold anything.
+    Packages installed as links to a folder of sources are left out, because such a folder may contain anything.
     """
     python = (sysconfig.get_path("stdlib"), sysconfig.get_path("platstdlib"), *site.getsitepackages())
     return (*python, *_SYSTEM_LIBRARIES, *_FONTS, *_LOADER, "/dev/null", "/dev/urandom")
@@ -190,12 +189,12 @@ def confine(limits: ScriptLimits, layers: Collection[str], readable: Collection[
     Called right after the fork, while there is one thread and before any code of a script is read.
 
     Args:
-        limits: Held by the kernel from now on.
-        layers: Those to put on, of `landlock` and `seccomp`.
+        limits: Limits that the kernel enforces from now on.
+        layers: Layers to apply, of `landlock` and `seccomp`.
         readable: Paths that stay readable under Landlock.
 
     Raises:
-        OSError: If a layer that was promised cannot be put on.
+        OSError: If a promised layer cannot be applied.
     """
     _limit_resources(limits)
     _drop_capabilities()
@@ -209,9 +208,9 @@ def confine(limits: ScriptLimits, layers: Collection[str], readable: Collection[
 
 
 def keep_to(readable: Collection[str], writable: Collection[str]) -> None:
-    """Keep this process, for good, from every file but libraries, this package and what is named; from TCP too, where Landlock knows it.
+    """Deny this process, permanently, every file except libraries, this package and the named folders; and TCP, if Landlock supports it.
 
-    For processes that run engines on files of unknown origin. Nothing is done where the kernel has no Landlock.
+    For processes that run engines on files of unknown origin. Without Landlock in the kernel, nothing is restricted.
 
     Args:
         readable: Folders to read.
@@ -224,7 +223,7 @@ def keep_to(readable: Collection[str], writable: Collection[str]) -> None:
 
 
 def die_with_parent(signal_number: int, parent: int) -> None:
-    """Ask the kernel to send this process a signal when its parent ends, and end now if it has ended already."""
+    """Ask the kernel to send this process a signal when its parent ends; exit now if it has already ended."""
     ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal_number, 0, 0, 0)
     if os.getppid() != parent:
         os._exit(1)
@@ -233,7 +232,7 @@ def die_with_parent(signal_number: int, parent: int) -> None:
 def _limit_resources(limits: ScriptLimits) -> None:
     import resource  # noqa: PLC0415 - Windows has none, and this module is imported there
 
-    # Twice the wall clock on every processor is only reached by threads that outlive the wall clock's own kill.
+    # Twice the wall clock on every processor is only reached by threads that survive the kill at the wall clock's limit.
     cpu = int(2 * (limits.seconds + limits.probe_seconds) * (os.cpu_count() or 1)) + 1
     for what, value in (
         (resource.RLIMIT_AS, limits.memory),
@@ -250,7 +249,7 @@ def _limit_resources(limits: ScriptLimits) -> None:
 
 
 def _drop_capabilities() -> None:
-    """Leave root's powers: without them it may not raise limits, mount, or read what belongs to others."""
+    """Drop root's capabilities: without them it may not raise limits, mount, or read what belongs to others."""
     libc = ctypes.CDLL(None)
     capability = 0
     while libc.prctl(_PR_CAPBSET_DROP, capability, 0, 0, 0) == 0:

@@ -1,10 +1,9 @@
-"""Seccomp: the system calls that computing a shape needs, and no others.
+"""Seccomp: allows the system calls that computing a shape needs, and no others.
 
-An allow-list: what is not named fails with EPERM. Reading files stays (Landlock or bwrap decide which), opening for
-writing does not, nor do processes, threads, sockets, signals to others, and everything that changes the file system.
-Threads are refused because nothing else bounds their number: root is exempt from RLIMIT_NPROC, and a machine has as few
-as 32768 numbers for them. Whoever uses this tells its libraries to do without, before.
-Standard library only: this runs inside the sandbox.
+An allow-list: any other call fails with EPERM. Reading files is allowed (Landlock or bwrap decide which); opening for writing,
+processes, threads, sockets, signals to others, and everything that changes the file system are not. Threads are refused because nothing
+else limits their number: root is exempt from RLIMIT_NPROC, and a machine has as few as 32768 thread ids. The caller must set its
+libraries to single-threaded before. Standard library only: this runs inside the sandbox.
 """
 
 from __future__ import annotations
@@ -21,7 +20,7 @@ _PR_SET_SECCOMP, _MODE_FILTER = 22, 2
 _LOAD, _MASK, _EQUAL, _GREATER_OR_EQUAL, _SET, _RETURN = 0x20, 0x54, 0x15, 0x35, 0x45, 0x06  # BPF instructions
 _ALLOW, _KILL = 0x7FFF0000, 0x80000000
 _NUMBER_AT, _ARCHITECTURE_AT, _ARGUMENTS_AT = 0, 4, 16  # offsets in struct seccomp_data
-_X32_BIT = 0x40000000  # the second ABI of x86_64, with numbers of its own
+_X32_BIT = 0x40000000  # the second ABI of x86_64, with its own numbers
 
 _WRITING = os.O_WRONLY | os.O_RDWR | os.O_CREAT | os.O_TRUNC | os.O_APPEND
 _FCNTL = (0, 1, 2, 3, 4, 5, 6, 7, 1030)  # duplicate, flags, locks; not F_SETOWN, which makes the kernel send signals
@@ -34,7 +33,7 @@ class _Architecture(NamedTuple):
     calls: dict[str, int]
 
 
-# what FreeCAD needs besides, whose documents are files: bubblewrap leaves one small folder that can be written
+# further calls that FreeCAD needs, whose documents are files: bubblewrap leaves one small writable folder
 _FILES: dict[str, tuple[int, int | None]] = {
     "rename": (82, None), "renameat": (264, 38), "renameat2": (316, 276), "unlink": (87, None), "unlinkat": (263, 35),
     "mkdir": (83, None), "mkdirat": (258, 34), "rmdir": (84, None), "ftruncate": (77, 46), "fchmod": (91, 52), "chmod": (90, None),
@@ -43,7 +42,7 @@ _FILES: dict[str, tuple[int, int | None]] = {
 
 # name: number on x86_64, number on aarch64 (None: it has none)
 _TABLE: dict[str, tuple[int, int | None]] = {
-    # files that are open, and looking at the file system
+    # files that are open, and file metadata
     "read": (0, 63), "write": (1, 64), "close": (3, 57), "lseek": (8, 62), "readv": (19, 65), "writev": (20, 66),
     "pread64": (17, 67), "pwrite64": (18, 68), "preadv": (295, 69), "pwritev": (296, 70), "fstat": (5, 80), "stat": (4, None),
     "lstat": (6, None), "newfstatat": (262, 79), "statx": (332, 291), "statfs": (137, 43), "fstatfs": (138, 44), "access": (21, None),
@@ -61,16 +60,16 @@ _TABLE: dict[str, tuple[int, int | None]] = {
     "sched_get_priority_min": (147, 126), "getcpu": (309, 168), "arch_prctl": (158, None), "clock_gettime": (228, 113),
     "clock_getres": (229, 114), "clock_nanosleep": (230, 115), "nanosleep": (35, 101), "gettimeofday": (96, 169), "time": (201, None),
     "times": (100, 153), "setitimer": (38, 103), "getitimer": (36, 102), "alarm": (37, None), "pause": (34, None),
-    # signals of its own
+    # signals to itself
     "rt_sigaction": (13, 134), "rt_sigprocmask": (14, 135), "rt_sigreturn": (15, 139), "rt_sigpending": (127, 136),
     "rt_sigsuspend": (130, 133), "rt_sigtimedwait": (128, 137), "sigaltstack": (131, 132), "restart_syscall": (219, 128),
     "exit": (60, 93), "exit_group": (231, 94),
-    # questions
+    # queries
     "getrusage": (98, 165), "getrlimit": (97, 163), "sysinfo": (99, 179), "uname": (63, 160), "getrandom": (318, 278),
     "getpid": (39, 172), "getppid": (110, 173), "gettid": (186, 178), "getuid": (102, 174), "geteuid": (107, 175), "getgid": (104, 176),
     "getegid": (108, 177), "getgroups": (115, 158), "getresuid": (118, 148), "getresgid": (120, 150), "getpgrp": (111, None),
     "getpgid": (121, 155), "getsid": (124, 156),
-    # with conditions: see _conditional
+    # allowed under conditions: see _conditional
     "open": (2, None), "openat": (257, 56), "openat2": (437, 437), "clone": (56, 220), "clone3": (435, 435), "tgkill": (234, 131),
     "fcntl": (72, 25), "ioctl": (16, 29), "prctl": (157, 167), "prlimit64": (302, 261),
 }  # fmt: skip
@@ -83,17 +82,17 @@ _ARCHITECTURES = {
 
 
 def available() -> bool:
-    """Return whether filters are known for this architecture and accepted by this kernel."""
+    """Return whether filters are defined for this architecture and accepted by this kernel."""
     seccomp, get_action_available = {"x86_64": 317, "aarch64": 277}.get(platform.machine(), -1), 2
     action = ctypes.c_uint32(_ALLOW)
     return seccomp > 0 and ctypes.CDLL(None).syscall(seccomp, get_action_available, 0, ctypes.byref(action)) == 0
 
 
 def restrict(*, writing: bool = False) -> None:
-    """Refuse this process and its threads every system call that is not on the list. `no_new_privs` must be set.
+    """Deny this process and its threads every system call that is not on the list. `no_new_privs` must be set.
 
     Args:
-        writing: Files may be opened for writing, made, renamed and removed; where, other layers decide.
+        writing: Whether files may be opened for writing, made, renamed and removed; other layers decide where.
 
     Raises:
         OSError: If the kernel refuses; nothing is restricted then.
@@ -107,11 +106,11 @@ def restrict(*, writing: bool = False) -> None:
 
 
 def program(machine: str, pid: int, *, writing: bool = False) -> bytes:
-    """Return the filter as BPF, 8 bytes an instruction.
+    """Return the filter as BPF, 8 bytes per instruction.
 
     Args:
         machine: `x86_64` or `aarch64`.
-        pid: The one process that threads may send signals to: their own.
+        pid: The process's own id, the only one to which its threads may send signals.
         writing: As in `restrict`.
     """
     architecture = _ARCHITECTURES[machine]
@@ -128,15 +127,15 @@ def program(machine: str, pid: int, *, writing: bool = False) -> bytes:
 
 
 def _conditional(name: str, pid: int) -> Iterator[bytes]:
-    """Yield the block of a call that is allowed under a condition; every block ends in a return."""
+    """Yield the block for a call that is allowed under a condition; every block ends in a return."""
     if name in ("clone3", "openat2"):  # their arguments are behind a pointer; libc falls back to the older call
         yield _refuse(errno.ENOSYS)
-    elif name == "clone":  # as a machine does that has no more to give: C++'s std::async does the work itself then
+    elif name == "clone":  # fails as on a machine without free threads: C++'s std::async then does the work itself
         yield _refuse(errno.EAGAIN)
     elif name in ("open", "openat"):
         flags = 1 if name == "open" else 2
         yield from (_argument(flags), _op(_SET, _WRITING, 0, 1), _refuse(errno.EACCES), _op(_RETURN, _ALLOW))
-    elif name == "prlimit64":  # asking for limits, not setting them
+    elif name == "prlimit64":  # reading limits is allowed, setting them is not
         yield from (_argument(2), _op(_EQUAL, 0, 0, 3), _argument(2, high=True), _op(_EQUAL, 0, 0, 1), _op(_RETURN, _ALLOW))
         yield _refuse(errno.EPERM)
     else:

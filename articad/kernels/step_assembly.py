@@ -1,4 +1,4 @@
-"""STEP assemblies of unknown origin, read in the confined worker: every solid with its product's name, where it stands."""
+"""STEP assemblies of unknown origin, read in the confined worker: every solid with its product's name and pose."""
 
 from __future__ import annotations
 
@@ -27,11 +27,11 @@ class StepPart:
     """One solid, or loose faces, of a STEP file.
 
     Attributes:
-        name: Unique in the file: the instance's where several share a product and have names, else the product's, numbered.
-        product: As the file has it.
-        where: The products above it, joined by "/".
-        mesh: In the assembly's frame [mm]; None where it cannot be meshed.
-        valid: Whether the kernel calls it a valid solid with volume.
+        name: Unique in the file: the instance's name if several instances share a product and have names, else the product's, numbered.
+        product: Name of the product in the file.
+        where: Names of the products above it, joined by "/".
+        mesh: In the assembly's frame [mm]; None if it cannot be meshed.
+        valid: Whether the kernel considers it a valid solid with volume.
         loose: True for faces that belong to no solid.
         faces: Number of its faces.
     """
@@ -56,7 +56,7 @@ class StepReader(Build123dKernel):
             deflection: Largest distance of the meshes from the surfaces [mm].
 
         Raises:
-            ReadError: If it is no STEP file, or holds no shape.
+            ReadError: If it is not a STEP file, or contains no shape.
         """
         self._require_sandbox()
         try:
@@ -80,7 +80,7 @@ class StepReader(Build123dKernel):
 
 
 def _parts(rows: list[dict[str, Any]], whole: TriMesh) -> tuple[StepPart, ...]:
-    """Return the parts that the worker told of; it read somebody's file, so nothing of it is believed unseen."""
+    """Return the parts that the worker reported. The worker read untrusted input, so every field is validated."""
     if len(rows) > MAX_PARTS or whole.face is None:
         raise PoisonedError("there are too many parts")
     taken: Counter[str] = Counter()

@@ -1,4 +1,4 @@
-"""The products of a STEP assembly with their solids, each where it stands. Runs inside the sandbox."""
+"""The products of a STEP assembly with their solids and poses. Runs inside the sandbox."""
 
 from __future__ import annotations
 
@@ -24,9 +24,9 @@ from OCP.XCAFDoc import XCAFDoc_DocumentTool, XCAFDoc_ShapeTool
 from articad.kernels import measure
 from articad.kernels.tessellation import Mesh, tessellate
 
-MOST_DEPTH = 50  # products below products
+MOST_DEPTH = 50  # levels of nested products
 MOST_PARTS = 2000
-_GENERATED = re.compile(r"=>|NAUO\d*$|\d*$")  # how instances are called by programs that name products only
+_GENERATED = re.compile(r"=>|NAUO\d*$|\d*$")  # names of instances in files of programs that name only products
 
 Json = dict[str, Any]
 
@@ -36,11 +36,11 @@ def read(content: bytes, *, deflection: float, angle: float) -> tuple[list[Json]
 
     Args:
         content: The file.
-        deflection: Of the meshes [mm].
-        angle: Of the meshes [rad].
+        deflection: Linear deflection of the meshes [mm].
+        angle: Angular deflection of the meshes [rad].
 
     Raises:
-        ValueError: If it is no STEP file, or holds no shape.
+        ValueError: If it is not a STEP file, or contains no shape.
     """
     document = TDocStd_Document(TCollection_ExtendedString("XmlXCAF"))
     reader = STEPCAFControl_Reader()
@@ -66,9 +66,9 @@ def read(content: bytes, *, deflection: float, angle: float) -> tuple[list[Json]
 
 
 def _leaves(label: Any, place: Any, path: tuple[str, ...], depth: int) -> Iterator[tuple[tuple[str, ...], str, str, Any]]:
-    """Yield the shapes that are no assemblies, placed, with the products above them, their own product, and the instance's name.
+    """Yield the shapes that are not assemblies, placed, with the products above them, their own product, and the instance's name.
 
-    The instance's name is empty where the product has only one instance, or a program has numbered its instances.
+    The instance's name is empty if the product has only one instance, or if a program has numbered its instances.
     """
     if depth > MOST_DEPTH:
         raise ValueError(f"its products are more than {MOST_DEPTH} deep")
@@ -92,7 +92,7 @@ def _leaves(label: Any, place: Any, path: tuple[str, ...], depth: int) -> Iterat
 
 
 def _pieces(shape: TopoDS_Shape) -> Iterator[tuple[TopoDS_Shape, bool]]:
-    """Yield the solids of a shape, and whatever faces belong to none, as one."""
+    """Yield the solids of a shape, then all faces that belong to no solid as one piece."""
     solids = list(measure.found(shape, TopAbs_SOLID))
     for solid in solids:
         yield solid, False

@@ -1,4 +1,4 @@
-"""What the worker does in a confined process, one task each. The zygote imports this once; no task returns anything but files."""
+"""The tasks of the worker in a confined process. The zygote imports this module once; tasks return their results as files."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def run_script(request: Json, files: dict[str, int]) -> None:
 
 
 def measure_shape(request: Json, files: dict[str, int]) -> None:
-    """Tasks `measure` (what a script left, a file of STEP or B-rep, moved or mirrored) and `pieces` (what a failed one held)."""
+    """Tasks `measure` (the shape of a script, or a STEP or B-rep file, moved or mirrored) and `pieces` (the solids of a failed script)."""
     job = json.loads(_content(files["job"]))
     signal.setitimer(signal.ITIMER_REAL, request["limits"]["seconds"])
     try:
@@ -63,7 +63,7 @@ def judge_shape(request: Json, files: dict[str, int]) -> None:
 
 
 def read_assembly(request: Json, files: dict[str, int]) -> None:
-    """Task `assembly`: the products of a STEP file; the first line of the report says whether it could be read, each other one is a part."""
+    """Task `assembly`: the products of a STEP file. The report's first line says whether it could be read; each other one is a part."""
     job = json.loads(_content(files["job"]))
     signal.setitimer(signal.ITIMER_REAL, request["limits"]["seconds"])
     try:

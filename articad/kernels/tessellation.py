@@ -1,4 +1,4 @@
-"""A solid's surface as one closed mesh, each triangle knowing its B-rep face. Runs inside the sandbox."""
+"""A solid's surface as one closed mesh; each triangle has the index of its B-rep face. Runs inside the sandbox."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ from OCP.TopExp import TopExp_Explorer
 from OCP.TopLoc import TopLoc_Location
 from OCP.TopoDS import TopoDS, TopoDS_Face
 
-ASKED = 0.45  # of the deflection is what OCCT is asked for: on spheres it exceeds that by 2.08, on tori and cylinders it does not
-FINER = 0.5  # a mesh that does not close is tried again with half the deflection …
-ATTEMPTS = 3  # … this often: a thin face that was skipped appears when edges get more points
+ASKED = 0.45  # share of the deflection given to OCCT: on spheres it exceeds the given value by 2.08, on tori and cylinders it does not
+FINER = 0.5  # a mesh that is not closed is computed again with half the deflection …
+ATTEMPTS = 3  # … this many times: a thin face that was skipped appears when edges get more points
 
 
 class Same:
-    """A TopoDS_Shape as a key: two are equal when they are one piece of topology at one place, whichever way they are turned."""
+    """A TopoDS_Shape as a key: two are equal if they are the same topology at the same place, whatever their orientation."""
 
     def __init__(self, shape: Any) -> None:
         self.shape = shape.Oriented(TopAbs_FORWARD)
@@ -44,7 +44,7 @@ class Mesh(NamedTuple):
 
 
 def tessellate(solid: Any, deflection: float, angle: float) -> Mesh:
-    """Mesh a TopoDS shape; finer where that is needed to close it.
+    """Mesh a TopoDS shape; finer if that is needed to close the mesh.
 
     Args:
         solid: Any TopoDS_Shape; its own triangulation is replaced.
@@ -73,10 +73,10 @@ def is_closed(triangles: NDArray[np.int32]) -> bool:
 
 
 def _welded(shape: Any) -> Mesh:
-    """Collect the triangulations of all faces, sharing the nodes that topology shares.
+    """Collect the triangulations of all faces; nodes that topology shares are merged.
 
-    Nodes are joined along the edges of the B-rep, and so at its vertices, not where coordinates happen to agree: two
-    sheets that touch stay apart, and the mesh stays a manifold.
+    Nodes are merged along the edges of the B-rep, and so at its vertices, not where coordinates happen to agree: two sheets that touch
+    stay apart, and the mesh stays a manifold.
     """
     nodes, triangles, faces, joints = [np.empty((0, 3))], [np.empty((0, 3), np.int64)], [np.empty(0, np.int32)], _Joints()
     offset, index = 0, 0
@@ -98,7 +98,7 @@ def _welded(shape: Any) -> Mesh:
 
 
 class _Joints:
-    """Which nodes of different faces are one and the same."""
+    """Union of nodes of different faces that are the same point."""
 
     def __init__(self) -> None:
         self.pairs: list[tuple[int, int]] = []
@@ -114,7 +114,7 @@ class _Joints:
             explorer.Next()
 
     def _add_edge(self, edge: Any, own: list[int]) -> None:
-        if BRep_Tool.Degenerated_s(edge):  # the pole of a sphere: an edge of no length, all one point
+        if BRep_Tool.Degenerated_s(edge):  # the pole of a sphere: an edge without length, all one point
             self.pairs += [(own[0], node) for node in own[1:]]
         else:
             first = self.first_of_edge.setdefault(Same(edge), own)
@@ -122,10 +122,10 @@ class _Joints:
                 self.pairs += zip(first, own, strict=True)
 
     def roots(self, count: int) -> NDArray[np.int64]:
-        """Return for each node the smallest node that it is joined to, `(count,)`."""
+        """Return for each node the smallest node that it is merged with, `(count,)`."""
         root = np.arange(count)
         pairs = np.array(self.pairs, dtype=np.int64).reshape(-1, 2)
-        while len(pairs):  # each round joins the trees that a pair still spans; few rounds are needed
+        while len(pairs):  # each round merges the trees that a pair still connects; few rounds are needed
             a, b = root[pairs[:, 0]], root[pairs[:, 1]]
             if (a == b).all():
                 break
@@ -136,7 +136,7 @@ class _Joints:
 
 
 def _compact(nodes: NDArray[np.float64], triangles: NDArray[np.int64], face: NDArray[np.int32]) -> Mesh:
-    """Drop nodes that nothing uses and triangles that joining has folded."""
+    """Drop unused nodes and triangles that merging has collapsed."""
     flat = (triangles == np.roll(triangles, 1, axis=1)).any(axis=1)
     triangles, face = triangles[~flat], face[~flat]
     used, corners = np.unique(triangles, return_inverse=True)
@@ -146,7 +146,7 @@ def _compact(nodes: NDArray[np.float64], triangles: NDArray[np.int64], face: NDA
 def _arrays(triangulation: Any) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
     """Return nodes `(N, 3)` and triangles `(T, 3)` from zero.
 
-    They are read from the kernel's own binary form: asking node by node costs 50 times as long.
+    They are read from the kernel's binary form: a call for each node takes 50 times as long.
     """
     face = TopoDS_Face()
     BRep_Builder().MakeFace(face, triangulation)

@@ -1,4 +1,4 @@
-"""Do the libraries of the B-rep kernel start? Run in a process of its own, where a crash is only a line of a report."""
+"""Do the libraries of the B-rep kernel start? Run in a process of its own, so that a crash is only a line of a report."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any
 
 
 def main() -> int:
-    """Make a box beside Pinocchio and compare its volume with the product of its sides."""
+    """Make a box, with Pinocchio loaded as well, and compare its volume with the product of its sides."""
     build123d: Any = importlib.import_module("build123d")
     importlib.import_module("pinocchio")
     return 0 if abs(build123d.Box(1, 2, 3).volume - 6) < 1e-9 else 1

@@ -1,8 +1,8 @@
 """The zygote: imports the B-rep kernel once, then forks a confined process for each job. Started by `zygote.py`.
 
-It listens on the socket that is its stdin. A request is one JSON object with open files beside it; its answer is one
-JSON object when the job's process has ended. It holds no secret, starts with an empty environment, and never runs a
-script itself. When its parent goes, it goes, and takes every job with it.
+It listens on the socket that is its stdin. A request is one JSON object with open files attached; its answer is one JSON object when the
+job's process has ended. It holds no secret, starts with an empty environment, and never runs a script itself. When its parent ends, it
+ends, and kills every job.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from typing import Any, NoReturn
 from articad.kernels import sandbox
 
 MESSAGE = 65536  # bytes of a request; a job itself travels in a file
-FILES = 8  # open files beside a request, at most
+FILES = 8  # open files attached to a request, at most
 _PR_SET_DUMPABLE, _PR_SET_CHILD_SUBREAPER = 4, 36
 FENCE_SECONDS = 2.0  # a job that survives its own alarm is killed this much later
 
@@ -35,10 +35,10 @@ Json = dict[str, Any]
 @dataclass
 class _Job:
     number: int
-    deadline: float  # of its first report; the kernel's own alarm comes before it
-    last: float  # of everything that follows a report, as the dimension probe does
+    deadline: float  # for its first report; the kernel's own alarm comes before it
+    last: float  # for everything after the report, such as the dimension probe
     report: int
-    fault: int  # a pipe that says why the sandbox could not be put on; a script that runs has no hold of it
+    fault: int  # a pipe that says why the sandbox could not be set up; a script has no access to it
     late: bool = False
 
 
@@ -71,7 +71,7 @@ class ZygoteServer:
             self._reap()
 
     def _fence(self, pid: int, job: _Job) -> None:
-        """Kill a job that survived its own alarm; one that has reported by now has the time that is meant for what follows."""
+        """Kill a job that survived its own alarm; if it has reported by now, it has the time for what follows the report."""
         if job.deadline < job.last and os.fstat(job.report).st_size:
             job.deadline = job.last
             return
@@ -109,7 +109,7 @@ class ZygoteServer:
         return True
 
     def _become(self, request: Json, files: dict[str, int], parent: int, faulty: int) -> NoReturn:
-        """Confine this child, do the job, end."""
+        """Confine this child process, do the job, exit."""
         status, confined = 70, False
         try:
             os.setsid()
@@ -147,7 +147,7 @@ class ZygoteServer:
 
 
 def main() -> None:
-    """Import the kernel, say so, serve."""
+    """Import the kernel, report that it is ready, serve."""
     control = socket.socket(fileno=0)
     sandbox.die_with_parent(signal.SIGKILL, os.getppid())
     _prepare_process()
@@ -160,7 +160,7 @@ def main() -> None:
         return
     _hide_articad()
     gc.collect()
-    gc.freeze()  # a collection in a child would copy every page of what is shared
+    gc.freeze()  # a collection in a child would copy every shared page
     control.send(json.dumps({"ready": True}).encode())
     zygote = ZygoteServer(control, TASKS)
     try:
@@ -170,14 +170,14 @@ def main() -> None:
 
 
 def _keep_to_one_thread() -> None:
-    """Have OCCT work in the thread that asks: the sandbox allows no others, and OCCT waits for ever for one that cannot start."""
+    """Make OCCT work in the calling thread: the sandbox allows no others, and OCCT waits forever for one that cannot start."""
     from OCP.OSD import OSD_ThreadPool  # noqa: PLC0415 - as above
 
     OSD_ThreadPool.DefaultPool_s(1)
 
 
 def _hide_articad() -> None:
-    """Make `import articad` fail in every fork: a part script is told so by the contract, and finds no way round it here."""
+    """Make `import articad` fail in every fork: the contract forbids it to part scripts, and this enforces it."""
     for name in [name for name in sys.modules if name.partition(".")[0] == "articad"]:
         del sys.modules[name]
     sys.modules["articad"] = None  # type: ignore[assignment]
@@ -199,14 +199,14 @@ def _keep_only(files: Collection[int]) -> None:
 
 
 def _trace_crashes(file: int) -> None:
-    """Have Python's frames written when a signal ends the process, the alarm among them: it says where a loop was."""
+    """Write Python's frames when a signal ends the process, including the alarm: they show where a loop was."""
     faulthandler.enable(file, all_threads=False)
     for number in (signal.SIGALRM, signal.SIGXCPU):
         faulthandler.register(number, file, all_threads=True, chain=True)
 
 
 def _last_words(pipe: int) -> str:
-    """Return what is in a pipe, and close it."""
+    """Return the content of a pipe, and close it."""
     try:
         return os.read(pipe, 500).decode(errors="replace")
     except BlockingIOError:
@@ -216,7 +216,7 @@ def _last_words(pipe: int) -> str:
 
 
 def _children() -> set[int]:
-    """Return the processes that are this one's children, adopted ones included; empty where /proc does not say."""
+    """Return the ids of the child processes, adopted ones included; empty if /proc does not list them."""
     try:
         with open(f"/proc/self/task/{os.getpid()}/children", encoding="ascii") as listed:  # noqa: PTH123 - no pathlib in the loop
             return set(map(int, listed.read().split()))
@@ -226,5 +226,5 @@ def _children() -> set[int]:
 
 def _prepare_process() -> None:
     libc = ctypes.CDLL(None)
-    libc.prctl(_PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0)  # processes that a job leaves behind are ours to kill
+    libc.prctl(_PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0)  # orphans of a job become children of this process, which kills them
     libc.prctl(_PR_SET_DUMPABLE, 0, 0, 0, 0)  # no job may trace this process or read its memory, whatever layers there are

@@ -1,4 +1,4 @@
-"""The parent's end of the worker: starts the zygote, hands it jobs, starts another one when it has died."""
+"""The parent's end of the worker: starts the zygote, sends it jobs, starts another one if it has died."""
 
 from __future__ import annotations
 
@@ -25,16 +25,16 @@ from articad.kernels.libraries import install_line, missing_libraries
 from articad.processes import launcher
 
 START_SECONDS = 180.0  # the import takes 2 s, on a cold and busy disk 10 s
-SILENCE_SECONDS = 30.0  # after which a zygote that should have killed a job is taken for dead
-_LEAVE_SECONDS = 2.0  # for a zygote to end once its socket is closed
+SILENCE_SECONDS = 30.0  # after this time a zygote that should have killed a job counts as dead
+_LEAVE_SECONDS = 2.0  # for a zygote to end after its socket is closed
 _ANSWER = 4096
 _ROOT = str(Path(__file__).parents[2])
-# -P and -s: neither the folder it is started in nor the user's own packages are on the path. -B: nothing is written beside sources.
+# -P and -s: neither the current folder nor the user's own packages are on the path. -B: nothing is written beside sources.
 _BOOT = f"import sys; sys.path.insert(0, {_ROOT!r}); from articad.kernels.worker import main; sys.path.remove({_ROOT!r}); main()"
 
 
 class ZygoteDiedError(Exception):
-    """The zygote ended while a job was running; the job may be given to the next one."""
+    """The zygote ended while a job was running; the job may be sent to the next one."""
 
 
 @dataclass(frozen=True)
@@ -42,12 +42,12 @@ class JobOutcome:
     """How a job's process ended.
 
     Attributes:
-        exit_code: What it returned, or None if a signal ended it.
+        exit_code: Its exit code, or None if a signal ended it.
         signal: The signal that ended it, or 0.
-        late: The zygote killed it at its deadline.
-        peak: Largest memory it held [bytes].
+        late: Whether the zygote killed it at its deadline.
+        peak: Its largest memory [bytes].
         refused: Why no process could be started; empty if one was.
-        unconfined: Why the sandbox could not be put on, so that nothing was done; empty if it was.
+        unconfined: Why the sandbox could not be set up, so that nothing was done; empty if it was.
     """
 
     exit_code: int | None
@@ -59,24 +59,24 @@ class JobOutcome:
 
     @property
     def ok(self) -> bool:
-        """True when it came to its end."""
+        """True if it ended regularly."""
         return self.exit_code == 0
 
 
 class Zygote:
-    """One process that has the kernel imported and forks a confined one for each job; jobs may be handed in from many threads."""
+    """A process that has imported the kernel and forks a confined one for each job; many threads may submit jobs."""
 
     _shared: ClassVar[dict[frozenset[str], Zygote]] = {}
     _shared_lock = threading.Lock()
 
     @classmethod
     def shared(cls, layers: Collection[str]) -> Zygote:
-        """Return the one zygote of this process that puts on these layers."""
+        """Return the one zygote of this process that applies these layers."""
         with cls._shared_lock:
             return cls._shared.setdefault(frozenset(layers), cls(layers))
 
     def __init__(self, layers: Collection[str]) -> None:
-        self.users: weakref.WeakSet[object] = weakref.WeakSet()  # who would miss it
+        self.users: weakref.WeakSet[object] = weakref.WeakSet()  # objects that still need it
         self._layers = tuple(layer for layer in sandbox.LAYERS if layer in layers)
         self._lock = threading.Lock()
         self._numbers = itertools.count(1)
@@ -89,9 +89,9 @@ class Zygote:
         """Do one job and wait for its end.
 
         Args:
-            task: Which of the worker's tasks.
-            files: Open files by the names that the task knows; `crash` among them takes what a dying process has to say.
-            limits: What it may use.
+            task: Name of the task.
+            files: Open files by the task's names for them; a dying process writes its last output to `crash`.
+            limits: Resources that it may use.
 
         Raises:
             ZygoteDiedError: If the zygote died meanwhile.
@@ -110,14 +110,14 @@ class Zygote:
                 raise ZygoteDiedError from error
         try:
             return answer.result(limits.seconds + limits.probe_seconds + SILENCE_SECONDS)
-        except TimeoutError as error:  # stopped or spoiled by a script, on a machine whose layers cannot prevent it
+        except TimeoutError as error:  # stopped or broken by a script, on a machine whose layers cannot prevent it
             self._waiting.pop(number, None)
             self._kill(control)
             raise ZygoteDiedError from error
 
     @property
     def pid(self) -> int | None:
-        """The process that was started, for tests and for people; None before the first job."""
+        """Id of the process that was started, for tests and for people; None before the first job."""
         return None if self._process is None else self._process.pid
 
     def start(self) -> None:
@@ -130,12 +130,12 @@ class Zygote:
             self._started()
 
     def close(self) -> None:
-        """End the zygote and whatever it runs; the next job starts another one."""
+        """End the zygote and everything it runs; the next job starts another one."""
         with self._lock:
             self._stop()
 
     def _started(self) -> socket.socket:
-        """Return the socket to a zygote that runs, started now if there is none or if this process is a fork of its owner."""
+        """Return the socket to a running zygote; start one if there is none or if this process is a fork of its owner."""
         alive = self._process is not None and not self._process.ended() and self._owner == os.getpid()
         if alive and self._control is not None:
             return self._control
@@ -143,7 +143,7 @@ class Zygote:
             self._stop()
         self._owner, self._waiting = os.getpid(), {}
         ready: Future[socket.socket] = Future()
-        # A thread of its own lives as long as the zygote: the kernel ends the zygote with the thread that started it.
+        # This thread lives as long as the zygote: the kernel kills the zygote when the thread that started it ends.
         threading.Thread(target=self._attend, args=(ready,), name="articad-zygote", daemon=True).start()
         self._control = ready.result()
         atexit.register(self.close)

@@ -1,4 +1,4 @@
-"""Amendments: a plan corrected in place, at the addresses that findings name, so that an agent need not write it all again."""
+"""Amendments: change a plan at the addresses that findings name, so that an agent need not write all of it again."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ def amended(plan: Json, changes: Mapping[str, Any]) -> Json:
     """Return a plan with some of its values replaced.
 
     Args:
-        plan: As in `plan.json`; it is left alone.
+        plan: As in `plan.json`; it is not modified.
         changes: New values by address: `{"joints.lid.angle_deg": [0, 90]}`. Entries of lists are addressed by their names, or
             by number where they have none. A value of None removes; a name that a list does not have adds an entry.
 
     Raises:
-        ReadError: If an address leads nowhere.
+        ReadError: If there is nothing at an address.
     """
     plan = copy.deepcopy(plan)
     for address, value in changes.items():

@@ -1,8 +1,8 @@
-"""Beyond the form: what else is wrong with a plan whose text is not of the form, so that one look finds everything.
+"""Further findings: other faults of a plan whose text does not have the right form, so that one check finds everything.
 
-A plan that is not of the form cannot be judged. So a copy of it is mended: a misspelt field gets the name that was meant, a field that does
-not belong is left out, and so is an entry of a list that cannot be read. What is wrong with the copy is wrong with the plan, as far as it does
-not follow from what was left out.
+A plan that does not have the form cannot be checked. So a copy of it is repaired: a misspelt field gets the name that was meant; a field
+that does not belong, or an entry of a list that cannot be read, is left out. A fault of the copy is a fault of the plan unless it
+follows from what was left out.
 """
 
 from __future__ import annotations
@@ -24,14 +24,14 @@ from articad.plan.schema import PLAN_FILE, AssemblyPlan
 
 __all__ = ["further_findings"]
 
-MOST_ROUNDS: Final = 200  # of mending: each removes at least one field or entry
-STAND_IN: Final = "no_name"  # for a name that is none
+MOST_ROUNDS: Final = 200  # repairs: each removes at least one field or entry
+STAND_IN: Final = "no_name"  # replaces an invalid name
 _OWN: Final = frozenset({
     *("E_NAME", "E_DUP_NAME", "E_NONFINITE", "E_PARAMETER_BOUNDS", "E_COUNT", "E_DENSITY", "E_FRICTION", "E_AXIS_ZERO", "E_AXIS_PARALLEL"),
     *("E_LIMITS_MISSING", "E_LIMITS_ORDER", "E_LIMITS_KIND", "W_LIMITS_EQUAL", "W_LIMITS_UNITS", "E_REST_OUTSIDE_LIMITS", "E_LEAD_ZERO"),
     *("E_FIT", "E_ALLOW", "E_JOINT_SELF", "E_EFFORT", "E_ENVELOPE_VALUE", "E_AXIS_NOT_ORTHOGONAL"),
 })  # fmt: skip
-"""Codes of findings that depend on the entry alone in which they stand."""
+"""Codes of findings that depend only on the entry that they are about."""
 _NAMING: Final = {
     "E_EXPRESSION": "parameters",
     "E_PART_UNKNOWN": "parts",
@@ -43,16 +43,16 @@ _NAMING: Final = {
 
 
 def further_findings(path: Path, found: Findings) -> Findings:
-    """Return the findings about a plan's form together with what else is wrong with the plan.
+    """Return the findings about a plan's form together with the other faults of the plan.
 
     Args:
         path: The plan, or the folder that holds it.
-        found: What is wrong with its form.
+        found: The findings about its form.
     """
     file = path / PLAN_FILE if path.is_dir() else path
     try:
         document = json.loads(read_file(file, PLAN_BYTES, root=path if path.is_dir() else None))
-    except (OSError, ValueError, RecursionError):  # then there is nothing but the form to judge
+    except (OSError, ValueError, RecursionError):  # then only the form can be checked
         return found
     if not isinstance(document, dict):
         return found
@@ -67,7 +67,7 @@ def further_findings(path: Path, found: Findings) -> Findings:
 
 
 class _Mended:
-    """A copy of a document, mended until it is of the form.
+    """A copy of a document, repaired until it has the form of a plan.
 
     Attributes:
         document: The copy.
@@ -81,7 +81,7 @@ class _Mended:
         self.lists: set[str] = set()
 
     def plan(self) -> AssemblyPlan | None:
-        """Return the plan of the mended copy; None where it cannot be mended."""
+        """The plan made from the copy; None if it cannot be repaired."""
         for _ in range(MOST_ROUNDS):
             try:
                 return AssemblyPlan.model_validate(self.document)
@@ -92,7 +92,7 @@ class _Mended:
         return None
 
     def tells(self, finding: Finding) -> bool:
-        """Tell whether a finding about the copy holds of the plan: it does not follow from what was left out."""
+        """Return whether a finding about the copy is also true of the plan: it does not follow from what was left out."""
         if STAND_IN in finding.message or any(
             finding.where == place or finding.where.startswith((f"{place}.", f"{place}[")) for place in self.places
         ):
@@ -102,7 +102,7 @@ class _Mended:
         return finding.code in _NAMING and _NAMING[finding.code] not in self.lists
 
     def _mend(self, detail: Any) -> bool:
-        """Mend the place of one of pydantic's errors; False where nothing can be left out."""
+        """Repair the place of one of pydantic's errors; return False if nothing can be left out."""
         location, owner, raw = reading._resolved(AssemblyPlan, self.document, detail["loc"], detail["type"])  # noqa: SLF001 - the same room
         if not location:
             return False
@@ -131,7 +131,7 @@ class _Mended:
         return self._leave_out(location)
 
     def _leave_out(self, location: Sequence[str | int]) -> bool:
-        """Leave out the entry of a list in which a place is."""
+        """Leave out the entry of a list that contains a place."""
         if len(location) < 2 or not isinstance(location[1], int):
             return False
         entries = self.document.get(str(location[0]))

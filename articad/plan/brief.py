@@ -1,8 +1,8 @@
-"""Briefs: what a part's script is told, and the digests that say when it, or its geometry, is out of date.
+"""Briefs: the input of a part's script, and the digests that show when the script or its geometry is out of date.
 
-The brief digest covers what the part is, without any number and without where it stands: while it is the same, the
-script is kept. The build digest covers the numbers, the script and the kernel: while it is the same, the geometry is
-kept. A moved or repainted part is not a changed part (contracts §3).
+The brief digest covers what the part is, without numbers and without its place; while it stays the same, the script is kept. The build
+digest covers the numbers, the script and the kernel; while it stays the same, the geometry is kept. Moving or repainting a part changes
+neither.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ _DIGITS = 12  # decimals of mm: rounding of frames and of degrees must not show 
 
 
 def brief(resolved: ResolvedPlan, part: str) -> Json:
-    """Return what the script of a part is given: the JSON `part` of a job.
+    """Return the input of a part's script: the JSON `part` of a job.
 
     Args:
         resolved: The plan with its numbers.
@@ -32,8 +32,8 @@ def brief(resolved: ResolvedPlan, part: str) -> Json:
 
     Returns:
         `name`, `description`, `material`, `dimensions`, `envelope_mm`, and `connectors`: by name `o`, `z`, `x` in the part's
-        frame, `label` and the `joints` that hold it. Where the plan leaves x to a rule, x is the world axis least parallel
-        to z in the part's own frame: only origin and z of such a connector are held to what is built.
+        frame, `label` and the `joints` at it. If the plan leaves x to a rule, x is the world axis least parallel to z in the part's own
+        frame; only origin and z of such a connector are compared with what is built.
 
     Raises:
         KeyError: If there is no such part.
@@ -53,7 +53,7 @@ def brief(resolved: ResolvedPlan, part: str) -> Json:
 
 
 def brief_digest(resolved: ResolvedPlan, part: str) -> str:
-    """Return the sha256 of what the part is: no number, no rest pose, no colour."""
+    """Return the sha256 of what the part is, without numbers, rest pose and colour."""
     target = resolved.parts[part]
     return _digest(
         {
@@ -115,7 +115,7 @@ def _axes(connector: Connector) -> Json:
 
 
 def _joints(resolved: ResolvedPlan, part: str, connector: str) -> list[Json]:
-    """Return the joints at a connector as a script sees them, in order of declaration."""
+    """Return the joints at a connector as a script sees them, in the order in which they are declared."""
     found = []
     for joint, side in resolved.joints_at.get((part, connector), ()):
         parent, child = f"{joint.parent}.{joint.parent_connector}", f"{joint.child}.{joint.child_connector}"
@@ -140,7 +140,7 @@ def _fit(fit: Fit) -> Json:
 
 
 def _limits(joint: Joint) -> Json:
-    """Return a joint's limits under the plan's names and in its units."""
+    """Return a joint's limits by the plan's names and in its units."""
     if joint.type is JointType.BALL:
         cone, twist = joint.limits.cone, joint.limits.twist
         return {
@@ -158,7 +158,7 @@ def _limits(joint: Joint) -> Json:
 
 
 def _plain(value: float) -> float | int:
-    """Return a number without the noise of its last bits; whole dimensions stay whole."""
+    """Return a number rounded to remove the noise of its last bits; whole dimensions become integers."""
     return value if isinstance(value, int) else round(value, _DIGITS) + 0.0
 
 

@@ -1,6 +1,6 @@
 """Checking: everything that is wrong with a plan, all at once, before any geometry exists.
 
-`check_plan` reports; `admitted` is the gate in front of every part script: it lets a plan through that has no error.
+`check_plan` returns findings; `admitted` is the gate before any part script runs: it accepts plans without errors.
 """
 
 from __future__ import annotations
@@ -25,8 +25,8 @@ _SHOWN_AT_BOUND = 3  # findings reported in full for one bound of one parameter
 def check_plan(plan: AssemblyPlan, /, **parameters: float) -> Findings:
     """Return everything that is wrong with a plan; it never raises.
 
-    Numbers, names, axes and limits are checked, the joint graph, the rest pose of every joint, the declared freedoms, and
-    all of it again with each parameter at its min and max.
+    It checks numbers, names, axes and limits, the joint graph, the rest pose of every joint and the declared freedoms, and all of it
+    again with each parameter at its min and max.
 
     Args:
         plan: The plan.
@@ -38,7 +38,7 @@ def check_plan(plan: AssemblyPlan, /, **parameters: float) -> Findings:
 
 
 def admitted(plan: AssemblyPlan, /, **parameters: float) -> tuple[ResolvedPlan, Findings]:
-    """Return the plan with its numbers, and its warnings and notes; nothing may be built from a plan with an error.
+    """Return the plan with its numbers, and its warnings and notes; a plan with an error is refused.
 
     Args:
         plan: The plan.
@@ -55,7 +55,7 @@ def admitted(plan: AssemblyPlan, /, **parameters: float) -> tuple[ResolvedPlan, 
 
 
 def _judged(draft: Draft) -> tuple[list[Finding], ResolvedPlan | None]:
-    """Return all findings at the draft's own parameter values, and its numbers where they are free of errors."""
+    """Return all findings at the draft's own parameter values, and its numbers if these have no errors."""
     stated = draft.findings()
     resolved = resolved_from(draft, stated) if stated.ok else None
     found = [*stated, *rest_findings(draft), *usage_findings(draft)]
@@ -67,7 +67,7 @@ def _judged(draft: Draft) -> tuple[list[Finding], ResolvedPlan | None]:
 
 
 def _structure_findings(draft: Draft, resolved: ResolvedPlan | None) -> list[Finding]:
-    """Judge loops, freedoms and drivers; loops and couplings only where the parts meet at rest (`resolved`)."""
+    """Check loops, freedoms and drivers; loops and couplings only if the parts meet at rest (`resolved`)."""
     if not draft.graph_findings.ok:
         return []
     tree, loop_joints = draft.graph.spanning_tree()
@@ -90,7 +90,7 @@ def _structure_findings(draft: Draft, resolved: ResolvedPlan | None) -> list[Fin
 
 
 def _mechanism_findings(draft: Draft, resolved: ResolvedPlan) -> list[Finding]:
-    """Return what the mechanism says of its loops, couplings and drivers, and whether its mobility is the declared one."""
+    """Return the mechanism's findings about loops, couplings and drivers, and whether its mobility is the declared one."""
     try:
         mechanism = resolved.mechanism
         found = list(mechanism.findings())
@@ -103,13 +103,13 @@ def _mechanism_findings(draft: Draft, resolved: ResolvedPlan) -> list[Finding]:
 
 
 def _not_supported(reason: str) -> Finding:
-    """Return what is said of a plan that is valid but that this version cannot solve."""
+    """Return the finding for a plan that is valid but that this version cannot solve."""
     hint = "Simplify the loops and couplings, or report this plan."
     return Finding(code="E_NOT_SUPPORTED", where="plan", message=f"The mechanism cannot be solved: {reason}", hint=hint)
 
 
 def _account(mechanism: Mechanism) -> str:
-    """Say where the freedoms come from and where they go."""
+    """Say where freedoms come from and which constraints remove them."""
     total = sum(joint.type.freedoms for joint in mechanism.joints)
     account = [f"sum of joint freedoms {total}"]
     if mechanism.loop_joints:
@@ -147,7 +147,7 @@ def _idle_marks(graph: JointGraph) -> list[Finding]:
 
 
 def _range_findings(draft: Draft, found: list[Finding]) -> list[Finding]:
-    """Try every parameter at its min and at its max, and report what breaks there and not already as stated."""
+    """Check the plan with every parameter at its min and at its max; return the findings that it does not have otherwise."""
     known = {(finding.code, finding.where) for finding in found}
     reported = []
     for parameter in draft.plan.parameters:
@@ -165,7 +165,7 @@ def _range_findings(draft: Draft, found: list[Finding]) -> list[Finding]:
                         code="W_PARAMETER_RANGE",
                         where=f"parameters.{parameter.name}.{name}",
                         message=f"At {parameter.name} = {bound:.6g}, its {name}, the plan breaks{more}: {finding.code} {finding.where}: {finding.message}",
-                        hint=f"Narrow the {name} of {parameter.name}, or mend the numbers so that they follow it. There: {finding.hint}",
+                        hint=f"Narrow the {name} of {parameter.name}, or correct the numbers so that they follow it. There: {finding.hint}",
                         parts=finding.parts,
                         value=bound,
                         limit=value,

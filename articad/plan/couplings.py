@@ -1,4 +1,4 @@
-"""Couplings: what a plan says of gears, belts, racks and screws, as rows q_b - k q_a - c = 0 in rad and mm."""
+"""Couplings: gears, belts, racks and screws of a plan as rows q_b - k q_a - c = 0 in rad and mm."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from articad.plan.evaluation import Evaluation
 from articad.plan.joint_forms import CouplingForm
 from articad.plan.schema import BeltSpec, GearSpec, LinearSpec, RackSpec, ScrewCouplingSpec
 
-PARALLEL_DEG = 0.05  # two axes this far apart still mesh: the tolerance of the rest check
-REST_MM = 0.01  # a linear offset may miss the rest values by as much as the rest check allows
+PARALLEL_DEG = 0.05  # two axes up to this angle apart count as parallel: the tolerance of the rest check
+REST_MM = 0.01  # a linear offset may miss the rest values by the tolerance of the rest check
 REST_DEG = 0.05
 _TURNING = (JointType.REVOLUTE, JointType.CYLINDRICAL, JointType.SCREW, JointType.PLANAR)
 _FORMS = {"rad": "an angle about a joint's z", "mm": "a travel"}
@@ -24,7 +24,7 @@ _FORMS = {"rad": "an angle about a joint's z", "mm": "a travel"}
 
 @dataclass(frozen=True)
 class TiedCoordinate:
-    """A coordinate that a coupling may tie.
+    """A coordinate that a coupling may connect.
 
     Attributes:
         column: Its name in q.
@@ -53,13 +53,13 @@ class TiedCoordinate:
 def couple(
     form: CouplingForm, coordinates: Mapping[str, TiedCoordinate], joints: Mapping[str, JointType], evaluation: Evaluation
 ) -> Coupling | None:
-    """Return the row of a coupling, reporting what is wrong with it.
+    """Return the row of a coupling; report its faults.
 
     Args:
-        form: What the plan says.
-        coordinates: Everything that may be tied, by column name.
-        joints: Type of every declared joint, those included whose numbers are broken.
-        evaluation: Of the plan's numbers.
+        form: Its form in the plan.
+        coordinates: All coordinates that may be coupled, by column name.
+        joints: Type of every declared joint, including those with invalid numbers.
+        evaluation: The plan's numbers.
     """
     where = f"couplings.{form.name}"
     a, b = (_coordinate(name, index, where, coordinates, joints, evaluation) for index, name in enumerate(form.joints))
@@ -104,7 +104,7 @@ def _coordinate(
 
 
 def _ratio(form: CouplingForm, where: str, a: TiedCoordinate, b: TiedCoordinate, evaluation: Evaluation) -> float | None:
-    """Return k of q_b = k q_a + c [rad, mm]; None after reporting what is wrong."""
+    """Return k of q_b = k q_a + c [rad, mm]; None after reporting a fault."""
     if isinstance(form, GearSpec | BeltSpec):
         return _turning_ratio(form, where, a, b, evaluation)
     if isinstance(form, RackSpec | ScrewCouplingSpec):
@@ -115,7 +115,7 @@ def _ratio(form: CouplingForm, where: str, a: TiedCoordinate, b: TiedCoordinate,
 
 
 def _turning_ratio(form: GearSpec | BeltSpec, where: str, a: TiedCoordinate, b: TiedCoordinate, evaluation: Evaluation) -> float | None:
-    """Return the ratio of a gear, negative for external teeth, or of a belt; the other way round for antiparallel axes."""
+    """Return the ratio of a belt, or of a gear, which is negative for external teeth; antiparallel axes change the sign."""
     if not _suits(form, where, a, b, "rad", "rad", evaluation):
         return None
     if isinstance(form, GearSpec):
@@ -132,7 +132,7 @@ def _turning_ratio(form: GearSpec | BeltSpec, where: str, a: TiedCoordinate, b: 
 def _sliding_ratio(
     form: RackSpec | ScrewCouplingSpec, where: str, a: TiedCoordinate, b: TiedCoordinate, evaluation: Evaluation
 ) -> float | None:
-    """Return how far b slides [mm] for one radian of a."""
+    """Return the travel of b [mm] for one radian of a."""
     if not _suits(form, where, a, b, "rad", "mm", evaluation):
         return None
     if isinstance(form, ScrewCouplingSpec):
@@ -146,7 +146,7 @@ def _sliding_ratio(
 def _suits(
     form: CouplingForm, where: str, a: TiedCoordinate, b: TiedCoordinate, unit_a: Unit, unit_b: Unit, evaluation: Evaluation
 ) -> bool:
-    """Tell whether the two coordinates are of the kinds that the coupling ties."""
+    """Return whether the two coordinates are of the kinds that the coupling connects."""
     fits = [tied.unit == unit and (unit == "mm" or tied.about_z) for tied, unit in ((a, unit_a), (b, unit_b))]
     if all(fits):
         return True
@@ -182,7 +182,7 @@ def _sense(form: CouplingForm, where: str, a: TiedCoordinate, b: TiedCoordinate,
 
 
 def _size(number: float | str, where: str, key: str, evaluation: Evaluation, *, whole: bool = False) -> float | None:
-    """Return a positive size, a whole one for teeth; None after reporting another."""
+    """Return a positive size, for teeth a whole number; None after reporting an invalid one."""
     value = evaluation.number(number, where, key)
     if math.isnan(value):
         return None
@@ -202,7 +202,7 @@ def _nonzero(number: float | str, where: str, key: str, evaluation: Evaluation) 
 
 
 def _check_offset(form: LinearSpec, where: str, a: TiedCoordinate, b: TiedCoordinate, evaluation: Evaluation) -> None:
-    """Hold a linear coupling's offset to the rest values, in the units of the plan."""
+    """Compare a linear coupling's offset with the rest values, in the units of the plan."""
     ratio, offset = evaluation.number(form.ratio, where, "ratio"), evaluation.number(form.offset, where, "offset")
     rest_a, rest_b = a.rest / _scale(a), b.rest / _scale(b)
     right = rest_b - ratio * rest_a
@@ -217,5 +217,5 @@ def _check_offset(form: LinearSpec, where: str, a: TiedCoordinate, b: TiedCoordi
 
 
 def _scale(tied: TiedCoordinate) -> float:
-    """Return how many rad or mm one unit of the plan's JSON is."""
+    """Return the size of one unit of the plan's JSON in rad or mm."""
     return math.radians(1.0) if tied.unit == "rad" else 1.0

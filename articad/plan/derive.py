@@ -1,7 +1,7 @@
-"""Derived parts and joints: which part is an image of which, and by what.
+"""Derived parts and joints: which part is an image of which, and by which operation.
 
-A mirror is not a rigid motion: it keeps the source's rest pose and reflects the geometry inside it, so that connectors
-stay right-handed (kinematics: derive). Rigid copies and patterns keep the geometry and move the rest pose.
+A mirror is not a rigid motion: it keeps the source's rest pose and reflects the geometry inside it, so that connectors stay
+right-handed. Rigid copies and patterns keep the geometry and move the rest pose.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ from articad.plan.schema import (
 Operation = Literal["mirror", "rigid", "pattern"]
 End = tuple[str, str]  # names of a part and of its connector
 
-MAX_COUNT = 1000  # a pattern of more is a slip of the pen, and would take the memory that the plan is read into
+MAX_COUNT = 1000  # a pattern of more is a typing error, and would use up the memory for reading a plan
 _NORMAL_ZERO = 1e-9  # length below which a normal has no direction, as in articad.connectors
 
 
@@ -65,14 +65,14 @@ class DraftPart:
         name: Its name; a pattern's copies are numbered.
         where: Its path in the plan.
         spec: The part that a script builds, at the root of the derivation; None if there is none.
-        form: What the plan says of this part: `spec` itself, or how it derives.
+        form: The entry of this part in the plan: `spec` itself, or how it is derived.
         source: The part it derives from.
-        op: How.
+        op: The operation.
         copy: Number of the copy in its pattern, from 1.
         mirrored: Whether an odd number of mirrors lies between `spec` and this part.
         auto: Whether a joint places it.
-        T: Rest pose, T_assembly_part; None if it cannot be told.
-        S: Reflection `(4, 4)` in the part's frame that makes a mirrored part of its source.
+        T: Rest pose, T_assembly_part; None if it is unknown.
+        S: Reflection `(4, 4)` in the part's frame that turns its source into the mirrored part.
         frames: Connectors of a part that is not derived.
         connectors: Finished connectors.
     """
@@ -103,7 +103,7 @@ class DraftPart:
 
 
 def expand(plan: AssemblyPlan, evaluation: Evaluation) -> list[DraftPart]:
-    """Return the parts in order of declaration, each pattern as its copies; names may still repeat."""
+    """Return the parts in the order in which they are declared, each pattern as its copies; names may still repeat."""
     drafts: list[DraftPart] = []
     for form in plan.parts:
         where = f"parts.{form.name}"
@@ -135,7 +135,7 @@ def _count(derivation: PatternDerivation, where: str, evaluation: Evaluation) ->
 
 
 def trace(parts: Mapping[str, DraftPart], evaluation: Evaluation) -> list[DraftPart]:
-    """Find the root of every derivation, and return the parts so that each follows its source.
+    """Find the root of every derivation, and return the parts sorted so that each follows its source.
 
     Sets `spec` and `mirrored` of derived parts; those without a root keep `spec` None and are reported.
     """
@@ -205,12 +205,12 @@ def inherit(part: DraftPart, source: DraftPart) -> None:
 
 @dataclass(frozen=True)
 class JointLine:
-    """A joint with the one that states its type and limits.
+    """A joint together with the one that states its type and limits.
 
     Attributes:
         name: Its name.
         where: Its path in the plan.
-        form: What the plan says of it.
+        form: Its form in the plan.
         root: The joint at the root of its derivation: itself if it is not derived.
         mirrored: Whether an odd number of mirrors lies between `root` and this joint.
     """
@@ -229,8 +229,8 @@ class JointLine:
 
 
 def trace_joints(plan: AssemblyPlan, parts: Mapping[str, DraftPart], evaluation: Evaluation) -> list[JointLine]:
-    """Return the joints that have a type, in order of declaration; derived ones are checked against their source."""
-    forms = {joint.name: joint for joint in reversed(plan.joints)}  # of two of one name the first counts
+    """Return the joints that have a type, in the order in which they are declared; derived ones are checked against their source."""
+    forms = {joint.name: joint for joint in reversed(plan.joints)}  # of two with the same name, the first counts
     lines: dict[str, JointLine | None] = {}
 
     def visit(name: str, path: tuple[str, ...]) -> JointLine | None:

@@ -1,4 +1,4 @@
-"""The draft of a plan: every number, frame and joint worked out as far as it goes, and every fault met on the way."""
+"""The draft of a plan: every number, frame and joint computed as far as possible, and every fault found on the way."""
 
 from __future__ import annotations
 
@@ -24,12 +24,12 @@ from articad.plan.placing import Placing
 from articad.plan.schema import AssemblyPlan, MaterialSpec, PartSpec
 
 _IDENTITY = SE3.identity()
-_WHOLE_TOLERANCE = 1e-9  # a computed count that is off a whole number by rounding is that number
-_SIGNED_PERMUTATION = 1e-9  # how far a reflection's entries may be from 0 and ±1 for a bounding box to keep its sides
+_WHOLE_TOLERANCE = 1e-9  # a computed count that differs from a whole number only by rounding is that number
+_SIGNED_PERMUTATION = 1e-9  # largest distance of a reflection's entries from 0 and ±1 at which a bounding box keeps its sides
 
 
 class Draft:
-    """A plan being worked out.
+    """A plan whose numbers are being computed.
 
     Args:
         plan: The plan.
@@ -37,10 +37,10 @@ class Draft:
 
     Attributes:
         evaluation: Its numbers.
-        parts: By name; those whose derivation has no root are left out.
+        parts: By name, without those whose derivation has no root.
         lines: Joints with a type.
-        motions: Joint name -> motion, where its numbers are good.
-        joints: Finished joints, in order of declaration.
+        motions: Joint name -> motion, for joints with valid numbers.
+        joints: Finished joints, in the order in which they are declared.
         parent_joints: Part -> the joint that carries it in the spanning tree.
         auto_joints: Joint -> the part that it places (`rest_pose: "auto"`).
     """
@@ -51,7 +51,7 @@ class Draft:
         self.evaluation.check_parameters()
         expanded = expand(plan, self.evaluation)
         self.part_names = [part.name for part in expanded]
-        self.parts = {part.name: part for part in reversed(expanded)}  # of two of one name the first counts
+        self.parts = {part.name: part for part in reversed(expanded)}  # of two with the same name, the first counts
         self.parts = {name: self.parts[name] for name in self.part_names}
         in_order = trace(self.parts, self.evaluation)
         self.lines = trace_joints(plan, self.parts, self.evaluation)
@@ -77,7 +77,7 @@ class Draft:
         self._read_waivers()
 
     def findings(self) -> Findings:
-        """Return everything that was found wrong, the joint graph's findings included."""
+        """Return all faults, including those of the joint graph."""
         return Findings([*self.evaluation.findings, *self.graph_findings])
 
     # ---------------------------------------------------------------- numbers
@@ -172,7 +172,7 @@ class Draft:
 
     @cached_property
     def graph(self) -> JointGraph:
-        """The joint graph of names alone: frames and numbers may still be broken."""
+        """The joint graph made from names alone: frames and numbers may still be invalid."""
         limits = JointLimits()
         by_name = {line.name: line for line in self.lines}
         joints = []
@@ -199,7 +199,7 @@ class Draft:
 
     @cached_property
     def graph_findings(self) -> Findings:
-        """What is wrong with names of parts and joints and with how they connect."""
+        """Faults in the names of parts and joints and in their connections."""
         return self.graph.findings()
 
     def _structure(self) -> KinematicTree | None:
@@ -300,13 +300,13 @@ class Draft:
     # ---------------------------------------------------------------- what images inherit
 
     def color(self, part: DraftPart) -> str | None:
-        """Return the colour that a part or, failing that, its sources state."""
+        """Return the colour that a part states, else that of its sources."""
         if part.form.color is not None:
             return part.form.color.lower()
         return None if part.source is None else self.color(self.parts[part.source])
 
     def envelope(self, part: DraftPart) -> tuple[float, float, float] | None:
-        """Return the expected bounding box in the part's frame; None if it is not stated, or a slanted mirror changes it."""
+        """Return the expected bounding box in the part's frame; None if it is not stated, or if an oblique mirror changes it."""
         if part.source is None:
             return self.envelopes.get(part.name)
         sides = self.envelope(self.parts[part.source])

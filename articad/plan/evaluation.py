@@ -1,4 +1,4 @@
-"""Evaluation: parameters and every Number of a plan to floats; what fails is a finding, and its value NaN."""
+"""Evaluation: converts parameters and every Number of a plan to floats; a failure is a finding, and its value NaN."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ Triple = tuple[float, float, float]
 
 
 class Evaluation:
-    """The numbers of one plan at one choice of its parameters.
+    """The numbers of one plan for one choice of its parameters.
 
     Args:
         plan: The plan.
@@ -32,7 +32,7 @@ class Evaluation:
 
     Attributes:
         values: Every parameter's value, mm, degrees or plain; NaN where it has none.
-        findings: Everything that could not be evaluated, in no order.
+        findings: Everything that could not be evaluated, unordered.
     """
 
     def __init__(self, plan: AssemblyPlan, overrides: Mapping[str, float]) -> None:
@@ -56,7 +56,7 @@ class Evaluation:
         self.findings.append(Finding(code=code, where=where, message=message, hint=hint, **rest))  # type: ignore[arg-type]
 
     def check_parameters(self) -> None:
-        """Report names and bounds that parameters may not have."""
+        """Report invalid names and bounds of parameters."""
         for name, count in Counter(parameter.name for parameter in self.plan.parameters).items():
             if count > 1:
                 self.report(
@@ -69,7 +69,7 @@ class Evaluation:
             self._check_bounds(parameter)
 
     def bounds(self, parameter: Parameter) -> tuple[float, float]:
-        """Return a parameter's least and greatest value, infinite where it states none."""
+        """Return a parameter's bounds, infinite if it states none."""
         where = f"parameters.{parameter.name}"
         low = -math.inf if parameter.min is None else self.number(parameter.min, where, "min")
         high = math.inf if parameter.max is None else self.number(parameter.max, where, "max")
@@ -89,7 +89,7 @@ class Evaluation:
             self.report("E_PARAMETER_BOUNDS", where, message, hint, value=value, limit=bound, unit=unit)
 
     def _settle(self, name: str, path: tuple[str, ...]) -> None:
-        """Evaluate a parameter after those it uses."""
+        """Evaluate a parameter after those that it uses."""
         if name in self.values:
             return
         if name in path:
@@ -119,7 +119,7 @@ class Evaluation:
         self._broken.add(name)
 
     def number(self, number: float | str, where: str, *path: str) -> float:
-        """Return the value of a Number; NaN after reporting it at `where.path`, or silently if a parameter it uses is broken."""
+        """Return the value of a Number; NaN after reporting a failure at `where.path`, or silently if a parameter it uses has failed."""
         if not isinstance(number, str):
             return self._sane(number, where, path)
         try:
@@ -135,7 +135,7 @@ class Evaluation:
             return NAN
 
     def _sane(self, value: float, where: str, path: tuple[str, ...]) -> float:
-        """Return the value, or NaN after reporting it if nothing is that large: its square must still be a number."""
+        """Return the value, or NaN after reporting one that is too large: its square must still be finite."""
         if -LARGEST <= value <= LARGEST:
             return value
         message, hint = (

@@ -1,8 +1,7 @@
 """Expressions: the arithmetic that lets one number of a plan follow from others.
 
-`+ - * / ( )`, decimal literals, names of parameters, `pi`, and the functions of `FUNCTIONS`. Angles of trigonometric
-functions are degrees, as in FreeCAD. Text is parsed with `ast` and translated to closures: nothing is ever evaluated
-as Python.
+It knows `+ - * / ( )`, decimal literals, names of parameters, `pi`, and the functions of `FUNCTIONS`. Angles of trigonometric functions
+are in degrees, as in FreeCAD. Text is parsed with `ast` and translated to closures: nothing is ever evaluated as Python.
 """
 
 from __future__ import annotations
@@ -18,10 +17,10 @@ from functools import lru_cache
 from articad.errors import PlanError, did_you_mean
 from articad.findings import Finding
 
-MAX_CHARACTERS = 200  # contracts §1: longer arithmetic belongs in parameters of its own
-MAX_DEPTH = 40  # contracts §1: keeps every recursion below shallow
+MAX_CHARACTERS = 200  # longer arithmetic belongs in parameters of its own
+MAX_DEPTH = 40  # keeps every recursion below shallow
 _FULL_TURN = 360.0
-_PARSED = 8192  # expressions kept: more than any plan has, so that a plan is parsed once
+_PARSED = 8192  # expressions in the cache: more than any plan has, so that each is parsed once
 
 Environment = Mapping[str, float]
 _Evaluator = Callable[[Environment], float]
@@ -92,7 +91,7 @@ FUNCTIONS: Mapping[str, tuple[int, Callable[..., float]]] = {
 
 CONSTANTS: Mapping[str, float] = {"pi": math.pi}
 RESERVED = frozenset(FUNCTIONS) | frozenset(CONSTANTS)
-_INVERSE_ANGLES = frozenset({"acos", "asin", "atan", "atan2"})  # FreeCAD gives these a unit, which is divided away
+_INVERSE_ANGLES = frozenset({"acos", "asin", "atan", "atan2"})  # FreeCAD gives their results a unit, which is divided out
 
 _OPERATORS: Mapping[type[ast.operator], tuple[str, Callable[[float, float], float]]] = {
     ast.Add: ("+", lambda a, b: a + b),
@@ -115,7 +114,7 @@ class ExpressionError(PlanError):
 
     Attributes:
         code: E_EXPRESSION, E_EXPRESSION_CYCLE or E_NONFINITE.
-        position: Column of the offence, from 1; 0 when it concerns the whole.
+        position: Column of the fault, from 1; 0 when it concerns the whole.
         hint: What would be valid.
     """
 
@@ -156,7 +155,7 @@ class Expression:
             ) from None
         if not math.isfinite(value):
             raise ExpressionError("E_NONFINITE", f"{self.text!r} is {value}.", "Change the expression or the parameters it uses.")
-        return value + 0.0  # −0 is 0: it must not show in a report or a digest
+        return value + 0.0  # −0 becomes 0, so that it does not show in a report or a digest
 
     def to_freecad(self, names: Mapping[str, str]) -> str:
         """Return the expression in FreeCAD's language, without a unit.
@@ -172,7 +171,7 @@ def parse(text: str) -> Expression:
     """Read an expression.
 
     Raises:
-        ExpressionError: E_EXPRESSION with the position of the offence and what may be used instead.
+        ExpressionError: E_EXPRESSION with the position of the fault and what may be used instead.
     """
     if len(text) > MAX_CHARACTERS:
         hint = f"Use at most {MAX_CHARACTERS}: move a piece of it into a parameter of its own."
@@ -184,11 +183,11 @@ def parse(text: str) -> Expression:
     indent = len(text) - len(text.lstrip())
     try:
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # "1if" and the like are refused below; Python's advice is not for us
+            warnings.simplefilter("ignore")  # "1if" and the like are refused below; Python's warnings are not for our users
             tree = ast.parse(text.strip(), mode="eval").body
     except SyntaxError as error:
         raise _refused(text, min(indent + (error.offset or 1) - 1, len(text)), _plain(error.msg)) from None
-    except (MemoryError, RecursionError, ValueError):  # parentheses by the hundred
+    except (MemoryError, RecursionError, ValueError):  # hundreds of parentheses
         raise _refused(text, 0, f"it is nested deeper than {MAX_DEPTH}") from None
     names: dict[str, None] = {}
     evaluator = _Translation(text, indent, names).closure(tree, 1)
@@ -206,7 +205,7 @@ def evaluate_parameters(parameters: Mapping[str, float | str], overrides: Mappin
         Values in the order given: mm, degrees (an angle stays in degrees) or plain numbers.
 
     Raises:
-        ExpressionError: For the first one that has no value; E_EXPRESSION_CYCLE names the circle.
+        ExpressionError: For the first one that has no value; E_EXPRESSION_CYCLE names the cycle.
     """
     given = {**parameters, **(overrides or {})}
     values: dict[str, float] = {}
@@ -217,10 +216,10 @@ def evaluate_parameters(parameters: Mapping[str, float | str], overrides: Mappin
 
 
 def dependency_order(parameters: Mapping[str, float | str]) -> list[str]:
-    """Return the names so that each comes after those it uses.
+    """Return the names so that each comes after those that it uses.
 
     Raises:
-        ExpressionError: E_EXPRESSION for a name that is no parameter; E_EXPRESSION_CYCLE.
+        ExpressionError: E_EXPRESSION for an unknown parameter; E_EXPRESSION_CYCLE.
     """
     order: dict[str, None] = {}
 
@@ -243,7 +242,7 @@ def dependency_order(parameters: Mapping[str, float | str]) -> list[str]:
 
 
 def cycle_error(circle: Iterable[str]) -> ExpressionError:
-    """Return the error of parameters that need each other; the first name is repeated at the end."""
+    """Return the error for parameters that depend on each other; the first name is repeated at the end."""
     names = tuple(circle)
     return ExpressionError(
         "E_EXPRESSION_CYCLE",
@@ -253,7 +252,7 @@ def cycle_error(circle: Iterable[str]) -> ExpressionError:
 
 
 def unknown_parameter(text: str, name: str, known: Collection[str]) -> ExpressionError:
-    """Return the error of an expression that uses a name which is no parameter."""
+    """Return the error for an expression that uses an unknown parameter."""
     position = re.search(rf"\b{re.escape(name)}\b", text)
     column = position.start() if position else 0
     listed = ", ".join(sorted(known)) or "none are declared"
@@ -263,7 +262,7 @@ def unknown_parameter(text: str, name: str, known: Collection[str]) -> Expressio
 
 @dataclass(frozen=True)
 class _Translation:
-    """From syntax to closures, refusing what is not arithmetic."""
+    """Translates syntax to closures and refuses everything but arithmetic."""
 
     text: str
     indent: int

@@ -1,7 +1,7 @@
-"""Fields: the kinds of value that a plan's forms are made of, each with one clear sentence for a wrong one.
+"""Fields: the types of values in a plan, each with one clear sentence for an invalid one.
 
-Every kind has its own validator instead of a union of pydantic types, because a union answers with one error per
-branch, and the reader of an error wants to be told once what would be valid.
+Every type has its own validator instead of a union of pydantic types: a union gives one error for each branch, but one sentence should
+say what would be valid.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from pydantic_core import PydanticCustomError
 from articad.plan.expressions import MAX_CHARACTERS
 
 NAME_PATTERN = r"^[a-z][a-z0-9]*(_[a-z0-9]+)*$"
-MAX_NAME = 40  # contracts §1: names become URDF links, MJCF bodies, file names and keyword arguments
+MAX_NAME = 40  # names become URDF links, MJCF bodies, file names and keyword arguments
 _NAME = re.compile(NAME_PATTERN)
 _COLOR = re.compile(r"#[0-9a-fA-F]{6}")
 
@@ -34,7 +34,7 @@ class PlanObject(BaseModel):
 
 
 def is_name(text: str) -> bool:
-    """Tell whether `text` is of the form that names have."""
+    """Return whether `text` has the form of a name."""
     return len(text) <= MAX_NAME and bool(_NAME.fullmatch(text)) and not keyword.iskeyword(text)
 
 
@@ -118,7 +118,7 @@ def _truth(value: Any) -> bool:
     return value
 
 
-_LARGEST_COUNT = 2**31  # JSON knows integers of any length, which no float and no index holds
+_LARGEST_COUNT = 2**31  # JSON allows integers of any length; floats and indices do not
 
 
 def _whole(value: Any) -> int:
@@ -131,7 +131,7 @@ def _wrong(form: str) -> PydanticCustomError:
     return PydanticCustomError("plan_form", "expected {form}", {"form": form})
 
 
-SHARED = "x-articad-shared"  # stands for "$ref" until the schema is complete: pydantic follows those itself
+SHARED = "x-articad-shared"  # stands for "$ref" until the schema is complete, because pydantic would resolve "$ref" itself
 _NUMBER_SCHEMA = {SHARED: "Number"}
 _PAIR_SCHEMA = {"type": "array", "items": _NUMBER_SCHEMA, "minItems": 2, "maxItems": 2}
 

@@ -1,8 +1,8 @@
-"""Frames: connectors from origin, z and x, and the x that a rule chooses where none is stated (contracts §2, rule 3).
+"""Frames: connectors from origin, z and x, and a rule that chooses x where none is stated.
 
-Joints between parts that are not derived come first, then the rest, each in order of declaration: if one side has an x,
-the other takes the x that makes the roll at rest zero; if neither has, the parent takes the world axis least parallel
-to its z, and the child follows. A world rule on both sides would turn a mirrored door by 180° unseen.
+The rule goes through the joints, first those between parts that are not derived, then the rest, each in the order in which they are
+declared. If one side has an x, the other takes the x for which the roll at rest is zero. If neither has, the parent takes the world axis
+least parallel to its z, and the child follows. Choosing the world axis on both sides would turn a mirrored door by 180° without notice.
 """
 
 from __future__ import annotations
@@ -17,8 +17,8 @@ from articad.connectors import SE3, Connector, FloatArray, axis_findings, world_
 from articad.plan.derive import DraftConnector, DraftPart
 from articad.plan.evaluation import Evaluation, Triple
 
-_ACROSS_ZERO = 1e-9  # length of a projected x below which it has no direction: only where two z axes are far apart
-_PLAIN_LENGTH = 1e-3  # an axis this long is certainly one; shorter ones are looked at with care
+_ACROSS_ZERO = 1e-9  # length below which a projected x has no direction; happens only where the two z axes differ by much
+_PLAIN_LENGTH = 1e-3  # an axis this long is certainly valid; shorter ones are examined
 
 
 class RestLink(NamedTuple):
@@ -36,9 +36,9 @@ class RestLink(NamedTuple):
 
 
 def read_frames(part: DraftPart, evaluation: Evaluation) -> None:
-    """Evaluate the connectors of a part that is not derived, reporting bad axes; those are left out of `part.frames`.
+    """Evaluate the connectors of a part that is not derived; report invalid axes and leave these out of `part.frames`.
 
-    Connectors stated in the assembly's frame are brought into the part's; without a rest pose they are left out.
+    Connectors stated in the assembly's frame are transformed to the part's; without a rest pose they are left out.
     """
     assert part.spec is not None
     for spec in part.spec.connectors:
@@ -67,7 +67,7 @@ def read_frames(part: DraftPart, evaluation: Evaluation) -> None:
 
 
 def _plainly_good(z: Triple, x: Triple | None) -> bool:
-    """Tell whether axes need no second look: far from zero, and x at exactly a right angle to z."""
+    """Return whether axes need no further check: far from zero length, and x exactly perpendicular to z."""
     if math.hypot(*z) < _PLAIN_LENGTH:
         return False
     return x is None or (math.hypot(*x) >= _PLAIN_LENGTH and x[0] * z[0] + x[1] * z[1] + x[2] * z[2] == 0.0)
@@ -96,7 +96,7 @@ def settle_alone(part: DraftPart, names: Iterable[str] | None = None) -> None:
 
 
 def finish(parts: Iterable[DraftPart]) -> None:
-    """Make the connectors of all frames, all at once."""
+    """Make the connectors of all frames, in one batch."""
     slots = [(part, name, frame) for part in parts for name, frame in part.frames.items() if frame.x is not None]
     if not slots:
         return
@@ -109,7 +109,7 @@ def finish(parts: Iterable[DraftPart]) -> None:
 
 
 class _Side:
-    """One connector of a joint, seen from the assembly at rest."""
+    """One connector of a joint, in the frame of the assembly at rest."""
 
     def __init__(self, part: DraftPart, frame: DraftConnector | Connector) -> None:
         self.T = SE3.identity() if part.T is None else part.T
@@ -129,7 +129,7 @@ class _Side:
         return self.T.rotate(self.frame.z if isinstance(self.frame, DraftConnector) else self.frame.frame.z_axis)
 
     def choose(self) -> None:
-        """Take the world axis least parallel to z."""
+        """Take the world axis least parallel to z as x."""
         self.take(world_x(self.world_z))
 
     def take(self, x: FloatArray) -> None:
@@ -157,7 +157,7 @@ def _turned(x: FloatArray, z: FloatArray, angle: float) -> FloatArray:
 
 
 def _across(x: FloatArray, z: FloatArray) -> FloatArray:
-    """Project x across the unit vector z; twice, because once leaves rounding in proportion to x · z."""
+    """Project x perpendicular to the unit vector z; twice, because one projection leaves rounding proportional to x · z."""
     for _ in range(2):
         x = _unit(x - (x @ z) * z)
     return x

@@ -12,7 +12,7 @@ from articad.plan.fields import SHARED, SHARED_DEFINITIONS
 from articad.plan.schema import SCHEMA, AssemblyPlan
 
 _DIALECT = "https://json-schema.org/draft/2020-12/schema"
-_REPEATED = 5  # a field that so many objects have is defined once …
+_REPEATED = 5  # a field that this many objects have is defined once …
 _WORTH_SHARING = 60  # … if its text is longer than a reference to it
 _RENAMED = {"FitSpec": "Fit", "MaterialSpec": "Material"}  # class -> definition
 _DROPPED = ("title", "default", "discriminator")  # titles repeat keys; null defaults say nothing; the other is not JSON Schema
@@ -35,7 +35,7 @@ def _compact() -> dict[str, Any]:
 
 
 def _demanding(definition: dict[str, Any]) -> dict[str, Any]:
-    """Require the limits that a plan may lack only at the price of a finding: a model should always state them."""
+    """Require limits, which a plan may omit only with a finding: a model should always state them."""
     stated = [key for key, field in definition.get("properties", {}).items() if field.get("description", "").startswith("Required")]
     if stated:
         definition["required"] = [*definition["required"], *stated]
@@ -47,7 +47,7 @@ def _demanding(definition: dict[str, Any]) -> dict[str, Any]:
 
 
 def _shared(definitions: dict[str, Any]) -> dict[str, Any]:
-    """Move what several objects say of a field of the same name into a definition of its own."""
+    """Move the definition of fields that several objects share into a definition of its own."""
     fields = [(key, json.dumps(field)) for definition in definitions.values() for key, field in definition.get("properties", {}).items()]
     often = {key: text for (key, text), count in Counter(fields).items() if count >= _REPEATED and len(text) > _WORTH_SHARING}
     for definition in definitions.values():

@@ -1,4 +1,4 @@
-"""Motions: what a joint's form says of its coordinates, in rad and mm, and everything that is wrong with it."""
+"""Motions: a joint's coordinates in rad and mm, computed from its form, and all faults of that form."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from articad.kinematics.joints import JointLimits, JointType
 from articad.plan.evaluation import Evaluation
 from articad.plan.schema import BallSpec, FitSpec, JointForm, JointSpec, ScrewSpec
 
-TWO_TURNS = 720.0  # degrees beyond which a turning joint's limit is hardly meant; screws turn more
-RADIANS_UP_TO = 6.3  # a full turn in radians is 6.283: limits that all stay below look like radians
+TWO_TURNS = 720.0  # degrees beyond which a limit of a turning joint is hardly intended; screws turn more
+RADIANS_UP_TO = 6.3  # a full turn in radians is 6.283: limits that are all smaller look like radians
 _SLACK = 1e-9  # degrees or mm: a rest value computed to be at its limit is at its limit
 HALF_TURN = 180.0
 
 
 class _Axis(NamedTuple):
-    """How one coordinate is written in the plan: the field of its range, the field of its rest value, its unit."""
+    """The names of one coordinate in the plan: the field of its range, the field of its rest value, its unit."""
 
     range: str
     rest: str | None
@@ -36,7 +36,7 @@ AXES: dict[JointType, tuple[_Axis, ...]] = {
     JointType.UNIVERSAL: (_Axis("a_deg", None, "deg"), _Axis("b_deg", None, "deg")),
     JointType.FREE: (),
 }
-"""The coordinates of each type as the plan writes them, in the order of `JointType.coordinates`; a ball has a cone, a free joint no limits."""
+"""The coordinates of each type by their names in the plan, ordered as `JointType.coordinates`; a ball has a cone, a free joint no limits."""
 
 
 @dataclass(frozen=True)
@@ -44,7 +44,7 @@ class JointNumbers:
     """A joint's numbers [rad, mm], not yet between any connectors.
 
     Attributes:
-        type: What it may do.
+        type: The joint type.
         limits: Bounds.
         rest: Coordinates at rest.
         lead: Advance per turn of a screw [mm].
@@ -99,7 +99,7 @@ def motion(form: JointSpec, evaluation: Evaluation) -> JointNumbers | None:
 def _limits(form: JointForm, joint_type: JointType, where: str, evaluation: Evaluation) -> tuple[JointLimits | None, tuple[float, ...]]:
     lower, upper, rests = [], [], []
     coupled = {reference.split(".")[0] for coupling in evaluation.plan.couplings for reference in coupling.joints}
-    many_turns = joint_type is JointType.SCREW or form.name in coupled  # a lead screw turns as often as its nut's travel asks for
+    many_turns = joint_type is JointType.SCREW or form.name in coupled  # a lead screw turns as often as its nut's travel needs
     for axis in AXES[joint_type]:
         given, scale = getattr(form, axis.range), math.radians(1.0) if axis.unit == "deg" else 1.0
         rest = 0.0 if axis.rest is None else evaluation.number(getattr(form, axis.rest), where, axis.rest)
@@ -109,7 +109,7 @@ def _limits(form: JointForm, joint_type: JointType, where: str, evaluation: Eval
             low = high = math.nan
         elif given != "endless":
             low, high = (evaluation.number(bound, where, f"{axis.range}[{i}]") for i, bound in enumerate(given))
-            if not math.isnan(low) and not math.isnan(high):  # what is no number was reported already
+            if not math.isnan(low) and not math.isnan(high):  # NaN was reported already
                 _check_range((low, high), rest, axis, where, evaluation, many_turns=many_turns)
         lower.append(low * scale)
         upper.append(high * scale)
@@ -152,7 +152,7 @@ def _check_range(
 
 
 def _check_degrees(limits: Sequence[float], path: str, evaluation: Evaluation, *, many_turns: bool = False) -> None:
-    """Report limits that look like radians, or like more turns than are meant."""
+    """Report limits that look like radians, or like more turns than are intended."""
     sizes = [abs(limit) for limit in limits if limit != 0.0]
     largest = max(sizes, default=0.0)
     shown = f"[{', '.join(f'{limit:.6g}' for limit in limits)}]" if len(limits) > 1 else f"{limits[0]:.6g}"
@@ -194,7 +194,7 @@ def _ball_limits(form: BallSpec, where: str, evaluation: Evaluation) -> JointLim
 def _capacity(
     form: JointForm, joint_type: JointType, where: str, evaluation: Evaluation
 ) -> tuple[tuple[float | None, ...], tuple[float | None, ...]]:
-    """Return the stated effort and velocity per coordinate, checking that they are positive and that the joint has the freedom."""
+    """Return the stated effort and velocity per coordinate; check that they are positive and that the joint has the freedom."""
     freedoms = set(joint_type.freedom_units)
     by_unit: dict[str, dict[str, float | None]] = {"effort": {}, "velocity": {}}
     for key, quantity, unit, scale in (
@@ -240,7 +240,7 @@ def checked_fit(form: FitSpec, where: str, evaluation: Evaluation) -> tuple[floa
             evaluation.report("E_FIT", f"{where}.gap_mm", message, hint, value=low, limit=high, unit="mm")
         elif low < 0.0:
             message = f"gap_mm [{low:.6g}, {high:.6g}]: a gap cannot be negative."
-            hint = f"Give [0, {max(high, 0.0):.6g}] and contact 'allowed'; an overlap that is meant belongs in allow."
+            hint = f"Give [0, {max(high, 0.0):.6g}] and contact 'allowed'; an intended overlap belongs in allow."
             evaluation.report("E_FIT", f"{where}.gap_mm", message, hint, value=low, limit=0.0, unit="mm")
         if high == 0.0 and form.contact == "forbidden":
             hint = "Raise the largest gap above 0, or set contact to 'allowed'."

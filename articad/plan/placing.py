@@ -1,4 +1,4 @@
-"""Placing: where every part stands at rest, and which way every connector faces."""
+"""Placing: the pose of every part at rest, and the orientation of every connector."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ class Placing:
 
     Args:
         parts: By name.
-        in_order: Those with a root, each after its source.
+        in_order: The parts with a root, each after its source.
         lines: Joints with a type.
-        motions: Joint name -> motion, where its numbers are good.
-        ground: The part that stands still.
-        tree: The spanning tree; None if the joints make none, so that no joint can place a part.
+        motions: Joint name -> motion, for joints with valid numbers.
+        ground: The part that does not move.
+        tree: The spanning tree; None if the joints form none, so that no joint can place a part.
         evaluation: The plan's numbers.
 
     Attributes:
@@ -46,7 +46,7 @@ class Placing:
         self.auto_joints: dict[str, str] = {}
 
     def place_parts(self) -> None:
-        """Place every part: stated poses first, then images and parts that hang on a joint, each after what it needs."""
+        """Place every part: stated poses first, then images and parts placed by a joint, each after those that it needs."""
         for part in self.in_order:
             if isinstance(part.form, PartSpec) and isinstance(part.form.rest_pose, Pose):
                 part.T = self.evaluation.pose(part.form.rest_pose, f"{part.where}.rest_pose")
@@ -80,7 +80,7 @@ class Placing:
             self.evaluation.report("E_REST_AUTO", where, message, "Give the ground a rest_pose, or leave it out.", parts=(part.name,))
         edge = None if self.tree is None else self.tree.edge(part.name)
         if edge is None:
-            frames.read_frames(part, self.evaluation)  # for its own faults: it stays unplaced
+            frames.read_frames(part, self.evaluation)  # reports its own faults; the part stays unplaced
             return
         near = self.parts[edge.parent]
         self._place(near, placed, path)
@@ -121,7 +121,7 @@ class Placing:
         return self._image(part, pose)
 
     def _image(self, part: DraftPart, pose: SE3) -> SE3 | None:
-        """Return a frame of the root part as it is on an image of that part."""
+        """Return a frame of the root part as transformed to an image of that part."""
         if part.source is None:
             return pose
         inner = self._image(self.parts[part.source], pose)
@@ -130,7 +130,7 @@ class Placing:
         return None if part.S is None else SE3.from_matrix(part.S @ inner.matrix @ np.diag([1.0, -1.0, 1.0, 1.0]))
 
     def settle_frames(self) -> None:
-        """Choose every x that is not stated (rule 3), and finish all connectors."""
+        """Choose every x that is not stated, and finish all connectors."""
         links = {line.name: self._link(line) for line in self.lines}
         plain: list[frames.RestLink] = []
         rest: list[frames.RestLink] = []

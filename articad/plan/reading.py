@@ -1,4 +1,4 @@
-"""Reading: JSON text to a form, and every way in which it is not one as a finding at its path."""
+"""Reading: converts JSON text to a form, and reports every deviation from it as a finding at its path."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from articad.plan.joint_forms import JOINT_TYPES, JointForm
 F = TypeVar("F", bound=PlanObject)
 Location = tuple[str | int, ...]
 
-MOST_LEVELS: Final = 100  # of lists and objects within each other; a plan has ten
+MOST_LEVELS: Final = 100  # of nested lists and objects; a plan has ten
 _SHOWN = 60  # characters of a wrong value that are quoted
 _LISTED_ERRORS = 5  # findings that an exception's own text shows; all of them are in `.findings`
 _CONTAINERS = {
@@ -29,7 +29,7 @@ _CONTAINERS = {
     "model_attributes_type": "an object {…}",
     "tuple_type": "a list […]",
 }
-_ELSEWHERE = {  # what URDF, MJCF, SDF, USD and CAD systems call these joints
+_ELSEWHERE = {  # joint names of URDF, MJCF, SDF, USD and CAD systems
     "continuous": 'revolute, with "angle_deg": "endless"',
     "helical": "screw",
     "hinge": "revolute",
@@ -46,7 +46,7 @@ def load(form: type[F], path: Path, default_name: str) -> F:
     """Read a form from a file, or from the file of the default name in a folder.
 
     Raises:
-        PlanError: If the text is not of the form.
+        PlanError: If the text does not have the form.
         ReadError: If there is no such file, or it cannot be read.
     """
     file = path / default_name if path.is_dir() else path
@@ -67,7 +67,7 @@ def loads(form: type[F], text: str | bytes) -> F:
         document = json.loads(text, object_pairs_hook=_unique_keys)
     except _RepeatedKeyError as error:
         raise _refused(
-            [_finding("E_SCHEMA", "plan", f"The key {error.key!r} stands twice in one object.", "Remove one of them.")]
+            [_finding("E_SCHEMA", "plan", f"The key {error.key!r} occurs twice in one object.", "Remove one of them.")]
         ) from None
     except json.JSONDecodeError as error:
         where = f"line {error.lineno} column {error.colno}"
@@ -84,7 +84,7 @@ def loads(form: type[F], text: str | bytes) -> F:
 
 
 def is_nested_deeper(value: Any, most: int) -> bool:
-    """Return whether JSON has more levels of lists and objects within each other than a number; no recursion."""
+    """Return whether JSON has more nested levels of lists and objects than `most`; without recursion."""
     level = [value]
     for _ in range(most + 1):
         level = [
@@ -96,7 +96,7 @@ def is_nested_deeper(value: Any, most: int) -> bool:
 
 
 def from_json(form: type[F], document: Any) -> F:
-    """Return the form of a JSON document in memory.
+    """Return the form made from a JSON document in memory.
 
     Raises:
         PlanError: With all findings.
@@ -117,7 +117,7 @@ class _RepeatedKeyError(Exception):
 
 
 def _unique_keys(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    """Build an object, refusing a key that stands twice: Python would keep the last without a word."""
+    """Build an object; refuse a repeated key, of which Python would silently keep the last."""
     unique: dict[str, Any] = {}
     for key, value in pairs:
         if key in unique:

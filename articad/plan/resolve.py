@@ -1,7 +1,7 @@
-"""Resolving: from a plan with names and expressions to parts, frames and joints with numbers.
+"""Resolving: converts a plan with names and expressions to parts, frames and joints with numbers.
 
-`Draft` works through a whole plan and goes on after every fault, so that all are found at once. `resolve` returns the
-result if there was none.
+`Draft` computes a whole plan and continues after every fault, so that all are found at once. `resolve` returns the result if there was
+no fault.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ Side = Literal["parent", "child"]
 
 @dataclass(frozen=True)
 class Material:
-    """What a part is made of.
+    """The material of a part.
 
     Attributes:
         name: As in the plan.
@@ -43,11 +43,12 @@ class Material:
 
 @dataclass(frozen=True)
 class Fit:
-    """How closely the two parts of a joint fit.
+    """The clearance between the two parts of a joint.
 
     Attributes:
-        gap_min: Least distance of the surfaces over the whole motion [mm]; where they may touch, the least play. None: not checked.
-        gap_max: Largest play at rest [mm]: half the difference of diameters of a hole and its pin, wherever that lies. None: not checked.
+        gap_min: Smallest distance of the surfaces over the whole motion [mm]; if they may touch, the smallest play. None: not checked.
+        gap_max: Largest play at rest [mm]: half the difference of diameters of a hole and its pin, regardless of their offset. None: not
+            checked.
         within: Only surface closer than this to the joint's axis counts [mm]; None: all of it.
         contact: "allowed", "required", "forbidden"; None: not checked.
     """
@@ -60,7 +61,7 @@ class Fit:
 
 @dataclass(frozen=True)
 class Waiver:
-    """An overlap that is meant.
+    """An intended overlap.
 
     Attributes:
         parts: The two parts.
@@ -75,7 +76,7 @@ class Waiver:
 
 @dataclass(frozen=True, eq=False)
 class Derivation:
-    """How a part comes from another.
+    """How a part is derived from another.
 
     Attributes:
         source: Name of that part, which may be derived itself.
@@ -94,17 +95,17 @@ class ResolvedPart:
 
     Attributes:
         name: Its name; copies of a pattern are numbered.
-        description: For whoever builds it.
+        description: Its shape, for the author of its script.
         role: What it is for.
         orientation: Which way is up and front in its own frame.
-        material: What it is made of.
-        color: Its own, else its material's.
+        material: Its material.
+        color: Its own colour, else its material's.
         dimensions: Numbers of its script: mm, degrees (`_deg`), whole numbers (`_count`).
         envelope: Expected bounding box `(3,)` [mm] in the part's frame, or None.
         T_rest: T_assembly_part at rest.
         connectors: By name, in the part's frame.
-        derivation: Where it comes from; None if a script builds it.
-        kernel: The kernel it asks for, or None.
+        derivation: How it is derived; None if a script builds it.
+        kernel: The kernel that the plan requires for it, or None.
         parent_joint: The joint to its parent in the spanning tree; None for the ground.
         spec: The plan's form of the part that a script builds.
     """
@@ -130,17 +131,17 @@ class ResolvedPlan:
     """A plan with its numbers.
 
     Attributes:
-        plan: What it was made of.
-        overrides: Parameters that were given other values than the plan's.
+        plan: The plan.
+        overrides: Parameters with values other than the plan's.
         parameters: All parameters: mm, degrees or plain.
         parts: By name, in order of declaration, patterns expanded.
-        joints: In order of declaration.
+        joints: In the order in which they are declared.
         couplings: Rows q_b - k q_a - c = 0.
         fits: By joint.
-        waivers: Overlaps that are meant.
+        waivers: Intended overlaps.
         materials: By name.
-        ground: The part that stands still.
-        findings: Warnings and notes met on the way.
+        ground: The part that does not move.
+        findings: Warnings and notes.
     """
 
     plan: AssemblyPlan
@@ -157,7 +158,7 @@ class ResolvedPlan:
 
     @cached_property
     def joints_at(self) -> Mapping[tuple[str, str], tuple[tuple[Joint, Side], ...]]:
-        """The joints at each (part, connector) with the side that it is on, in order of declaration."""
+        """The joints at each (part, connector) and the side of the joint there, in the order in which they are declared."""
         found: dict[tuple[str, str], tuple[tuple[Joint, Side], ...]] = {}
         for joint in self.joints:
             sides: tuple[tuple[tuple[str, str], Side], ...] = (
@@ -170,24 +171,24 @@ class ResolvedPlan:
 
     @cached_property
     def mechanism(self) -> Mechanism:
-        """The parts and joints as mathematics, made when first asked for.
+        """The mechanism of parts and joints, made at the first access.
 
         Raises:
-            PlanError: If the joints make no mechanism.
+            PlanError: If the joints do not form a mechanism.
         """
         return Mechanism(tuple(self.parts), self.ground, self.joints, self.couplings, self.parts[self.ground].T_rest)
 
 
 def resolve(plan: AssemblyPlan, /, **parameters: float) -> ResolvedPlan:
-    """Work out every number, frame and joint of a plan.
+    """Compute every number, frame and joint of a plan.
 
     Args:
         plan: The plan.
         **parameters: Values that replace those of parameters: mm, degrees.
 
     Raises:
-        PlanError: With all findings, if a number, name, axis or derivation is wrong. Rest poses that do not meet are
-            no obstacle here: `check_plan` reports them, and `admitted` refuses them before anything is built.
+        PlanError: With all findings, if a number, name, axis or derivation is wrong. Rest poses that do not meet are not an error here:
+            `check_plan` reports them, and `admitted` refuses them before anything is built.
     """
     draft = Draft(plan, parameters)
     findings = draft.findings()

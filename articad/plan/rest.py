@@ -1,7 +1,8 @@
-"""The rest check: in every joint the two connectors must meet at rest, before any geometry exists.
+"""The rest check: the two connectors of every joint must coincide at rest. It needs no geometry.
 
-D = (T_p C_p J(q_rest) F)⁻¹ T_c C_c must be the identity within 0.01 mm and 0.05° (kinematics §1). Every finding names
-the value that would make it so, in the frame in which that connector is stated.
+D = (T_p C_p J(q_rest) F)⁻¹ T_c C_c must be the identity within 0.01 mm and 0.05°, with T the poses of the parts, C the frames of the
+connectors, J the joint's motion and F the mate's flip. Every finding names the value that would correct it, in the frame in which that
+connector is stated.
 """
 
 from __future__ import annotations
@@ -17,8 +18,8 @@ from articad.plan.derive import DraftPart
 from articad.plan.draft import Draft
 from articad.plan.schema import PartSpec, Pose
 
-OFFSET_MM = 0.01  # plan frames are numbers, so this is rounding of what people write, far below any fit
-ANGLE_DEG = 0.05  # 0.9 mm at one metre: rounding of axes to four digits passes
+OFFSET_MM = 0.01  # covers the rounding of numbers in plans, and is far below any fit
+ANGLE_DEG = 0.05  # 0.9 mm at one metre: axes rounded to four digits pass
 _TURN_FIELD = {JointType.REVOLUTE: "rest_deg", JointType.CYLINDRICAL: "rest_deg"}
 _SLIDE_FIELD = {JointType.SLIDER: "rest_mm", JointType.CYLINDRICAL: "rest_mm"}
 _DECIMALS = 4  # of mm and degrees in hints: a hundredth of the tolerances
@@ -27,7 +28,7 @@ _IDENTITY = SE3.identity()
 
 
 def rest_findings(draft: Draft) -> list[Finding]:
-    """Return every joint whose connectors do not meet at rest; joints that place their part are left out."""
+    """Return a finding for every joint whose connectors do not meet at rest; joints that place their part are left out."""
     joints = [
         joint
         for joint in draft.joints
@@ -68,7 +69,7 @@ def _pose(draft: Draft, part: str) -> SE3:
 
 
 class _Mismatch:
-    """One joint that does not meet, and what would mend it."""
+    """A joint whose connectors do not meet, and the values that would correct it."""
 
     def __init__(self, draft: Draft, joint: Joint, expected: SE3, actual: SE3) -> None:
         self.draft, self.joint, self.expected, self.actual = draft, joint, expected, actual
@@ -85,7 +86,7 @@ class _Mismatch:
         self.right = right if self.in_assembly else _pose(draft, self.part.name).inverse() @ right
 
     def findings(self, axis: float, roll: float, offset: float) -> list[Finding]:
-        """Return what is wrong, given the angle between the axes [deg], the roll [deg] and the distance [mm]."""
+        """Return the faults, given the angle between the axes [deg], the roll [deg] and the distance [mm]."""
         found = []
         if axis > 90.0:
             found.append(self._flip(axis))
@@ -111,7 +112,7 @@ class _Mismatch:
         return f"set {wanted}"
 
     def _axes(self) -> tuple[str, ...]:
-        """Return which axes to state: an x that is left to the rule follows by itself, and one that is right stays."""
+        """Return which axes to state: an x that is left to the rule follows by itself, and a correct one stays."""
         if self.spec.x is None:
             return ("z",)
         frame = self.part.connectors[self.spec.name].frame
@@ -142,7 +143,7 @@ class _Mismatch:
         return self._finding("E_MATE_ROLL", message, hint, abs(roll), ANGLE_DEG, "deg")
 
     def _rest_instead(self, roll: float) -> str:
-        """Return the rest value that would mend a roll, if the joint has one and its limits let it."""
+        """Return the rest value that would correct a roll, if the joint has one and its limits allow it."""
         field = _TURN_FIELD.get(self.joint.type)
         if field is None:
             return ""
@@ -162,7 +163,7 @@ class _Mismatch:
         return self._finding("E_MATE_OFFSET", message, hint, distance, OFFSET_MM, "mm")
 
     def _move_instead(self, wrong: FloatArray) -> str:
-        """Return the rest pose that would mend an offset, if the child has one of its own."""
+        """Return the rest pose that would correct an offset, if the child has one of its own."""
         child = self.draft.parts[self.joint.child]
         if not isinstance(child.form, PartSpec) or not isinstance(child.form.rest_pose, Pose) or child.name == self.draft.plan.ground:
             return ""
@@ -172,7 +173,7 @@ class _Mismatch:
         return f", or rest_pose.at of {child.name} to {_point(at - wrong)}"
 
     def _travel_instead(self, wrong: FloatArray) -> str:
-        """Return the rest travel that would mend an offset along the axis, if the limits let it."""
+        """Return the rest travel that would correct an offset along the axis, if the limits allow it."""
         field = _SLIDE_FIELD.get(self.joint.type)
         if field is None:
             return ""
@@ -195,7 +196,7 @@ def _direction(axis: FloatArray) -> str:
 
 
 def _number(value: float, decimals: int = _DECIMALS) -> str:
-    """Return a number as a plan would state it: exact enough to mend the fault, without the noise of the last bits."""
+    """Return a number as a plan would state it: precise enough to correct the fault, without the noise of the last bits."""
     text = f"{round(value, decimals) + 0.0:.{decimals}f}"
     return text.rstrip("0").rstrip(".") if "." in text else text
 

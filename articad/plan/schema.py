@@ -1,7 +1,6 @@
 """The plan: what a person or a model writes, and `plan.json` stores (`articad.plan/1`).
 
-Reading a plan proves its form only. What its numbers and names mean is worked out by `articad.plan.resolve`, and judged
-by `articad.plan.check`.
+Reading a plan checks only its form. `articad.plan.resolve` computes its numbers, and `articad.plan.check` checks them.
 """
 
 from __future__ import annotations
@@ -201,7 +200,7 @@ class AssemblyPlan(PlanObject):
         """Read a plan from its file, or from the folder that holds `plan.json`.
 
         Raises:
-            PlanError: With every way in which the text is not a plan (E_SCHEMA, E_NAME, E_NONFINITE …) at its path.
+            PlanError: With a finding for every fault of the form (E_SCHEMA, E_NAME, E_NONFINITE …) at its path.
             ReadError: If there is no such file.
         """
         return reading.load(cls, Path(path), PLAN_FILE)
@@ -225,15 +224,15 @@ class AssemblyPlan(PlanObject):
         return reading.from_json(cls, document)
 
     def to_json(self) -> dict[str, Any]:
-        """Return the JSON document: values that are defaults left out, whole numbers without a point."""
+        """Return the JSON document: default values left out, whole numbers without a decimal point."""
         return writing.to_json(self)
 
     def dumps(self) -> str:
-        """Return the canonical text: two plans are equal exactly when their texts are."""
+        """Return the canonical text: two plans are equal exactly if their texts are."""
         return writing.dumps(self)
 
     def save(self, path: str | Path) -> Path:
-        """Write the canonical text to a file, or to `plan.json` in an existing folder; never half of it.
+        """Write the canonical text to a file, or to `plan.json` in an existing folder; the file is replaced atomically.
 
         Returns:
             The file written.

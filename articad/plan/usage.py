@@ -1,4 +1,4 @@
-"""How a plan uses its connectors and derivations: what is legal but hardly meant."""
+"""How a plan uses its connectors and derivations: findings for what is legal but hardly intended."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ from articad.plan.motions import AXES
 from articad.plan.rest import OFFSET_MM
 from articad.plan.schema import DerivedJoint
 
-SMALLEST_MM = 0.5  # an assembly below this is in metres or inches
+SMALLEST_MM = 0.5  # a smaller assembly is in metres or inches
 LARGEST_MM = 1e6  # a kilometre
-_SUITABLE = {  # contracts §2; a type that is not listed takes any kind
+_SUITABLE = {  # a type that is not listed accepts any kind
     JointType.REVOLUTE: ("hinge_axis", "shaft_axis", "bore_axis", "gear_axis"),
     JointType.SLIDER: ("slide_axis", "shaft_axis", "bore_axis"),
     JointType.CYLINDRICAL: ("shaft_axis", "bore_axis", "slide_axis"),
@@ -37,7 +37,7 @@ Ends = dict[tuple[str, str], list[str]]
 
 
 def usage_findings(draft: Draft) -> list[Finding]:
-    """Return warnings about connectors, mirrored parts and the size of the whole."""
+    """Return warnings about connectors, mirrored parts and the size of the assembly."""
     ends = _joints_at(draft)
     return [
         *_unused(draft, ends),
@@ -211,12 +211,12 @@ def _limits_text(joint: Joint, limits: JointLimits) -> str:
 
 
 def scale_findings(draft: Draft) -> list[Finding]:
-    """Return E_SCALE if the assembly's diagonal is that of a grain of dust or of a county."""
+    """Return E_SCALE if the assembly's diagonal is outside the plausible range."""
     at = [(part.T, connector.frame) for part in draft.parts.values() if part.T is not None for connector in part.connectors.values()]
     origins = SE3.stack([T for T, _ in at]).apply(np.array([frame.translation for _, frame in at])) if at else np.zeros((1, 3))
     diagonals = [math.hypot(*sides) for sides in draft.envelopes.values() if not any(map(math.isnan, sides))]
     size = max([float(np.linalg.norm(np.ptp(origins, axis=0))), *diagonals])
-    if size <= OFFSET_MM or SMALLEST_MM <= size <= LARGEST_MM:  # all connectors in one point say nothing of the size
+    if size <= OFFSET_MM or SMALLEST_MM <= size <= LARGEST_MM:  # all connectors in one point say nothing about the size
         return []
     small = size < SMALLEST_MM
     hint = "Lengths are millimetres: were metres given?" if small else "Lengths are millimetres: were micrometres given?"

@@ -9,8 +9,8 @@ from typing import Any
 from articad.plan.fields import PlanObject
 from articad.processes import scratch
 
-_LINE = 140  # a value that fits in a line is written in one
-_WHOLE = 2.0**53  # above this a float no longer holds every whole number
+_LINE = 140  # a value that fits in a line is written on one line
+_WHOLE = 2.0**53  # above this, a float cannot represent every whole number
 
 
 def to_json(form: PlanObject) -> dict[str, Any]:
@@ -42,7 +42,7 @@ def _plain(value: Any) -> Any:
 
 
 def _laid_out(value: Any, indent: int, column: int) -> str:
-    """Return JSON text in which only what is too long for a line is broken, one item a line."""
+    """Return JSON text in which only values that are too long for a line are broken, one item per line."""
     flat = json.dumps(value, ensure_ascii=False, allow_nan=False)
     if not isinstance(value, (dict, list)) or not value or (indent > 0 and column + len(flat) <= _LINE):
         return flat

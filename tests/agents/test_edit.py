@@ -327,7 +327,7 @@ def test_numbers_need_no_model(plate: Run, tmp_path: Path) -> None:
 def test_numbers_that_do_not_hold_are_refused(plate: Run, tmp_path: Path) -> None:
     with pytest.raises(PlanError, match="lofd"):
         edit(plate, values={"lofd": 2}, out=tmp_path / "a")
-    with pytest.raises(ReadError, match="Nothing is to be changed"):
+    with pytest.raises(ReadError, match="No change is given"):
         edit(plate, out=tmp_path / "b")
     with pytest.raises(AgentError, match="needs a model"):
         edit(plate, "wider", out=tmp_path / "c", kernel=stories.kernel(), cache=stories.shared_cache())

@@ -83,7 +83,7 @@ def test_a_run_that_was_interrupted_is_resumed_by_its_name(
 
 def test_an_edit_of_nothing_and_of_no_run_is_refused(plate: Run, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert cli.main(["edit", str(plate.path)]) == 3
-    assert "Nothing is to be changed" in capsys.readouterr().err
+    assert "No change is given" in capsys.readouterr().err
     assert cli.main(["edit", str(tmp_path), "wider", "--model", "none/none"]) == 3
 
 

@@ -148,5 +148,5 @@ def test_without_freecad_the_remedy_is_one_sentence(monkeypatch: pytest.MonkeyPa
 
 def test_a_freecad_that_is_named_is_not_replaced_by_another(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setenv("ARTICAD_FREECAD", str(tmp_path / "mistyped"))
-    with pytest.raises(KernelUnavailableError, match="mistyped holds none"):
+    with pytest.raises(KernelUnavailableError, match="mistyped contains no FreeCAD"):
         freecad_install.find()

@@ -197,5 +197,5 @@ def test_a_changed_record_is_refused_by_the_mechanism(tmp_path: Path) -> None:
     text = bundle.files[bundle.main].replace(b"</robot>", f"<articad>{json.dumps(record)}</articad></robot>".encode())
     (tmp_path / "a.urdf").write_bytes(text)
 
-    with pytest.raises(ReadError, match="make no assembly"):
+    with pytest.raises(ReadError, match="do not form an assembly"):
         read_urdf(tmp_path / "a.urdf")

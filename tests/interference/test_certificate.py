@@ -302,7 +302,7 @@ def test_a_disc_on_the_stud_that_meets_the_socket_as_it_swings_is_refuted() -> N
     assert overlap(*bodies, SE3.rot_x(0.29)).depth > 0.02
     document = certificate.to_json()
     document["meshes"]["stud"]["sha256"] = disc.digest
-    assert any("too near" in reason for reason in verified(document, certificate, stud=saved(**arrays_of(disc))))
+    assert any("too close" in reason for reason in verified(document, certificate, stud=saved(**arrays_of(disc))))
 
 
 def test_from_angles_about_a_ball_its_swing_is_taken_off() -> None:
@@ -314,7 +314,7 @@ def test_from_angles_about_a_ball_its_swing_is_taken_off() -> None:
     assert widest < opening < widest + 0.3
     document = certificate.to_json()
     document["meshes"]["stud"]["sha256"] = funnel.digest
-    assert any("too near" in reason for reason in verified(document, certificate, stud=saved(**arrays_of(funnel))))
+    assert any("too close" in reason for reason in verified(document, certificate, stud=saved(**arrays_of(funnel))))
 
 
 def test_a_rod_slides_and_turns_in_its_bush() -> None:

@@ -270,7 +270,7 @@ def test_a_waiver_covers_its_pair_up_to_its_depth_and_is_reported_with_its_reaso
 def test_a_waiver_does_not_cover_more_than_its_cap_or_another_pair() -> None:
     deeper = check(CUBE, CUBE, at(9.4), waivers=[Waiver(("a", "b"), 0.5, "faceted flanks")])
     assert deeper.findings.codes == ("E_OVERLAP",)
-    assert "0.5 mm only" in deeper.findings[0].message
+    assert "covers only 0.5 mm" in deeper.findings[0].message
     assert not check(CUBE, CUBE, at(9.6), waivers=[Waiver(("a", "c"), 0.5, "another")]).ok
 
 

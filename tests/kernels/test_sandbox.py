@@ -260,7 +260,7 @@ def test_a_sandbox_that_cannot_be_put_on_is_said_by_nobody_but_the_worker(brief:
 
     broken = Build123dKernel()
     broken.limits = replace(broken.limits, file_size="many")  # type: ignore[arg-type]
-    with pytest.raises(SandboxError, match="could not be put on: worker: TypeError") as true:
+    with pytest.raises(SandboxError, match="could not be set up: worker: TypeError") as true:
         broken.build(b"def build(part):\n    return None\n", brief)
     assert true.value.findings.codes == ("E_SANDBOX",)
 

@@ -144,7 +144,7 @@ def test_a_path_asks_about_the_configurations_on_the_way_each_next_to_one_before
 def test_a_path_is_refused_where_what_follows_is_barred() -> None:
     mechanism = five_bar()
     free = mechanism.configuration([0.6, 0.5])["c"].item()
-    with pytest.raises(KinematicsError, match=r"E_NO_PATH|not free"):
+    with pytest.raises(KinematicsError, match=r"E_NO_PATH|not collision-free"):
         mechanism.path([0.0, 0.0], [1.2, 1.0], accept=lambda configuration: abs(configuration["c"].item()) < abs(free) / 4)
 
 

@@ -403,7 +403,7 @@ def test_couplings_are_answered_in_their_own_terms() -> None:
         ('{"name": "x",\n}', "line 2 column 1", "no comma before"),
         ("[1]", "plan", "not [1]"),
         ("null", "plan", "not null"),
-        ('{"a": 1, "b": {"c": 1, "c": 2}}', "plan", "The key 'c' stands twice"),
+        ('{"a": 1, "b": {"c": 1, "c": 2}}', "plan", "The key 'c' occurs twice"),
         ("[" * 100_000, "plan", "nested too deeply"),
         (b"\xff\xfe\xff", "plan", "UTF-8"),
         ("1" * 5000, "plan", "This is not JSON"),

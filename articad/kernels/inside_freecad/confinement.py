@@ -1,8 +1,8 @@
-"""Give up, in this process and for good, what a program inside FreeCAD does not need; then run it.
+"""Give up, permanently, all rights that a program inside FreeCAD does not need; then run it.
 
-Read by FreeCAD's own Python before anything else. bubblewrap has hidden the file system by then; what is left to do is
-what must come after the last `exec`: resource limits, Landlock and seccomp. The modules for the latter two are articad's
-own, shown in /confinement beside this file; whatever goes wrong ends the process before a line of the program is read.
+FreeCAD's own Python reads this before anything else. bubblewrap has already hidden the file system; resource limits, Landlock and
+seccomp must come after the last `exec`. The modules for the latter two are articad's own, visible in /confinement beside this file. Any
+failure ends the process before a line of the program is read.
 """
 
 from __future__ import annotations
@@ -32,18 +32,18 @@ FAILED = 70
 
 
 def confine(layers: list[str], limits: dict[str, int], more: list[str], writable: list[str], turn: int) -> None:
-    """Put the layers on; after this neither a script nor FreeCAD itself can take them off.
+    """Apply the layers; after this neither a script nor FreeCAD itself can remove them.
 
     Args:
         layers: Of `landlock` and `seccomp`.
-        limits: Of resources, by their names.
-        more: What may be read besides libraries.
+        limits: Resource limits by their names.
+        more: Paths that may be read besides libraries.
         writable: Folders that may be written.
-        turn: Counts processes, to spread them over processors. Each keeps to one: OCCT starts threads for the others, and
-            seccomp allows none.
+        turn: Number of the process, to spread processes over processors. Each is bound to one: OCCT would start a thread for each
+            further processor, and seccomp allows none.
 
     Raises:
-        OSError: If a layer that was promised cannot be put on.
+        OSError: If a promised layer cannot be applied.
     """
     for name, value in limits.items():
         what = getattr(resource, f"RLIMIT_{name}")
@@ -55,7 +55,7 @@ def confine(layers: list[str], limits: dict[str, int], more: list[str], writable
     libc = ctypes.CDLL(None, use_errno=True)
     if libc.prctl(_NO_NEW_PRIVILEGES, 1, 0, 0, 0) != 0:
         raise OSError(ctypes.get_errno(), "no_new_privs")
-    if libc.unshare(_CLONE_THREAD) != 0:  # succeeds, and changes nothing, in a process of one thread; others would stay free
+    if libc.unshare(_CLONE_THREAD) != 0:  # succeeds without effect in a process with one thread; other threads would stay unconfined
         raise OSError(ctypes.get_errno(), "FreeCAD has started threads already")
     sys.path.insert(0, "/confinement")
     import landlock  # type: ignore[import-not-found]  # noqa: PLC0415
@@ -72,10 +72,10 @@ def main(told: dict[str, Any]) -> None:
     """Confine this process; end it if that fails."""
     try:
         confine(told["layers"], told["limits"], told["readable"], told["writable"], told["turn"])
-    except BaseException as error:  # noqa: BLE001 - nothing may go on unconfined
+    except BaseException as error:  # noqa: BLE001 - nothing may run unconfined
         os.write(told["fault"], f"{type(error).__name__}: {error}".encode()[:500])
         os._exit(FAILED)
-    os.close(told["fault"])  # what comes now cannot pretend that it was not confined
+    os.close(told["fault"])  # what runs now cannot pretend that it was not confined
 
 
 main(CONFINEMENT)  # type: ignore[name-defined]  # noqa: F821 - given by whoever starts this

@@ -1,8 +1,8 @@
 """Write an assembly as a FreeCAD document: `job.json` in, `assembly.FCStd` and `report.json` out, in the working folder.
 
-Runs inside FreeCAD 1.0 or later and never imports articad. Every placement is given; FreeCAD's solver is asked at the
-end only to see that it agrees. The references of joints are written as FreeCAD 1.0 has them: 1.1 migrates them when it
-opens the file, while 1.0 cannot read 1.1's.
+Runs inside FreeCAD 1.0 or later and never imports articad. Every placement is given; FreeCAD's solver is called only at the end, to see
+whether it agrees. The references of joints are written in the form of FreeCAD 1.0: 1.1 migrates them when it opens the file, while 1.0
+cannot read those of 1.1.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ import Part
 
 Json = dict[str, Any]
 
-FIRST_ID = 100_000  # beyond 5000, where FreeCAD's own random start ends
+FIRST_ID = 100_000  # beyond 5000, the end of FreeCAD's own random start
 
 
 def main() -> None:
@@ -41,8 +41,8 @@ class _Writer:
         self.document = _numbered_from(FIRST_ID)
         self.document.Label = job["name"]
         self.document.UndoMode = 0
-        self.parts: dict[str, Any] = {}  # part -> what stands in the assembly
-        self.containers: dict[str, Any] = {}  # part -> the App::Part that holds its shape and connectors, shared by links
+        self.parts: dict[str, Any] = {}  # part -> its object in the assembly
+        self.containers: dict[str, Any] = {}  # part -> the App::Part that contains its shape and connectors, shared by links
         self.shapes: dict[str, Any] = {}  # part -> the object with its shape
         self.connectors: dict[tuple[str, str], Any] = {}
         self.colors: dict[str, str] = {}  # object -> colour
@@ -155,7 +155,7 @@ class _Writer:
                 image.setExpression(name, expression)
             return image
         if kind == "mesh":
-            import Mesh  # noqa: PLC0415 - only where a part is no more than triangles
+            import Mesh  # noqa: PLC0415 - only if a part is a mesh
 
             feature = container.newObject("Mesh::Feature", f"{part['object']}_body")
             feature.Mesh = Mesh.Mesh(part["file"])
@@ -169,7 +169,7 @@ class _Writer:
         return feature
 
     def _body(self, part: Json, container: Any) -> Any:
-        """Copy a body with its features, and the dimensions that drive it, from the document that a part script left."""
+        """Copy a body with its features, and the dimensions that drive it, from the document of a part script."""
         source = App.openDocument(str(Path(part["file"]).resolve()), True)
         before = {item.Name for item in self.document.Objects}
         self.document.copyObject([source.getObject(part["body"])], True)
@@ -186,7 +186,7 @@ class _Writer:
                 container.addObject(item)
         self.hidden += [item.Name for item in copied if item.TypeId == "PartDesign::CoordinateSystem"]
         self._dimensions(part, container, values[0] if values else None)
-        for item in copied:  # nothing of them has changed: a sketch that is solved again may differ in its last bits
+        for item in copied:  # unchanged: a sketch that is solved again may differ in its last bits
             item.purgeTouched()
         return body
 
@@ -237,10 +237,10 @@ class _Writer:
         path = f"{head}.{tail}"
         return [self.assembly, [path, path]]
 
-    # ------------------------------------------------------------------ FreeCAD's own opinion
+    # ------------------------------------------------------------------ FreeCAD's own solver
 
     def _solved(self) -> tuple[int, Json]:
-        """Ask FreeCAD's solver; return its code and how far it moved each part [mm, rad]."""
+        """Run FreeCAD's solver; return its code and how far it moved each part [mm, rad]."""
         code = self.assembly.solve()
         moved = {}
         for part in self.job["parts"]:
@@ -257,9 +257,9 @@ class _Writer:
 
 
 def _numbered_from(first: int) -> Any:
-    """Return a document whose objects are numbered from `first` on, with a VarSet `Parameters`.
+    """Return a document whose objects are numbered from `first`, with a VarSet `Parameters`.
 
-    FreeCAD starts at a random number and names edges and faces by it; a document that is opened goes on from its own.
+    FreeCAD starts at a random number and names edges and faces by it; a document that is opened continues with its own.
     """
     seed = Path("seed.FCStd").resolve()
     fresh = App.newDocument("fresh")
@@ -276,7 +276,7 @@ def _numbered_from(first: int) -> Any:
 
 
 def _switch_off(joint: Any) -> None:
-    if hasattr(joint, "Suppressed"):  # FreeCAD 1.1's word for it
+    if hasattr(joint, "Suppressed"):  # the name in FreeCAD 1.1
         joint.Suppressed = True
     else:
         joint.Activated = False

@@ -1,8 +1,7 @@
-"""Open a FreeCAD document in a new process and say what is in it: `job.json` in, `report.json` out, in the working folder.
+"""Open a FreeCAD document in a new process and report its content: `job.json` in, `report.json` out, in the working folder.
 
-The job names a file and steps, done in order: `solve`; `perturb`, which moves one part, solves, reports and puts
-everything back; `set`, which changes a parameter and recomputes; `look`, which reports; `save`. Nothing here imports
-articad: what is reported is judged outside.
+The job names a file and steps, done in order: `solve`; `perturb`, which moves one part, solves, reports and restores everything; `set`,
+which changes a parameter and recomputes; `look`, which reports; `save`. Nothing here imports articad; the report is judged outside.
 """
 
 from __future__ import annotations
@@ -37,7 +36,7 @@ def _parts(document: Any) -> dict[str, Any]:
 
 
 def _look(document: Any, _: Json) -> Json:
-    """Report what is in the document, and what FreeCAD makes of it."""
+    """Report the content of the document, and FreeCAD's view of it."""
     parts = _parts(document)
     return {
         "version": list(App.Version()[:3]),
@@ -95,19 +94,19 @@ def _mesh(part: Any) -> Json | None:
 
 
 def _limits(joint: Any) -> Json:
-    """Return the limits of a joint that are switched on, in degrees and mm."""
+    """Return the enabled limits of a joint, in degrees and mm."""
     names = ("AngleMin", "AngleMax", "LengthMin", "LengthMax")
     return {name: float(getattr(joint, name)) for name in names if getattr(joint, f"Enable{name}", False)}
 
 
 def _solve(document: Any, _: Json) -> Json:
-    """Ask FreeCAD's solver, and report where the parts are."""
+    """Run FreeCAD's solver, and report the poses of the parts."""
     code = _assembly(document).solve()
     return {"code": code, "parts": {name: _seven(item.Placement) for name, item in _parts(document).items()}}
 
 
 def _perturb(document: Any, step: Json) -> Json:
-    """Move one part by `by`, solve as often as `times` says, report the last and those before, and put everything back."""
+    """Move one part by `by`, solve `times` times, report the last state and those before, and restore everything."""
     parts = _parts(document)
     before = {name: item.Placement for name, item in parts.items()}
     moved = parts[step["part"]]

@@ -1,7 +1,7 @@
-"""Run one part script inside FreeCAD: untrusted code, in a confined process of its own that nothing else is asked of.
+"""Run one part script inside FreeCAD: untrusted code, in a confined process of its own that does nothing else.
 
-Arguments: the numbers of open files: `job` to read, `report` and `document` to write. What is left is a report, one JSON
-object a line, and the document. Whoever reads them must not trust them. `Authoring` is what scripts work with.
+Arguments: the numbers of open files: `job` to read, `report` and `document` to write. The result is a report, one JSON object per line,
+    and the document. Whoever reads them must not trust them. Scripts work with `Authoring`.
 """
 
 from __future__ import annotations
@@ -22,9 +22,9 @@ import FreeCAD as App
 import Part
 import Sketcher
 
-FILE = "part.py"  # the name that a script's code bears: tracebacks are cut down to it
+FILE = "part.py"  # the file name of a script's code: tracebacks are cut down to it
 SAVED = "/tmp/part.FCStd"  # noqa: S108 - private to this process
-FIRST_ID = 10_000  # beyond 5000, where FreeCAD's own random start ends
+FIRST_ID = 10_000  # beyond 5000, the end of FreeCAD's own random start
 _PLANES = {"XY": "XY_Plane", "XZ": "XZ_Plane", "YZ": "YZ_Plane"}
 _AXES = {"X": "X_Axis", "Y": "Y_Axis", "Z": "Z_Axis"}
 _SIDES = {"X": App.Vector(1, 0, 0), "Y": App.Vector(0, 1, 0), "Z": App.Vector(0, 0, 1)}
@@ -37,7 +37,7 @@ Value = float | str
 
 
 class NotAPartError(Exception):
-    """What the script returned is not a part; says in which ways."""
+    """What the script returned is not a part; the message says why."""
 
 
 class Authoring:
@@ -402,9 +402,9 @@ def _built(script: str, brief: Json) -> dict[str, Json]:
 
 
 def _numbered_from(first: int) -> Any:
-    """Return a document whose objects are numbered from `first` on, with a VarSet `Dimensions`.
+    """Return a document whose objects are numbered from `first`, with a VarSet `Dimensions`.
 
-    FreeCAD starts at a random number and names edges and faces by it; a document that is opened goes on from its own.
+    FreeCAD starts at a random number and names edges and faces by it; a document that is opened continues with its own.
     """
     fresh = App.newDocument("part")
     fresh.addObject("App::VarSet", "Dimensions")
@@ -434,7 +434,7 @@ def _connectors(entries: Any) -> dict[str, Json]:
 
 
 def _described(error: BaseException) -> Json:
-    """Return an exception as data: type, message, and the frames of the script alone, outermost first."""
+    """Return an exception as data: type, message, and the frames of the script only, outermost first."""
     frames = [(line, frame.f_code.co_name) for frame, line in traceback.walk_tb(error.__traceback__) if frame.f_code.co_filename == FILE]
     line = frames[-1][0] if frames else None
     if isinstance(error, SyntaxError) and error.filename == FILE:

@@ -1,7 +1,7 @@
-"""Open the document that a part script left, judge it as a document that people edit, and move each of its dimensions.
+"""Open the document of a part script, check it as a document that people edit, and change each of its dimensions.
 
-Arguments: the numbers of open files: `job` and `document` to read, `report` and `shape` to write. No script runs here, but the
-document is a stranger's: this process is confined as well. One JSON object a line.
+Arguments: the numbers of open files: `job` and `document` to read, `report` and `shape` to write. No script runs here, but the document
+    is untrusted, so this process is confined as well. The report has one JSON object per line.
 """
 
 from __future__ import annotations
@@ -15,8 +15,8 @@ from typing import Any
 
 import FreeCAD as App
 
-STEP, ZERO_MM, ZERO_DEG = 0.02, 0.1, 1.0  # by which a dimension is moved; the latter two where it is zero
-SAME = 1e-9  # change that is rounding: of a number, or of the part's size; a sketch is solved anew to about a hundredth of that
+STEP, ZERO_MM, ZERO_DEG = 0.02, 0.1, 1.0  # steps by which a dimension is changed; the latter two if it is zero
+SAME = 1e-9  # relative change that is rounding; a sketch that is solved anew differs by about a hundredth of that
 _OPENED, _SHAPE = "/tmp/part.FCStd", "/tmp/part.brep"  # noqa: S108 - private to this process
 
 Json = dict[str, Any]
@@ -39,7 +39,7 @@ def main(job: int, document: int, report: int, shape: int) -> None:
     systems = {name: entry["object"] for name, entry in told["connectors"].items() if "object" in entry}
     try:
         judged = _judged(opened, body)
-    except Exception as error:  # noqa: BLE001 - of whatever a script has left; FreeCAD raises its own kinds
+    except Exception as error:  # noqa: BLE001 - for whatever a script has left; FreeCAD raises its own types
         problem = "; ".join([str(error), *_invalid(opened)])
         _say(report, {"ok": False, "problem": problem})
         return
@@ -52,7 +52,7 @@ def main(job: int, document: int, report: int, shape: int) -> None:
 
 
 def _judged(document: Any, body: Any) -> Json:
-    """Say what the tree is made of, and which of it does not reach the solid."""
+    """Return the composition of the tree, and the features that do not reach the solid."""
     history, current = [], body.Tip
     while current is not None and current not in history:
         history.append(current)
@@ -76,7 +76,7 @@ def _judged(document: Any, body: Any) -> Json:
 
 
 def _invalid(document: Any) -> list[str]:
-    """Return the objects that could not be recomputed, with what FreeCAD says of them."""
+    """Return the objects that could not be recomputed, with FreeCAD's message about them."""
     return [f"{item.Name} ({item.getStatusString()})" for item in document.Objects if "Invalid" in item.State]
 
 
@@ -93,7 +93,7 @@ def _frames(document: Any, systems: dict[str, str]) -> Json:
 
 
 def _probe(document: Any, body: Any, systems: dict[str, str], dimensions: Json, until: float) -> Any:
-    """Move each dimension up and, if that changes nothing or fails, down, as a person would in the document."""
+    """Increase each dimension and, if that changes nothing or fails, decrease it, as a person would in the document."""
     values = document.getObject("Dimensions")
     before = _fingerprint(document, body, systems)
     for name, value in dimensions.items():
@@ -103,7 +103,7 @@ def _probe(document: Any, body: Any, systems: dict[str, str], dimensions: Json, 
                 return
             setattr(values, f"d_{name}", float(moved))
             outcomes.append(_tried(document, body, systems, before))
-            setattr(values, f"d_{name}", float(value))  # recomputed with the next one: a third of the time
+            setattr(values, f"d_{name}", float(value))  # recomputed together with the next one: a third of the time
             if outcomes[-1]["outcome"] == "changed":
                 break
         best = min(outcomes, key=lambda outcome: ("changed", "unused", "broken").index(outcome["outcome"]))
@@ -140,7 +140,7 @@ def _fingerprint(document: Any, body: Any, systems: dict[str, str]) -> list[floa
     box = shape.BoundBox
     center = shape.CenterOfGravity if shape.Solids else App.Vector()
     frames = [number for frame in _frames(document, systems).values() for axis in ("o", "z", "x") for number in frame[axis]]
-    # Radii of gyration: holes that move together, as on a bolt circle, leave the volume and its centre where they are.
+    # Radii of gyration: holes that move together, as on a bolt circle, change neither the volume nor its centre.
     inertia = shape.Solids[0].MatrixOfInertia if shape.Solids else App.Matrix()
     spread = [math.sqrt(abs(entry) / max(shape.Volume, 1e-9)) for entry in (inertia.A11, inertia.A22, inertia.A33)]
     return [shape.Volume, *center, *spread, box.XMin, box.YMin, box.ZMin, box.XMax, box.YMax, box.ZMax, *frames]
