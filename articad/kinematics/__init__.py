@@ -1,6 +1,6 @@
 """Mechanisms: joints, trees, loops, poses and velocities. NumPy only; Pinocchio and SciPy are loaded where they are used.
 
-Lengths are millimetres, angles radians. Knows no files, meshes, plans or models.
+Lengths are millimetres, angles radians. Independent of files, meshes, plans and models.
 """
 
 from articad.kinematics.configuration import Configuration

@@ -1,8 +1,7 @@
 """Forward kinematics in NumPy: poses and velocities of all parts for many configurations at once.
 
-Two ways to the same poses. `matrices` multiplies homogeneous matrices: few calls per joint, right for few configurations
-and for the loop solver. `poses` of many configurations goes to `bulk`, which works on rows over all of them. Pinocchio is
-the oracle of both in the tests.
+Two ways to the same poses. `matrices` multiplies homogeneous matrices: few calls per joint, right for few configurations and for the
+loop solver. For many configurations, `poses` uses `bulk`, which works on rows over all of them. The tests compare both with Pinocchio.
 """
 
 from __future__ import annotations
@@ -21,7 +20,7 @@ from articad.kinematics.layout import Layout
 from articad.kinematics.tree import KinematicTree
 from articad.kinematics.twists import Twists
 
-_FEW = 64  # configurations up to which matrices win over rows (measured: break-even 16 of 5 parts, 64 of 10 and 50)
+_FEW = 64  # configurations up to which matrices are faster than rows (measured break-even: 16 for 5 parts, 64 for 10 and 50)
 
 
 class TreeArrays:
@@ -29,10 +28,10 @@ class TreeArrays:
 
     Args:
         parts: In the order in which poses are returned.
-        tree: How the parts hang together.
-        layout: Of all coordinates; the tree's joints are among them.
+        tree: The spanning tree of the parts.
+        layout: Layout of all coordinates, the tree's joints included.
         T_ground: Pose of the ground part.
-        closing: Joints that close loops: each adds a ghost of its child behind the parts in `matrices`.
+        closing: Joints that close loops: for each, `matrices` appends a ghost of its child after the parts.
     """
 
     def __init__(self, parts: Sequence[str], tree: KinematicTree, layout: Layout, T_ground: SE3, closing: Sequence[Joint] = ()) -> None:
@@ -79,7 +78,7 @@ class TreeArrays:
 
     @cached_property
     def carried(self) -> FloatArray:
-        """±1 where a freedom moves a part, −1 where it is crossed backwards: `(N, n_freedoms)`; 11 MB for 1000 parts, so made when asked."""
+        """±1 where a freedom moves a part, −1 where it is crossed backwards: `(N, n_freedoms)`; 11 MB for 1000 parts, so made on demand."""
         c, carried = self.compiled, np.zeros((self.n_parts, self.layout.n_freedoms))
         for k in range(self._n_edges):
             carried[c.far[k]] = carried[c.near[k]]

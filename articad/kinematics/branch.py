@@ -1,7 +1,7 @@
-"""Branch: the one way of being assembled that the rest pose shows, and every configuration that is reached from it.
+"""Branch: the assembly mode of the rest pose, and every configuration that can be reached from it.
 
-Loops and couplings that share no joint that they move have nothing to do with each other: each such group is closed, driven and
-followed by itself. Two drivers of different groups need no common way, and what one group cannot reach says nothing about another.
+Loops and couplings that move no joint in common are independent: each such group is closed, driven and followed by itself. Drivers of
+different groups need no common path, and what one group cannot reach says nothing about another.
 """
 
 from __future__ import annotations
@@ -30,19 +30,19 @@ from articad.kinematics.ties import BoolArray
 from articad.kinematics.track import Track
 from articad.kinematics.tree import KinematicTree
 
-_STARTS = 12  # random starts before a loop is said to be open
+_STARTS = 12  # random starts before a loop is reported as open
 _LAST_ITERATIONS = 200  # for the best gap: convergence to a stretched chain is linear
-_ALMOST = 1e-3  # |r| at which a loop is open by inexact data, not by its rest values
-_SAME_MODE = 1e-6  # rad, or lengths L: two solutions this close are one
+_ALMOST = 1e-3  # |r| below which a loop is open because of inexact data, not because of its rest values
+_SAME_MODE = 1e-6  # rad, or lengths L: closer solutions are the same
 _MOVED = 1e-15  # rad, or lengths L: a driver that moved less did not move
-_ROWS_NAMED = 5  # of a batch that cannot be reached
+_ROWS_NAMED = 5  # rows of a batch named in an error
 
 
 class Solved(NamedTuple):
-    """What is reached of a batch of drivers' values.
+    """The solution for a batch of drivers' values.
 
     Attributes:
-        Q: Coordinates `(batch, columns)`; of rows that are not reached those of the drivers asked for, the others as they rest.
+        Q: Coordinates `(batch, columns)`; rows that are not reached have the requested drivers and the others at rest.
         reached: `(batch,)`.
     """
 
@@ -51,24 +51,24 @@ class Solved(NamedTuple):
 
 
 class Group:
-    """Loops and couplings that share joints: what moves together, and what drives it.
+    """Loops and couplings that share joints: they move together, and have drivers of their own.
 
     Args:
-        tree: Which carries all parts.
-        layout: Of all joints of the mechanism.
+        tree: The tree that carries all parts.
+        layout: Layout of all joints of the mechanism.
         loop_joints: Joints that close the loops.
         couplings: Relations between coordinates.
 
     Attributes:
         system: The equations.
-        analysis: What they leave free.
-        columns: Places of the group's coordinates among those of all joints: drivers and what follows them.
-        joints: Whose coordinates these are.
-        drivers: Coordinates that drive, in order of declaration.
+        analysis: Their mobility.
+        columns: Places of the group's coordinates, drivers and followers, among those of all joints.
+        joints: The joints of these coordinates.
+        drivers: Coordinates that drive, in the order in which they are declared.
         driver_columns: Their places among the coordinates of all joints.
         refused: Joints marked as drivers that cannot drive.
-        dependent: Freedoms of the system that follow.
-        follower: Follows the branch.
+        dependent: Freedoms of the system that follow the drivers.
+        follower: Object that follows the branch.
         Q: The system's coordinates at rest.
 
     Raises:
@@ -83,7 +83,7 @@ class Group:
         regular = regularized(self.system, self.analysis)
         if regular is not None and regular is not self.system:
             self.system = regular
-            closed = regular.close(Q, regular.active)  # rest itself may lie on another set, where more is free
+            closed = regular.close(Q, regular.active)  # the rest pose may lie on another set, where more is free
             Q = closed.Q if closed.ok else Q
         self._places, self.refused = choose_drivers(self.system, self.analysis.freedoms)
         self.columns: IndexArray = self.system.written
@@ -94,7 +94,7 @@ class Group:
         driven = np.zeros(own.n_freedoms, dtype=bool)
         driven[self._driving] = True
         self.dependent: BoolArray = self.system.active & ~driven
-        # the drivers stay where the plan has them, if the rest can be closed there
+        # the drivers keep their values in the plan, if the rest pose can be closed with them
         exact = self.system.close(self._with_rest_drivers(Q), self.dependent)
         self.Q = exact.Q if exact.ok else Q
         self.follower = Follower(self.system, self.dependent, simple=regular is not None)
@@ -120,7 +120,7 @@ class Group:
         closed = system.close(system.layout.rest, system.active)
         if closed.ok:
             return closed.Q
-        if closed.residual < _ALMOST:  # other ways of assembling it are not what is meant
+        if closed.residual < _ALMOST:  # other assembly modes are not intended
             self._raise_open(closed.Q, from_rest=False)
         rng = np.random.default_rng(0)
         starts = system.move(system.layout.rest, rng.uniform(-math.pi, math.pi, (_STARTS, system.layout.n_freedoms)))
@@ -173,11 +173,11 @@ class Group:
     def solve(self, Q_all: FloatArray) -> Solved:
         """Follow the branch from rest to the drivers' values, each row by itself.
 
-        One driver alone follows its track. Several move along a straight line, or where that is barred along a way round that a
-        roadmap finds; the same values always lead to the same configuration.
+        A single driver follows its track. Several move along a straight line, or if that is blocked, along a path that a roadmap finds;
+        the same values always lead to the same configuration.
 
         Args:
-            Q_all: Coordinates of all joints `(batch, n_columns)`, of which the drivers' count.
+            Q_all: Coordinates of all joints `(batch, n_columns)`; only those of drivers are used.
         """
         if len(Q_all) > 1 and (Q_all[:, self.driver_columns] == Q_all[:1, self.driver_columns]).all():
             one = self.solve(Q_all[:1])
@@ -196,7 +196,7 @@ class Group:
         return Solved(Q, reached)
 
     def _asked(self, Q_all: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Return the rest configuration for each row, the same with the drivers where they are asked for, and the step between."""
+        """Return for each row the rest configuration, the same with the drivers at their requested values, and the step between both."""
         Q = np.tile(self.Q, (len(Q_all), 1))
         wanted = Q.copy()
         wanted[:, list(self._places)] = Q_all[:, self.driver_columns]
@@ -204,13 +204,13 @@ class Group:
         return Q, wanted, self.step(Q, wanted)
 
     def step(self, start: FloatArray, wanted: FloatArray) -> FloatArray:
-        """Return the scaled displacement `(batch, freedoms)` of the drivers, and of what is tied to them, between configurations."""
+        """Return the scaled displacement `(batch, freedoms)` of the drivers and of what is coupled to them, between configurations."""
         step = self.system.step_between(start, wanted)
         step[:, self._follows] = 0.0
         return step
 
     def _moving_alone(self, moves: BoolArray) -> IndexArray:
-        """Return for each row the one column that moves, or −1: several do, or a ball, or none."""
+        """Return for each row the one column that moves, or −1 if several move, or a ball, or none."""
         layout = self.system.layout
         columns = [-1 if int(f) in layout.ball_freedoms else layout.column_of_freedom(int(f)) for f in self._driving]
         if not columns:
@@ -218,13 +218,13 @@ class Group:
         return np.where(moves.sum(axis=1) == 1, np.array(columns, dtype=np.intp)[moves.argmax(axis=1)], -1)
 
     def advance(self, Q: FloatArray, wanted: FloatArray) -> Solved:
-        """Follow straight lines from configurations `(batch, columns)` to where the drivers are in `wanted`."""
+        """Follow straight lines from configurations `(batch, columns)` to the drivers' values in `wanted`."""
         found, arrived = self.follower.trace_many(Q, self.step(Q, wanted))
-        found[:, list(self._places)] = wanted[:, list(self._places)]  # to the last bit
+        found[:, list(self._places)] = wanted[:, list(self._places)]  # exact to the last bit
         return Solved(self.system.ties.fitted(found, ~self.dependent), arrived)
 
     def advance_from(self, Q_all: FloatArray, wanted_all: FloatArray) -> FloatArray | None:
-        """Return where a straight line of the drivers leads from a closed configuration of all joints; None if it is barred."""
+        """Return the end of a straight line of the drivers from a closed configuration of all joints; None if it is blocked."""
         Q = self.system.to_system(Q_all)
         wanted = Q.copy()
         wanted[list(self._places)] = wanted_all[self.driver_columns]
@@ -238,7 +238,7 @@ class Group:
         Q, arrived = self.advance(np.tile(self.Q, (len(step), 1)), wanted)
         barred = np.flatnonzero(~arrived)
         for i in barred[self._closable(wanted[barred])] if barred.size else barred:
-            trace = self.follower.trace(self.Q, step[i], 1.0)  # with all guards, where the batch gave up
+            trace = self.follower.trace(self.Q, step[i], 1.0)  # with all guards, where the batch failed
             straight = trace.stop is Stop.ARRIVED
             found = trace.Q_end if straight else self._roadmap.reached(step[i][self._driving], wanted[i])
             if found is not None:
@@ -250,7 +250,7 @@ class Group:
         return Roadmap(self)
 
     def _closable(self, wanted: FloatArray) -> BoolArray:
-        """Tell which rows can be assembled at all, from a few random starts."""
+        """Return which rows can be closed at all, tried from a few random starts."""
         noise = np.random.default_rng(0).uniform(-math.pi, math.pi, (_STARTS, self.system.layout.n_freedoms)) * self.dependent
         starts = self.system.move(wanted[:, None], noise).reshape(-1, wanted.shape[1])
         _, norm = self.system.close_many(starts, self.dependent, iterations=60)
@@ -281,7 +281,7 @@ class Group:
         return failure(trace, self.system.layout.coordinates[place], end, asked, row)
 
     def velocities(self, Q_all: FloatArray, G: FloatArray) -> None:
-        """Write into G `(n_freedoms, nv)`, whose drivers' rows are given, how fast what follows moves at closed coordinates."""
+        """Write the velocities of followers at closed coordinates into G `(n_freedoms, nv)`, whose drivers' rows are given."""
         system, where = self.system, np.flatnonzero(self.dependent)
         if where.size:
             J = system.evaluate_one(system.to_system(Q_all))[1]
@@ -289,14 +289,14 @@ class Group:
             G[system.freedoms[where]] = least_squares(J[:, where], -driven, 1e-10) * system.scale[where, None]
 
     def modes(self, Q_all: FloatArray, starts: int) -> FloatArray:
-        """Return all ways found of assembling the group at the drivers' values, its own branch first: `(modes, columns)`."""
+        """Return all assembly modes found at the drivers' values, the group's own branch first: `(modes, columns)`."""
         system, rng = self.system, np.random.default_rng(0)
         _, wanted, _ = self._asked(Q_all[None])
         noise = rng.uniform(-math.pi, math.pi, (starts, system.layout.n_freedoms)) * self.dependent
         candidates, norm = system.close_many(system.move(wanted[0], noise), self.dependent, iterations=80)
         closed = list(candidates[norm <= CLOSED])
         Q, reached = self.solve(Q_all[None])
-        if reached[0]:  # where the branch does not reach this value, others may
+        if reached[0]:  # if this branch does not reach the value, others may
             closed.insert(0, Q[0])
         kept: list[FloatArray] = []
         for one in closed:
@@ -315,14 +315,15 @@ class Branch:
     """A mechanism with loops or couplings, closed at rest, its drivers chosen.
 
     Args:
-        tree: Which carries all parts.
+        tree: The tree that carries all parts.
         layout: Of all joints.
         loop_joints: Joints that close loops.
         couplings: Relations between coordinates.
 
     Attributes:
-        groups: What moves independently, in order of the first joint.
-        drivers: Coordinates that drive, in order of declaration: those of all groups, and all that no constraint touches.
+        groups: The independent groups, in the order of their first joints.
+        drivers: Coordinates that drive, in the order in which they are declared: those of all groups, and all that no constraint
+            involves.
         columns: Their places among the coordinates of all joints.
         driver_freedoms: Their freedoms among those of all joints.
         refused: Joints marked as drivers that cannot drive.
@@ -347,11 +348,11 @@ class Branch:
             Q = group.system.into_all(Q, group.Q)
         self.Q_rest = Q
 
-    # --- all groups as one
+    # --- all groups together
 
     @cached_property
     def system(self) -> ClosureSystem:
-        """The equations of all groups together: for what concerns the mechanism as a whole. Each group has its own, which is smaller."""
+        """The equations of all groups together, for what concerns the whole mechanism. Each group has its own, smaller system."""
         tree, loop_joints, couplings = self._given
         return ClosureSystem(tree, self.layout, loop_joints, couplings)
 
@@ -362,13 +363,13 @@ class Branch:
 
     @cached_property
     def dependent(self) -> BoolArray:
-        """Freedoms of `system` that follow."""
+        """Freedoms of `system` that follow the drivers."""
         mine: BoolArray = self.system.active & ~np.isin(self.system.freedoms, self.driver_freedoms)
         return mine
 
     @cached_property
     def analysis(self) -> Mobility:
-        """What all constraints leave free, in the coordinates of `system`."""
+        """Mobility of the whole mechanism, in the coordinates of `system`."""
         Q_all = self.Q_rest
         total = sum(group.analysis.mobility for group in self.groups)
         motions = np.zeros((self.layout.n_freedoms, total))
@@ -391,7 +392,7 @@ class Branch:
         )
 
     def group_of(self, joint: str) -> Group | None:
-        """Return the group that a joint belongs to, the first one if its coordinates belong to several; None if it moves by itself."""
+        """Return the group of a joint, the first one if its coordinates belong to several; None if the joint moves independently."""
         first = self.layout.columns[joint]
         return next((group for group in self.groups if any(first.start <= c < first.stop for c in group.columns)), None)
 
@@ -422,7 +423,7 @@ class Branch:
         """Return the coordinates of all joints `(batch, n_columns)` at the drivers' values `(batch, nq)`.
 
         Raises:
-            DeadPointError: If a driver would have to pass a dead point; it names the rows that are not reached.
+            DeadPointError: If a driver would have to pass a dead point; the message names the rows that are not reached.
             KinematicsError: E_SINGULAR if the branch is not determined on the way; E_NOT_FOLLOWED if it is too long.
         """
         Q_all, reached = self.solve(q)
@@ -431,7 +432,7 @@ class Branch:
         return Q_all
 
     def failure(self, q: FloatArray, reached: BoolArray) -> KinematicsError:
-        """Return the error about the rows `(batch, nq)` that are not reached: which they are, and why the first one is not."""
+        """Return the error for the rows `(batch, nq)` that are not reached: their numbers, and the reason for the first one."""
         rows = np.flatnonzero(~reached)
         first = int(rows[0])
         Q_all = self._with_drivers(q[first : first + 1])
@@ -447,7 +448,7 @@ class Branch:
         return ", ".join(f"{c.name} = {shown(float(value), c.unit)}" for c, value in zip(self.drivers, q, strict=True))
 
     def velocities(self, Q_all: FloatArray) -> FloatArray:
-        """Return how fast all freedoms move per driver freedom, `(n_freedoms, nv)`, in rad and mm, at closed coordinates."""
+        """Return the velocities of all freedoms per driver freedom, `(n_freedoms, nv)`, in rad and mm, at closed coordinates."""
         G = np.zeros((self.layout.n_freedoms, len(self.driver_freedoms)))
         G[self.driver_freedoms, np.arange(len(self.driver_freedoms))] = 1.0
         for group in self.groups:
@@ -455,9 +456,9 @@ class Branch:
         return G
 
     def modes(self, q: FloatArray, starts: int) -> FloatArray:
-        """Return all ways found of assembling the mechanism at driver values `(nq,)`: coordinates `(modes, n_columns)`.
+        """Return all assembly modes found at driver values `(nq,)`: coordinates `(modes, n_columns)`.
 
-        Random starts; a way that a start never falls into is not found. The rest pose's own branch is first, if it is there.
+        Random starts are used; a mode to which no start converges is not found. The rest pose's own branch is first, if it is there.
         """
         found = self._with_drivers(np.asarray(q)[None])
         for group in self.groups:
@@ -469,7 +470,7 @@ class Branch:
 def independent(
     tree: KinematicTree, layout: Layout, loop_joints: Sequence[Joint], couplings: Sequence[Coupling]
 ) -> list[tuple[list[Joint], list[Coupling]]]:
-    """Return loops and couplings in groups that share no freedom: connected components, in order of their first freedom."""
+    """Return loops and couplings in groups that share no freedom: connected components, in the order of their first freedoms."""
     touched: list[tuple[Joint | Coupling, set[int]]] = []
     for closing in loop_joints:
         round_it = (closing, *tree.joints_between(closing.parent, closing.child))
@@ -489,7 +490,7 @@ def independent(
 
 
 def failure(trace: Trace, coordinate: Coordinate, end: float, asked: float, row: str = "") -> KinematicsError:
-    """Return the error that says what stopped a trace on the way to `asked`, at the driver value `end`."""
+    """Return the error that says what stopped a trace on its path to `asked`, at the driver value `end`."""
     there, wanted = shown(end, coordinate.unit), shown(asked, coordinate.unit)
     where = f"joints.{coordinate.joint}"
     if trace.stop is Stop.DEAD_POINT:
@@ -533,7 +534,7 @@ def driver_freedoms(layout: Layout, columns: Sequence[int]) -> list[int]:
 
 
 def _arithmetic(joints: Sequence[Joint]) -> str:
-    """Return ` (30+30+30 < 200)` for a loop of links of which one is longer than all others together."""
+    """Return ` (30+30+30 < 200)` for a loop in which one link is longer than all others together."""
     ends: dict[str, list[FloatArray]] = {}
     for joint in joints:
         ends.setdefault(joint.parent, []).append(joint.T_parent_connector.translation)

@@ -1,8 +1,8 @@
 """Poses of thousands of configurations: one joint after the other, each for all configurations at once.
 
-Small matrices cost more to multiply one by one than their arithmetic takes. Here every number of a frame is a row over the
-configurations, so that a joint is a few products of its constants with rows, and of rows with each other. A frame is kept
-twice: as a matrix `(3, 4, w)`, in which a motion mixes columns, and as a quaternion `(4, w)`, which is what a pose has.
+Multiplying small matrices one by one costs more in calls than in arithmetic. Here every entry of a frame is a row over the
+configurations, so a joint is a few products of its constants with rows, and of rows with each other. A frame is kept twice: as a matrix
+`(3, 4, w)`, in which a motion mixes columns, and as a quaternion `(4, w)`, the form of a pose.
 """
 
 from __future__ import annotations
@@ -15,16 +15,16 @@ import numpy as np
 from articad.connectors import SE3, FloatArray
 from articad.kinematics.crossings import Crossings
 
-_CHUNK = 4096  # configurations at a time: with fewer the calls cost more than the rows, with more the rows leave the cache
+_CHUNK = 4096  # configurations at a time: with fewer the calls dominate, with more the rows do not fit into the cache
 
 
 class BulkPoses:
-    """Places the parts of a tree.
+    """Computes the poses of the parts of a tree.
 
     Args:
         crossings: Its joints from the ground outwards.
-        n_parts: How many parts there are; each but the ground has one of the first crossings.
-        ground: Index of the part that stands still.
+        n_parts: Number of parts; each except the ground has one of the first crossings.
+        ground: Index of the part that does not move.
         T_ground: Its pose.
     """
 
@@ -34,7 +34,7 @@ class BulkPoses:
         self._slots = _slots([(step.near, step.far) for step in self._steps], ground)
 
     def __call__(self, Q: FloatArray) -> FloatArray:
-        """Return poses `(batch, N, 7)` for coordinates `(batch, n_columns)`; a strided view, whose numbers lie row by row."""
+        """Return poses `(batch, N, 7)` for coordinates `(batch, n_columns)`: a strided view, stored row by row."""
         out = np.empty((self._n_parts, 7, len(Q)))
         out[self._ground] = self._T_ground.data[:, None]
         for start in range(0, len(Q), _CHUNK):
@@ -55,7 +55,7 @@ class BulkPoses:
 
 
 def _slots(steps: Sequence[tuple[int, int]], ground: int) -> list[int]:
-    """Return where the matrix of each part is kept: in the place of one that carries no further part, so that few are kept at once."""
+    """Return the buffer of each part's matrix; buffers of parts that carry no further part are reused, so that few are needed."""
     last = {near: k for k, (near, _) in enumerate(steps)}
     slots, free, n = {ground: 0}, list[int](), 1
     for k, (near, far) in enumerate(steps):
@@ -114,9 +114,9 @@ class _Step:
 
 def _turn(frame: FloatArray, q: FloatArray, axis: int, quarter: FloatArray, scratch: _Scratch) -> None:
     """Turn frames `(3, 4, w)` and their quaternions `(4, w)` about one of their axes by four times the angle `quarter`, in place."""
-    t = np.tan(quarter)  # NumPy has it in vector instructions where sine and cosine are several times slower
+    t = np.tan(quarter)  # vectorised in NumPy, while sine and cosine are several times slower
     k = 2.0 / (t * t + 1.0)
-    c, s = k - 1.0, k * t  # of the half angle
+    c, s = k - 1.0, k * t  # c, s of the half angle
     twice = s + s
     cosine, sine = 1.0 - twice * s, twice * c
     i, j = (axis + 1) % 3, (axis + 2) % 3
@@ -160,7 +160,7 @@ def _rotation_rows(q: FloatArray) -> list[FloatArray]:
 
 
 def _columns(T: FloatArray) -> FloatArray:
-    """Return the transposed homogeneous matrix of its first three rows."""
+    """Return the transpose of the first three rows of a homogeneous matrix."""
     M = np.eye(4)
     M[:, :3] = T.T
     return M

@@ -15,8 +15,8 @@ from articad.connectors import SE3, FloatArray, quaternion
 from articad.errors import KinematicsError, LimitError, UnknownJointError
 from articad.kinematics.joints import LIMIT_SLACK, Joint, JointType, swing, twist
 
-_ENDLESS_ANGLE = math.pi  # rad: random angles of an endless joint lie within a half turn either way
-_ENDLESS_TRAVEL = 100.0  # mm: random travels of an endless joint lie within this
+_ENDLESS_ANGLE = math.pi  # rad: range of random angles of an endless joint, in both directions
+_ENDLESS_TRAVEL = 100.0  # mm: range of random travels of an endless joint, in both directions
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,7 +24,7 @@ class Configuration:
     """Coordinates of a set of joints, one configuration or a batch of them.
 
     Attributes:
-        joints: In order of declaration.
+        joints: In the order in which they are declared.
         columns: `(*batch, n)` read-only: all their coordinates in order [rad, mm].
 
     Raises:
@@ -73,13 +73,13 @@ class Configuration:
             values: By joint name: a number for a joint of one coordinate, else one number per coordinate [rad, mm].
 
         Raises:
-            UnknownJointError: If a name is not that of a joint.
+            UnknownJointError: If there is no joint of that name.
             KinematicsError: If the number of values is wrong.
         """
         rest = cls.rest(joints)
         columns = rest.columns.copy()
         for name, value in values.items():
-            part = rest._slice(name)  # noqa: SLF001 - its own class
+            part = rest._slice(name)  # noqa: SLF001 - a method of its own class
             given = np.atleast_1d(np.asarray(value, dtype=np.float64))
             if given.shape != (part.stop - part.start,):
                 raise KinematicsError(f"Joint {name!r} has {part.stop - part.start} coordinate(s); {given.size} given.")
@@ -88,7 +88,7 @@ class Configuration:
 
     @classmethod
     def random(cls, joints: Sequence[Joint], rng: np.random.Generator, batch: tuple[int, ...] = ()) -> Configuration:
-        """Return configurations drawn evenly within the limits; endless coordinates within a half turn or 100 mm."""
+        """Return configurations drawn uniformly within the limits; endless coordinates within half a turn or 100 mm."""
         parts = [_random(joint, rng, batch) for joint in joints]
         return cls(tuple(joints), np.concatenate([np.empty((*batch, 0)), *parts], axis=-1))
 
@@ -101,7 +101,7 @@ class Configuration:
 
     @cached_property
     def values(self) -> Mapping[str, tuple[float, ...]]:
-        """The coordinates of each joint by name; of one configuration only."""
+        """The coordinates of each joint by name; only for a single configuration."""
         if self.batch_shape:
             raise KinematicsError("A batch of configurations has arrays: use configuration[joint].")
         return MappingProxyType({joint.name: tuple(float(v) for v in self[joint.name]) for joint in self.joints})
@@ -124,9 +124,9 @@ class Configuration:
     # --- limits
 
     def violations(self, slack: float = LIMIT_SLACK) -> tuple[LimitError, ...]:
-        """Return one error per coordinate that leaves its limits by more than `slack` [rad, mm], with the worst value.
+        """Return one error per coordinate that exceeds its limits by more than `slack` [rad, mm], with the worst value.
 
-        A ball is held to its cone (reported as `joint.swing`) and its twist (`joint.twist`).
+        For a ball, its cone (reported as `joint.swing`) and its twist (`joint.twist`) are checked.
         """
         errors = []
         for joint in self.joints:
@@ -152,7 +152,7 @@ class Configuration:
         return Configuration(self.joints, np.concatenate([np.empty((*self.batch_shape, 0)), *parts], axis=-1))
 
     def interpolate(self, other: Configuration, s: npt.ArrayLike) -> Configuration:
-        """Return the configuration at the fraction `s` of the way to `other`; balls turn about one axis, the short way."""
+        """Return the configuration at the fraction `s` between this one and `other`; balls turn about one axis by the smaller angle."""
         fraction = np.asarray(s, dtype=np.float64)[..., None]
         columns = self.columns + fraction * (other.columns - self.columns)
         for joint in self.joints:
@@ -170,7 +170,7 @@ class Configuration:
 
 
 def _bounded(joint: Joint, values: FloatArray) -> list[tuple[str, str, FloatArray, float, float]]:
-    """Return what has bounds: name, unit, values `(*batch)`, lower, upper."""
+    """Return the bounded quantities: name, unit, values `(*batch)`, lower, upper."""
     if joint.type is JointType.FREE:
         return []
     if joint.type is not JointType.BALL:
@@ -202,7 +202,7 @@ def _random(joint: Joint, rng: np.random.Generator, batch: tuple[int, ...]) -> F
 
 
 def _ball(direction: FloatArray, tilt: FloatArray, turn: FloatArray) -> FloatArray:
-    """Return quaternions `(*batch, 4)` that turn by `turn` about z and then swing by `tilt` about a level axis."""
+    """Return quaternions `(*batch, 4)` that turn by `turn` about z and then swing by `tilt` about an axis perpendicular to z."""
     level = np.stack([np.cos(direction), np.sin(direction), np.zeros_like(direction)], axis=-1)
     spin = np.stack([np.zeros_like(turn), np.zeros_like(turn), turn], axis=-1)
     return quaternion.positive(quaternion.multiply(quaternion.exp(level * tilt[..., None]), quaternion.exp(spin)))
@@ -217,6 +217,6 @@ def _clamped(joint: Joint, values: FloatArray) -> FloatArray:
     low, high = joint.limits.twist or (-math.pi, math.pi)
     turn = np.clip(twist(values), low, high)
     tilt = np.minimum(swing(values), math.pi if joint.limits.cone is None else joint.limits.cone)
-    # q = swing ⊗ twist: the level axis of the swing is (x, y) turned forward by half the twist
+    # q = swing ⊗ twist: the swing's axis is (x, y) rotated forward by half the twist
     direction = np.arctan2(y, x) + np.arctan2(z, w)
     return _ball(direction, tilt, turn)

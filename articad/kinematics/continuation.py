@@ -1,9 +1,9 @@
-"""Following a linkage while its drivers move, without ever changing to another branch.
+"""Following a linkage while its drivers move, without changing to another branch.
 
-Predictor and corrector with three guards (kinematics: continuation along a sweep): the step stays below half the smallest
-singular value, the orientation of the constraints does not change, and the corrector is shorter than half the predictor.
-Where a step would be smaller than 1e-7 the driver has a dead point, which is then found exactly, or the linkage is singular.
-Couplings are linear: what they tie needs no steps, and only freedoms that move loops are followed (see `ties`).
+Predictor and corrector with three guards: the step stays below half the smallest singular value, the orientation of the constraints does
+not change, and the corrector is shorter than half the predictor. Where a step would be smaller than 1e-7, the driver has a dead point,
+which is then located exactly, or the linkage is singular. Couplings are linear: what they connect needs no steps, and only freedoms that
+move loops are followed (see `ties`).
 """
 
 from __future__ import annotations
@@ -20,22 +20,22 @@ from articad.kinematics.factors import least_squares, right_singular, svd
 from articad.kinematics.loops import CLOSED, RANK_TOLERANCE, ClosureSystem
 from articad.kinematics.ties import BoolArray
 
-_STEP_LIMIT = 0.35  # rad, or lengths L: of any freedom in one step
-_SIGMA_SHARE = 0.5  # of σ_min that a step may take: beyond it another branch may be as near
-_CORRECTOR_SHARE = 0.5  # of the predictor's length that the corrector may have
-ROUNDING = 1e-9  # rad, or lengths L: a corrector this short says nothing about branches
+_STEP_LIMIT = 0.35  # rad, or lengths L: largest change of any freedom in one step
+_SIGMA_SHARE = 0.5  # share of σ_min that a step may take: beyond it another branch may be equally near
+_CORRECTOR_SHARE = 0.5  # largest length of the corrector, as a share of the predictor's
+ROUNDING = 1e-9  # rad, or lengths L: a shorter corrector says nothing about branches
 _SMALLEST_STEP = 1e-7  # rad, or lengths L: below it the driver is at its dead point
 _SINGULAR = 1e-6  # σ_min below which the branch is not determined
-_FOLD_RATE = 100.0  # |dq/ds| that only a dead point has; where branches cross it stays bounded
+_FOLD_RATE = 100.0  # |dq/ds| that occurs only at a dead point; where branches cross it stays bounded
 _MOST_STEPS = 20_000
-_CERTIFIED_SHARE = 0.45  # of β K η; Kantorovich needs at most ½
+_CERTIFIED_SHARE = 0.45  # limit of β K η; Kantorovich requires at most ½
 _FIRST_ARC = 0.01  # rad, or lengths L: first step of the search for a dead point
 
 
 class Stop(StrEnum):
-    """Why a trace ended; STEPS is no property of the linkage: the follower took as many steps as it may.
+    """Why a trace ended. STEPS is not a property of the linkage: the follower reached its largest number of steps.
 
-    Nor is MULTIPLE: at a multiple root no singular value tells where a branch ends, so the linkage may well go on.
+    Neither is MULTIPLE: at a multiple root no singular value shows where a branch ends, so the linkage may well continue.
     """
 
     ARRIVED = "arrived"
@@ -46,14 +46,14 @@ class Stop(StrEnum):
 
 
 class Node(NamedTuple):
-    """A closed configuration on the way.
+    """A closed configuration on the path.
 
     Attributes:
         s: Parameter: how far the drivers have moved.
         Q: Coordinates `(columns,)`.
         rate: dy/ds of all freedoms, scaled.
-        sigma: Smallest singular value of the constraints in the dependent freedoms.
-        bend: Bound of |second-order remainder| / h²: what Kantorovich's theorem needs of a step from here.
+        sigma: Smallest singular value of the constraints with respect to the dependent freedoms.
+        bend: Bound of |second-order remainder| / h², as Kantorovich's theorem needs it for a step from here.
     """
 
     s: float
@@ -69,8 +69,8 @@ class Trace:
 
     Attributes:
         nodes: In order of s; the first is the start.
-        stop: Why there are no more.
-        end: Parameter that was reached; of a dead point its exact place, a little beyond the last node.
+        stop: Why there are no more nodes.
+        end: Parameter that was reached; for a dead point its exact place, a little beyond the last node.
         Q_end: Coordinates there.
         certified: True when each step satisfied the Kantorovich condition.
     """
@@ -83,7 +83,7 @@ class Trace:
 
 
 class _Linear(NamedTuple):
-    """The constraints at one configuration, in the dependent freedoms."""
+    """The constraints linearised at one configuration, in the dependent freedoms."""
 
     J: FloatArray
     U: FloatArray
@@ -97,11 +97,11 @@ class Follower:
     Args:
         system: The equations.
         dependent: Freedoms that follow; the others are drivers.
-        simple: Whether the equations have a simple root in general position, so that a singular value says where a branch ends.
+        simple: Whether the equations have a simple root in general position, so that a singular value shows where a branch ends.
 
     Attributes:
-        basis: Independent motions of the dependent freedoms; what is tied to a driver is none of them.
-        rank: How many of them the loops determine.
+        basis: Independent motions of the dependent freedoms, without those coupled to a driver.
+        rank: Number of these that the loops determine.
     """
 
     def __init__(self, system: ClosureSystem, dependent: BoolArray, *, simple: bool = True) -> None:
@@ -129,7 +129,7 @@ class Follower:
         self.rank = int((s > RANK_TOLERANCE * s[0]).sum()) if s.size else 0
 
     def node(self, s: float, Q: FloatArray, lin: _Linear, direction: FloatArray) -> Node:
-        """Return the node at Q: the rate of the dependents, from the constraints' linear part."""
+        """Return the node at Q: the rate of the dependent freedoms follows from the linearised constraints."""
         rate = direction.copy()
         k = self.rank
         if k:
@@ -144,9 +144,9 @@ class Follower:
 
         Args:
             Q: Closed coordinates `(columns,)`.
-            direction: Scaled velocities of the drivers and of what is tied to them `(freedoms,)`, zero for all others.
-            length: Where to arrive, > 0.
-            certify: Take steps for which Kantorovich's theorem proves that there is one solution, near the predictor.
+            direction: Scaled velocities of the drivers and of what is coupled to them `(freedoms,)`, zero for all others.
+            length: Value of s at which to stop, > 0.
+            certify: Take steps for which Kantorovich's theorem proves exactly one solution near the predictor.
 
         Returns:
             The nodes and why they end.
@@ -186,7 +186,7 @@ class Follower:
         return math.sqrt(_CERTIFIED_SHARE * node.sigma**2 / (self._n * self._c * max(node.bend, 1e-300)))
 
     def tube(self, node: Node, h: FloatArray) -> FloatArray:
-        """Return how far the only solution may be from the predictor of a step h: 2η [rad, lengths L]."""
+        """Return the largest distance of the only solution from the predictor of a step h: 2η [rad, lengths L]."""
         radius: FloatArray = 2.0 * node.bend * h * h / node.sigma
         return radius
 
@@ -208,7 +208,7 @@ class Follower:
         return self.node(node.s + h, closed.Q, lin, direction), U, turned or sign
 
     def _orientation(self, basis: FloatArray, lin: _Linear) -> tuple[FloatArray, float]:
-        """Return the constraints' basis, carried along from the last one, and the sign of their determinant in it (0: none)."""
+        """Return the constraints' basis, transported from the last one, and the sign of their determinant in it (0: undefined)."""
         k = self.rank
         U = lin.U[:, :k].copy()
         if not k or k < self.basis.size or not self.system.smooth_rows:
@@ -231,7 +231,7 @@ class Follower:
         return Trace(tuple(nodes), Stop.SINGULAR, node.s, node.Q, certify)
 
     def _fold(self, node: Node, direction: FloatArray) -> tuple[float, FloatArray] | None:
-        """Return where the driver turns back: along the curve its share of the tangent is zero (secant on arc length)."""
+        """Return where the driver turns back: there its component of the curve's tangent is zero (secant method on arc length)."""
         tangent = self._tangent(node.Q, direction, None)
         if tangent is None:
             return None
@@ -253,7 +253,7 @@ class Follower:
         return best
 
     def _tangent(self, Q: FloatArray, direction: FloatArray, orientation: FloatArray | None) -> FloatArray | None:
-        """Return the unit null vector of the constraints in (dependents, s), oriented along `orientation` or towards growing s."""
+        """Return the unit null vector of the constraints in (dependents, s), oriented along `orientation` or towards increasing s."""
         J = self.system.evaluate_one(Q)[1][: self._n_rows]
         s, Vt = right_singular(np.column_stack([self.basis.of(J), J @ direction]))
         if self.rank < self.basis.size or not s.size:
@@ -263,7 +263,7 @@ class Follower:
         return -tangent if towards < 0 else tangent
 
     def along_arc(self, node: Node, direction: FloatArray, tangent: FloatArray, arc: float) -> tuple[float, FloatArray, FloatArray] | None:
-        """Return s, Q and the tangent at an arc length from a node, drivers and dependents corrected together."""
+        """Return s, Q and the tangent at an arc length from a node; drivers and dependent freedoms are corrected together."""
         s = node.s + arc * tangent[-1]
         Q = self.system.move(node.Q, direction * (s - node.s) + self.basis.step(arc * tangent[:-1]))
         for _ in range(12):
@@ -284,7 +284,7 @@ class Follower:
 
         Args:
             Q: Closed coordinates `(columns,)`, or one start per line `(batch, columns)`.
-            displacement: Scaled displacement of the drivers and of what is tied to them `(batch, freedoms)`.
+            displacement: Scaled displacement of the drivers and of what is coupled to them `(batch, freedoms)`.
 
         Returns:
             Coordinates `(batch, columns)`, and which of them arrived; the rest met a dead point or a singularity.
@@ -327,7 +327,7 @@ class Follower:
 
 
 def _reaches(system: ClosureSystem) -> list[float]:
-    """Return for each loop a bound [mm] of the distance between any two points of it: the sum of its links and travels."""
+    """Return for each loop an upper bound [mm] of the distance between any two of its points: the sum of its links and travels."""
     reaches = []
     for loop in system.loops:
         ends: dict[str, list[FloatArray]] = {}

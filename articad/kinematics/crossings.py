@@ -17,7 +17,7 @@ from articad.kinematics.layout import IndexArray, Layout
 GENERAL = tuple(kind for kind in JointType if any(step.axis != 2 for step in kind.steps))
 TURNING = frozenset(kind for kind in JointType if kind not in GENERAL and any(step.kind == "turn" for step in kind.steps))
 SLIDING = frozenset(kind for kind in JointType if kind not in GENERAL and any(step.kind == "slide" for step in kind.steps))
-_FEW = 500  # quaternions whose squares stay in the cache (measured: break-even 500 … 1000)
+_FEW = 500  # quaternions whose squares fit into the cache (measured break-even: 500 … 1000)
 _CODE = {joint_type: i for i, joint_type in enumerate(JointType)}
 _TURNS = np.array([joint_type in TURNING for joint_type in JointType])
 _SLIDES = np.array([joint_type in SLIDING for joint_type in JointType])
@@ -51,9 +51,9 @@ class Crossings:
         A: Frame of the near connector in the near part `(n, 3, 4)`.
         B: The far part in the frame of its connector `(n, 3, 4)`.
         angle: Column of the angle about z; 0 where there is none `(n,)`.
-        turn: What it is multiplied with; 0 where there is none `(n,)`.
-        travel: Column of the travel along z; of a screw that of its angle; 0 where there is none `(n,)`.
-        slide: What it is multiplied with; 0 where there is none `(n,)`.
+        turn: Factor of that column; 0 where there is none `(n,)`.
+        travel: Column of the travel along z; for a screw that of its angle; 0 where there is none `(n,)`.
+        slide: Factor of that column; 0 where there is none `(n,)`.
     """
 
     def __init__(self, joints: Sequence[Joint], near: Sequence[int], far: Sequence[int], backwards: Sequence[bool], layout: Layout) -> None:
@@ -68,7 +68,7 @@ class Crossings:
 
     def _place_coordinates(self, layout: Layout) -> None:
         starts = layout.first
-        first = np.array([starts.get(joint.name, 0) for joint in self.joints], dtype=np.intp)  # what is held fast has none
+        first = np.array([starts.get(joint.name, 0) for joint in self.joints], dtype=np.intp)  # joints that are held fixed have none
         turns, slides = _TURNS[self._codes], _SLIDES[self._codes]
         self.first: IndexArray = first
         self.angle: IndexArray = np.where(turns, first + _N_COLUMNS[self._codes] - 1, 0)
@@ -130,8 +130,8 @@ class Crossings:
 class Transforms:
     """A · J(q) · B of many crossings as matrices.
 
-    A joint that turns and slides about its z axis is affine in (1, cos θ, sin θ, d), so all of these are one product with
-    constants; the others are done type by type.
+    A joint that turns about and slides along its z axis is affine in (1, cos θ, sin θ, d), so all of these are one product with
+    constants; the others are computed type by type.
 
     Args:
         crossings: The joints.
@@ -147,7 +147,7 @@ class Transforms:
         """Return `(n_joints, batch, 4, 4)` for coordinates as rows `(n_columns, batch)`."""
         c, batch = self._crossings, rows.shape[1]
         if not rows.shape[0]:
-            rows = np.zeros((1, batch))  # fixed joints alone: their factors are zero
+            rows = np.zeros((1, batch))  # only fixed joints: their factors are zero
         factors = np.empty((len(c), batch, 4))
         angle = rows[c.angle] * self._turn
         factors[..., 0], factors[..., 1], factors[..., 2] = 1.0, np.cos(angle), np.sin(angle)
@@ -165,9 +165,9 @@ def motion(joint_type: JointType, q: FloatArray, sign: FloatArray) -> FloatArray
     """Return J(q) `(*batch, 4, 4)` of joints of a type that does more than turn about and slide along z.
 
     Args:
-        joint_type: Which of them.
+        joint_type: The type.
         q: Coordinates `(*batch, n_coordinates)` [rad, mm, unit quaternions].
-        sign: −1 for the inverse motion; of balls only, which alone are crossed backwards.
+        sign: −1 for the inverse motion; only for balls, which alone may be crossed backwards.
     """
     M = np.zeros((*q.shape[:-1], 4, 4))
     M[..., (0, 1, 2, 3), (0, 1, 2, 3)] = 1.0
@@ -191,7 +191,7 @@ def motion(joint_type: JointType, q: FloatArray, sign: FloatArray) -> FloatArray
 def _affine(A: FloatArray, B: FloatArray) -> FloatArray:
     """Return K `(n, 4, 16)` with A · Tz(d) Rz(θ) · B = K₀ + cos θ K₁ + sin θ K₂ + d K₃.
 
-    Only z is left of the axes that turn, and only the origin moves by d.
+    Rotation keeps only z fixed, and d moves only the origin.
     """
     x, y, z = (A[:, :, i, None] for i in range(3))
     row_x, row_y, row_z = (B[:, None, i] for i in range(3))
@@ -206,7 +206,7 @@ def _affine(A: FloatArray, B: FloatArray) -> FloatArray:
 
 
 def rotations(q: FloatArray) -> FloatArray:
-    """Return `quaternion.to_matrix(q)` to the last bit; of a few as one product, which costs less than its forty calls."""
+    """Return `quaternion.to_matrix(q)` exactly; for few quaternions as one product, which costs less than its forty calls."""
     if q.size > 4 * _FEW:
         return quaternion.to_matrix(q)
     squares = (q[..., :, None] * q[..., None, :]).reshape(*q.shape[:-1], 16)
@@ -215,7 +215,7 @@ def rotations(q: FloatArray) -> FloatArray:
 
 
 def _stacked(rows: Sequence[Any]) -> FloatArray:
-    """Return `numpy.concatenate(rows)`, of rows that mostly lie in one piece each: joining their bytes costs a third."""
+    """Return `numpy.concatenate(rows)` for rows that are mostly contiguous: joining their bytes costs a third."""
     try:
         return np.frombuffer(b"".join(rows))
     except BufferError:
@@ -223,7 +223,7 @@ def _stacked(rows: Sequence[Any]) -> FloatArray:
 
 
 def _quadratic() -> FloatArray:
-    """Return what the products of (x, y, z, w) with each other `(16,)` are multiplied with to give R less the identity `(9,)`."""
+    """Return the factors `(9, 16)` of the products of (x, y, z, w) with each other that give R minus the identity `(9,)`."""
     L = np.zeros((4, 4, 9))
     for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
         L[i, i, [4 * j, 4 * k]] = -2.0  # on the diagonal −2 (q² of the other two)
@@ -236,7 +236,7 @@ _EYE, _QUADRATIC = np.eye(3).ravel(), _quadratic()
 
 
 def _square(T: FloatArray) -> FloatArray:
-    """Return homogeneous matrices `(*batch, 4, 4)` of their first three rows."""
+    """Return homogeneous matrices `(*batch, 4, 4)` from their first three rows."""
     M = np.zeros((*T.shape[:-2], 4, 4))
     M[..., :3, :], M[..., 3, 3] = T, 1.0
     return M

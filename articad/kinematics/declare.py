@@ -1,7 +1,7 @@
 """Joints declared in Python, one function per type: `revolute("elbow", upper["tip"], lower["root"], limits=(-2, 2))`.
 
-Angles are in rad and lengths in mm. `parent` and `child` say only from which side motion is measured: about and along
-the parent connector's +z, by the right hand.
+Angles are in rad and lengths in mm. `parent` and `child` only determine from which side motion is measured: about and along the parent
+connector's +z, right-handed.
 """
 
 from __future__ import annotations
@@ -124,7 +124,7 @@ def universal(
 
 
 def free(name: str, parent: Attachment, child: Attachment, *, rest: SE3 | None = None, mate: MateName = "aligned") -> Joint:
-    """Move freely in six directions; `rest` is where the child connector stands in the parent's, by default where the two coincide."""
+    """Move freely in six directions; `rest` is the pose of the child connector in the parent's, by default the identity."""
     x, y, z, qx, qy, qz, qw = (float(value) for value in (SE3.identity() if rest is None else rest).data)
     return _joint(name, JointType.FREE, parent, child, mate, (), (x, y, z, qx, qy, qz, qw))
 

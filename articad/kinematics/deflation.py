@@ -1,14 +1,14 @@
-"""Equations of linkages whose constraints have a multiple root, with equations added that make the root simple.
+"""Equations of linkages whose constraints have a multiple root, extended so that the root becomes simple.
 
-On some sets of closed configurations the constraints' Jacobian J has a smaller rank than the set's dimension asks for, everywhere
-(a platform on eight parallel rods). Newton's method then converges only linearly, and the smallest singular value says nothing
-about other branches. That J keeps its low rank is an equation itself: with the left and right null vectors U₂ and N of J,
+On some sets of closed configurations the rank of the constraints' Jacobian J is everywhere smaller than the dimension of the set implies
+(a platform on eight parallel rods). Newton's method then converges only linearly, and the smallest singular value says nothing about
+other branches. That J keeps its low rank is an equation itself: with the left and right null vectors U₂ and N of J,
 
     S(q) = U₂ᵀ J(q) N = 0,    dS = U₂ᵀ dJ N,
 
-the Schur complement of the part of full rank. Loops and S together have a simple root where one such step is enough
-(deflation: Leykin, Verschelde, Zhao 2006; isosingular sets: Hauenstein, Wampler 2013). S depends on the choice of U₂ and N,
-|S| and the steps of Gauss and Newton do not, so each configuration has null vectors of its own.
+is the Schur complement of the part of full rank. Loops and S together have a simple root where one such step is enough (deflation:
+Leykin, Verschelde, Zhao 2006; isosingular sets: Hauenstein, Wampler 2013). S depends on the choice of U₂ and N, but |S| and the
+Gauss-Newton steps do not, so each configuration has its own null vectors.
 """
 
 from __future__ import annotations
@@ -21,12 +21,12 @@ from articad.kinematics.loops import ClosureSystem
 from articad.kinematics.mobility import Mobility
 
 _SIMPLE = 1e-4  # σ/σ₁ of an equation that counts, at a simple root
-_WEIGHT = 10.0  # of S: second derivatives of loops are about a tenth of the first ones; it leaves the solutions as they are
-_DIFFERENCE = 1e-5  # rad, or lengths L: step of the central differences of J, whose error is 1e-11
+_WEIGHT = 10.0  # weight of S: second derivatives of loops are about a tenth of the first ones; the solutions do not depend on it
+_DIFFERENCE = 1e-5  # rad, or lengths L: step of the central differences of J, with an error of 1e-11
 
 
 def regularized(system: ClosureSystem, analysis: Mobility) -> ClosureSystem | None:
-    """Return equations with a simple root where the analysis was made: the system itself, or a deflated one.
+    """Return equations with a simple root at the point of the analysis: the system itself, or a deflated one.
 
     Args:
         system: The equations.
@@ -47,11 +47,11 @@ def regularized(system: ClosureSystem, analysis: Mobility) -> ClosureSystem | No
 
 
 class DeflatedSystem(ClosureSystem):
-    """Equations of loops and couplings, and between them those that hold the rank of the loops' Jacobian.
+    """Equations of loops and couplings; between both, the equations that keep the rank of the loops' Jacobian.
 
     Args:
         plain: The equations themselves.
-        rank: Of the loops' Jacobian in the independent motions of all active freedoms, on the whole set of closed configurations.
+        rank: Rank of the loops' Jacobian in the independent motions of all active freedoms, on the whole set of closed configurations.
     """
 
     smooth_rows = False  # its rows turn with the null vectors
@@ -60,7 +60,7 @@ class DeflatedSystem(ClosureSystem):
         self.__dict__.update(plain.__dict__)
         self._plain, self._rank = plain, rank
         self._motions = self.ties.basis(self.active)
-        self._held = (plain.n_loop_rows - rank) * (self._motions.size - rank)  # equations that hold the rank
+        self._held = (plain.n_loop_rows - rank) * (self._motions.size - rank)  # equations that keep the rank
         self.n_loop_rows = plain.n_loop_rows + self._held
         self.n_rows = plain.n_rows + self._held
 
@@ -69,7 +69,7 @@ class DeflatedSystem(ClosureSystem):
         r, J = self._plain.evaluate(Q)
         U2, N, S = self._null_vectors(J)
         batch, n = N.shape[:2]
-        # dS along y is U₂ᵀ (dJ along y) N; second derivatives commute but for terms that vanish with S, so this is U₂ᵀ (dJ along N) y
+        # dS along y is U₂ᵀ (dJ along y) N; second derivatives commute except for terms that vanish with S, so this is U₂ᵀ (dJ along N) y
         ends = self.move(Q[:, None, None], _DIFFERENCE * np.stack([N, -N], axis=2))
         loops = self._plain.n_loop_rows
         J_ends = self._plain.evaluate(ends.reshape(2 * batch * n, Q.shape[1]))[1][:, :loops].reshape(batch, n, 2, loops, J.shape[2])

@@ -6,8 +6,8 @@ v̇ = Z ż + c with J c = −J̇ v, and the equation of motion is (Featherstone,
 
     Zᵀ M Z ż + Zᵀ (M c + h) = (E Z)ᵀ τ,
 
-where E selects the freedoms of the drivers, on which the efforts τ act. Idle freedoms, such as the spin of a rod between two
-balls, are among Z and feel no effort.
+where E selects the freedoms of the drivers, on which the efforts τ act. Idle freedoms, such as the spin of a rod between two balls, are
+part of Z, and no effort acts on them.
 
 Units: configurations q in mm and rad, as everywhere in articad; everything else in SI: m, kg, s, N, N·m, rad/s, J.
 """
@@ -32,7 +32,7 @@ from articad.kinematics.mechanism import Mechanism
 GRAVITY: Final = (0.0, 0.0, -9.81)
 """Gravity along −z [m/s²], as exported models have it."""
 
-_STEP: Final = 1e-3  # rad, or lengths L: of the differences that give J̇ v, whose error is of fourth order
+_STEP: Final = 1e-3  # rad, or lengths L: step of the differences that give J̇ v, with an error of fourth order
 _MM_PER_M: Final = 1e3
 
 
@@ -53,12 +53,12 @@ class Massive(Protocol):
 
 
 class Acceleration(NamedTuple):
-    """What efforts do to a mechanism.
+    """The effect of efforts on a mechanism.
 
     Attributes:
         drivers: Accelerations of the drivers' freedoms [m/s², rad/s²] `(nv,)`.
-        freedoms: Of the freedoms of all joints, in order of declaration `(n_freedoms,)`.
-        efforts: Of the drivers [N, N·m] `(nv,)`.
+        freedoms: Accelerations of the freedoms of all joints, in the order in which they are declared `(n_freedoms,)`.
+        efforts: Efforts of the drivers [N, N·m] `(nv,)`.
         constraints: By loop joint: force [N] and torque [N·m] at its connector that the parent exerts on the child, in the frame of
             the parent's connector after the joint's motion `(6,)`. By coupling: the effort [N, N·m] `(1,)` on its second coordinate.
             Where constraints are redundant, the smallest set of forces is returned.
@@ -71,7 +71,7 @@ class Acceleration(NamedTuple):
 
 
 class _State(NamedTuple):
-    """A configuration and velocity, and what the equation of motion needs of them; lengths are mm.
+    """A configuration and velocity, and the terms of the equation of motion there; lengths are in mm.
 
     Attributes:
         M: Mass matrix of all freedoms `(n, n)`.
@@ -79,7 +79,7 @@ class _State(NamedTuple):
         Z: Basis of the admissible velocities `(n, k)`.
         c: Acceleration of all freedoms where ż is 0 `(n,)`.
         J: Scaled constraints `(rows, n)`.
-        scale: What one scaled unit of each freedom is `(n,)`.
+        scale: Size of one scaled unit of each freedom `(n,)`.
     """
 
     M: FloatArray
@@ -94,7 +94,7 @@ class Dynamics:
     """The dynamics of a mechanism whose parts have mass.
 
     Args:
-        mechanism: What moves.
+        mechanism: The mechanism.
         masses: Mass properties of parts, each in the part's frame; parts that are not named are massless.
         gravity: Acceleration [m/s²] in the ground frame.
 
@@ -119,7 +119,7 @@ class Dynamics:
     # --- drivers' coordinates
 
     def mass_matrix(self, q: npt.ArrayLike) -> FloatArray:
-        """Return the inertia that the drivers feel [kg, kg·m, kg·m²] `(nv, nv)`; freedoms that nothing drives move freely.
+        """Return the inertia that acts on the drivers [kg, kg·m, kg·m²] `(nv, nv)`; freedoms without a driver move freely.
 
         Args:
             q: Coordinates of the drivers [rad, mm] `(nq,)`.
@@ -152,7 +152,7 @@ class Dynamics:
         return self.inverse(q, v, np.zeros(self.nv)).efforts
 
     def inverse(self, q: npt.ArrayLike, v: npt.ArrayLike, a: npt.ArrayLike) -> Acceleration:
-        """Return the efforts that accelerate the drivers as asked.
+        """Return the efforts that give the drivers the requested accelerations.
 
         Args:
             q: Coordinates of the drivers [rad, mm] `(nq,)`.
@@ -170,12 +170,12 @@ class Dynamics:
         return self._result(state, solved[:k], solved[k:])
 
     def forward(self, q: npt.ArrayLike, v: npt.ArrayLike, efforts: npt.ArrayLike) -> Acceleration:
-        """Return how efforts accelerate the mechanism.
+        """Return the accelerations of the mechanism under efforts.
 
         Args:
             q: Coordinates of the drivers [rad, mm] `(nq,)`.
-            v: Velocities of the drivers' freedoms [m/s, rad/s] `(nv,)`; freedoms that nothing drives are at rest.
-            efforts: Of the drivers [N, N·m] `(nv,)`.
+            v: Velocities of the drivers' freedoms [m/s, rad/s] `(nv,)`; freedoms without a driver are at rest.
+            efforts: Efforts of the drivers [N, N·m] `(nv,)`.
 
         Raises:
             KinematicsError: If a shape is wrong.
@@ -331,7 +331,7 @@ class Dynamics:
     @cached_property
     def _compiled(self) -> CompiledModel:
         """The tree with the parts' inertias; lengths are mm."""
-        import pinocchio as pin  # noqa: PLC0415 - paid where dynamics are asked for
+        import pinocchio as pin  # noqa: PLC0415 - imported only where dynamics are requested
 
         compiled = compile(self.mechanism)
         for name, body in self.masses.items():
@@ -341,7 +341,7 @@ class Dynamics:
         return compiled
 
     def _tree(self, Q: FloatArray, v: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return mass matrix and bias of all freedoms; those of loop joints carry nothing.
+        """Return mass matrix and bias of all freedoms; loop joints have no inertia.
 
         Pinocchio's velocities are v_p = B v, so M = Bᵀ M_p B and h = Bᵀ (M_p Ḃ v + h_p).
         """

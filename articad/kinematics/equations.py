@@ -1,4 +1,4 @@
-"""The equations of loops at many configurations at once, in NumPy; `forward.LoopModel` has the same for one."""
+"""The equations of loops at many configurations at once, in NumPy; `forward.LoopModel` evaluates them at one."""
 
 from __future__ import annotations
 
@@ -12,21 +12,21 @@ from articad.kinematics.batch import TreeArrays
 from articad.kinematics.joints import Joint
 from articad.kinematics.layout import IndexArray
 
-NEAR_PI = -0.9  # cos θ below which the logarithm is taken by quaternions instead of the sine
-_STRAIGHT = 1e-8  # rad: a mismatch so small that the square term of the logarithm's Jacobian is below rounding
+NEAR_PI = -0.9  # cos θ below which the logarithm is computed from quaternions instead of the sine
+_STRAIGHT = 1e-8  # rad: for a smaller mismatch the square term of the logarithm's Jacobian is below rounding
 
 
 class Closures(NamedTuple):
-    """What closes the loops, each between a ghost of a part and the part itself.
+    """The closing conditions of loops, each between a ghost of a part and the part itself.
 
     Attributes:
         arrays: The tree with the ghosts.
         ends: Indices of the ghosts, and of the parts that they must meet `(2, loops)`.
         connectors: C_c, the same in both `(loops, 4, 4)`.
-        spin: Turn [rad] of each loop about the axis of each freedom, per scaled unit `(loops, freedoms)`.
+        spin: Rotation [rad] of each loop about the axis of each freedom, per scaled unit `(loops, freedoms)`.
         slide: Travel [L] along it `(loops, freedoms)`.
         lengths: L of each loop [mm] `(loops,)`.
-        scale: What one scaled unit of each freedom is [rad, mm] `(freedoms,)`.
+        scale: Size of one scaled unit of each freedom [rad, mm] `(freedoms,)`.
     """
 
     arrays: TreeArrays
@@ -39,12 +39,12 @@ class Closures(NamedTuple):
 
 
 def closures(arrays: TreeArrays, loop_joints: Sequence[Joint], scale: FloatArray, lengths: FloatArray) -> Closures:
-    """Return what closes the loops.
+    """Return the closing conditions of the loops.
 
     Args:
         arrays: The tree with ghosts of the loop joints' children.
         loop_joints: Joints that close loops.
-        scale: What one scaled unit of each freedom is [rad, mm].
+        scale: Size of one scaled unit of each freedom [rad, mm].
         lengths: L of each loop [mm].
     """
     index = {part: i for i, part in enumerate(arrays.parts)}
@@ -65,14 +65,14 @@ class BatchEquations:
     """Residuals of loops and their Jacobian at many configurations.
 
     Args:
-        closures: What closes.
+        closures: The closing conditions.
     """
 
     def __init__(self, closures: Closures) -> None:
         self._arrays, self._lengths = closures.arrays, closures.lengths[:, None, None]  # (loops, 1, 1)
         self._ends = closures.ends.ravel()
         self._C_c = np.concatenate([closures.connectors, closures.connectors])[:, None]
-        # what a freedom's axis, and its moment about B, count in the residual: (loops, 1, freedoms, 1)
+        # factors of a freedom's axis and of its moment about B in the residual: (loops, 1, freedoms, 1)
         self._spin, self._slide = closures.spin[:, None, :, None], closures.slide[:, None, :, None]
         self._turn = self._spin / self._lengths[..., None]
 
@@ -107,19 +107,19 @@ class BatchEquations:
 
 
 def _rotation_log(R: FloatArray) -> FloatArray:
-    """Return rotation vectors `(*batch, 3)` of matrices: by the sine where that is accurate, which is where loops are closed."""
+    """Return rotation vectors `(*batch, 3)` of matrices: from the sine where that is accurate, as it is near closed loops."""
     parts = R.reshape(*R.shape[:-2], 9) @ _SINE_AND_TRACE
     cosine = 0.5 * parts[..., 3] - 0.5
     if cosine.size and cosine.min() < NEAR_PI:
         return quaternion.log(quaternion.from_matrix(R))
     axis = parts[..., :3]
-    sine = np.sqrt((axis * axis).sum(axis=-1)) + 1e-300  # never zero, and never seen
+    sine = np.sqrt((axis * axis).sum(axis=-1)) + 1e-300  # never zero, and too small to matter
     phi: FloatArray = axis * (np.arctan2(sine, cosine) / sine)[..., None]
     return phi
 
 
 def _log_jacobian(phi: FloatArray) -> FloatArray:
-    """Return what a row of spin is multiplied with to give the rate of the rotation vector: (I − ½[φ] + c [φ]²)ᵀ."""
+    """Return the matrix by which a row of spin is multiplied to give the rate of the rotation vector: (I − ½[φ] + c [φ]²)ᵀ."""
     S = _crossing(phi)
     J: FloatArray = _EYE + 0.5 * S
     if np.abs(phi).max(initial=0.0) > _STRAIGHT:

@@ -1,7 +1,7 @@
 """Factors of the constraints' Jacobians, computed in one thread of BLAS.
 
-NumPy's BLAS shares what is large among threads that wait for each other by turning in place. Wherever other programs use the
-processors, that takes a hundred times as long as one thread alone, and a Jacobian of twenty loops is large already.
+BLAS spreads large inputs over threads that busy-wait. When other programs use the processors, that takes a hundred times as long as one
+thread alone, and a Jacobian of twenty loops is already large.
 """
 
 from __future__ import annotations
@@ -14,11 +14,11 @@ import numpy as np
 
 from articad.connectors import FloatArray
 
-_SHARED = 2000  # entries of a matrix; BLAS begins to share its work at four times as many
+_SHARED = 2000  # entries of a matrix; BLAS begins to use threads at four times as many
 
 
 def svd(A: FloatArray, *, full: bool = False) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return U, σ and Vᵗ of a matrix `(m, n)`: min(m, n) vectors of each, or all `(m, m)` and `(n, n)`."""
+    """Return U, σ and Vᵗ of a matrix `(m, n)`: min(m, n) vectors of each, or with `full` all `(m, m)` and `(n, n)`."""
     with one_thread(A.size):
         U, s, Vt = np.linalg.svd(A, full_matrices=full)
     return U, s, Vt
@@ -33,20 +33,20 @@ def singular_values(A: FloatArray) -> FloatArray:
 def right_singular(A: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return σ of a matrix `(m, n)` and all its right singular vectors `(n, n)`: those of its null space are the last rows.
 
-    Loops have far more rows than freedoms; all the left vectors `(m, m)`, which nobody asks for, would take most of the time.
+    Loops have far more rows than freedoms; computing the unused left vectors `(m, m)` would take most of the time.
     """
     _, s, Vt = svd(A, full=A.shape[0] < A.shape[1])
     return s, Vt
 
 
 def least_squares(A: FloatArray, b: FloatArray, dropped: float) -> FloatArray:
-    """Return the shortest x of least |A x - b|; singular values below a share of the largest count as zero."""
+    """Return the shortest x that minimises |A x - b|; singular values below a share of the largest count as zero."""
     with one_thread(A.size):
         return np.asarray(np.linalg.lstsq(A, b, rcond=dropped)[0], dtype=float)
 
 
 def one_thread(entries: int) -> AbstractContextManager[Any]:
-    """Keep BLAS to one thread while matrices of so many entries are worked on; small ones it does not share anyway."""
+    """Limit BLAS to one thread for matrices with this many entries; small ones use one anyway."""
     return _pools().limit(limits=1, user_api="blas") if entries > _SHARED else nullcontext()
 
 

@@ -25,17 +25,17 @@ if TYPE_CHECKING:
 _DATA_BYTES_PER_CUBE = 64
 _DATA_LIMIT_BYTES = 1 << 30
 _EYE = np.eye(3)
-_CLOSED = 1e-13  # |r| of a loop: what it changes in the Jacobian is rounding
-_ONE = np.ones(())  # an array: making one of a number takes longer than the signs of ten parts
+_CLOSED = 1e-13  # |r| of a loop: the Jacobian changes only by rounding
+_ONE = np.ones(())  # an array: making one from a number takes longer than the signs of ten parts
 
 
 class _Map(NamedTuple):
-    """From the coordinates of all joints to Pinocchio's configuration.
+    """Maps the coordinates of all joints to Pinocchio's configuration.
 
     Attributes:
         columns: For each place in Pinocchio's q, the column of the coordinate that it comes from.
-        signs: −1 where Pinocchio measures the other way.
-        turned: Places of the cosine, before the sine, of each planar joint's angle; None without any.
+        signs: −1 where Pinocchio measures in the opposite direction.
+        turned: Places of the cosine, which precedes the sine, of each planar joint's angle; None without planar joints.
     """
 
     columns: IndexArray
@@ -43,9 +43,9 @@ class _Map(NamedTuple):
     turned: IndexArray | None
 
     def q(self, Q: FloatArray) -> FloatArray:
-        """Return Pinocchio's configuration `(nq,)` for coordinates `(n_columns,)`; quaternions as they are."""
+        """Return Pinocchio's configuration `(nq,)` for coordinates `(n_columns,)`; quaternions are copied."""
         q: FloatArray = self.signs * Q.take(self.columns)
-        if self.turned is not None:  # a planar joint's angle is a direction there
+        if self.turned is not None:  # Pinocchio stores a planar joint's angle as cosine and sine
             q[self.turned] = np.cos(q[self.turned])
             q[self.turned + 1] = np.sin(q[self.turned + 1])
         return q
@@ -70,13 +70,13 @@ def _map_of(model: Any, crossed: Sequence[tuple[Crossing, int]], layout: Layout)
 
 @dataclass(frozen=True, eq=False)
 class CompiledModel:
-    """A tree as Pinocchio holds it, joints numbered depth-first.
+    """A tree as a Pinocchio model, joints numbered depth-first.
 
     Attributes:
-        model: The `pinocchio.Model`; frames bear the names of the parts. Lengths are mm.
-        mechanism: Where it comes from.
+        model: The `pinocchio.Model`; its frames have the names of the parts. Lengths are in mm.
+        mechanism: The mechanism it was made from.
         crossings: The tree's joints in the order in which they were added; fixed ones have no Pinocchio joint.
-        joint_ids: Pinocchio's joint of each crossing; of a fixed one the joint that carries it.
+        joint_ids: Pinocchio's joint of each crossing; for a fixed one the joint that carries it.
         frame_ids: Frame of each part by name.
     """
 
@@ -102,13 +102,13 @@ class CompiledModel:
         Raises:
             KinematicsError: E_NONFINITE; E_QUAT_NORM if a ball's quaternion is off by more than 1e-3.
         """
-        if not Q.dot(Q) < np.inf:  # so that nothing below is asked for the cosine of infinity
+        if not Q.dot(Q) < np.inf:  # refuse infinity here, before cosines are computed
             self.mechanism.layout.normalized(Q)
         q = self._map.q(Q)
         unit: FloatArray = self._pin.normalize(self.model, q)
-        off = unit - q  # of a quaternion it is as long as its length is off
+        off = unit - q  # for a quaternion, the length of this difference is its deviation from unit length
         if not off.dot(off) < QUATERNION_TOLERANCE**2:
-            self.mechanism.layout.normalized(Q)  # says what is wrong, if anything is: here the errors of all balls were added
+            self.mechanism.layout.normalized(Q)  # raises the exact error, if there is one: here the deviations of all balls were summed
         return unit
 
     @cached_property
@@ -117,14 +117,14 @@ class CompiledModel:
 
     @cached_property
     def _placed(self) -> list[Any]:
-        """Pinocchio's poses of the parts, in their order: the objects in `data`, which each call moves."""
+        """Pinocchio's poses of the parts, in their order: the objects in `data`, which each call updates."""
         placed = self.data.oMf.tolist()
         return [placed[self.frame_ids[part]] for part in self.mechanism.parts]
 
     def poses(self, Q: FloatArray) -> SE3:
         """Return the poses `(N,)` of all parts for the coordinates `(n_columns,)` of all joints.
 
-        For one configuration this is several times faster than `Mechanism.poses`; Pinocchio's `Data` has to fit.
+        For one configuration this is several times faster than `Mechanism.poses`; Pinocchio's `Data` must not be too large.
 
         Raises:
             KinematicsError: As `q`, and if `data` would take more than 1 GiB.
@@ -144,12 +144,12 @@ class CompiledModel:
 
 
 class _Turned(NamedTuple):
-    """Joints whose velocity is measured in another frame.
+    """Joints whose velocity Pinocchio measures in another frame.
 
     Attributes:
-        places: Where the rotation of each stands in the matrix that takes Pinocchio's freedoms to the layout's: rows, columns.
+        places: Places of each joint's rotation in the matrix that maps Pinocchio's freedoms to the layout's: rows, columns.
         columns: Coordinates `(n, c)`.
-        rotations: Of coordinates `(n, c)` the rotations `(n, 3, 3)`.
+        rotations: Function from coordinates `(n, c)` to rotations `(n, 3, 3)`.
     """
 
     places: tuple[IndexArray, IndexArray]
@@ -169,7 +169,7 @@ class LoopModel:
     joint in the frame after the motion, articad in the frame before it.
 
     Args:
-        closures: What closes.
+        closures: The closing conditions of the loops.
     """
 
     def __init__(self, closures: Closures) -> None:
@@ -210,12 +210,12 @@ class LoopModel:
         rows = np.concatenate([np.repeat(1.0 / self._lengths, 3, axis=1), np.ones((len(self._lengths), 3))], axis=1)
         self._weights = -np.outer(rows, sign * closures.scale)  # Pinocchio's constraint Jacobian is that of A against B
         self._pairs = list(zip(constraints, workspaces, strict=True))
-        # M of each loop, which each call writes anew in its workspace, and L
+        # M of each loop, which each call updates in its workspace, and L
         self._mismatches = [(workspace.c1Mc2, float(length)) for workspace, length in zip(workspaces, closures.lengths, strict=True)]
         self._lock = Lock()
 
     def __reduce__(self) -> tuple[type[LoopModel], tuple[Closures]]:
-        """Return how to make it again: Pinocchio's workspaces stay in their process."""
+        """Support pickling by making it again: Pinocchio's workspaces stay in their process."""
         return LoopModel, (self._closures,)
 
     def residual(self, Q: FloatArray) -> FloatArray:
@@ -225,7 +225,7 @@ class LoopModel:
     def fill(self, Q: FloatArray, J: FloatArray) -> FloatArray:
         """Return the residuals, and write their derivatives, scaled, into the first rows of `J` `(rows, freedoms)`."""
         r, D = self._evaluated(Q)
-        if self._turned:  # one product puts the columns in order and turns those of balls: a block of three each
+        if self._turned:  # one product reorders the columns and rotates those of balls: a block of three each
             T = self._ordered.copy()
             for places, columns, turned in self._turned:
                 T[places] = turned(Q.take(columns))
@@ -245,27 +245,27 @@ class LoopModel:
         """Return the residuals `(6 loops,)` and Pinocchio's constraint Jacobian `(6 loops, nv)`."""
         pin = self._pin
         r: list[float] = []
-        with self._lock:  # the workspace belongs to one call at a time
+        with self._lock:  # only one call may use the workspace at a time
             pin.computeJointJacobians(self._model, self._data, self._map.q(Q))
             for constraint, workspace in self._pairs:
                 constraint.calc(self._model, self._data, workspace)
             D = pin.getConstraintsJacobian(self._model, self._data, self._constraints, self._workspaces)
             for M, length in self._mismatches:
                 x, y, z, a, b, c, w = pin.SE3ToXYZQUATtuple(M)
-                sine = math.sqrt(a * a + b * b + c * c) + 1e-300  # of half the angle; never zero, and never seen
+                sine = math.sqrt(a * a + b * b + c * c) + 1e-300  # of half the angle; never zero, and too small to matter
                 factor = math.copysign(2.0, w) * math.atan2(sine, abs(w)) / sine
                 r += (x / length, y / length, z / length, a * factor, b * factor, c * factor)
         return np.array(r), D
 
 
 def _turned(layout: Layout, joints: Sequence[Joint], order: IndexArray) -> list[_Turned]:
-    """Return the joints whose velocity Pinocchio measures in the frame after the motion, by type; `order` has its freedom for each."""
+    """Return the joints whose velocity Pinocchio measures in the frame after the motion, by type; `order` gives their freedoms."""
     found = []
     for kind, turned in ((JointType.BALL, rotations), (JointType.FREE, rotations), (JointType.PLANAR, _about_z)):
         names = [joint.name for joint in joints if joint.type is kind]
         first = kind.quaternion or 0
         columns = np.array([range(layout.columns[name].start + first, layout.columns[name].stop) for name in names])
-        for block in range(0, kind.freedoms if names else 0, 3):  # of a free joint the velocity is turned as well as the spin
+        for block in range(0, kind.freedoms if names else 0, 3):  # for a free joint, linear and angular velocity are both rotated
             freedoms = np.array([range(layout.freedoms[name].start + block, layout.freedoms[name].start + block + 3) for name in names])
             found.append(_Turned((freedoms[:, :, None], order[freedoms][:, None, :]), columns, turned))
     return found
@@ -293,7 +293,7 @@ def require_data_fits(nv: int) -> None:
     """Refuse a model whose `pinocchio.Data` would take more than 1 GiB.
 
     Raises:
-        KinematicsError: Naming the NumPy way, which has no such limit.
+        KinematicsError: Naming the NumPy functions, which have no such limit.
     """
     size = _DATA_BYTES_PER_CUBE * nv**3
     if size > _DATA_LIMIT_BYTES:
@@ -306,8 +306,8 @@ def require_data_fits(nv: int) -> None:
 def compile(mechanism: Mechanism) -> CompiledModel:  # noqa: A001 - articad.kinematics.forward.compile reads as what it does
     """Return the mechanism's tree as a Pinocchio model; joints that close loops and couplings are left out.
 
-    Part frames are body frames named after the parts. Nothing is taken over unchecked: Pinocchio accepts NaN, duplicate
-    names and reversed limits silently, the mechanism refused them before.
+    Part frames are body frames named after the parts. Pinocchio silently accepts NaN, duplicate names and reversed limits; the mechanism
+    has refused them before.
     """
     import pinocchio as pin  # noqa: PLC0415
 

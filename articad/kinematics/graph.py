@@ -1,4 +1,4 @@
-"""The joint graph: which joints carry the parts, which close loops, and everything that is wrong with it."""
+"""The joint graph: which joints carry the parts, which close loops, and its faults."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ from articad.findings import Finding, Findings
 from articad.kinematics.joints import Joint, JointType
 from articad.kinematics.tree import KinematicTree
 
-# Light joints carry parts first, so that the joints that are left to close loops are passive hinges and balls.
-# A free joint holds nothing, so that it closes no loop where it can carry.
+# Types with low weight carry parts first, so that passive hinges and balls remain to close the loops.
+# A free joint constrains nothing, so it closes no loop if it can carry a part.
 _WEIGHTS = {
     JointType.FREE: -1,
     JointType.FIXED: 0,
@@ -34,16 +34,16 @@ class JointGraph:
     """Parts and the joints between them.
 
     Args:
-        parts: Names, in order of declaration.
-        ground: The part that stands still.
-        joints: In order of declaration.
+        parts: Names, in the order in which they are declared.
+        ground: The part that does not move.
+        joints: In the order in which they are declared.
     """
 
     def __init__(self, parts: Sequence[str], ground: str, joints: Sequence[Joint]) -> None:
         self.parts, self.ground, self.joints = tuple(parts), ground, tuple(joints)
 
     def components(self) -> tuple[tuple[str, ...], ...]:
-        """Return the groups of parts that joints connect, each in order of declaration, the ground's first."""
+        """Return the groups of parts that joints connect, each in the order in which they are declared, the ground's first."""
         leader = {part: part for part in self.parts}
 
         def find(part: str) -> str:
@@ -61,9 +61,9 @@ class JointGraph:
         return tuple(sorted((tuple(group) for group in groups.values()), key=lambda group: self.ground not in group))
 
     def spanning_tree(self) -> tuple[KinematicTree, tuple[Joint, ...]]:
-        """Return the tree that carries every part, and the joints that close loops, in order of declaration.
+        """Return the tree that carries every part, and the joints that close loops, in the order in which they are declared.
 
-        Prim's algorithm from the ground by (weight of the type, order of declaration): deterministic.
+        Prim's algorithm from the ground by (weight of the type, order in the plan): deterministic.
 
         Raises:
             PlanError: With the findings, if there is no such tree.
@@ -92,7 +92,7 @@ class JointGraph:
 
     @cached_property
     def _outward(self) -> KinematicTree | None:
-        """The tree where all joints are declared from the ground outwards, each to a part of its own: there is but this one."""
+        """The tree if every joint is declared from the ground outwards, each to a part of its own: then it is the only one."""
         children = set(self._children)
         if len(children) != len(self.joints) or len(self.parts) != len(children) + 1 or self.ground in children:
             return None
@@ -100,7 +100,7 @@ class JointGraph:
             return None
         try:
             return KinematicTree(self.ground, zip(self.joints, self._parents, self._children, strict=True))
-        except KinematicsError:  # some go round in a ring
+        except KinematicsError:  # some joints form a ring
             return None
 
     @cached_property
@@ -136,7 +136,7 @@ class JointGraph:
         return crossed, reached
 
     def findings(self) -> Findings:
-        """Return everything that is wrong with the graph."""
+        """Return all faults of the graph."""
         return self._findings
 
     @cached_property
@@ -164,7 +164,7 @@ class JointGraph:
         return found
 
     def _clear(self) -> bool:
-        """Tell at a glance that every joint has two declared parts which no other joint connects."""
+        """Return, by a quick check, whether every joint has two declared parts that no other joint connects."""
         if not self._place.keys() >= {*self._parents, *self._children} or any(map(operator.eq, self._parents, self._children)):
             return False
         pairs = set(zip(self._parents, self._children, strict=True))

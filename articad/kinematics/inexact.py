@@ -1,8 +1,8 @@
-"""Consistent geometry nearest to connectors that were rounded.
+"""The consistent geometry nearest to rounded connectors.
 
-Overconstrained loops need geometry that real data never have: axes of a planar linkage that are parallel to the last bit. A
-file holds 3 to 9 decimals, so the loop stays open by micrometres, or is locked. Here the connector frames of the loops' joints
-are moved as little as possible, such that the loops close and move as the data mean.
+Overconstrained loops need geometry that real data never have: axes of a planar linkage that are parallel to the last bit. A file has 3
+to 9 decimals, so the loop stays open by micrometres, or is locked. Here the connector frames of the loops' joints are moved as little as
+possible, such that the loops close and move as intended.
 
 The unknowns are a twist δ (6 numbers, lengths over L) for each of the two frames of each joint on a loop, and the coordinates
 Q₁ … Q_K of K configurations along the intended motion. They solve
@@ -31,25 +31,25 @@ from articad.kinematics.loops import ClosureSystem
 from articad.kinematics.mobility import REALISED, Settled, settled
 
 POSITION_TOLERANCE = 1e-3  # mm: coordinates with 3 decimals are off by up to 0.5e-3 each
-RELATIVE_TOLERANCE = 3e-5  # of L: coordinates with 6 significant digits, and what axes with 4 decimals miss at a distance L
+RELATIVE_TOLERANCE = 3e-5  # of L: coordinates with 6 significant digits, and the error at a distance L of axes with 4 decimals
 ANGLE_TOLERANCE = 7e-5  # rad: axes with 4 decimals are off by up to 0.5e-4 in each component; 0.01° between two axes is beyond
-NOISE = 2e-3  # σ/σ₁: what noise within the tolerances can give a direction in which the exact linkage is free
-_NEARLY = 0.05  # |r| of a loop that is open by so little that a cause is worth looking for
-_COARSE = 0.05  # σ/σ₁ that an axis askew by some degrees can give, where only the cause is looked for
-_CLEAR = 2.5  # times the noise that the smallest singular value of a sample must have
-_EXPLAINED = 0.1  # share of what is wrong that one frame alone may leave, if it is to be the cause
+NOISE = 2e-3  # σ/σ₁: largest value that noise within the tolerances can give a direction in which the exact linkage is free
+_NEARLY = 0.05  # |r| below which the cause of an open loop is looked for
+_COARSE = 0.05  # σ/σ₁ that an axis misaligned by some degrees can give, used only to find the cause
+_CLEAR = 2.5  # times the noise: least size of the smallest singular value of a sample
+_EXPLAINED = 0.1  # share of the error that may remain for one frame to count as its cause
 _WALK, _STEPS = 0.25, 4  # rad, or lengths L; steps of each walk from rest along the intended motion
 _ITERATIONS = 8
-_CUTS = (1e-2, 1e-3, 1e-4, 1e-5)  # σ/σ₁ below which the conditions for mobility count as noise; the first that works
+_CUTS = (1e-2, 1e-3, 1e-4, 1e-5)  # σ/σ₁ below which the conditions for mobility count as noise; the first that works is used
 
 
 @dataclass(frozen=True)
 class Moved:
-    """How far the frame of one connector was moved.
+    """The displacement of the frame of one connector.
 
     Attributes:
-        joint: Whose frame.
-        part: That carries the connector.
+        joint: The joint of the frame.
+        part: The part that carries the connector.
         connector: Name of the connector.
         distance: [mm].
         angle: [rad].
@@ -64,13 +64,13 @@ class Moved:
 
 @dataclass(frozen=True)
 class Correction:
-    """Joints with consistent frames, and what was moved.
+    """Joints with consistent frames, and the displacements.
 
     Attributes:
         joints: All joints, in order.
         moved: Each frame of a joint on a loop.
         length: L [mm] of the linkage.
-        askew: The two connectors of one part that were turned most against each other, and by what angle [rad].
+        askew: The two connectors of one part whose axes were turned most relative to each other, and the angle [rad].
         closed: Whether the loops close with these joints; if not, no mobile geometry is near.
     """
 
@@ -82,22 +82,22 @@ class Correction:
 
     @property
     def distance(self) -> float:
-        """How far the frame that moved most was moved [mm]."""
+        """Largest displacement of a frame [mm]."""
         return max((one.distance for one in self.moved), default=0.0)
 
     @property
     def angle(self) -> float:
-        """How far the frame that turned most was turned [rad]."""
+        """Largest rotation of a frame [rad]."""
         return max((one.angle for one in self.moved), default=0.0)
 
     @property
     def distance_tolerance(self) -> float:
-        """Up to which distance [mm] frames may be moved: 1e-3 mm, or 3e-5 L if that is more."""
+        """Largest permitted displacement of frames [mm]: 1e-3 mm, or 3e-5 L if that is larger."""
         return max(POSITION_TOLERANCE, RELATIVE_TOLERANCE * self.length)
 
     @property
     def within(self) -> bool:
-        """True where the loops close and nothing was moved beyond the tolerances."""
+        """True if the loops close and no frame was moved beyond the tolerances."""
         return self.closed and self.distance <= self.distance_tolerance and self.angle <= ANGLE_TOLERANCE
 
 
@@ -107,14 +107,14 @@ def nearest(
     """Return the consistent geometry nearest to the given one.
 
     Args:
-        parts: Of the mechanism.
-        ground: The part that stands still.
+        parts: Parts of the mechanism.
+        ground: The part that does not move.
         joints: As given.
         couplings: Relations between coordinates.
-        coarse: Look for geometry that is off by degrees, to name the cause.
+        coarse: Whether to look for geometry that is off by degrees, to name the cause.
 
     Returns:
-        The correction; None where the geometry is consistent already, or so far from it that no rounding explains it.
+        The correction; None if the geometry is already consistent, or so far from it that rounding cannot explain it.
     """
     problem = _Problem(parts, ground, joints, couplings, _COARSE if coarse else NOISE)
     samples = problem.samples()
@@ -165,7 +165,7 @@ class _Problem:
         return found
 
     def _walk(self, start: Settled, direction: FloatArray) -> list[Settled]:
-        """Return where the linkage comes to when it keeps its direction, up to where noise and a singularity cannot be told apart."""
+        """Return the configurations reached by keeping the direction, up to where noise and a singularity cannot be distinguished."""
         system, at, found = self._system, start, list[Settled]()
         where = np.flatnonzero(system.active)
         for _ in range(_STEPS):
@@ -190,7 +190,7 @@ class _Problem:
         return found
 
     def _freedoms(self, at: Settled) -> int:
-        """Return how many directions are free if singular values below the noise are."""
+        """Return how many directions are free if singular values below the noise count as zero."""
         return len(at.Vt) - int((at.s > self._noise * at.s.max(initial=0.0)).sum())
 
     def _null_space(self, at: Settled) -> FloatArray:
@@ -201,7 +201,7 @@ class _Problem:
     # --- the correction
 
     def solved(self, samples: Sequence[Settled], cut: float) -> tuple[float, FloatArray]:
-        """Return the largest |r| of the samples that is left, and δ `(joints, 2, 6)`, by Gauss–Newton."""
+        """Return the largest remaining |r| of the samples, and δ `(joints, 2, 6)`, by Gauss-Newton."""
         delta = np.zeros((len(self._names), 2, 6))
         ranks = [len(one.Vt) - self._freedoms(one) for one in samples]
         system, at = self._system, list(samples)
@@ -217,7 +217,7 @@ class _Problem:
         return best
 
     def alone(self, samples: Sequence[Settled]) -> FloatArray | None:
-        """Return the δ that moves one frame alone and explains best what is wrong, the smallest of equals; None where none explains it."""
+        """Return the δ that moves a single frame and explains the error best, the smallest of equals; None if none explains it."""
         A, b = self._linear(
             self._system, samples, [len(one.Vt) - self._freedoms(one) for one in samples], np.zeros((len(self._names), 2, 6))
         )
@@ -238,7 +238,7 @@ class _Problem:
     def _linear(
         self, system: ClosureSystem, samples: Sequence[Settled], ranks: Sequence[int], delta: FloatArray
     ) -> tuple[FloatArray, FloatArray]:
-        """Return the equations A δ = b of all samples, linear about the present δ: U₂ᵀ D (δ' − δ) = −U₂ᵀ r."""
+        """Return the equations A δ = b of all samples, linearised about the present δ: U₂ᵀ D (δ' − δ) = −U₂ᵀ r."""
         rows, rights = [], []
         for one, rank in zip(samples, ranks, strict=True):
             across = one.U[:, rank:].T
@@ -260,7 +260,7 @@ class _Problem:
                 frames = (T[joint.parent] @ joint.T_parent_connector.matrix, T[joint.child] @ joint.T_child_connector.matrix)
                 for k, P in enumerate(frames):
                     sign = side if k == 0 else -side
-                    arms = np.cross(P[:3, :3].T, B[:3, 3] - P[:3, 3])  # of a turn about each axis
+                    arms = np.cross(P[:3, :3].T, B[:3, 3] - P[:3, 3])  # lever arms of a turn about each axis
                     out[:3, place[joint.name], k, :3] = sign * (B[:3, :3].T @ P[:3, :3]) * (self._system.length / system.lengths[i])
                     out[:3, place[joint.name], k, 3:] = sign * (B[:3, :3].T @ arms.T) / system.lengths[i]
                     out[3:, place[joint.name], k, 3:] = sign * (B[:3, :3].T @ P[:3, :3])
@@ -273,7 +273,7 @@ class _Problem:
         return tuple(_moved(joint, twists[joint.name]) if joint.name in twists else joint for joint in self._joints)
 
     def correction(self, delta: FloatArray, *, closed: bool) -> Correction:
-        """Return the joints with their frames moved by δ, and by how much each."""
+        """Return the joints with their frames moved by δ, and the displacement of each."""
         joints = self._with(delta)
         moved, turned = list[Moved](), dict[str, list[tuple[Moved, FloatArray]]]()
         by_name = {joint.name: joint for joint in self._joints}
@@ -301,5 +301,5 @@ def _moved(joint: Joint, twists: FloatArray) -> Joint:
 
 
 def shown_gap(mm: float) -> str:
-    """Return a gap as findings show it, in powers of ten where it is small."""
+    """Return a gap as findings show it, with a power of ten if it is small."""
     return f"{mm:.3f} mm" if mm >= 0.01 else f"{mm:.1e} mm"

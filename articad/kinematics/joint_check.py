@@ -1,4 +1,4 @@
-"""A quick look at the numbers of many joints at once; what it does not clear is looked at joint by joint."""
+"""A quick check of the numbers of many joints at once; joints that do not pass it are checked one by one."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from articad.kinematics.joints import Joint, JointType
 
 
 def joint_findings(joints: Sequence[Joint]) -> list[Finding]:
-    """Return everything that is wrong with the joints' own numbers."""
+    """Return all faults of the joints' own numbers."""
     return [finding for joint in _doubtful(joints) for finding in joint.findings()]
 
 
 def _doubtful(joints: Sequence[Joint]) -> Sequence[Joint]:
-    """Return the joints whose numbers are not clearly right, in order of declaration."""
+    """Return the joints whose numbers do not pass the quick check, in the order in which they are declared."""
     types = [joint.type for joint in joints]
     doubtful = [joint for joint in joints if joint.lead or joint.driver]
     doubtful += [joint for joint, kind in zip(joints, types, strict=True) if kind in _SPECIAL and not _clear_special(joint)]
@@ -31,7 +31,7 @@ def _in_order(joints: Sequence[Joint], some: Sequence[Joint]) -> Sequence[Joint]
 
 
 def _clear_special(joint: Joint) -> bool:
-    """Tell whether a ball rests upright within its cone and twist; a screw must have a lead, and is looked at for that."""
+    """Return whether a ball rests upright within its cone and twist; a screw must have a lead, so it never passes here."""
     limits = joint.limits
     turns = limits.twist is None or limits.twist[0] <= 0.0 <= limits.twist[1]
     leans = limits.cone is None or 0.0 < limits.cone <= math.pi
@@ -39,7 +39,7 @@ def _clear_special(joint: Joint) -> bool:
 
 
 def _unclear(joints: Sequence[Joint]) -> Sequence[Joint]:
-    """Return the joints that have no quaternion and do not rest within limits of the right number."""
+    """Return the joints that have no quaternion and whose limits are malformed or do not contain the rest value."""
     sizes = [_SIZES[joint.type] for joint in joints]
     rests, limits = [joint.rest for joint in joints], [joint.limits for joint in joints]
     lowers, uppers = [one.lower for one in limits], [one.upper for one in limits]
@@ -52,6 +52,6 @@ def _unclear(joints: Sequence[Joint]) -> Sequence[Joint]:
 
 
 _SPECIAL = frozenset({JointType.BALL, JointType.SCREW, JointType.FREE})
-_ROTATED = frozenset({JointType.BALL, JointType.FREE})  # have no ranges of their coordinates
+_ROTATED = frozenset({JointType.BALL, JointType.FREE})  # types without ranges of their coordinates
 _NEUTRAL = JointType.BALL.neutral
 _SIZES = {joint_type: len(joint_type.coordinates) for joint_type in JointType}

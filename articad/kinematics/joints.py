@@ -1,4 +1,4 @@
-"""Joints: what each type may do, and the numbers of one joint between two connectors.
+"""Joints: the motion of each type, and the data of one joint between two connectors.
 
 A joint places its child by `T_child = T_parent · C_p · J(q) · F · C_c⁻¹` (`articad.connectors.mate`). J(q) is given here:
 revolute Rz(θ) · slider Tz(d) · cylindrical Tz(d) Rz(θ) · ball R(quaternion) · screw Tz(lead·θ/2π) Rz(θ) ·
@@ -26,20 +26,20 @@ _FindingMaker = Callable[[str, str, str], Finding]  # code, message, hint
 _Shower = Callable[[float], str]
 
 LIMIT_SLACK = 1e-9  # rad or mm: a value computed to be at its limit is at its limit
-_QUATERNION_TOLERANCE = 1e-3  # | ‖q‖ − 1 | of a ball's coordinates: digits of a file pass, other quantities do not
+_QUATERNION_TOLERANCE = 1e-3  # | ‖q‖ − 1 | of a ball's coordinates: rounded digits of a file pass, other quantities do not
 
 Motion = Literal["turn", "slide"]
 
 
 class Step(NamedTuple):
-    """One elementary motion of a joint type: about or along an axis of the frame that the steps before it have left.
+    """One elementary motion of a joint type: about or along an axis of the frame after the steps before it.
 
     Attributes:
-        kind: Turning about or sliding along the axis.
+        kind: Rotation about the axis, or translation along it.
         axis: 0, 1, 2 for x, y, z.
-        coordinate: Index of the coordinate that is its value; None for the three turns that a quaternion stands for.
+        coordinate: Index of the coordinate that is its value; None for the three turns that a quaternion replaces.
         advances: True for the slide of a screw, whose value is the coordinate times lead/2π.
-        suffix: Of the name that the step has where formats write one joint per step; empty where the joint has one step.
+        suffix: Suffix of the step's name in formats that write one joint per step; empty if the joint has one step.
     """
 
     kind: Motion
@@ -64,13 +64,13 @@ class _Kind:
 
     Attributes:
         coordinates: Names of the columns of q; a quaternion (x, y, z, w) comes last.
-        steps: J(q) as a product, first one first.
+        steps: J(q) as a product, the first factor first.
         quaternion: Index of the first of a quaternion's four coordinates, None without one.
         units: Units of the coordinates.
         freedom_units: Units of the velocities.
         mirror: q' = mirror ∘ q makes J(q') = K J(q) K with K = diag(1, −1, 1): a slide along y and turns about x and z change sign.
         reverse: q' = reverse ∘ q makes J(q') = J(q)⁻¹; None where no such signs exist, because the steps do not commute.
-        reverse_opposed: q' = reverse_opposed ∘ q makes J(q') = F J(q)⁻¹ F, where F = diag(1, −1, −1) turns y and z over.
+        reverse_opposed: q' = reverse_opposed ∘ q makes J(q') = F J(q)⁻¹ F, where F = diag(1, −1, −1) reverses y and z.
     """
 
     def __init__(self, coordinates: tuple[str, ...], *steps: Step) -> None:
@@ -93,7 +93,7 @@ class _Kind:
 
 
 def _mirrored(step: Step) -> float:
-    """Return the sign that the mirror image across the xz plane gives a coordinate."""
+    """Return the sign of a coordinate in the mirror image across the xz plane."""
     return -1.0 if (step.kind == "slide") == (step.axis == _Y) else 1.0
 
 
@@ -134,7 +134,7 @@ class JointType(StrEnum):
 
     @property
     def steps(self) -> tuple[Step, ...]:
-        """J(q) as a product of elementary motions, first one first; a quaternion is the product of the three turns without coordinate."""
+        """J(q) as a product of elementary motions, first factor first; a quaternion replaces three turns without coordinates."""
         return _KINDS[self].steps
 
     @property
@@ -144,7 +144,7 @@ class JointType(StrEnum):
 
     @property
     def freedoms(self) -> int:
-        """How many independent velocities the joint has."""
+        """Number of independent velocities of the joint."""
         return len(_KINDS[self].freedom_units)
 
     @property
@@ -159,12 +159,12 @@ class JointType(StrEnum):
 
     @property
     def freedom_units(self) -> tuple[Unit, ...]:
-        """Unit of each freedom: as the coordinates', but a quaternion has three angles."""
+        """Unit of each freedom: as for the coordinates, except that a quaternion has three angles."""
         return _KINDS[self].freedom_units
 
     @property
     def reversible(self) -> bool:
-        """False for planar, universal and free: crossed from child to parent they are not joints of their own type."""
+        """False for planar, universal and free: measured from the child they are not joints of their own type."""
         return _KINDS[self].reverse is not None
 
     @property
@@ -175,7 +175,7 @@ class JointType(StrEnum):
     def factors(self, lead: float = 0.0) -> list[tuple[tuple[float, float, float], tuple[float, float, float]]]:
         """Return J as a product of motions exp(value · (turn, slide)), one per freedom, as (turn, slide) [1, mm per unit].
 
-        A screw is one of them: it slides by lead/2π per radian. A quaternion is three turns about x, y and z.
+        A screw is one of them: it slides by lead/2π per radian. A quaternion gives three turns about x, y and z.
         """
         found: dict[int, tuple[tuple[float, float, float], tuple[float, float, float]]] = {}
         for at, step in enumerate(self.steps):
@@ -191,11 +191,11 @@ class JointType(StrEnum):
         return list(found.values())
 
     def mirror_signs(self) -> FloatArray:
-        """Return the signs `(n_coordinates,)` that take coordinates to those of the mirrored joint (kinematics: derive)."""
+        """Return the signs `(n_coordinates,)` that convert coordinates to those of the mirrored joint."""
         return np.array(_KINDS[self].mirror, dtype=np.float64)
 
     def reversal_signs(self, mate: Mate) -> FloatArray:
-        """Return the signs `(n_coordinates,)` that take coordinates to those measured from the child.
+        """Return the signs `(n_coordinates,)` that convert coordinates to those measured from the child.
 
         Raises:
             KinematicsError: E_REVERSE_UNSUPPORTED for planar, universal and free.
@@ -238,7 +238,7 @@ class JointType(StrEnum):
 
 
 def _turned(axis: int, angle: FloatArray) -> SE3:
-    """Return the turn about an axis by angles `(*batch)` [rad]."""
+    """Return the rotations about an axis by angles `(*batch)` [rad]."""
     return (SE3.rot_x, SE3.rot_y, SE3.rot_z)[axis](angle)
 
 
@@ -274,7 +274,7 @@ def swing(q: npt.ArrayLike) -> FloatArray:
 
 
 def twist(q: npt.ArrayLike) -> FloatArray:
-    """Return the turn `(*batch)` [rad] about z, −π … π, that is left of a ball's quaternions `(*batch, 4)` after the swing."""
+    """Return the rotation `(*batch)` [rad] about z, −π … π, of a ball's quaternions `(*batch, 4)` after removing the swing."""
     _, _, z, w = np.moveaxis(np.asarray(q, dtype=np.float64), -1, 0)
     return wrapped(2.0 * np.arctan2(z, w))
 
@@ -291,7 +291,7 @@ class Joint:
 
     Attributes:
         name: Unique in the mechanism.
-        type: What it may do.
+        type: The joint type.
         parent: Part from whose connector the motion is measured.
         child: The other part.
         parent_connector: Name of the parent's connector.
@@ -302,11 +302,11 @@ class Joint:
         limits: Bounds of the coordinates.
         rest: Coordinates in the rest pose.
         lead: Advance per turn of a screw [mm].
-        driver: Asked for as a driver of a loop.
-        effort: Largest force [N] or torque [N·mm] per coordinate, None where it is to be computed; empty: all of them.
+        driver: Marked as a driver of a loop.
+        effort: Largest force [N] or torque [N·mm] per coordinate, None where it is to be computed; empty: compute all.
         velocity: Largest speed [mm/s, rad/s] per coordinate, likewise.
         damping: Resistance per speed [N·s/mm, N·mm·s/rad] per coordinate, likewise.
-        friction: Coulomb friction [N, N·mm] per coordinate; None and empty: none.
+        friction: Coulomb friction [N, N·mm] per coordinate; None or empty: none.
     """
 
     name: str
@@ -350,7 +350,7 @@ class Joint:
     def reversed(self) -> Joint:
         """Return the same joint measured from its child: same relation between the parts, other coordinates.
 
-        The coordinates are `type.reversal_signs(mate) ∘ q` (kinematics: reversal).
+        The coordinates are `type.reversal_signs(mate) ∘ q`.
 
         Raises:
             KinematicsError: E_REVERSE_UNSUPPORTED for planar, universal and free.
@@ -381,7 +381,7 @@ class Joint:
     ) -> Joint:
         """Return the joint of the mirror image between other connectors: J'(q') = K J(q) K, K = diag(1, −1, 1).
 
-        The coordinates are `type.mirror_signs() ∘ q`; a screw changes hand, so its lead changes sign; the mate stays; it is no driver.
+        The coordinates are `type.mirror_signs() ∘ q`; a screw's lead changes sign; the mate stays; the joint is not a driver.
         """
         signs = self.type.mirror_signs()
         return replace(
@@ -400,7 +400,7 @@ class Joint:
         )
 
     def findings(self) -> list[Finding]:
-        """Return everything that is wrong with the joint's own numbers."""
+        """Return all faults of the joint's own numbers."""
         return _joint_findings(self)
 
 
@@ -431,7 +431,7 @@ class Coupling:
 
     Attributes:
         name: Unique among couplings.
-        kind: gear, belt, rack, screw or linear; for reading only.
+        kind: gear, belt, rack, screw or linear; only informative.
         a: Column name of the first coordinate.
         b: Column name of the second one.
         ratio: k.

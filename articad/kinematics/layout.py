@@ -1,4 +1,4 @@
-"""Layout: where each joint's coordinates and velocities stand in the arrays of all joints."""
+"""Layout: the places of each joint's coordinates and velocities in the arrays of all joints."""
 
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ _N_FREEDOMS = {joint_type: joint_type.freedoms for joint_type in JointType}
 
 
 class Layout:
-    """Columns of coordinates and of freedoms of joints, in order of declaration.
+    """Columns of coordinates and of freedoms of joints, in the order in which they are declared.
 
-    A freedom is a velocity: the derivative of a coordinate, but of a quaternion the angular velocity (x, y, z) of its joint's child
-    side against its parent side, in the parent connector's frame [rad/s].
+    A freedom is a velocity: the derivative of a coordinate, or for a quaternion the angular velocity (x, y, z) of its joint's child side
+    relative to its parent side, in the parent connector's frame [rad/s].
 
     Args:
-        joints: In order of declaration.
+        joints: In the order in which they are declared.
     """
 
     def __init__(self, joints: Sequence[Joint]) -> None:
@@ -44,12 +44,12 @@ class Layout:
 
     @cached_property
     def columns(self) -> dict[str, slice]:
-        """Of each joint, by name."""
+        """Columns of each joint, by name."""
         return dict(zip(self._names, map(slice, self._starts, self._starts[1:]), strict=False))
 
     @cached_property
     def freedoms(self) -> dict[str, slice]:
-        """Of each joint, by name."""
+        """Freedoms of each joint, by name."""
         return dict(zip(self._names, map(slice, self._own, self._own[1:]), strict=False))
 
     @cached_property
@@ -86,12 +86,12 @@ class Layout:
 
     @cached_property
     def ball_freedoms(self) -> frozenset[int]:
-        """Freedoms that turn balls and free joints."""
+        """Rotational freedoms of balls and free joints."""
         return frozenset(self._ball_freedoms.ravel().tolist())
 
     @cached_property
     def _plain(self) -> tuple[IndexArray, IndexArray]:
-        """Columns and freedoms that are no part of a quaternion or its turns."""
+        """Columns and freedoms that are not part of a quaternion or its rotation."""
         all_columns, all_freedoms = np.arange(self.n_columns), np.arange(self.n_freedoms)
         return np.setdiff1d(all_columns, self._ball_columns), np.setdiff1d(all_freedoms, self._ball_freedoms)
 
@@ -99,7 +99,7 @@ class Layout:
         """Return a joint by name.
 
         Raises:
-            UnknownJointError: If there is none.
+            UnknownJointError: If there is no such joint.
         """
         for joint in self.joints:
             if joint.name == name:
@@ -116,13 +116,13 @@ class Layout:
         return freedom
 
     def column_of_freedom(self, freedom: int) -> int:
-        """Return a column that a freedom moves; a quaternion's turns give its first three."""
+        """Return a column that a freedom moves; for a quaternion's turns these are its first three."""
         joint = next(joint for joint in self.joints if self.freedoms[joint.name].start <= freedom < self.freedoms[joint.name].stop)
         column: int = self.columns[joint.name].start + freedom - self.freedoms[joint.name].start
         return column
 
     def normalized(self, Q: FloatArray) -> FloatArray:
-        """Return coordinates `(*batch, n_columns)` whose quaternions are of unit length.
+        """Return coordinates `(*batch, n_columns)` with their quaternions normalised to unit length.
 
         Raises:
             KinematicsError: E_NONFINITE; E_QUAT_NORM if a quaternion is off by more than 1e-3.
@@ -153,7 +153,7 @@ class Layout:
         return moved
 
     def difference(self, start: FloatArray, end: FloatArray) -> FloatArray:
-        """Return the step `(*batch, n_freedoms)` that leads from `start` to `end`; quaternions the short way."""
+        """Return the step `(*batch, n_freedoms)` that leads from `start` to `end`; quaternions by the smaller angle."""
         if not self._ball_columns.size:
             return end - start
         columns, freedoms = self._plain
@@ -165,7 +165,7 @@ class Layout:
 
 
 def _quaternions(starts: Sequence[int], types: Sequence[JointType]) -> list[int]:
-    """Return where the quaternions, or their turns, of joints begin, which start at these places."""
+    """Return the first indices of the quaternions, or of their turns, of joints that start at these places."""
     return [start + kind.quaternion for start, kind in zip(starts, types, strict=False) if kind.quaternion is not None]
 
 

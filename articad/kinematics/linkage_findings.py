@@ -1,4 +1,4 @@
-"""What there is to say about loops and couplings: open, inexact, locked, shaky, singular, idle, redundant."""
+"""Findings about loops and couplings: open, inexact, locked, shaky, singular, idle, redundant."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from articad.kinematics.mechanism import Mechanism
 
 _STILL = 1e-9  # of a unit motion of the whole mechanism: a coordinate that moves less stands still
-_MOST_LOOPS_RELEASED = 4  # a proposal costs a few ms per joint; larger mechanisms get it when they ask for it
+_MOST_LOOPS_RELEASED = 4  # a proposal costs a few ms per joint; larger mechanisms compute it on request
 
 
 def loop_findings(mechanism: Mechanism) -> list[Finding]:
@@ -39,7 +39,7 @@ def loop_findings(mechanism: Mechanism) -> list[Finding]:
 
 
 def _inexact_findings(mechanism: Mechanism) -> list[Finding]:
-    """Say by how much connectors were moved so that loops close and move."""
+    """Return the finding about connectors that were moved so that loops close and move."""
     correction = mechanism.correction
     if correction is None:
         return []
@@ -75,7 +75,7 @@ def askew_error(error: LoopError, needed: Correction) -> LoopError:
 
 
 def inconsistency(needed: Correction) -> tuple[str, str]:
-    """Say what keeps loops from closing and moving that are nearly consistent, and what to do about it."""
+    """Return the reason why nearly consistent loops do not close or move, and what to do about it."""
     if needed.askew is not None and needed.askew[2] > ANGLE_TOLERANCE:
         a, b, angle = needed.askew
         cause = f"the axes of {b.part}.{b.connector} and {a.part}.{a.connector} are {math.degrees(angle):.3f}° out of parallel"
@@ -89,7 +89,7 @@ def inconsistency(needed: Correction) -> tuple[str, str]:
 
 
 def _coupling_findings(group: Group) -> list[Finding]:
-    """Say which couplings hold each other fast, such as three gears in a triangle."""
+    """Return findings about couplings that lock each other, such as three gears in a triangle."""
     system, moving = group.system, np.abs(group.analysis.freedoms).max(axis=1, initial=0.0) > _STILL
     locked = [
         coupling for coupling, row in zip(system.couplings, system.coupling_rows, strict=True) if not moving[np.flatnonzero(row)].any()
@@ -135,14 +135,14 @@ def _driver_findings(group: Group, beyond: Correction | None) -> list[Finding]:
 
 
 def _locked(group: Group, driver: Joint, beyond: Correction | None) -> Finding:
-    """Say why a loop cannot move: usually an axis that is tilted against the others."""
+    """Return the finding about a loop that cannot move, usually because of a tilted axis."""
     sigma = group.analysis.near
     message = f"mobility 0: driver {driver.name!r} cannot move; the smallest singular value is {sigma:.2g}"
     loops = [loop for loop in group.system.loops if driver.name in {joint.name for joint in loop.joints}]
     named = False
     for loop in loops[:1]:
         joint, tilt = _most_tilted(group, loop.joints)
-        if 0 < tilt < math.radians(5):  # more is no misalignment but a spatial loop
+        if 0 < tilt < math.radians(5):  # a larger angle means a spatial loop, not a misalignment
             named = True
             message += f" and belongs to the axis of {joint.parent}.{joint.parent_connector}, tilted by {math.degrees(tilt):.3f}°"
     parts = loops[0].parts if loops else (driver.parent, driver.child)
@@ -154,7 +154,7 @@ def _locked(group: Group, driver: Joint, beyond: Correction | None) -> Finding:
 
 
 def _most_tilted(group: Group, joints: tuple[Joint, ...]) -> tuple[Joint, float]:
-    """Return the joint whose axis differs most from the loop's common one at rest, and by how much [rad]."""
+    """Return the joint whose axis differs most from the loop's common one at rest, and the angle [rad]."""
     system = group.system
     T = system.arrays.matrices(group.Q[None])[:, 0]
     axes = np.array([(T[system.parts.index(j.parent)] @ j.T_parent_connector.matrix)[:3, 2] for j in joints])

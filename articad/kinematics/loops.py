@@ -28,26 +28,26 @@ from articad.kinematics.ties import Basis, BoolArray, Ties
 from articad.kinematics.tree import KinematicTree
 
 CLOSED = 1e-10  # |t|/L and rad: a loop with a smaller residual is closed
-RESIDUAL_TARGET = 1e-12  # where the iteration stops, before one more polishing step
+RESIDUAL_TARGET = 1e-12  # the iteration stops here, before one more polishing step
 _ROUNDING = 1e-15  # |r| that no step improves
-RANK_TOLERANCE = 1e-7  # σ/σ₁ of a constraint that is none: rounding leaves 1e-12, a real constraint 1e-5
+RANK_TOLERANCE = 1e-7  # σ/σ₁ below which a constraint does not count: rounding gives 1e-12, a real constraint 1e-5
 _DROPPED = 1e-10  # σ/σ₁ below which a direction is left out of a step
-_LARGEST_STEP = 0.5  # rad, or lengths L: the linear model is worth nothing beyond
-_DAMPING_FALL, _DAMPING_RISE = 0.2, 8.0  # of a step that helped, and of one that did not
+_LARGEST_STEP = 0.5  # rad, or lengths L: the linear model is not valid beyond
+_DAMPING_FALL, _DAMPING_RISE = 0.2, 8.0  # after a step that helped, and after one that did not
 _DAMPING_START = 1e-3
 _MOST_FREEDOMS = 60  # Pinocchio's workspace grows with their cube: 14 MB here, and making it takes as long as a hundred evaluations
 _COINCIDENT = 1e-4  # of the longest link
-_FALLBACK_LENGTH = 100.0  # mm, where no part has two connectors apart
+_FALLBACK_LENGTH = 100.0  # mm, if no part has two separate connectors
 
 
 class Closed(NamedTuple):
-    """What an iteration ended with.
+    """The result of an iteration.
 
     Attributes:
         Q: Coordinates `(n_columns,)`.
         residual: |r|.
         iterations: Linear systems solved.
-        J: Jacobian of the residuals by the freedoms that could move, scaled, `(rows, free)`.
+        J: Jacobian of the residuals by the free freedoms, scaled, `(rows, free)`.
     """
 
     Q: FloatArray
@@ -62,19 +62,19 @@ class Closed(NamedTuple):
 
     @property
     def rank(self) -> int:
-        """Independent constraints on the freedoms that could move."""
+        """Number of independent constraints on the free freedoms."""
         s = singular_values(self.J)
         return int((s > RANK_TOLERANCE * s.max(initial=0.0)).sum())
 
 
 @dataclass(frozen=True)
 class Loop:
-    """A loop joint and the way round.
+    """A loop joint and the rest of its loop.
 
     Attributes:
-        joint: Which closes the loop.
+        joint: The joint that closes the loop.
         parts: Along the tree from the joint's parent to its child.
-        joints: Of the way, and the closing one last.
+        joints: Joints along these parts, with the closing one last.
     """
 
     joint: Joint
@@ -88,20 +88,20 @@ class Loop:
 class ClosureSystem:
     """Equations of loops and couplings in the coordinates of the joints that take part.
 
-    Only the parts that loops need are placed, and only joints that a constraint touches have coordinates here: others on the way
-    stand as they rest, which no equation sees. Freedoms are scaled: a length counts in units of L. Every loop has an L of its own.
+    Only the parts that loops need are placed, and only joints that a constraint involves have coordinates here: other joints are held at
+    rest, which does not affect any equation. Freedoms are scaled: a length counts in units of L. Every loop has its own L.
 
     Args:
-        tree: Which carries all parts.
-        layout: Of all joints of the mechanism.
+        tree: The tree that carries all parts.
+        layout: Layout of all joints of the mechanism.
         loop_joints: Joints that close loops.
         couplings: Relations between coordinates.
 
     Raises:
-        KinematicsError: E_NONFINITE if joints are farther apart than numbers reach.
+        KinematicsError: E_NONFINITE if distances between joints exceed the floating-point range.
     """
 
-    smooth_rows = True  # the same row is the same equation everywhere, so the orientation of all rows tells branches apart
+    smooth_rows = True  # a row is the same equation everywhere, so the orientation of all rows distinguishes branches
 
     def __init__(self, tree: KinematicTree, layout: Layout, loop_joints: Sequence[Joint], couplings: Sequence[Coupling]) -> None:
         self.couplings = tuple(couplings)
@@ -147,14 +147,14 @@ class ClosureSystem:
 
     @cached_property
     def _one(self) -> LoopModel | None:
-        """The equations at one configuration by Pinocchio; None where nothing moves in a loop, or where the workspace is too large."""
+        """The equations at one configuration by Pinocchio; None if nothing moves in a loop, or if the workspace would be too large."""
         return LoopModel(self._closures) if self.loops and 0 < self.layout.n_freedoms <= _MOST_FREEDOMS else None
 
     # --- equations
 
     @property
     def coupling_rows(self) -> FloatArray:
-        """The last rows of the Jacobian, which never change `(couplings, freedoms)`."""
+        """The last rows of the Jacobian, which are constant `(couplings, freedoms)`."""
         return self.ties.J
 
     def evaluate(self, Q: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -188,7 +188,7 @@ class ClosureSystem:
         return distance
 
     def contradiction(self, Q: FloatArray) -> float:
-        """Return by how much couplings contradict each other at `Q` `(columns,)`: what no value of the tied coordinates mends."""
+        """Return the residual of couplings at `Q` `(columns,)` that no values of the coupled coordinates remove: their contradiction."""
         Q = self.ties.fitted(Q, np.zeros(self.layout.n_freedoms, dtype=bool))
         return float(self.ties.missed(Q))
 
@@ -203,27 +203,27 @@ class ClosureSystem:
     # --- closing
 
     def close(self, Q: FloatArray, free: BoolArray, *, iterations: int = 60, polish: bool = True) -> Closed:
-        """Close all loops from a start, moving only the free freedoms; couplings hold exactly from the start on.
+        """Close all loops from a start, moving only the free freedoms; couplings hold exactly from the start.
 
-        Levenberg–Marquardt on the manifold: y = −V diag(s/(s² + λ²)) Uᵀ r with λ = μ·min(1, |r|), which vanishes at a
-        solution, so that convergence is quadratic; directions with σ < 1e-10 σ₁ are left out. Steps are taken in the independent
-        motions that couplings leave (`Ties.basis`), so that the loops' equations are all that is iterated.
+        Levenberg–Marquardt on the manifold: y = −V diag(s/(s² + λ²)) Uᵀ r with λ = μ·min(1, |r|), which vanishes at a solution, so that
+        convergence is quadratic; directions with σ < 1e-10 σ₁ are left out. Steps are taken in the independent motions that couplings
+        leave (`Ties.basis`), so only the loops' equations are iterated.
 
         Args:
             Q: Start `(columns,)`.
             free: Freedoms that may move `(freedoms,)`.
-            iterations: Linear systems to solve at most.
-            polish: Whether to take one more step after the target, which brings the coordinates to rounding.
+            iterations: Largest number of linear systems to solve.
+            polish: Whether to take one more step after the target, which brings the coordinates to rounding precision.
 
         Returns:
-            The best coordinates found, and whether they close.
+            The best coordinates found, and whether they close the loops.
         """
         with one_thread(self.n_rows * self.layout.n_freedoms):
             return self._closed(Q, free, iterations, polish=polish)
 
     def _closed(self, Q: FloatArray, free: BoolArray, iterations: int, *, polish: bool) -> Closed:
         Q, B = self.ties.fitted(Q, ~free), self.ties.basis(free)
-        missed = float(self.ties.missed(Q))  # what no step changes: every step obeys the couplings
+        missed = float(self.ties.missed(Q))  # constant: every step obeys the couplings
         r, J = self._loops_at(Q)
         norm, mu = _norm(r), _DAMPING_START
         done = 0
@@ -238,7 +238,7 @@ class ClosureSystem:
                 if norm_trial < norm:
                     Q, r, J, norm, mu = trial, r_trial, J_trial, norm_trial, mu * _DAMPING_FALL
                     break
-                if norm < CLOSED or mu > 1e12:  # at the rounding floor, or at a minimum that is no solution
+                if norm < CLOSED or mu > 1e12:  # at the rounding floor, or at a minimum that is not a solution
                     return Closed(Q, norm + missed, done, J[:, free])
                 mu *= _DAMPING_RISE
         if polish and B.size and _ROUNDING < norm <= CLOSED:
@@ -257,15 +257,15 @@ class ClosureSystem:
         return (trial, norm_trial) if norm_trial <= max(norm, RESIDUAL_TARGET) else (Q, norm)
 
     def close_many(self, Q: FloatArray, free: BoolArray, *, iterations: int = 40) -> tuple[FloatArray, FloatArray]:
-        """Close many starts at once; normal equations, which are cheap in a batch and repaired by iterating.
+        """Close many starts at once, by normal equations: these are cheap in a batch, and iteration makes up for their rounding.
 
         Args:
             Q: Starts `(batch, columns)`.
             free: Freedoms that may move.
-            iterations: Linear systems per start at most.
+            iterations: Largest number of linear systems per start.
 
         Returns:
-            The best coordinates `(batch, columns)` and their |r| `(batch,)`; what is not below `CLOSED` did not close.
+            The best coordinates `(batch, columns)` and their |r| `(batch,)`; rows not below `CLOSED` did not close.
         """
         with one_thread(self.n_rows * self.layout.n_freedoms):
             Q = self.ties.fitted(Q, ~free)
@@ -307,7 +307,7 @@ class ClosureSystem:
         return mine
 
     def into_all(self, Q_all: FloatArray, Q: FloatArray) -> FloatArray:
-        """Return the coordinates of all joints with those that a constraint touches replaced; the others are the caller's."""
+        """Return the coordinates of all joints with those that a constraint involves replaced; the others stay."""
         out = np.array(np.broadcast_to(Q_all, (*Q.shape[:-1], Q_all.shape[-1])))
         out[..., self.columns[self._written]] = Q[..., self._written]
         return out
@@ -318,7 +318,7 @@ def _norm(r: FloatArray) -> float:
 
 
 def damped_step(s: FloatArray, b: FloatArray, Vt: FloatArray, damping: float, dropped: float = _DROPPED) -> FloatArray:
-    """Return −V diag(s/(s² + λ²)) b, without the directions that have no singular value, capped in length."""
+    """Return −V diag(s/(s² + λ²)) b, without the directions that have no singular value, limited in length."""
     values, square = s.tolist(), damping * damping + 1e-300
     inverse = [-value / (value * value + square) if value > dropped * values[0] else 0.0 for value in values]
     y: FloatArray = (inverse * b) @ Vt
@@ -327,11 +327,11 @@ def damped_step(s: FloatArray, b: FloatArray, Vt: FloatArray, damping: float, dr
 
 
 def _normal_step(J: FloatArray, r: FloatArray, damping: FloatArray) -> FloatArray:
-    """Return steps `(batch, n)` of the damped normal equations, capped in length."""
+    """Return steps `(batch, n)` of the damped normal equations, limited in length."""
     Jt = J.swapaxes(-1, -2)
     H = Jt @ J
     k = H.shape[-1]
-    # a freedom that moves nothing must not make the system singular: 1e-14 of the trace is below the iteration's own error
+    # a freedom without effect must not make the system singular: 1e-14 of the trace is below the iteration's own error
     trace = np.trace(H, axis1=-2, axis2=-1)
     H[:, np.arange(k), np.arange(k)] += (damping * damping + 1e-14 * trace + 1e-300)[:, None]
     y = -np.linalg.solve(H, Jt @ r[..., None])[..., 0]
@@ -341,9 +341,9 @@ def _normal_step(J: FloatArray, r: FloatArray, damping: FloatArray) -> FloatArra
 
 
 def _subtree(tree: KinematicTree, parts: Sequence[str], moving: set[str]) -> KinematicTree:
-    """Return the tree that carries these parts, from the part nearest to them that holds them all still.
+    """Return the tree that carries these parts, rooted at the nearest part that carries them all and is not moved.
 
-    Joints on the way that are not among `moving` stand at rest: where two connectors are to each other does not depend on them.
+    Joints on the way that are not in `moving` are held at rest: the relative pose of two connectors does not depend on them.
     """
     chains = [tree.ancestors(part) for part in dict.fromkeys(parts)]
     still = 0
@@ -358,7 +358,7 @@ def _subtree(tree: KinematicTree, parts: Sequence[str], moving: set[str]) -> Kin
 
 
 def _held(joint: Joint) -> Joint:
-    """Return the fixed joint that a joint is at rest."""
+    """Return a fixed joint equal to a joint at rest."""
     T = joint.T_parent_connector @ joint.motion(joint.rest)
     return replace(joint, type=JointType.FIXED, T_parent_connector=T, limits=JointLimits(), rest=(), lead=0.0)
 
@@ -373,12 +373,12 @@ def _places(all_slices: dict[str, slice], kept: dict[str, slice]) -> IndexArray:
 
 
 def characteristic_length(joints: Sequence[Joint]) -> float:
-    """Return the median distance [mm] between connectors of one part; any length within a factor of 100 does as well."""
+    """Return the median distance [mm] between connectors of one part; any length within a factor of 100 works as well."""
     origins: dict[str, list[FloatArray]] = {}
     for joint in joints:
         origins.setdefault(joint.parent, []).append(joint.T_parent_connector.translation)
         origins.setdefault(joint.child, []).append(joint.T_child_connector.translation)
     lengths = [float(np.linalg.norm(p - points[0])) for points in origins.values() for p in points[1:]]
-    least = _COINCIDENT * max(lengths, default=0.0)  # connectors nearer to each other are one place, rounded
+    least = _COINCIDENT * max(lengths, default=0.0)  # connectors closer together are one place, up to rounding
     lengths = [length for length in lengths if length >= max(1e-6, least)]
     return float(np.median(lengths)) if lengths else _FALLBACK_LENGTH

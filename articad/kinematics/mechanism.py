@@ -1,4 +1,4 @@
-"""Mechanism: parts that joints carry and move; what is asked for poses, velocities and freedoms."""
+"""Mechanism: parts and the joints that carry and move them; gives poses, velocities and freedoms."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ from articad.kinematics.tree import KinematicTree
 
 
 class _Compiled(NamedTuple):
-    """Joints and what is computed of their frames."""
+    """Joints and data computed from their frames."""
 
     joints: tuple[Joint, ...]
     tree: KinematicTree
@@ -42,7 +42,7 @@ class _Compiled(NamedTuple):
 
 
 class _Linkage(NamedTuple):
-    """Joints and their loops, closed at rest, or why they are not; what was moved for it, or would have to be."""
+    """Joints and their loops, closed at rest, or the reason why not; and the correction that was, or would be, needed."""
 
     compiled: _Compiled
     branch: Branch | None = None
@@ -56,8 +56,8 @@ class Mechanism:
 
     Args:
         parts: Names, in the order in which poses are returned.
-        ground: The part that stands still.
-        joints: In order of declaration.
+        ground: The part that does not move.
+        joints: In the order in which they are declared.
         couplings: Relations between coordinates.
         T_ground: Pose of the ground part; the identity by default.
 
@@ -78,16 +78,16 @@ class Mechanism:
         self._structure = findings
         self._given = _compiled(self, self.given_joints, graph)
 
-    # --- what it is
+    # --- structure
 
     @property
     def is_tree(self) -> bool:
-        """True when no joint closes a loop and no coupling ties joints: every coordinate is free."""
+        """True when no joint closes a loop and no coupling connects joints: every coordinate is free."""
         return not self._given.loop_joints and not self.couplings
 
     @property
     def joints(self) -> tuple[Joint, ...]:
-        """The joints in order of declaration, as given; of inexact loops with the nearest frames that close and move.
+        """The joints in the order in which they are declared; those of inexact loops have the nearest frames that close and move.
 
         See `correction`; `given_joints` has them as given.
         """
@@ -105,7 +105,7 @@ class Mechanism:
 
     @property
     def layout(self) -> Layout:
-        """Where the coordinates of each joint stand."""
+        """Places of the coordinates of each joint."""
         return self._used.layout
 
     @property
@@ -115,12 +115,12 @@ class Mechanism:
 
     @property
     def correction(self) -> Correction | None:
-        """What was moved, and by how much, because the loops' connectors are inexact; None where nothing was."""
+        """The displacements of inexact connectors so that the loops close; None if there are none."""
         return self._linkage.correction
 
     @property
     def inconsistency(self) -> Correction | None:
-        """What would have to be moved for the loops to move; None where nothing has, or where no such geometry is near."""
+        """The displacements that loops would need to move; None if they need none, or if no such geometry is near."""
         return self._linkage.beyond
 
     @property
@@ -129,7 +129,7 @@ class Mechanism:
 
     @cached_property
     def _linkage(self) -> _Linkage:
-        """The loops with consistent frames: the given ones wherever those close and move."""
+        """The loops with consistent frames: the given ones if those close and move."""
         if self.is_tree:
             return _Linkage(self._given)
         given = _linked(self._given, self.couplings)
@@ -142,7 +142,7 @@ class Mechanism:
             if corrected.branch is not None and not _is_doubtful(corrected, noise=False):
                 return corrected
         if isinstance(given.error, LoopError):
-            if given.error.findings[0].code != "E_LOOP_OPEN":  # couplings that contradict each other: no frame is to blame
+            if given.error.findings[0].code != "E_LOOP_OPEN":  # couplings that contradict each other: no frame is the cause
                 return given
             cause = nearest(self.parts, self.ground, self.given_joints, self.couplings, coarse=True) or found
             return given if cause is None else given._replace(error=askew_error(given.error, cause))
@@ -155,7 +155,7 @@ class Mechanism:
 
     @property
     def branch(self) -> Branch:
-        """The loops and couplings, closed at rest; of a mechanism that has some.
+        """The loops and couplings, closed at rest; only for a mechanism that has some.
 
         Raises:
             LoopError: E_LOOP_OPEN if the loops cannot be closed from the rest pose.
@@ -169,9 +169,10 @@ class Mechanism:
 
     @property
     def drivers(self) -> tuple[Coordinate, ...]:
-        """The columns of q, in order of declaration: of a tree all coordinates.
+        """The columns of q, in the order in which they are declared: for a tree, all coordinates.
 
-        With loops or couplings the joints that are marked as drivers, completed in order of declaration to the mobility.
+        With loops or couplings these are the joints marked as drivers, with further ones added in the order of declaration up to the
+        mobility.
 
         Raises:
             LoopError: E_LOOP_OPEN if the loops cannot be closed from the rest pose.
@@ -180,7 +181,7 @@ class Mechanism:
 
     @property
     def driving_joints(self) -> tuple[str, ...]:
-        """Names of the joints that drivers belong to and that have ranges over which to move, in order; free joints have none."""
+        """Names of the joints that have drivers and ranges over which to move, in order; free joints have no ranges."""
         free = {joint.name for joint in self.joints if joint.type is JointType.FREE}
         return tuple(name for name in dict.fromkeys(driver.joint for driver in self.drivers) if name not in free)
 
@@ -203,7 +204,7 @@ class Mechanism:
 
     @property
     def mobility(self) -> int:
-        """How many independent motions the mechanism has: the dimension of its closed configurations round rest, not a count of joints."""
+        """Number of independent motions: the dimension of the set of closed configurations near rest, not a count of joints."""
         if self.is_tree:
             return self.layout.n_freedoms
         passive = self.layout.n_freedoms - int(self.branch.system.active.sum())
@@ -211,29 +212,29 @@ class Mechanism:
 
     @property
     def grubler(self) -> int:
-        """Freedoms of the joints less six per loop and one per coupling: for information, wrong for planar loops."""
+        """Freedoms of the joints minus six per loop and one per coupling: for information; wrong for planar loops."""
         return self.layout.n_freedoms - 6 * len(self.loop_joints) - len(self.couplings)
 
     def findings(self) -> Findings:
-        """Return what there is to say about a mechanism that could be made.
+        """Return the findings about a valid mechanism.
 
-        Of a tree only warnings about its joints; of loops and couplings also whether they close and move (E_LOOP_OPEN,
-        E_LOOP_LOCKED, E_COUPLING_LOCKED, E_DRIVER, W_LOOP_INEXACT, W_SHAKY, W_NEAR_SINGULAR, W_IDLE_FREEDOM, I_REDUNDANT).
-        Ranges: `motion_findings`.
+        For a tree these are only warnings about its joints; for loops and couplings they say also whether they close and move
+        (E_LOOP_OPEN, E_LOOP_LOCKED, E_COUPLING_LOCKED, E_DRIVER, W_LOOP_INEXACT, W_SHAKY, W_NEAR_SINGULAR, W_IDLE_FREEDOM, I_REDUNDANT).
+        `motion_findings` checks ranges.
         """
         return self._structure if self.is_tree else self._structure + loop_findings(self)
 
     def motion_findings(self) -> Findings:
-        """Return where a driver's declared range is larger than what loops allow.
+        """Return findings where a driver's declared range is larger than loops allow.
 
-        E_DEAD_POINT, E_LOOP_LIMIT, E_SINGULAR, or E_NOT_FOLLOWED where the way takes too many steps.
+        E_DEAD_POINT, E_LOOP_LIMIT, E_SINGULAR, or E_NOT_FOLLOWED where the path takes too many steps.
         """
         if self.is_tree:
             return Findings()
         ranges = [self.feasible_range(c.name) for c in self.drivers if c.unit != "1" and c.joint in self.driving_joints]
         return Findings(finding for one in ranges for finding in one.findings)
 
-    # --- where things are
+    # --- poses and velocities
 
     def configuration(self, q: npt.ArrayLike) -> Configuration:
         """Return the coordinates of all joints.
@@ -249,31 +250,32 @@ class Mechanism:
     def poses(self, q: npt.ArrayLike) -> SE3:
         """Place every part in the ground frame.
 
-        For each joint, `T_child = T_parent · C_p · J(q) · F · C_c⁻¹` (ArtiCAD, Representation).
+        For each joint, `T_child = T_parent · C_p · J(q) · F · C_c⁻¹`.
 
         Args:
-            q: Coordinates of the drivers [rad, mm], `(*batch, nq)`; a ball's four need not be of exactly unit length.
+            q: Coordinates of the drivers [rad, mm], `(*batch, nq)`; a ball's quaternion need not be exactly of unit length.
 
         Returns:
             `T_ground_part` of all parts in the order of `parts`, `(*batch, N, 7)` [mm, quaternion xyzw].
 
         Raises:
             KinematicsError: If q is not finite or has another number of columns; E_SINGULAR, E_NOT_FOLLOWED.
-            DeadPointError: If a loop would have to pass a dead point. Of a batch it names the rows; `solve` returns the others.
+            DeadPointError: If a loop would have to pass a dead point. For a batch, the message names the rows; `solve` returns the
+                others.
             LoopError: E_LOOP_OPEN if a loop cannot be closed at rest.
         """
         return self.arrays.poses(self._columns(q))
 
     def solve(self, q: npt.ArrayLike) -> Solution:
-        """Place every part where the mechanism reaches the drivers' values, and say where it does not.
+        """Place every part, and mark the rows of drivers' values that the mechanism does not reach.
 
-        Unlike `poses`, which refuses a batch of which one row is not reached. Limits are not looked at, as in `poses`.
+        In contrast, `poses` refuses a batch in which one row is not reached. Limits are not checked by either.
 
         Args:
             q: Coordinates of the drivers [rad, mm], `(*batch, nq)`.
 
         Returns:
-            Poses, NaN where not reached; a mask; and why the first row that is not reached is not.
+            Poses, NaN where not reached; a mask; and the reason for the first row that is not reached.
 
         Raises:
             KinematicsError: If q is not finite or has another number of columns.
@@ -307,11 +309,11 @@ class Mechanism:
 
         Returns:
             `(6, nv)`: velocity of the frame's origin [mm] over angular velocity [rad], in the ground frame, per unit of each
-            driver's freedom. Columns are in the order of `drivers`; a ball has three: the angular velocity (x, y, z) of its child
-            side against its parent side in the parent connector's frame.
+            driver's freedom. Columns are in the order of `drivers`; a ball has three: the angular velocity (x, y, z) of its child side
+            relative to its parent side in the parent connector's frame.
 
         Raises:
-            KinematicsError: If the part is not one of the mechanism.
+            KinematicsError: If the mechanism has no such part.
         """
         frame = SE3.identity() if T_part_frame is None else T_part_frame
         Q = self._columns(q)
@@ -331,7 +333,7 @@ class Mechanism:
             driver: Name of a driver.
             lo: First value [rad, mm].
             hi: Last value [rad, mm].
-            steps: How many values, both ends included.
+            steps: Number of values, both ends included.
             at: Values of other drivers [rad, mm]; at rest by default.
             certify: Prove that each step stays on its branch (about ten times the work).
 
@@ -363,11 +365,11 @@ class Mechanism:
         return feasible_range(self, driver, at)
 
     def assembly_modes(self, q: npt.ArrayLike | None = None, *, starts: int = 80) -> tuple[Configuration, ...]:
-        """Return the ways found of assembling the mechanism at the drivers' values; the rest pose's own branch first.
+        """Return the assembly modes found at the drivers' values; the rest pose's own branch first.
 
         Args:
             q: Values of the drivers `(nq,)` [rad, mm]; at rest by default.
-            starts: Random starts; a way that none of them falls into is not found.
+            starts: Random starts; a mode to which none of them converges is not found.
         """
         values = self.rest if q is None else self._drivers_array(q)
         if self.is_tree:
@@ -375,7 +377,7 @@ class Mechanism:
         return tuple(Configuration(self.joints, Q) for Q in self.branch.modes(values, starts))
 
     def redundancy(self) -> tuple[Redundancy, ...]:
-        """Return the constraints of each loop that the others imply, and which joints to release for real-life tolerance."""
+        """Return the constraints of each loop that the others imply, and which joints to release so that real, inexact parts fit."""
         if self.is_tree:
             return ()
         b = self.branch
@@ -390,45 +392,45 @@ class Mechanism:
         starts: int = 32,
         accept: Callable[[FloatArray], bool] | None = None,
     ) -> Reach:
-        """Return a configuration within limits that brings a frame of a part to a target, or how near it comes and what stops it.
+        """Return a configuration within limits that brings a frame of a part to a target, or the nearest one and what stops it.
 
         Args:
             part: The part that carries the frame.
             target: A pose in the ground frame, or a point `(3,)` [mm], which leaves the orientation free.
             T_part_frame: The frame in the part; the part's own frame by default.
             starts: How many random configurations within limits to try besides the rest pose, until the target is reached.
-            accept: Decides whether drivers' values `(nq,)` [rad, mm] that reach the target will do; where not, others are tried.
+            accept: Decides whether drivers' values `(nq,)` [rad, mm] that reach the target are accepted; if not, others are tried.
 
         Raises:
-            KinematicsError: E_REACH_BARRED if the target is reached, but never as `accept` wants it.
+            KinematicsError: E_REACH_BARRED if the target is reached, but `accept` refuses every configuration.
         """
         return reach(self, part, target, SE3.identity() if T_part_frame is None else T_part_frame, starts, accept)
 
     def path(self, start: npt.ArrayLike, goal: npt.ArrayLike, *, accept: Callable[[Configuration], bool] | None = None) -> FloatArray:
-        """Return waypoints of the drivers from one configuration to another, straight lines between which keep to branch and limits.
+        """Return waypoints of the drivers from one configuration to another; on the straight lines between them, branch and limits hold.
 
-        Straight where that is free, else two random trees that meet (RRT-Connect), seeded: the same question has the same answer.
-        Limits are looked at every 0.1 rad or lengths of a link, which is sampled, not proved.
+        A straight line if that is free, else two random trees that meet (RRT-Connect) with a fixed seed: equal calls give equal results.
+        Limits are checked every 0.1 rad or 0.1 lengths of a link, which is sampled, not proven.
 
         Args:
             start: Values of the drivers `(nq,)` [rad, mm].
-            goal: The same [rad, mm]; the way ends in the configuration that `poses` has there.
-            accept: Decides whether a configuration on the way will do, such as that no parts meet.
+            goal: The same [rad, mm]; the path ends in the configuration that `poses` returns there.
+            accept: Decides whether a configuration on the path is accepted, for example because no parts meet.
 
         Returns:
             `(n, nq)`, start and goal included.
 
         Raises:
             LimitError: If start or goal is outside limits, followers included.
-            KinematicsError: E_NO_PATH if no way was found.
+            KinematicsError: E_NO_PATH if no path was found.
         """
         return path(self, start, goal, accept)
 
     def part_index(self, part: str) -> int:
-        """Return the place of a part in the array of poses.
+        """Return the index of a part in the array of poses.
 
         Raises:
-            KinematicsError: If there is none of that name.
+            KinematicsError: If there is no such part.
         """
         try:
             return self.parts.index(part)
@@ -486,11 +488,11 @@ def _linked(compiled: _Compiled, couplings: tuple[Coupling, ...], correction: Co
 
 
 def _is_doubtful(linkage: _Linkage, *, noise: bool = True) -> bool:
-    """Tell whether inexact frames may keep the loops from closing or moving.
+    """Return whether inexact frames may keep the loops from closing or moving.
 
     Args:
-        linkage: Closed, or not.
-        noise: Whether a small singular value counts, which may also be a dead point nearby.
+        linkage: The loops, closed or not.
+        noise: Whether a small singular value counts, which may also mean a dead point nearby.
     """
     if linkage.branch is None:
         return bool(linkage.compiled.loop_joints) and isinstance(linkage.error, LoopError)

@@ -1,21 +1,20 @@
-"""Freedoms that a mechanism really has: the local dimension of the set of its closed configurations.
+"""The true number of freedoms of a mechanism: the local dimension of the set of its closed configurations.
 
-Grübler's count is wrong for every planar mechanism in space, so the constraints themselves decide. Their rank at rest gives
-the freedoms to first order, which is an upper bound: it is too large where the rest pose is singular, and everywhere on a
-set whose equations have a multiple root (a platform on eight parallel rods). A freedom counts only if the linkage can be
-moved along it by a finite amount:
+Grübler's count is wrong for every planar mechanism in space, so the constraints themselves decide. Their rank at rest gives the freedoms
+to first order, which is an upper bound: it is too large where the rest pose is singular, and everywhere on a set whose equations have a
+multiple root (a platform on eight parallel rods). A freedom counts only if the linkage can be moved along it by a finite amount:
 
 1. At rest, move along a random combination of all first-order freedoms by ε and correct in the directions that the
    constraints determine. If the residual vanishes the set is a manifold of that dimension, because a random direction of a
    null space of dimension k is realised only if the set has dimension k (slicing, as in Bates, Hauenstein, Peterson,
    Sommese 2009).
-2. Otherwise close from several such points with all freedoms. What comes back to rest shows that the linkage only shakes.
+2. Otherwise close from several such points with all freedoms. If they return to rest, the linkage is only shaky.
 3. At each neighbour that stays away, repeat step 1. If it fails again the equations have a multiple root there: the
    displacements that survive closing span the tangent space, and their rank is the dimension.
 
-Several sets may meet at rest, such as the translations and the screw of a platform on rods round a circle. Random directions
-may all fall onto the smaller one, so further ones are taken across the secants of those. The mobility is the largest dimension
-that a second point of the same set confirms.
+Several sets may meet at rest, such as the translations and the screw of a platform on rods around a circle. Random directions may all
+lead to the smaller one, so further ones are taken perpendicular to the secants of those. The mobility is the largest dimension that a
+second point of the same set confirms.
 """
 
 from __future__ import annotations
@@ -36,37 +35,37 @@ from articad.kinematics.layout import Layout
 from articad.kinematics.loops import CLOSED, RANK_TOLERANCE, ClosureSystem
 
 NEAR_SINGULAR = 1e-3  # σ/σ₁ between the rank tolerance and this is reported: drift, or a dead point nearby
-REALISED = 1e-12  # |r| of a finite motion that the constraints allow; rounding leaves 1e-15 · reach/L
-NEARLY_FREE = 1e-3  # |r| below which an obstruction may be noise of the data; a true one of second order leaves 2.5e-3 or more
-_SLICE = 0.05  # rad, or lengths L: a finite motion; an obstruction of order m leaves a residual of 0.05ᵐ
-_SLICE_SHARE = 0.3  # of the smallest singular value: beyond it the linear model is worth nothing
-_SHORTEST_SLICE = 2e-4  # a shorter one cannot tell an obstruction from rounding
-_NEIGHBOURS, _ACROSS = 5, 3  # random neighbours of a singular rest pose, and those across their secants
+REALISED = 1e-12  # |r| of a finite motion that the constraints allow; rounding gives 1e-15 · reach/L
+NEARLY_FREE = 1e-3  # |r| below which an obstruction may be noise of the data; a true one of second order gives 2.5e-3 or more
+_SLICE = 0.05  # rad, or lengths L: a finite motion; an obstruction of order m gives a residual of 0.05ᵐ
+_SLICE_SHARE = 0.3  # of the smallest singular value: beyond it the linear model is not valid
+_SHORTEST_SLICE = 2e-4  # a shorter one cannot distinguish an obstruction from rounding
+_NEIGHBOURS, _ACROSS = 5, 3  # random neighbours of a singular rest pose, and those perpendicular to their secants
 _SPANNED = 0.3  # σ/σ₁ of the secants: directions below it lead to no set found so far
-_BESIDE = 0.05  # rad, or lengths L: how far away they are
+_BESIDE = 0.05  # rad, or lengths L: their distance
 _NEARER, _FARTHER = 0.005, 0.3  # for linkages that move by thousandths only; for obstructions of high order
 _FAINT = 1e-8  # |r| of an obstruction at rest so small that it is of order four or more
 _STUCK = 0.1  # share of the way to a neighbour: what closes nearer to rest has not moved
-_MULTIPLE = 1e-4  # σ/σ₁ at a neighbour; at a root of multiplicity two the solver stops 1e-6 away from it
+_MULTIPLE = 1e-4  # σ/σ₁ at a neighbour; at a double root the solver stops 1e-6 away from it
 _KEPT, _PATIENCE = 1e-9, 60  # σ/σ₁ that is corrected there, and steps
-_SURVIVES = 0.3  # share of a displacement that is left after closing, of a true motion
-_INDEPENDENT = 1e-5  # share of a driver's freedom that others do not give already
+_SURVIVES = 0.3  # share of a displacement that remains after closing, for a true motion
+_INDEPENDENT = 1e-5  # share of a driver's freedom that other drivers do not already give
 _STILL = 1e-7  # rad, or lengths L per unit of motion: a part that moves less stands still
 
 
 @dataclass(frozen=True, eq=False)
 class Mobility:
-    """What the constraints leave free.
+    """The motions that the constraints leave.
 
     Attributes:
-        mobility: Dimension of the set of closed configurations round the given one, of the joints that take part.
+        mobility: Dimension of the set of closed configurations near the given one, for the joints that take part.
         first_order: Dimension of the null space of the constraints at the given configuration; never smaller.
         rank: Number of freedoms that the constraints determine.
-        Q: A configuration in general position `(columns,)`; the given one where that is.
+        Q: A configuration in general position `(columns,)`; the given one if it is.
         freedoms: Orthonormal motions there `(freedoms, mobility)`, scaled.
         near: Smallest nonzero σ/σ₁ at the given configuration.
-        obstruction: |r| that a small motion along the freedoms of first order leaves at least; 0 where all are real.
-        multiple: Freedoms of first order at `Q` that are no motions: the equations have a multiple root there.
+        obstruction: Least |r| after a small motion along the first-order freedoms; 0 if all are real.
+        multiple: First-order freedoms at `Q` that are not motions: the equations have a multiple root there.
     """
 
     mobility: int
@@ -105,11 +104,11 @@ def mobility_of(system: ClosureSystem, Q: FloatArray) -> Mobility:
 
 
 class Settled(NamedTuple):
-    """Where the correction by the well-determined directions ended.
+    """The result of the correction along the well-determined directions.
 
     Attributes:
         Q: Coordinates `(columns,)`.
-        residual: |r| there; what is left belongs to directions in which nothing was corrected.
+        residual: |r| there; the rest belongs to directions in which nothing was corrected.
         U: Left singular vectors `(rows, rows)` of the constraints in the active freedoms.
         s: Their singular values.
         Vt: Right singular vectors `(active, active)`.
@@ -125,7 +124,7 @@ class Settled(NamedTuple):
 
 
 def settled(system: ClosureSystem, Q: FloatArray, rank: int | None, *, dropped: float = NEAR_SINGULAR, iterations: int = 12) -> Settled:
-    """Correct Q by Gauss–Newton in the directions that the constraints determine, and leave the others alone.
+    """Correct Q by Gauss-Newton in the directions that the constraints determine, and leave the others unchanged.
 
     Args:
         system: The equations.
@@ -152,7 +151,7 @@ def settled(system: ClosureSystem, Q: FloatArray, rank: int | None, *, dropped: 
 def _obstruction(
     system: ClosureSystem, Q: FloatArray, N: FloatArray, rank: int, rng: np.random.Generator, longest: float = _SLICE
 ) -> float:
-    """Return |r| that is left after a finite motion along a random combination of N; inf where it leads elsewhere."""
+    """Return |r| after a finite motion along a random combination of N; inf if it leads elsewhere."""
     sigma = _smallest(system, Q, rank)
     size = max(_SHORTEST_SLICE, min(longest, _SLICE_SHARE * sigma))
     worst = 0.0
@@ -169,7 +168,7 @@ def _obstruction(
 
 
 def _smallest(system: ClosureSystem, Q: FloatArray, rank: int) -> float:
-    """Return the smallest singular value that counts in the rank; the constraints are scaled, so it is a pure number."""
+    """Return the smallest singular value that counts in the rank; the constraints are scaled, so it is dimensionless."""
     if not rank:
         return 1.0
     s, _ = right_singular(system.evaluate_one(Q)[1][:, np.flatnonzero(system.active)])
@@ -182,7 +181,7 @@ class _Neighbour(NamedTuple):
     Attributes:
         Q: Coordinates `(columns,)`.
         T: Tangent space `(freedoms, dimension)`.
-        multiple: Null vectors of the constraints there that are no motions.
+        multiple: Null vectors of the constraints there that are not motions.
         size: Length of the steps [rad, or lengths L] with which T was found.
     """
 
@@ -193,13 +192,13 @@ class _Neighbour(NamedTuple):
 
 
 def _near(system: ClosureSystem, Q: FloatArray, N: FloatArray, obstruction: float, rng: np.random.Generator) -> list[_Neighbour]:
-    """Return closed neighbours of a singular rest pose; none if the linkage falls back to rest from everywhere."""
+    """Return closed neighbours of a singular rest pose; none if every start returns to rest."""
     scales = (_FARTHER, _BESIDE, _NEARER) if obstruction < _FAINT else (_BESIDE, _NEARER)
     return next((found for scale in scales if (found := _neighbours(system, Q, N, scale, rng))), [])
 
 
 def _neighbours(system: ClosureSystem, Q: FloatArray, N: FloatArray, scale: float, rng: np.random.Generator) -> list[_Neighbour]:
-    """Return closed neighbours at a distance from rest: in random directions first, then across the secants found so far."""
+    """Return closed neighbours at a distance from rest: first in random directions, then perpendicular to the secants found so far."""
     found, secants = list[_Neighbour](), list[FloatArray]()
     basis, n = np.eye(N.shape[1]), _NEIGHBOURS
     while n and basis.size:
@@ -220,7 +219,7 @@ def _neighbours(system: ClosureSystem, Q: FloatArray, N: FloatArray, scale: floa
 def _largest(system: ClosureSystem, found: Sequence[_Neighbour], rng: np.random.Generator) -> _Neighbour | None:
     """Return a neighbour on a set of the largest dimension; None without neighbours.
 
-    At a single point an obstruction of high order may be too faint. So the dimension counts if two neighbours have it, or if a
+    At a single point an obstruction of high order may be too small to detect. So the dimension counts if two neighbours have it, or if a
     step along the tangent space of the only one leads to a point that has it.
     """
     dimensions = [one.T.shape[1] for one in found]
@@ -236,12 +235,12 @@ def _largest(system: ClosureSystem, found: Sequence[_Neighbour], rng: np.random.
 
 
 def _closed_beside(system: ClosureSystem, Q: FloatArray) -> Settled:
-    """Close from Q by plain Gauss–Newton: it halves the distance to a multiple root in each step, where damping would stall."""
+    """Close from Q by plain Gauss-Newton: it halves the distance to a multiple root in each step, where damping would stall."""
     return settled(system, Q, None, dropped=_KEPT, iterations=_PATIENCE)
 
 
 def _tangent_space(system: ClosureSystem, Q: FloatArray, scale: float, rng: np.random.Generator) -> _Neighbour:
-    """Return the tangent space of the closed configurations at a point in general position, multiple root or not."""
+    """Return the tangent space of the closed configurations at a point in general position, also at a multiple root."""
     N, _ = motions(system, Q, _MULTIPLE)
     k = N.shape[1]
     rank = int(system.active.sum()) - k
@@ -257,7 +256,9 @@ def _tangent_space(system: ClosureSystem, Q: FloatArray, scale: float, rng: np.r
             left.append(0.5 * system.step_between(ends[1].Q, ends[0].Q) @ N)
     if len(tried) < k:
         return _Neighbour(Q, N[:, :0], k, scale)
-    projection = least_squares(np.array(tried), np.array(left), RANK_TOLERANCE)  # c ↦ what is left of it: 1 on the tangent space, else 0
+    projection = least_squares(
+        np.array(tried), np.array(left), RANK_TOLERANCE
+    )  # maps c to what remains of it: 1 on the tangent space, else 0
     _, s, Vt = svd(projection, full=True)
     dimension = int((s > _SURVIVES).sum())
     return _Neighbour(Q, N @ Vt[:dimension].T, k - dimension, scale)
@@ -269,7 +270,7 @@ def motions(system: ClosureSystem, Q: FloatArray, tolerance: float = RANK_TOLERA
     Args:
         system: The equations.
         Q: Coordinates `(columns,)`.
-        tolerance: σ/σ₁ of a constraint that is none.
+        tolerance: σ/σ₁ below which a constraint does not count.
     """
     where = np.flatnonzero(system.active)
     J = system.evaluate_one(Q)[1][:, where]
@@ -284,14 +285,14 @@ def motions(system: ClosureSystem, Q: FloatArray, tolerance: float = RANK_TOLERA
 
 
 def choose_drivers(system: ClosureSystem, freedoms: FloatArray) -> tuple[tuple[int, ...], tuple[Joint, ...]]:
-    """Choose which coordinates drive: those of marked joints first, then the others, each if it is independent of the chosen.
+    """Choose the driving coordinates: those of marked joints first, then the others, each if it is independent of those chosen.
 
     Args:
         system: The equations.
         freedoms: Motions that the constraints leave `(freedoms of the system, mobility)`.
 
     Returns:
-        Columns of the system in order of declaration, and the marked joints that cannot drive.
+        Columns of the system in the order in which they are declared, and the marked joints that cannot drive.
     """
     basis: list[FloatArray] = []
     chosen: list[int] = []
@@ -301,7 +302,7 @@ def choose_drivers(system: ClosureSystem, freedoms: FloatArray) -> tuple[tuple[i
         columns, own = layout.columns[joint.name], layout.freedoms[joint.name]
         rows = list(freedoms[own])
         taken, plain = 0, len(rows) if joint.type.quaternion is None else joint.type.quaternion
-        if plain < len(rows):  # a quaternion drives as a whole, or not
+        if plain < len(rows):  # a quaternion drives as a whole, or not at all
             grown = _extended(basis, rows[plain:])
             if len(grown) == len(basis) + 3:
                 basis, taken = grown, 3
@@ -333,7 +334,7 @@ def _extended(basis: Sequence[FloatArray], rows: Sequence[FloatArray]) -> list[F
 
 
 def idle_parts(system: ClosureSystem, mobility: Mobility) -> tuple[tuple[str, ...], ...]:
-    """Return parts, or pairs that a joint connects, which can move while everything else stands still."""
+    """Return parts, or pairs of parts that a joint connects, which can move while everything else stands still."""
     arrays = system.arrays
     if not mobility.mobility:
         return ()
@@ -373,11 +374,11 @@ class Redundancy:
     """Constraints of a loop that the others imply: real parts would have to be exact to fit.
 
     Attributes:
-        loop: Parts round the loop.
-        joint: The joint that closes it, in whose connector's frame the directions are.
+        loop: Parts of the loop.
+        joint: The joint that closes it; the directions are in the frame of its connector.
         count: How many constraints are redundant.
         directions: Which ones, such as "turning about x".
-        release: Joint names and the types that would free the loop without another motion; empty if there is no such way.
+        release: Joint names and the types that would free the loop without adding a motion; empty if there are none.
     """
 
     loop: tuple[str, ...]
@@ -390,7 +391,7 @@ class Redundancy:
 def redundancies(
     parts: Sequence[str], ground: str, layout: Layout, system: ClosureSystem, mobility: Mobility, Q_all: FloatArray, *, release: bool = True
 ) -> tuple[Redundancy, ...]:
-    """Return the redundant constraints of each loop (null space of Jᵀ) and the joints to release for real-life tolerance."""
+    """Return the redundant constraints of each loop (null space of Jᵀ) and the joints to release so that real, inexact parts fit."""
     where = np.flatnonzero(system.active)
     J = system.evaluate_one(mobility.Q)[1][:, where]
     Z = _null_space_of_transpose(J, mobility.rank)
@@ -453,7 +454,7 @@ def _freed(joint: Joint, added: int) -> Joint | None:
 
 
 def _redundancy(parts: Sequence[str], ground: str, joints: Sequence[Joint], couplings: Sequence[Coupling]) -> tuple[int, int]:
-    """Return how many constraints are redundant and how many freedoms are left, to first order at rest."""
+    """Return how many constraints are redundant and how many freedoms remain, to first order at rest."""
     tree, loop_joints = JointGraph(parts, ground, joints).spanning_tree()
     system = ClosureSystem(tree, Layout(joints), loop_joints, couplings)
     N, _ = motions(system, system.layout.rest)

@@ -1,4 +1,4 @@
-"""What a driver can do: sweeps, feasible ranges, and how sure they are."""
+"""The motion of a driver: sweeps, feasible ranges, and how certain they are."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ from articad.kinematics.track import Period, Track
 if TYPE_CHECKING:
     from articad.kinematics.mechanism import Mechanism
 
-_LONGEST_TRAVEL = 100.0  # lengths L that an unlimited slider is followed
-_SAMPLES_PER_STEP = 4  # between two nodes, where limits of other joints are looked at
+_LONGEST_TRAVEL = 100.0  # lengths L over which an unlimited slider is followed
+_SAMPLES_PER_STEP = 4  # between two nodes, where limits of other joints are checked
 _UNREACHED = ""  # in place of a coordinate's name
-_END = 1e-6  # of a trace: how near its end a pose may fail to close
+_END = 1e-6  # of a trace: distance from its end within which a pose may fail to close
 _SPLITS, _ROUNDS = 16, 10  # a limit is located to 16⁻¹⁰ of a step
 
 
@@ -34,8 +34,8 @@ class FeasibleRange:
     """How far a driver can go from rest, the others standing still.
 
     Attributes:
-        driver: Which coordinate.
-        lower: Smallest value [rad, mm]; −inf where it turns for ever.
+        driver: The coordinate.
+        lower: Smallest value [rad, mm]; −inf if it turns endlessly.
         upper: Largest value.
         lower_reason: What ends it: "declared limit", "dead point", "singular", "limit of <coordinate>", "endless",
             "not followed further", "not followed: the constraints have a multiple root".
@@ -56,13 +56,13 @@ class DrivenMotion:
     """A driver's motion at even steps.
 
     Attributes:
-        mechanism: Whose motion.
-        driver: Which coordinate moves.
-        values: `(n,)` [rad, mm]: the asked-for values that were reached, in order.
+        mechanism: The mechanism.
+        driver: The coordinate that moves.
+        values: `(n,)` [rad, mm]: the requested values that were reached, in order.
         configuration: Coordinates of all joints `(n)`.
-        strength: "certified" if every step is proved to stay on the branch, else "sampled".
+        strength: "certified" if every step is proven to stay on the branch, else "sampled".
         reason: Why it is not certified; or what proves it.
-        tube: Radius round each predictor in which the only solution lies: the largest one [rad, lengths L]; 0 for a tree.
+        tube: Largest radius around a predictor within which the only solution lies [rad, lengths L]; 0 for a tree.
         findings: Dead points, singularities and limits on the way.
     """
 
@@ -154,7 +154,7 @@ def feasible_range(mechanism: Mechanism, driver: str, at: Mapping[str, float] | 
 
 
 def _is_symmetric(track: Track) -> bool:
-    """Tell whether what goes on for ever one way does so the other way too: it comes back, and what goes on turning has no limits."""
+    """Return whether a motion endless in one direction is so in the other: it is periodic, and endlessly turning joints are unlimited."""
     period = track.repeat(1)
     if period is None:
         return False
@@ -182,7 +182,7 @@ def _side_range(track: Track, coordinate: Coordinate, sign: int) -> tuple[float,
 
 
 def _bound(track: Track, coordinate: Coordinate, sign: int) -> tuple[float, str]:
-    """Return how far the driver may go by its own limits and those of what couplings tie to it, and which of them it is."""
+    """Return how far the driver may go by its own limits and by those of coordinates coupled to it, and which of them stops it."""
     system = track.follower.system
     bound, why = (coordinate.upper if sign > 0 else coordinate.lower), "declared limit"
     for column, ratio, offset in system.ties.tied_to(track.column):
@@ -194,7 +194,7 @@ def _bound(track: Track, coordinate: Coordinate, sign: int) -> tuple[float, str]
 
 
 def _followed(track: Track, coordinate: Coordinate, sign: int) -> tuple[Trace, bool]:
-    """Follow an unlimited driver until all loops come back, or as far as the joints with limits of their own let it."""
+    """Follow an unlimited driver until all loops repeat, or as far as the joints with limits of their own allow."""
     system = track.follower.system
     if not system.loops:
         return track.side(track.start + sign * 2 * math.pi), True
@@ -209,7 +209,7 @@ def _followed(track: Track, coordinate: Coordinate, sign: int) -> tuple[Trace, b
 
 
 def _turns_to_limits(track: Track, period: Period) -> float:
-    """Return how many periods bring a coordinate that goes on turning to one of its limits; 1 if none has any."""
+    """Return how many periods bring an endlessly turning coordinate to one of its limits; 1 if none has any."""
     layout, most = track.follower.system.layout, 1.0
     for i, c in enumerate(layout.coordinates):
         limit = c.upper if period.advance[i] > 0 else c.lower
@@ -221,7 +221,7 @@ def _turns_to_limits(track: Track, period: Period) -> float:
 def _first_violation(track: Track, trace: Trace, sign: int, coordinate: Coordinate) -> tuple[float, str] | None:
     """Return where another joint first leaves its limits, and which one; None if none does."""
     stations = [node.s for node in trace.nodes] + ([trace.end] if trace.end > trace.nodes[-1].s else [])
-    if len(stations) == 1:  # stopped where it stands
+    if len(stations) == 1:  # it cannot move at all
         return None
     fine = np.unique(np.concatenate([np.linspace(a, b, _SAMPLES_PER_STEP + 1) for a, b in itertools.pairwise(stations)]))
     names, margins = _margins(track, sign, fine, coordinate, trace.end)
@@ -243,9 +243,9 @@ def _first_violation(track: Track, trace: Trace, sign: int, coordinate: Coordina
 
 
 def _margins(track: Track, sign: int, s: FloatArray, coordinate: Coordinate, end: float) -> tuple[list[str], FloatArray]:
-    """Return for every bounded coordinate but the driver's how far it is inside its limits, `(names, len(s))`.
+    """Return for every bounded coordinate except the driver's how far it is inside its limits, `(names, len(s))`.
 
-    Where the linkage was not closed a last row is minus infinity.
+    If the linkage could not be closed somewhere, a last row is minus infinity there.
     """
     values = np.array([track.value(sign, float(x)) for x in s])
     Q, reached, _ = track.evaluate(values)
@@ -270,14 +270,14 @@ def _margins(track: Track, sign: int, s: FloatArray, coordinate: Coordinate, end
                 rows.append(np.minimum(own[:, i] - c.lower, c.upper - own[:, i]))
     margins = np.array(rows).reshape(len(names), len(s))
     margins[:, ~reached] = np.inf
-    if not reached.all():  # whether limits hold there is not known; at the very end of a trace a dead point may keep it from closing
+    if not reached.all():  # limits are unknown there; at the very end of a trace a dead point may keep it from closing
         names.append(_UNREACHED)
         margins = np.vstack([margins, np.where(reached | (s >= end * (1 - _END)), np.inf, -np.inf)])
     return names, margins
 
 
 def _range_findings(c: Coordinate, lower: float, upper: float, lower_reason: str, upper_reason: str) -> list[Finding]:
-    """Say where the declared range is larger than what the loop allows."""
+    """Return findings where the declared range is larger than the loop allows."""
     codes = {"dead point": "E_DEAD_POINT", "singular": "E_SINGULAR"} | {str(s): "E_NOT_FOLLOWED" for s in (Stop.STEPS, Stop.MULTIPLE)}
     found = []
     for reason, value in ((lower_reason, lower), (upper_reason, upper)):
@@ -303,7 +303,7 @@ def _range_findings(c: Coordinate, lower: float, upper: float, lower_reason: str
 
 
 def _one_limit(lower: float, upper: float, unit: str) -> str:
-    """Return the advice to bound a driver on the one side where its way ends."""
+    """Return the advice to limit a driver on the one side where its path ends."""
     side, value = ("upper", upper) if math.isinf(lower) else ("lower", lower)
     return f"Set the {side} limit to {shown(value, unit)}."
 
@@ -329,7 +329,7 @@ def _gap_finding(c: Coordinate, missed: FloatArray, steps: int) -> Finding:
 
 
 def _limit_findings(c: Coordinate, configuration: Configuration, values: FloatArray) -> list[Finding]:
-    """Return one finding per coordinate that leaves its limits, at its worst."""
+    """Return one finding per coordinate that leaves its limits, with its worst value."""
     found = []
     for error in configuration.violations():
         if error.joint == c.name:
@@ -353,7 +353,7 @@ def _limit_findings(c: Coordinate, configuration: Configuration, values: FloatAr
 
 
 def driver_index(mechanism: Mechanism, driver: str) -> int:
-    """Return the place of a driver among the columns of q.
+    """Return the index of a driver among the columns of q.
 
     Raises:
         UnknownJointError: If no driver has this name.
@@ -380,7 +380,7 @@ def start_values(mechanism: Mechanism, at: Mapping[str, float] | None) -> FloatA
 
 
 def track_of(mechanism: Mechanism, index: int, q: FloatArray, *, certify: bool = False) -> Track | None:
-    """Return the way of a driver through q; None if nothing follows it, as in a tree."""
+    """Return the track of a driver through q; None if nothing follows it, as in a tree."""
     driven = None if mechanism.is_tree else mechanism.branch.driven_by(mechanism.driver_columns[index])
     if driven is None:
         return None

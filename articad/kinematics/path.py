@@ -1,7 +1,7 @@
-"""Paths: ways of several drivers from one configuration to another, on the branch and within all limits.
+"""Paths of several drivers from one configuration to another, on the branch and within all limits.
 
-Straight where that is free, else two trees that grow towards each other in the space of the drivers (RRT-Connect: Kuffner, LaValle
-2000), seeded, and then shortened. Limits and what `accept` asks are looked at in steps, not proved between them.
+A straight line if that is free, else two trees that grow towards each other in the space of the drivers (RRT-Connect: Kuffner, LaValle
+2000), with a fixed seed, then shortened. Limits and the conditions of `accept` are checked in steps, not proven between them.
 """
 
 from __future__ import annotations
@@ -26,17 +26,17 @@ if TYPE_CHECKING:
 
 Accept = Callable[[Configuration], bool]
 
-_STEP = 0.1  # rad, or lengths L: between two looks at limits, and at what else is asked
-_EXTENSION = 0.6  # rad, or lengths L: that a tree grows at once
-_SAMPLES = 400  # values of the drivers tried before no way is found
+_STEP = 0.1  # rad, or lengths L: between two checks of limits and of `accept`
+_EXTENSION = 0.6  # rad, or lengths L: largest growth of a tree at once
+_SAMPLES = 400  # random values of the drivers to try
 _SHORTCUTS = 40  # pairs of waypoints between which a straight line is tried
-_FREE = 2.0  # lengths L beyond start and goal that a travel without limits is sampled
-_SAME = 1e-6  # rad, mm: two configurations this close are one
+_FREE = 2.0  # lengths L beyond start and goal within which a travel without limits is sampled
+_SAME = 1e-6  # rad, mm: two configurations this close are the same
 
 
 @dataclass
 class _Tree:
-    """Configurations `(columns,)` and from which each was reached."""
+    """Configurations `(columns,)` and the node from which each was reached."""
 
     Q: list[FloatArray]
     before: list[int] = field(default_factory=lambda: [-1])
@@ -59,8 +59,8 @@ class PathPlanner:
     """Looks for ways.
 
     Args:
-        mechanism: Whose drivers move.
-        accept: Tells of a configuration within limits whether it will do; None asks for limits alone.
+        mechanism: The mechanism.
+        accept: Decides whether a configuration within limits is accepted; None accepts all.
     """
 
     def __init__(self, mechanism: Mechanism, accept: Accept | None) -> None:
@@ -95,7 +95,7 @@ class PathPlanner:
         return None
 
     def _box(self, a: FloatArray, b: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return between which displacements from `a` the drivers are sampled."""
+        """Return the bounds of the displacements from `a` within which the drivers are sampled."""
         to = self._between(a, b)
         free = np.where(self.layout.is_length[self._freedoms], _FREE, math.pi)
         low, high = np.minimum(to, 0.0) - free, np.maximum(to, 0.0) + free
@@ -120,14 +120,14 @@ class PathPlanner:
         return bool(np.abs(self.layout.difference(a, b)).max(initial=0.0) < _SAME)
 
     def _grown(self, tree: _Tree, aim: FloatArray, *, reach: float) -> int | None:
-        """Grow a tree from its nearest node towards an aim, as far as it is free; return the node reached, or None."""
+        """Grow a tree from its nearest node towards a target as far as that is free; return the node reached, or None."""
         away = [float(np.linalg.norm(self._between(Q, aim))) for Q in tree.Q]
         near = int(np.argmin(away))
         Q, moved = self._followed(tree.Q[near], aim, min(reach, away[near]))
         return tree.add(Q, near) if moved else (near if away[near] == 0.0 else None)
 
     def _followed(self, Q: FloatArray, aim: FloatArray, far: float) -> tuple[FloatArray, bool]:
-        """Move from Q towards an aim over a distance, step by step; return how far it came, and whether it moved at all."""
+        """Move from Q towards a target over a distance, step by step; return how far it came, and whether it moved at all."""
         way = self._between(Q, aim)
         distance = float(np.linalg.norm(way))
         if distance == 0.0:
@@ -148,7 +148,7 @@ class PathPlanner:
         return self._same(Q, b)
 
     def _advanced(self, Q: FloatArray, wanted: FloatArray) -> FloatArray | None:
-        """Return the configuration on the branch of Q where the drivers are in `wanted`; None if it is not reached."""
+        """Return the configuration on the branch of Q with the drivers of `wanted`; None if it is not reached."""
         found = Q.copy()
         found[self._columns] = wanted[self._columns]
         if self.mechanism.is_tree:

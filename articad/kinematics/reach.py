@@ -19,24 +19,24 @@ from articad.kinematics.loops import CLOSED, characteristic_length, damped_step
 if TYPE_CHECKING:
     from articad.kinematics.mechanism import Mechanism
 
-REACHED_MM = 1e-6  # a target this near is reached …
-REACHED_RAD = 1e-9  # … in orientation likewise
+REACHED_MM = 1e-6  # a target this close is reached …
+REACHED_RAD = 1e-9  # … and an orientation this close
 _ITERATIONS = 150
-_CLOSURE_WEIGHT = 10.0  # closing loops matters more than the target while both are open
-_AT_LIMIT = 1e-9  # rad or mm: a coordinate this near its limit is at it
+_CLOSURE_WEIGHT = 10.0  # closing loops has priority over the target while both are open
+_AT_LIMIT = 1e-9  # rad or mm: a coordinate this close to its limit is at it
 _SAME = 1e-6  # rad, mm: the drivers alone must lead to the same configuration
 
 
 @dataclass(frozen=True, eq=False)
 class Reach:
-    """How near a frame comes to a target.
+    """How close a frame comes to a target.
 
     Attributes:
         q: Values of the drivers `(nq,)` [rad, mm].
-        configuration: Of all joints.
-        distance: Of the frame's origin from the target [mm].
-        angle: Of the frame's axes from the target's [rad]; 0 when only a point was asked for.
-        limits: Coordinates at a limit that stop it from coming nearer; empty when it is reached.
+        configuration: Coordinates of all joints.
+        distance: Distance of the frame's origin from the target [mm].
+        angle: Angle between the frame's axes and the target's [rad]; 0 if the target is a point.
+        limits: Coordinates at a limit that stop it from coming closer; empty if the target is reached.
     """
 
     q: FloatArray
@@ -57,7 +57,7 @@ class _Task:
     def __init__(self, mechanism: Mechanism, part: str, target: SE3, frame: SE3, *, oriented: bool) -> None:
         self.mechanism, self.index, self.target, self.frame, self.oriented = mechanism, mechanism.part_index(part), target, frame, oriented
         self.branch = None if mechanism.is_tree else mechanism.branch
-        self.length = characteristic_length(mechanism.joints)  # of links, not of part frames, which may all be one
+        self.length = characteristic_length(mechanism.joints)  # of links, not of part frames, which may all coincide
         self.scale: FloatArray = np.where(mechanism.layout.is_length, self.length, 1.0)
 
     def evaluate(self, Q: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -130,7 +130,7 @@ def _at_rest(task: _Task) -> Reach:
 
 
 def _approached(task: _Task, Q: FloatArray) -> Reach | None:
-    """Levenberg–Marquardt within the box of the limits; None if the drivers' own branch does not lead where it ends.
+    """Levenberg–Marquardt within the limits; None if the drivers' own branch does not lead to where it ends.
 
     y = −V diag(s/(s² + λ²)) Uᵀ r with λ = μ·min(1, |r|): defined at singular configurations too, such as a stretched arm.
     """
@@ -194,7 +194,7 @@ def _clamped(mechanism: Mechanism, Q: FloatArray) -> FloatArray:
 
 
 def _held(mechanism: Mechanism, Q: FloatArray, pull: FloatArray) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
-    """Tell which freedoms are at a limit and pulled beyond it; a ball's limits are held by clamping alone."""
+    """Return which freedoms are at a limit and pulled beyond it; a ball's limits are enforced by clamping alone."""
     layout = mechanism.layout
     held = np.zeros(layout.n_freedoms, dtype=bool)
     for joint in mechanism.joints:

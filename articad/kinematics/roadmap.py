@@ -1,7 +1,7 @@
 """Roadmap: configurations of a group that straight lines of its drivers connect to rest, for values that no single line reaches.
 
-A tree that grows from rest towards random values of the drivers (RRT: LaValle, Kuffner 2001), seeded, in stages of fixed size: what a
-value leads to depends on the value alone.
+A tree grows from rest towards random values of the drivers (RRT: LaValle, Kuffner 2001), with a fixed seed, in stages of fixed size, so
+that the result for a value depends on the value alone.
 """
 
 from __future__ import annotations
@@ -19,16 +19,16 @@ if TYPE_CHECKING:
 _STAGES = (48, 160, 480)  # nodes after which a value is tried again
 _AT_ONCE = 16  # samples per growth
 _NEAREST = 8  # nodes from which a value is tried
-_LONGEST = 0.8  # rad, or lengths L: of one edge
-_FREE_LENGTH = 2.0  # lengths L either way that a travel without limits is sampled
-_TRIES = 4  # growths per node wanted, before a stage is left as it is
+_LONGEST = 0.8  # rad, or lengths L: length of one edge
+_FREE_LENGTH = 2.0  # lengths L in both directions within which a travel without limits is sampled
+_TRIES = 4  # growths per wanted node, before a stage is left incomplete
 
 
 class Roadmap:
-    """What is reached from rest.
+    """Configurations that can be reached from rest.
 
     Args:
-        group: Whose drivers move.
+        group: The group whose drivers move.
     """
 
     def __init__(self, group: Group) -> None:
@@ -41,7 +41,7 @@ class Roadmap:
         self._stages: list[int] = []
 
     def _box(self) -> tuple[FloatArray, FloatArray]:
-        """Return between which scaled displacements the drivers are sampled: their limits, or half a turn, or two lengths."""
+        """Return the bounds of the drivers' scaled displacements for sampling: their limits, or half a turn, or two lengths."""
         layout, system = self._group.system.layout, self._group.system
         low, high = np.empty(len(self._group.driving)), np.empty(len(self._group.driving))
         for i, freedom in enumerate(self._group.driving.tolist()):
@@ -53,7 +53,7 @@ class Roadmap:
         return np.minimum(low, 0.0), np.maximum(high, 0.0)
 
     def reached(self, y: FloatArray, wanted: FloatArray) -> FloatArray | None:
-        """Return the configuration at drivers' scaled displacements `(drivers,)` from rest, or None if no way to it is found.
+        """Return the configuration at drivers' scaled displacements `(drivers,)` from rest, or None if no path to it is found.
 
         Args:
             y: Displacements.
@@ -69,7 +69,7 @@ class Roadmap:
         return None
 
     def _size(self, stage: int) -> int:
-        """Return how many nodes belong to a stage, growing it first."""
+        """Return the number of nodes of a stage; grow it first."""
         while len(self._stages) <= stage:
             self._grow(_STAGES[len(self._stages)])
             self._stages.append(len(self._y))

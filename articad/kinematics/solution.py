@@ -1,4 +1,4 @@
-"""Solution: what of a batch of drivers' values is reached, and why the rest is not."""
+"""Solution: which rows of a batch of drivers' values are reached, and why the others are not."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from articad.findings import Findings
 
 @dataclass(frozen=True, eq=False)
 class Solution:
-    """Poses of a batch of drivers' values, as far as they are reached.
+    """Poses for a batch of drivers' values, where they are reached.
 
     Attributes:
-        q: Values asked for `(*batch, nq)` [rad, mm].
+        q: Requested values `(*batch, nq)` [rad, mm].
         reached: Which are reached `(*batch,)`.
         columns: Coordinates of all joints `(*batch, n_columns)`; NaN where not reached.
         poses: `T_ground_part` of all parts `(*batch, N, 7)` [mm, quaternion xyzw]; NaN where not reached.
-        findings: E_DEAD_POINT, E_SINGULAR or E_NOT_FOLLOWED, naming the rows that are not reached; empty when all are.
+        findings: E_DEAD_POINT, E_SINGULAR or E_NOT_FOLLOWED, naming the rows that are not reached; empty if all are.
     """
 
     q: FloatArray

@@ -1,4 +1,4 @@
-"""Couplings, solved once: coordinates that they tie are linear in one of them, so they need no iteration and no steps."""
+"""Couplings, solved once: coupled coordinates are linear in one of them, so they need no iteration and no steps."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ from articad.kinematics.layout import IndexArray, Layout
 
 BoolArray = npt.NDArray[np.bool_]
 
-_SAME_RATIO = 1e-7  # relative: two ways round that agree so far say the same, as RANK_TOLERANCE has it of equations
-_ROUNDING = 1e-13  # of the largest coordinate: what couplings miss by rounding alone
+_SAME_RATIO = 1e-7  # relative: two paths of couplings that agree to this are consistent, like RANK_TOLERANCE for equations
+_ROUNDING = 1e-13  # of the largest coordinate: residual of couplings from rounding alone
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,7 +27,7 @@ class LinearTie:
         freedoms: Of the same coordinates.
         factor: One per coordinate, in its own unit per unit of the first one.
         offset: Likewise.
-        fixed: m, where couplings round a ring leave one value only; None where m is free.
+        fixed: m, if couplings in a ring leave one value only; None if m is free.
     """
 
     columns: IndexArray
@@ -38,11 +38,11 @@ class LinearTie:
 
 
 class Basis:
-    """Independent motions of freedoms: of what is not tied each by itself, of a tie all its members together.
+    """Independent motions of freedoms: each uncoupled freedom by itself, the members of a tie together.
 
     Args:
         matrix: `(freedoms, n)`, scaled.
-        alone: The freedoms themselves, in order, where none is tied.
+        alone: The freedoms themselves, in order, if none is coupled.
     """
 
     def __init__(self, matrix: FloatArray, alone: IndexArray | None) -> None:
@@ -54,12 +54,12 @@ class Basis:
         return int(self.matrix.shape[1])
 
     def of(self, J: FloatArray) -> FloatArray:
-        """Return the derivatives `(*batch, rows, n)` by the motions, of those by freedoms `(*batch, rows, freedoms)`."""
+        """Return the derivatives `(*batch, rows, n)` by the motions from those by freedoms `(*batch, rows, freedoms)`."""
         derivatives: FloatArray = J @ self.matrix if self._alone is None else J[..., self._alone]
         return derivatives
 
     def step(self, z: FloatArray) -> FloatArray:
-        """Return the step `(*batch, freedoms)` of freedoms that motions `(*batch, n)` make."""
+        """Return the step `(*batch, freedoms)` of freedoms for motions `(*batch, n)`."""
         if self._alone is None:
             return z @ self.matrix.T
         y = np.zeros((*z.shape[:-1], len(self.matrix)))
@@ -72,10 +72,10 @@ class Ties:
 
     Args:
         couplings: Relations between coordinates.
-        layout: Of the coordinates.
-        scale: What one scaled unit of each freedom is [rad, mm].
+        layout: Layout of the coordinates.
+        scale: Size of one scaled unit of each freedom [rad, mm].
         length: L [mm].
-        in_loops: Freedoms that move loops: a tie's own number is measured by one of them, so that equations are well scaled.
+        in_loops: Freedoms that move loops: a tie's number is measured by one of them, so that equations are well scaled.
 
     Attributes:
         all: The ties.
@@ -107,14 +107,14 @@ class Ties:
         return residual
 
     def missed(self, Q: FloatArray) -> FloatArray:
-        """Return |r| `(*batch,)` of the rows at `Q` `(*batch, columns)`, without what rounding of the largest coordinate explains."""
+        """Return |r| `(*batch,)` of the rows at `Q` `(*batch, columns)`, minus what rounding of the largest coordinate explains."""
         residual = self.residual(Q)
         allowed = _ROUNDING * (1.0 + np.abs(Q).max(axis=-1, keepdims=True, initial=0.0))
         norm: FloatArray = np.sqrt((np.where(np.abs(residual) > allowed, residual, 0.0) ** 2).sum(axis=-1))
         return norm
 
     def basis(self, free: BoolArray) -> Basis:
-        """Return the independent motions of the free freedoms; a tie moves where all its members are free.
+        """Return the independent motions of the free freedoms; a tie moves if all its members are free.
 
         The largest component of each motion that moves a loop is 1.
         """
@@ -133,7 +133,7 @@ class Ties:
         return motion / (largest or float(np.abs(motion).max()))
 
     def images(self, freedom: int) -> FloatArray:
-        """Return the scaled motion `(freedoms,)` of everything tied to a freedom while that one moves by 1."""
+        """Return the scaled motion `(freedoms,)` of everything coupled to a freedom when that one moves by 1."""
         motion = np.zeros(self._n)
         motion[freedom] = 1.0
         tie = self._of.get(freedom)
@@ -143,7 +143,7 @@ class Ties:
         return motion
 
     def fitted(self, Q: FloatArray, held: BoolArray) -> FloatArray:
-        """Return coordinates `(*batch, columns)` that obey the couplings; of each tie a held member keeps its value, or the first one."""
+        """Return coordinates `(*batch, columns)` that obey the couplings; in each tie a held member, else the first, keeps its value."""
         if not self.all:
             return Q
         Q = Q.copy()
@@ -159,7 +159,7 @@ class Ties:
         return Q
 
     def spread(self, change: FloatArray, known: BoolArray) -> FloatArray:
-        """Return changes of coordinates `(columns,)` in which the members of each tie change as a known one of theirs does."""
+        """Return changes of coordinates `(columns,)` in which the members of each tie change consistently with a known one."""
         change = change.copy()
         for tie in self.all:
             first = int(np.argmax(known[tie.columns]))
@@ -169,7 +169,7 @@ class Ties:
         return change
 
     def tied_to(self, column: int) -> tuple[tuple[int, float, float], ...]:
-        """Return the other coordinates tied to one as (column, ratio, offset): their value is ratio · q + offset."""
+        """Return the other coordinates coupled to one as (column, ratio, offset): their value is ratio · q + offset."""
         for tie in self.all:
             at = np.flatnonzero(tie.columns == column)
             if at.size and tie.fixed is None:

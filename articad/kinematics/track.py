@@ -1,4 +1,4 @@
-"""Track: where one driver leads, traced once and read at any of its values."""
+"""Track: the path of one driver, traced once and evaluated at any of its values."""
 
 from __future__ import annotations
 
@@ -16,17 +16,17 @@ from articad.kinematics.layout import IndexArray
 from articad.kinematics.loops import CLOSED
 from articad.kinematics.ties import BoolArray
 
-_MOST_TURNS = 12  # of a loop's slowest driven angle, after which a motion that has not come back is not expected to
-_SAME = 1e-9  # rad, mm: a configuration that has come back
+_MOST_TURNS = 12  # turns of a loop's slowest driven angle after which a motion is not expected to repeat
+_SAME = 1e-9  # rad, mm: tolerance for a configuration to be the same again
 
 
 class Period(NamedTuple):
-    """How a motion repeats itself.
+    """How a motion repeats.
 
     Attributes:
         length: Travel of the driver [rad, mm].
-        advance: What one repetition adds to the coordinates `(columns,)`: whole turns of those in loops, what follows from it of
-            those that couplings tie to them.
+        advance: What one repetition adds to the coordinates `(columns,)`: whole turns for those in loops, and the resulting change of
+            those coupled to them.
     """
 
     length: float
@@ -35,13 +35,13 @@ class Period(NamedTuple):
 
 @dataclass(eq=False)
 class Track:
-    """One driver's way from a start in both directions, traced as far as it was asked for.
+    """One driver's path from a start in both directions, traced as far as needed so far.
 
     Attributes:
-        follower: Who follows.
+        follower: Object that follows the branch.
         Q: Closed start `(columns,)`.
         column: The driver's column in the system.
-        certify: Whether every step is to be proved.
+        certify: Whether every step is to be proven.
     """
 
     follower: Follower
@@ -62,7 +62,7 @@ class Track:
         return float(system.scale[system.layout.freedom_of(self.column)])
 
     def side(self, value: float) -> Trace:
-        """Return the trace towards a value, followed at least as far, if that is possible."""
+        """Return the trace towards a value, followed at least that far if that is possible."""
         sign = 1 if value >= self.start else -1
         length = abs(value - self.start) / self._unit
         trace = self._sides.get(sign)
@@ -78,12 +78,12 @@ class Track:
         return trace
 
     def largest_tube(self) -> float:
-        """Return the largest radius [rad, lengths L] round a predictor within which the only solution of a step lies, as far as traced."""
+        """Return the largest radius [rad, lengths L] around a predictor within which the only solution of a step lies, as far as traced."""
         steps = (step for trace in self._sides.values() for step in itertools.pairwise(trace.nodes))
         return max((float(self.follower.tube(a, np.asarray(b.s - a.s))) for a, b in steps), default=0.0)
 
     def direction(self, sign: int) -> FloatArray:
-        """Return the scaled velocity of the driver, and of all that is tied to it, towards growing (+1) or falling (−1) values."""
+        """Return the scaled velocity of the driver, and of all that is coupled to it, towards increasing (+1) or decreasing (−1) values."""
         system = self.follower.system
         return sign * system.ties.images(system.layout.freedom_of(self.column))
 
@@ -98,7 +98,7 @@ class Track:
             values: `(batch,)` [rad, mm].
 
         Returns:
-            Coordinates `(batch, columns)`; which were reached; which of these are proved to lie on the branch.
+            Coordinates `(batch, columns)`; which were reached; which of these are proven to lie on the branch.
         """
         Q = np.tile(self.Q, (len(values), 1))
         reached, proved = np.zeros(len(values), dtype=bool), np.zeros(len(values), dtype=bool)
@@ -116,9 +116,9 @@ class Track:
         return Q, reached, proved
 
     def period(self, sign: int) -> Period | None:
-        """Return after which travel of the driver everything has come back, but for whole turns; None if it does not.
+        """Return the travel of the driver after which everything repeats, up to whole turns; None if it does not.
 
-        That is a number of times, up to 12, that the loops come back: what couplings tie to them may take longer, or never do.
+        That is up to 12 times the period of the loops: what couplings connect to them may take longer, or never repeat.
         """
         once = self.repeat(sign)
         if once is None:
@@ -132,7 +132,7 @@ class Track:
         return None
 
     def repeat(self, sign: int) -> Period | None:
-        """Return after which travel of the driver all loops come back; None if they do not within 12 turns of what it drives."""
+        """Return the travel of the driver after which all loops repeat; None if they do not within 12 turns of what it drives."""
         if sign not in self._periods:
             self._periods[sign] = self._found_period(sign)
         return self._periods[sign]
@@ -141,7 +141,7 @@ class Track:
     def turn(self) -> float | None:
         """Travel [rad, mm] of the driver in which the slowest angle that it drives in a loop turns once.
 
-        None where it moves no loop, or moves one by a travel.
+        None if it moves no loop, or moves one by a translation.
         """
         system = self.follower.system
         rates = np.abs(self.direction(1) * system.scale / self._unit) * system.in_loops
@@ -172,7 +172,7 @@ class Track:
         return None
 
     def _reduced(self, values: FloatArray, sign: int) -> tuple[FloatArray, FloatArray, FloatArray | None]:
-        """Return values within the first period, how many periods were left out, and what one adds to the coordinates."""
+        """Return values within the first period, how many periods were removed, and what one adds to the coordinates."""
         away = np.abs(values - self.start)
         period = self.repeat(sign) if self.turn is not None and away.max() > self.turn * (1 + 1e-9) else None
         if period is None:
@@ -217,7 +217,7 @@ class Track:
         return system.move(Q[left], step), left
 
     def _inside_tubes(self, trace: Trace, s: FloatArray, Q: FloatArray, left: IndexArray) -> BoolArray:
-        """Tell which configurations lie within the tube of their left node's predictor, where there is one solution only."""
+        """Return which configurations lie within the tube of their left node's predictor, where there is only one solution."""
         inside = np.zeros(len(s), dtype=bool)
         for i, k in enumerate(left):
             node = trace.nodes[int(k)]

@@ -1,4 +1,4 @@
-"""KinematicTree: parts in an order in which every part follows its parent, each hung from one joint."""
+"""KinematicTree: parts ordered so that every part follows its parent, each carried by one joint."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ class Edge(NamedTuple):
 
     Attributes:
         joint: As declared.
-        parent: The part nearer the ground.
+        parent: The part nearer to the ground.
         part: The part farther from it, which the joint carries.
     """
 
@@ -32,16 +32,16 @@ class Edge(NamedTuple):
 
 
 class KinematicTree:
-    """A spanning tree: holding one proves that every part hangs from the ground by exactly one chain of joints.
+    """A spanning tree; its constructor checks that every part is connected to the ground by exactly one chain of joints.
 
     Args:
         ground: The root.
-        edges: One per other part, in any order: a joint, the part nearer the ground, the part farther from it.
+        edges: One per other part, in any order: a joint, the part nearer to the ground, the part farther from it.
 
     Attributes:
         parts: In an order in which every part follows its parent, the ground first.
-        joints: That carry the parts but the ground, in this order.
-        parents: Of these parts, in this order.
+        joints: The joint that carries each part except the ground, in this order.
+        parents: The parents of these parts, in this order.
 
     Raises:
         KinematicsError: If the edges are not a tree rooted at the ground.

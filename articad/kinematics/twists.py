@@ -15,7 +15,7 @@ class Twists:
     """Velocities that each freedom gives its joint's child side against its parent side, in the ground frame.
 
     Args:
-        layout: Of the joints.
+        layout: Layout of the joints.
         part_index: Index of each part in the array of poses.
     """
 
@@ -26,7 +26,7 @@ class Twists:
         for k, joint in enumerate(layout.joints):
             frames.append(k)
             frame, first = len(frames) - 1, layout.columns[joint.name].start
-            before: list[Step] = []  # steps that carry the axis of the next one
+            before: list[Step] = []  # steps that move the axis of the next one
             for step in joint.type.steps:
                 if step.advances:  # the slide of a screw belongs to its turn
                     continue
@@ -74,7 +74,7 @@ class Twists:
 
 
 def _moves_axis(before: Step, step: Step) -> bool:
-    """Tell whether a step moves the axis of a later one: turns do but about the same axis, slides matter to turns but along their axis."""
+    """Return whether a step moves the axis of a later one: if their axes differ and one of the two is a turn."""
     return before.axis != step.axis and (before.kind == "turn" or step.kind == "turn")
 
 
