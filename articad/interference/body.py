@@ -1,4 +1,4 @@
-"""Bodies: meshes made ready for collision queries, once each, and refused when they are not solids."""
+"""Bodies: meshes prepared for collision queries, once each, and refused when they are not solids."""
 
 from __future__ import annotations
 
@@ -18,15 +18,15 @@ FloatArray = NDArray[np.float64]
 
 _EXTREME_DIRECTIONS = np.array([[x, y, z] for x in (-1, 0, 1) for y in (-1, 0, 1) for z in (-1, 0, 1) if x or y or z], dtype=np.float64)
 _SCATTERED = 600
-_FEW_TRIANGLES = 200  # of a mesh that is asked as it is
-_WORTH_THINNING = 0.75  # of the triangles may be left, or the mesh is asked as it is
-_AREA_SLACK = 1e-9  # relative: a face that is moved by the tolerance may lean
-_ROUNDING = 1e-12  # of a sum over thousands of triangles, relative
+_FEW_TRIANGLES = 200  # triangles; smaller meshes are used as they are
+_WORTH_THINNING = 0.75  # share of the triangles that may remain; otherwise the mesh is used as it is
+_AREA_SLACK = 1e-9  # relative: a face moved by the tolerance may tilt
+_ROUNDING = 1e-12  # relative, of a sum over thousands of triangles
 _bodies: WeakKeyDictionary[TriMesh, Body] = WeakKeyDictionary()
 
 
 class Body:
-    """One mesh with what FCL and manifold3d make of it, each made when first asked for.
+    """One mesh with its FCL and manifold3d objects, each made at the first access.
 
     Attributes:
         mesh: Welded, so that neighbouring triangles share their vertices.
@@ -37,14 +37,14 @@ class Body:
 
     @property
     def is_empty(self) -> bool:
-        """True when there are no triangles; FCL must not be asked then, for it would crash."""
+        """True when there are no triangles; FCL would crash on it."""
         return not len(self.mesh.triangles)
 
     @cached_property
     def fault(self) -> str | None:
-        """Why overlap with this mesh cannot be measured; None for a proper solid.
+        """Why overlap with this mesh cannot be measured; None for a valid solid.
 
-        Without this a broken mesh would silently overlap nothing: manifold3d answers 0 for it.
+        Without this check a broken mesh would silently overlap nothing: manifold3d returns 0 for it.
         """
         if self.is_empty:
             return "the mesh has no triangles"
@@ -54,17 +54,17 @@ class Body:
             return f"the mesh encloses {self.mesh.volume:.6g} mm³: it is flat or inside out"
         if self._shell_outside_all is not None:
             return f"a shell of the mesh encloses {self._shell_outside_all:.6g} mm³ outside all others: it is inside out"
-        status = self._new_manifold().status()  # not kept: most parts of a large assembly never come near another
+        status = self._new_manifold().status()  # not cached: most parts of a large assembly never come near another
         if status != manifold3d.Error.NoError:
             return f"the mesh is not a manifold ({status.name})"
         return None
 
     @cached_property
     def manifold(self) -> Any:
-        """The solid as a `manifold3d.Manifold` in double precision; look at `fault` before trusting it.
+        """The solid as a `manifold3d.Manifold` in double precision; check `fault` before using it.
 
-        Its flat faces are cut into no more triangles than their outlines need, where the mesh has far more: the same solid to
-        rounding, and the cost of a boolean is that of its triangles.
+        If the mesh cuts flat faces into far more triangles than their outlines need, these are merged: the solid is the same up to
+        rounding, and the cost of a boolean grows with the number of triangles.
         """
         whole = self._new_manifold()
         if whole.num_tri() <= _FEW_TRIANGLES or whole.status() != manifold3d.Error.NoError:
@@ -74,7 +74,7 @@ class Body:
 
     @cached_property
     def manifold_triangles(self) -> int:
-        """How many triangles `manifold` has: those of the mesh, or fewer where it cuts flat faces up needlessly."""
+        """Number of triangles of `manifold`: those of the mesh, or fewer where it cuts flat faces up needlessly."""
         return int(self.manifold.num_tri()) or len(self.mesh.triangles)  # a broken mesh has none there
 
     @property
@@ -88,12 +88,12 @@ class Body:
         return int(self.manifold.to_mesh64().run_original_id[0])
 
     def _new_manifold(self) -> Any:
-        # copies: manifold3d takes only arrays that it could write
+        # copies: manifold3d only accepts writable arrays
         return manifold3d.Manifold(manifold3d.Mesh64(self.mesh.vertices.copy(), self.mesh.triangles.astype(np.uint64)))
 
     @cached_property
     def bvh(self) -> Any:
-        """The surface as an `fcl.BVHModel`, in as few triangles as `manifold`."""
+        """The surface as an `fcl.BVHModel`, with as few triangles as `manifold`."""
         return make_bvh(*self._plain)
 
     @cached_property
@@ -116,7 +116,7 @@ class Body:
 
     @cached_property
     def moving(self) -> Any:
-        """A collision object to be placed anew for every query; a second one, since a mesh may be asked against itself."""
+        """A collision object that is placed anew for every query; separate from `standing`, since a mesh may be compared with itself."""
         return fcl.CollisionObject(self.bvh)
 
     @cached_property
@@ -136,12 +136,12 @@ class Body:
 
     @cached_property
     def extremes(self) -> tuple[FloatArray, ...]:
-        """For each shell the vertices that reach furthest in 26 directions, `(26, 3)`: all inside a box iff nearly the shell is."""
+        """For each shell the farthest vertices in 26 directions, `(26, 3)`: nearly always, a shell is inside a box if these are."""
         return tuple(shell.vertices[np.argmax(shell.vertices @ _EXTREME_DIRECTIONS.T, axis=0)] for shell in self.components)
 
     @cached_property
     def scattered(self) -> FloatArray:
-        """Some of the vertices, `(V, 3)`: what is near one of them is near the body."""
+        """Some of the vertices, `(V, 3)`: whatever is near one of them is near the body."""
         return self.mesh.vertices[:: 1 + len(self.mesh.vertices) // _SCATTERED]
 
     @cached_property
@@ -151,7 +151,7 @@ class Body:
 
     @cached_property
     def scattered_squares(self) -> FloatArray:
-        """Squares of their distances from the origin, `(V,)` [mm²]."""
+        """Squares of the distances of `scattered` from the origin, `(V,)` [mm²]."""
         return np.asarray(np.einsum("vi,vi->v", self.scattered, self.scattered))
 
     @cached_property
@@ -161,7 +161,7 @@ class Body:
 
     @property
     def _shell_outside_all(self) -> float | None:
-        """Volume of a shell that is inside out but no cavity of another."""
+        """Volume of a shell that is inside out but is not a cavity of another."""
         if len(self.components) == 1:
             return None
         solids = [shell for shell in self.components if shell.volume > 0]
@@ -173,7 +173,7 @@ class Body:
 
 
 def body_of(mesh: TriMesh) -> Body:
-    """Return the body of a mesh; parts that share a mesh share the body, and it lives as long as the mesh."""
+    """Return the body of a mesh; parts that share a mesh share the body, which lives as long as the mesh."""
     body = _bodies.get(mesh)
     if body is None:
         body = _bodies[mesh] = Body(mesh)
@@ -181,7 +181,7 @@ def body_of(mesh: TriMesh) -> Body:
 
 
 def _same_solid(whole: Any, plain: Any) -> bool:
-    """Return whether two solids have the same size, volume and surface, up to what moving a surface by the tolerance may change."""
+    """Return whether two solids have the same size, volume and surface, up to the change that moving a surface by the tolerance allows."""
     off = float(whole.get_tolerance())
     area, size = float(whole.surface_area()), np.array(whole.bounding_box())
     return (
@@ -202,14 +202,14 @@ def make_bvh(vertices: FloatArray, triangles: NDArray[Any]) -> Any:
 
 
 def winding_numbers(points: FloatArray, corners: FloatArray) -> FloatArray:
-    """Count how often a closed mesh winds round each point: 1 inside, 0 outside (van Oosterom and Strackee 1983).
+    """Return the winding number of a closed mesh about each point: 1 inside, 0 outside (van Oosterom and Strackee 1983).
 
     Args:
         points: `(P, 3)` [mm].
         corners: Corners of the triangles, `(T, 3, 3)` [mm].
 
     Returns:
-        `(P,)`; halves on the surface.
+        `(P,)`; 0.5 on the surface.
     """
     total = np.empty(len(points))
     for row, point in enumerate(points):
@@ -222,5 +222,5 @@ def winding_numbers(points: FloatArray, corners: FloatArray) -> FloatArray:
 
 
 def relative(T_a: SE3, T_b: SE3) -> SE3:
-    """Return `T_a_b`: where b stands as seen from a."""
+    """Return `T_a_b`: the pose of b in the frame of a."""
     return T_a.inverse() @ T_b

@@ -1,4 +1,4 @@
-"""Which of many boxes meet, without comparing each with each."""
+"""Finds which of many boxes meet, without comparing each with each."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ IntArray = NDArray[np.intp]
 def meeting_boxes(low: FloatArray, high: FloatArray) -> IntArray:
     """Return the pairs (i, j), i < j, of boxes that touch or overlap, in order, `(pairs, 2)`.
 
-    The boxes are sorted along the axis on which they lie furthest apart; each is compared with those that begin before it ends.
+    The boxes are sorted along the axis on which they are spread farthest; each is compared with those that begin before it ends.
 
     Args:
         low: Lowest corners `(n, 3)`.

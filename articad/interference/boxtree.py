@@ -1,4 +1,4 @@
-"""A tree of boxes over a surface: every node bounds the triangles below it, down to single ones."""
+"""A tree of boxes over a surface: every node bounds the triangles below it; leaves are single triangles."""
 
 from __future__ import annotations
 
@@ -27,11 +27,11 @@ class BoxTree:
         centre: `(nodes, k)` [mm], in space k = 3; the root is node 0, children follow their parents.
         half: Half sides, `(nodes, k)` [mm].
         children: `(nodes, 2)`; −1 for a single triangle.
-        triangle: Of a leaf, its place among `corners`; −1 for the others.
+        triangle: For a leaf, the index of its triangle in `corners`; −1 for other nodes.
         corners: `(T, 3, 3)` [mm].
-        order: Places among `corners` such that each node holds a stretch of them, `(T,)`: its children the two halves.
-        start: Where the stretch of each node begins, `(nodes,)`.
-        size: How many triangles it holds, `(nodes,)`.
+        order: Indices into `corners` such that each node has a contiguous range of them, `(T,)`; its children have the two halves.
+        start: Start of the range of each node, `(nodes,)`.
+        size: Length of the range, `(nodes,)`.
     """
 
     centre: Bounds
@@ -45,7 +45,7 @@ class BoxTree:
 
     @classmethod
     def of(cls, surface: Surface) -> BoxTree:
-        """Return the tree of a surface; made once."""
+        """Return the tree of a surface; cached."""
         tree = _trees.get(surface)
         if tree is None:
             tree = _trees[surface] = cls.over(surface.corners.min(axis=1), surface.corners.max(axis=1), surface.corners)
@@ -58,7 +58,7 @@ class BoxTree:
         Args:
             low: Lower ends.
             high: Upper ends.
-            corners: Of the triangles, `(T, 3, 3)`.
+            corners: Corners of the triangles, `(T, 3, 3)`.
         """
         middle = (low + high) / 2
         order, starts, size = np.arange(len(low)), np.array([0]), np.array([len(low)])
@@ -76,7 +76,7 @@ class BoxTree:
             children.append(below)
             first += len(starts)
             stretches.append((begin, size))
-            # the triangles of all nodes to be cut, in order of the longest side of each; leaves go
+            # the triangles of all nodes to be split, sorted by the longest side of each; leaves are removed
             block = np.repeat(np.arange(len(starts)), size)
             axis = np.argmax(top - bottom, axis=1)[block]
             keep = ~single[block]
@@ -90,19 +90,19 @@ class BoxTree:
         start, count, leaf = (np.concatenate(column) for column in (*zip(*stretches, strict=True), triangle))
         final = np.empty(len(low), dtype=np.int32)
         final[start[leaf >= 0]] = leaf[leaf >= 0]
-        # half the room, since many trees stand at once; a box rounded outwards still bounds its triangles
+        # single precision, since many trees exist at once; a box rounded outwards still bounds its triangles
         centre = ((bottom + top) / 2).astype(np.float32)
         half = np.nextafter(np.maximum(top - centre, centre - bottom).astype(np.float32), np.float32(np.inf))
         return cls(centre, half, np.concatenate(children).astype(np.int32), leaf.astype(np.int32), corners, final, start, count)
 
     @classmethod
     def joined(cls, trees: Sequence[BoxTree], rows: Sequence[IntArray], corners: FloatArray) -> tuple[BoxTree, tuple[int, ...]]:
-        """Return trees over parts of a surface as one, and the root of each.
+        """Return trees over parts of a surface joined into one, and the root of each.
 
         Args:
-            trees: Of the parts.
-            rows: Places of their triangles among all, `(t,)` each.
-            corners: Of all triangles, `(T, 3, 3)`.
+            trees: Trees of the parts.
+            rows: Indices of their triangles among all, `(t,)` each.
+            corners: Corners of all triangles, `(T, 3, 3)`.
         """
         nodes = np.cumsum([0, *(len(tree.centre) for tree in trees)])
         begins = np.cumsum([0, *(len(tree.order) for tree in trees)])
@@ -120,13 +120,13 @@ class BoxTree:
         return tree, tuple(int(first) for first in nodes[:-1])
 
     def flat(self) -> BoxTree:
-        """Return the tree without the coordinates beyond space that it was made by."""
+        """Return the tree without the non-spatial coordinates by which it was made."""
         return replace(self, centre=self.centre[:, :3].copy(), half=self.half[:, :3].copy())
 
     def over_each(self, values: NDArray[Any], ufunc: np.ufunc) -> NDArray[Any]:
-        """Return a minimum or maximum over the triangles of each node, of values `(T,)`, `(nodes,)`."""
+        """Return a minimum or maximum, over the triangles of each node, of values `(T,)`: `(nodes,)`."""
         ends = np.stack([self.start, np.minimum(self.start + self.size, len(values) - 1)], axis=1)
         ordered = values[self.order]
         found = ufunc.reduceat(ordered, ends.ravel())[::2]
-        last = self.start + self.size == len(values)  # such a stretch ended one too early
+        last = self.start + self.size == len(values)  # such a range ended one too early
         return np.asarray(np.where(last, ufunc(found, ordered[-1]), found))

@@ -1,8 +1,8 @@
-"""Captivity and order: which parts can leave in a straight line, which way, and in what order the whole goes together.
+"""Captivity and order: which parts can leave in a straight line, in which direction, and in what order the assembly goes together.
 
-A part leaves along a direction when nothing that stays is in its way until it is clear of all of it; that is proven like any
-other motion, without sampling gaps, with contact up to what is allowed. Taking parts away one by one until only the ground is
-left, and reading the list backwards, gives an order of insertion. Turning a part on its way out, or bending it, is not tried.
+A part leaves along a direction if nothing that stays is in its way until it is clear of everything. That is proven like any other
+motion, without gaps between samples, with contact up to what is allowed. Removing parts one by one until only the ground is left, and
+reading the list backwards, gives an order of insertion. Rotating a part on its way out, or bending it, is not tried.
 """
 
 from __future__ import annotations
@@ -25,23 +25,23 @@ from articad.interference.work import WorkBudget
 
 FloatArray = NDArray[np.float64]
 
-CLEAR_MM = 1.0  # a part that is so far beyond everything else has left
-CONTACT_MM = 1e-4  # of a shrunk surface: closer is in the way
-MOST_QUERIES = 3000  # for one part and direction; then it is not known
-GLANCES = 12  # poses looked at before a proof is tried
+CLEAR_MM = 1.0  # a part this far beyond everything else has left
+CONTACT_MM = 1e-4  # of a shrunk surface: anything closer is in the way
+MOST_QUERIES = 3000  # for one part and direction; beyond that the result is "unknown"
+GLANCES = 12  # poses checked before a proof is tried
 _SAME_DIRECTION = 1e-6
 
 
 @dataclass(frozen=True)
 class Escape:
-    """One way out, or what is in it.
+    """One direction of removal, and what blocks it.
 
     Attributes:
-        part: That would leave.
+        part: The part to be removed.
         direction: In the ground frame, of unit length.
-        free: True when the way is proven free; False when something is in it; None when it is not known.
+        free: True if the path is proven free; False if something blocks it; None if this is unknown.
         blocker: The first part in the way.
-        travel: How far it comes [mm].
+        travel: How far it can move [mm].
     """
 
     part: str
@@ -63,10 +63,10 @@ class Escape:
 
 @dataclass(frozen=True)
 class InsertionOrder:
-    """How the parts go together.
+    """The order in which the parts go together.
 
     Attributes:
-        steps: Parts in the order of insertion, each with the way by which it would leave again; the first stands already.
+        steps: Parts in the order of insertion, each with the direction in which it would leave again; the first is already in place.
         stuck: Parts that cannot be taken apart, if any.
         blockers: For each of them the parts in its way, whatever the direction.
     """
@@ -77,7 +77,7 @@ class InsertionOrder:
 
     @property
     def findings(self) -> Findings:
-        """A warning for the parts that cannot be inserted in a straight line."""
+        """A warning about the parts that cannot be inserted in a straight line."""
         if not self.stuck:
             return Findings()
         ways = "; ".join(f"{name} by {', '.join(self.blockers[name]) or 'what could not be decided'}" for name in self.stuck)
@@ -105,12 +105,12 @@ class InsertionOrder:
 def escapes(
     scene: Scene, poses: Mapping[str, SE3], part: str, *, among: Iterable[str] | None = None, directions: FloatArray | None = None
 ) -> tuple[Escape, ...]:
-    """Try to take one part away in a straight line.
+    """Try to remove one part in a straight line.
 
     Args:
         scene: Bodies and relations.
         poses: `T_ground_part` of all parts.
-        part: That would leave.
+        part: The part to be removed.
         among: Parts that stay; all others by default.
         directions: Unit vectors to try, in the ground frame, `(n, 3)`; by default the axes of the ground, of the part and of its joints.
     """
@@ -121,12 +121,12 @@ def escapes(
 
 
 def insertion_order(scene: Scene, poses: Mapping[str, SE3], ground: str) -> InsertionOrder:
-    """Take everything apart, part by part, and return the order in which it goes together again.
+    """Take everything apart, part by part, and return the reverse: an order of assembly.
 
     Args:
         scene: Bodies and relations.
         poses: `T_ground_part` of all parts.
-        ground: Stays where it is.
+        ground: The part that does not move.
     """
     left = [name for name in scene.bodies if name not in scene.broken]
     removed: list[Escape] = []
@@ -134,7 +134,7 @@ def insertion_order(scene: Scene, poses: Mapping[str, SE3], ground: str) -> Inse
     movable = [name for name in left if name != ground]
     while movable:
         found = None
-        for name in reversed(movable):  # what was declared last went in last, mostly
+        for name in reversed(movable):  # what was declared last was mostly inserted last
             tried = escapes(scene, poses, name, among=left)
             found = next((escape for escape in tried if escape.free), None)
             if found is not None:
@@ -149,13 +149,13 @@ def insertion_order(scene: Scene, poses: Mapping[str, SE3], ground: str) -> Inse
 
 
 class _Leaving:
-    """One part on its way out, past others that stay."""
+    """One part being removed past others that stay."""
 
     def __init__(self, scene: Scene, poses: Mapping[str, SE3], part: str, others: Sequence[str]) -> None:
         self.scene, self.part, self.others = scene, part, others
         body = scene.bodies[part]
         self.start = poses[part].matrix
-        # contact is allowed to each neighbour by its own relation; the smallest allowance is on the safe side
+        # contact is allowed to each neighbour by its own relation; using the smallest allowance is on the safe side
         self.shrink = min((scene.tolerated(part, name) for name in others), default=0.0)
         self.surface = Surface.of(body.mesh, inwards(body.mesh, self.shrink))
         corners = {name: _placed(Surface.of(scene.bodies[name].mesh).corners, poses[name]) for name in others}
@@ -196,7 +196,7 @@ class _Leaving:
 
 
 def _directions(scene: Scene, poses: Mapping[str, SE3], part: str) -> FloatArray:
-    """Return the axes of the part's joints first, then of the part and of the ground, each both ways, none twice."""
+    """Return the axes of the part's joints first, then of the part and of the ground, each in both directions, without duplicates."""
     axes = []
     for joint in scene.relations.joints:
         if part in (joint.parent, joint.child):

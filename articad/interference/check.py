@@ -1,6 +1,6 @@
-"""One pose: which parts overlap, which float, which meshes cannot be judged.
+"""One pose: which parts overlap, which float, which meshes cannot be checked.
 
-Bounding boxes choose the pairs; a boolean of the two solids gives the verdict (`articad.interference.overlap`).
+Bounding boxes select the pairs; a boolean of the two solids gives the verdict (`articad.interference.overlap`).
 Definitions and tolerances: `docs/reference/certificate.md`.
 """
 
@@ -39,16 +39,16 @@ def check_pose(
     """Check one pose of an assembly.
 
     Args:
-        meshes: By part, in the part's frame; parts without geometry are left out and cannot overlap.
+        meshes: By part, in the part's frame; parts without geometry are omitted and cannot overlap.
         poses: `T_ground_part` of all parts, also of those without geometry.
-        joints: Of the mechanism.
+        joints: Joints of the mechanism.
         waivers: Overlaps that the plan allows.
         deflection: How far meshes are from their solids [mm], by part or the same for all.
-        over: "rest" or "pose". Rigid groups, floating and fixed parts are judged at rest only.
-        fits: By joint name; a declared gap widens what counts as held.
-        ground: The part that stands still; without it the first one.
+        over: "rest" or "pose". Rigid groups, floating and fixed parts are checked at rest only.
+        fits: By joint name; a declared gap enlarges the distance within which parts count as held.
+        ground: The part that does not move; the first one by default.
         pose: Coordinates, for the findings [rad, mm].
-        gaps: Whether to measure the distance of every pair whose boxes are near, too.
+        gaps: Whether to measure the distance of every pair whose boxes are near as well.
     """
     scene = Scene.of(meshes, joints, waivers=waivers, deflection=deflection, fits=fits)
     return check_scene(scene, poses, over=over, ground=ground, pose=pose, gaps=gaps)
@@ -64,7 +64,7 @@ def check_scene(
     gaps: bool = False,
     known: Mapping[tuple[str, str], PairCheck] | None = None,
 ) -> Checks:
-    """Check one pose of a scene; see `check_pose`. What is `known` of a pair of parts is taken as it is, without findings."""
+    """Check one pose of a scene; see `check_pose`. Verdicts in `known` are reused as they are, without findings."""
     placed, coaxial = scene.at(poses), Coaxial.of(scene)
     findings = [broken_finding(name, reason) for name, reason in scene.broken.items()]
     pairs: dict[tuple[str, str], PairCheck] = {}
@@ -92,7 +92,7 @@ def check_scene(
 
 
 def broken_finding(name: str, reason: str) -> Finding:
-    """Return the finding that a mesh is no solid."""
+    """Return the finding about a mesh that is not a solid."""
     return Finding(
         code="E_MESH_OPEN",
         where=f"parts.{name}",
@@ -103,7 +103,7 @@ def broken_finding(name: str, reason: str) -> Finding:
 
 
 def unknown_pairs(scene: Scene, over: str | tuple[str, ...]) -> dict[tuple[str, str], PairCheck]:
-    """Return a verdict "unknown" for every pair with a broken mesh: it is never taken for no interference."""
+    """Return a verdict "unknown" for every pair with a broken mesh: it never counts as free of interference."""
     if not scene.broken:
         return {}
     names = list(scene.bodies)

@@ -1,4 +1,4 @@
-"""Least clearance of each two parts over the motion: looked for by sampling, then by a search near the nearest pose.
+"""Smallest clearance of every two parts over the motion: estimated by sampling, then by a search near the closest pose.
 
 Poses along each driver, on a grid of every two, and scattered over all are looked at. Each pair has a lower bound of its distance at each
 pose: the gap of the boxes about both parts, and any distance measured at another pose, minus how far the corners of a box move between
@@ -55,8 +55,8 @@ class Clearance:
     Attributes:
         parts: Their names, in the order of the mechanism.
         gap: Distance of their meshes there [mm]; 0 where they touch or overlap.
-        pose: Values of what was moved, the rest stands at rest [rad, mm].
-        poses: How many poses of the two were looked at: more would find the same or less.
+        pose: Values of the freedoms that were moved; the rest is at rest [rad, mm].
+        poses: Number of poses of the pair that were sampled; more would give the same distance or a smaller one.
         relation: "mating" when a joint connects them, else "unrelated".
     """
 
@@ -68,7 +68,7 @@ class Clearance:
 
     @property
     def strength(self) -> Strength:
-        """Sampled: no proof that the clearance is not smaller elsewhere."""
+        """Sampled: the clearance may be smaller elsewhere."""
         return Strength.sampled(self.poses)
 
     def to_json(self) -> dict[str, Any]:
@@ -126,7 +126,7 @@ def collisions_at(motion: MotionSampler, rows: Iterable[Clearance], known: Check
 
 
 def _points(motion: MotionSampler, ranges: Sequence[Freedom], *, together: bool) -> FloatArray:
-    """Return values `(n, freedoms)`: along each, on grids of two, and scattered over all."""
+    """Return values `(n, freedoms)`: along each freedom, on grids of two, and scattered over all."""
     rest = np.array([freedom.rest for freedom in ranges])
     rows = [rest[None]]
     for at, freedom in enumerate(ranges):
@@ -202,7 +202,7 @@ class _Known:
 
 @dataclass
 class _Pair:
-    """Two bodies, and the nearest pose that was seen of them.
+    """Two bodies and their closest pose so far.
 
     Attributes:
         i: Place of the first among the bodies.
@@ -249,13 +249,13 @@ class _Search:
         self.low, self.high = (np.array([getattr(freedom, end) for freedom in ranges]) for end in ("lower", "upper"))
 
     def pairs(self) -> list[tuple[int, int]]:
-        """Return the bodies that joints let move against each other, and that are solids."""
+        """Return the pairs of solid bodies that joints let move relative to each other."""
         good = [at for at, name in enumerate(self.names) if name not in self.scene.broken and not self.bodies[at].is_empty]
         rigid = self.scene.relations.rigid
         return [(i, j) for i, j in itertools.combinations(good, 2) if not rigid.together(self.names[i], self.names[j])]
 
     def placed(self, points: FloatArray) -> tuple[NDArray[np.int64], FloatArray]:
-        """Return which points are reached, and where the bodies stand there `(n, bodies, 3, 4)`."""
+        """Return which points are reached, and the poses of the bodies there `(n, bodies, 3, 4)`."""
         named = [dict(zip((f.name for f in self.ranges), point, strict=True)) for point in points.tolist()]
         try:
             kept, poses, _ = self.motion.placed(named)
@@ -305,7 +305,7 @@ class _Search:
                 pair.gap, pair.at = gap, pair.points[at].copy()
 
     def refine(self, pairs: Sequence[_Pair], *, together: bool) -> None:
-        """Look for nearer poses beside those found, all pairs in one batch a round."""
+        """Search for closer poses around those found, all pairs in one batch per round."""
         for _ in range(ROUNDS):
             tried = [(pair, row) for pair in pairs if pair.step >= LEAST_STEP for row in self._beside(pair, together=together)]
             if not tried:
@@ -377,11 +377,11 @@ class _Search:
         return np.asarray(centre + half * np.array(list(itertools.product((-1.0, 1.0), repeat=3))))
 
     def are_joined(self, i: int, j: int) -> bool:
-        """Return whether a joint connects two bodies: then they may touch, and how deep they meet is not asked."""
+        """Return whether a joint connects two bodies: then they may touch, and the depth of contact is not measured."""
         return bool(self.scene.relations.between(self.names[i], self.names[j]))
 
     def _distance(self, i: int, j: int, T: FloatArray) -> float:
-        """Return the distance of two bodies; of those that no joint holds together, minus the cube root of what they share [mm]."""
+        """Return the distance of two bodies [mm]; if no joint connects them and they overlap, minus the cube root of the common volume."""
         a, b = self.bodies[i], self.bodies[j]
         gap = distance(a, b, se3_of(T))
         if gap > 0 and not one_contains_the_other(a, b, T):

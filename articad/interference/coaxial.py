@@ -1,6 +1,6 @@
-"""Parts on one axis: however they turn about it their points keep radius and height, so outlines that are apart stay apart.
+"""Parts on one axis: rotation about it keeps the radius and height of their points, so outlines that are apart stay apart.
 
-A check of another pose, or of another pair of the same shapes, then need not ask what the first ones have shown.
+Results for one pose, or one pair of shapes, are reused for other poses, and for other pairs of the same shapes.
 """
 
 from __future__ import annotations
@@ -23,11 +23,11 @@ from articad.kinematics.joints import JointType
 FloatArray = NDArray[np.float64]
 
 _TURNING = (JointType.REVOLUTE, JointType.CYLINDRICAL, JointType.SCREW)
-_WORTH_OUTLINES = 8  # askings of two shapes on one axis from which comparing outlines is cheaper
-_OFF_MM = 1e-7  # by which two axes may miss each other, at the body's ends
-_APART_MM = 1e-6  # by which outlines must be apart: above all rounding
+_WORTH_OUTLINES = 8  # queries of two shapes on one axis from which comparing outlines is cheaper
+_OFF_MM = 1e-7  # largest offset of two axes, at the body's ends
+_APART_MM = 1e-6  # least distance of outlines: larger than all rounding
 _KEY_DIGITS = 9  # of millimetres of height
-_MOST_KEYS = 10_000  # heights that are remembered: a slide has no end of them
+_MOST_KEYS = 10_000  # heights in the cache: a slide has infinitely many
 
 Box = tuple[FloatArray, FloatArray]
 _Key = tuple[tuple[int, bytes, int, bytes], tuple[float, float]]
@@ -42,7 +42,7 @@ class Axis(NamedTuple):
         a: The axis in the first body's frame, `(4, 4)`: z of a connector.
         b: The same in the second body's.
         reach: How far the second body is from the origin of its axis at most [mm].
-        key: Tells pairs of shapes and axes apart.
+        key: Identifies the pair of shapes and axes.
     """
 
     a: FloatArray
@@ -52,7 +52,7 @@ class Axis(NamedTuple):
 
     @classmethod
     def of(cls, scene: Scene, a: str, b: str) -> Axis | None:
-        """Return the axis about which a joint between two parts turns; None where there is no such joint."""
+        """Return the axis about which a joint between two parts turns; None if there is no such joint."""
         for joint in scene.relations.between(a, b):
             if joint.type in _TURNING:
                 frames = {joint.parent: joint.T_parent_connector.matrix, joint.child: joint.T_child_connector.matrix}
@@ -62,10 +62,10 @@ class Axis(NamedTuple):
         return None
 
     def place(self, T_a_b: FloatArray) -> tuple[float, float] | None:
-        """Return the height of b's axis on a's [mm] and 1, or −1 where they oppose; None where they are not one line.
+        """Return the height of b's axis on a's [mm] and 1, or −1 if they oppose; None if they are not one line.
 
         Args:
-            T_a_b: Where b stands as seen from a, `(3, 4)`.
+            T_a_b: Pose of b in the frame of a, `(3, 4)`.
         """
         back = self.a[:3, :3].T
         z = back @ (T_a_b[:, :3] @ self.b[:3, 2])
@@ -76,7 +76,7 @@ class Axis(NamedTuple):
 
 
 class Coaxial:
-    """What outlines have shown of pairs of shapes on one axis, in one scene."""
+    """Results of comparing outlines of pairs of shapes on one axis, in one scene."""
 
     def __init__(self) -> None:
         self._axes: dict[tuple[str, str], Axis | None] = {}
@@ -85,22 +85,22 @@ class Coaxial:
 
     @classmethod
     def of(cls, scene: Scene) -> Coaxial:
-        """Return that of a scene; made once."""
+        """Return the results of a scene; cached."""
         found = _known.get(scene)
         if found is None:
             found = _known[scene] = cls()
         return found
 
     def apart(self, scene: Scene, a: str, b: str, T_a_b: FloatArray) -> bool:
-        """Return True where two parts are known to have nothing in common; False says nothing.
+        """Return True if two parts are known to have no common point; False says nothing.
 
-        Only triangles whose outlines meet can meet, and where the boxes about these are apart they do not.
+        Only triangles whose outlines meet can meet, and if the boxes about these are apart they do not.
 
         Args:
-            scene: The one that this is of.
+            scene: The scene of this object.
             a: A part.
             b: Another.
-            T_a_b: Where it stands as seen from a, `(3, 4)`.
+            T_a_b: Pose of b in the frame of a, `(3, 4)`.
         """
         if (a, b) not in self._axes:
             self._axes[a, b] = Axis.of(scene, a, b)
@@ -124,7 +124,7 @@ class Coaxial:
 
 
 def _meeting(axis: Axis, a: Body, b: Body, height: float, sign: float) -> tuple[Box, Box] | None:
-    """Return boxes about the triangles of two bodies whose outlines meet, each in its body's frame; None where there are none."""
+    """Return boxes about the triangles of two bodies whose outlines meet, each in its body's frame; None if there are none."""
     mine = outline(Core(axis.a), a.plain_corners)
     theirs = _raised(outline(Core(axis.b), b.plain_corners), height, sign)
     met_a = meeting(mine, theirs, _APART_MM)
@@ -135,7 +135,7 @@ def _meeting(axis: Axis, a: Body, b: Body, height: float, sign: float) -> tuple[
 
 
 def _raised(ends: Ends, height: float, sign: float) -> Ends:
-    """Return outlines (radius, height) as they are from an axis on which theirs stands at a height, opposed if the sign is −1."""
+    """Return outlines (radius, height) measured on an axis on which their own axis is at a height, and opposed if the sign is −1."""
     low, high = ends
     heights = np.sort(np.stack([sign * low[:, 1], sign * high[:, 1]]) + height, axis=0)
     return np.stack([low[:, 0], heights[0]], axis=1), np.stack([high[:, 0], heights[1]], axis=1)

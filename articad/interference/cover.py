@@ -1,8 +1,8 @@
-"""Covering the range of one coordinate with intervals in each of which a distance at the centre excludes contact.
+"""Covering the range of one coordinate with intervals, in each of which the distance at the centre excludes contact.
 
 A distance d at q clears every q' with reach·|q' − q| < d − margin. `cover_line` walks from a start to both ends with intervals that
-overlap as little as can be (conservative advancement, two-sided). It finds first contacts exactly; what proves whole ranges is
-`clearing`.
+overlap as little as possible (two-sided conservative advancement). It finds first contacts exactly; `clearing` is what proves whole
+ranges.
 """
 
 from __future__ import annotations
@@ -17,10 +17,10 @@ from articad.interference.work import DISTANCE, WorkBudget
 
 FloatArray = NDArray[np.float64]
 
-STRICT = 1e-7  # share by which a box stays smaller than its distance allows, so that the inequality is strict in any rounding
-_GUESS = 0.97  # of the width that a linear distance would allow: a miss costs one query, a shy guess costs many
+STRICT = 1e-7  # share by which a box is smaller than its distance allows, so that the inequality is strict despite rounding
+_GUESS = 0.97  # of the width that a linear distance would allow: a miss costs one query, too small a guess costs many
 _STEEPEST = 0.75  # a slope is extrapolated up to this share of the reach
-_SMALLEST = 1e-12  # of the range: boxes below it are rounding
+_SMALLEST = 1e-12  # of the range: smaller boxes are rounding
 
 
 @dataclass(frozen=True)
@@ -30,7 +30,7 @@ class CoverBox:
     Attributes:
         centre: Where the distance was measured, `(n,)`.
         half: Half sides, `(n,)`.
-        distance: At the centre, or a lower bound of it [mm].
+        distance: Distance at the centre, or a lower bound of it [mm].
     """
 
     centre: tuple[float, ...]
@@ -40,14 +40,14 @@ class CoverBox:
 
 @dataclass
 class Cover:
-    """What a covering came to.
+    """The result of a covering.
 
     Attributes:
-        boxes: They cover `[lower, upper]` of a line, or everything of a box when `is_complete`.
-        lower: End of what is cleared below the start; of a line only.
+        boxes: They cover `[lower, upper]` of a line, or all of a box if `is_complete`.
+        lower: End of the cleared range below the start; only for a line.
         upper: The same above it.
         contacts: Values at which the distance was not above the margin, one per end of a line.
-        out_of_budget: True when it was given up.
+        out_of_budget: True if the work stopped early.
     """
 
     boxes: list[CoverBox] = field(default_factory=list)
@@ -76,14 +76,14 @@ def cover_line(
     """Clear a single coordinate from `start` outwards, up to its bounds or to contact.
 
     Args:
-        distance: At a value [mm].
-        bounds: Of the coordinate [rad or mm].
+        distance: Function that returns the distance at a value [mm].
+        bounds: Bounds of the coordinate [rad or mm].
         start: Within the bounds.
         reach: Speed of the fastest point [mm/rad or 1].
-        margin: Part of every distance that proves nothing, such as the deflection of the meshes [mm].
-        epsilon: A distance that is above the margin by no more is contact [mm].
-        budget: Of work.
-        most: Queries for this line.
+        margin: Share of every distance that proves nothing, such as the deflection of the meshes [mm].
+        epsilon: A distance that exceeds the margin by no more than this is contact [mm].
+        budget: The work budget.
+        most: Largest number of queries for this line.
     """
     walk = _Walk(distance, reach, margin, epsilon, budget, most)
     upper = walk.outwards(start, bounds[1])
@@ -101,7 +101,7 @@ class _Walk:
         self._seen: dict[float, float] = {}
 
     def spare(self, q: float) -> float:
-        """Return what a distance has above the margin [mm]."""
+        """Return by how much a distance exceeds the margin [mm]."""
         if q not in self._seen:
             self.budget.spend(DISTANCE, queries=1)
             self.left -= 1
@@ -109,7 +109,7 @@ class _Walk:
         return self._seen[q] - self.margin
 
     def outwards(self, start: float, end: float) -> float:
-        """Clear from start to end; return how far it came."""
+        """Clear from start to end; return how far that succeeded."""
         sign = 1.0 if end >= start else -1.0
         length = abs(end - start)
         done, slope = 0.0, 0.0  # measured from the start; slope of the spare distance along the way
@@ -127,7 +127,7 @@ class _Walk:
             at = min(done + ahead, max((done + length) / 2, done + _SMALLEST * length), length)
             spare = self.spare(start + sign * at)
             half = spare / self.reach * (1 - STRICT)
-            if half < at - done:  # too far: the box would not reach back, so ask at the frontier itself
+            if half < at - done:  # too far: the box would not reach back, so query at the frontier itself
                 beyond_at, beyond = at, spare
                 at, spare = done, self.spare(start + sign * done)
                 if not self._clears(spare):
@@ -149,7 +149,7 @@ class _Walk:
         return end if done >= length else start + sign * done
 
     def _ahead(self, done: float, last_at: float, last: float, slope: float) -> float:
-        """Guess how far ahead of the frontier a distance still reaches back to it, if distances go on as they did."""
+        """Guess how far ahead of the frontier a distance still reaches back to it, by linear extrapolation."""
         expected = last + slope * (done - last_at)
         if expected <= self.epsilon:
             expected = max(last / 4, self.epsilon)

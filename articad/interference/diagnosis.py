@@ -1,8 +1,8 @@
-"""Root causes: what is wrong with the geometry, read from the geometry, before any model is asked.
+"""Root causes: what is wrong with the geometry, derived from the geometry before any model is asked.
 
-Each finding of an overlap or collision is looked at where it is: a hole that was not bored, a slot that was not cut, a pivot on
-the face of a part that turns, a part too long for its place, axes too close for what turns about them, a part in several pieces.
-The cause says who must act, the plan's author (design) or the script's (code), which number to change, and by how much.
+Each finding of an overlap or collision is examined at its place: a hole that was not bored, a slot that was not cut, a pivot on the face
+of a part that turns, a part too long for its place, axes too close together, a part in several pieces. The cause says who must act, the
+plan's author (design) or the script's (code), which number to change, and by how much.
 """
 
 from __future__ import annotations
@@ -28,25 +28,25 @@ from articad.kinematics.tree import KinematicTree
 
 FloatArray = NDArray[np.float64]
 
-CLEARANCE_MM = 0.2  # proposed on the radius of a bore and either side of a slot
-ROUND_SHARE = 0.9  # of the cylinder about the axis: an overlap that fills so much of it is a pin
-PROBE_SHARE = 0.05  # of the size of an overlap: how far beside it material is looked for
-END_MM = 0.05  # an overlap that ends this close to a part's own end is that end
-LONG_SHARE = 0.5  # of a part's length: a part that is in another by more is not merely too long
-NEAR_REST = np.deg2rad(20)  # a part that turns on its own face meets its neighbour early
-FACE_SHARE = 0.1  # of a part's size: an axis nearer to its surface is on its face
-PARALLEL = 1e-3  # |sine| between axes whose distance is called a pitch
+CLEARANCE_MM = 0.2  # proposed for the radius of a bore and for both sides of a slot
+ROUND_SHARE = 0.9  # of the cylinder about the axis: an overlap that fills this share of it is a pin
+PROBE_SHARE = 0.05  # of the size of an overlap: distance at which material beside it is looked for
+END_MM = 0.05  # an overlap that ends this close to a part's own end is at that end
+LONG_SHARE = 0.5  # of a part's length: a part that penetrates another by more is not merely too long
+NEAR_REST = np.deg2rad(20)  # a part that turns on its own face collides with its neighbour early
+FACE_SHARE = 0.1  # of a part's size: an axis closer to its surface is on its face
+PARALLEL = 1e-3  # |sine| of the angle between axes whose distance is called a pitch
 _EXPLAINED = ("E_OVERLAP", "E_STATIC_OVERLAP", "W_STATIC_OVERLAP", "E_MOTION_COLLISION")
 _TURNING = (JointType.REVOLUTE, JointType.CYLINDRICAL, JointType.SCREW)
 
 
 def diagnose(scene: Scene, tree: KinematicTree, findings: Sequence[Finding]) -> Findings:
-    """Assign a cause, an actor and a number to each finding where geometry tells them, and add parts that are in pieces.
+    """Assign a cause, an actor and a number to each finding whose geometry shows them, and add findings for parts in several pieces.
 
     Args:
-        scene: What was checked.
-        tree: Joints between the parts; at rest where a finding gives no pose.
-        findings: Of a check, a sweep or a certificate.
+        scene: The scene that was checked.
+        tree: Joints between the parts; used at rest where a finding gives no pose.
+        findings: Findings of a check, a sweep or a certificate.
     """
     explained = [_explained(scene, tree, finding) for finding in findings]
     pieces = [finding for name, body in scene.bodies.items() if (finding := _in_pieces(name, body)) is not None]
@@ -69,11 +69,11 @@ def _explained(scene: Scene, tree: KinematicTree, finding: Finding) -> Finding:
 
 @dataclass(frozen=True)
 class _Region:
-    """Where two parts overlap, in the first part's frame.
+    """The place where two parts overlap, in the first part's frame.
 
     Attributes:
-        vertices: Of the largest piece, `(V, 3)` [mm].
-        volume: Of it [mm³].
+        vertices: Vertices of the largest piece, `(V, 3)` [mm].
+        volume: Its volume [mm³].
         piece: The piece itself, a manifold.
     """
 
@@ -87,7 +87,7 @@ class _Region:
         return np.asarray((self.vertices.min(axis=0) + self.vertices.max(axis=0)) / 2)
 
     def radius(self, axis: Core, height: float) -> float:
-        """Return how far it reaches from an axis at a height: faces that merely touch add flat rims elsewhere."""
+        """Return its radius about an axis at a height; faces that merely touch add flat rims at other heights."""
         upright = np.linalg.inv(axis.frame)[:3, :]
         outline = self.piece.transform(upright).slice(height).to_polygons()
         return max((float(np.linalg.norm(points, axis=1).max()) for points in outline), default=0.0)
@@ -109,10 +109,10 @@ class PairCase:
         self.T = self.chain.matrix(self.values)
         self.direct: Joint | None = next(iter(scene.relations.between(self.a, self.b)), None)
 
-    # ------------------------------------------------------------------ causes of an overlap that is always there
+    # ------------------------------------------------------------------ causes of a permanent overlap
 
     def unbored_hole(self) -> Finding | None:
-        """A pin stands in solid material: what they share is a cylinder about the joint's axis."""
+        """A pin is in solid material: the overlap is a cylinder about the joint's axis."""
         axis = self._axis()
         if axis is None or self.region is None:
             return None
@@ -137,7 +137,7 @@ class PairCase:
         )
 
     def missing_slot(self) -> Finding | None:
-        """A tongue stands in solid material: along the axis about which it turns there is material on both sides of it."""
+        """A tongue is in solid material: along the axis about which it turns there is material on both sides of it."""
         if self.region is None or self.direct is None or self.direct.type not in _TURNING:
             return None
         direction = self._frame_of(self.direct)[:3, 2]
@@ -147,7 +147,7 @@ class PairCase:
         step = max(PROBE_SHARE * thickness, 1e-3)
         both = np.array([centre + direction * (place - centre @ direction) for place in (low - step, high + step)])
         if min(self._material(name, centre[None])[0] for name in (self.a, self.b)) < 0.5:
-            return None  # a ring round its own middle: a bore that is too small, no tongue
+            return None  # a ring around its own middle: a bore that is too small, not a tongue
         for name in (self.a, self.b):
             if (self._material(name, both) > 0.5).all() and (self._material(self._other(name), both) < 0.5).all():
                 width = thickness + 2 * CLEARANCE_MM
@@ -163,7 +163,7 @@ class PairCase:
         return None
 
     def envelope(self) -> Finding | None:
-        """A part is too long: what they share ends where the part itself ends, and is thin against its length."""
+        """A part is too long: the overlap ends where the part itself ends, and is thin compared with its length."""
         if self.region is None:
             return None
         best: tuple[float, str, int, float, float] | None = None
@@ -239,7 +239,7 @@ class PairCase:
         )
 
     def overrun(self) -> Finding | None:
-        """A slider runs further than there is room."""
+        """A slider moves farther than there is space."""
         joint = self.direct
         if joint is None or joint.type not in (JointType.SLIDER, JointType.CYLINDRICAL) or len(self.moving) != 1:
             return None
@@ -263,7 +263,7 @@ class PairCase:
 
     @cached_property
     def region(self) -> _Region | None:
-        """The largest piece of what the two have in common."""
+        """The largest piece of the overlap."""
         pieces = intersection(self.body_a, self.body_b, SE3.from_matrix(self.T)).decompose()
         if not pieces:
             return None
@@ -298,7 +298,7 @@ class PairCase:
         return self.b if name == self.a else self.a
 
     def _entry(self) -> float:
-        """Return the value of the last coordinate from which on the two overlap, between rest and here."""
+        """Return the value of the last coordinate from which the two overlap, between rest and this pose."""
         free, hit = self.chain.freedoms[-1].rest, self.values[-1]
         for _ in range(20):
             middle = (free + hit) / 2
@@ -308,7 +308,7 @@ class PairCase:
         return hit
 
     def _deepest_along(self) -> float:
-        """Return the deepest overlap between here and the bound, looked at in a few poses [mm]."""
+        """Return the largest depth between this pose and the bound, sampled at a few poses [mm]."""
         freedom = self.chain.freedoms[-1]
         value = self.values[-1]
         end = freedom.upper if value >= freedom.rest else freedom.lower
@@ -323,7 +323,7 @@ class PairCase:
     def _because(
         self, cause: str, route: Any, message: str, hint: str, *, value: float, limit: float, culprit: str | None = None
     ) -> Finding:
-        """Return the finding with its cause; where it is one part's script to be mended, that is the place."""
+        """Return the finding with its cause; if one part's script must be corrected, that part is the place."""
         return replace(
             self.finding,
             where=self.finding.where if culprit is None else f"parts.{culprit}",
@@ -338,9 +338,9 @@ class PairCase:
 
 
 def _face_distance(core: Core, body: Body) -> float:
-    """Return how far an axis is from the nearest side of a body that is parallel to it [mm]."""
+    """Return the distance of an axis from the nearest side of a body that is parallel to it [mm]."""
     flat = body.corners @ core.frame[:3, 2]
-    spans = np.ptp(flat, axis=1) > 1e-9 * max(body.diagonal, 1.0)  # caps are met by every axis
+    spans = np.ptp(flat, axis=1) > 1e-9 * max(body.diagonal, 1.0)  # every axis meets the caps
     return float(core.least_radii(body.corners[spans]).min(initial=np.inf))
 
 

@@ -1,4 +1,4 @@
-"""What follows a driver: a table of the coordinates that loops and couplings move with it, such as steer 30° -> outer wheel 22.7°."""
+"""A table of the coordinates that loops and couplings move with a driver, such as steer 30° -> outer wheel 22.7°."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ from articad.interference.report import rounded
 from articad.interference.sweep import MotionSampler
 
 ROWS = 9  # of a table, evenly over the driver's range, and one at rest
-_STILL = 1e-9  # rad or mm: what moves by less does not follow
+_STILL = 1e-9  # rad or mm: a coordinate that moves by less does not follow
 
 
 @dataclass(frozen=True)
 class Following:
-    """How coordinates follow one driver, the other drivers at rest.
+    """How coordinates follow one driver, with the other drivers at rest.
 
     Attributes:
         driver: Name of the coordinate that drives.
-        values: Its values, rising, as far as they are reached [rad or mm].
+        values: Its values in increasing order, where they are reached [rad or mm].
         followers: Values of each coordinate that follows, by name, one for each of the driver's [rad or mm].
         units: "rad" or "mm" of the driver and of each follower, by name.
     """
@@ -43,12 +43,12 @@ class Following:
 
 
 def what_follows(motion: MotionSampler, joints: Sequence[str] | None = None, *, rows: int = ROWS) -> tuple[Following, ...]:
-    """Return a table for each driver that something follows.
+    """Return a table for each driver that other coordinates follow.
 
     Args:
         motion: Sampling of the mechanism.
-        joints: Names of the joints whose drivers are asked for; all by default.
-        rows: Values of each driver over its range, beside the rest value.
+        joints: Names of the joints whose drivers are tabulated; all by default.
+        rows: Values of each driver over its range, in addition to the rest value.
     """
     mechanism = motion.mechanism
     if mechanism.is_tree:

@@ -1,10 +1,10 @@
-"""Measuring the gap of one joint: the distance of its two parts at a pose, and the play between them.
+"""Measures the gap of one joint: the distance of its two parts at a pose, and the play between them.
 
-The gap at a pose is the smallest distance of the two surfaces. The play does not depend on where in its hole a pin happens to lie:
-the child is moved straight across the joint until it touches the parent, then the opposite way. Half the sum of both ways, measured
-square to the surfaces that touch, is the play in that direction. It is measured about the middle of the free room, and the largest of
-all directions counts. For a pin in a hole it is half the difference of the diameters, for a ball in a socket the difference of the
-radii, for a carriage in a guide half the wider one of its two clearances.
+The gap at a pose is the smallest distance of the two surfaces. The play does not depend on where a pin happens to be in its hole: the
+child is moved perpendicular to the joint until it touches the parent, then in the opposite direction. Half the sum of both travels,
+measured along the normal of the surfaces that touch, is the play in that direction. It is measured about the middle of the free space,
+and the largest of all directions counts. For a pin in a hole it is half the difference of the diameters, for a ball in a socket the
+difference of the radii, for a carriage in a guide half the larger of its two clearances.
 """
 
 from __future__ import annotations
@@ -33,15 +33,15 @@ FloatArray = NDArray[np.float64]
 
 STOP_MM = 1e-3  # surfaces this close have met
 _MOST_STEPS = 200  # towards a stop
-_STEPS_OF_ALL = 6  # towards a stop with whole surfaces, before those are chosen that face the way
-_ROUNDS = 4  # to find the middle of the free room
-_SLOPE_MM = 1e-4  # the shortest way over which the slope of a distance is taken
-_GRAZING = 0.02  # cosine: a face that is nearly parallel to the way stops nothing
-_EDGE_SHARE = 0.1  # of `within`: longest edge of triangles left crossing it
+_STEPS_OF_ALL = 6  # steps towards a stop with whole surfaces, before only those that face the direction are used
+_ROUNDS = 4  # to find the middle of the free space
+_SLOPE_MM = 1e-4  # shortest travel over which the slope of a distance is computed
+_GRAZING = 0.02  # cosine: a face almost parallel to the direction stops nothing
+_EDGE_SHARE = 0.1  # of `within`: longest edge of triangles that cross it
 _POINT = (JointType.BALL, JointType.FIXED, JointType.UNIVERSAL)  # these hold their child in all directions
-_TURNING = (JointType.REVOLUTE, JointType.CYLINDRICAL, JointType.SCREW, JointType.BALL)  # a point keeps its radius about these
+_TURNING = (JointType.REVOLUTE, JointType.CYLINDRICAL, JointType.SCREW, JointType.BALL)  # rotation about these keeps the radius of a point
 _SQUARE = math.sqrt(0.5)
-# directions in the frame of the connector; the first ones are square to each other and find the middle of the free room
+# directions in the connector's frame; the first ones are perpendicular to each other and find the middle of the free space
 _ACROSS = np.array([[1, 0, 0], [0, 1, 0], [_SQUARE, _SQUARE, 0], [_SQUARE, -_SQUARE, 0]])
 _ALL_WAYS = np.concatenate([np.eye(3), np.array([[1, 1, 1], [1, 1, -1], [1, -1, 1], [-1, 1, 1]]) / math.sqrt(3)])
 
@@ -53,9 +53,9 @@ class Gauge:
     """Measures the gap of one joint.
 
     Args:
-        scene: Holds both parts.
-        joint: Between them.
-        fit: Says which surface counts.
+        scene: The scene with both parts.
+        joint: The joint between them.
+        fit: The declared fit, which says which surface counts.
     """
 
     def __init__(self, scene: Scene, joint: Joint, fit: FitLike) -> None:
@@ -75,21 +75,21 @@ class Gauge:
         return self.between(self.place(values))
 
     def between(self, T: FloatArray) -> float:
-        """Return the gap where the child stands at `T (4, 4)` as the parent sees it [mm]; negative is a depth."""
+        """Return the gap for the child's pose `T (4, 4)` in the parent's frame [mm]; negative is a depth."""
         return self._or_depth(surface_distance(*self.surfaces, T), T)
 
     def nearer_than(self, limit: float, values: list[float]) -> float:
-        """Return the gap at values of the joint's freedoms [mm], or infinity where it is not below the limit.
+        """Return the gap at values of the joint's freedoms [mm], or infinity if it is not below the limit.
 
-        Points keep radius and height about a joint that turns, so triangles whose outlines are further apart than the limit need not
-        be asked at any pose.
+        Rotation about the joint keeps the radius and height of points, so triangles whose outlines are farther apart than the limit are
+        not queried at any pose.
         """
         T = self.place(values)
         gap = surface_distance(*self._within_reach(limit), T)
         return self._or_depth(gap, T) if gap < limit else math.inf
 
     def _joined(self, own: Surface, group: list[tuple[TriMesh, FloatArray]]) -> Surface:
-        """Return a surface with the meshes added that are fixed to it; made once for all joints of a part."""
+        """Return a surface with the meshes that are fixed to it; made once for all joints of a part."""
         if len(group) == 1:
             return own
         made = _groups.setdefault(self.scene, {})
@@ -100,13 +100,13 @@ class Gauge:
         return made[key][1]
 
     def place(self, values: list[float]) -> FloatArray:
-        """Return where the child stands as the parent sees it, `(4, 4)`."""
+        """Return the child's pose in the parent's frame, `(4, 4)`."""
         return placed(self.joint, values)
 
     def play(self) -> float | None:
-        """Return the play at rest [mm]; None where nothing stops the child, so that there is none to measure.
+        """Return the play at rest [mm]; None if nothing stops the child.
 
-        What is fixed to a part belongs to it: a pin that is pressed into one leaf of a hinge holds the other.
+        Parts fixed to a part belong to it: a pin that is pressed into one leaf of a hinge holds the other.
         """
         if any(surface.is_empty for surface in self.surfaces):
             return None
@@ -123,7 +123,7 @@ class Gauge:
         return known[key]
 
     def _group(self, part: str) -> list[tuple[TriMesh, FloatArray]]:
-        """Return the meshes of a part and of those fixed to it, that part first, and where each stands as the part sees it."""
+        """Return the meshes of a part and of those fixed to it, that part first, and their poses in its frame."""
         other = self.joint.child if part == self.joint.parent else self.joint.parent
         places: dict[str, FloatArray] = {part: np.eye(4)}
         todo = [] if self.scene.relations.rigid.together(part, other) else [part]
@@ -159,7 +159,7 @@ class Gauge:
         return Surface(np.concatenate([inside.corners, seam.corners]))
 
     def _within_reach(self, limit: float) -> tuple[Surface, Surface]:
-        """Return the triangles of both surfaces that may come nearer to each other than the limit."""
+        """Return the triangles of both surfaces that may come closer to each other than the limit."""
         if self.joint.type not in _TURNING or any(surface.is_empty for surface in self.surfaces):
             return self.surfaces[0], self.surfaces[1]
         if limit not in self._moving:
@@ -174,7 +174,7 @@ class Gauge:
         return self._moving[limit]
 
     def _travel(self) -> tuple[float, float]:
-        """Return how far the joint carries its child along its axis [mm]."""
+        """Return how far the joint moves its child along its axis [mm]."""
         moving = travels(self.joint)
         match self.joint.type:
             case JointType.CYLINDRICAL:
@@ -187,18 +187,18 @@ class Gauge:
 
 
 def placed(joint: Joint, values: list[float]) -> FloatArray:
-    """Return where the child of a joint stands as its parent sees it, for values of the joint's freedoms, `(4, 4)`."""
+    """Return the pose of a joint's child in its parent's frame for values of the joint's freedoms, `(4, 4)`."""
     J = motion_matrix(joint, values) if values or joint.type is JointType.FREE else np.eye(4)
     return np.asarray(joint.T_parent_connector.matrix @ J @ (flip(joint.mate) @ joint.T_child_connector.inverse()).matrix)
 
 
 class _Room:
-    """The free room of one surface beside another, explored by straight moves.
+    """The free space of one surface beside another, explored by straight moves.
 
     Args:
-        a: Of what stands.
-        b: Of what moves.
-        T: Where the second stands as the first sees it, `(4, 4)`.
+        a: The surface that stands still.
+        b: The surface that moves.
+        T: Pose of the second in the frame of the first, `(4, 4)`.
     """
 
     def __init__(self, a: Surface, b: Surface, T: FloatArray) -> None:
@@ -210,10 +210,10 @@ class _Room:
         self._gaps: dict[bytes, float] = {}
 
     def play(self, ways: FloatArray) -> float | None:
-        """Return the largest play over directions `(k, 3)` [mm], None where nothing is stopped both ways.
+        """Return the largest play over directions `(k, 3)` [mm], None if no direction is stopped both ways.
 
         Args:
-            ways: Unit vectors, those first that are square to each other.
+            ways: Unit vectors; those that are perpendicular to each other come first.
         """
         square = ways[: 3 if len(ways) > len(_ACROSS) else 2]
         middle = np.zeros(3)
@@ -228,7 +228,7 @@ class _Room:
         most: float | None = None
         for way in ways:
             if most is not None and all(self._is_stopped(middle, sign * way, most + 2 * STOP_MM) for sign in (1, -1)):
-                continue  # there is no more play this way
+                continue  # no more play in this direction
             both = self._both(middle, way)
             if both is not None:
                 (forth, square_to), (back, square_back) = both
@@ -236,7 +236,7 @@ class _Room:
         return most
 
     def _is_stopped(self, start: FloatArray, way: FloatArray, before: float) -> bool:
-        """Return whether the surfaces surely meet before the second has gone so far; quicker than to find where."""
+        """Return whether the surfaces certainly meet within this travel; faster than finding where."""
         a, b = self.whole
         T = self.T.copy()
         T[:3, 3] += start + before * way
@@ -255,10 +255,10 @@ class _Room:
         return self._stops[key]
 
     def _stop(self, start: FloatArray, way: FloatArray) -> tuple[float, float] | None:
-        """Return how far the second surface can go and how squarely it then meets the first, as a cosine; None where nothing stops it.
+        """Return the travel of the second surface until it meets the first, and the cosine at which they meet; None if nothing stops it.
 
-        No point moves faster than the whole, so a step as long as the distance is free. What lies beside the way keeps the steps
-        short, or touches from the beginning; only faces that look at each other along the way are asked then.
+        No point moves faster than the whole, so a step as long as the distance is free. Surfaces beside the path keep the steps short,
+        or touch from the beginning; then only faces that face each other along the direction are used.
         """
         surfaces, start_gap = self.whole, self._gap(start)
         if start_gap < STOP_MM:

@@ -18,16 +18,16 @@ from articad.kinematics.joints import Joint, JointType
 
 FloatArray = NDArray[np.float64]
 
-TOUCH_MM = 0.1  # surfaces that are fixed to each other may be this far apart: glue, or a bolt in its hole
+TOUCH_MM = 0.1  # largest distance of surfaces that are fixed to each other: glue, or a bolt in its hole
 NEAR_MM = 5.0  # a part within this distance of another is held by it: runners, shadow gaps
 NEAR_LEAST_MM = 0.5  # … but for small parts the limit is a tenth of their size, and at least this
 NEAR_SHARE = 0.1
 _STEPS = 3  # from one body to the other and back: mostly enough to find two vertices that are near
-_NEAR_SAMPLES = 48  # vertices compared before FCL is asked whether two parts are near
+_NEAR_SAMPLES = 48  # vertices compared before FCL is queried
 
 
 class Holding:
-    """What holds what at rest: contact within rigid groups, nearness of everything else."""
+    """What holds what at rest: contact within rigid groups, and proximity for everything else."""
 
     def __init__(self, placed: Placement, pairs: dict[tuple[str, str], PairCheck]) -> None:
         self.scene, self.placed, self.pairs = placed.scene, placed, pairs
@@ -55,21 +55,23 @@ class Holding:
         return [self._apart_finding(joint, gap) for joint, gap in loose if not touching.together(joint.parent, joint.child)]
 
     def _join_touching_neighbours(self, touching: Groups) -> None:
-        """Let the other pairs of rigid groups touch too, now that it matters."""
+        """Add contacts between the other pairs of rigid groups, which now matter."""
         for a, b in self.placed.candidates(TOUCH_MM):
             apart = self.scene.relations.rigid.together(a, b) and not touching.together(a, b)
             if apart and self._gap(a, b) <= TOUCH_MM + self.scene.deflection_of(a, b):
                 touching.join(a, b)
 
     def floating(self, ground: str, bare: Sequence[str]) -> list[Finding]:
-        """Find groups of parts that are near each other but near nothing that leads to the ground."""
+        """Find groups of parts that are near each other but not connected to the ground."""
         scene = self.scene
         near = Groups([*scene.bodies, *bare])
-        for joint in scene.relations.joints:  # a part without geometry may hold anything joined to it; fixed parts are judged by themselves, and free ones are held by nothing
+        for joint in (
+            scene.relations.joints
+        ):  # a part without geometry may hold anything joined to it; fixed parts are checked separately, and nothing holds free ones
             if joint.parent in bare or joint.child in bare or joint.type in {JointType.FIXED, JointType.FREE}:
                 near.join(joint.parent, joint.child)
         candidates = self.placed.candidates(max([NEAR_MM, *(fit.gap_max or 0.0 for fit in scene.fits.values())]))
-        candidates.sort(key=lambda pair: not scene.relations.between(*pair))  # parts that a joint connects are near, mostly
+        candidates.sort(key=lambda pair: not scene.relations.between(*pair))  # parts that a joint connects are mostly near
         for a, b in candidates:
             if not near.together(a, b) and self._is_near(a, b):
                 near.join(a, b)
@@ -92,7 +94,7 @@ class Holding:
         return self._vertices_within(a, b, limit) or distance(bodies[a], bodies[b], self._relative(a, b)) <= limit
 
     def _vertices_within(self, a: str, b: str, limit: float) -> bool:
-        """Return whether two vertices are that near: often true, and cheaper than a search of all triangles."""
+        """Return whether two vertices are within the limit: often true, and cheaper than a search of all triangles."""
         T, bodies = self.placed.relative(a, b), self.scene.bodies
         return _stepping_within(bodies[a], bodies[b], T, limit) or _sampled_within(bodies[a], bodies[b], T, limit)
 
@@ -155,13 +157,13 @@ class Holding:
 
 
 def _stepping_within(a: Body, b: Body, T_a_b: FloatArray, limit: float) -> bool:
-    """Return whether two vertices are found within the limit by going from each to the nearest of the other body, a few times."""
+    """Return whether two vertices within the limit are found by going a few times to the nearest vertex of the other body."""
     p, q = a.scattered, b.scattered
     R, t = T_a_b[:, :3], T_a_b[:, 3]
     low_b, high_b = b.mesh.bounds
     low, high = a.mesh.bounds
     middle, reach = R @ ((low_b + high_b) / 2) + t, np.abs(R) @ ((high_b - low_b) / 2)
-    at = (np.maximum(low, middle - reach) + np.minimum(high, middle + reach)) / 2  # the middle of where both boxes are
+    at = (np.maximum(low, middle - reach) + np.minimum(high, middle + reach)) / 2  # the middle of the intersection of both boxes
     for _ in range(_STEPS):
         back = (at - t) @ R
         near = q[np.argmin(b.scattered_squares - 2.0 * (q @ back))]
@@ -174,7 +176,7 @@ def _stepping_within(a: Body, b: Body, T_a_b: FloatArray, limit: float) -> bool:
 
 
 def _sampled_within(a: Body, b: Body, T_a_b: FloatArray, limit: float) -> bool:
-    """Return whether two of the vertices where the boxes of two bodies meet are within the limit."""
+    """Return whether two of the vertices in the intersection of two bodies' boxes are within the limit."""
     p, q = a.scattered, b.scattered @ T_a_b[:, :3].T + T_a_b[:, 3]
     low, high = a.mesh.bounds
     q = q[((q >= low - limit) & (q <= high + limit)).all(axis=1)]

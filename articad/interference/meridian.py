@@ -1,7 +1,7 @@
-"""What a joint cannot bring together however it turns: surfaces compared by their radius and height about its axis.
+"""What a joint cannot bring together at any angle: surfaces are compared by their radius and height about its axis.
 
-A shaft in its bore and a washer on its shoulder never come nearer than their outlines in the plane through the axis, whatever the
-angle. Only the triangles whose outlines do meet are left for a proof over the range.
+A shaft in its bore and a washer on its shoulder never come closer than their outlines in the plane through the axis, whatever the angle.
+Only the triangles whose outlines meet need a proof over the range.
 """
 
 from __future__ import annotations
@@ -16,21 +16,21 @@ FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
 Ends = tuple[FloatArray, FloatArray]
 
-_ROUNDING = 1e-9  # rad: of angles
+_ROUNDING = 1e-9  # rad, of angles
 _STEPS = np.radians([0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0])
-BESIDE_CONE = np.concatenate([-_STEPS[::-1], [0.0], _STEPS])  # rad: angles of the cones of `swung`, beside the cone of the ball
-CHUNK = 65_536  # rows looked at together
+BESIDE_CONE = np.concatenate([-_STEPS[::-1], [0.0], _STEPS])  # rad: angles of the cones of `swung`, relative to the cone of the ball
+CHUNK = 65_536  # rows processed together
 
 
 def outline(core: Core, corners: FloatArray, travel: tuple[float, float] = (0.0, 0.0), *, turns: bool = True) -> Ends:
-    """Return between which ends each triangle is in coordinates that the joint does not change, `(T, k)` each [mm].
+    """Return the bounds of each triangle in coordinates that the joint does not change, `(T, k)` each [mm].
 
-    About a point the radius; about an axis the radius and the height; of what slides without turning both sides, too.
+    About a point: the radius. About an axis: the radius and the height. For sliding without rotation: both sides as well.
 
     Args:
         core: The axis or the point, in the frame of the corners.
         corners: `(T, 3, 3)`.
-        travel: How far the triangles may slide along the axis, either way.
+        travel: How far the triangles may slide along the axis, in both directions.
         turns: Whether the joint turns.
     """
     low, high = [core.least_radii(corners)], [core.radii(corners).max(axis=1)]
@@ -44,10 +44,10 @@ def outline(core: Core, corners: FloatArray, travel: tuple[float, float] = (0.0,
 
 
 def leaning(core: Core, corners: FloatArray, cone: float, needed: float) -> Ends:
-    """Return between which angles from the axis each triangle is while it swings within a cone about it, `(T, 1)` each [rad].
+    """Return the bounds of each triangle's angle from the axis, `(T, 1)` each [rad], while it swings within a cone about the axis.
 
-    The twist of a ball keeps this angle, and the swing changes it by no more than its own. What is apart by ψ more at radius r is
-    r sin ψ away.
+    A ball's twist keeps this angle, and its swing changes it by at most the swing's own angle. Points whose angles differ by ψ more than
+    that, at radius r, are at least r sin ψ apart.
     """
     height = (corners - core.frame[:3, 3]) @ core.frame[:3, 2]
     axis = Core(core.frame)
@@ -60,14 +60,14 @@ def leaning(core: Core, corners: FloatArray, cone: float, needed: float) -> Ends
 
 
 def swung(core: Core, corners: FloatArray, cone: float) -> Ends:
-    """Return how far each triangle is outside some cones about the axis: as it stands, and at most while it swings, `(T, k)` each [mm].
+    """Return how far each triangle is outside some cones about the axis: at this pose, and at most while it swings, `(T, k)` each [mm].
 
-    Outside a cone of half angle c a point at height z and radius r is by r cos c - z sin c = ρ sin(θ - c), θ its angle from the
-    axis. That changes by no more than the point moves. The radius is at least what is measured along one direction, so the least of
-    a triangle is bounded at its corners, or by its least radius and its largest height. A swing by at most `cone` changes θ by as much, and a twist does not: the largest is
-    ρ sin(θ + cone - c), or ρ where that angle is beyond a right one. It is the largest of functions convex in the point, hence
-    reached at a corner, while the whole triangle is on the side to which the axis points. A part that leans out of a ball's centre
-    thus keeps clear of a ring about it whatever its own twist is.
+    The distance of a point at height z and radius r from a cone of half angle c is r cos c - z sin c = ρ sin(θ - c), with θ its angle
+    from the axis. It changes by no more than the point moves. The radius is at least the coordinate along any one direction, so the
+    minimum over a triangle is bounded at its corners, or by its least radius and its largest height. A swing by at most `cone` changes θ
+    by at most that much, and a twist does not change it: the maximum is ρ sin(θ + cone - c), or ρ where that angle exceeds a right one.
+    It is a maximum of functions convex in the point, hence reached at a corner, as long as the whole triangle is on the side to which
+    the axis points. So a part that leans out of a ball's centre stays clear of a ring about it whatever its own twist.
 
     Args:
         core: The centre, with its axis.
@@ -110,6 +110,6 @@ def meeting(a: Ends, b: Ends, needed: float | FloatArray) -> BoolArray:
         children = tree.children[theirs]
         leaf = children[:, 0] < 0
         met[mine[leaf]] = True
-        if not leaf.all():  # one child at a time: the first one that is met settles the row
+        if not leaf.all():  # one child at a time: the first one that meets decides the row
             stack += [(mine[~leaf], children[~leaf, k]) for k in (1, 0)]
     return met

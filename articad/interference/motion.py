@@ -1,8 +1,8 @@
-"""Relative motion of two parts: the chain of joints between them, and how far it can carry a point.
+"""Relative motion of two parts: the chain of joints between them, and how far it can move a point.
 
 A chain is `T_a_b(q) = K0 · J1(q)^±1 · K1 · J2(q)^±1 · K2 …`: joints that do not move are multiplied into the constants K.
-`reach` bounds the speed of every point of b as seen from a, per unit of each coordinate; with it a distance at one pose
-clears a whole neighbourhood of that pose (kinematics: certified motion).
+`reach` bounds the speed of every point of b in the frame of a, per unit of each coordinate; with it a distance at one pose clears a
+whole neighbourhood of that pose.
 """
 
 from __future__ import annotations
@@ -23,8 +23,8 @@ from articad.kinematics.joints import Joint, JointType
 FloatArray = NDArray[np.float64]
 
 _PRIMES = (2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53, 59, 61, 67, 71)
-_TINY = 1e-9  # rad: of an angle whose sine is itself
-ENDLESS_SLIDE_MM = 1e6  # how far what slides without limits may be: as far as an assembly may be large
+_TINY = 1e-9  # rad: for smaller angles the sine equals the angle
+ENDLESS_SLIDE_MM = 1e6  # largest travel of a slide without limits: the largest size of an assembly
 _ABOUT_Z = frozenset(
     kind for kind in JointType if all(step.kind == "slide" or step.axis == 2 for step in kind.steps)
 )  # turn about z at most
@@ -35,7 +35,7 @@ class Freedom(NamedTuple):
     """One coordinate along which a joint is proven.
 
     Attributes:
-        name: `joint`, or `joint.coordinate`; of a ball `joint.sx`, `joint.sy`, `joint.twist`: it turns by twist about z, then swings
+        name: `joint`, or `joint.coordinate`; for a ball `joint.sx`, `joint.sy`, `joint.twist`: it turns by twist about z, then swings
             about (sx, sy, 0) by the length of that vector.
         lower: [rad or mm].
         upper: [rad or mm].
@@ -51,8 +51,8 @@ class Freedom(NamedTuple):
 def freedoms(joint: Joint) -> tuple[Freedom, ...]:
     """Return the coordinates along which a joint moves.
 
-    One without limits ranges over a whole turn about its rest, or from its one limit; over more where it rests further away.
-    A free joint has no range to be proven or swept over: it has none of these, and stands at rest in every check.
+    Without limits, the range is a whole turn about rest, or from the one limit; it is larger if rest is farther away.
+    A free joint has no range to be proven or swept over: it has none of these, and is at rest in every check.
     """
     if joint.type is JointType.FREE:
         return ()
@@ -77,7 +77,7 @@ def freedoms(joint: Joint) -> tuple[Freedom, ...]:
 
 
 def travels(joint: Joint) -> tuple[Freedom, ...]:
-    """Return the coordinates along which a joint moves, of a screw without limits over as much travel as of a slide without limits."""
+    """Return the coordinates along which a joint moves; a screw without limits has as much travel as a slide without limits."""
     if joint.type is not JointType.SCREW or not slides_endlessly(joint):
         return freedoms(joint)
     (column,), far = joint.columns, 2 * ENDLESS_SLIDE_MM * radians_per_mm(joint)
@@ -90,19 +90,19 @@ def travels(joint: Joint) -> tuple[Freedom, ...]:
 
 
 def radians_per_mm(joint: Joint) -> float:
-    """Return by how much a screw turns while it travels 1 mm [rad/mm]."""
+    """Return the angle by which a screw turns per 1 mm of travel [rad/mm]."""
     return 2 * math.pi / abs(joint.lead)
 
 
 def slides_endlessly(joint: Joint) -> bool:
-    """Return whether a joint without limits takes its part ever further, so that no turn covers all of its poses."""
+    """Return whether a joint without limits moves its part ever farther, so that no turn covers all of its poses."""
     endless = any(math.isinf(column.lower) or math.isinf(column.upper) for column in joint.columns if column.unit == "mm")
     screws = joint.type is JointType.SCREW and joint.lead != 0
     return endless or (screws and any(math.isinf(column.lower) or math.isinf(column.upper) for column in joint.columns))
 
 
 def scattered(ranges: Sequence[Freedom], count: int) -> list[tuple[float, ...]]:
-    """Return points of a Halton sequence over ranges: they fill any number of dimensions more evenly than random ones.
+    """Return points of a Halton sequence over ranges; they cover any number of dimensions more evenly than random points.
 
     Beyond 20 dimensions the primes repeat, shifted.
     """
@@ -139,8 +139,8 @@ def driver_values(joint: Joint, values: Sequence[float]) -> tuple[float, ...]:
 def proven_freedoms(joint: Joint) -> tuple[Freedom, ...]:
     """Return the coordinates along which a joint is proven: a ball's are turns about x, y and z, one after the other.
 
-    They hold every swing within its cone and every twist within its limits, and a little more twist: what a turn about y after one
-    about x twists is at most twice atan(tan²(a/2)), where a is the corner at which both turn alike.
+    They cover every swing within its cone and every twist within its limits, and a little more twist: a turn about y after one
+    about x twists by at most 2 atan(tan²(a/2)), where a is the corner at which both angles are equal.
     """
     if joint.type is not JointType.BALL:
         return freedoms(joint)
@@ -196,11 +196,11 @@ def _turn_z(angle: float, x: float, y: float, z: float) -> FloatArray:
 
 
 class Route(NamedTuple):
-    """A way from one part to another.
+    """A path from one part to another.
 
     Attributes:
-        parts: From the first to the last.
-        joints: Between them, one fewer.
+        parts: The parts from the first to the last.
+        joints: The joints between them, one fewer.
     """
 
     parts: tuple[str, ...]
@@ -208,7 +208,7 @@ class Route(NamedTuple):
 
 
 def routes(joints: Sequence[Joint], start: str) -> dict[str, Route]:
-    """Return the way of fewest freedoms from a part to every other, also across joints that close loops."""
+    """Return the path with the fewest freedoms from a part to every other, also across joints that close loops."""
     near: dict[str, list[tuple[Joint, str]]] = {}
     for joint in joints:
         near.setdefault(joint.parent, []).append((joint, joint.child))
@@ -236,8 +236,8 @@ class Mover:
     Attributes:
         joint: As declared.
         forward: Whether the chain crosses it from parent to child.
-        columns: Places of its freedoms in the chain's values.
-        before: K in front of it, `(4, 4)`.
+        columns: Indices of its freedoms in the chain's values.
+        before: K before it, `(4, 4)`.
     """
 
     joint: Joint
@@ -250,13 +250,13 @@ class Chain:
     """The joints between two parts, some of which move.
 
     Attributes:
-        a: The part from which is looked.
+        a: The reference part.
         b: The part that moves.
-        via: Names of all joints on the way.
-        freedoms: What moves, in the order of the values.
-        hold: Values of all other freedoms on the way, by name.
+        via: Names of all joints between them.
+        freedoms: The freedoms that move, in the order of the values.
+        hold: Values of all other freedoms between them, by name.
         movers: The joints that move, from a to b.
-        last: K behind the last of them.
+        last: K after the last of them.
         proving: Whether balls move along their proven freedoms.
     """
 
@@ -313,9 +313,9 @@ class Chain:
         return turned(values) if self.proving and joint.type is JointType.BALL else motion_matrix(joint, values)
 
     def reach(self, points_a: FloatArray, points_b: FloatArray) -> FloatArray:
-        """Bound how far any point of b moves as seen from a, per unit of each freedom.
+        """Return upper bounds of the speed of all points of b in the frame of a, per unit of each freedom.
 
-        Moving one joint turns b about its axis as seen from a, or a about it as seen from b: distances change alike,
+        Moving one joint turns b about its axis relative to a, or a about it relative to b: distances change equally,
         so the smaller of the two radii counts.
 
         Args:
@@ -340,7 +340,7 @@ class Chain:
             bounds = [(self.freedoms[c].lower, self.freedoms[c].upper) for c in mover.columns]
             speeds = _reach_of_joint(mover.joint, cloud, bounds)
             if mover.joint.type is JointType.BALL and towards_a is mover.forward:
-                speeds[2] = cloud.from_axis  # the twist comes before the swing, so that here its axis stands still
+                speeds[2] = cloud.from_axis  # the twist comes before the swing, so its axis does not move here
             reach[list(mover.columns)] = speeds
             cloud = cloud.shaken(_largest_travel(mover.joint, bounds))
         return reach
@@ -348,7 +348,7 @@ class Chain:
 
 @dataclass(frozen=True, eq=False)
 class Cloud:
-    """Where points may be: exactly, or somewhere within `radius` of `centre`."""
+    """A set of positions of points: exact, or anywhere within `radius` of `centre`."""
 
     points: FloatArray | None
     centre: FloatArray | None = None
@@ -362,7 +362,7 @@ class Cloud:
         return Cloud(None, K[:3, :3] @ self.centre + K[:3, 3], self.radius)
 
     def shaken(self, travel: float) -> Cloud:
-        """Return where the points may be after any turn about the origin and a travel [mm]."""
+        """Return the cloud after any rotation about the origin and any translation up to `travel` [mm]."""
         return Cloud(None, np.zeros(3), self.from_origin + travel)
 
     @property
@@ -383,16 +383,16 @@ class Cloud:
 
 
 def _reach_of_joint(joint: Joint, cloud: Cloud, bounds: list[tuple[float, float]]) -> list[float]:
-    """Return how fast each freedom of a joint moves points of a cloud at most [mm/rad or 1]."""
+    """Return the largest speed that each freedom of a joint gives to points of a cloud [mm/rad or 1]."""
     if joint.type not in _ABOUT_Z:
         return [cloud.from_origin] * len(bounds)
-    across = any(step.kind == "slide" and step.axis != 2 for step in joint.type.steps)  # then the axis is carried away
+    across = any(step.kind == "slide" and step.axis != 2 for step in joint.type.steps)  # then the axis itself moves
     radius = cloud.from_axis + (_largest_travel(joint, bounds) if across else 0.0)
     return [(radius if any(turn) else 0.0) + math.hypot(*slide) for turn, slide in joint.type.factors(joint.lead)]
 
 
 def _largest_travel(joint: Joint, bounds: list[tuple[float, float]]) -> float:
-    """Return how far the joint carries its origin at most [mm]."""
+    """Return the largest distance by which the joint moves its origin [mm]."""
     if joint.type not in _ABOUT_Z:
         return 0.0
     factors = zip(joint.type.factors(joint.lead), bounds, strict=True)

@@ -1,7 +1,8 @@
-"""One pair of bodies at one relative pose: do they overlap, how deeply, or how far apart are they.
+"""One pair of bodies at one relative pose: whether they overlap, how deeply, or how far apart they are.
 
-FCL finds contact of surfaces and distances; what overlaps is decided by the volume and depth that manifold3d measures,
-because FCL does not see containment and calls touching faces a hit or not by rounding. `fcl.continuousCollide` is never used.
+FCL finds contact of surfaces and distances. Whether two bodies overlap is decided by the volume and depth that manifold3d measures,
+because FCL does not detect containment and reports touching faces as a hit or not depending on rounding. `fcl.continuousCollide` is
+never used.
 """
 
 from __future__ import annotations
@@ -23,25 +24,25 @@ from articad.interference.body import Body, make_bvh, winding_numbers
 FloatArray = NDArray[np.float64]
 
 VOLUME_NOISE_MM3 = 1e-9  # touching faces of centimetres leave up to 1e-12; a real overlap of 1e-6 mm has more
-DIRECT_TRIANGLES = 4000  # of solids up to here a boolean costs less than FCL's search for contact (measured: 0.6x at 2k, 2.7x at 20k)
+DIRECT_TRIANGLES = 4000  # solids up to this size: a boolean costs less than FCL's search for contact (measured: 0.6x at 2k, 2.7x at 20k)
 _DEPTH_PIECES = 24  # pieces of an overlap whose depth is sampled, the largest first
-_BEACONS = 400  # points of a surface that bound how far others are from it
+_BEACONS = 400  # points of a surface that bound the distance of others from it
 _SQUARES_ROUNDING = 1e-14  # of sums of squares, relative
-_SPREAD_SAMPLES = 96  # further points where faces that a mesh cuts into many triangles have become few
+_SPREAD_SAMPLES = 96  # further points where faces that a mesh cuts into many triangles were merged
 _CONVEX = 1e-9  # share of its volume by which the hull of a convex solid may be larger
 _DEPTH_SAMPLES = 48  # vertices, and as many centres of triangles, at which the depth of one piece is sampled
 
 
 @dataclass(frozen=True)
 class Overlap:
-    """What two bodies have in common.
+    """The common volume of two bodies.
 
     Attributes:
         volume: [mm³].
-        depth: How far the deepest point of the common solid lies below a surface that it does not lie on [mm]: the larger of the deepest
-            sampled point of its own surface and, where the two surfaces coincide, the largest ball inside it.
+        depth: Distance of the deepest point of the common solid below a surface on which it does not lie [mm]: the larger of the deepest
+            sampled point of its own surface and, where the two surfaces coincide, the radius of the largest ball inside it.
         pieces: Number of separate pieces.
-        box: Bounding box of all pieces in the first body's frame, `(2, 3)` [mm]; None when there is nothing.
+        box: Bounding box of all pieces in the first body's frame, `(2, 3)` [mm]; None if there are none.
     """
 
     volume: float = 0.0
@@ -74,7 +75,7 @@ def overlap_of(common: Any, a: Body, b: Body, T_a_b: FloatArray) -> Overlap:
     for _, piece in pieces[:_DEPTH_PIECES]:
         depth = _sampled_depth(piece, a, b, T_a_b, depth)
     thick = [(2 * volume / float(piece.surface_area()), piece) for volume, piece in pieces]  # mean thicknesses
-    depth = max([depth, *(_inscribed(piece, mean) for mean, piece in thick if mean > depth)])  # there both surfaces coincide
+    depth = max([depth, *(_inscribed(piece, mean) for mean, piece in thick if mean > depth)])  # where both surfaces coincide
     box = np.array(common.bounding_box()).reshape(2, 3)
     return Overlap(sum(volume for volume, _ in pieces), depth, len(pieces), box)
 
@@ -96,12 +97,12 @@ def _intersection(a: Body, b: Body, T_a_b: FloatArray) -> Any:
 
 
 def measured(a: Body, b: Body, T_a_b: FloatArray) -> Overlap:
-    """Measure the overlap, asking the cheaper library first: large meshes that do not touch cost one FCL search.
+    """Measure the overlap, with the cheaper library first: for large meshes that do not touch this is one FCL search.
 
     Args:
         a: A body.
         b: Another.
-        T_a_b: Where it stands as seen from a, `(3, 4)`.
+        T_a_b: Pose of b in the frame of a, `(3, 4)`.
 
     Raises:
         InvalidSolidError: If one of the meshes is not a solid.
@@ -113,12 +114,12 @@ def measured(a: Body, b: Body, T_a_b: FloatArray) -> Overlap:
 
 
 def may_overlap(a: Body, b: Body, T_a_b: FloatArray) -> bool:
-    """Return False when FCL and a look at containment exclude an overlap; small meshes go to the boolean at once.
+    """Return False if FCL and a containment test exclude an overlap; for small meshes the boolean decides at once.
 
     Args:
         a: A body.
         b: Another.
-        T_a_b: Where it stands as seen from a, `(3, 4)`.
+        T_a_b: Pose of b in the frame of a, `(3, 4)`.
     """
     if max(a.manifold_triangles, b.manifold_triangles) <= DIRECT_TRIANGLES:
         return True
@@ -129,19 +130,19 @@ def may_overlap(a: Body, b: Body, T_a_b: FloatArray) -> bool:
 
 
 def se3_of(T_a_b: FloatArray) -> SE3:
-    """Return a pose `(3, 4)` as it is taken by what is asked rarely."""
+    """Return the SE3 of a pose `(3, 4)`, for functions that are called rarely."""
     T: Any = np.eye(4)
     T[:3] = T_a_b
     return SE3.from_matrix(T)
 
 
 def volume(a: Body, b: Body, T_a_b: FloatArray) -> float:
-    """Return the common volume alone [mm³], of bodies without fault.
+    """Return only the common volume [mm³] of bodies without fault.
 
     Args:
         a: A body.
         b: Another.
-        T_a_b: Where it stands as seen from a, `(3, 4)`.
+        T_a_b: Pose of b in the frame of a, `(3, 4)`.
     """
     return float(common(a, b, T_a_b).volume())
 
@@ -152,14 +153,14 @@ def common(a: Body, b: Body, T_a_b: FloatArray) -> Any:
 
 
 def surfaces_touch(a: Body, b: Body, T_a_b: SE3) -> bool:
-    """Return whether FCL finds a common point of the two surfaces; of faces that merely touch, by rounding."""
+    """Return whether FCL finds a common point of the two surfaces; for faces that merely touch, this depends on rounding."""
     if a.is_empty or b.is_empty:
         return False
     return bool(fcl.collide(a.standing, _placed(b, T_a_b), fcl.CollisionRequest(), fcl.CollisionResult()) > 0)
 
 
 def distance(a: Body, b: Body, T_a_b: SE3) -> float:
-    """Return the smallest distance of the two surfaces [mm]; 0 when they meet, positive also when one is inside the other."""
+    """Return the smallest distance of the two surfaces [mm]; 0 if they meet, positive also if one is inside the other."""
     if a.is_empty or b.is_empty:
         return math.inf
     return max(float(fcl.distance(a.standing, _placed(b, T_a_b), fcl.DistanceRequest(), fcl.DistanceResult())), 0.0)
@@ -173,13 +174,13 @@ def nearest(a: Body, b: Body, T_a_b: SE3) -> tuple[float, FloatArray, FloatArray
 
 
 def one_contains_the_other(a: Body, b: Body, T_a_b: FloatArray) -> bool:
-    """Return whether a shell of one lies inside the other, when their surfaces do not meet; `T_a_b` is `(3, 4)`."""
+    """Return whether a shell of one is inside the other, provided that their surfaces do not meet; `T_a_b` is `(3, 4)`."""
     R, t = T_a_b[:, :3], T_a_b[:, 3]
     return any(_is_inside(a, points @ R.T + t) for points in b.extremes) or any(_is_inside(b, (points - t) @ R) for points in a.extremes)
 
 
 def _is_inside(outer: Body, points: FloatArray) -> bool:
-    """Return whether a shell that reaches as far as these points, and meets no surface of the outer body, is inside it."""
+    """Return whether a shell with these extreme points, which meets no surface of the outer body, is inside it."""
     low, high = outer.mesh.bounds
     return bool((points >= low).all() and (points <= high).all()) and bool(winding_numbers(points[:1], outer.corners)[0] > 0.5)
 
@@ -190,9 +191,10 @@ def _placed(b: Body, T_a_b: SE3) -> Any:
 
 
 def _sampled_depth(piece: Any, a: Body, b: Body, T_a_b: FloatArray, known: float) -> float:
-    """Return the largest distance of a point of the piece's surface from the surface it does not lie on [mm], or `known` if that is more.
+    """Return the largest distance of a point of the piece's surface from the surface on which it does not lie [mm], at least `known`.
 
-    A corner that pokes 1 mm has a mean thickness of 0.24 mm; its tip tells the depth. Vertices alone are 0 when whole faces overlap.
+    A corner that penetrates by 1 mm has a mean thickness of 0.24 mm; its tip gives the depth. Vertices alone give 0 when whole faces
+    overlap.
     """
     mesh = piece.to_mesh64()
     vertices = np.asarray(mesh.vert_properties)[:, :3]
@@ -200,17 +202,17 @@ def _sampled_depth(piece: Any, a: Body, b: Body, T_a_b: FloatArray, known: float
     points, of = _samples(vertices, triangles, all_over=a.is_thinned or b.is_thinned)
     others = _other_surfaces(mesh, triangles, a, b)
     asked = others[of]
-    own = [vertices[triangles[~others[:, side], 0]] for side in (0, 1)]  # those that lie on the surface of a, and of b
+    own = [vertices[triangles[~others[:, side], 0]] for side in (0, 1)]  # those on the surface of a, and of b
     known = _deepest(a, points[asked[:, 0]], own[0], known)
     R, t = T_a_b[:, :3], T_a_b[:, 3]
     return _deepest(b, (points[asked[:, 1]] - t) @ R, (own[1] - t) @ R, known)
 
 
 def _inscribed(piece: Any, thickness: float) -> float:
-    """Return the radius of the largest ball in a convex solid [mm]; of any other solid its mean thickness.
+    """Return the radius of the largest ball in a convex solid [mm]; for any other solid its mean thickness.
 
-    Linear program: the largest r with n·x + r <= n·p for the plane (n, p) of every face (Chebyshev centre; Boyd and Vandenberghe,
-    Convex Optimization, 4.3.1).
+    Linear program: the largest r with n·x + r <= n·p for the plane (n, p) of every face (Chebyshev centre; Boyd and Vandenberghe, Convex
+    Optimization, 4.3.1).
     """
     from scipy.optimize import linprog  # noqa: PLC0415 - rarely needed, and slow to import
 
@@ -228,12 +230,12 @@ def _inscribed(piece: Any, thickness: float) -> float:
 
 
 def _samples(vertices: FloatArray, triangles: NDArray[np.int64], *, all_over: bool) -> tuple[FloatArray, NDArray[np.int64]]:
-    """Return points of a surface `(P, 3)` and the triangles they are of, `(P,)`: vertices, centres of the largest triangles.
+    """Return points of a surface `(P, 3)` and the indices of their triangles, `(P,)`: vertices, centres of the largest triangles.
 
     Args:
         vertices: `(V, 3)` [mm].
         triangles: `(T, 3)`.
-        all_over: Whether to add points spread evenly by area: for faces in few large triangles that a mesh cuts into many.
+        all_over: Whether to add points spread evenly by area, for faces in few large triangles that a mesh cuts into many.
     """
     corners = vertices[triangles]
     sides = corners[:, 1:] - corners[:, :1]
@@ -263,9 +265,9 @@ _SPREAD = _spread(_SPREAD_SAMPLES)
 
 
 def _deepest(body: Body, points: FloatArray, on_surface: FloatArray, known: float) -> float:
-    """Return the largest distance of points `(P, 3)` from a body's surface [mm], or `known` if that is more.
+    """Return the largest distance of points `(P, 3)` from a body's surface [mm], at least `known`.
 
-    No point is farther than from the nearest of those `on_surface` `(S, 3)`, so most need not be asked for.
+    No point is farther from it than from the nearest of those `on_surface` `(S, 3)`, so most need no query.
     """
     off = _SQUARES_ROUNDING * (1.0 + body.reach + float(np.abs(points).max(initial=0.0))) ** 2
     beacons = [(body.scattered, body.scattered_squares)]
@@ -282,7 +284,7 @@ def _deepest(body: Body, points: FloatArray, on_surface: FloatArray, known: floa
 
 
 def _other_surfaces(mesh: Any, triangles: NDArray[np.int64], a: Body, b: Body) -> NDArray[np.bool_]:
-    """Return of each triangle of a common solid whether its distance from a, and from b, is to be asked, `(T, 2)`: not from its own."""
+    """Return for each triangle of a common solid whether to query its distance from a, and from b, `(T, 2)`: not from its own surface."""
     if a.manifold_id == b.manifold_id:  # the same mesh twice
         return np.ones((len(triangles), 2), dtype=bool)
     of = np.repeat(np.asarray(mesh.run_original_id), np.diff(np.asarray(mesh.run_index)) // 3)
@@ -298,5 +300,5 @@ def point_distance(body: Body, point: FloatArray) -> float:
 
 @cache
 def _point() -> Any:
-    """A point as a triangle of no size: exact to the last bit, where FCL's spheres are to 1e-9 mm."""
+    """A point as a triangle of zero size: exact to the last bit, while FCL's spheres are exact to 1e-9 mm."""
     return fcl.CollisionObject(make_bvh(np.zeros((3, 3)), np.array([[0, 1, 2]], dtype=np.int32)))

@@ -1,8 +1,8 @@
-"""Ranges over which drivers are sampled, so that sweeps, audits and clearances look at the same motion.
+"""Ranges over which drivers are sampled, so that sweeps, audits and clearances cover the same motion.
 
-A driver with limits is sampled between them. One without limits is sampled over the travel after which everything that follows it has
-come back: one turn, or several turns where couplings or loops need them. What slides or screws away without limits is sampled over a
-piece about rest.
+A driver with limits is sampled between them. A driver without limits is sampled over the travel after which all its followers have
+returned: one turn, or several turns where couplings or loops need them. A slide or screw without limits is sampled over a piece around
+rest.
 """
 
 from __future__ import annotations
@@ -15,19 +15,19 @@ from articad.kinematics.mechanism import Mechanism
 from articad.kinematics.motion import track_of
 from articad.kinematics.track import Track
 
-ENDLESS_SAMPLED_MM = 100.0  # either way of rest, of what slides without limits
-MOST_TURNS = 16  # of a driver whose followers come back later than that, or never
-_WHOLE = 1e-9  # turns by which a follower may be off a whole number of turns
+ENDLESS_SAMPLED_MM = 100.0  # in both directions from rest, for slides without limits
+MOST_TURNS = 16  # for a driver whose followers return later than that, or never
+_WHOLE = 1e-9  # turns: tolerance for a follower's whole number of turns
 
 
 def driving_joints(mechanism: Mechanism) -> tuple[Joint, ...]:
-    """Return the joints that hold a driver, in the order of the drivers."""
+    """Return the joints that have a driver, in the order of the drivers."""
     by_name = {joint.name: joint for joint in mechanism.joints}
     return tuple(by_name[name] for name in dict.fromkeys(coordinate.joint for coordinate in mechanism.drivers))
 
 
 def sampled_ranges(mechanism: Mechanism) -> tuple[Freedom, ...]:
-    """Return every freedom that drives, with the range over which it is sampled [rad or mm]."""
+    """Return every driving freedom with the range over which it is sampled [rad or mm]."""
     places = {driver.name: index for index, driver in enumerate(mechanism.drivers)}
     found = []
     for joint in driving_joints(mechanism):
@@ -66,7 +66,7 @@ def _slides(joint: Joint, driver: Coordinate) -> bool:
 
 
 def sampled_piece(joint: Joint, freedom: Freedom) -> Freedom:
-    """Return a piece about rest of what slides or screws without limits; any other range as it is."""
+    """Return a piece around rest for a slide or screw without limits; any other range unchanged."""
     per_mm = radians_per_mm(joint) if joint.type is JointType.SCREW and joint.lead else 1.0
     if freedom.upper - freedom.lower < ENDLESS_SLIDE_MM * per_mm:
         return freedom
@@ -75,10 +75,10 @@ def sampled_piece(joint: Joint, freedom: Freedom) -> Freedom:
 
 
 def _return_travel(mechanism: Mechanism, track: Track, driver: Coordinate, sign: int) -> float:
-    """Return the travel of a driver after which everything that follows has come back [rad or mm], up to a largest one.
+    """Return the travel of a driver after which all its followers have returned [rad or mm], up to a maximum.
 
-    Couplings alone: followers turn at fixed rates `k` per turn of the driver. They are back after the least `n` for which all `n k` are
-    whole numbers. What slides never comes back, so that its travel sets the end.
+    With couplings alone, followers turn at fixed rates `k` per turn of the driver. They have returned after the smallest `n` for which
+    all `n k` are whole numbers. A slide never returns, so its travel sets the end.
     """
     system = track.follower.system
     rates = [(driver, 1.0), *((system.layout.coordinates[column], ratio) for column, ratio, _ in system.ties.tied_to(track.column))]
@@ -94,7 +94,7 @@ def _return_travel(mechanism: Mechanism, track: Track, driver: Coordinate, sign:
 
 
 def _travel_per_unit(mechanism: Mechanism, coordinate: Coordinate, ratio: float) -> float:
-    """Return by how much [mm] a coordinate without limits takes its part along, per unit of the driver that it follows at a ratio."""
+    """Return the distance [mm] by which a coordinate without limits moves its part, per unit of the driver that it follows at a ratio."""
     joint = next(joint for joint in mechanism.joints if joint.name == coordinate.joint)
     if not slides_endlessly(joint):
         return 0.0

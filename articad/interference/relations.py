@@ -1,4 +1,4 @@
-"""How two parts are related by joints: mating, rigid or unrelated; and what overlap that allows."""
+"""The relation of two parts by joints: mating, rigid or unrelated; and the overlap that it permits."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from articad.kinematics.joints import Joint, JointType
 
 Relation = Literal["mating", "rigid", "unrelated"]
 
-UNRELATED_DEPTH_MM = 0.02  # parts without a joint may touch; this is what modelling leaves
-MATING_DEPTH_MM = 0.10  # parts that share a joint may have a fit; a press fit of a tenth is one
+UNRELATED_DEPTH_MM = 0.02  # parts without a joint may touch; this covers inaccuracies of modelling
+MATING_DEPTH_MM = 0.10  # parts that share a joint may have a fit; a press fit can be a tenth
 
 
 class WaiverLike(Protocol):
@@ -72,7 +72,7 @@ class Relations:
     """Relations of all parts of a mechanism.
 
     Attributes:
-        joints: In the order of declaration.
+        joints: In the order in which they are declared.
         rigid: Parts joined by fixed joints only.
     """
 
@@ -82,7 +82,7 @@ class Relations:
         self._between: dict[frozenset[str], list[Joint]] = {}
         self._waivers = {frozenset(waiver.parts): waiver for waiver in waivers}
         for joint in self.joints:
-            if joint.type is not JointType.FREE:  # which fits nothing to anything
+            if joint.type is not JointType.FREE:  # a free joint is not a fit
                 self._between.setdefault(frozenset((joint.parent, joint.child)), []).append(joint)
             if joint.type is JointType.FIXED:
                 self.rigid.join(joint.parent, joint.child)
@@ -98,7 +98,7 @@ class Relations:
         return "mating" if self.between(a, b) else "unrelated"
 
     def tolerated(self, a: str, b: str, deflection: float) -> float:
-        """Return the depth that needs no explanation [mm]; `deflection` is that of both meshes together [mm]."""
+        """Return the depth that needs no waiver [mm]; `deflection` is the sum of both meshes' [mm]."""
         return (MATING_DEPTH_MM if self.between(a, b) else UNRELATED_DEPTH_MM) + deflection
 
     def waiver(self, a: str, b: str) -> WaiverLike | None:
@@ -106,7 +106,7 @@ class Relations:
         return self._waivers.get(frozenset((a, b)))
 
     def where(self, a: str, b: str) -> str:
-        """Return the path in the plan where an overlap of two parts is reported."""
+        """Return the path in the plan at which an overlap of two parts is reported."""
         joints = self.between(a, b)
         return f"joints.{joints[0].name}" if joints else f"parts.{a}"
 

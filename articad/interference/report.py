@@ -1,4 +1,4 @@
-"""What an interference check reports: a verdict for every pair, and how strong each verdict is."""
+"""The report of an interference check: a verdict for every pair, and how strong each verdict is."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ class Strength:
 
     Attributes:
         kind: "certified", "sampled", "waived" or "not_checked".
-        epsilon: Of a proof: how far the solids may be from what was proven [mm].
-        poses: Of samples: how many.
-        step: Of samples along one joint: the distance of two [rad or mm]; None for a single pose or scattered ones.
-        reason: Of a waiver, or why nothing was done.
+        epsilon: For a proof: largest distance of the solids from what was proven [mm].
+        poses: For samples: their number.
+        step: For samples along one joint: the distance of two [rad or mm]; None for a single pose or scattered ones.
+        reason: For a waiver, or why nothing was checked.
     """
 
     kind: Literal["certified", "sampled", "waived", "not_checked"]
@@ -39,7 +39,7 @@ class Strength:
 
     @classmethod
     def sampled(cls, poses: int, step: float | None = None) -> Self:
-        """Seen at so many poses."""
+        """Sampled at this many poses."""
         return cls("sampled", poses=poses, step=step)
 
     @classmethod
@@ -83,10 +83,10 @@ class PairCheck:
         strength: How strong the verdict is.
         volume: Largest overlap [mm³].
         depth: Deepest overlap [mm].
-        allowed: Depth up to which nothing is said [mm].
+        allowed: Depth up to which there is no finding [mm].
         gap: Smallest distance of the surfaces [mm]; None where it was not measured.
-        verdict: "clear" when they have nothing in common, "contact" within what is allowed, "overlap" beyond it, or "unknown".
-        pose: Where the worst was found [rad, mm]; None at rest.
+        verdict: "clear" if they have no common point, "contact" within what is allowed, "overlap" beyond it, or "unknown".
+        pose: Pose of the worst overlap [rad, mm]; None at rest.
     """
 
     parts: tuple[str, str]
@@ -116,7 +116,7 @@ class PairCheck:
 
 
 class FitRow(Protocol):
-    """What is known of one fit."""
+    """The result for one fit."""
 
     @property
     def joint(self) -> str: ...  # noqa: D102
@@ -129,12 +129,12 @@ class Checks:
 
     Attributes:
         findings: All of them.
-        pairs: Every pair that could meet or was asked for; a pair that is missing has bounding boxes that do not meet.
+        pairs: Every pair that could meet or was requested; the bounding boxes of any other pair do not meet.
         deflection: Largest distance of any mesh from its solid [mm].
         over: "rest", "pose", or the names of the joints that moved.
         parts: All parts that have geometry.
         without_geometry: Parts that have none, so that they cannot overlap anything.
-        fits: Declared fits against what was measured, in the order of the joints.
+        fits: Declared fits compared with measurements, in the order of the joints.
     """
 
     findings: Findings
@@ -147,7 +147,7 @@ class Checks:
 
     @property
     def ok(self) -> bool:
-        """True when nothing is wrong and everything that was asked for was done."""
+        """True if nothing is wrong and everything that was requested was done."""
         return self.findings.ok
 
     @property
@@ -180,7 +180,7 @@ class Checks:
         return f"<p>{'ok' if self.ok else 'NOT ok'}</p>{self.findings._repr_html_() if len(self.findings) else ''}{pairs}"
 
     def __add__(self, other: Checks) -> Checks:
-        """Return both reports as one; what both say of a fit is said once."""
+        """Return both reports as one; equal statements about a fit occur once."""
         told = [finding for finding in other.findings if not (finding.where.endswith(".fit") and finding in tuple(self.findings))]
         over = tuple(dict.fromkeys(_names(self.over) + _names(other.over)))
         return Checks(

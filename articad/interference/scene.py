@@ -1,4 +1,4 @@
-"""The scene of a check: bodies, how their parts are related, how exact their meshes are."""
+"""The scene of a check: bodies, the relations of their parts, and the accuracy of their meshes."""
 
 from __future__ import annotations
 
@@ -23,16 +23,16 @@ IntArray = NDArray[np.int64]
 _PARALLEL = 1e-12  # added to the cosines between edges
 _NEXT, _LAST = [1, 2, 0], [2, 0, 1]
 _PAIRS_AT_ONCE = 1 << 16  # of boxes that are compared: 10 MB
-_BOX_MARGIN_MM = 1e-6  # boxes of touching faces must meet, however they round
+_BOX_MARGIN_MM = 1e-6  # boxes of touching faces must meet, whatever the rounding
 
 
 @dataclass(frozen=True, eq=False)
 class Scene:
-    """The bodies of an assembly and how their parts are related: what all checks work on.
+    """The bodies of an assembly and the relations of their parts: the input of all checks.
 
     Attributes:
-        meshes: By part, in the part's frame; parts without geometry are left out.
-        relations: Of the parts.
+        meshes: By part, in the part's frame; parts without geometry are omitted.
+        relations: Relations of the parts.
         deflections: By part [mm].
         fits: By joint name.
     """
@@ -58,26 +58,26 @@ class Scene:
 
     @cached_property
     def bodies(self) -> dict[str, Body]:
-        """By part."""
+        """Bodies by part."""
         return {name: body_of(mesh) for name, mesh in self.meshes.items()}
 
     @cached_property
     def index(self) -> dict[str, int]:
-        """Place of each part among the bodies."""
+        """Index of each part among the bodies."""
         return {name: at for at, name in enumerate(self.bodies)}
 
     @cached_property
     def broken(self) -> dict[str, str]:
-        """Parts whose meshes are no solids, with the reason."""
+        """Parts whose meshes are not solids, with the reason."""
         return {name: body.fault for name, body in self.bodies.items() if body.fault is not None}
 
     @cached_property
     def deflection(self) -> float:
-        """The largest of all [mm]."""
+        """The largest deflection of all [mm]."""
         return max(self.deflections.values(), default=0.0)
 
     def deflection_of(self, a: str, b: str) -> float:
-        """Deflection of two meshes together [mm]."""
+        """Sum of the deflections of two meshes [mm]."""
         return self.deflections[a] + self.deflections[b]
 
     def tolerated(self, a: str, b: str) -> float:
@@ -92,7 +92,7 @@ class Scene:
         return (bounds[:, 0] + bounds[:, 1]) / 2, (bounds[:, 1] - bounds[:, 0]) / 2
 
     def at(self, poses: Mapping[str, SE3]) -> Placement:
-        """Return the bodies where these poses of parts put them."""
+        """Return the bodies at these poses of the parts."""
         data = np.array([poses[name].data for name in self.bodies]).reshape(-1, 7)
         return Placement(self, np.asarray(SE3.from_unit_array(data).matrix)[:, :3])
 
@@ -101,7 +101,7 @@ class Scene:
         return self.at(poses).candidates(margin)
 
     def boxes(self, matrices: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return lower and upper corners of the bodies' boxes, `(*batch, N, 3)` each [mm], where matrices `(*batch, N, 3, 4)` put them."""
+        """Return lower and upper corners of the bodies' boxes for matrices `(*batch, N, 3, 4)`: `(*batch, N, 3)` each [mm]."""
         centres, halves = self.local_boxes
         R = matrices[..., :3]
         middle = np.einsum("...nij,nj->...ni", R, centres) + matrices[..., 3]
@@ -109,23 +109,24 @@ class Scene:
         return middle - reach, middle + reach
 
     def apart(self, i: int | IntArray, j: int | IntArray, T_i_j: FloatArray) -> BoolArray:
-        """Return at which relative poses the boxes of two bodies, turned with them, are apart, `(n,)`.
+        """Return at which relative poses the oriented boxes of two bodies are apart, `(n,)`.
 
         Args:
-            i: Place of a body, or of one for each pose.
-            j: Of another.
-            T_i_j: Where that stands as seen from the first, `(n, 3, 4)` [mm].
+            i: Index of a body, or one for each pose.
+            j: Index of the other body.
+            T_i_j: Pose of the second in the frame of the first, `(n, 3, 4)` [mm].
         """
         centres, halves = self.local_boxes
         return boxes_apart((centres[i], halves[i]), (centres[j], halves[j]), T_i_j)
 
     def boxes_gap(self, i: int, j: int, T_i_j: FloatArray) -> FloatArray:
-        """Return how far apart two bodies are at least, `(n,)` [mm]: what lies between their turned boxes along any of the boxes' axes.
+        """Return a lower bound of the distance of two bodies, `(n,)` [mm]: the gap between their oriented boxes along any of the boxes'
+        axes.
 
         Args:
-            i: Place of a body.
-            j: Of another.
-            T_i_j: Where that stands as seen from the first, `(n, 3, 4)` [mm].
+            i: Index of a body.
+            j: Index of the other body.
+            T_i_j: Pose of the second in the frame of the first, `(n, 3, 4)` [mm].
         """
         (c, d), (h, g) = ((sides[i], sides[j]) for sides in self.local_boxes)
         R = T_i_j[..., :3]
@@ -136,7 +137,7 @@ class Scene:
 
 
 def relatives(A: FloatArray, B: FloatArray) -> FloatArray:
-    """Return where bodies at `B` stand as seen from those at `A`, all `(n, 3, 4)` [mm]."""
+    """Return the poses of bodies at `B` in the frames of those at `A`, all `(n, 3, 4)` [mm]."""
     back = A[..., :3].transpose(0, 2, 1)
     return np.concatenate([back @ B[..., :3], back @ (B[..., 3:] - A[..., 3:])], axis=2)
 
@@ -144,20 +145,20 @@ def relatives(A: FloatArray, B: FloatArray) -> FloatArray:
 def boxes_apart(a: tuple[FloatArray, FloatArray], b: tuple[FloatArray, FloatArray], T_a_b: FloatArray) -> BoolArray:
     """Return at which relative poses `(n, 3, 4)` two boxes are apart, `(n,)`.
 
-    Fifteen directions decide: three of each box, and those across an edge of each (Gottschalk, Lin and Manocha 1996).
+    Fifteen directions decide: three axes of each box, and the cross products of an edge of each (Gottschalk, Lin and Manocha 1996).
 
     Args:
         a: Centre and half sides in its own frame, `(3,)` each [mm], or `(n, 3)`.
         b: Of the other box.
-        T_a_b: Where that stands as seen from the first [mm].
+        T_a_b: Pose of the second in the frame of the first [mm].
     """
     R, h, g = T_a_b[..., :3], np.atleast_2d(a[1]), np.atleast_2d(b[1])
     d = np.einsum("nij,nj->ni", R, np.broadcast_to(b[0], (len(R), 3))) + T_a_b[..., 3] - a[0]
-    size = np.abs(R) + _PARALLEL  # of two edges that are parallel nothing lies across
+    size = np.abs(R) + _PARALLEL  # two parallel edges have no cross product
     beyond = np.abs(d) - h - (size * g[:, None]).sum(axis=2)
     beyond = np.concatenate([beyond, np.abs((R * d[:, :, None]).sum(axis=1)) - g - (size * h[:, :, None]).sum(axis=1)], axis=1)
     found = (beyond > _BOX_MARGIN_MM).any(axis=1)
-    for k, after, last in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):  # along edge k of a times each edge of b
+    for k, after, last in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):  # along the cross products of edge k of a and each edge of b
         across = np.abs(d[:, last, None] * R[:, after] - d[:, after, None] * R[:, last])
         reach = h[:, after, None] * size[:, last] + h[:, last, None] * size[:, after]
         reach = reach + g[:, _NEXT] * size[:, k][:, _LAST] + g[:, _LAST] * size[:, k][:, _NEXT]
@@ -166,7 +167,7 @@ def boxes_apart(a: tuple[FloatArray, FloatArray], b: tuple[FloatArray, FloatArra
 
 
 def box_about(corners: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return centre and half sides of the box about triangles `(T, 3, 3)`, `(3,)` each [mm]: what `boxes_apart` asks for."""
+    """Return centre and half sides of the box about triangles `(T, 3, 3)`, `(3,)` each [mm], in the form that `boxes_apart` takes."""
     low, high = corners.min(axis=(0, 1)), corners.max(axis=(0, 1))
     return (low + high) / 2, (high - low) / 2
 
@@ -176,7 +177,7 @@ class Placement:
     """The bodies of a scene at one pose.
 
     Attributes:
-        scene: Whose bodies.
+        scene: The scene of the bodies.
         matrices: `T_ground_part` of each, `(N, 3, 4)` [mm].
     """
 
@@ -184,14 +185,14 @@ class Placement:
     matrices: FloatArray
 
     def relative(self, a: str, b: str) -> FloatArray:
-        """Return where b stands as seen from a, `(3, 4)` [mm]."""
+        """Return the pose of b in the frame of a, `(3, 4)` [mm]."""
         A, B = self.matrices[self.scene.index[a]], self.matrices[self.scene.index[b]]
         T = A[:, :3].T @ B
         T[:, 3] -= A[:, :3].T @ A[:, 3]
         return np.asarray(T)
 
     def near(self) -> Iterator[tuple[tuple[str, str], FloatArray, bool]]:
-        """Yield the pairs whose boxes meet, where the second stands as seen from the first, and whether the turned boxes are apart."""
+        """Yield the pairs whose boxes meet, the pose of the second in the frame of the first, and whether the oriented boxes are apart."""
         pairs = self.candidates()
         i, j = np.array([[self.scene.index[name] for name in pair] for pair in pairs], dtype=np.int64).reshape(-1, 2).T
         relative = relatives(self.matrices[i], self.matrices[j])
@@ -202,7 +203,7 @@ class Placement:
         low, high = self.scene.boxes(self.matrices)
         names = list(self.scene.bodies)
         order = np.argsort(low[:, 0], kind="stable")
-        # along x the boxes are sorted, so that each is compared with those that begin before it ends: no N x N table
+        # the boxes are sorted along x, so that each is compared with those that begin before it ends: no N x N table
         ends = np.searchsorted(low[order, 0], high[order, 0] + margin, side="right")
         least, most = low[order] - margin, high[order]
         pairs: list[tuple[int, int]] = []
@@ -213,7 +214,7 @@ class Placement:
 
 
 def _runs(ends: IntArray) -> Iterator[tuple[IntArray, IntArray]]:
-    """Yield each row with each of the rows after it that come before its end, so many at a time that they take little room."""
+    """Yield each row with each of the later rows that begin before its end, in chunks that limit memory."""
     counts = np.maximum(ends - np.arange(len(ends)) - 1, 0)
     before = np.concatenate([[0], np.cumsum(counts)])
     start = 0

@@ -1,7 +1,7 @@
-"""Pieces of a part's surface for a proof: within a cylinder about a joint's axis, outside it, or shrunk by what is allowed.
+"""Pieces of a part's surface for a proof: within a cylinder about a joint's axis, outside it, or shrunk by the allowed depth.
 
-Why shrinking proves something: move every vertex of a by at most τ. If the moved surface never meets b, and was not inside
-it to begin with, then whatever of a is in b lies between the two surfaces, so no point of a is deeper than τ in b.
+Why shrinking proves something: move every vertex of a by at most τ. If the moved surface never meets b, and was not inside it at the
+start, then any part of a that is in b lies between the two surfaces, so no point of a is deeper than τ in b.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from articad.interference.body import body_of, make_bvh
 
 FloatArray = NDArray[np.float64]
 
-_SHORTER = 1 - 1e-6  # so that no vertex moves further than it says, rounded as it is
+_SHORTER = 1 - 1e-6  # so that no vertex moves farther than stated, despite rounding
 
 _whole: WeakKeyDictionary[TriMesh, Surface] = WeakKeyDictionary()
 
@@ -37,17 +37,17 @@ class Surface:
 
     @classmethod
     def of(cls, mesh: TriMesh, moved: NDArray[np.float32] | None = None) -> Surface:
-        """Return the whole surface, its vertices moved by so much, `(V, 3)` [mm]."""
+        """Return the whole surface with its vertices moved by `(V, 3)` [mm]."""
         return cls((mesh.vertices if moved is None else mesh.vertices + moved)[mesh.triangles])
 
     @property
     def is_empty(self) -> bool:
-        """True when there is nothing of it."""
+        """True if it has no triangles."""
         return not len(self.corners)
 
     @cached_property
     def points(self) -> FloatArray:
-        """Corners as a list without repetitions, `(P, 3)`."""
+        """Corners without duplicates, `(P, 3)`."""
         return np.unique(self.corners.reshape(-1, 3), axis=0)
 
     @cached_property
@@ -63,7 +63,7 @@ class Surface:
 
     @cached_property
     def moving(self) -> Any:
-        """An FCL object to be placed anew for every query."""
+        """An FCL object that is placed anew for every query."""
         return fcl.CollisionObject(self._bvh)
 
     @cached_property
@@ -73,7 +73,7 @@ class Surface:
 
 
 def whole_surface(mesh: TriMesh) -> Surface:
-    """Return the whole surface of a mesh; made once, since every pair that the part belongs to asks for it."""
+    """Return the whole surface of a mesh; cached, since every pair of the part uses it."""
     surface = _whole.get(mesh)
     if surface is None:
         surface = _whole[mesh] = Surface(body_of(mesh).corners)
@@ -81,17 +81,17 @@ def whole_surface(mesh: TriMesh) -> Surface:
 
 
 def inwards(mesh: TriMesh, depth: float, near: Core | None = None, within: float = np.inf) -> NDArray[np.float32]:
-    """Return by how much vertices move inwards by `depth`, those only that are `within` a radius of a core, `(V, 3)` [mm].
+    """Return the displacements of vertices inwards by `depth`, only for those `within` a radius of a core, `(V, 3)` [mm].
 
-    They go along the mean of the adjacent triangles' unit normals. The mean is over distinct faces, not weighted by area, so that
-    every face at a corner recedes: by depth/√3 at a cube's.
+    They move along the mean of the adjacent faces' unit normals. The mean counts each face once, not weighted by area, so that every
+    face at a corner recedes: by depth/√3 at a cube's.
     """
     normals = mesh.normals_of_twice_area
     lengths = np.linalg.norm(normals, axis=1)
     unit = normals / np.where(lengths > 0, lengths, 1.0)[:, None]
     total = np.zeros_like(mesh.vertices)
     corners = mesh.vertices[mesh.triangles]
-    for at in range(3):  # weighted by the angle at the corner, so that how a face is cut into triangles does not matter
+    for at in range(3):  # weighted by the angle at the corner, so that the triangulation of a face does not matter
         u, v = corners[:, (at + 1) % 3] - corners[:, at], corners[:, (at + 2) % 3] - corners[:, at]
         angle = np.arctan2(np.linalg.norm(np.cross(u, v), axis=1), np.einsum("ij,ij->i", u, v))
         np.add.at(total, mesh.triangles[:, at], unit * angle[:, None])
@@ -114,7 +114,7 @@ def split_by_radius(mesh: TriMesh, core: Core, radius: float, edge: float) -> tu
         edge: [mm].
 
     Returns:
-        Triangles inside; those that still cross; those that reach outside, the crossing ones included.
+        Triangles inside; those that still cross; those that reach outside, including the crossing ones.
     """
     todo = mesh.vertices[mesh.triangles]
     none = np.empty((0, 3, 3))
@@ -123,7 +123,7 @@ def split_by_radius(mesh: TriMesh, core: Core, radius: float, edge: float) -> tu
         local = core.local(todo)
         middle = local.mean(axis=1)
         is_in = (np.linalg.norm(local, axis=2) <= radius).all(axis=1)
-        # certainly outside: no point of a triangle is further from its centre than a corner is
+        # certainly outside: no point of a triangle is farther from its centre than a corner is
         spread = np.linalg.norm(local - middle[:, None], axis=2).max(axis=1)
         is_out = ~is_in & (np.linalg.norm(middle, axis=1) - spread > radius)
         inside.append(todo[is_in])
@@ -182,7 +182,7 @@ class Core:
 
 
 def _least_within(flat: FloatArray) -> FloatArray:
-    """Return the distance of 0 from each triangle's inside; infinite where its nearest point is on the edge."""
+    """Return the distance of 0 from each triangle's interior; infinite if its nearest point is on the edge."""
     a, b, c = flat[:, 0], flat[:, 1], flat[:, 2]
     if flat.shape[2] == 2:
         side = np.stack([p[:, 0] * q[:, 1] - p[:, 1] * q[:, 0] for p, q in ((a, b), (b, c), (c, a))])
@@ -205,7 +205,7 @@ def surface_distance(a: Surface, b: Surface, T_a_b: FloatArray) -> float:
 
 
 def near_by(a: Surface, b: Surface, T_a_b: FloatArray, reach: float) -> Surface:
-    """Return the triangles of a that are no further than `reach` [mm] from b, `T_a_b (4, 4)`."""
+    """Return the triangles of a that are within `reach` [mm] of b, `T_a_b (4, 4)`."""
     if a.is_empty or b.is_empty:
         return Surface(a.corners[:0])
     points = b.points @ T_a_b[:3, :3].T + T_a_b[:3, 3]

@@ -1,6 +1,6 @@
-"""Sampled motion: one joint at a time, two on a grid, or all at scattered points. It says "sampled", for that is what it is.
+"""Sampled motion: one joint at a time, two on a grid, or all at scattered points. All verdicts are "sampled".
 
-A pair is asked again only where its relative pose is new: while one joint moves, most pairs keep theirs.
+A pair is measured again only at new relative poses: while one joint moves, most pairs keep theirs.
 """
 
 from __future__ import annotations
@@ -36,15 +36,15 @@ from articad.kinematics.solution import Solution
 FloatArray = NDArray[np.float64]
 
 DEFAULT_STEPS = 60
-LIMIT_SLACK = 1e-6  # mm or rad by which a joint that follows may be outside its limits
-_KEY_DIGITS = 9  # of millimetres and of rotation entries: relative poses that agree so far are one
-_WORTH_OUTLINES = 8  # poses to ask for from which comparing outlines first is cheaper
+LIMIT_SLACK = 1e-6  # mm or rad by which a joint that follows may exceed its limits
+_KEY_DIGITS = 9  # of millimetres and of rotation entries: relative poses that agree to this count as one
+_WORTH_OUTLINES = 8  # poses from which comparing outlines first is cheaper
 _DEEPEST = 2  # poses of largest volume at which the depth of a pair is measured
 
 
 @dataclass
 class _Track:
-    """What was seen of one pair: volume by relative pose, and where; of the largest the solid that both have in common."""
+    """Results for one pair: volume by relative pose, its place, and for the largest ones the common solid."""
 
     volumes: dict[bytes, float] = field(default_factory=dict)
     poses: dict[bytes, tuple[FloatArray, int]] = field(default_factory=dict)
@@ -73,9 +73,9 @@ def sweep(
     """Sample the motion of every driver over its range, the others at rest.
 
     Args:
-        meshes: By part, in the part's frame; parts without geometry are left out.
-        mechanism: Moves them.
-        joints: Names of those to sweep; all that drive by default.
+        meshes: By part, in the part's frame; parts without geometry are omitted.
+        mechanism: The mechanism.
+        joints: Names of the joints to sweep; all that drive by default.
         steps: Poses per coordinate.
         together: Whether to sweep every two coordinates on a grid as well, of √steps each way.
         samples: Further poses scattered over all coordinates at once, in a low-discrepancy sequence.
@@ -91,7 +91,7 @@ def sweep(
 
 
 class MotionSampler:
-    """Sampling of one scene; what it has seen of a relative pose it does not ask again.
+    """Sampling of one scene; each relative pose is measured only once.
 
     Args:
         scene: Bodies and relations.
@@ -103,7 +103,7 @@ class MotionSampler:
         self.scene, self.mechanism, self.budget = scene, mechanism, budget or WorkBudget(math.inf)
         self.queries = 0
         self._known: dict[tuple[str, str], dict[bytes, float]] = {}
-        self.driving: tuple[Joint, ...] = driving_joints(mechanism)  # free ones too, which stand at rest
+        self.driving: tuple[Joint, ...] = driving_joints(mechanism)  # also free joints, which stay at rest
 
     def run(self, joints: Sequence[str] | None, *, steps: int, together: bool, samples: int) -> Checks:
         """Sweep and report; see `sweep`."""
@@ -130,14 +130,14 @@ class MotionSampler:
         return report
 
     def _several(self, ranges: Sequence[Freedom], points: Iterable[tuple[float, ...]]) -> Checks:
-        """Check values of several freedoms at once, but those that no cone of a ball allows."""
+        """Check values of several freedoms at once, except those outside the cone of a ball."""
         values = np.array(list(points))
         names = tuple(freedom.name for freedom in ranges)
         allowed = values[self.within_cones(ranges, values)].tolist()
         return self.sampled([dict(zip(names, point, strict=True)) for point in allowed], names, None)
 
     def ranges(self, joints: Sequence[str] | None = None) -> list[Freedom]:
-        """Return what is moved, each over the range that it is sampled over: of some joints, or of all that drive."""
+        """Return the freedoms to move with their sampled ranges: of some joints, or of all that drive."""
         chosen = {joint.name for joint in self.driving if joints is None or joint.name in joints}
         return [freedom for freedom in self._ranges if freedom.name.split(".")[0] in chosen]
 
@@ -146,7 +146,7 @@ class MotionSampler:
         return sampled_ranges(self.mechanism)
 
     def values(self, freedom: Freedom, steps: int) -> FloatArray:
-        """Return the values `(n,)` at which a range is sampled: so many of it, or of each of its turns where it has several."""
+        """Return the sampled values `(n,)` of a range: `steps` of it, or of each of its turns if it has several."""
         turns = (freedom.upper - freedom.lower) / (2 * math.pi) if self._is_angle(freedom.name) else 1.0
         return np.linspace(freedom.lower, freedom.upper, max(math.ceil(steps * min(max(turns, 1.0), MOST_TURNS)), 2))
 
@@ -183,8 +183,8 @@ class MotionSampler:
         """Place all parts at values of freedoms, the others at rest.
 
         Returns:
-            Which points are reached with everything that follows within its limits; matrices of all parts there `(n, N, 4, 4)`; and
-            what was reached at all.
+            Which points are reached with all followers within their limits; matrices of all parts there `(n, N, 4, 4)`; and which points
+            are reached at all.
 
         Raises:
             KinematicsError: If a loop is open at rest.
@@ -195,7 +195,7 @@ class MotionSampler:
         return kept, np.asarray(solution.poses[kept].matrix), solution
 
     def within_cones(self, ranges: Sequence[Freedom], points: FloatArray) -> NDArray[np.bool_]:
-        """Return which values `(n, freedoms)` keep every ball within its cone: a swing (sx, sy) has the length of its angle."""
+        """Return which values `(n, freedoms)` keep every ball within its cone: the length of a swing (sx, sy) is its angle."""
         places = {freedom.name: at for at, freedom in enumerate(ranges)}
         inside = np.ones(len(points), dtype=bool)
         for name, at in places.items():
@@ -223,12 +223,12 @@ class MotionSampler:
 
     @cached_property
     def _owner(self) -> dict[str, int]:
-        """The place in `_driving` of the joint that each freedom belongs to."""
+        """Index in `_driving` of the joint that has each freedom."""
         return {freedom.name: at for at, (_, _, moves, _) in enumerate(self._driving) for freedom in moves}
 
     @cached_property
     def _driving(self) -> list[tuple[int, Joint, tuple[Freedom, ...], list[bool]]]:
-        """The first driver of each joint that drives, the joint, along what it moves, and which of its coordinates are drivers."""
+        """Index of the first driver of each driving joint, the joint, its freedoms, and which of its coordinates are drivers."""
         names = {coordinate.name for coordinate in self.mechanism.drivers}
         rows, start = [], 0
         for joint in self.driving:
@@ -238,11 +238,11 @@ class MotionSampler:
         return rows
 
     def _tracks(self, matrices: FloatArray, turning: Turning | None) -> dict[tuple[str, str], _Track]:
-        """Measure the overlap volume of every candidate pair at every pose, each relative pose once, and none that cannot be."""
+        """Measure the overlap volume of every candidate pair at every pose: each relative pose once, and none that is excluded."""
         names = list(self.scene.bodies)
         low, high = self.scene.boxes(matrices)
         tracks: dict[tuple[str, str], _Track] = {}
-        # Boxes about all poses of a body: only bodies whose boxes meet can meet in a pose.
+        # Boxes about all poses of a body: only bodies whose boxes meet can meet at a pose.
         candidates = meeting_boxes(low.min(axis=0), high.max(axis=0))
         self.budget.spend(math.comb(len(names), 2) / PAIRS_PLACED)  # the price of comparing all, whatever is saved
         for i, j in candidates.tolist():
@@ -264,7 +264,7 @@ class MotionSampler:
                     track.poses[keys[at]] = (relative[at], int(near[at]))
                     self._ask(track, (a, b), keys[at], relative[at])
             if len(track.volumes) == 0 or len(asked) < len(matrices):
-                track.volumes.setdefault(b"", 0.0)  # where the boxes are apart there is nothing
+                track.volumes.setdefault(b"", 0.0)  # boxes that are apart have no common volume
         return tracks
 
     def _ask(self, track: _Track, pair: tuple[str, str], key: bytes, pose: FloatArray) -> None:
@@ -332,7 +332,7 @@ class MotionSampler:
         yield Finding(code="I_NOT_SAMPLED", where=f"joints.{name.split('.')[0]}", message=message, hint=hint)
 
     def _within_limits(self, columns: FloatArray) -> NDArray[np.bool_]:
-        """Return in which configurations `(n, columns)` everything that follows drivers is within its limits."""
+        """Return in which configurations `(n, columns)` all followers are within their limits."""
         driving = {driver.name for driver in self.mechanism.drivers}
         followers = [at for at, c in enumerate(self.mechanism.coordinates) if c.name not in driving and c.unit != "1"]
         bounds = np.array([(c.lower, c.upper) for c in self.mechanism.coordinates]).reshape(-1, 2)[followers]

@@ -1,4 +1,4 @@
-"""Pairs that one turning joint cannot bring together, so that a sweep of it need not ask at every step."""
+"""Pairs that one turning joint cannot bring together, so that a sweep of it can skip them."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ BoolArray = NDArray[np.bool_]
 
 
 class Turning:
-    """What a joint keeps apart however it turns, all others at rest.
+    """The bodies that a joint keeps apart at any angle, all other joints at rest.
 
     Args:
         scene: The bodies.
-        joint: Of a tree.
+        joint: A joint of a tree.
         T_ground_axis: Its parent connector at one of the poses, `(4, 4)` [mm].
         matrices: The bodies at that pose, `(N, 3, 4)` [mm].
     """
@@ -35,12 +35,12 @@ class Turning:
 
     @classmethod
     def of(cls, scene: Scene, mechanism: Mechanism, name: str, poses: FloatArray, matrices: FloatArray) -> Turning | None:
-        """Return it for the coordinate that alone moves; None where that does not turn about an axis that stands.
+        """Return the object for the only coordinate that moves; None if that does not turn about a fixed axis.
 
         Args:
             scene: The bodies.
-            mechanism: What moves.
-            name: Of the coordinate.
+            mechanism: The mechanism.
+            name: Name of the coordinate.
             poses: All parts at one of its values, matrices `(parts, 4, 4)` [mm].
             matrices: The bodies there, `(N, 3, 4)` [mm].
         """
@@ -51,10 +51,10 @@ class Turning:
         return None
 
     def apart(self, i: int, j: int, T_i_j: FloatArray) -> BoolArray:
-        """Return at which relative poses `(n, 3, 4)` two bodies, places among the scene's, have nothing in common, `(n,)`.
+        """Return at which relative poses `(n, 3, 4)` two bodies, given by their indices, have no common point, `(n,)`.
 
-        Only triangles whose outlines meet can meet, and where boxes about these are apart they do not. No shell of the one is
-        inside the other then if it reaches out of the other's box.
+        Only triangles whose outlines meet can meet, and if the boxes about these are apart they do not. Then no shell of the one is
+        inside the other if it reaches out of the other's box.
         """
         mine, theirs = self._outline(i), self._outline(j)
         met_i = meeting(mine, theirs, 0.0)
@@ -67,7 +67,7 @@ class Turning:
         return np.asarray(found & ~self._may_hold(i, j, T_i_j) & ~self._may_hold(j, i, T_j_i))
 
     def _may_hold(self, outer: int, inner: int, T: FloatArray) -> BoolArray:
-        """Return at which poses of the inner body a shell of it is within the outer's box, but for its rounding off, `(n,)`."""
+        """Return at which poses of the inner body one of its shells is within the outer's box, up to rounding, `(n,)`."""
         low, high = self._bodies[outer].mesh.bounds
         found = np.zeros(len(T), dtype=bool)
         for extremes in self._bodies[inner].extremes:

@@ -1,4 +1,4 @@
-"""The verdict on one pair: a measured overlap held to what is allowed for it."""
+"""The verdict on one pair: compares a measured overlap with what is allowed for it."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ from articad.interference.report import PairCheck, Strength, Verdict
 from articad.interference.scene import Scene
 
 UNRELATED_VOLUME_MM3 = 1e-3  # a smaller overlap is rounding of the model
-STATIC_SHARE = 0.01  # of the smaller part: more than that is no fit but a missing hole …
+STATIC_SHARE = 0.01  # of the smaller part: a larger overlap is not a fit but a missing hole …
 STATIC_CAP_MM3 = 1000.0  # … and so is a cubic centimetre of any part, …
-STATIC_CAP_MM = 1.0  # … or a millimetre
-MOTION_VOLUME_MM3 = 1.0  # a collision in motion is more than the overlap that is always there: by this, …
+STATIC_CAP_MM = 1.0  # … or a depth of a millimetre
+MOTION_VOLUME_MM3 = 1.0  # a collision in motion exceeds the permanent overlap by this, …
 MOTION_SHARE = 1e-4  # … for large parts by this share of the smaller one, …
 MOTION_SHARE_TINY = 1e-2  # … and for tiny parts by this share: a wire of 2 mm³ cannot overlap by much more
 
@@ -30,17 +30,17 @@ def judge(
     gap: float | None = None,
     baseline: float | None = None,
 ) -> tuple[PairCheck, list[Finding]]:
-    """Hold a measured overlap to what is allowed for the pair.
+    """Compare a measured overlap with what is allowed for the pair.
 
     Args:
-        scene: Where the pair is.
-        parts: Their names.
-        found: What was measured.
+        scene: The scene of the pair.
+        parts: Names of the two parts.
+        found: The measured overlap.
         over: "rest", "pose", or the joints that moved.
         strength: How strong the verdict is; by default sampled at this one pose.
         pose: Coordinates [rad, mm].
         gap: Distance of the surfaces, if measured [mm].
-        baseline: Smallest overlap of a mating pair over the motion [mm³]; what exceeds it is a collision. None: no motion is judged.
+        baseline: Smallest overlap of a mating pair over the motion [mm³]; more than that is a collision. None: not a motion.
 
     Returns:
         The verdict, and the finding if there is one.
@@ -65,7 +65,7 @@ def judge(
 
 
 def _is_motion(scene: Scene, parts: tuple[str, str], found: Overlap, baseline: float | None) -> bool:
-    """Return whether an overlap comes from the motion; what a mating pair always overlaps by is a static one."""
+    """Return whether an overlap comes from the motion; the smallest overlap of a mating pair is a static one."""
     if not scene.relations.between(*parts):
         return True
     smaller = min(scene.bodies[name].volume for name in parts)
