@@ -1,1 +1,1 @@
-"""Exporters: an assembly in, a bundle of files and a list of losses out. Writing to disk comes last."""
+"""Exporters: convert an assembly to a bundle of files and a list of losses. Writing to disk comes last."""

@@ -1,4 +1,4 @@
-"""What an exporter returns: files as bytes, and what the format could not hold."""
+"""The result of an exporter: files as bytes, and what the format could not hold."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ class Loss:
 
     Attributes:
         format: The format, such as "urdf".
-        where: What is concerned: `joints.elbow`, `parts.arm`, `couplings.mesh`.
-        kept: What was written in its stead.
+        where: Its place: `joints.elbow`, `parts.arm`, `couplings.mesh`.
+        kept: What was written instead.
         lost: What a reader of the file does not see.
-        refused: True when `strict` refuses it: motion, mass or shape are not what was declared.
+        refused: True if `strict` refuses it: motion, mass or shape differ from what was declared.
     """
 
     format: str
@@ -46,7 +46,7 @@ class Bundle:
     Attributes:
         files: Content by path, relative and with forward slashes; the first is the main file.
         losses: What the format could not hold.
-        findings: What the export had to say beyond its losses.
+        findings: Findings of the export beyond its losses.
     """
 
     files: Mapping[str, bytes]
@@ -73,10 +73,10 @@ class Bundle:
         }
 
     def write(self, folder: str | Path) -> list[Path]:
-        """Write all files into a folder, each one whole or not at all.
+        """Write all files into a folder; each file appears complete or not at all.
 
         Args:
-            folder: Made if it does not exist. Files of the same names are replaced, others are left alone.
+            folder: Created if it does not exist. Files of the same names are replaced, others are not changed.
 
         Returns:
             The files written, the main one first.
@@ -92,7 +92,7 @@ class Bundle:
 
 
 def _inside(root: Path, path: str) -> Path:
-    """Return where a path of the bundle is written, or refuse it; folders that are links are followed before judging."""
+    """Return where a path of the bundle is written, or refuse it; links to folders are resolved before the check."""
     pure = PurePosixPath(path)
     target = root / pure
     harmless = pure.parts and not pure.is_absolute() and ".." not in pure.parts and "\\" not in path and "\0" not in path

@@ -1,13 +1,14 @@
-"""What a joint carries: masses, levers and reach in the worst pose, for all joints of a mechanism in one pass over its tree.
+"""The load on a joint: masses, levers and reach in the worst pose, for all joints of a mechanism in one pass over its tree.
 
-Parts that fixed joints hold together are one group, in which every distance is known. Beyond a joint that moves only a bound is
-known: the distance to that joint's origin, its travel, and the distance from there. Such bounds add up along the tree, and so do
+Parts joined by fixed joints form a group, in which every distance is known. Beyond a moving joint only a bound is known: the distance to
+that joint's origin, its travel, and the distance from there. Such bounds add up along the tree, and so do Σm, Σm·r and Σ(m·r² + J) when
+every r grows by the same c:
 Σm, Σm·r and Σ(m·r² + J) when every r grows by the same c:
 
     Σm(r + c) = Σm·r + c·Σm,    Σm(r + c)² = Σm·r² + 2c·Σm·r + c²·Σm
 
-so what hangs below a joint is summed up once and shifted to each place that it is seen from. A joint in a loop carries every part
-that its loop carries; it looks up the tree as well, as far as its loops go.
+so the parts below a joint are summed once and shifted to each place where the sum is needed. A joint in a loop carries every part that
+its loop carries; the sum then includes parts up the tree, as far as its loops reach.
 """
 
 from __future__ import annotations
@@ -29,7 +30,7 @@ from articad.kinematics.mechanism import Mechanism
 from articad.kinematics.tree import Edge
 
 FloatArray = NDArray[np.float64]
-Span = tuple[int, int]  # of consecutive parts in the tree's order: a part with all that hangs from it
+Span = tuple[int, int]  # consecutive parts in the tree's order: a part with everything below it
 
 LEAST_REACH_M = 1e-3  # a joint whose parts have no extent still gets a finite velocity
 LEAST_MASS_KG = 1e-4  # a joint that carries no mass still gets an effort
@@ -38,13 +39,13 @@ MM_PER_M = 1000.0
 
 @dataclass(frozen=True)
 class Carried:
-    """What a joint carries, with r the distance of a part's centre of mass to the joint's axis or origin; kg and m.
+    """The load on a joint, with r the distance of a part's centre of mass from the joint's axis or origin; kg and m.
 
     Attributes:
         mass: Σm.
         moment: Σm·r.
         inertia: Σ(m·r² + J), where J is a part's largest principal moment.
-        reach: Of the farthest surface.
+        reach: Distance of the farthest surface.
     """
 
     mass: float = 0.0
@@ -53,16 +54,16 @@ class Carried:
     reach: float = 0.0
 
     def __add__(self, other: Carried) -> Carried:
-        """Return both together."""
+        """Return the sum of both."""
         return Carried(self.mass + other.mass, self.moment + other.moment, self.inertia + other.inertia, max(self.reach, other.reach))
 
     def farther(self, distance: float) -> Carried:
-        """Return the same with every distance longer by this [m]."""
+        """Return the same load with every distance increased by this [m]."""
         inertia = self.inertia + distance * (2 * self.moment + distance * self.mass)
         return Carried(self.mass, self.moment + distance * self.mass, inertia, self.reach + distance)
 
     def at_least(self) -> Carried:
-        """Return the same with the mass and the reach that even an empty joint is given."""
+        """Return the same load, with at least the mass and the reach that an empty joint is given."""
         reach = max(self.reach, LEAST_REACH_M)
         if self.mass < LEAST_MASS_KG:
             return Carried(LEAST_MASS_KG, LEAST_MASS_KG * reach, LEAST_MASS_KG * reach * reach, reach)
@@ -71,12 +72,12 @@ class Carried:
 
 @dataclass
 class _Group:
-    """Parts that fixed joints of the tree hold together.
+    """Parts joined by fixed joints of the tree.
 
     Attributes:
-        above: The moving joint that it hangs from; None for the ground's group.
+        above: The moving joint that carries the group; None for the ground's group.
         members: `T_group_part` by part [mm]; the group's frame is its first part's.
-        below: The moving joints that hang from it.
+        below: The moving joints that the group carries.
     """
 
     above: Edge | None
@@ -114,7 +115,7 @@ class CarriedParts:
         self._loops, self._closing = self._loop_spans(mechanism)
 
     def of(self, joint: Joint) -> Carried:
-        """Return what a joint carries, about its axis, or about its origin if it is a ball or a universal joint."""
+        """Return the load on a joint, about its axis, or about its origin if it is a ball or a universal joint."""
         if joint.name in self._closing:
             moved, spans = self._closing[joint.name]
         else:
@@ -125,7 +126,7 @@ class CarriedParts:
         return self._seen_from(moved, frame, spans, about_axis=joint.type not in {JointType.BALL, JointType.UNIVERSAL}).at_least()
 
     def _seen_from(self, moved: str, frame: SE3, spans: list[Span], *, about_axis: bool) -> Carried:
-        """Add up the parts of these spans as seen from a frame of a part: its own group exactly, the others by bounds."""
+        """Sum the parts of these spans relative to a frame of a part: its own group exactly, the others by bounds."""
         group = self._groups[moved]
         T = (group.members[moved] @ frame).inverse()
         total = Carried()
@@ -146,7 +147,7 @@ class CarriedParts:
         return total
 
     def _around(self, group: _Group, point: FloatArray, radius: float, spans: list[Span] | None, without: Edge | None) -> Carried:
-        """Add up a group and what hangs from it, about a point of it [mm] that is itself up to `radius` [m] away."""
+        """Sum a group and everything below it, about a point of it [mm] that is itself up to `radius` [m] away."""
         total = Carried()
         for name, T_part in group.members.items():
             if spans is None or self._within(name, spans):
@@ -185,13 +186,13 @@ class CarriedParts:
         return any(first <= self._at[part] < end for first, end in spans)
 
     def _covers(self, group: _Group, spans: list[Span]) -> bool:
-        """True when everything within these spans hangs from the group."""
+        """True if everything within these spans is below the group."""
         assert group.above is not None
         first, end = self._spans[group.above.part]
         return all(first <= start and stop <= end for start, stop in spans)
 
     def _loop_spans(self, mechanism: Mechanism) -> tuple[dict[str, list[Span]], dict[str, tuple[str, list[Span]]]]:
-        """Return what loops add to the parts on their way, and what each closing joint carries, with the part that it moves."""
+        """Return the spans that loops add to their parts, and the load of each closing joint with the part that it moves."""
         loops: dict[str, list[Span]] = {}
         closing = {}
         for joint in mechanism.loop_joints:
@@ -218,7 +219,7 @@ def _sides(edge: Edge) -> tuple[SE3, SE3]:
 
 
 def _spans(mechanism: Mechanism) -> dict[str, Span]:
-    """Return for each part where it and everything that hangs from it stand in the tree's order, which is depth first."""
+    """Return for each part the span of it and everything below it in the tree's order, which is depth first."""
     parts = mechanism.tree.parts
     sizes = dict.fromkeys(parts, 1)
     for edge in reversed(mechanism.tree.edges):
@@ -227,7 +228,7 @@ def _spans(mechanism: Mechanism) -> dict[str, Span]:
 
 
 def _travel(joint: Joint) -> float:
-    """Return the farthest a joint's two frames move apart [m]; an endless slide counts as none."""
+    """Return the largest distance between a joint's two frames [m]; 0 for an endless slide."""
     ranges = zip(joint.type.units, joint.limits.lower, joint.limits.upper, strict=False)
     far = [max(abs(lower), abs(upper)) for unit, lower, upper in ranges if unit == "mm"]
     if joint.type is JointType.SCREW:

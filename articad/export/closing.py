@@ -1,4 +1,4 @@
-"""Loops held by points: where two links must meet, for formats and readers that tie points but know no closing joints."""
+"""Loops held by points: pairs of points that must meet, for formats and readers that have such constraints but no closing joints."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ class TiedPoint(NamedTuple):
     """A frame on each of two links whose origins must meet.
 
     Attributes:
-        suffix: Of the name, where a joint has several points.
+        suffix: Suffix of the name, if a joint has several points.
         near: In the parent link's frame [m].
         far: In the child link's frame [m].
     """
@@ -31,7 +31,7 @@ class TiedPoint(NamedTuple):
 def tied_points(model: LoweredModel, loop: LoweredJoint) -> tuple[TiedPoint, ...]:
     """Return the points that hold a closing joint: one for a ball, two on the axis of a hinge, three for a fixed joint.
 
-    No number of points holds a joint that slides; limits are never held by points.
+    A sliding joint cannot be held by points; limits never can.
     """
     a = half_length(model, loop)
     offsets = {
@@ -44,7 +44,7 @@ def tied_points(model: LoweredModel, loop: LoweredJoint) -> tuple[TiedPoint, ...
 
 
 def half_length(model: LoweredModel, loop: LoweredJoint) -> float:
-    """Return how far from its origin a joint is held [m]: a quarter of the reach of its parts, so that it resists tilting."""
+    """Return the distance from a joint's origin at which it is held [m]: a quarter of its parts' reach, to resist tilting."""
     reach = 0.0
     for link in model.links:
         if link.name in {loop.parent, loop.child}:

@@ -1,6 +1,6 @@
-"""What a model collides with: convex pieces inside the parts, the parts' own meshes, or their hulls.
+"""Collision shapes of a model: convex pieces inside the parts, the parts' own meshes, or their hulls.
 
-Convex pieces lie inside the solids. So they touch only where the solids touch, and what is certified of the solids holds for them.
+Convex pieces lie inside the solids. So they touch only where the solids touch, and a certificate about the solids is valid for them.
 """
 
 from __future__ import annotations
@@ -24,17 +24,18 @@ if TYPE_CHECKING:
 
 Collision = Literal["pieces", "solid", "hull"]
 
-HULL_SHARE = 1e-6  # of a part's volume: what hulls and pieces may differ by rounding
-EXACT_MM = 1e-3  # of the surface that pieces may leave out and still be called exact
+HULL_SHARE = 1e-6  # of a part's volume: rounding in hulls and pieces
+EXACT_MM = 1e-3  # of the surface that pieces may omit and still count as exact
 
 
 class Collisions(NamedTuple):
-    """A model with the shapes that it collides with.
+    """A model with its collision shapes.
 
     Attributes:
-        model: With its collision shapes and what they lose.
-        contacts: Pairs of parts whose shapes overlap though no joint connects them: of pieces, pairs whose solids overlap at rest; of meshes
-            and hulls, which engines take the hulls of, also those that meet at rest or in motion where the solids are apart.
+        model: The model, with its collision shapes and their losses.
+        contacts: Pairs of parts whose shapes overlap though no joint connects them. For pieces: pairs whose solids overlap at rest. For
+            meshes and hulls: also those that meet at rest or in motion where the solids are apart, because engines use the hulls of
+            meshes.
     """
 
     model: LoweredModel
@@ -44,15 +45,15 @@ class Collisions(NamedTuple):
 def collide(
     assembly: Assembly, model: LoweredModel, collision: Collision | None, skip: set[Pair], cache: BuildCache | None = None
 ) -> Collisions:
-    """Return the model with the shapes that are asked for, and the contacts that they add.
+    """Return the model with the requested collision shapes, and the contacts that these add.
 
     Args:
-        assembly: Whose motion counts.
+        assembly: The assembly, for its motion.
         model: Its lowering.
         collision: "pieces" for convex pieces inside the solids, "solid" for the parts' own meshes, "hull" for one hull each; None for
-            pieces, or for the meshes as they came where the assembly is a file that somebody else made.
-        skip: Pairs that need no check: engines do not let them collide.
-        cache: Keeps pieces by shape; that of built parts by default.
+            pieces, or for the original meshes if the assembly was read from a file that articad did not write.
+        skip: Pairs that need no check because engines do not let them collide.
+        cache: Stores pieces by shape; the cache of built parts by default.
     """
     kind = kind_of(assembly, collision)
     shaped = shape_model(assembly, model, kind, cache)
@@ -65,29 +66,29 @@ def collide(
         search = ContactSearch(assembly.mechanism.parts, at_rest, own)
         for name, shapes in formed.items():
             search.update(name, shapes)
-        if asked and kind != "pieces" and not search.is_convex:  # in motion, where such pieces meet the solids do
+        if asked and kind != "pieces" and not search.is_convex:  # in motion, such pieces meet only where the solids do
             search.poses = once(assembly, "poses in motion", lambda: poses_in_motion(assembly.mechanism))
         return search
 
-    # The solids never change, so that what one format has found is known to the next.
+    # The solids never change, so the results for one format are reused for the next.
     shapes = tuple((name, tuple((id(shape.mesh), shape.frame.data.tobytes()) for shape in solids)) for name, solids in own.items())
     contacts = tuple(once(assembly, ("contacts", kind, asked, shapes), begun).contacts(skip))
     return Collisions(shaped, contacts)
 
 
 def kind_of(assembly: Assembly, collision: Collision | None) -> Collision:
-    """Return what an assembly collides with: what is asked for, or else pieces, or the shapes of the file that it came from."""
+    """Return the collision shapes of an assembly: the requested kind, else pieces, or the shapes of the file that it was read from."""
     return collision or ("solid" if assembly.foreign else "pieces")
 
 
 def shape_model(assembly: Assembly, model: LoweredModel, kind: Collision, cache: BuildCache | None = None) -> LoweredModel:
-    """Return the model with the collision shapes that are asked for and the features that say what they leave out.
+    """Return the model with the requested collision shapes, and with features that state what these leave out.
 
     Args:
-        assembly: What is written.
+        assembly: The assembly to write.
         model: Its lowering.
         kind: As for `collide`.
-        cache: Keeps pieces by shape; that of built parts by default.
+        cache: Stores pieces by shape; the cache of built parts by default.
     """
     if kind == "solid":
         return model
@@ -99,7 +100,7 @@ def shape_model(assembly: Assembly, model: LoweredModel, kind: Collision, cache:
 
 
 def contact_feature(contact: HullOverlap) -> Feature:
-    """Return the row of the table of losses that a contact is."""
+    """Return a contact as a row of the table of losses."""
     return Feature("hull", "parts." + "+".join(contact.parts), f"hulls share {contact.volume:.3g} mm³")
 
 
@@ -136,7 +137,7 @@ def _placed(placed: Placed, found: Pieces) -> list[Placed]:
 
 
 def _features(name: str, kind: Collision, found: list[Pieces]) -> list[Feature]:
-    """Return what the pieces are not, if they are not the shape itself."""
+    """Return how the pieces differ from the shape, if they do."""
     where = f"parts.{name}"
     if kind == "hull":
         more = max((pieces.more for pieces in found), default=0.0)

@@ -27,20 +27,20 @@ if TYPE_CHECKING:
 FloatArray = NDArray[np.float64]
 
 POSES_PER_FREEDOM = 13  # over its range or each of its turns, the others at rest
-CONVEX_SHARE = 1e-9  # of its volume: what the hull of a convex part adds to it by rounding
-_KEY_DIGITS = 6  # of mm and rotation entries: relative poses that agree so far are asked once
+CONVEX_SHARE = 1e-9  # of its volume: rounding in the hull of a convex part
+_KEY_DIGITS = 6  # of mm and rotation entries: relative poses that agree to this are checked once
 
 
 def poses_in_motion(mechanism: Mechanism) -> FloatArray:
     """Return the poses of all parts at rest and along the range of every driver, matrices `(n, N, 4, 4)` [mm].
 
-    These are poses of a sweep: endless drivers move until all that follows is back, and what a loop or a limit of another joint keeps
-    from being reached is left out.
+    These are the poses of a sweep: endless drivers move until all followers have returned, and poses that a loop or a limit of another
+    joint excludes are omitted.
     """
     sweep = MotionSampler(Scene.of({}, mechanism.joints), mechanism)
     found = [mechanism.poses(mechanism.rest)[None].matrix]
     for freedom in sweep.ranges():
-        with contextlib.suppress(KinematicsError):  # a loop that is open at rest has its rest pose
+        with contextlib.suppress(KinematicsError):  # a loop that is open at rest has only its rest pose
             found.append(sweep.placed([{freedom.name: value} for value in sweep.values(freedom, POSES_PER_FREEDOM).tolist()])[1])
     return np.concatenate(found)
 
@@ -56,10 +56,10 @@ class _Placed(NamedTuple):
 
 @dataclass
 class ContactSearch:
-    """Looks for new contacts between parts, and looks again only at parts whose pieces have changed.
+    """Finds new contacts between parts, and repeats the search only for parts whose pieces have changed.
 
     Attributes:
-        order: Names of the parts, as the poses have them.
+        order: Names of the parts, in the order of the poses.
         poses: `(n, N, 4, 4)` [mm]; the first is the rest pose.
         solids: Collision shapes of each part.
     """
@@ -77,19 +77,19 @@ class ContactSearch:
         return {part: index for index, part in enumerate(self.order)}
 
     def update(self, part: str, pieces: Iterable[Shape]) -> None:
-        """Give a part other pieces."""
+        """Replace the pieces of a part."""
         self._pieces[part] = self._placed(pieces, convex=True)
         self._found = {pair: found for pair, found in self._found.items() if part not in pair}
 
     def contacts(self, skip: set[Pair]) -> list[HullOverlap]:
-        """Return the pairs whose pieces meet at rest, or in some pose where the solids do not, in order of declaration.
+        """Return the pairs whose pieces meet at rest, or at a pose where the solids do not, in the order in which they are declared.
 
         Args:
             skip: Pairs that engines do not check.
         """
         parts = [part for part in self.order if self._pieces.get(part)]
         boxes = [self._boxes(part) for part in parts]
-        # Boxes about all poses of a part: only parts whose boxes meet can meet in a pose.
+        # Boxes about all poses of a part: only parts whose boxes meet can meet at a pose.
         whole = np.array([[low.min(axis=0), high.max(axis=0)] for low, high in boxes]).reshape(-1, 2, 3)
         for i, j in meeting_boxes(whole[:, 0], whole[:, 1]).tolist():
             a, b = parts[i], parts[j]
@@ -98,7 +98,7 @@ class ContactSearch:
             low, high = (np.maximum(boxes[i][0], boxes[j][0]), np.minimum(boxes[i][1], boxes[j][1]))
             near = np.flatnonzero((low < high).all(axis=1))
             if self._is_convex(a) and self._is_convex(b):
-                near = near[near == 0]  # in motion, where such pieces meet the solids do
+                near = near[near == 0]  # in motion, such pieces meet only where the solids do
             self._found[a, b] = self._first_contact(a, b, near)
         found = sorted(self._found, key=lambda pair: (self._place[pair[0]], self._place[pair[1]]))
         contacts = (self._found[a, b] for a, b in found if (a, b) not in skip and (b, a) not in skip)
@@ -106,7 +106,7 @@ class ContactSearch:
 
     @property
     def is_convex(self) -> bool:
-        """Whether one piece is all of the one solid of each part that has any."""
+        """Whether, for each part with solids, one piece equals its only solid."""
         return all(self._is_convex(part) for part, pieces in self._pieces.items() if pieces)
 
     def _boxes(self, part: str) -> tuple[FloatArray, FloatArray]:
@@ -142,12 +142,12 @@ class ContactSearch:
         return self._solids[part]
 
     def _is_convex(self, part: str) -> bool:
-        """True where one piece is all of the part's one solid."""
+        """True if one piece equals the part's only solid."""
         pieces, solids = self._pieces[part], self._solid(part)
         return len(pieces) == len(solids) == 1 and pieces[0].body.volume() <= solids[0].body.volume() * (1 + CONVEX_SHARE)
 
     def _placed(self, shapes: Iterable[Shape], *, convex: bool) -> list[_Placed]:
-        """Return the shapes' bodies in the part's frame; what is open or flat has no body."""
+        """Return the shapes' bodies in the part's frame; an open or flat shape has no body."""
         found = []
         for shape in shapes:
             body = self._body(shape.mesh, convex=convex).transform(shape.frame.matrix[:3])
@@ -167,7 +167,7 @@ class ContactSearch:
 
 
 def _overlap(first: list[_Placed], second: list[_Placed], T: FloatArray) -> tuple[float, float]:
-    """Return the volume that two lists of bodies share [mm³], the second ones moved by T, and its mean depth [mm]."""
+    """Return the common volume of two lists of bodies [mm³], the second ones moved by T, and its mean depth [mm]."""
     volume = area = 0.0
     for other in second:
         centre = T[:3, :3] @ ((other.low + other.high) / 2) + T[:3, 3]
@@ -186,7 +186,7 @@ def _overlap(first: list[_Placed], second: list[_Placed], T: FloatArray) -> tupl
 
 
 def _are_apart(first: FloatArray, second: FloatArray, R: FloatArray) -> bool:
-    """True where a plane between two sets of points is found: across an axis of either frame, or two of them, or between their middles."""
+    """True if a plane between two sets of points is found: normal to an axis of either frame, to two of them, or to the line of centres."""
     across = np.cross(np.eye(3)[:, None], R.T[None]).reshape(-1, 3)
     axes = np.vstack([np.eye(3), R.T, across, second.mean(axis=0) - first.mean(axis=0)])
     mine, theirs = first @ axes.T, second @ axes.T

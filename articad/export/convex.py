@@ -1,4 +1,4 @@
-"""Collision shapes of a mesh: convex pieces inside it, kept by shape, or its hull."""
+"""Collision shapes of a mesh: convex pieces inside it, cached by shape, or its hull."""
 
 from __future__ import annotations
 
@@ -26,15 +26,15 @@ _FILE: Final = "pieces.npz"
 
 @dataclass(frozen=True, eq=False)
 class Pieces:
-    """Convex pieces that stand for a shape.
+    """Convex pieces that replace a shape.
 
     Attributes:
         pieces: Each in a frame of its own within the shape's [mm].
         missing: Largest distance of the shape's surface from the pieces [mm].
-        bound: What that distance was meant to be at most [mm].
-        more: Volume of the pieces outside the shape, as a share of its own; 0 where the shape is open.
+        bound: Intended upper bound of that distance [mm].
+        more: Volume of the pieces outside the shape, as a share of its own; 0 for an open shape.
         less: Volume of the shape outside the pieces, likewise.
-        inside: False where the pieces are no part of the shape: a hull, or an open mesh that encloses nothing.
+        inside: False if the pieces are not inside the shape: a hull, or an open mesh that encloses nothing.
     """
 
     pieces: tuple[Piece, ...]
@@ -52,11 +52,11 @@ def hull_mesh(vertices: FloatArray) -> TriMesh:
 
 
 def pieces_of(mesh: TriMesh, cache: BuildCache, *, deflection: float = 0.0, most: int = MOST_PIECES) -> Pieces:
-    """Return convex pieces that lie inside a shape; of a surface that encloses nothing the mesh itself.
+    """Return convex pieces inside a shape; for a surface that encloses nothing, the mesh itself.
 
     Args:
         mesh: The shape.
-        cache: Where pieces are kept; one that cannot be written is done without.
+        cache: Where pieces are stored; a failure to write there is ignored.
         deflection: Largest distance between the mesh and the true surface [mm].
         most: Number of pieces.
     """
@@ -118,5 +118,5 @@ def _loaded(content: bytes) -> Inscribed | None:
 
 
 def manifold(mesh: TriMesh) -> manifold3d.Manifold:
-    """Return a mesh as manifold3d takes it, in double precision; look at its status before trusting it."""
+    """Return a mesh as a `manifold3d.Manifold` in double precision; check its status before using it."""
     return manifold3d.Manifold(manifold3d.Mesh64(mesh.vertices.copy(), mesh.triangles.astype(np.uint64)))

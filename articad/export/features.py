@@ -1,4 +1,4 @@
-"""What an assembly has that a format may not hold: rows of the table of losses, in the order of declaration."""
+"""The features of an assembly that a format may not hold: rows of the table of losses, in the order in which they are declared."""
 
 from __future__ import annotations
 
@@ -20,8 +20,8 @@ if TYPE_CHECKING:
     from articad.assembly import Assembly
 
 FLAT_SHARE = 1e-6  # of its size: a mesh thinner than this has no hull that engines can compute
-THIN_MM = 1.0  # how thick a flat mesh becomes to collide with
-WIDE_CONE = math.radians(85.0)  # from here on the three angles of a ball come too near to gimbal lock
+THIN_MM = 1.0  # thickness that a flat mesh gets for collision
+WIDE_CONE = math.radians(85.0)  # from here the three angles of a ball come too close to gimbal lock
 
 
 def features_of(assembly: Assembly) -> list[Feature]:
@@ -38,7 +38,7 @@ def features_of(assembly: Assembly) -> list[Feature]:
 
 
 def joint_features(joint: Joint) -> list[Feature]:
-    """Return the features of a joint that closes no loop, or that a format holds whether it does or not."""
+    """Return the features of a joint that closes no loop, or that a format represents whether it closes one or not."""
     where = f"joints.{joint.name}"
     features = [Feature(_key(joint), where)]
     for unit, lower, upper in zip(joint.type.units, joint.limits.lower, joint.limits.upper, strict=False):
@@ -75,7 +75,7 @@ def _loop_features(joint: Joint) -> list[Feature]:
 
 
 def _coupling_features(assembly: Assembly) -> list[Feature]:
-    """Return a feature per coupling; one that names a joint which closes a loop, or ties what is tied already, is another."""
+    """Return a feature per coupling; couplings that name a closing joint, or couple joints already coupled, have a feature of their own."""
     mechanism = assembly.mechanism
     closing = {name for joint in mechanism.loop_joints for name in joint.column_names}
     group = {coordinate.name: coordinate.name for coordinate in mechanism.coordinates}
@@ -112,14 +112,14 @@ def _part_features(assembly: Assembly) -> list[Feature]:
 
 
 def without_own_mass(assembly: Assembly) -> set[str]:
-    """Return the parts of a file that have no mass and are fixed to another: frames, to which engines add the mass of nothing."""
+    """Return the parts of a file that have no mass and are fixed to another: frames, to which engines must not add mass."""
     return {
         edge.part for edge in assembly.mechanism.tree.edges if assembly.foreign and edge.joint.type is JointType.FIXED and not edge.reversed
     }
 
 
 def primitive_features(assembly: Assembly) -> list[Feature]:
-    """Return the parts with shapes that a file stated as primitive bodies, for formats that are written with meshes."""
+    """Return features for parts whose shapes the file states as primitives, for formats that are written with meshes."""
     return [
         Feature("shape.primitive", f"parts.{name}", shape.primitive.kind)
         for name, part in assembly.parts.items()
@@ -129,7 +129,7 @@ def primitive_features(assembly: Assembly) -> list[Feature]:
 
 
 def body_mesh(part: Part) -> TriMesh | None:
-    """Return the mesh by which formats of shapes show a part: its solid's, else what is drawn, else what collides; None without a shape."""
+    """Return the mesh with which formats of shapes draw a part: its solid's, else the visual, else the collision shape, else None."""
     if part.solid is not None:
         return part.solid.mesh
     shapes = part.visuals or part.collisions
@@ -147,7 +147,7 @@ def is_flat(mesh: TriMesh) -> bool:
 
 
 def solid_enough(part: Part) -> tuple[Shape, ...]:
-    """Return what a part collides with; what is flat is thickened to `THIN_MM`."""
+    """Return the collision shapes of a part; flat ones are thickened to `THIN_MM`."""
     return tuple(
         replace(shape, mesh=_thick(shape.mesh), primitive=None) if is_flat(shape.mesh) else shape
         for shape in part.collisions or part.visuals
@@ -160,7 +160,7 @@ def _thick(mesh: TriMesh) -> TriMesh:
 
 
 def rigid_with_ground(assembly: Assembly) -> set[str]:
-    """Return the parts that never move: the ground and what fixed joints of the tree hold to it."""
+    """Return the parts that never move: the ground and those that fixed joints of the tree connect to it."""
     still = {assembly.mechanism.ground}
     for edge in assembly.mechanism.tree.edges:
         if edge.parent in still and edge.joint.type is JointType.FIXED:

@@ -1,4 +1,4 @@
-"""A fingerprint of what an XML file says, whatever its layout: tells whether somebody has edited it since it was written."""
+"""A fingerprint of the content of an XML file, independent of its layout: shows whether it was edited after it was written."""
 
 from __future__ import annotations
 
@@ -6,11 +6,11 @@ import hashlib
 from collections.abc import Iterable
 from typing import Any
 
-_PLACES = frozenset({"filename", "file"})  # meshes may be moved without changing what the file says
+_PLACES = frozenset({"filename", "file"})  # meshes may be moved without changing the content
 
 
 def fingerprint(elements: Iterable[Any]) -> str:
-    """Return SHA-256 over tags, attributes and text of elements and all below them; order counts, white space and file names do not."""
+    """Return SHA-256 over tags, attributes and text of elements and all below them; order matters, white space and file names do not."""
     total = hashlib.sha256()
     for element in elements:
         for below in element.iter():

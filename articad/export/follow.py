@@ -1,4 +1,4 @@
-"""Which freedoms follow which: couplings and screws as one-step linear relations, the only ones that <mimic> holds."""
+"""Which freedoms follow which: couplings and screws as linear relations to one leader, the only ones that <mimic> can state."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from articad.export.lowering import AxisMotion, Follows, LoweredModel
 
 
 def followers(model: LoweredModel, leaders: Iterable[str]) -> dict[str, Follows]:
-    """Return what each tied freedom of the tree follows; leaders follow nothing, so no chain has two steps.
+    """Return the leader of each coupled freedom of the tree; leaders follow nothing, so no chain has two steps.
 
     Args:
         model: Freedoms and the relations between them.
-        leaders: Columns that are asked for as leaders, best first; else the first freedom of the tree leads.
+        leaders: Columns requested as leaders, best first; otherwise the first freedom of the tree leads.
     """
     freedoms: dict[str, AxisMotion] = {freedom.name: freedom for joint in model.joints for freedom in joint.freedoms}
     relations = [(name, follows) for _, name, follows in model.couplings]

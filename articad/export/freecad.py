@@ -1,9 +1,9 @@
-"""FreeCAD out: a native, editable Assembly document.
+"""Writes a native, editable FreeCAD assembly document.
 
-Every part is an App::Part with its shape and a coordinate system per connector; joints refer to these, so that no face
-or edge is named. Where the FreeCAD kernel built a part, its body comes with all features, and its dimensions follow the
-plan's parameters by expressions; other parts come as the B-rep that they are. Derived parts follow their source. Each
-placement is ours: FreeCAD's solver is asked only whether it agrees (it does not hold limits, and couplings neither).
+Every part is an App::Part with its shape and a coordinate system per connector; joints refer to these, so that no face or edge is named.
+If the FreeCAD kernel built a part, its body is copied with all features, and its dimensions follow the plan's parameters by expressions;
+other parts are copied as B-rep. Derived parts follow their source. Each placement is computed by articad: FreeCAD's solver only checks
+whether it agrees (it does not enforce limits or couplings).
 """
 
 from __future__ import annotations
@@ -29,9 +29,9 @@ if TYPE_CHECKING:
     from articad.assembly import Assembly
 
 PROGRAM = Path(freecad_install.__file__).parent / "inside_freecad" / "document.py"
-SOLVED_MM, SOLVED_RAD = 1e-6, 1e-8  # by which FreeCAD's solver may move a part: contracts of the FreeCAD round trip
+SOLVED_MM, SOLVED_RAD = 1e-6, 1e-8  # largest motions of parts by FreeCAD's solver that count as agreement
 _SECONDS, _SECONDS_A_PART = 120.0, 5.0
-_PROGRESS = re.compile(r"\(\d+ %\)|^MbD:|^Time = |^Recompute\.")  # lines that FreeCAD writes whatever happens
+_PROGRESS = re.compile(r"\(\d+ %\)|^MbD:|^Time = |^Recompute\.")  # lines that FreeCAD always writes
 
 Json = dict[str, Any]
 
@@ -40,13 +40,13 @@ def write_freecad(assembly: Assembly, *, strict: bool = False, freecad: FreeCAD 
     """Write an assembly as a FreeCAD 1.0 document; FreeCAD 1.1 opens it as well.
 
     Args:
-        assembly: At rest.
+        assembly: The assembly, written at rest.
         strict: Refuse what FreeCAD cannot hold.
-        freecad: The FreeCAD that writes it; by default the one that is found. Where there is none, the document is written
-            without it, as `write_freecad_alone` does.
+        freecad: The FreeCAD that writes it; by default the installed one. Without FreeCAD, the document is written as by
+            `write_freecad_alone`.
 
     Returns:
-        One file, `<name>.FCStd`, the same bytes each time on the same FreeCAD; in the findings, whether its solver agrees.
+        One file, `<name>.FCStd`, the same bytes each time with the same FreeCAD; a finding says if its solver disagrees.
 
     Raises:
         UnrepresentableError: If `strict` and something is lost.
@@ -73,14 +73,14 @@ def write_freecad(assembly: Assembly, *, strict: bool = False, freecad: FreeCAD 
 
 
 def write_freecad_alone(assembly: Assembly, *, strict: bool = False) -> Bundle:
-    """Write an assembly as a FreeCAD 1.0 document without FreeCAD: every shape as B-rep, all else as `write_freecad` has it.
+    """Write an assembly as a FreeCAD 1.0 document without FreeCAD: every shape as B-rep, the rest as `write_freecad` does.
 
     Args:
-        assembly: At rest.
+        assembly: The assembly, written at rest.
         strict: Refuse what FreeCAD cannot hold.
 
     Returns:
-        One file, `<name>.FCStd`, the same bytes on every machine; a finding says that FreeCAD has not seen it.
+        One file, `<name>.FCStd`, the same bytes on every machine; a finding says that FreeCAD did not check it.
 
     Raises:
         UnrepresentableError: If `strict` and something is lost.
@@ -100,7 +100,7 @@ def write_freecad_alone(assembly: Assembly, *, strict: bool = False) -> Bundle:
 
 
 def _opinion(report: Mapping[str, Any]) -> Findings:
-    """Return what FreeCAD's solver had to say about placements that are ours."""
+    """Return the findings of FreeCAD's solver about articad's placements."""
     found = []
     if report["invalid"]:
         found.append(

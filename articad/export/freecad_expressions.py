@@ -1,4 +1,4 @@
-"""A plan's numbers, frames and poses as expressions of FreeCAD, so that a document follows its parameters."""
+"""Numbers, frames and poses of a plan as FreeCAD expressions, so that a document follows its parameters."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ Number = float | str
 
 
 class Followed:
-    """What follows the parameters of a plan, which stand in a document's VarSet `Parameters`.
+    """The expressions that follow the parameters of a plan, which are in a document's VarSet `Parameters`.
 
     Args:
         resolved: The plan; without one nothing follows.
@@ -24,7 +24,7 @@ class Followed:
         self._forms = {} if resolved is None else {form.name: form for form in resolved.plan.parts}
 
     def number(self, number: Number, unit: str = "") -> str | None:
-        """Return the expression of a number of the plan, or None where it is only a number."""
+        """Return the expression of a number of the plan, or None if it is a plain number."""
         if not isinstance(number, str):
             return None
         try:
@@ -32,7 +32,7 @@ class Followed:
             if not expression.names:
                 return None
             text = expression.to_freecad(self._names)
-        except ExpressionError:  # a plan that was resolved has none such
+        except ExpressionError:  # a resolved plan has no such error
             return None
         return f"({text}) * 1 {unit}" if unit else text
 
@@ -50,12 +50,12 @@ class Followed:
         return f"placement({self.vector(o)}; {turn})"
 
     def local(self, part: str, text: str) -> str | None:
-        """Return the expression in a part's frame of what `text` is in the assembly's; None where a joint places the part."""
+        """Return the expression in a part's frame of `text`, given in the assembly's frame; None if a joint places the part."""
         poses = self._poses(part)
         return None if poses is None else f"minvert({' * '.join(map(self._pose, poses))}) * {text}"
 
     def mirror(self, part: str) -> dict[str, str]:
-        """Return the expressions of a mirror image's plane in its own frame, `Base` and `Normal`, as far as it moves."""
+        """Return the expressions of a mirror plane in its own frame, `Base` and `Normal`, for those of the two that move."""
         form, poses = self._forms.get(part), self._poses(part)
         if poses is None or not isinstance(form, DerivedPart) or not isinstance(form.derive, MirrorDerivation):
             return {}
@@ -80,7 +80,7 @@ class Followed:
             return [form.rest_pose] if isinstance(form.rest_pose, Pose) else None
         before = self._poses(form.derive.source)
         if before is None or isinstance(form.derive, MirrorDerivation):
-            return before  # a mirror image stands in its source's frame
+            return before  # a mirror image has its source's frame
         if isinstance(form.derive, RigidDerivation):
             return [form.derive.move, *before]
         return [*[form.derive.step] * step, *before]

@@ -1,7 +1,7 @@
-"""A FreeCAD file made the same each time, and visible when opened.
+"""Makes a FreeCAD file reproducible, and visible when opened.
 
-FreeCAD without a display writes no GuiDocument.xml: everything would open hidden, and joints without their icons. It
-also writes dates, a random Uid and the user's name. All of this is settled here, on the file: it is a zip of XML and B-rep.
+FreeCAD without a display writes no GuiDocument.xml, so everything would be hidden when opened, and joints would lack their icons. It
+also writes dates, a random Uid and the user's name. All of this is corrected here in the file, which is a zip of XML and B-rep.
 """
 
 from __future__ import annotations
@@ -20,27 +20,27 @@ from lxml import etree
 from articad.geometry.mesh import TriMesh
 from articad.kernels.freecad_file import packed, settle, xml_parser
 
-_NOTHING = "bnVsbA=="  # base64 of null: what FreeCAD itself writes for a view provider without state
-_SHOWN = (  # besides parts and assemblies, what carries a shape of its own
+_NOTHING = "bnVsbA=="  # base64 of null: FreeCAD's own entry for a view provider without state
+_SHOWN = (  # besides parts and assemblies, objects with a shape of their own
     "PartDesign::Body",
     "Part::Feature",
     "Part::Mirroring",
     "Mesh::Feature",
 )
-_MESH_HEADER = struct.pack("<II", 0xA0B0C0D0, 0x010000) + b"MESH-" * 51 + b"\n"  # FreeCAD's own, before the counts
-_NO_FACET = 0xFFFFFFFF  # beyond an edge that only one facet has
+_MESH_HEADER = struct.pack("<II", 0xA0B0C0D0, 0x010000) + b"MESH-" * 51 + b"\n"  # FreeCAD's own header, before the counts
+_NO_FACET = 0xFFFFFFFF  # marks an edge of only one facet
 _GROUPS = ("App::Part", "App::Link", "Assembly::AssemblyObject", "Assembly::JointGroup")
 
 
 @dataclass(frozen=True)
 class Appearance:
-    """What an opened document shows.
+    """The appearance of a document when it is opened.
 
     Attributes:
         colors: "#rrggbb" by object.
-        hidden: Objects that are not shown though their kind is.
+        hidden: Objects that are hidden although their type is shown.
         joints: Objects that are joints.
-        grounded: The object that grounds a part, if there is one.
+        grounded: The object that grounds a part, if any.
         tips: Features that their bodies show.
     """
 
@@ -52,11 +52,11 @@ class Appearance:
 
 
 def normalised(content: bytes, look: Appearance | None = None) -> bytes:
-    """Return a FreeCAD file with fixed dates, Uids and order, and with what it shows when opened.
+    """Return a FreeCAD file with fixed dates, Uids and order, and with its appearance.
 
     Args:
         content: The file as FreeCAD wrote it.
-        look: What it shows; None leaves GuiDocument.xml out.
+        look: Its appearance; None omits GuiDocument.xml.
     """
     with zipfile.ZipFile(io.BytesIO(content)) as archive:
         files = {name: archive.read(name) for name in archive.namelist() if name not in ("GuiDocument.xml", "thumbnails/Thumbnail.png")}
@@ -77,7 +77,7 @@ def _is_shown(name: str, kind: str, look: Appearance) -> bool:
 
 
 def _show(root: etree._Element, types: Mapping[str, str], look: Appearance) -> None:
-    """Set the Visibility that objects keep besides their view providers."""
+    """Set the Visibility that objects store besides their view providers."""
     for item in root.iterfind("ObjectData/Object"):
         name = item.get("name")
         for flag in item.iterfind("Properties/Property[@name='Visibility']/Bool"):
@@ -120,14 +120,14 @@ def _provider(name: str, kind: str, look: Appearance) -> str:
 
 
 def python_classes(content: bytes) -> set[str]:
-    """Return the Python classes that opening a FreeCAD file would make objects of."""
+    """Return the Python classes that opening a FreeCAD file would instantiate."""
     with zipfile.ZipFile(io.BytesIO(content)) as archive:
         document = archive.read("Document.xml").decode(errors="replace")
     return {f"{module}.{name}" for module, name in re.findall(r'<Python [^>]*module="([^"]*)"[^>]*class="([^"]*)"', document)}
 
 
 def mesh_kernel(mesh: TriMesh) -> bytes:
-    """Return a mesh in the form that FreeCAD keeps meshes in: points, and for each facet its points and its neighbours."""
+    """Return a mesh in FreeCAD's format: points, and for each facet its points and its neighbours."""
     points, index = np.unique(mesh.vertices.astype("<f4") + np.float32(0.0), axis=0, return_inverse=True)
     facets = index.reshape(-1)[mesh.triangles].astype("<u4")
     beside = np.full(facets.shape, _NO_FACET, dtype="<u4")

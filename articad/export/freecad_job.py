@@ -1,7 +1,7 @@
-"""What a FreeCAD document is to hold, as data: for FreeCAD itself to write, or for us where it is not there.
+"""The content of a FreeCAD document as data: written by FreeCAD, or by articad if FreeCAD is not installed.
 
 Every part is an App::Part with its shape and a coordinate system per connector; joints refer to these, so that no face
-or edge is named. Derived parts follow their source. Each placement is ours.
+or edge is named. Derived parts follow their source. Each placement is computed by articad.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ from articad.plan.resolve import ResolvedPart
 if TYPE_CHECKING:
     from articad.assembly import Assembly
 
-_TURNED = {  # what turns z into another axis of a connector
+_TURNED = {  # rotations from z to another axis of a connector
     "x": SE3.from_rotation([[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]]),
     "y": SE3.from_rotation([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]]),
 }
@@ -43,9 +43,9 @@ _TYPES = {
     JointType.SLIDER: "Slider",
     JointType.CYLINDRICAL: "Cylindrical",
     JointType.BALL: "Ball",
-    JointType.SCREW: "Cylindrical",  # with a coupling of type Screw beside it
+    JointType.SCREW: "Cylindrical",  # together with a coupling of type Screw
     JointType.PLANAR: "Distance",  # of two coordinate systems: keeps their planes together
-    JointType.UNIVERSAL: "Ball",  # with a Perpendicular beside it
+    JointType.UNIVERSAL: "Ball",  # together with a Perpendicular
 }
 _COUPLINGS = {"gear": "Gears", "belt": "Belt", "rack": "RackPinion", "screw": "Screw"}
 
@@ -53,16 +53,16 @@ Json = dict[str, Any]
 
 
 class Job:
-    """What is to be in the document; the files that it needs are put beside it.
+    """The content of a document; the files that it needs are written beside it.
 
     Args:
-        assembly: At rest.
-        folder: For the files.
-        features: Keep the bodies that the FreeCAD kernel made with all their features: only FreeCAD can copy them.
+        assembly: The assembly, written at rest.
+        folder: Folder for the files.
+        features: Whether to keep the bodies of the FreeCAD kernel with all their features, which only FreeCAD can copy.
 
     Attributes:
-        name: Of the document.
-        names: Of its objects, those taken so far.
+        name: Name of the document.
+        names: Names of its objects that are taken so far.
     """
 
     def __init__(self, assembly: Assembly, folder: Path, *, features: bool = True) -> None:
@@ -210,7 +210,7 @@ class Job:
 
     def _joints(self) -> Iterator[Json]:
         for joint in self.assembly.joints:
-            if joint.type is JointType.FREE:  # FreeCAD has no word for it: its part is loose
+            if joint.type is JointType.FREE:  # FreeCAD has no such joint: its part is loose
                 continue
             form = self._joint(joint)
             yield form
@@ -249,7 +249,7 @@ class Job:
         }
 
     def _offsets(self, joint: Joint) -> tuple[SE3, SE3]:
-        """Return where a joint's two frames stand in the coordinate systems of its connectors: loops may have moved them."""
+        """Return the poses of a joint's two frames in the coordinate systems of its connectors: loops may have moved them."""
         used = (
             (joint.parent, joint.parent_connector, joint.T_parent_connector),
             (joint.child, joint.child_connector, joint.T_child_connector),
@@ -258,11 +258,11 @@ class Job:
         return near, far @ _flip(joint)
 
     def _shown(self, name: str) -> str:
-        """Return the label of a joint: FreeCAD would number one that a part bears already."""
+        """Return the label of a joint: FreeCAD would append a number to a label that a part already has."""
         return f"{name} joint" if name in self.assembly.parts else name
 
     def _limit_expressions(self, joint: Joint) -> dict[str, str]:
-        """Return the expressions of a joint's limits, where the plan gives them as such."""
+        """Return the expressions of a joint's limits, if the plan states them as such."""
         resolved = self.assembly.resolved
         if resolved is None:
             return {}
@@ -295,7 +295,7 @@ class Job:
                 "object": self.names.claim(coupling.name),
                 "label": self._shown(coupling.name),
                 "type": kind,
-                "active": False,  # switched on, its references would be solved as what they are not
+                "active": False,  # if active, its references would be solved as something else
                 "parent": a.child,
                 "parent_connector": a.child_connector,
                 "child": b.child,
@@ -312,12 +312,12 @@ class Job:
 
     @property
     def losses(self) -> tuple[Loss, ...]:
-        """What FreeCAD has no words for; complete after `told`."""
+        """What FreeCAD cannot represent; complete after `told`."""
         return (*losses_of("freecad", self._told), *kept_losses("freecad", self.assembly.kept))
 
 
 def _distances(coupling: Coupling) -> dict[str, float]:
-    """Return the radii, pitch radius or lead of a coupling: of a gear and a belt only their ratio is known."""
+    """Return the radii, pitch radius or lead of a coupling: for a gear and a belt only their ratio is known."""
     ratio = abs(coupling.ratio)
     if coupling.kind in ("gear", "belt"):
         return {"Distance": 10.0 * ratio, "Distance2": 10.0}
@@ -356,7 +356,7 @@ def _plane(S: np.ndarray[Any, np.dtype[np.float64]]) -> tuple[list[float], list[
 
 
 def _offset(given: SE3, used: SE3) -> SE3:
-    """Return the pose of a frame in another one; exactly none where they are the same but for rounding."""
+    """Return the pose of a frame in another one; exactly the identity if they are equal up to rounding."""
     return SE3.identity() if given.allclose(used, mm=1e-9, rad=1e-12) else given.inverse() @ used
 
 
@@ -367,7 +367,7 @@ def _seven(T: SE3) -> list[float]:
 def _reflected(normal: list[float], *, turns: bool) -> list[str]:
     """Return the origin of a source's connector, reflected, as expressions: it follows an edit of the source.
 
-    The names of the source's connector and of the mirror image stand as `{source}` and `{image}`.
+    `{source}` and `{image}` stand for the names of the source's connector and of the mirror image.
     """
     factors = {
         axis: f"({{image}}.Normal.{axis} / 1 mm)" if turns else f"({n!r})" for axis, n in zip("xyz", normal, strict=True) if n or turns

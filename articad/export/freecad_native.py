@@ -1,8 +1,8 @@
 """A FreeCAD document written without FreeCAD: the file is a zip of XML and B-rep, in the form of FreeCAD 1.0.
 
-It holds what FreeCAD itself would write of the same data, except trees of features, which only FreeCAD can copy. What is left
-out here, FreeCAD fills in when it opens the file; what is here is here because without it something goes wrong: a part of
-an assembly without its origin is invalid, and a joint is to be in two groups.
+It contains what FreeCAD itself would write for the same data, except trees of features, which only FreeCAD can copy. FreeCAD fills in
+what is omitted when it opens the file. What is written is needed: a part of an assembly without its origin is invalid, and a joint must
+be in two groups.
 """
 
 from __future__ import annotations
@@ -25,9 +25,9 @@ from articad.export.names import Names
 from articad.findings import Finding
 from articad.kernels.freecad_file import packed
 
-FIRST_ID = 100_000  # of objects, as FreeCAD is told to number them
+FIRST_ID = 100_000  # of objects, the same as when FreeCAD writes them
 _HALF = 0.7071067811865476
-_ORIGIN = {  # an origin's lines and planes: their types and how they are turned
+_ORIGIN = {  # the lines and planes of an origin: their types and orientations
     "X_Axis": ("App::Line", (0.0, 0.0, 0.0, 1.0)),
     "Y_Axis": ("App::Line", (0.5, 0.5, 0.5, 0.5)),
     "Z_Axis": ("App::Line", (0.5, -0.5, 0.5, 0.5)),
@@ -51,23 +51,23 @@ _KINDS = (
     "Belt",
 )
 _STAYS = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0]
-_NO_XML = re.compile(r"[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")  # characters that XML cannot hold
-_NULL = "bnVsbA=="  # base64 of null: the state of a Python object of FreeCAD's that has none
+_NO_XML = re.compile(r"[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")  # characters that XML cannot contain
+_NULL = "bnVsbA=="  # base64 of null: FreeCAD's state of a Python object without one
 
 Json = dict[str, Any]
 FloatArray = NDArray[np.float64]
 
 
 def document(job: Json, folder: Path, names: Names) -> tuple[bytes, Appearance]:
-    """Return a document, and what is seen of it when it is opened.
+    """Return a document, and its appearance when it is opened.
 
     Args:
-        job: What it holds; see `freecad_job.Job`.
-        folder: With the files that the job names.
-        names: Of its objects.
+        job: Its content; see `freecad_job.Job`.
+        folder: Folder with the files that the job names.
+        names: Names of its objects.
 
     Raises:
-        ExportError: If a B-rep is no text.
+        ExportError: If a B-rep is not text.
     """
     writer = _Writer(job, folder, names)
     writer.write()
@@ -140,7 +140,7 @@ class _Writer:
     def xml(self) -> bytes:
         """Return Document.xml."""
         rows = [_row("Object", type=item.kind, name=item.name, id=FIRST_ID + number) for number, item in enumerate(self.objects)]
-        # FreeCAD's own names of properties, filled in by freecad_file.normalised like those of a file that FreeCAD wrote
+        # FreeCAD's own property names; freecad_file.normalised completes them like those of a file that FreeCAD wrote
         empty = [_text(name, "") for name in ("CreatedBy", "CreationDate", "LastModifiedBy", "LastModifiedDate")]
         about = [_text("Label", self.job["name"]), *empty, _property("Uid", "UUID", _row("Uuid", value=""))]
         root = _row(
@@ -174,7 +174,7 @@ class _Writer:
         return name
 
     def _label(self, wanted: str) -> str:
-        """Return a label that no other object has, as FreeCAD makes it."""
+        """Return a label that no other object has, formed like FreeCAD's."""
         free, number = wanted, 1
         while free in self.labels:
             free, number = f"{wanted}{number:03d}", number + 1
@@ -237,7 +237,7 @@ class _Writer:
         self._add(item, "App::Part", *grouped, *told, label=name, extension="OriginGroupExtension", at=place)
 
     def _shape(self, part: Json) -> list[str]:
-        """Add what shows the part, and return it with what it is made of."""
+        """Add the object that shows the part, and return it with its constituents."""
         body, kind = self.names.claim(f"{part['object']}_body"), part["kind"]
         self.shapes[part["name"]] = body
         self.colors[body] = part["color"]
@@ -306,10 +306,10 @@ class _Writer:
 
 
 def _stands(brep: bytes) -> list[float]:
-    """Return where a B-rep says that its shape stands: the placement of the object that holds it is to say the same.
+    """Return the placement stored in a B-rep: that of its object must be the same.
 
     Raises:
-        ExportError: If it is no text.
+        ExportError: If it is not text.
     """
     found = re.search(rb"^Locations (\d+)$(.*?)^Curve2ds ", brep, re.MULTILINE | re.DOTALL)
     last = brep.rstrip().rsplit(b"\n", 1)[-1].split()
@@ -339,7 +339,7 @@ def _row(tag: str, *children: Element, **attributes: object) -> Element:
 
 
 def _property(name: str, kind: str, *children: Element, group: str = "", doc: str = "", attr: int = 0, family: str = "") -> Element:
-    """Return a property; one with a group is the object's own, which its type does not have."""
+    """Return a property; one with a group belongs to the object itself, not to its type."""
     own: dict[str, object] = {"group": group, "doc": doc, "attr": attr, "ro": 0, "hide": 0} if group else {}
     return _row("Property", *children, name=name, type=family or f"App::Property{kind}", **own)
 

@@ -1,4 +1,4 @@
-"""GLB: one node per part, in metres and Y-up, with an animation for every joint that drives."""
+"""GLB: one node per part, in metres and Y-up, with an animation for every driving joint."""
 
 from __future__ import annotations
 
@@ -26,20 +26,20 @@ if TYPE_CHECKING:
 FloatArray = NDArray[np.float64]
 
 MM_PER_M = 1000.0
-SECONDS = 4.0  # of one animation: there and back
-FRAMES = 49  # of one animation; between them viewers go straight and slerp, which is 0.1 % of a turn's chord off
-FAR_RAD = math.pi  # an endless angle is shown by one turn
+SECONDS = 4.0  # of one animation, forwards and back
+FRAMES = 49  # of one animation; viewers interpolate linearly and by slerp, with an error of 0.1 % of a turn's chord
+FAR_RAD = math.pi  # an endless angle is animated over one turn
 FAR_MM = 100.0
-CREASE_COSINE = math.cos(math.radians(30.0))  # faces that meet more steeply are shaded apart
+CREASE_COSINE = math.cos(math.radians(30.0))  # faces that meet at a larger angle are shaded separately
 Z_UP_TO_Y_UP = [-math.sqrt(0.5), 0.0, 0.0, math.sqrt(0.5)]
 _FLOAT, _UINT = 5126, 5125
 
 
 def write_glb(assembly: Assembly, *, strict: bool = False) -> Bundle:
-    """Write an assembly as one GLB file in its rest pose, with an animation for every joint that drives.
+    """Write an assembly as one GLB file in its rest pose, with an animation for every driving joint.
 
-    The root node turns articad's z-up into glTF's y-up. Below it each part is a node of its own name, in metres, and stands in the node of
-    the part that carries it, so that a joint that moves by itself animates one node, however much it carries.
+    The root node converts articad's z-up to glTF's y-up. Below it each part is a node of its own name, in metres, in the node of the
+    part that carries it, so that an independent joint animates one node, however much it carries.
 
     Args:
         assembly: What to write.
@@ -94,7 +94,7 @@ class _Buffer:
         self._times: int | None = None
 
     def document(self) -> dict[str, Any]:
-        """Return the glTF arrays; those that are empty are left out, as the format demands."""
+        """Return the glTF arrays; empty ones are omitted, as the format demands."""
         materials = [
             {"name": color, "pbrMetallicRoughness": {"baseColorFactor": _linear(color), "metallicFactor": 0.0, "roughnessFactor": 0.8}}
             for color in self.materials
@@ -122,7 +122,7 @@ class _Buffer:
         return len(self.accessors) - 1
 
     def times(self) -> int:
-        """Return the accessor of the times of an animation's frames, which all animations share."""
+        """Return the accessor of the frame times, which all animations share."""
         if self._times is None:
             self._times = self.add(np.linspace(0.0, SECONDS, FRAMES).astype(np.float32), "SCALAR", bounds=True)
         return self._times
@@ -151,7 +151,7 @@ class _Buffer:
 
 
 def _shaded(mesh: TriMesh) -> tuple[FloatArray, FloatArray, NDArray[np.int64]]:
-    """Return vertices, normals and indices: corners whose faces meet smoothly share their vertex, those at creases get their own."""
+    """Return vertices, normals and indices: corners whose faces meet smoothly share a vertex, those at creases get their own."""
     twice = mesh.normals_of_twice_area
     flat = twice / np.maximum(np.linalg.norm(twice, axis=1), np.finfo(float).tiny)[:, None]
     index = mesh.triangles.reshape(-1)
@@ -169,10 +169,10 @@ def _shaded(mesh: TriMesh) -> tuple[FloatArray, FloatArray, NDArray[np.int64]]:
 
 
 class _Tree:
-    """Which part carries which, and how parts move in their carriers.
+    """Which part carries which, and how parts move relative to their carriers.
 
     Attributes:
-        carriers: Index of the part in which each part stands; -1 for the ground part.
+        carriers: Index of the part that carries each part; -1 for the ground part.
         driving: Names of the joints that drive.
     """
 
@@ -193,7 +193,7 @@ class _Tree:
         self._tied = _tied(assembly)
 
     def local(self, poses: SE3) -> SE3:
-        """Return the poses of all parts in their carriers, `(frames, N)`, from those in the world."""
+        """Return the poses of all parts relative to their carriers, `(frames, N)`, from those in the world."""
         carriers = np.array(self.carriers)
         moved = np.flatnonzero(carriers >= 0)
         found = poses.data.copy()
@@ -201,7 +201,7 @@ class _Tree:
         return SE3.from_unit_array(found)
 
     def moved(self, joint: str) -> list[tuple[int, SE3]]:
-        """Return the parts that move in their carriers while a joint goes through its range and back, and how, `(frames,)` each.
+        """Return the parts that move relative to their carriers while a joint runs through its range and back, and their poses.
 
         Raises:
             KinematicsError: If a loop does not let it reach its range.
@@ -219,7 +219,7 @@ class _Tree:
 
 
 def _tied(assembly: Assembly) -> set[str]:
-    """Return the joints of couplings, of loops, and those of which not every coordinate drives."""
+    """Return the joints of couplings, of loops, and those with coordinates that do not drive."""
     mechanism = assembly.mechanism
     owner = {column: joint.name for joint in mechanism.joints for column in joint.column_names}
     tied = {owner[column] for coupling in mechanism.couplings for column in (coupling.a, coupling.b)}
@@ -231,10 +231,10 @@ def _tied(assembly: Assembly) -> set[str]:
 
 
 def _animation(tree: _Tree, joint: str, buffer: _Buffer) -> dict[str, Any] | None:
-    """Return the motion of one joint through its range and back, all others at rest; None where it cannot move."""
+    """Return the motion of one joint through its range and back, all others at rest; None if it cannot move."""
     try:
         moved = tree.moved(joint)
-    except KinematicsError:  # a range that a loop does not let it reach: its motion is a loss that `_features` has told
+    except KinematicsError:  # a range that a loop does not allow: `_features` has reported this loss
         return None
     channels, samplers = [], []
     for index, T in moved:
@@ -259,21 +259,21 @@ def _swept(assembly: Assembly, spec: Joint, columns: list[int]) -> FloatArray:
     for place, driver in enumerate(drivers):
         far = FAR_RAD if driver.unit == "rad" else FAR_MM
         low, high = max(driver.lower, driver.rest - far), min(driver.upper, driver.rest + far)
-        # several coordinates of one joint go one after the other, so that each is seen by itself
+        # several coordinates of one joint move one after the other, so that each is seen by itself
         own = _wave(len(columns), place)
         values[:, place] = driver.rest + np.where(own > 0, (high - driver.rest) * own, (driver.rest - low) * own)
     return values
 
 
 def _wave(count: int, place: int) -> FloatArray:
-    """Return a whole wave within the `place`-th of `count` stretches of the animation, zero elsewhere."""
+    """Return a whole wave within the `place`-th of `count` intervals of the animation, zero elsewhere."""
     t = np.linspace(0.0, count, FRAMES) - place
     wave: FloatArray = np.where((t >= 0) & (t <= 1), np.sin(math.tau * t), 0.0)
     return wave
 
 
 def _continuous(quaternions: FloatArray) -> FloatArray:
-    """Turn signs so that neighbours are on one side, or viewers would go the long way round."""
+    """Change signs so that neighbours are in one hemisphere; otherwise viewers would interpolate the long way."""
     signs = np.sign((quaternions[1:] * quaternions[:-1]).sum(axis=1))
     signs[signs == 0] = 1.0
     turned: FloatArray = quaternions * np.concatenate([[1.0], np.cumprod(signs)])[:, None]
@@ -285,7 +285,7 @@ def _placement(T: SE3) -> dict[str, list[float]]:
 
 
 def _linear(color: str) -> list[float]:
-    """Turn "#rrggbb" (sRGB) into the linear factors that glTF wants."""
+    """Convert "#rrggbb" (sRGB) to the linear factors of glTF."""
     channels = [int(color[i : i + 2], 16) / 255 for i in (1, 3, 5)]
     return [*(c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in channels), 1.0]
 

@@ -1,4 +1,4 @@
-"""Pairs of parts: those that a joint connects, those that never move against each other, those whose hulls overlap."""
+"""Pairs of parts: those that a joint connects, those that never move relative to each other, those whose hulls overlap."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from articad.kinematics.joints import Joint, JointType
 
 Pair = tuple[str, str]
 
-HULL_DEPTH_MM = 0.02  # mean depth of overlap that counts: below it hulls merely touch, as stacked parts do
+HULL_DEPTH_MM = 0.02  # mean depth of an overlap that counts: at less depth hulls merely touch, as stacked parts do
 HULL_VOLUME_MM3 = 1e-3  # rounding of a boolean
 
 
@@ -18,10 +18,10 @@ class HullOverlap:
     """Two parts whose hulls overlap.
 
     Attributes:
-        parts: The two, in order of declaration.
-        volume: Of the overlap [mm³].
+        parts: The two parts, in the order in which they are declared.
+        volume: Volume of the overlap [mm³].
         depth: Its mean thickness, twice the volume over the surface [mm].
-        solids: True when the solids overlap as well, so that finer pieces do not help.
+        solids: True if the solids overlap as well, so that finer pieces do not help.
     """
 
     parts: Pair
@@ -31,14 +31,14 @@ class HullOverlap:
 
 
 def mating_pairs(joints: tuple[Joint, ...], order: tuple[str, ...]) -> list[Pair]:
-    """Return the pairs of parts that share a joint, each once and in order of declaration; a free joint holds them in no contact."""
+    """Return the pairs of parts that share a joint, once each, in the order of declaration, without free joints, which hold no contact."""
     rank = {part: index for index, part in enumerate(order)}
     pairs = {tuple(sorted((one.parent, one.child), key=rank.__getitem__)) for one in joints if one.type is not JointType.FREE}
     return sorted(((a, b) for a, b in pairs), key=lambda pair: (rank[pair[0]], rank[pair[1]]))
 
 
 def rigid_groups(joints: tuple[Joint, ...], order: tuple[str, ...]) -> dict[str, int]:
-    """Return for each part the number of its rigid group: parts joined by fixed joints only share one."""
+    """Return for each part the number of its rigid group: parts joined by fixed joints only have the same one."""
     group = {part: index for index, part in enumerate(order)}
     for joint in joints:
         if joint.type is JointType.FIXED:
@@ -48,6 +48,6 @@ def rigid_groups(joints: tuple[Joint, ...], order: tuple[str, ...]) -> dict[str,
 
 
 def same_group_pairs(joints: tuple[Joint, ...], order: tuple[str, ...]) -> set[Pair]:
-    """Return the pairs of parts that never move against each other."""
+    """Return the pairs of parts that never move relative to each other."""
     group = rigid_groups(joints, order)
     return {(a, b) for a, b in combinations(order, 2) if group[a] == group[b]}

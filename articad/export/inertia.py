@@ -1,9 +1,8 @@
-"""Inertia in SI units, and how carrier links get some of it without changing the whole.
+"""Inertia in SI units, and how carrier links get some of it without changing the total.
 
-The pseudo-inertia of a body, `[[Σ, h], [hᵀ, m]]` with second moments Σ, first moments h and mass m about one frame, adds up when
-bodies are joined, and a body is physical exactly when it is positive (Wensing, Kim, Slotine 2018). A carrier is a small ball at the
-joint's origin; taking it out of the moved body is a subtraction of pseudo-inertias, so mass, centre and inertia of both together
-stay what they were.
+The pseudo-inertia of a body, `[[Σ, h], [hᵀ, m]]` with second moments Σ, first moments h and mass m about one frame, adds up when bodies
+are joined, and a body is physical exactly if it is positive (Wensing, Kim, Slotine 2018). A carrier is a small ball at the joint's
+origin; removing it from the moved body is a subtraction of pseudo-inertias, so mass, centre and inertia of both together stay the same.
 """
 
 from __future__ import annotations
@@ -18,13 +17,13 @@ from articad.geometry.mass import TRIANGLE_TOLERANCE, MassProperties
 
 FloatArray = NDArray[np.float64]
 
-CARRIER_MASS_KG = 1e-4  # small beside any part, but far above the least that simulators accept (1e-15)
-CARRIER_INERTIA_KG_M2 = 1e-7  # that of a ball of 50 mm radius and the carrier's mass: what keeps mass matrices well conditioned
-CARRIER_SHARE = 0.05  # carriers take at most this share of the body's pseudo-inertia in any direction, so that it stays physical
+CARRIER_MASS_KG = 1e-4  # small compared with any part, but far above the minimum of simulators (1e-15)
+CARRIER_INERTIA_KG_M2 = 1e-7  # of a ball of 50 mm radius and the carrier's mass: this keeps mass matrices well conditioned
+CARRIER_SHARE = 0.05  # largest share of the body's pseudo-inertia that carriers take in any direction, so that it stays physical
 MM_PER_M = 1000.0
-LEAST_MOMENT_KG_M2 = 2e-14  # a principal moment of less is none to simulators: MuJoCo refuses 1e-14
-LEAST_SHARE = 1e-12  # of the sum of second moments, that a written body has in each direction: rods and plates have none in theory
-LEAST_RADIUS_M = 1e-3  # of gyration, that a body gets along a direction in which its inertia gives it less than nothing
+LEAST_MOMENT_KG_M2 = 2e-14  # simulators reject a smaller principal moment: MuJoCo refuses 1e-14
+LEAST_SHARE = 1e-12  # of the sum of second moments, in each direction of a written body: rods and plates have none in theory
+LEAST_RADIUS_M = 1e-3  # radius of gyration of a body along a direction in which its inertia gives a negative second moment
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,7 +52,7 @@ class Inertial:
         return cls(CARRIER_MASS_KG * scale, np.zeros(3), CARRIER_INERTIA_KG_M2 * scale * np.eye(3))
 
     def possible(self) -> Inertial:
-        """Return the nearest body that there can be: none of its second moments is below that of a ball of 1 mm."""
+        """Return the nearest physical body: none of its second moments is below that of a ball of 1 mm."""
         if is_possible(self.mass, self.inertia):
             return self
         moments, axes = np.linalg.eigh(np.trace(self.inertia) / 2 * np.eye(3) - self.inertia)
@@ -63,11 +62,11 @@ class Inertial:
         return Inertial(self.mass, self.com, (inertia + inertia.T) / 2)
 
     def inside_bounds(self) -> Inertial:
-        """Return this body, thickened where it is a rod or a plate, so that rounding cannot carry it across A + B = C.
+        """Return this body, thickened if it is a rod or a plate, so that rounding cannot violate A + B >= C.
 
-        The second moment in a direction is half of A + B − C; readers compute the principal moments A, B, C from the printed numbers with
-        an error of about 1e-15 of the largest, and MuJoCo refuses A + B < C. Second moments below half of `LEAST_SHARE` of their sum are
-        raised to `LEAST_SHARE`, which changes no principal moment by more than 2e-12 of the largest.
+        The second moment in a direction is half of A + B − C; readers compute the principal moments A, B, C from the printed numbers
+        with an error of about 1e-15 of the largest, and MuJoCo refuses A + B < C. Second moments below half of `LEAST_SHARE` of their
+        sum are raised to `LEAST_SHARE`, which changes no principal moment by more than 2e-12 of the largest.
         """
         moments, axes = np.linalg.eigh(np.trace(self.inertia) / 2 * np.eye(3) - self.inertia)
         least = max(LEAST_SHARE * float(moments.sum()), LEAST_MOMENT_KG_M2)
@@ -89,21 +88,21 @@ class Inertial:
 
     @classmethod
     def from_pseudo(cls, P: FloatArray) -> Inertial:
-        """Return the mass properties that a pseudo-inertia stands for."""
+        """Return the mass properties for a pseudo-inertia."""
         mass = float(P[3, 3])
         com = P[:3, 3] / mass
         about_com = P[:3, :3] - mass * np.outer(com, com)
         return cls(mass, com, np.trace(about_com) * np.eye(3) - about_com)
 
     def without_carriers(self, count: int, origin: FloatArray | None = None) -> tuple[Inertial, Inertial]:
-        """Take carriers out of this body.
+        """Remove carriers from this body.
 
         Args:
-            count: How many carriers, all at one point.
+            count: Number of carriers, all at one point.
             origin: That point in the link's frame [m]; the link's origin by default.
 
         Returns:
-            What is left of the body, and one carrier about its own origin. Carriers of a very light or thin body are scaled down.
+            The rest of the body, and one carrier about its own origin. Carriers of a very light or thin body are scaled down.
         """
         if count == 0:
             return self, Inertial.carrier()
@@ -122,12 +121,12 @@ class Inertial:
 
 
 def is_possible(mass: float, inertia: FloatArray) -> bool:
-    """True when some body that simulators take has this inertia, about its centre of mass [kg, kg·m²]."""
+    """True if some body that simulators accept has this inertia about its centre of mass [kg, kg·m²]."""
     small, middle, large = np.linalg.eigvalsh(inertia)
     return bool(mass > 0 and small >= LEAST_MOMENT_KG_M2 and large <= (small + middle) * (1 + TRIANGLE_TOLERANCE))
 
 
 def _positive(P: FloatArray) -> FloatArray:
-    """Thicken a body that is a plane, a line or a point, by a share of its size too small to matter, so that it can be inverted."""
+    """Thicken a body that is a plane, a line or a point by a negligible share of its size, so that it can be inverted."""
     thickness = 1e-9 * (np.trace(P[:3, :3]) + P[3, 3] * 1e-12)
     return P + np.diag([thickness, thickness, thickness, 0.0])

@@ -3,8 +3,8 @@
 For a joint that carries the parts i with masses mᵢ, where rᵢ bounds the distance of part i's centre of mass to the axis (or to
 the origin of a ball or universal joint) in every pose, R bounds that of their surfaces, and Jᵢ is the largest principal moment:
 
-- turning effort = 2 · max(g Σ mᵢ rᵢ, (g / R) Σ (mᵢ rᵢ² + Jᵢ)): holds the worst pose however the assembly stands, and accelerates the
-  farthest point at g where gravity asks for nothing, as at a wheel;
+- turning effort = 2 · max(g Σ mᵢ rᵢ, (g / R) Σ (mᵢ rᵢ² + Jᵢ)): holds the worst pose whatever the orientation of the assembly, and
+accelerates the farthest point at g where gravity needs no effort, as at a wheel;
 - sliding effort = 2 · g Σ mᵢ;
 - turning velocity = √(2 g / R), at which the farthest point is as fast as after falling by R;
 - sliding velocity = √(2 g L), with L the joint's range, or 2 R where it has none;
@@ -27,8 +27,8 @@ from articad.kinematics.joints import Joint, JointType
 from articad.kinematics.mechanism import Mechanism
 
 GRAVITY_M_S2 = -GRAVITY[2]
-MARGIN = 2.0  # for friction and acceleration, on top of holding the load
-DAMPING_SHARE = 0.05  # of the effort, spent at full velocity
+MARGIN = 2.0  # for friction and acceleration, in addition to holding the load
+DAMPING_SHARE = 0.05  # of the effort, lost at full velocity
 
 
 ALL = frozenset({"effort", "velocity", "damping"})
@@ -36,7 +36,7 @@ ALL = frozenset({"effort", "velocity", "damping"})
 
 @dataclass(frozen=True)
 class Load:
-    """What one coordinate of a joint can do.
+    """Load and limits of one coordinate of a joint.
 
     Attributes:
         effort: [N·m] or [N].
@@ -59,11 +59,11 @@ def joint_loads(mechanism: Mechanism, parts: Mapping[str, Part]) -> dict[str, tu
     """Return the loads of every joint, one per motion: turning and sliding motions in the order of `motions_of`.
 
     Args:
-        mechanism: The joints, and which parts each carries.
+        mechanism: The joints and the parts that each carries.
         parts: Masses and shapes by part name.
 
     Returns:
-        By joint name; a fixed joint and a free one have none.
+        By joint name; a fixed or free joint has none.
     """
     carried = CarriedParts(mechanism, parts)
     return {
@@ -99,7 +99,7 @@ def _load(effort: float, velocity: float, carried: float) -> Load:
 
 
 def _stated(joint: Joint, index: int, computed: Load, effort_unit: float, velocity_unit: float) -> Load:
-    """Return the load with what the joint states itself; a torque is stated in N·mm, a sliding velocity in mm/s."""
+    """Return the load with the joint's own values; a torque is stated in N·mm, a sliding velocity in mm/s."""
     effort, velocity, damping, friction = (
         values[index] if index < len(values) else None for values in (joint.effort, joint.velocity, joint.damping, joint.friction)
     )

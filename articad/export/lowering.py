@@ -1,14 +1,14 @@
-"""One lowering pass for all formats: joints of eight kinds become frames and one-freedom motions, mm become m.
+"""One lowering pass for all formats: joints of all types become frames and one-freedom motions, mm become m.
 
 Each part becomes a link whose frame is that of the joint above it; the ground's link frame is the ground frame itself.
 For a tree edge that is crossed from parent to child, `T_link_part = F · C_c⁻¹` and the joint's frame is `B_parent · C_p`; crossed the
 other way, the frame is `B_child · C_c · F`, the motion is J(q)⁻¹ (the same motions backwards about turned axes) and `T_link_part = C_p⁻¹`.
-So every coordinate of a format equals ours, whichever way the tree crosses a joint and whatever its mate; only a ball
-that is crossed backwards has the inverse quaternion.
+So every coordinate of a format equals articad's, in whichever direction the tree crosses a joint and whatever its mate; only a ball that
+is crossed backwards has the inverse quaternion.
 
-A link that came from a file keeps its frame where that is possible: then the joint's frame is put on the part's, which changes J(q) into
-K⁻¹ J(q) K with K = `T_link_part` of the rule above. That is the same motion about turned axes as long as every axis that turns passes
-through the part's origin. Elsewhere the frame moves, which is a row of the losses.
+A link that came from a file keeps its frame if possible: then the joint's frame is placed at the part's, which changes J(q) into K⁻¹
+J(q) K with K = `T_link_part` of the rule above. That is the same motion about rotated axes if every turning axis passes through the
+part's origin. Otherwise the frame moves, which is a row of the losses.
 """
 
 from __future__ import annotations
@@ -39,13 +39,13 @@ FloatArray = NDArray[np.float64]
 Kind = Literal["turn", "slide"]
 
 
-ON_AXIS_MM = 1e-6  # by which a turning axis may miss the origin of a link that keeps its frame
-ROUND = 1e-12  # by which a component of an axis may miss a whole number
+ON_AXIS_MM = 1e-6  # largest distance of a turning axis from the origin of a link that keeps its frame
+ROUND = 1e-12  # largest difference of a component of an axis from a whole number that is rounded away
 
 
 def motions(kind: JointType) -> tuple[Step, ...]:
-    """Return J(q) of a joint type as a product of motions that formats can write as joints of their own, first one first."""
-    return () if kind is JointType.FREE else kind.steps  # formats have it as a whole, or leave it out
+    """Return J(q) of a joint type as a product of motions that formats can write as joints of their own, the first factor first."""
+    return () if kind is JointType.FREE else kind.steps  # formats represent it as a whole, or omit it
 
 
 @dataclass(frozen=True)
@@ -62,15 +62,15 @@ class AxisMotion:
     """A one-freedom motion, in SI units.
 
     Attributes:
-        name: Of the joint that a format has for it.
-        kind: Turning about or sliding along the axis.
+        name: Name of the joint that a format has for it.
+        kind: Rotation about the axis, or translation along it.
         axis: Unit vector in the joint's frame, `(3,)`.
         lower: [rad, m], −inf for none.
         upper: [rad, m], +inf for none.
         rest: Value in the rest pose [rad, m].
         load: Effort, velocity and damping.
-        follows: What it is tied to.
-        column: Name of our coordinate that is its value, if there is one.
+        follows: The value that it follows.
+        column: Name of articad's coordinate that is its value, if there is one.
     """
 
     name: str
@@ -90,17 +90,17 @@ class LoweredJoint:
 
     Attributes:
         name: Valid in every format.
-        joint: Ours.
-        backwards: True when it leads from the joint's child to its parent.
+        joint: The joint of the mechanism.
+        backwards: True if it leads from the joint's child to its parent.
         parent: Name of the link that carries its frame.
         child: Name of the link that it moves.
         T_parent_joint: Its frame in the parent link's [m].
         T_child_joint: The frame of the child link that coincides with it where all values are zero [m]; identity in a tree.
         freedoms: Its motions, from the parent outwards.
         carriers: Names for links between its motions, and one for a link at its end.
-        anchor: Where its axes pass through, in the child link's frame [m], `(3,)`; the origin unless `lower` was asked to keep frames.
-        end: Where the child link is not in the frame that the joint moves, which only `part_frames` does: a name for a fixed joint, and
-            the child link's frame in the moved one [m]. The link between the two joints has the last name of `carriers`.
+        anchor: Point on its axes, in the child link's frame [m], `(3,)`; the origin unless `lower` keeps frames.
+        end: Used by `part_frames` only, if the child link's frame is not the one that the joint moves: a name for a fixed joint, and the
+            child link's frame in the moved one [m]. The link between the two joints has the last name of `carriers`.
     """
 
     name: str
@@ -117,12 +117,12 @@ class LoweredJoint:
 
     @property
     def is_free(self) -> bool:
-        """True for a free joint: formats have it as a whole, so that it has no freedoms here."""
+        """True for a free joint: formats represent it as a whole, so it has no freedoms here."""
         return self.joint.type is JointType.FREE
 
     @property
     def T_rest(self) -> SE3:
-        """How far a free joint has moved at rest [m]."""
+        """Displacement of a free joint at rest [m]."""
         return metres(self.joint.motion(self.joint.rest))
 
 
@@ -132,7 +132,7 @@ class Placed:
 
     Attributes:
         shape: Mesh and colour; the mesh is in mm.
-        T_link_shape: Where the mesh's frame is in the link's [m].
+        T_link_shape: Pose of the mesh's frame in the link's [m].
         color: "#rrggbb".
     """
 
@@ -143,17 +143,17 @@ class Placed:
 
 @dataclass(frozen=True, eq=False)
 class Link:
-    """A part as formats see it.
+    """A part as formats represent it.
 
     Attributes:
         name: Valid in every format.
-        part: Ours.
+        part: The part of the assembly.
         T_link_part: The part's frame in the link's [m].
         inertial: In the link's frame.
-        moves: False for what needs no mass: it is rigidly connected with the ground, or a frame of a file that is fixed to another link.
-        visuals: What is drawn.
-        collisions: What collides.
-        friction: Between its surfaces and others; None when it has no material.
+        moves: False if it needs no mass: it is rigidly connected to the ground, or is a frame of a file that is fixed to another link.
+        visuals: Shapes to draw.
+        collisions: Shapes for collision.
+        friction: Friction of its surfaces; None without a material.
     """
 
     name: str
@@ -173,10 +173,10 @@ class LoweredModel:
     Attributes:
         name: Valid in every format.
         links: Depth first, the ground first.
-        joints: Of the tree, in the order of the links that they move.
+        joints: Joints of the tree, in the order of the links that they move.
         loops: Joints that close loops.
-        couplings: `name -> (freedom, Follows)` that hold besides the tree.
-        features: What it has, for the table of losses.
+        couplings: `name -> (freedom, Follows)` that hold in addition to the tree.
+        features: Its features, for the table of losses.
     """
 
     name: str
@@ -187,25 +187,27 @@ class LoweredModel:
     features: tuple[Feature, ...]
 
     def link_of(self, part: str) -> Link:
-        """Return the link that a part became."""
+        """Return the link of a part."""
         return next(link for link in self.links if link.part.name == part)
 
 
 def metres(T: SE3) -> SE3:
-    """Return the same motion with its translation in m: divided by 1000 exactly, the rotation untouched."""
+    """Return the same motion with its translation in m: divided by 1000 exactly, the rotation unchanged."""
     return SE3.from_unit_array(T.data / np.array([MM_PER_M, MM_PER_M, MM_PER_M, 1.0, 1.0, 1.0, 1.0]))
 
 
 def lower(assembly: Assembly, reserved: Iterable[str] = (), *, as_it_came: bool = False, part_frames: bool = False) -> LoweredModel:
-    """Turn an assembly into links, frames and one-freedom motions in SI units.
+    """Convert an assembly to links, frames and one-freedom motions in SI units.
 
-    Names become valid, limits and rest values are converted, loads are computed, and each feature that a format may not hold is noted.
+    Names become valid, limits and rest values are converted, loads are computed, and each feature that a format may not hold is
+    recorded.
 
     Args:
-        assembly: What is written.
+        assembly: The assembly to write.
         reserved: Names that no link may have.
-        as_it_came: Keep the frame of every link and all names, for a format whose joints may pass anywhere and whose names are any text.
-        part_frames: Give every link the frame of its part; where the joint cannot stand there, the joint says so (`end`).
+        as_it_came: Keep the frame of every link and all names, for a format whose joint axes may be anywhere and whose names are any
+            text.
+        part_frames: Give every link the frame of its part; if that cannot be the joint's frame, the joint has an `end`.
     """
     mechanism = assembly.mechanism
     names = _ValidNames(assembly, reserved, any_text=as_it_came)
@@ -234,7 +236,7 @@ def lower(assembly: Assembly, reserved: Iterable[str] = (), *, as_it_came: bool 
     still = rigid_with_ground(assembly)
     loops = []
     for joint in mechanism.loop_joints:
-        # from what stands still, if one side does, so that what stands for the joint's end is never tied to the ground
+        # starting at the side that stands still, if one does, so that the end of the joint is never fixed to the ground
         backwards = joint.child in still
         near, far = (joint.child, joint.parent) if backwards else (joint.parent, joint.child)
         head, tail = _frames(joint, backwards=backwards)
@@ -253,7 +255,7 @@ def lower(assembly: Assembly, reserved: Iterable[str] = (), *, as_it_came: bool 
 
 
 def _keeps_frame(joint: Joint, K: SE3, *, anywhere: bool = False) -> bool:
-    """True when the joint's frame can be put on the part's, which is at K⁻¹ of it, without another motion (see the module).
+    """True if the joint's frame can be placed at the part's, whose pose in it is K⁻¹, without changing the motion (see the module).
 
     With `anywhere`, the joint's axes need not pass through the part's origin.
     """
@@ -262,7 +264,7 @@ def _keeps_frame(joint: Joint, K: SE3, *, anywhere: bool = False) -> bool:
         return K.allclose(SE3.identity(), mm=math.inf if far else ON_AXIS_MM, rad=1e-12)
     if anywhere:
         return True
-    origin = K.translation  # of the part, seen from the joint's frame
+    origin = K.translation  # of the part, in the joint's frame
     turning = [np.array(step.vector) for step in motions(joint.type) if step.kind == "turn"]
     return all(float(np.linalg.norm(np.cross(axis, origin))) <= ON_AXIS_MM for axis in turning)
 
@@ -277,13 +279,13 @@ def _moved(part: str, K: SE3) -> Feature:
 
 
 def _rounded(axis: FloatArray) -> FloatArray:
-    """Return a unit vector whose components are whole where they nearly are."""
+    """Return a unit vector with components rounded to whole numbers if they are almost whole."""
     whole = np.round(axis)
     return np.asarray(np.where(np.abs(axis - whole) < ROUND, whole, axis)) + 0.0
 
 
 class _ValidNames:
-    """Valid names of links and joints; declared ones are claimed before carriers', in the order of declaration."""
+    """Valid names of links and joints; declared names are claimed before those of carriers, in the order of declaration."""
 
     def __init__(self, assembly: Assembly, reserved: Iterable[str], *, any_text: bool) -> None:
         self._any_text = any_text
@@ -294,12 +296,12 @@ class _ValidNames:
         self._changed += [("joints", *item) for item in self._joint_names.changed.items()]
 
     def motions(self, joint: Joint) -> tuple[str, ...]:
-        """Return the names of a joint's motions: its own where there is one, else `joint__suffix`."""
+        """Return the names of a joint's motions: its own name if there is one motion, else `joint__suffix`."""
         base = self.joints[joint.name]
         return tuple(self._joint_names.claim(f"{base}__{step.suffix}") if step.suffix else base for step in motions(joint.type))
 
     def carriers(self, joint: Joint) -> tuple[str, ...]:
-        """Return names of links that carry a joint's motions but the last, and one that can stand for its end."""
+        """Return names of the links that carry a joint's motions except the last, and one for a link at its end."""
         base = self.joints[joint.name]
         count = len(motions(joint.type))
         return tuple(self._link_names.claim(f"{base}__d{number + 1}") for number in range(max(count, 1)))
@@ -309,7 +311,7 @@ class _ValidNames:
         return self._joint_names.claim(f"{self.joints[joint.name]}__fixed")
 
     def features(self, assembly: Assembly) -> list[Feature]:
-        """Return the names that had to change."""
+        """Return features for names that had to change."""
         features = [Feature("name", f"{kind}.{old}", new) for kind, old, new in self._changed]
         if valid_name(assembly.name) != assembly.name and not self._any_text:
             features.append(Feature("name", "name", valid_name(assembly.name)))
@@ -327,7 +329,7 @@ def _lowered(
     *,
     backwards: bool,
 ) -> LoweredJoint:
-    """Return the joint with its motions from the tree's parent outwards; backwards they come last first, about turned axes."""
+    """Return the joint with its motions from the tree's parent outwards; backwards these are in reverse order, about reversed axes."""
     motion_names = names.motions(joint)
     freedoms = [_freedom(joint, motion_names, index, loads[joint.name][index]) for index in range(len(motion_names))]
     if backwards:
@@ -374,7 +376,7 @@ def ball_angles(xyzw: tuple[float, ...]) -> tuple[float, float, float]:
     R = SE3.from_quaternion(xyzw).rotation
     ry = math.atan2(R[0, 2], math.hypot(R[0, 0], R[0, 1]))
     rx = math.atan2(-R[1, 2], R[2, 2])
-    # from R with the first turn taken back, which stays exact at ry = ±90° where rx and rz cannot be told apart
+    # from R with the first turn removed, which stays exact at ry = ±90°, where rx and rz cannot be separated
     s, c = math.sin(rx), math.cos(rx)
     rz = math.atan2(c * R[1, 0] + s * R[2, 0], c * R[1, 1] + s * R[2, 1])
     return rx, ry, rz
@@ -384,7 +386,7 @@ def ball_box(joint: Joint) -> tuple[tuple[float, float], ...]:
     """Return ranges of (rx, ry, rz) that contain everything a ball's cone and twist allow [rad].
 
     The swing of Rx(a)·Ry(b) has cos(swing) = cos a · cos b, so |a| and |b| are at most the cone; its own twist is
-    2·atan(tan(a/2)·tan(b/2)), largest where a = b, and rz is the ball's twist less this.
+    2·atan(tan(a/2)·tan(b/2)), largest where a = b, and rz is the ball's twist minus this.
     """
     limits = joint.limits
     cone = math.pi if limits.cone is None else limits.cone
@@ -398,9 +400,9 @@ def ball_box(joint: Joint) -> tuple[tuple[float, float], ...]:
 
 
 def ball_total_angle(joint: Joint) -> float:
-    """Return the largest total angle of a ball within its cone and twist [rad]; π or more is no limit.
+    """Return the largest total angle of a ball within its cone and twist [rad]; π or more means no limit.
 
-    Swing s and twist t together turn by 2·acos(cos(s/2)·cos(t/2)).
+    A swing s and a twist t together rotate by 2·acos(cos(s/2)·cos(t/2)).
     """
     limits = joint.limits
     cone = math.pi if limits.cone is None else limits.cone

@@ -1,4 +1,4 @@
-"""XML with numbers in full: what is read back is bit for bit what was written."""
+"""XML with numbers at full precision: reading returns exactly what was written."""
 
 from __future__ import annotations
 
@@ -15,18 +15,18 @@ DUST = 0.5 * 10.0**-DUST_DIGITS
 
 
 def number(value: float) -> str:
-    """Return the shortest text that reads back as the same float; −0 becomes 0, and whole numbers lose their ".0"."""
+    """Return the shortest text that reads back as the same float; −0 becomes 0, and whole numbers have no ".0"."""
     text = repr(float(value) + 0.0)
     return text.removesuffix(".0")
 
 
 def numbers(values: Iterable[float]) -> str:
-    """Return numbers with spaces between them."""
+    """Return numbers separated by spaces."""
     return " ".join(map(number, values))
 
 
 def tidy(values: Iterable[float]) -> list[float]:
-    """Return lengths in m, angles and components of unit vectors without the dust of rounding: 1e-17 is 0, 0.9999999999999998 is 1."""
+    """Return lengths in m, angles and components of unit vectors without rounding noise: 1e-17 is 0, 0.9999999999999998 is 1."""
     found = []
     for value in map(float, values):
         rounded = round(value, DUST_DIGITS)
@@ -36,9 +36,9 @@ def tidy(values: Iterable[float]) -> list[float]:
 
 
 def rpy(T: SE3) -> tuple[float, float, float]:
-    """Return (roll, pitch, yaw) with R = Rz(yaw) · Ry(pitch) · Rx(roll) [rad], exact at pitch = ±90° too.
+    """Return (roll, pitch, yaw) with R = Rz(yaw) · Ry(pitch) · Rx(roll) [rad], exact also at pitch = ±90°.
 
-    Roll is read from R with the yaw taken back, so that the product is R even where the two cannot be told apart.
+    Roll is computed from R with the yaw removed, so that the product is R even where the two cannot be separated.
     """
     R = T.rotation
     pitch = math.atan2(-R[2, 0], math.hypot(R[0, 0], R[1, 0]))
@@ -60,7 +60,7 @@ def rgba(color: str) -> str:
 
 
 def child(parent: Any, tag: str, attributes: dict[str, str] | None = None, text: str | None = None) -> Any:
-    """Append an element; lxml escapes whatever the strings hold."""
+    """Append an element; lxml escapes the strings."""
     element = etree.SubElement(parent, tag, attributes or {})
     element.text = text
     return element

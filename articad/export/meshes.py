@@ -1,6 +1,6 @@
-"""Mesh files of a bundle: each mesh once, in mm and in its own frame; the format that names it gives scale and place.
+"""Mesh files of a bundle: each mesh once, in mm and in its own frame; the format that names it gives scale and pose.
 
-Meshes that proofs are made with are finer than pictures need. What is drawn is simplified by manifold3d, which says how far the surface moves.
+Meshes for proofs are finer than drawings need. Visual meshes are simplified by manifold3d, and the deviation of the surface is measured.
 """
 
 from __future__ import annotations
@@ -21,12 +21,12 @@ from articad.geometry.part import Part
 MeshKind = Literal["stl", "obj"]
 
 MM_TO_M = 0.001  # the scale that formats apply to the files
-DRAWN_TRIANGLES = 5000  # of a mesh that is drawn, where the next bound allows it
-DRAWN_SHARE, MOST_SHARE = 5e-4, 8e-3  # of its diagonal: how far its surface moves to begin with, and at most
+DRAWN_TRIANGLES = 5000  # target size of a visual mesh, within the next bound
+DRAWN_SHARE, MOST_SHARE = 5e-4, 8e-3  # of its diagonal: deviation of its surface at first, and at most
 
 
 class Drawn(NamedTuple):
-    """A mesh to draw, and how far its surface is from the mesh that it stands for [mm]."""
+    """A visual mesh, and its deviation from the original mesh [mm]."""
 
     mesh: TriMesh
     deviation: float
@@ -34,9 +34,9 @@ class Drawn(NamedTuple):
 
 @lru_cache(maxsize=64)
 def drawn(mesh: TriMesh) -> Drawn:
-    """Return a mesh of few triangles for one that is finer than pictures need.
+    """Return a mesh with few triangles in place of one that is finer than drawings need.
 
-    The surface moves by 1/2000 of the mesh's diagonal, on round faces about 0.1 rad from facet to facet, and by more as long as there are
+    The surface moves by 1/2000 of the mesh's diagonal, on round faces about 0.1 rad between facets, and by more as long as there are
     more than `DRAWN_TRIANGLES`.
     """
     body = manifold(mesh) if mesh.is_closed else None
@@ -55,18 +55,18 @@ def drawn(mesh: TriMesh) -> Drawn:
 
 
 def built_meshes(parts: Iterable[Part]) -> dict[str, TriMesh]:
-    """Return the meshes that a kernel made of a B-rep, by digest; others are what somebody gave, and stay as they are."""
+    """Return the meshes that a kernel made from a B-rep, by digest; other meshes were given by users, and stay as they are."""
     return {part.solid.mesh.digest: part.solid.mesh for part in parts if part.solid is not None and part.solid.deflection > 0}
 
 
 class MeshFiles:
-    """Collects the meshes that a document names; equal ones share a file. `by_digest` holds the path of each mesh.
+    """Collects the meshes that a document names; equal ones share a file. `by_digest` has the path of each mesh.
 
     Args:
         kind: Format of the files.
         folder: Their folder.
-        prefix: Of their names in the document.
-        draws: Whether the meshes of built parts become coarser, to be drawn and no more.
+        prefix: Prefix of their names in the document.
+        draws: Whether visual meshes of built parts are simplified.
     """
 
     def __init__(self, kind: MeshKind = "stl", folder: str = "meshes", prefix: str = "", *, draws: bool = False) -> None:
@@ -78,13 +78,13 @@ class MeshFiles:
         self._built: dict[str, TriMesh] = {}
 
     def expect(self, parts: Iterable[Part]) -> None:
-        """Say which parts the records tell of, whether or not the document names their meshes."""
+        """State which parts the records describe, whether or not the document names their meshes."""
         parts = tuple(parts)
         self._expected |= {shape.mesh.digest for part in parts for shape in (*part.visuals, *part.collisions)}
         self._built |= built_meshes(parts) if self.draws else {}
 
     def path(self, mesh: TriMesh, name: str, kind: MeshKind | None = None) -> str:
-        """Return the path of the file that holds this mesh, writing it if it is new; `name` is asked for, `kind` overrules."""
+        """Return the path of the file of this mesh, and write it if it is new; `name` is the wanted name, `kind` overrides the format."""
         kind = kind or self.kind
         if mesh.digest not in self.by_digest:
             path = f"{self.folder}/{self._names.claim(name)}.{kind}"
@@ -94,14 +94,14 @@ class MeshFiles:
         return self.by_digest[mesh.digest]
 
     def deviation(self, mesh: TriMesh) -> float:
-        """Return how far the surface in the file is from the mesh [mm]."""
+        """Return the deviation of the surface in the file from the mesh [mm]."""
         return self._drawn(mesh).deviation
 
     def _drawn(self, mesh: TriMesh) -> Drawn:
         return drawn(self._built[mesh.digest]) if mesh.digest in self._built else Drawn(mesh, 0.0)
 
     def keep(self, mesh: TriMesh, name: str) -> None:
-        """Write the file of a mesh that the document states in another way, if the records name it."""
+        """Write the file of a mesh that the document states in another form, if the records name it."""
         if mesh.digest in self._expected:
             self.path(mesh, name)
 

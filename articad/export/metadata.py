@@ -1,4 +1,4 @@
-"""articad's own records inside foreign files, so that nothing is lost on the way back.
+"""articad's own records inside files of other formats, so that reading them back loses nothing.
 
 A record is one JSON object: `{"kind": "assembly" | "part" | "joint" | "coupling" | "material" | "fit" | "waiver" | "kept", …}`, in mm, rad, kg and
 N·mm, numbers in full, frames as seven numbers `x y z qx qy qz qw`; null stands for an infinite limit. URDF holds each as the text
@@ -33,10 +33,10 @@ def records(assembly: Assembly, model: LoweredModel, files: MeshFiles, written: 
     """Return everything that a format does not hold by itself.
 
     Args:
-        assembly: What is exported.
-        model: Its lowering: the names under which parts and joints are found in the file.
-        files: The bundle's meshes.
-        written: The elements that say in the format's own words what the records say; whoever edits them makes the records stale.
+        assembly: The assembly that is exported.
+        model: Its lowering, with the names of parts and joints in the file.
+        files: The meshes of the bundle.
+        written: The elements that state the same data in the format's own terms; editing them makes the records outdated.
     """
     links = {link.part.name: link for link in model.links}
     names = {lowered.joint.name: lowered.name for lowered in (*model.joints, *model.loops)}

@@ -1,4 +1,4 @@
-"""Loops as mimics: dependent joints as linear functions of the driver, where that is good enough to be told as the truth."""
+"""Loops as mimics: dependent joints as linear functions of the driver, if that is accurate enough."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ if TYPE_CHECKING:
 
 FloatArray = NDArray[np.float64]
 
-LARGEST_GAP_MM = 0.1  # by which any point of a part may be off where a linear relation stands for a loop
+LARGEST_GAP_MM = 0.1  # largest error of any point of a part if a linear relation replaces a loop
 SAMPLES = 33  # of the driver's range
 
 
 def linear_followers(assembly: Assembly, model: LoweredModel) -> dict[str, Follows]:
-    """Return what each dependent joint of the tree follows, as the straight line that fits its motion best.
+    """Return the leader of each dependent joint of the tree, with the straight line that fits its motion best.
 
     Raises:
         ExportError: E_MIMIC_FIT if there is not exactly one driver, or a part would be off by more than 0.1 mm.
@@ -67,7 +67,7 @@ def _samples(lower: float, upper: float, rest: float) -> FloatArray:
 
 
 def _largest_gap(assembly: Assembly, exact: FloatArray, fitted: FloatArray) -> float:
-    """Return the largest distance [mm] between any corner of a part's bounding box where it is and where the fit puts it."""
+    """Return the largest distance [mm] of any corner of a part's bounding box between the exact motion and the fit."""
     mechanism = assembly.mechanism
     closing = {joint.name for joint in mechanism.loop_joints}
     tree = [joint for joint in mechanism.joints if joint.name not in closing]

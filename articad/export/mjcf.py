@@ -45,16 +45,19 @@ if TYPE_CHECKING:
     from articad.assembly import Assembly
 
 RESERVED = ("world",)  # the name of MuJoCo's own root body
-FAR_RAD = 1e6  # stands for an open end of a range that has another end
+FAR_RAD = 1e6  # replaces an open end of a range whose other end is limited
 FAR_M = 1e3
-LEAST_VOLUME_MM3 = 1e-3  # below it MuJoCo calls a mesh too small to measure
-STL_TRIANGLES = 200_000  # MuJoCo refuses larger STL files; OBJ has no such bound
+LEAST_VOLUME_MM3 = 1e-3  # MuJoCo reports a smaller mesh as too small to measure
+STL_TRIANGLES = 200_000  # MuJoCo refuses larger STL files; OBJ has no such limit
 TIMESTEP_S = 0.002
-EQUALITY = {"solref": "0.004 1", "solimp": "0.9999 0.9999 0.001"}  # as stiff as the time step allows: MuJoCo's default sags visibly
-SERVO_ERROR_TURN = 0.05  # rad by which a servo is off at full effort
+EQUALITY = {
+    "solref": "0.004 1",
+    "solimp": "0.9999 0.9999 0.001",
+}  # as stiff as the time step allows: with MuJoCo's defaults loops sag visibly
+SERVO_ERROR_TURN = 0.05  # rad: error of a servo at full effort
 SERVO_ERROR_SLIDE = 0.005  # m, likewise
-ROTOR_SHARE = 0.01  # of what a driven joint moves: the inertia of a motor's rotor as seen through its gears
-FRICTION_SPIN, FRICTION_ROLL = 0.005, 0.0001  # MuJoCo's defaults beside the sliding friction [m]
+ROTOR_SHARE = 0.01  # of the moved inertia: the inertia of a motor's rotor as seen through its gears
+FRICTION_SPIN, FRICTION_ROLL = 0.005, 0.0001  # MuJoCo's defaults for the other two friction coefficients [m]
 
 
 def write_mjcf(
@@ -68,19 +71,19 @@ def write_mjcf(
 ) -> Bundle:
     """Write an assembly as MJCF.
 
-    Body frames are joint frames, the one base body is the ground part, and every joint's value is ours in rad or m, so all zero is q = 0;
-    the key `home` is the rest pose. Loops are closed by equality constraints between sites.
-    Parts that share a joint do not collide with each other, nor do parts whose solids overlap at rest; a comment gives the reason. Parts
-    that collide with meshes or hulls do not collide either where these meet and the solids do not.
+    Body frames are joint frames, the one base body is the ground part, and every joint's value equals articad's in rad or m, so all zero
+    is q = 0; the key `home` is the rest pose. Loops are closed by equality constraints between sites.
+    Parts that share a joint do not collide with each other, nor do parts whose solids overlap at rest; a comment gives the reason. With
+    meshes or hulls for collision, pairs whose hulls meet where the solids do not are excluded as well.
 
     Args:
         assembly: What to write.
         strict: Refuse what MJCF holds only with a loss of motion, mass or shape.
-        meshes: Format of the mesh files: STL holds single precision, OBJ nine digits.
+        meshes: Format of the mesh files: STL has single precision, OBJ nine digits.
         actuators: Give every driver a position servo of the joint's effort, and its joint the inertia of a rotor.
-        collision: Collide with convex pieces inside the parts ("pieces"), with the parts' own meshes ("solid"), of which engines take the
-            hulls, or with hulls ("hull"). By default pieces; of a file that somebody else made, its own shapes.
-        cache: Keeps convex pieces by shape; that of built parts by default.
+        collision: Collide with convex pieces inside the parts ("pieces"), with the parts' own meshes ("solid"), of which engines use the
+            hulls, or with hulls ("hull"). By default pieces; for a file that articad did not write, its own shapes.
+        cache: Stores convex pieces by shape; the cache of built parts by default.
 
     Returns:
         `<name>.xml`, `meshes/…`, and the losses.
@@ -91,7 +94,7 @@ def write_mjcf(
     again = Again(assembly)
     model = lower(assembly, () if again.active else RESERVED, as_it_came=assembly.foreign)
     contacts: tuple[HullOverlap, ...] = ()
-    if not (again.active and kind_of(assembly, collision) == "solid"):  # what collides in an MJCF file is what that file says
+    if not (again.active and kind_of(assembly, collision) == "solid"):  # the file decides what collides in it
         model, contacts = collide(assembly, model, collision, _skipped(assembly), cache)
     writer = _Writer(assembly, model, MeshFiles(meshes, draws=kind_of(assembly, collision) != "solid"), again)
     root = writer.document(contacts, actuators=actuators)
@@ -111,7 +114,7 @@ def write_mjcf(
 
 
 class _Writer:
-    """Builds one document; holds what its sections share."""
+    """Builds one document; has what its sections share."""
 
     def __init__(self, assembly: Assembly, model: LoweredModel, files: MeshFiles, again: Again) -> None:
         self.assembly, self.model, self.files, self.again = assembly, model, files, again
@@ -128,7 +131,7 @@ class _Writer:
         self.added: list[Feature] = []
 
     def features(self) -> list[Feature]:
-        """Return the features of the model that the document has: a step between two joints of a body is no part of it."""
+        """Return the features of the model that apply to the document: steps between two joints of a body do not."""
         said = [feature for feature in self.model.features if feature.where not in self.between]
         said = [feature for feature in said if not (feature.key == "ball" and feature.where in self.exact)]
         return [*(feature for feature in said if not (feature.key == "mass.missing" and feature.where in self.weighed)), *self.added]
@@ -159,7 +162,7 @@ class _Writer:
         return root
 
     def _has_the_files_joints(self, world: Any) -> bool:
-        """True when the joints are those of the file, in its order: the values of its keys are theirs."""
+        """True if the joints are those of the file, in its order, so that the values of its keys are valid."""
         closing = {joint.name for joint in self.assembly.mechanism.loop_joints}
         moving = [joint.name for joint in self.assembly.joints if joint.type is not JointType.FIXED and joint.name not in closing]
         return [joint.get("name") for joint in world.iter("joint", "freejoint")] == moving
@@ -174,7 +177,7 @@ class _Writer:
     def _bodies(self, world: Any) -> None:
         carried = {joint.child: joint for joint in self.model.joints}
         inertials = self._inertials()
-        zero: dict[str, SE3] = {}  # where each link stands when all values are zero
+        zero: dict[str, SE3] = {}  # pose of each link when all values are zero
         chains: dict[str, tuple[LoweredJoint, ...]] = {}  # over bare links of an MJCF file, which are several joints of one body
         for link in self.model.links:
             joint = carried.get(link.name)
@@ -205,7 +208,7 @@ class _Writer:
                 self._site(body, f"{link.name}__{connector.name}", link.T_link_part @ metres(connector.frame))
 
     def _free_body(self, world: Any, link: Link, joint: LoweredJoint, place: SE3) -> Any:
-        """Return the element of a body that floats, placed where it is at zero; MuJoCo wants it in the world."""
+        """Return the element of a floating body, at its pose for zero values; MuJoCo requires it to be in the world."""
         T = place @ joint.T_rest
         if _is_nested(joint, self.assembly):
             T = metres(self.assembly.mechanism.rest_poses()[link.part.name]) @ link.T_link_part.inverse()
@@ -213,7 +216,7 @@ class _Writer:
         return child(world, "body", {"name": link.name} | _placement(place))
 
     def _body(self, world: Any, link: Link, chain: tuple[LoweredJoint, ...]) -> Any:
-        """Return the element of a body, placed where it is when every joint has the value `ref`."""
+        """Return the element of a body, at its pose when every joint has the value `ref`."""
         if not chain:
             return child(world, "body", {"name": link.name})
         T = SE3.identity()
@@ -222,11 +225,11 @@ class _Writer:
         return child(self.bodies[chain[0].parent], "body", {"name": link.name} | _placement(T))
 
     def _is_world(self, link: Link) -> bool:
-        """True for the ground of an MJCF file that is its world."""
+        """True for the ground of an MJCF file if it is the world."""
         return self.again.active and link.name == "world" and link.inertial is None
 
     def _is_between(self, link: Link, chain: tuple[LoweredJoint, ...]) -> bool:
-        """True for a link that stands for nothing but the step from one joint of a body to the next; MuJoCo has no such bodies."""
+        """True for a link that is only the step from one joint of a body to the next; MuJoCo has no such bodies."""
         part, name = link.part, link.part.name
         joints = [joint for joint in self.assembly.joints if name in {joint.parent, joint.child}]
         bare = part.mass is None and not part.visuals and not part.collisions and len(joints) == 2
@@ -236,7 +239,7 @@ class _Writer:
         return (beyond[0].T_parent_joint @ self._reference(beyond[0])).allclose(SE3.identity(), mm=1e-9, rad=1e-9)
 
     def _reference(self, joint: LoweredJoint) -> SE3:
-        """Return how a joint moves its body from zero to the value `ref` that the file's own pose has [m]."""
+        """Return the joint's motion from zero to the value `ref`, its value in the file's own pose [m]."""
         if len(joint.freedoms) != 1 or not (ref := self.references.get(joint.joint.name)):
             return SE3.identity()
         axis = joint.freedoms[0].axis
@@ -247,14 +250,14 @@ class _Writer:
 
     @cached_property
     def references(self) -> dict[str, float]:
-        """Values of the joints in the file's own pose [rad or m], where they are not zero."""
+        """Values of the joints in the file's own pose [rad or m], if not zero."""
         said = {joint.name: self.again.attributes(f"joints.{joint.name}", "joint").get("ref") for joint in self.assembly.joints}
         return {name: float(text) for name, text in said.items() if text}
 
     def _inertials(self) -> dict[str, Inertial | None]:
-        """Return each link's inertia; ghosts of loops get half of the part that they stand for.
+        """Return each link's inertia; a ghost of a loop gets half of its part's inertia.
 
-        MuJoCo's constraints are the softer, the lighter the bodies that they tie, so a ghost must not be much lighter than its part.
+        The lighter the bodies, the softer MuJoCo's constraints between them, so a ghost must not be much lighter than its part.
         """
         self.weighed = {f"parts.{link.part.name}" for link in self.model.links if self.again.active and self._is_weighed(link.name)}
         found = {
@@ -271,7 +274,7 @@ class _Writer:
         return found
 
     def _is_weighed(self, name: str) -> bool:
-        """True for a link that something with mass is fixed to: MuJoCo asks for no mass of its own then."""
+        """True for a link to which something with mass is fixed: MuJoCo then requires no mass of its own."""
         masses = {link.name: link.inertial for link in self.model.links}
         fixed = [row.child for row in self.model.joints if row.parent == name and row.joint.type is JointType.FIXED]
         return any(masses[child] is not None or self._is_weighed(child) for child in fixed)
@@ -307,7 +310,7 @@ class _Writer:
 
     @staticmethod
     def _still_true(kept: dict[str, str], freedom: AxisMotion) -> dict[str, str]:
-        """Return what was kept of a joint; a range of forces only while its larger end is the joint's effort."""
+        """Return the kept attributes of a joint; a range of forces only if its larger end is still the joint's effort."""
         ends = [abs(float(word)) for word in kept.get("actuatorfrcrange", "").split()]
         stale = ends and not math.isclose(max(ends), freedom.load.effort, rel_tol=1e-12)
         return {name: value for name, value in kept.items() if not (stale and name == "actuatorfrcrange")}
@@ -328,7 +331,7 @@ class _Writer:
                     child(body, "geom", {"class": "collision"} | form | friction | place)
 
     def _form(self, placed: Placed, name: str) -> dict[str, str]:
-        """Return the attributes of a geom that say its shape: a primitive body, or a mesh."""
+        """Return the attributes of a geom that state its shape: a primitive, or a mesh."""
         form = placed.shape.primitive
         if form is None:
             return {"mesh": self._mesh(placed, name)}
@@ -336,7 +339,7 @@ class _Writer:
         return {"type": form.kind, "size": numbers(_half_sizes(form))}
 
     def _mesh(self, placed: Placed, name: str) -> str:
-        """Return the name of the asset that is this mesh, adding it if it is new."""
+        """Return the name of the asset for this mesh; add it if it is new."""
         mesh = placed.shape.mesh
         path = self.files.path(mesh, name, "obj" if len(mesh.triangles) > STL_TRIANGLES else None)
         asset = path.removeprefix(f"{self.files.folder}/").rpartition(".")[0]
@@ -368,9 +371,9 @@ class _Writer:
                 child(contact, "exclude", {"body1": links[a].name, "body2": links[b].name})
 
     def _joined(self) -> list[Pair]:
-        """Return the pairs of parts that share a joint; of a file's only those that MuJoCo would let touch.
+        """Return the pairs of parts that share a joint; for a file's assembly only those that MuJoCo would let collide.
 
-        MuJoCo keeps a body from touching the one that carries it, unless that one stands still, and parts that never move apart.
+        MuJoCo excludes contacts of a body with its parent, unless the parent stands still, and of bodies that never move apart.
         """
         mechanism = self.assembly.mechanism
         pairs = list(mating_pairs(mechanism.joints, mechanism.parts))
@@ -382,7 +385,7 @@ class _Writer:
         return [pair for pair in pairs if pair not in rigid and (frozenset(pair) in closing or still & {*pair})]
 
     def _equalities(self, root: Any) -> None:
-        """Tie what the tree of bodies does not: loops by sites, screws and couplings by their joints."""
+        """Write the constraints that the tree of bodies lacks: loops by sites, screws and couplings by their joints."""
         equality = etree.SubElement(root, "equality")
         for joint in (*self.model.joints, *self.model.loops):
             for freedom in joint.freedoms:
@@ -402,7 +405,7 @@ class _Writer:
             root.remove(equality)
 
     def _close(self, equality: Any, loop: LoweredJoint) -> None:
-        """Close a loop: a point for a ball, two points on the axis for an endless hinge, all six directions through a ghost for others."""
+        """Close a loop: one point for a ball, two points on the axis for an endless hinge, a weld to a ghost for others."""
         near, far = self.bodies[loop.parent], self.bodies[loop.child]
         if loop.is_free:
             return
@@ -426,7 +429,7 @@ class _Writer:
         child(equality, kind, {"name": name, "site1": site1, "site2": site2} | EQUALITY)
 
     def _actuators(self, root: Any, world: Any) -> list[AxisMotion]:
-        """Add a position servo and a rotor for every driver but balls; return the driven freedoms."""
+        """Add a position servo and a rotor for every driver except balls; return the driven freedoms."""
         driven = {driver.name for driver in self.assembly.mechanism.drivers}
         freedoms = [freedom for joint in (*self.model.joints, *self.model.loops) for freedom in joint.freedoms]
         freedoms = [freedom for freedom in freedoms if freedom.column in driven and freedom.name in self.qpos]
@@ -450,7 +453,7 @@ class _Writer:
             child(child(root, "keyframe"), "key", key)
 
     def _rests_at_zero(self) -> bool:
-        """True when every joint rests at zero, which is where engines begin."""
+        """True if every joint rests at zero, where engines start."""
         return all(np.allclose(joint.rest, joint.type.neutral, rtol=0, atol=1e-12) for joint in self.assembly.joints)
 
 
@@ -479,7 +482,7 @@ def _inertial(body: Any, inertial: Inertial) -> None:
 
 
 def _half_sizes(form: Primitive) -> list[float]:
-    """Return the sizes of a geom [m]: MuJoCo halves what has two ends."""
+    """Return the sizes of a geom [m]: MuJoCo uses half lengths."""
     sizes = [size * MM_TO_M for size in form.size]
     if form.kind == "box":
         return [size / 2 for size in sizes]
@@ -487,7 +490,7 @@ def _half_sizes(form: Primitive) -> list[float]:
 
 
 def _no_force(freedom: AxisMotion) -> bool:
-    """True for a stated effort of zero: MuJoCo reads the range from 0 to 0 as none."""
+    """True for a stated effort of zero: MuJoCo reads the range from 0 to 0 as unlimited."""
     return freedom.load.effort == 0 and "effort" not in freedom.load.assumed
 
 
@@ -497,7 +500,7 @@ def _dynamics(freedom: AxisMotion) -> dict[str, str]:
 
 
 def _joint(freedom: AxisMotion, *, foreign: bool = False) -> dict[str, str]:
-    """Return the attributes of a hinge or slide; the effort limits what actuators give it, where a foreign file states one."""
+    """Return the attributes of a hinge or slide; the effort limits the actuators' forces if a foreign file states one."""
     turn = freedom.kind == "turn"
     attributes = {"name": freedom.name, "type": "hinge" if turn else "slide", "axis": numbers(tidy(freedom.axis))}
     bounds = _range(freedom)
@@ -533,7 +536,7 @@ def _tie(equality: Any, name: str, follower: str, follows: Follows) -> None:
 
 
 def _needs_ghost(loop: LoweredJoint) -> bool:
-    """True for joints that points alone cannot hold, or whose limits must hold: a body with the joint is welded to the other side."""
+    """True for joints that points cannot hold, or whose limits must hold: a body with the joint is welded to the other side."""
     kind = loop.joint.type
     if kind is JointType.REVOLUTE:
         return has_limits(loop)
@@ -546,11 +549,11 @@ def _is_nested(joint: LoweredJoint, assembly: Assembly) -> bool:
 
 
 def _mesh_inertia(mesh: TriMesh) -> dict[str, str]:
-    """Tell MuJoCo not to measure the volume of a mesh that has none; the body's inertia is written anyway."""
+    """Tell MuJoCo not to compute the volume of a mesh that has none; the body's inertia is written anyway."""
     return {} if mesh.is_closed and mesh.volume > LEAST_VOLUME_MM3 else {"inertia": "shell"}
 
 
 def _skipped(assembly: Assembly) -> set[Pair]:
-    """Return the pairs that do not collide in MuJoCo: those that share a joint, which are excluded, and what never moves apart."""
+    """Return the pairs that do not collide in MuJoCo: those that share a joint, which are excluded, and those that never move apart."""
     joints, order = assembly.mechanism.joints, assembly.mechanism.parts
     return set(mating_pairs(joints, order)) | same_group_pairs(joints, order)

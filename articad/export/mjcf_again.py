@@ -1,7 +1,7 @@
-"""What an MJCF file said beyond an assembly, written into MJCF again: attributes, sites, cameras, sections and their defaults.
+"""Writes into MJCF again what an MJCF file has beyond an assembly: attributes, sites, cameras, sections and their defaults.
 
-An element is written where everything that it names is there: an actuator with its joint, a sensor with the actuator that it measures.
-What names something that is gone is left out, and is a row of the losses like everything else that is kept and not written.
+An element is written if everything that it names exists: an actuator with its joint, a sensor with the actuator that it measures. An
+element with a missing reference is omitted, and is a row of the losses like everything else that is kept and not written.
 """
 
 from __future__ import annotations
@@ -43,18 +43,18 @@ _KIND_OF: Final[Mapping[str, str]] = (
         for name in ("actuator", "sensor", "camera", "material", "mesh", "texture", "hfield", "skin", "flex", "class", "instance")
     }
 )
-"""What kind of thing an attribute names."""
+"""The kind of object that an attribute names."""
 
 _GROUPS: Final[Mapping[str, str]] = {"xbody": "body", "freejoint": "joint", "spatial": "tendon", "fixed": "tendon"}
 _OF_EVERY_MODEL: Final = {("body", "world"), ("class", "main")}
 
 
 class Again:
-    """What is written again, and what has been.
+    """The data to write again, and what has been written.
 
     Attributes:
         active: True for an assembly that came from an MJCF file.
-        written: What has been written.
+        written: Data that has been written.
     """
 
     def __init__(self, assembly: Assembly) -> None:
@@ -67,7 +67,7 @@ class Again:
                 self._kept.setdefault(item.where, []).append(item)
 
     def attributes(self, where: str, tag: str) -> dict[str, str]:
-        """Return the attributes that were kept of a joint, a body or a geom; they count as written."""
+        """Return the kept attributes of a joint, a body or a geom; they count as written."""
         found: dict[str, str] = {}
         for item, element in self._elements(where):
             if element.tag == tag and (tag != "geom" or ".visuals." in where or ".collisions." in where):
@@ -76,18 +76,18 @@ class Again:
         return found
 
     def below(self, where: str, body: Any) -> None:
-        """Add the geoms, sites, cameras and lights that were kept of a part."""
+        """Add the kept geoms, sites, cameras and lights of a part."""
         for item, element in self._elements(where):
             if element.tag in {"geom", "site", "camera", "light"}:
                 body.append(element)
                 self.written.add(item)
 
     def equality(self, where: str) -> Any | None:
-        """Return the equality that a joint or coupling was, word for word."""
+        """Return the original equality of a joint or coupling, verbatim."""
         return next((element[0] for _, element in self._elements(where) if element.tag == "equality"), None)
 
     def drop_unknown_targets(self, root: Any) -> None:
-        """Take out cameras and lights that look at a body that is not there."""
+        """Remove cameras and lights that target a missing body."""
         known = _known(root)
         for item in list(self.written):
             element = etree.fromstring(item.xml)
@@ -97,7 +97,7 @@ class Again:
                     there.getparent().remove(there)
 
     def sections(self, root: Any, *, same_joints: bool) -> None:
-        """Add the kept sections, as far as all that they name is there.
+        """Add the kept sections whose references all exist.
 
         Args:
             root: The document, with its bodies and equalities.
@@ -109,7 +109,7 @@ class Again:
         kept = {item for item, _ in waiting}
         for item, element in settings:
             self._add(root, item, element)
-        while True:  # what names something that is left out is left out, too
+        while True:  # an element that names an omitted one is omitted, too
             known = _known(root) | _named(element[0] for item, element in waiting if item in kept)
             lost = {item for item, element in waiting if item in kept and not _references(element) <= known}
             if not lost:
@@ -123,7 +123,7 @@ class Again:
         self._in_order(root.find("equality"))
 
     def _in_order(self, equalities: Any | None) -> None:
-        """Put the equalities into the order of the file, ours last: MuJoCo numbers those without names."""
+        """Sort the equalities as in the file, with articad's last: MuJoCo numbers those without names."""
         if equalities is None:
             return
         places = {etree.tostring(etree.fromstring(xml)[0]): place for place, xml in enumerate(self._equalities)}
@@ -144,7 +144,7 @@ class Again:
 
 
 def _known(root: Any) -> set[tuple[str, str]]:
-    """Return what a document has by name, with its kind."""
+    """Return the names in a document, with their kinds."""
     return _OF_EVERY_MODEL | _named(root.iterfind("worldbody//*")) | _named(root.iterfind("equality/*")) | _named(root.iterfind("asset/*")) | {
         ("class", default.get("class")) for default in root.iter("default")
     }  # fmt: skip
@@ -160,7 +160,7 @@ def _named(elements: Iterable[Any]) -> set[tuple[str, str]]:
 
 
 def _references(section: Any) -> set[tuple[str, str]]:
-    """Return what the elements of a section name, with its kind."""
+    """Return the names to which the elements of a section refer, with their kinds."""
     found = set()
     for element in section.iter():
         for name, value in element.attrib.items():

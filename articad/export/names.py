@@ -1,4 +1,4 @@
-"""Names that every reader accepts: ROS, MuJoCo and USD alike take letters, digits and underscores after a letter."""
+"""Names that every reader accepts: ROS, MuJoCo and USD all accept a letter followed by letters, digits and underscores."""
 
 from __future__ import annotations
 
@@ -6,11 +6,11 @@ import re
 import unicodedata
 from collections.abc import Iterable
 
-MAX_LENGTH = 120  # characters; files are named after parts, and file systems stop at 255 bytes
+MAX_LENGTH = 120  # characters; files are named after parts, and file systems allow 255 bytes
 
 
 class Names:
-    """Hands out valid names, each once, and none that is reserved."""
+    """Assigns valid names, each once, and none that is reserved."""
 
     def __init__(self, reserved: Iterable[str] = (), *, any_text: bool = False) -> None:
         self._taken: set[str] = set(reserved)
@@ -18,7 +18,7 @@ class Names:
         self.changed: dict[str, str] = {}
 
     def claim(self, wanted: str) -> str:
-        """Return `wanted` if it is valid and free, else a valid name like it; `changed` remembers which."""
+        """Return `wanted` if it is valid and unused, else a similar valid name; `changed` records which."""
         name = free = self._valid(wanted)
         number = 2
         while free in self._taken:

@@ -1,4 +1,4 @@
-"""What several formats ask of the same assembly is worked out once: as long as the assembly is there, so are the answers."""
+"""Results about an assembly that several formats need are computed once, and live as long as the assembly."""
 
 from __future__ import annotations
 

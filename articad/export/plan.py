@@ -1,7 +1,7 @@
-"""A plan of any assembly: `plan.json` with its parts' connectors and its joints, for files that somebody else made.
+"""A plan for any assembly: `plan.json` with its parts' connectors and its joints, also for files that articad did not write.
 
-An assembly that was made from a plan gives that plan back, with the parameters that it was built with. Any other is told anew: names
-become plan names, radians degrees, poses axes and angles. A plan holds no shapes, since scripts build them.
+For an assembly made from a plan, this is that plan with the parameters that it was built with. For any other, a new plan is written:
+names become plan names, radians degrees, poses axes and angles. A plan contains no shapes, since scripts build them.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ from articad.plan.schema import PLAN_FILE, SCHEMA, AssemblyPlan, ConnectorKind
 if TYPE_CHECKING:
     from articad.assembly import Assembly
 
-FAR_MM, FAR_DEG = 1e6, 36_000.0  # where a plan has no word for an endless coordinate
+FAR_MM, FAR_DEG = 1e6, 36_000.0  # limits that replace an endless coordinate where a plan cannot have one
 UNKNOWN_DENSITY = 1000.0  # kg/m³: water
 MM3_PER_M3 = 1e9
 
@@ -49,7 +49,7 @@ def write_plan(assembly: Assembly, *, strict: bool = False) -> Bundle:
         `plan.json` and the losses.
 
     Raises:
-        UnrepresentableError: If `strict` and there is such a loss, or a loop rests where a plan cannot let it rest.
+        UnrepresentableError: If `strict` and there is such a loss, or if a plan cannot express the rest pose of a loop.
     """
     plan, features = plan_of(assembly)
     losses = (*losses_of("plan", features), *kept_losses("plan", assembly.kept))
@@ -59,7 +59,7 @@ def write_plan(assembly: Assembly, *, strict: bool = False) -> Bundle:
 
 
 def plan_of(assembly: Assembly) -> tuple[AssemblyPlan, list[Feature]]:
-    """Return the plan of an assembly, and what it has that a plan may not hold.
+    """Return the plan of an assembly, and its features that a plan may not hold.
 
     Raises:
         UnrepresentableError: If a ball, planar or universal joint of a loop does not rest at zero.
@@ -74,7 +74,7 @@ def plan_of(assembly: Assembly) -> tuple[AssemblyPlan, list[Feature]]:
 
 
 class _Names:
-    """Plan names for given names, each once; `changed` remembers those that are others."""
+    """Plan names for given names, each once; `changed` records those that differ."""
 
     def __init__(self, wanted: Iterable[str]) -> None:
         self._names: dict[str, str] = {}
@@ -97,7 +97,7 @@ class _Names:
 
 
 def plan_name(wanted: str) -> str:
-    """Return a name that plans take: lower-case words with single underscores, at most 40 characters, no keyword."""
+    """Return a valid plan name: lower-case words with single underscores, at most 40 characters, not a keyword."""
     name = re.sub(r"[^a-z0-9]+", "_", wanted.lower()).strip("_")[:MAX_NAME].strip("_")
     if not name[:1].isalpha():
         name = f"n{name}"[:MAX_NAME].rstrip("_")
@@ -108,7 +108,7 @@ def plan_name(wanted: str) -> str:
 
 
 class _Teller:
-    """Tells an assembly in a plan's words; `features` collects what these words leave out."""
+    """Converts an assembly to a plan; `features` collects what the plan leaves out."""
 
     def __init__(self, assembly: Assembly) -> None:
         self.assembly, self.mechanism = assembly, _rested(assembly.mechanism)
@@ -173,7 +173,7 @@ class _Teller:
         }
 
     def _material(self, name: str, part: Part) -> str:
-        """Return the material of a part, which is its own or one of the density that gives its mass."""
+        """Return the material of a part: its own, or one with the density that gives its mass."""
         known = self.assembly.materials.get(part.material or "")
         if known is None:
             solid = part.solid.volume if part.solid is not None else 0.0
@@ -224,7 +224,7 @@ class _Teller:
                 for bound in bounds]  # fmt: skip
 
     def _capacity(self, joint: Joint, where: str) -> dict[str, float]:
-        """Return effort and velocity: a plan states one of each for turning and one for sliding."""
+        """Return effort and velocity: a plan states one of each for rotation and one for translation."""
         found: dict[str, float] = {}
         turning = {"1": "rad"}
         for values, keys in ((joint.effort, ("effort_n_mm", "effort_n")), (joint.velocity, ("velocity_deg_s", "velocity_mm_s"))):
@@ -245,7 +245,7 @@ class _Teller:
         return {"fit": {"gap_mm": gap, "within_mm": fit.within, "contact": fit.contact}}
 
     def _coupling(self, index: int) -> dict[str, Any]:
-        """Return a coupling as the straight line that it is, in degrees and mm."""
+        """Return a coupling as a linear relation, in degrees and mm."""
         row = self.mechanism.couplings[index]
         units = {coordinate.name: coordinate.unit for coordinate in self.mechanism.coordinates}
         scale = {"rad": math.radians(1.0), "mm": 1.0}
@@ -266,7 +266,7 @@ class _Teller:
 
 
 def degrees(radians: float) -> float:
-    """Return an angle in degrees that a plan turns back into the very same float, if there is one."""
+    """Return an angle in degrees that a plan converts back to exactly the same float, if there is one."""
     scale = math.radians(1.0)
     near = radians / scale
     for value in (near, round(near, 9), math.nextafter(near, math.inf), math.nextafter(near, -math.inf)):
@@ -276,7 +276,7 @@ def degrees(radians: float) -> float:
 
 
 def _rested(mechanism: Mechanism) -> Mechanism:
-    """Return the mechanism with balls, planar and universal joints at rest at zero, as plans have them."""
+    """Return the mechanism with balls, planar and universal joints at rest at zero, as a plan requires."""
     moved = {joint.name for joint in mechanism.joints if joint.type in _RESTS_AT_ZERO and joint.rest != joint.type.neutral}
     if not moved:
         return mechanism
@@ -291,7 +291,7 @@ def _rested(mechanism: Mechanism) -> Mechanism:
             return Mechanism(mechanism.parts, mechanism.ground, joints, mechanism.couplings, T_ground=mechanism.T_ground)
         except KinematicsError:
             pass
-    lost = "a ball, planar or universal joint of a plan rests at zero, which this one cannot"
+    lost = "a ball, planar or universal joint of a plan rests at zero, but this one cannot"
     finding = Finding(code="E_UNREPRESENTABLE", where=f"joints.{first}", message=f"plan: {lost}.", hint="Let it rest at zero.")
     raise UnrepresentableError(f"joints.{first}", "plan", lost, findings=[finding])
 

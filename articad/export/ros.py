@@ -1,4 +1,4 @@
-"""What ROS 2 wants around a URDF: a package, pairs that need no collision check, and joints that controllers may drive."""
+"""The ROS 2 files around a URDF: a package, pairs that need no collision check, and joints that controllers may drive."""
 
 from __future__ import annotations
 
@@ -44,10 +44,10 @@ _MANIFEST = """\
 
 
 def require_package_name(package: str) -> None:
-    """Refuse names that ROS does not take.
+    """Refuse names that ROS does not accept.
 
     Raises:
-        ExportError: If it is not of lower-case words joined by single underscores.
+        ExportError: If it does not consist of lower-case words joined by single underscores.
     """
     if not _PACKAGE_NAME.fullmatch(package):
         raise ExportError(
@@ -67,10 +67,10 @@ def srdf(name: str, links: Mapping[str, str], pairs: Iterable[tuple[str, Iterabl
     """Return an SRDF.
 
     Args:
-        name: Of the robot.
+        name: Name of the robot.
         links: Name of the link by part.
-        pairs: Reasons, and the pairs of parts that need no collision check for each.
-        kept: Elements that come first, as they are.
+        pairs: For each reason, the pairs of parts that need no collision check.
+        kept: Elements that come first, unchanged.
     """
     root = etree.Element("robot", {"name": name})
     root.extend(kept)
@@ -99,7 +99,7 @@ _JOINTS = frozenset({"joint", "passive_joint", "joint_property"})
 
 
 def add_control(root: Any, assembly: Assembly, model: LoweredModel) -> None:
-    """Add a `<ros2_control>` system with a position command for every freedom that drives, on mock hardware."""
+    """Add a `<ros2_control>` system with a position command for every driving freedom, on mock hardware."""
     driven = {driver.name for driver in assembly.mechanism.drivers}
     freedoms: list[AxisMotion] = [freedom for joint in model.joints for freedom in joint.freedoms if _is_driven(freedom, driven)]
     system = child(root, "ros2_control", {"name": model.name, "type": "system"})
@@ -113,5 +113,5 @@ def add_control(root: Any, assembly: Assembly, model: LoweredModel) -> None:
 
 
 def _is_driven(freedom: AxisMotion, driven: set[str]) -> bool:
-    """True for a driver's own coordinate; the angles of a ball have none, but they drive as well."""
+    """True for a driver's own coordinate; the angles of a ball are not coordinates, but they drive as well."""
     return freedom.column in driven or (freedom.column is None and freedom.follows is None)

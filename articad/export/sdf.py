@@ -1,4 +1,4 @@
-"""SDFormat 1.10 for Gazebo: links posed in the model's frame, joints as a graph, loops closed by joints like any other."""
+"""SDFormat 1.10 for Gazebo: links posed in the model's frame, joints as a graph, loops closed by ordinary joints."""
 
 from __future__ import annotations
 
@@ -26,10 +26,10 @@ from articad.kinematics.joints import JointType
 if TYPE_CHECKING:
     from articad.assembly import Assembly, Kept
 
-RESERVED = ("world",)  # what SDFormat calls the frame of the world
+RESERVED = ("world",)  # SDFormat's name for the frame of the world
 VERSION = "1.10"
 MIMIC_VERSION = "1.11"  # the first with <mimic>
-ARTICAD = "https://articad.invalid/sdf"  # SDFormat wants foreign elements in a namespace
+ARTICAD = "https://articad.invalid/sdf"  # SDFormat requires a namespace for foreign elements
 
 _NATIVE = {
     JointType.FIXED: "fixed",
@@ -47,7 +47,7 @@ _FORMS: dict[str, Callable[[tuple[float, ...]], dict[str, str]]] = {
     "capsule": lambda size: {"radius": number(size[0]), "length": number(size[1])},
     "ellipsoid": lambda size: {"radii": numbers(size)},
 }
-"""What SDFormat says of a primitive body whose sizes are these [m]."""
+"""The SDFormat element of a primitive with these sizes [m]."""
 
 
 def write_sdf(
@@ -67,10 +67,10 @@ def write_sdf(
     Args:
         assembly: What to write.
         strict: Refuse what SDFormat holds only with a loss of motion, mass or shape.
-        meshes: Format of the mesh files: STL holds single precision, OBJ, which Drake wants, nine digits.
-        collision: Collide with convex pieces inside the parts ("pieces"), with the parts' own meshes ("solid"), or with hulls ("hull"). By
-            default pieces; of a file that somebody else made, its own shapes.
-        cache: Keeps convex pieces by shape; that of built parts by default.
+        meshes: Format of the mesh files: STL has single precision; OBJ, which Drake requires, has nine digits.
+        collision: Collide with convex pieces inside the parts ("pieces"), with the parts' own meshes ("solid"), or with hulls ("hull").
+            By default pieces; for a file that articad did not write, its own shapes.
+        cache: Stores convex pieces by shape; the cache of built parts by default.
 
     Returns:
         `<name>.sdf`, `meshes/…`, and the losses.
@@ -159,7 +159,7 @@ class _Writer:
             self._tree_joint(model, link, joint)
         self.kept.write(model, "model")
         for loop in self.model.loops:
-            if loop.joint.type in _NATIVE:  # at rest its two frames meet, so the child's is enough
+            if loop.joint.type in _NATIVE:  # at rest its two frames coincide, so the child's is enough
                 self._joint(model, loop.name, loop, loop.parent, loop.child, loop.freedoms, loop.T_child_joint)
         kept = child(model, f"{{{ARTICAD}}}records")
         for record in records(self.assembly, self.model, self.files, [*model.iterfind("link"), *model.iterfind("joint")]):
@@ -172,7 +172,7 @@ class _Writer:
         return name
 
     def _tree_joint(self, model: Any, link: Link, joint: LoweredJoint) -> None:
-        """Write a link, the joint above it, and carriers between them where SDFormat has no such joint."""
+        """Write a link, the joint above it, and carriers between them if SDFormat has no such joint."""
         native = joint.joint.type in _NATIVE
         count = 0 if native else len(joint.freedoms) - 1
         inertial = link.inertial or (Inertial.carrier() if link.moves else None)
@@ -204,12 +204,12 @@ class _Writer:
             self._joint(model, freedom.name, one, names[index], name, (freedom,), at if index == count else None)
 
     def _rest_motion(self, joint: LoweredJoint) -> SE3:
-        """Return how far the joint has moved in the pose that is written."""
+        """Return the joint's displacement in the pose that is written."""
         if not self.at_rest or joint.joint.type is JointType.FIXED:
             return SE3.identity()
         if joint.joint.type is not JointType.BALL:
             T = SE3.identity()
-            for freedom in joint.freedoms:  # in the joint's frame, which may not be ours: lowering keeps the frames of links
+            for freedom in joint.freedoms:  # in the joint's frame, which may differ from articad's: lowering keeps the frames of links
                 T = T @ _motion(freedom)
             return T
         motion = joint.joint.motion(joint.joint.rest)
@@ -283,7 +283,7 @@ class _Writer:
                 child(limit, name, text=number(bound - zero))
         load = freedom.load
         for name, value in (("effort", load.effort), ("velocity", load.velocity)):
-            if not self.assembly.foreign or name not in load.assumed:  # SDFormat demands neither
+            if not self.assembly.foreign or name not in load.assumed:  # SDFormat requires neither
                 child(limit, name, text=number(value))
         dynamics = child(element, "dynamics")
         child(dynamics, "damping", text=number(load.damping))

@@ -1,13 +1,13 @@
-"""STEP AP242: one assembly file with a product per shape and an instance per part, placed as it rests, with names and colours.
+"""STEP AP242: one assembly file with a product per shape and an instance per part, at the rest pose, with names and colours.
 
-Parts that fixed joints hold together are instances in a sub-assembly of their own, which moves as one body in a CAD program.
+Parts joined by fixed joints are instances in a sub-assembly of their own, which moves as one body in a CAD program.
 
-The parts' own STEP files, which the kernel's worker wrote, are merged as text: their entities are renumbered and an assembly
-structure is put above them (ISO 10303-44: next assembly usage occurrences with item-defined transformations), so that no B-rep enters
-this process and the same parts give the same bytes. Parts with the same file and colour are instances of one product.
+The parts' own STEP files, which the kernel's worker wrote, are merged as text: their entities are renumbered and an assembly structure
+is added above them (ISO 10303-44: next assembly usage occurrences with item-defined transformations), so that no B-rep enters this
+process and the same parts give the same bytes. Parts with the same file and colour are instances of one product.
 
 A part that has a mesh and no B-rep becomes solids with plane faces, one for each triangle (ISO 10303-42: faceted_brep), or a surface
-model where the mesh is open. (OpenCASCADE drops voids of a faceted_brep, so a solid with voids is a brep_with_voids.)
+model if the mesh is open. (OpenCASCADE drops voids of a faceted_brep, so a solid with voids is a brep_with_voids.)
 """
 
 from __future__ import annotations
@@ -36,9 +36,9 @@ if TYPE_CHECKING:
 SCHEMA = "AP242_MANAGED_MODEL_BASED_3D_ENGINEERING_MIM_LF {1 0 10303 442 1 1 4 }"  # ISO 10303-242
 PROTOCOL = "ap242_managed_model_based_3d_engineering"
 TIME = "2000-01-01T00:00:00"  # the same assembly gives the same bytes
-UNCERTAINTY_MM = 1e-7  # below which two points of the file are one
-MOST_FACETS = 50_000  # of one part without a B-rep: CAD readers need minutes for more plane faces
-LEAST_AREA_MM2 = 1e-12  # a triangle with less has no plane
+UNCERTAINTY_MM = 1e-7  # two points of the file that are closer count as one
+MOST_FACETS = 50_000  # for one part without a B-rep: CAD readers need minutes for more plane faces
+LEAST_AREA_MM2 = 1e-12  # a smaller triangle has no plane
 
 _ENTITY = re.compile(r"#(\d+)\s*=\s*((?:[^';]|'(?:[^']|'')*')*);", re.DOTALL)
 _TOKEN = re.compile(r"'(?:[^']|'')*'|#(\d+)", re.DOTALL)
@@ -47,7 +47,7 @@ _SHAPES = ("ADVANCED_BREP_SHAPE_REPRESENTATION", "SHAPE_REPRESENTATION", "FACETE
 
 @dataclass(frozen=True)
 class _Component:
-    """Where a part's product is in the merged file: numbers of its entities."""
+    """A part's product in the merged file: numbers of its entities."""
 
     definition: int
     representation: int
@@ -57,7 +57,7 @@ class _Component:
 def write_step(assembly: Assembly, *, strict: bool = False) -> Bundle:
     """Write all parts that have a shape as one STEP assembly (AP242) in the rest pose, in mm.
 
-    Parts of the same shape and colour are instances of one product. Parts that fixed joints hold together, if not all are, stand in a
+    Parts of the same shape and colour are instances of one product. Parts joined by fixed joints, unless that is all of them, are in a
     sub-assembly `<first part>_group` with the first part's frame.
 
     Args:
@@ -96,14 +96,14 @@ def write_step(assembly: Assembly, *, strict: bool = False) -> Bundle:
 
 @dataclass(frozen=True)
 class _Group:
-    """Parts that stand in one product: a sub-assembly of this name, or the whole where the name is empty."""
+    """Parts of one product: a sub-assembly of this name, or the whole assembly if the name is empty."""
 
     name: str
     parts: tuple[str, ...]
 
 
 def _groups(assembly: Assembly) -> list[_Group]:
-    """Return the parts with a shape by the body that they move with, in the order of declaration."""
+    """Return the parts with a shape, grouped by the body that they move with, in the order in which they are declared."""
     shaped = [name for name, part in assembly.parts.items() if _shape_key(part) is not None]
     body = rigid_groups(assembly.mechanism.joints, tuple(assembly.parts))
     members: dict[int, list[str]] = {}
@@ -116,7 +116,7 @@ def _groups(assembly: Assembly) -> list[_Group]:
 
 
 def _shape_key(part: Part) -> str | None:
-    """Return the same text for parts of the same shape; None for a part without one."""
+    """Return a key that is equal for parts of the same shape; None for a part without one."""
     if part.solid is not None and part.solid.step is not None:
         return str(part.solid.step)
     mesh = body_mesh(part)
@@ -151,7 +151,7 @@ class _Writer:
         return ("\n".join([*header, *data, "ENDSEC;", "END-ISO-10303-21;"]) + "\n").encode("ascii")
 
     def root(self, name: str) -> _Component:
-        """Add the product that the parts are placed in."""
+        """Add the product that contains the parts."""
         definition, shape = self._definition(name)
         origin = self.axes(SE3.identity())
         representation = self.add(f"SHAPE_REPRESENTATION('',(#{origin}),#{self._geometric_context()})")
@@ -171,7 +171,7 @@ class _Writer:
         return self.faceted(mesh, part.name, part.color)
 
     def _definition(self, name: str) -> tuple[int, int]:
-        """Add a product; return its definition and what a shape is attached to."""
+        """Add a product; return its definition and the entity to which a shape is attached."""
         application = self.application()
         context = self.add(f"PRODUCT_CONTEXT('',#{application},'mechanical')")
         product = self.add(f"PRODUCT({_text(name)},{_text(name)},'',(#{context}))")
@@ -206,7 +206,7 @@ class _Writer:
         return self.add(f"AXIS2_PLACEMENT_3D('',#{point},#{z},#{x})")
 
     def component(self, text: str, name: str, color: str) -> _Component:
-        """Take over a part's file under new numbers, with our name and colour.
+        """Add a part's file with renumbered entities, and with articad's name and colour.
 
         Raises:
             ExportError: If it is not the STEP file of one product.
@@ -261,7 +261,7 @@ class _Writer:
         voids: dict[int, list[TriMesh]] = {}
         opened = [piece for piece in mesh.components() if not piece.is_closed]
         for hole in (piece for piece in closed if piece.volume < 0):
-            # the smallest box around the hole is that of the solid it is in; a hole in nothing is a solid inside out
+            # the smallest box around the hole is that of the solid that contains it; a hole outside all solids is a solid inside out
             around = [i for i, piece in enumerate(outer) if _contains(piece.bounds, hole.bounds)]
             if around:
                 voids.setdefault(min(around, key=lambda i: outer[i].volume), []).append(hole)
@@ -272,7 +272,7 @@ class _Writer:
             shell = self.add(f"CLOSED_SHELL('',{self._faces(piece)})")
             holes = [self.add(f"CLOSED_SHELL('',{self._faces(hole)})") for hole in voids.get(index, ())]
             if holes:
-                # the mesh's normals at a void point away from the material, as brep_with_voids wants them (ISO 10303-42)
+                # the mesh's normals at a void point away from the material, as brep_with_voids requires (ISO 10303-42)
                 oriented = _references([self.add(f"ORIENTED_CLOSED_SHELL('',*,#{hole},.T.)") for hole in holes])
                 items.append(self.add(f"BREP_WITH_VOIDS('',#{shell},{oriented})"))
             else:
@@ -326,7 +326,7 @@ class _Writer:
 
 
 def _renumbered(body: str, number_of: dict[int, int], name: str) -> str:
-    """Return an entity with its references under new numbers; what stands in quotes is left alone."""
+    """Return an entity with renumbered references; text in quotes is not changed."""
 
     def new(match: re.Match[str]) -> str:
         if match.group(1) is None:
@@ -340,7 +340,7 @@ def _renumbered(body: str, number_of: dict[int, int], name: str) -> str:
 
 
 def _renamed(kind: str, body: str, name: str) -> str:
-    """Return a product under the part's name."""
+    """Return a product with the part's name."""
     return (
         re.sub(r"^PRODUCT\s*\(\s*'(?:[^']|'')*'\s*,\s*'(?:[^']|'')*'", lambda _: f"PRODUCT({_text(name)},{_text(name)}", body)
         if kind == "PRODUCT"
@@ -349,13 +349,13 @@ def _renamed(kind: str, body: str, name: str) -> str:
 
 
 def _text(value: str) -> str:
-    """Return a string of a STEP file: quotes doubled, what is not ASCII as UTF-16 in hexadecimal."""
+    """Return a string of a STEP file: quotes doubled, non-ASCII characters as UTF-16 in hexadecimal."""
     encoded = "".join(c if " " <= c <= "~" else f"\\X2\\{c.encode('utf-16-be').hex().upper()}\\X0\\" for c in value.replace("\\", "\\\\"))
     return "'" + encoded.replace("'", "''") + "'"
 
 
 def _real(value: float) -> str:
-    """Return a number with the point that the format demands."""
+    """Return a number with the decimal point that the format requires."""
     mantissa, _, exponent = repr(float(value) + 0.0).partition("e")
     mantissa = mantissa.removesuffix(".0") + "." if mantissa.endswith(".0") or "." not in mantissa else mantissa
     return f"{mantissa}E{exponent}" if exponent else mantissa

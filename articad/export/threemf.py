@@ -1,4 +1,4 @@
-"""3MF print pack: one file per part, lying on its best face, closed meshes only, with the clearance that a process needs checked."""
+"""3MF print pack: one file per part, on its best face, closed meshes only, with a check of the clearance that a process needs."""
 
 from __future__ import annotations
 
@@ -28,11 +28,11 @@ FloatArray = NDArray[np.float64]
 Process = Literal["fdm", "sla", "sls"]
 
 CLEARANCE_MM: dict[Process, float] = {"fdm": 0.2, "sla": 0.1, "sls": 0.3}
-"""Smallest gap between two surfaces that each process prints apart reliably."""
+"""Smallest gap at which each process reliably prints two surfaces apart."""
 SAME_PLANE_MM = 0.01  # faces this close to the lowest point lie on the bed
 SAME_DIRECTION = 1e-3  # rad: normals that count as one
-CANDIDATES = 12  # directions tried as "down", those with the most flat area first
-MOST_TRIANGLES = 2000  # flat faces are made of large triangles; small ones belong to curved faces
+CANDIDATES = 12  # directions tried as "down", those with the largest flat area first
+MOST_TRIANGLES = 2000  # flat faces consist of large triangles; small ones belong to curved faces
 _CORE = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02"
 _TIME = (2000, 1, 1, 0, 0, 0)  # the same part gives the same bytes
 _CONTENT_TYPES = (
@@ -47,13 +47,13 @@ _RELATIONS = (
 
 
 def write_3mf(assembly: Assembly, *, strict: bool = False, process: Process = "fdm") -> Bundle:
-    """Write one 3MF file per part, in mm, turned so that it stands on the largest flat face that it can stand on.
+    """Write one 3MF file per part, in mm, rotated so that it stands on the largest flat face that it can stand on.
 
     Args:
-        assembly: What to write. A part whose mesh is open is left out with an error; a part without any shape is a loss, because there is
+        assembly: What to write. A part whose mesh is open is omitted with an error; a part without any shape is a loss, because there is
             nothing to print.
-        strict: Refuse losses of motion, mass or shape; a printed part is no joint, so only a single body passes.
-        process: How it will be printed: joints whose declared gap is smaller than the process needs are findings.
+        strict: Refuse losses of motion, mass or shape; printed parts have no joints, so only a single body passes.
+        process: The printing process: joints whose declared gap is smaller than the process needs are findings.
 
     Returns:
         `<part>.3mf` for each part, the losses, and findings about clearance.
@@ -85,7 +85,7 @@ def write_3mf(assembly: Assembly, *, strict: bool = False, process: Process = "f
 
 
 def lying(mesh: TriMesh) -> TriMesh:
-    """Return the mesh on the plane z = 0, on the flat face of the largest area that is at its bottom, else as it is."""
+    """Return the mesh on the plane z = 0, on the largest flat face that can be at its bottom, else as it is."""
     best, largest = SE3.identity(), -1.0
     for down in _flat_directions(mesh):
         turned = _turned_down(down)
@@ -100,7 +100,7 @@ def lying(mesh: TriMesh) -> TriMesh:
 
 
 def _flat_directions(mesh: TriMesh) -> list[FloatArray]:
-    """Return outward normals by the area that has them, largest first; as it was built comes first among equals."""
+    """Return outward normals sorted by area, largest first; among equals, the original orientation comes first."""
     twice = mesh.normals_of_twice_area
     area = np.linalg.norm(twice, axis=1)
     order = np.argsort(-area, kind="stable")
@@ -120,7 +120,7 @@ def _flat_directions(mesh: TriMesh) -> list[FloatArray]:
 
 
 def _turned_down(normal: FloatArray) -> SE3:
-    """Return the shortest turn that takes a direction to −z."""
+    """Return the smallest rotation that maps a direction to −z."""
     axis = np.cross(normal, [0.0, 0.0, -1.0])
     sine = float(np.linalg.norm(axis))
     if sine < SAME_DIRECTION:

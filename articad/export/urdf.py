@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
 Loops = Literal["none", "isaac", "drake", "mimic"]
 
-FAR_RAD = 1e6  # stands for an open end of a range that has another end
+FAR_RAD = 1e6  # replaces an open end of a range whose other end is limited
 DRAKE = "http://drake.mit.edu"  # the namespace of Drake's own elements
 FAR_M = 1e3  # URDF has no endless prismatic joint
 
@@ -52,38 +52,40 @@ def write_urdf(
 ) -> Bundle:
     """Write an assembly as URDF.
 
-    Link frames are joint frames (of a file's links, their own where the joint can stand there), the root link is the ground part, and every joint's value is ours in rad or m, so all zero is q = 0.
-    Joints of several freedoms become chains over carrier links (`<joint>__d1`) of small mass, which is taken out of the moved part.
-    What URDF does not hold is kept in `<articad>` elements, which other readers ignore.
+    Link frames are joint frames (for links of a file, their own frames if those can be joint frames), the root link is the ground part,
+    and every joint's value equals articad's in rad or m, so all zero is q = 0. Joints of several freedoms become chains over carrier
+    links (`<joint>__d1`) of small mass, which is taken out of the moved part. What URDF does not hold is kept in `<articad>` elements,
+    which other readers ignore.
 
     Args:
         assembly: What to write.
         strict: Refuse what URDF holds only with a loss of motion, mass or shape.
-        meshes: Format of the mesh files: STL holds single precision, OBJ nine digits.
-        loops: How closed loops are written besides the tree: not at all, as `<loop_joint>` for Isaac Sim, as `<drake:ball_constraint>`
-            for Drake, or as `<mimic>` of the driver, where a linear relation is as good as 0.1 mm.
-        package: Name of a ROS 2 package to lay out: `urdf/`, `meshes/`, a manifest, and meshes named `package://…`.
-        srdf: Add `<name>.srdf` with the pairs of links that need no collision check. What an SRDF said of the file that was read is written
-            in any case.
+        meshes: Format of the mesh files: STL has single precision, OBJ nine digits.
+        loops: How closed loops are written in addition to the tree: not at all, as `<loop_joint>` for Isaac Sim, as
+            `<drake:ball_constraint>` for Drake, or as `<mimic>` of the driver, if a linear relation is accurate to 0.1 mm.
+        package: Name of a ROS 2 package to write: `urdf/`, `meshes/`, a manifest, and meshes named `package://…`.
+        srdf: Add `<name>.srdf` with the pairs of links that need no collision check. Elements of an SRDF that was read are written in
+            any case.
         ros2_control: Add a `<ros2_control>` system that commands the drivers' positions, on mock hardware.
-        collision: Collide with convex pieces inside the parts ("pieces"), with the parts' own meshes ("solid"), of which engines take the
-            hulls, or with hulls ("hull"). By default pieces; of a file that somebody else made, its own shapes.
-        keep_frames: Give every link the frame of its part. Where a joint's axis does not pass through its origin, the joint moves a bare
+        collision: Collide with convex pieces inside the parts ("pieces"), with the parts' own meshes ("solid"), of which engines use the
+            hulls, or with hulls ("hull"). By default pieces; for a file that articad did not write, its own shapes.
+        keep_frames: Give every link the frame of its part. If a joint's axis does not pass through its origin, the joint moves a bare
             link `<joint>__d1`, to which the part's link is fixed.
-        cache: Keeps convex pieces by shape; that of built parts by default.
+        cache: Stores convex pieces by shape; the cache of built parts by default.
 
     Returns:
         `<name>.urdf`, `meshes/…`, and the losses.
 
     Raises:
         UnrepresentableError: If `strict` and there is such a loss.
-        ExportError: E_MIMIC_FIT if `loops` is "mimic" and no linear relation is good enough; or if ROS does not take the package's name.
+        ExportError: E_MIMIC_FIT if `loops` is "mimic" and no linear relation is accurate enough; or if the package's name is invalid in
+            ROS.
     """
     if package is not None:
         require_package_name(package)
     model = lower(assembly, part_frames=keep_frames)
     contacts: tuple[HullOverlap, ...] = ()
-    if srdf or kind_of(assembly, collision) != "solid" or not assembly.foreign:  # a file's own collision meshes are what they are
+    if srdf or kind_of(assembly, collision) != "solid" or not assembly.foreign:  # a file's own collision meshes stay as they are
         model, contacts = collide(assembly, model, collision, _skipped(assembly, model), cache)
     tied = {loop.name: tied_points(model, loop) for loop in model.loops} if loops in {"isaac", "drake"} else {}
     keeper = _Keeper(assembly, model)
@@ -119,7 +121,7 @@ def write_urdf(
 
 
 def _features_of_file(assembly: Assembly, model: LoweredModel, keeper: _Keeper) -> list[Feature]:
-    """Return what URDF changes of what a file says: forms, joints that become chains, and efforts that it has to state."""
+    """Return the features of a file that URDF changes: primitives, joints that become chains, and efforts that it must state."""
     chains = [row.joint for row in model.joints if assembly.foreign and len(row.freedoms) > 1]
     rests = [row.joint.name for row in model.joints if row.is_free and row.joint.rest != row.joint.type.neutral]
     return [
@@ -131,7 +133,7 @@ def _features_of_file(assembly: Assembly, model: LoweredModel, keeper: _Keeper) 
 
 
 class _Keeper:
-    """What the URDF file that an assembly came from says beyond it, and where it is written again."""
+    """What the assembly's original URDF file has beyond the assembly, and where it is written again."""
 
     def __init__(self, assembly: Assembly, model: LoweredModel) -> None:
         self.foreign = assembly.foreign
@@ -151,7 +153,7 @@ class _Keeper:
                 self.version = etree.fromstring(item.xml).get("version", "")
 
     def _keep_semantics(self, items: list[Kept], model: LoweredModel) -> None:
-        """Take the elements of an SRDF whose links and joints are written under the names that it has for them."""
+        """Collect the elements of an SRDF whose links and joints are written under the same names."""
         elements = [etree.fromstring(item.xml) for item in items]
         links = {link.name for link in model.links}
         joints = {freedom.name for row in model.joints for freedom in row.freedoms} | {row.name for row in model.joints}
@@ -164,11 +166,11 @@ class _Keeper:
 
     @property
     def capsules(self) -> bool:
-        """Whether <capsule> may be written: URDF has it from 1.2 on."""
+        """Whether <capsule> may be written: URDF has it since 1.2."""
         return self.version not in {"", "1.0", "1.1"}
 
     def write(self, root: Any) -> None:
-        """Put every element back, or its attributes where the element is there already."""
+        """Restore every element, or its attributes if the element already exists."""
         places = {("link", element.get("name")): element for element in root.iterfind("link")}
         places |= {("joint", element.get("name")): element for element in root.iterfind("joint")}
         places["robot", ""] = root
@@ -184,7 +186,7 @@ class _Keeper:
 
 
 def _assumed(model: LoweredModel, keeper: _Keeper, *, all_of: bool = False) -> list[str]:
-    """Return the joints whose effort or velocity is written and not stated, those of a file or all."""
+    """Return the joints whose effort or velocity is written without being stated: those of a file, or all."""
     if not keeper.foreign and not all_of:
         return []
     return [row.joint.name for row in model.joints if any(_writes_assumed(freedom, keeper) for freedom in row.freedoms)]
@@ -196,18 +198,18 @@ def _writes_assumed(freedom: AxisMotion, keeper: _Keeper) -> bool:
 
 
 def _says_no_limit(freedom: AxisMotion, keeper: _Keeper) -> bool:
-    """True for an endless joint of a file that states neither effort nor velocity; nobody asks it for them."""
+    """True for an endless joint of a file that states neither effort nor velocity; neither is required there."""
     return keeper.foreign and _type(freedom) == "continuous" and freedom.load.assumed >= {"effort", "velocity"}
 
 
 def _form_features(model: LoweredModel, keeper: _Keeper) -> list[Feature]:
-    """Return the primitives that become meshes."""
+    """Return features for primitives that become meshes."""
     shapes = [(link.part.name, placed.shape.primitive) for link in model.links for placed in (*link.visuals, *link.collisions)]
     return [Feature("shape.primitive", f"parts.{name}", form.kind) for name, form in shapes if form and _form(form, keeper) is None]
 
 
 def _form(form: Primitive, keeper: _Keeper) -> tuple[str, dict[str, str]] | None:
-    """Return the element of a primitive, None where URDF has none."""
+    """Return the element of a primitive, None if URDF has none."""
     metres_ = [size * MM_TO_M for size in form.size]
     if form.kind == "box":
         return "box", {"size": numbers(metres_)}
@@ -237,7 +239,7 @@ def _tree(root: Any, model: LoweredModel, follows: dict[str, Follows], files: Me
 
 
 def _semantics(assembly: Assembly, model: LoweredModel, keeper: _Keeper, contacts: Iterable[HullOverlap] | None) -> dict[str, bytes]:
-    """Return the SRDF, with the pairs that need no collision check where contacts are given; nothing where it would be empty."""
+    """Return the SRDF, with the pairs that need no collision check if contacts are given; None if it would be empty."""
     if contacts is None and not keeper.semantics:
         return {}
     pairs = () if contacts is None else _disabled_pairs(assembly, contacts)
@@ -252,7 +254,7 @@ def _disabled_pairs(assembly: Assembly, contacts: Iterable[HullOverlap]) -> list
 
 
 def _compiler(root: Any) -> None:
-    """Tell MuJoCo to take file paths as they are, to keep what is drawn and to keep rigidly connected links apart."""
+    """Make MuJoCo use file paths as they are, keep visual geoms, and keep rigidly connected links separate."""
     settings = {"strippath": "false", "discardvisual": "false", "fusestatic": "false", "balanceinertia": "false"}
     child(child(root, "mujoco"), "compiler", settings)
 
@@ -272,7 +274,7 @@ def _carrier_count(joint: LoweredJoint | None) -> int:
 
 
 def _inertials(link: Link, carriers: int) -> tuple[Inertial | None, Inertial]:
-    """Return what is left of the link's inertia, and one carrier's."""
+    """Return the rest of the link's inertia, and one carrier's."""
     if link.inertial is not None:
         return link.inertial.without_carriers(carriers)
     return (Inertial.carrier() if link.moves else None), Inertial.carrier()
@@ -340,12 +342,12 @@ def _joints(root: Any, joint: LoweredJoint, follows: dict[str, Follows], keeper:
 
 
 def _end(joint: LoweredJoint) -> str:
-    """Return the link that the joint moves: its child, or a bare link to which that is fixed."""
+    """Return the link that the joint moves: its child, or a bare link to which the child is fixed."""
     return joint.child if joint.end is None else joint.carriers[-1]
 
 
 def _fix_to_end(root: Any, joint: LoweredJoint) -> None:
-    """Fix the child link to the bare link that the joint moves, where its own frame is elsewhere."""
+    """Fix the child link to the bare link that the joint moves, if its own frame is elsewhere."""
     if joint.end is not None:
         name, T = joint.end
         _ends(child(root, "joint", {"name": name, "type": "fixed"}), T, _end(joint), joint.child)
@@ -374,14 +376,14 @@ def _limit(freedom: AxisMotion, keeper: _Keeper) -> dict[str, str]:
 
 
 def _isaac(root: Any, loop: LoweredJoint, point: TiedPoint) -> None:
-    """Write a point that Isaac Sim's importer ties."""
+    """Write a point constraint of Isaac Sim's importer."""
     element = child(root, "loop_joint", {"name": f"{loop.name}{point.suffix}", "type": "spherical"})
     for tag, link, T in (("link1", loop.parent, point.near), ("link2", loop.child, point.far)):
         child(element, tag, {"link": link, "xyz": numbers(T.translation), "rpy": numbers(rpy(T))})
 
 
 def _drake(root: Any, loop: LoweredJoint, point: TiedPoint) -> None:
-    """Write a point that Drake's parser ties."""
+    """Write a point constraint of Drake's parser."""
     element = child(root, f"{{{DRAKE}}}ball_constraint")
     for tag, link in (("body_A", loop.parent), ("body_B", loop.child)):
         child(element, f"{{{DRAKE}}}ball_constraint_{tag}", {"name": link})
@@ -390,7 +392,7 @@ def _drake(root: Any, loop: LoweredJoint, point: TiedPoint) -> None:
 
 
 def _loop_features(model: LoweredModel, loops: Loops, tied: Mapping[str, tuple[TiedPoint, ...]]) -> list[Feature]:
-    """Return the model's features with what became of its loops."""
+    """Return the model's features with the losses of its loops."""
     written = {f"joints.{loop.joint.name}": bool(tied.get(loop.name)) for loop in model.loops}
     key = "loop.mimic" if loops == "mimic" else "loop.points"
     keep = loops == "mimic"
@@ -400,7 +402,7 @@ def _loop_features(model: LoweredModel, loops: Loops, tied: Mapping[str, tuple[T
 
 
 def _skipped(assembly: Assembly, model: LoweredModel) -> set[Pair]:
-    """Return the pairs that readers skip by themselves: a parent and its child, where no carrier stands between, and what never moves."""
+    """Return the pairs that readers skip by themselves: parent and child without a carrier between, and parts that never move."""
     joints, order = assembly.mechanism.joints, assembly.mechanism.parts
     chained = {frozenset((joint.joint.parent, joint.joint.child)) for joint in model.joints if len(joint.freedoms) > 1}
     return {pair for pair in mating_pairs(joints, order) if frozenset(pair) not in chained} | same_group_pairs(joints, order)

@@ -1,4 +1,4 @@
-"""USD with UsdPhysics, as text: rigid bodies where they rest, joints between frames on them, loops left out of the articulation."""
+"""USD with UsdPhysics, as text: rigid bodies at rest, joints between frames on them, loops excluded from the articulation."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ FloatArray = NDArray[np.float64]
 
 MM_PER_M = 1000.0
 _WHOLE = re.compile(r"\.0(?=[,\]])")  # of numbers in JSON
-CARRIER_MASS_KG = 1e-4  # of a moving part whose mass is not known
+CARRIER_MASS_KG = 1e-4  # of a moving part without known mass
 _PRIMS = {
     JointType.FIXED: "PhysicsFixedJoint",
     JointType.REVOLUTE: "PhysicsRevoluteJoint",
@@ -50,15 +50,16 @@ _DEGREES = ("transX", "transY", "transZ", "rotX", "rotY", "rotZ")
 def write_usd(assembly: Assembly, *, strict: bool = False, collision: Collision | None = None, cache: BuildCache | None = None) -> Bundle:
     """Write an assembly as one `.usda` file in metres, z-up, with meshes inside.
 
-    Bodies keep the parts' own frames and are posed at rest. A joint's two local frames coincide where its values are zero, so limits are
-    ours, in degrees and metres. Cylindrical, planar, universal and screw joints become generic joints with their other degrees locked.
+    Bodies keep the parts' own frames and are posed at rest. A joint's two local frames coincide where its values are zero, so limits
+    equal articad's, in degrees and metres. Cylindrical, planar, universal and screw joints become generic joints with their other
+    degrees locked.
 
     Args:
         assembly: What to write.
         strict: Refuse what USD holds only with a loss of motion, mass or shape.
-        collision: Collide with convex pieces inside the parts ("pieces"), with the parts' own meshes ("solid"), or with hulls ("hull"). By
-            default pieces; of a file that somebody else made, its own shapes.
-        cache: Keeps convex pieces by shape; that of built parts by default.
+        collision: Collide with convex pieces inside the parts ("pieces"), with the parts' own meshes ("solid"), or with hulls ("hull").
+            By default pieces; for a file that articad did not write, its own shapes.
+        cache: Stores convex pieces by shape; the cache of built parts by default.
 
     Returns:
         `<name>.usda` and the losses.
@@ -87,7 +88,7 @@ def write_usd(assembly: Assembly, *, strict: bool = False, collision: Collision 
         lines += _indented(_body(part, bodies[name], rest[name], colliding[name], schemas, draws=kind != "solid"))
     lines += _indented(['def Scope "joints"', "{"])
     ground = f"</{root}/{bodies[assembly.ground]}>"
-    held = [_ROOT] if free else []  # roots of articulations may not be nested, so that each is on a prim of its own
+    held = [_ROOT] if free else []  # roots of articulations may not be nested, so each is on a prim of its own
     lines += _indented(_joint_prim("PhysicsFixedJoint", "to_world", (None, ground), (rest[assembly.ground], SE3.identity()), [], held), 2)
     for joint in assembly.joints:
         if joint.type is JointType.FREE:
@@ -109,7 +110,7 @@ _HEADER = """#usda 1.0
 
 
 def _body(part: Part, name: str, T: SE3, collisions: tuple[Shape, ...], schemas: Iterable[str] = (), *, draws: bool) -> list[str]:
-    """Return a rigid body with its meshes; those of a built part are simplified where they are only drawn."""
+    """Return a rigid body with its meshes; visual meshes of a built part are simplified."""
     listed = ", ".join(['"PhysicsRigidBodyAPI"', '"PhysicsMassAPI"', *schemas])
     mass = part.mass if part.mass is not None and part.mass.mass > 0 else None
     lines = [
@@ -126,7 +127,7 @@ def _body(part: Part, name: str, T: SE3, collisions: tuple[Shape, ...], schemas:
     built = built_meshes([part]) if draws else {}
     looks = {id(one): replace(one, mesh=drawn(built[one.mesh.digest]).mesh) if one.mesh.digest in built else one for one in visuals}
     surfaces = {id(one): one for one in collisions if _form(one) is None} | looks
-    written = {key: _surface(one.placed) for key, one in surfaces.items()}  # what is drawn may collide too
+    written = {key: _surface(one.placed) for key, one in surfaces.items()}  # a visual shape may also be a collision shape
     for index, one in enumerate(visuals):
         lines += _indented(_mesh(f"visual_{index}", written[id(one)], one.color or part.color))
     for index, one in enumerate(collisions):
@@ -152,7 +153,7 @@ def _mass(mass: MassProperties | None) -> list[str]:
 
 
 def _form(shape: Shape, name: str = "") -> list[str] | None:
-    """Return a primitive body that collides, None where USD has none or the shape is a mesh."""
+    """Return a primitive for collision, None if USD has none or the shape is a mesh."""
     form, T = shape.primitive, shape.frame
     if form is None or form.kind not in {"box", "sphere", "cylinder", "capsule"}:
         return None
@@ -190,7 +191,7 @@ def _surface(mesh: TriMesh) -> list[str]:
 
 
 def _mesh(name: str, surface: list[str], color: str | None) -> list[str]:
-    """Return a mesh: drawn in a colour, or collided with as its convex hull."""
+    """Return a mesh: drawn in a colour, or for collision by its convex hull."""
     lines = [f'def Mesh "{name}"'] if color is not None else [
         f'def Mesh "{name}" (',
         '    prepend apiSchemas = ["PhysicsCollisionAPI", "PhysicsMeshCollisionAPI"]',
@@ -205,7 +206,7 @@ def _mesh(name: str, surface: list[str], color: str | None) -> list[str]:
 
 
 def _joint(joint: Joint, name: str, ends: tuple[str, str], *, closes: bool) -> list[str]:
-    """Return a joint; its frame on the child is turned over with the mate, so that both coincide at zero."""
+    """Return a joint; its frame on the child includes the mate's flip, so that both coincide at zero."""
     frames = (joint.T_parent_connector, joint.T_child_connector @ flip(joint.mate))
     extra = ["bool physics:excludeFromArticulation = true"] if closes else []
     kind = _PRIMS.get(joint.type)
@@ -224,7 +225,7 @@ def _joint(joint: Joint, name: str, ends: tuple[str, str], *, closes: bool) -> l
 
 
 def _generic(joint: Joint, name: str, ends: tuple[str, str], frames: tuple[SE3, SE3], extra: list[str]) -> list[str]:
-    """Return a generic joint whose other degrees are locked: a lower limit above the upper one."""
+    """Return a generic joint whose other degrees are locked by a lower limit above the upper one."""
     schemas, limits = [], []
     free = {f"{'trans' if step.kind == 'slide' else 'rot'}{'XYZ'[step.axis]}": step for step in joint.type.steps}
     for degree in _DEGREES:
@@ -256,14 +257,14 @@ def _joint_prim(
 
 
 def _in_usd(bound: float, unit: str) -> str:
-    """Return a limit in degrees or m; infinite ones are a word of the format."""
+    """Return a limit in degrees or m; infinite ones are a keyword of the format."""
     if math.isinf(bound):
         return "inf" if bound > 0 else "-inf"
     return number(math.degrees(bound) if unit == "rad" else bound / MM_PER_M)
 
 
 def _points(points: FloatArray) -> str:
-    """Return rows of numbers, each as `number` writes it; a hundred thousand of them in a moment."""
+    """Return rows of numbers formatted as by `number`, but much faster for many."""
     text = json.dumps((points + 0.0).tolist())
     return "[" + _WHOLE.sub("", text[1:-1]).replace("[", "(").replace("]", ")") + "]"
 
@@ -278,7 +279,7 @@ def _quaternion(T: SE3) -> str:
 
 
 def _linear(color: str) -> list[float]:
-    """Turn "#rrggbb" (sRGB) into the linear colour that USD wants."""
+    """Convert "#rrggbb" (sRGB) to the linear colour of USD."""
     channels = [int(color[i : i + 2], 16) / 255 for i in (1, 3, 5)]
     return [c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in channels]
 

@@ -65,9 +65,8 @@ class Holding:
         """Find groups of parts that are near each other but not connected to the ground."""
         scene = self.scene
         near = Groups([*scene.bodies, *bare])
-        for joint in (
-            scene.relations.joints
-        ):  # a part without geometry may hold anything joined to it; fixed parts are checked separately, and nothing holds free ones
+        # a part without geometry may hold anything joined to it; fixed parts are checked separately, and nothing holds free ones
+        for joint in scene.relations.joints:
             if joint.parent in bare or joint.child in bare or joint.type in {JointType.FIXED, JointType.FREE}:
                 near.join(joint.parent, joint.child)
         candidates = self.placed.candidates(max([NEAR_MM, *(fit.gap_max or 0.0 for fit in scene.fits.values())]))

@@ -120,8 +120,7 @@ class Scene:
         return boxes_apart((centres[i], halves[i]), (centres[j], halves[j]), T_i_j)
 
     def boxes_gap(self, i: int, j: int, T_i_j: FloatArray) -> FloatArray:
-        """Return a lower bound of the distance of two bodies, `(n,)` [mm]: the gap between their oriented boxes along any of the boxes'
-        axes.
+        """Return a lower bound of the distance of two bodies, `(n,)` [mm]: the largest gap of their oriented boxes along a box axis.
 
         Args:
             i: Index of a body.
