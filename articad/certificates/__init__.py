@@ -1,1 +1,1 @@
-"""Certificates of motion: what is claimed over whole ranges, how it is proven, and an independent checker."""
+"""Certificates of motion: claims over whole ranges, their proofs, and an independent checker."""

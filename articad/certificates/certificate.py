@@ -1,8 +1,8 @@
-"""Certified motion: for every joint over its whole range, and for joints that move together, a proof without sampling gaps.
+"""Certified motion: a proof without sampling gaps for every joint over its whole range, and for joints that move together.
 
-Each pair of parts is first tried over all joints between them at once; where that does not succeed, over each joint alone and
-over each two. What cannot be proven is looked at where the proof stopped: it is a collision, with its first pose and the
-range that is free, or it was not checked, and then the certificate is not ok.
+Each pair of parts is first tried over all joints between them at once; if that fails, over each joint alone and over each two. What
+cannot be proven is examined where the proof stopped: either it is a collision, reported with its first pose and the free range, or it
+was not checked, and then the certificate is not ok.
 """
 
 from __future__ import annotations
@@ -45,27 +45,27 @@ from articad.kinematics.mechanism import Mechanism
 
 DEFAULT_EPSILON_MM = 1e-3
 DEFAULT_BUDGET_S = 600.0
-FIRST_PAIRS = 40_000  # of pieces, spent on each pair along drivers before those that need more hold up the others
+FIRST_PAIRS = 40_000  # of pieces, spent on each pair along drivers before the pairs that need more
 WIDE_PAIRS = 60_000  # of pieces, spent on all joints at once before they are taken one by one
-TIED_PAIRS = 8_000  # of pieces, spent on whatever a linkage does before its drivers are followed: that is cheap
-FOLLOWED_PAIRS = 400_000  # of pieces, spent on whatever a linkage does that cannot be followed
-MOST_EXPECTED = 1000  # boxes of several drivers of one group, as the pieces of each alone suggest, beyond which they are not followed
+TIED_PAIRS = 8_000  # of pieces, spent on all motions of a linkage before its drivers are followed: that is cheap
+FOLLOWED_PAIRS = 400_000  # of pieces, spent on all motions of a linkage that cannot be followed
+MOST_EXPECTED = 1000  # boxes of several drivers of one group, estimated from the pieces of each alone, beyond which they are not followed
 MOST_TOGETHER = 3  # drivers of one group followed all at once before they are taken two at a time
-IDLE = 1e-7  # singular value of the Jacobian of loops, below which what follows can move while its drivers stand
-IDLE_SHARE = 0.3  # of such a motion, above which a twist can be taken for its driver
-_END_SLACK = 1e-6  # rad or mm: by which a driver may end before its limit
-_ENTRY_MM = 1e-6  # distance at which meshes are said to touch
+IDLE = 1e-7  # singular value of the Jacobian of loops, below which followers can move while their drivers stand still
+IDLE_SHARE = 0.3  # share of such a motion above which a twist can serve as its driver
+_END_SLACK = 1e-6  # rad or mm: largest distance of a driver's end from its limit
+_ENTRY_MM = 1e-6  # distance at which meshes count as touching
 
 
 @dataclass(frozen=True)
 class Range:
-    """What is known of a joint's range about rest.
+    """The proven part of a joint's range about rest.
 
     Attributes:
         joint: Name of the coordinate.
         lower: Proven free down to here [rad or mm].
         upper: Proven free up to here.
-        declared: Its bounds.
+        declared: Its declared bounds.
     """
 
     joint: str
@@ -75,34 +75,34 @@ class Range:
 
     @property
     def is_whole(self) -> bool:
-        """True when the declared range is free."""
+        """True if the declared range is free."""
         return self.lower <= self.declared[0] and self.declared[1] <= self.upper
 
 
 @dataclass(frozen=True)
 class Certificate:
-    """The outcome: findings for people, claims for a checker.
+    """The result: findings for people, claims for a checker.
 
     Attributes:
-        findings: Collisions, and whatever was asked for but not proven.
+        findings: Collisions, and whatever was requested but not proven.
         pairs: A verdict and its strength for each pair and set of joints.
         claims: What is proven, with all numbers needed to check it.
-        ranges: Of each single coordinate, the widest range about rest that is free.
-        epsilon: Distances up to here were taken for contact [mm].
-        meshes: The exact meshes that were proven with.
+        ranges: For each single coordinate, the widest free range about rest.
+        epsilon: Distances up to this counted as contact [mm].
+        meshes: The exact meshes that were used.
         deflections: Of these meshes [mm].
-        mechanism: What moved.
+        mechanism: The mechanism.
         asked: Names of the joints to be proven.
-        together: Whether joints were to be moved two at a time, too.
+        together: Whether joints were also to be moved two at a time.
         constrained: Names of the joints of loops and couplings.
-        queries: Pairs of pieces of surface that were looked at.
-        work: Units of work spent, on pairs and on fits, the same on every machine; `articad.interference.work`.
+        queries: Pairs of pieces of surface that were compared.
+        work: Units of work spent on pairs and on fits, the same on every machine; see `articad.interference.work`.
         seconds: Time by the clock.
         followed: Pieces of the drivers' ranges, as arrays that a checker reads.
-        fits: Declared fits against what was measured and proven, in the order of the joints.
-        spans: Between which values each coordinate that follows is proven to stay [rad or mm].
-        clearances: Smallest distance seen of each two parts over the motion, the nearest first: sampled, not proven.
-        follows: Table of what follows each driver of loops and couplings.
+        fits: Declared fits compared with measurements and proofs, in the order of the joints.
+        spans: Proven bounds of each coordinate that follows [rad or mm].
+        clearances: Smallest distance found of every two parts over the motion, the nearest first: sampled, not proven.
+        follows: Tables of the followers of each driver of loops and couplings.
     """
 
     findings: Findings
@@ -127,7 +127,7 @@ class Certificate:
 
     @property
     def ok(self) -> bool:
-        """True when everything asked for is proven or waived, and nothing collides."""
+        """True if everything that was requested is proven or waived, and nothing collides."""
         return self.findings.ok and not self.findings.of("W_NOT_CERTIFIED")
 
     def to_json(self) -> dict[str, Any]:
@@ -165,7 +165,7 @@ class Certificate:
         return {**meshes, f"{PROOF}.npz": _npz(compress=True, **self.proof)}
 
     def checked(self) -> Certificate:
-        """Return this certificate, with the error `E_CERTIFICATE_REFUTED` if it calls itself ok and the checker does not accept it."""
+        """Return this certificate, with the error `E_CERTIFICATE_REFUTED` if it is marked ok and the checker does not accept it."""
         reason = self.refutation() if self.ok else None
         if reason is None:
             return self
@@ -175,14 +175,14 @@ class Certificate:
         return replace(self, findings=Findings([*self.findings, refuted]))
 
     def refutation(self) -> str | None:
-        """Return why the independent checker refutes what would be written, None if it accepts it."""
+        """Return why the independent checker refutes this certificate, None if it accepts it."""
         meshes = {name: {"vertices": mesh.vertices, "triangles": mesh.triangles} for name, mesh in self.meshes.items()}
         arrays = {name: {key: widened(array) for key, array in of.items()} for name, of in {**meshes, PROOF: self.proof}.items()}
         try:
             Checker(json.loads(json.dumps(self._report())), arrays).check()
         except Refuted as reason:
             return str(reason)
-        except Exception as error:  # noqa: BLE001 - what breaks the checker, in whatever way, proves nothing
+        except Exception as error:  # noqa: BLE001 - a certificate that breaks the checker in any way proves nothing
             return f"it cannot be read: {error!r}"[:500]
         return None
 
@@ -224,23 +224,23 @@ def certify(
     fits: Mapping[str, FitLike] | None = None,
     check: bool = True,
 ) -> Certificate:
-    """Prove that parts do not meet while joints move over their whole ranges, and check the proof by the independent checker.
+    """Prove that parts do not meet while joints move over their whole ranges, and have the proof checked by the independent checker.
 
-    A joint without limits is proven over a full turn, or over what it takes until all that follows it has come back. A certificate is ok
-    if there is a proof for each joint and for each two that move together, and the checker accepts it.
+    A joint without limits is proven over a full turn, or over the travel after which all its followers have returned. A certificate is
+    ok if there is a proof for each joint and for each two that move together, and the checker accepts it.
 
     Args:
-        meshes: By part, in the part's frame; parts without geometry are left out.
-        mechanism: Moves them.
-        joints: Names of those to be proven; all that move by default.
+        meshes: By part, in the part's frame; parts without geometry are omitted.
+        mechanism: The mechanism.
+        joints: Names of the joints to be proven; all that move by default.
         pairs: Whether joints are also moved two at a time.
-        epsilon: Distances up to here are contact [mm].
-        budget: Nominal seconds of work: each stands for a fixed count of it (`PIECES_PER_SECOND`), so that the verdict is the same on
-            every machine and beside whatever else runs.
-        deflection: How far meshes are from their solids [mm], by part or the same for all.
+        epsilon: Distances up to this count as contact [mm].
+        budget: Nominal seconds of work: each stands for a fixed amount of it (`PIECES_PER_SECOND`), so that the verdict is the same on
+            every machine, whatever its load.
+        deflection: Largest distance of meshes from their solids [mm], by part or the same for all.
         waivers: Overlaps that the plan allows.
         fits: By joint name.
-        check: Whether to ask the checker; who adds claims asks it afterwards (`Certificate.checked`).
+        check: Whether to call the checker; callers that add claims call it afterwards (`Certificate.checked`).
     """
     scene = Scene.of(meshes, mechanism.joints, waivers=waivers, deflection=deflection, fits=fits)
     found = _Certifying(scene, mechanism, joints, pairs, epsilon, WorkBudget(budget)).run()
@@ -262,7 +262,7 @@ class _Certifying:
     later: list[LinkageProver] = field(default_factory=list)
     left: dict[tuple[str, ...], list[tuple[str, str]]] = field(default_factory=dict)
     _constrained: frozenset[str] = frozenset()
-    _floating: frozenset[str] = frozenset()  # names of free joints, which stand at rest
+    _floating: frozenset[str] = frozenset()  # names of free joints, which stay at rest
     _ways: dict[tuple[str, ...], DriverTrack | str] = field(default_factory=dict)
     _reasons: dict[str, tuple[str, str]] = field(default_factory=dict)
     _checker: Checker = field(init=False)
@@ -318,7 +318,7 @@ class _Certifying:
         self.findings += found.findings
 
     def _with_drivers(self) -> Sequence[str] | None:
-        """Return what is asked for, and what drives those of it that only follow."""
+        """Return the requested joints, and the drivers of those that only follow."""
         if self.asked is None:
             return None
         asked = list(self.asked)
@@ -329,7 +329,7 @@ class _Certifying:
         return asked
 
     def _spans(self) -> dict[str, tuple[float, float]]:
-        """Return between which values each coordinate stays that follows a driver, over all that could be followed."""
+        """Return the bounds of each coordinate that follows a driver, over everything that could be followed."""
         spans: dict[str, tuple[float, float]] = {}
         for way in self._ways.values():
             for name, (low, high) in ({} if isinstance(way, str) else way.spans()).items():
@@ -374,11 +374,11 @@ class _Certifying:
         return str(self._checker.freedoms[coordinate]["joint"])
 
     def _groups_of(self, tied: Sequence[str]) -> list[int]:
-        """Return the places of the groups of joints of loops and couplings."""
+        """Return the indices of the groups of joints of loops and couplings."""
         return [at for at, group in enumerate(self._checker.groups) if {self._joint_of(name) for name in group} & set(tied)]
 
     def _is_driven(self, parts: tuple[str, str], tied: Sequence[str]) -> bool:
-        """Return whether each group between two parts has a driver, or cannot move; refuse the pair else."""
+        """Return whether each group between two parts has a driver, or cannot move; otherwise refuse the pair."""
         for at in self._groups_of(tied):
             group = self._checker.groups[at]
             is_asked = any(self._is_asked(self._joint_of(name)) for name in group)
@@ -388,7 +388,7 @@ class _Certifying:
         return True
 
     def _linked(self, route: Route, tied: Sequence[str], wanted: Sequence[str], drivers: Sequence[str]) -> None:
-        """Prove one pair over loops and couplings between them: whatever they do, or along their drivers, with what moves by itself."""
+        """Prove one pair over loops and couplings between them: for all their motions, or along their drivers."""
         parts = route.parts[0], route.parts[-1]
         ways = {name: self._way((name,)) for name in drivers}
         bad = {name: way for name, way in ways.items() if isinstance(way, str)}
@@ -399,7 +399,7 @@ class _Certifying:
                 if not slides_endlessly(self._joint(self._joint_of(name)))  # no claim covers all of its travel
             ]
             if self._prove(route, (*tied, *wanted), most=TIED_PAIRS, tentative=True, also=also):
-                return  # whatever the linkage does
+                return  # for all motions of the linkage
             both = (
                 [two for two in combinations(drivers, 2) if any(set(two) <= set(group) for group in self._groups)] if self.together else []
             )
@@ -432,7 +432,7 @@ class _Certifying:
     def _prove(
         self, route: Route, joints: tuple[str, ...], *, most: int = MOST_PAIRS, tentative: bool = False, also: Sequence[str] = ()
     ) -> bool:
-        """Prove one pair over some joints, whatever further coordinates do; a tentative failure is not reported."""
+        """Prove one pair over some joints, for any motion of further coordinates; a tentative failure is not reported."""
         parts = route.parts[0], route.parts[-1]
         if self.budget.is_spent:
             if not tentative:
@@ -463,7 +463,7 @@ class _Certifying:
         self._verdict(prover.parts, over or proof.joints, Strength.certified(proof.epsilon), proof.overlap, contact)
 
     def _along(self, route: Route, drivers: Sequence[str], own: Sequence[str], *, tentative: bool = False) -> bool:
-        """Prove one pair along drivers, while some joints move by themselves; all others stand."""
+        """Prove one pair along drivers, while some joints move independently; all others stay at rest."""
         parts, over = (route.parts[0], route.parts[-1]), (*map(self._joint_of, drivers), *own)
         sets = [tuple(name for name in group if name in drivers) for group in self._groups]
         if self.budget.is_spent:
@@ -553,7 +553,7 @@ class _Certifying:
             self.ranges[name] = replace(known, lower=max(known.lower, free[0]), upper=min(known.upper, free[1]))
 
     def _stopped(self, prover: Prover, proof: Proof) -> None:
-        """Say what is where a proof stopped: a collision, or contact that only samples can judge."""
+        """Report what is at the place where a proof stopped: a collision, or contact that can only be sampled."""
         parts, joints, looks = prover.parts, proof.joints, Looks(prover, proof)
         worst, pose = looks.worst()
         check, found = judge(
@@ -564,7 +564,7 @@ class _Certifying:
         if collides:
             self.findings.append(self._collision(parts, joints, proof, looks, collides[0]))
             self._note_ranges(joints, proof)
-            if proof.width() > 0:  # of a single coordinate the part before the collision is proven
+            if proof.width() > 0:  # for a single coordinate, the part before the collision is proven
                 self.claims += proof.claims
         else:
             self.findings += found
@@ -633,7 +633,7 @@ class _Certifying:
         )
 
     def _report_unreached(self) -> None:
-        """Say where the declared range of a driver is longer than what its linkage can be followed over."""
+        """Report where the declared range of a driver is longer than the range over which its linkage can be followed."""
         coordinates = {driver.name: driver for driver in self.mechanism.drivers}
         for drivers, way in self._ways.items():
             if isinstance(way, str) or len(drivers) > 1:
@@ -661,7 +661,7 @@ class _Certifying:
                     )
 
     def _ended(self) -> str:
-        """Return the sentence that says why work ended: a pair is given up after so many pieces, before the budget is spent."""
+        """Return the sentence that says why work ended: the search for a pair ends after a number of pieces, before the budget is spent."""
         return self.budget.ended() if self.budget.is_spent else f"The search stopped after {MOST_PAIRS} pieces of a pair."
 
     def _report_left(self) -> None:
@@ -689,7 +689,7 @@ class _Certifying:
 
 
 class Looks:
-    """Looks at the poses beyond the one where a proof stopped, with exact booleans."""
+    """Samples poses beyond the one where a proof stopped, with exact booleans."""
 
     def __init__(self, prover: Prover, proof: Proof) -> None:
         self.prover, self.proof, self.chain = prover, proof, prover.chain
@@ -697,7 +697,7 @@ class Looks:
         self.count = 0
 
     def worst(self) -> tuple[Overlap, dict[str, float] | None]:
-        """Return the deepest overlap that was seen, and where."""
+        """Return the deepest overlap found, and its pose."""
         worst, where = self.proof.overlap, None
         for point in self._points():
             self.count += 1
@@ -708,15 +708,15 @@ class Looks:
         return worst, where
 
     def _points(self) -> Iterator[tuple[float, ...]]:
-        """Yield poses from where a proof stopped, or from rest where it could not begin."""
+        """Yield poses from where a proof stopped, or from rest if it could not begin."""
         for contact in self.proof.contacts:
             start = [contact[freedom.name] for freedom in self.chain.freedoms]
             yield from beyond(self.chain, self.prover.speeds, start, self.prover.allowed)
 
     def entry(self, allowed: float, pose: Mapping[str, float] | None) -> tuple[str, float, float]:
-        """Return the coordinate, where the meshes first meet, and the end of what is proven, towards the pose of the collision.
+        """Return the coordinate, the value where the meshes first meet, and the end of the proven range before it.
 
-        Where contact is allowed the meshes meet when they are deeper than that.
+        If contact is allowed, the meshes meet where they are deeper than that.
         """
         (freedom,) = self.chain.freedoms
         hit = freedom.rest if pose is None else pose[freedom.name]
@@ -743,7 +743,7 @@ class Looks:
         return surface_distance(a, b, self.chain.matrix(values))
 
     def _strict(self) -> list[Surface]:
-        """Return what of the first surface must not even touch, if there is any."""
+        """Return the parts of the first surface that must not even touch, if there are any."""
         whole, within = whole_surface(self.bodies[0].mesh), self.proof.shrink.within
         if not self.proof.shrink.depth:
             return [whole]
@@ -762,7 +762,7 @@ class Looks:
 
 
 def constrained_joints(mechanism: Mechanism) -> frozenset[str]:
-    """Return the joints that cannot move by themselves: those of loops, and those that couplings tie."""
+    """Return the joints that cannot move independently: those of loops, and those that couplings connect."""
     tied: set[str] = set()
     for joint in mechanism.loop_joints:
         tied.update({joint.name, *(other.name for other in mechanism.tree.joints_between(joint.parent, joint.child))})
@@ -787,7 +787,7 @@ def driver_names(mechanism: Mechanism, constrained: frozenset[str]) -> list[str]
 
 
 def _idle(checker: Checker, group: Sequence[str]) -> list[str]:
-    """Return the coordinates that take part in a motion at rest in which the drivers of a group stand, the one that turns most first."""
+    """Return the coordinates of a motion at rest in which the drivers of a group stand still, the one that turns most first."""
     driving = [name for name in group if name in checker.drivers]
     names = [name for name in group if name not in checker.drivers]
     if not driving or not names:
@@ -803,7 +803,7 @@ def mechanism_json(mechanism: Mechanism) -> dict[str, Any]:
     """Return parts, frames and joints as numbers: all that a checker needs to place two parts.
 
     A joint is `T_parent_child = parent_frame · Π exp((slide, turn)·q) · child_frame⁻¹`, the product over its freedoms in order; the
-    mate is in `child_frame`. A ball turns about x, y and z, within its cone. A free joint stands at rest, which is in `parent_frame`.
+    mate is in `child_frame`. A ball turns about x, y and z, within its cone. A free joint stays at rest, which is in `parent_frame`.
     """
     loops = {joint.name for joint in mechanism.loop_joints}
     return {
@@ -828,7 +828,7 @@ def mechanism_json(mechanism: Mechanism) -> dict[str, Any]:
 
 
 def _stand(joint: Joint) -> SE3:
-    """Return the frame from which a joint's freedoms are counted: of a free joint, which has none to be proven, where it rests."""
+    """Return the frame in which a joint's freedoms are measured; for a free joint, which has none to be proven, its rest pose."""
     return joint.T_parent_connector @ joint.motion(joint.rest) if joint.type is JointType.FREE else joint.T_parent_connector
 
 
@@ -878,5 +878,5 @@ def _npz(*, compress: bool = False, **arrays: Any) -> bytes:
 
 
 def _short(numbers: Any) -> Any:
-    """Return whole numbers in the least room."""
+    """Return whole numbers in the smallest type."""
     return numbers.astype(np.min_scalar_type(min(int(numbers.min()), -int(numbers.max()) - 1)))  # signed, since cuts are negative

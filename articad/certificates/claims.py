@@ -1,8 +1,8 @@
-"""Claims of a motion certificate: statements of which anybody can convince himself that two parts never meet.
+"""Claims of a motion certificate: statements that two parts never meet, which anybody can check.
 
-A claim says: while the joints of `vary` move within their ranges, what follows a driver follows, and all others stand at rest, the
-first part's surface, its vertices moved inwards by `shrink`, stays further than `clear` from the second part. How that was found is
-its `Course`: what a checker needs to see the same, and computes anew from the meshes and the joints.
+A claim says: while the joints of `vary` move within their ranges, followers follow their drivers, and all other joints stay at rest, the
+first part's surface, its vertices moved inwards by `shrink`, stays farther than `clear` from the second part. How this was found is its
+`Course`: the data with which a checker repeats it, computing everything else from the meshes and the joints.
 """
 
 from __future__ import annotations
@@ -22,13 +22,13 @@ class Course:
     """How a claim was found.
 
     Attributes:
-        moved: By how much vertices of the first part were moved, `(V, 3)` float32 [mm], None for not at all.
-        orders: Of the triangles of both parts, in the trees that were cut.
-        sizes: How many triangles each of the trees holds, of both parts.
-        about: A point and the unit axis about which radii are, as the first part sees them, `(2, 3)` [mm]; the axis of a ball is 0, NaN: none.
-        cuts: Across which coordinate each box was cut, −1 for none; boxes in the order in which they came from others.
-        places: Where each was cut [rad or mm].
-        rows: What became of each two pieces in a box.
+        moved: Displacements of vertices of the first part, `(V, 3)` float32 [mm], None if there are none.
+        orders: Orders of the triangles of both parts, in the trees that were cut.
+        sizes: Number of triangles in each of the trees, of both parts.
+        about: A point and the unit axis for radii, in the first part's frame, `(2, 3)` [mm]; the axis is 0 for a ball; NaN for none.
+        cuts: The coordinate across which each box was cut, −1 for none; each box after the one that it was cut from.
+        places: The value at which each was cut [rad or mm].
+        rows: The result for each two pieces in a box.
     """
 
     moved: NDArray[np.float32] | None
@@ -46,11 +46,11 @@ class Claim:
 
     Attributes:
         parts: The part whose surface may be shrunk, and the other.
-        via: Joints from the one to the other.
-        vary: Range of each coordinate that moves [rad or mm]; of a driver, whatever follows it moves, too.
+        via: Joints from the first to the second.
+        vary: Range of each coordinate that moves [rad or mm]; the followers of a driver move, too.
         start: Values of `vary` at which the overlap was measured; the motion is proven from there.
-        overlap: Of the two solids at the start [mm³].
-        shrink: By how much the first part's vertices were moved inwards: the depth up to which contact is allowed [mm].
+        overlap: Common volume of the two solids at the start [mm³].
+        shrink: Distance by which the first part's vertices were moved inwards: the depth up to which contact is allowed [mm].
         within: Only vertices within this radius about the joint were moved; None: all of them [mm].
         clear: The distance is larger than this throughout [mm]: the deflection of both meshes.
         course: How it was found.
@@ -66,7 +66,7 @@ class Claim:
     course: Course | None = None
 
     def to_json(self) -> dict[str, Any]:
-        """Return the JSON object of a certificate; numbers in full, for a checker computes with them."""
+        """Return the JSON object of a certificate; numbers are unrounded, because a checker computes with them."""
         return {
             "parts": list(self.parts),
             "via": list(self.via),

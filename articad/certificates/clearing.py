@@ -26,18 +26,18 @@ from articad.interference.work import BOX, STEP, WorkBudget
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.signedinteger[Any]]
 
-ROUNDING_MM = 1e-9  # what a distance must be above what it needs, for the arithmetic of poses
-CHUNK = 4096  # pairs of pieces looked at together
-MOTION_SHARE = 1.0  # of the pieces' size: when the motion is larger, the range is cut before the pieces
+ROUNDING_MM = 1e-9  # margin on distances for rounding in the arithmetic of poses
+CHUNK = 4096  # pairs of pieces processed together
+MOTION_SHARE = 1.0  # of the pieces' size: if the motion is larger, the range is cut before the pieces
 LEAST_SHARE = 1e-3  # of the motion in any direction: along the normal of faces in one plane there is nothing to cut
-MOST_PAIRS = 4_000_000  # of pieces, after which a search is given up
-NEARLY_STILL = 1e-3  # of the largest motion: what is less does not choose directions, though it counts in every bound
-MOST_WAYS = 2  # lines along which something slides, that directions are sought across
+MOST_PAIRS = 4_000_000  # of pieces, after which a search ends
+NEARLY_STILL = 1e-3  # of the largest motion: smaller motions do not choose directions, though they count in every bound
+MOST_WAYS = 2  # lines of sliding perpendicular to which directions are sought
 _EYE = np.eye(3)
-_COARSE = 64.0  # directions between boxes are rounded to so many parts: any direction is a proof, and few of them take less room
+_COARSE = 64.0  # rounding of directions between boxes: any direction is a valid proof, and few different ones take less space
 
 
-class CannotCut(Exception):  # noqa: N818 - it is no error
+class CannotCut(Exception):  # noqa: N818 - not an error
     """A box cannot be split further."""
 
 
@@ -72,7 +72,7 @@ class Boxes(Protocol):
         """Return whether the centre of a box is a pose of the mechanism."""
 
     def contact(self, box: int) -> tuple[float, ...] | None:
-        """Return the centre of a box as coordinates to report, or None when it lies outside what joints allow."""
+        """Return the centre of a box as coordinates to report, or None if it lies outside the limits of joints."""
 
 
 @dataclass
@@ -99,7 +99,7 @@ class Cleared:
 
     @property
     def is_complete(self) -> bool:
-        """True when the surfaces keep apart over the whole range."""
+        """True if the surfaces stay apart over the whole range."""
         return self.contact is None and not self.out_of_budget
 
 
@@ -134,7 +134,7 @@ def clear(
     budget: WorkBudget,
     most: int = MOST_PAIRS,
 ) -> Cleared:
-    """Prove that two surfaces stay further apart than `needed` [mm] over boxes of motion.
+    """Prove that two surfaces stay farther apart than `needed` [mm] over boxes of motion.
 
     Args:
         a: Surface of the fixed part.
@@ -208,7 +208,7 @@ class _Search:
         return out
 
     def _outlines(self, rows: _Pairs, out: list[_Pairs]) -> _Pairs:
-        """Settle rows whose outlines (coordinates that the joint does not change) are apart, cut those that can become so; return the rest."""
+        """Settle rows whose outlines (coordinates the joint does not change) are apart, cut those that can become so; return the rest."""
         assert self.axis is not None
         a, b = self.forests
         ahead, behind = b.low[rows.b] - a.high[rows.a], a.low[rows.a] - b.high[rows.b]
@@ -216,7 +216,7 @@ class _Search:
         ball = self.axis.dimensions == 3
         limit = np.full(gap.shape[1], self.needed)
         if ball:
-            limit[1] = 0.0  # angles tell of that
+            limit[1] = 0.0  # angles decide there
         far = gap > limit
         apart, best = np.asarray(far.any(axis=1)), np.argmax(far, axis=1)
         for k, code in enumerate((ROUND, LEAN, SWUNG) if ball else (ROUND,)):
@@ -258,13 +258,13 @@ class _Search:
         at = np.arange(len(rows))
         along, most = motion[left][at, best], motion[left].max(axis=1)
         moving = (along > MOTION_SHARE * thick[left][at, best]) & (along > LEAST_SHARE * most)
-        if self.slides is not None:  # a pair of triangles then needs no part of the range for itself: see `Slides`
+        if self.slides is not None:  # then a pair of triangles needs no cut of the range of its own: see `Slides`
             moving[:] = False
         shares = shares[left]
         return [*self._cut_range(rows.of(moving), shares[at, best][moving]), *self._cut_pieces(rows.of(~moving))]
 
     def _settle(self, rows: _Pairs, best: IntArray, sign: FloatArray, coarse: FloatArray) -> None:
-        """Note the directions that settled pieces: axes of a, of b, or what is between the two."""
+        """Record the directions that settled pieces: axes of a, of b, or between the two."""
         axis = np.tile(_EYE, (2, 1))
         for which, kind in ((best < 3, OF_A), ((best >= 3) & (best < 6), OF_B)):
             chosen = best[which]
@@ -273,7 +273,7 @@ class _Search:
         self.trail.settle(rows.number[between], OF_A, coarse[between, best[between] - 6] * sign[between, best[between]][:, None])
 
     def _turning(self, p: FloatArray | NDArray[np.float32], q: FloatArray) -> FloatArray:
-        """Return the directions in which places of a and b lie apart as seen from the axis, `(n, 3)`: that in which a turn brings them."""
+        """Return the directions, `(n, 3)`, in which points of a and b differ in angle about the axis: a turn moves them so."""
         assert self.axis is not None
         core = self.axis
         return _coarse((unit(core.local(q)) - unit(core.local(np.asarray(p, dtype=np.float64)))) @ core.frame[:3, : core.dimensions].T)
@@ -330,7 +330,7 @@ class _Search:
         done = clear.any(axis=1)
         for which, kind in ((done & (first != 1), OF_A), (done & (first == 1), OF_B)):
             chosen = u[which, first[which]]
-            if kind == OF_B:  # as b sees it, so that a face has one direction wherever it is
+            if kind == OF_B:  # in the frame of b, so that a face has the same direction at every pose
                 chosen = _normals(self.b.corners[self.b.triangle[rows.b[which]]]) * np.where(ahead[which, 1], 1.0, -1.0)[:, None]
             self.trail.settle(rows.number[which], kind, chosen)
         left = np.flatnonzero(~done)
@@ -342,7 +342,7 @@ class _Search:
                 return []
         best = np.argmax((theirs.min(axis=2) - mine.max(axis=2))[left], axis=1)
         share = np.max([found[left, best] for found in shares], axis=0)
-        # what does not move and yet is not apart pierces the other: there the distance is none
+        # if it does not move and yet is not apart, it pierces the other: then there is no distance
         stuck = motion[left].max(axis=(1, 2)) < self.epsilon / 4
         stuck[stuck] = [self.boxes.is_reached(box) for box in box[left][stuck].tolist()]
         if stuck.any():
@@ -372,10 +372,10 @@ def _normals(p: FloatArray) -> FloatArray:
 def shortest_between(p: FloatArray, q: FloatArray, *, flat: bool = False) -> tuple[FloatArray, FloatArray]:
     """Return the distance of triangles `(n, 3, 3)` each that do not pierce one another, and the direction in which it is measured.
 
-    Of `flat` triangles, all in parallel planes or lines, edges alone are looked at: their outlines decide there.
+    For `flat` triangles, all in parallel planes or lines, only edges are compared: their outlines decide.
 
-    It is reached between two edges, or between a corner and the inside of the other triangle (Ericson, Real-time collision
-    detection, 5.1). Any direction proves its own gap, so nothing rests on this being exact.
+    It is reached between two edges, or between a corner and the inside of the other triangle (Ericson, Real-time collision detection,
+    5.1). Any direction proves its own gap, so nothing depends on this being exact.
     """
     d, e = np.roll(p, -1, axis=1) - p, np.roll(q, -1, axis=1) - q
     between = p[:, :, None] - q[:, None]  # (n, 3, 3, 3): of edge i of p and edge j of q
@@ -398,7 +398,7 @@ def shortest_between(p: FloatArray, q: FloatArray, *, flat: bool = False) -> tup
 
 
 def _over(p: FloatArray, q: FloatArray) -> FloatArray:
-    """Return the vectors from the inside of p straight up to the corners of q, `(n, 3, 3)`; far where these are not over it."""
+    """Return the vectors from the inside of p perpendicularly to the corners of q, `(n, 3, 3)`; very long if these are not above it."""
     n = _normals(p)
     up = q - p[:, None, 0]
     inside = np.ones(up.shape[:2], dtype=bool)
@@ -409,17 +409,17 @@ def _over(p: FloatArray, q: FloatArray) -> FloatArray:
 
 
 class Slides:
-    """Directions that keep two triangles apart while one of them slides along one line, or in one plane, without turning.
+    """Directions that separate two triangles while one of them slides along one line, or in one plane, without turning.
 
-    The displacements of a box are Σ tₖ gₖ with |tₖ| ≤ 1 for one or two vectors g. The distance of two convex bodies is a convex
-    function of t, so it is least where each tₖ is −1, or 1, or where the direction of the distance is across gₖ. One direction for
-    each of these cases is therefore all that can keep two triangles apart, and the range need not be cut for them: with one g, that
-    between their shadows along g, and those at both ends.
+    The displacements of a box are Σ tₖ gₖ with |tₖ| ≤ 1 for one or two vectors g. The distance of two convex bodies is a convex function
+    of t, so it is smallest where each tₖ is −1, or 1, or where the direction of the distance is perpendicular to gₖ. So if two triangles
+    can be separated, one direction of these cases does it, and the range need not be cut for them: with one g, the direction between
+    their projections along g, and those at both ends.
 
     Args:
         spread: Of boxes.
         ways: Unit vectors along g, `(k, 3)`.
-        groups: Which generators of first order go along each of them, `(k, G)`: what goes along the same line adds up.
+        groups: Generators of first order along each of them, `(k, G)`: those along the same line add up.
     """
 
     def __init__(self, spread: Spread, ways: FloatArray, groups: NDArray[np.bool_]) -> None:
@@ -428,7 +428,7 @@ class Slides:
 
     @classmethod
     def of(cls, spread: Spread, root: int) -> Slides | None:
-        """Return it for boxes cut from `root`; None where something turns, or slides along more than two lines."""
+        """Return the object for boxes cut from `root`; None if something turns, or slides along more than two lines."""
         flow = spread.flow[root]
         size = np.linalg.norm(flow, axis=1)
         left = size > NEARLY_STILL * size.max(initial=0.0)
@@ -442,11 +442,11 @@ class Slides:
         return cls(spread, np.array(ways), np.array(groups)) if len(ways) <= MOST_WAYS else None
 
     def across(self, apart: FloatArray) -> FloatArray:
-        """Return the directions of vectors `(n, 3)` across all slides, rounded so that few different ones remain."""
+        """Return the directions of vectors `(n, 3)` perpendicular to all slides, rounded so that few different ones remain."""
         return np.asarray(_coarse(apart @ self._basis.T) @ self._basis)
 
     def directions(self, box: IntArray, p: FloatArray, q: FloatArray) -> FloatArray:
-        """Return directions `(n, D, 3)`, one of which keeps triangles `(n, 3, 3)` apart over their boxes if any does."""
+        """Return directions `(n, D, 3)`, one of which separates triangles `(n, 3, 3)` over their boxes if any does."""
         far = np.linalg.norm(self.spread.flow[box], axis=2) @ self.groups.T
         found = []
         for signs in itertools.product((0, -1, 1), repeat=len(self.ways)):
@@ -457,17 +457,17 @@ class Slides:
 
 
 def _complement(ways: FloatArray) -> FloatArray:
-    """Return unit vectors across some, `(3 - k, 3)`, and across each other."""
+    """Return unit vectors perpendicular to the given ones, `(3 - k, 3)`, and to each other."""
     return np.asarray(np.linalg.svd(ways)[2][len(ways) :]) if len(ways) else _EYE
 
 
 class Ranges:
-    """Boxes of a chain's own coordinates, from bounds of each.
+    """Boxes of a chain's own coordinates, from the bounds of each.
 
     Args:
         spread: Empty, of the chain.
-        bounds: Of each coordinate.
-        left_out: Which boxes (lower ends `(k, n)`, upper ends) lie outside what the joints allow, `(k,)`.
+        bounds: Bounds of each coordinate.
+        left_out: Function: which boxes (lower ends `(k, n)`, upper ends) lie outside the limits of joints, `(k,)`.
     """
 
     def __init__(
@@ -496,7 +496,7 @@ class Ranges:
         return self.spread.add((ends[..., 0] + ends[..., 1]) / 2, np.diff(ends, axis=2)[:, columns, 0] / 2)
 
     def cut(self, boxes: IntArray, share: FloatArray) -> IntArray:
-        """Cut each box across the coordinate that has the largest share."""
+        """Cut each box across the coordinate with the largest share."""
         by_column = np.full((len(boxes), len(self.bounds)), -1.0)
         for f, (_, factor) in enumerate(self.spread.factors):
             by_column[:, factor.column] = share[:, f]
@@ -511,7 +511,7 @@ class Ranges:
         return numbers
 
     def is_reached(self, box: int) -> bool:  # noqa: ARG002 - a chain's coordinates are free
-        """Return whether the middle of a box is a pose of the mechanism: always."""
+        """Return whether the centre of a box is a pose of the mechanism: always."""
         return True
 
     def contact(self, box: int) -> tuple[float, ...] | None:

@@ -1,8 +1,8 @@
-"""Fits: what a joint declares about the gap between its two parts, held against what is measured.
+"""Fits: what a joint declares about the gap between its two parts, compared with measurements.
 
-The lower bound holds over the whole motion of the joint. It is proven where that succeeds, and sampled elsewhere; each row says which.
-The upper bound is held against the play at rest (`articad.interference.gauge`). Meshes may be off by their deflection either way, so a
-fit is called broken only beyond that. Definitions: `docs/reference/plan.md`.
+The lower bound applies to the whole motion of the joint. It is proven if possible, and sampled otherwise; each row says which. The upper
+bound is compared with the play at rest (`articad.interference.gauge`). Meshes may deviate by their deflection in both directions, so a
+fit counts as broken only beyond that. Definitions: `docs/reference/plan.md`.
 """
 
 from __future__ import annotations
@@ -45,8 +45,8 @@ __all__ = [
 ]
 
 STEPS = 24  # poses per coordinate at which the gap is measured in motion
-CONTACT_MM = 0.02  # surfaces this close touch, beyond the deflection of their meshes
-EPSILON_MM = 1e-4  # a gap that exceeds what is to be proven by no more counts as contact in the search
+CONTACT_MM = 0.02  # surfaces this close touch, in addition to the deflection of their meshes
+EPSILON_MM = 1e-4  # a gap that exceeds the value to prove by no more than this counts as contact in the search
 PROOF_SECONDS = 1.2  # nominal, for the proof of each fit
 _FOLLOWED = 61  # poses of each driver's range, or of each of its turns: steps of 6°, its half included
 
@@ -56,19 +56,19 @@ Span = Mapping[str, tuple[float, float]]
 
 @dataclass(frozen=True)
 class FitCheck:
-    """One row: declared against measured.
+    """One row: a declared fit and its measurements.
 
     Attributes:
         joint: Its name.
         parts: Its two parts.
         declared: The fit.
-        rest: Gap at rest [mm]; negative is the depth of an overlap. None when it could not be measured.
+        rest: Gap at rest [mm]; negative is the depth of an overlap. None if it could not be measured.
         least: Smallest gap that was measured over the motion [mm].
-        at: Where the smallest gap is [rad, mm]; None at rest.
+        at: Pose of the smallest gap [rad, mm]; None at rest.
         verdict: "ok"; "tight" or "loose"; "contact" where it is forbidden; "apart" where contact is required; or "not_checked".
-        play: At rest, whatever the place of the pin in its hole [mm]; None where nothing stops the child, or where it is not asked for.
-        tolerance: How far both meshes together may be from their solids [mm].
-        strength: How the lower bound is known over the motion.
+        play: Play at rest, wherever the pin is in its hole [mm]; None if nothing stops the child, or if it was not requested.
+        tolerance: Largest deviation of both meshes together from their solids [mm].
+        strength: How strong the verdict on the lower bound is over the motion.
     """
 
     joint: str
@@ -106,9 +106,9 @@ class FitReport:
     Attributes:
         findings: One per broken fit.
         rows: One per declared fit, in order.
-        claims: What is proven of them, for a certificate.
-        queries: Pairs of pieces of surface that were looked at.
-        work: Units of work spent; `articad.interference.work`.
+        claims: Proven claims about them, for a certificate.
+        queries: Pairs of pieces of surface that were compared.
+        work: Units of work spent; see `articad.interference.work`.
     """
 
     findings: Findings
@@ -119,7 +119,7 @@ class FitReport:
 
     @property
     def ok(self) -> bool:
-        """True when every fit is kept."""
+        """True if every fit is kept."""
         return self.findings.ok
 
     def to_json(self) -> dict[str, Any]:
@@ -140,14 +140,14 @@ def check_fits(
     joints: Sequence[str] | None = None,
     seconds: float = PROOF_SECONDS,
 ) -> FitReport:
-    """Hold every declared fit of a scene against its parts, at rest and over the motion of its joint.
+    """Check every declared fit of a scene, at rest and over the motion of its joint.
 
     Args:
         scene: Bodies and relations.
-        reached: How far coordinates go that follow others, by name [rad, mm], or a function that finds it: a joint of a linkage need
+        reached: Ranges of coordinates that follow others, by name [rad, mm], or a function that finds them: a joint of a linkage need
             not reach its own limits.
-        proven: The same, where it is proven that they go no further; asked before `reached`.
-        joints: Names of those to be held; all by default.
+        proven: The same, if it is proven that they go no farther; used before `reached`.
+        joints: Names of the joints to check; all by default.
         seconds: Nominal seconds of work for each fit; see `articad.interference.work`.
     """
     rows: list[FitCheck] = []
@@ -176,13 +176,13 @@ def check_fits(
 
 
 def certified_fits(report: FitReport) -> FitReport:
-    """Return a report that also names the fits for whose motion only samples speak."""
+    """Return a report with additional findings for fits whose motion was only sampled."""
     open_rows = [row for row in report.rows if row.verdict == "ok" and row.strength.kind == "sampled" and (row.strength.poses or 0) > 1]
     return replace(report, findings=report.findings + Findings(_unproven(row) for row in open_rows))
 
 
 def followed(mechanism: Mechanism) -> dict[str, tuple[float, float]]:
-    """Return how far each coordinate of a linkage goes while its drivers move, one at a time [rad, mm]; nothing for a tree.
+    """Return the range of each coordinate of a linkage while its drivers move one at a time [rad, mm]; empty for a tree.
 
     These are samples of each driver's range.
     """
@@ -193,7 +193,7 @@ def followed(mechanism: Mechanism) -> dict[str, tuple[float, float]]:
     rows = [mechanism.configuration(mechanism.rest).columns[None]]
     for freedom in sweep.ranges():
         moved = freedom
-        if freedom.name in numbers:  # the ends of what is reached are the ends of what follows
+        if freedom.name in numbers:  # the ends of the driver's range are the ends of the followers' ranges
             ends = mechanism.feasible_range(freedom.name)
             moved = freedom._replace(lower=max(freedom.lower, ends.lower), upper=min(freedom.upper, ends.upper))
         kept, _, solution = sweep.placed([{moved.name: value} for value in sweep.values(moved, _FOLLOWED).tolist()])
@@ -205,7 +205,7 @@ def followed(mechanism: Mechanism) -> dict[str, tuple[float, float]]:
 
 
 class _Held:
-    """One fit, held against its two parts."""
+    """One fit, checked against its two parts."""
 
     def __init__(self, scene: Scene, joint: Joint, fit: FitLike, budget: WorkBudget) -> None:
         self.scene, self.joint, self.fit, self.budget = scene, joint, fit, budget
@@ -216,17 +216,17 @@ class _Held:
 
     @property
     def touches(self) -> float:
-        """The gap up to which two parts are said to touch [mm]."""
+        """The gap up to which two parts count as touching [mm]."""
         return CONTACT_MM + self.slack
 
     @property
     def may_touch(self) -> bool:
-        """True when the fit lets the parts touch, so that the gap has no lower bound but that of an overlap."""
+        """True if the fit lets the parts touch, so that the only lower bound of the gap is that of an overlap."""
         return self.fit.contact in ("allowed", "required")
 
     @property
     def least_allowed(self) -> float | None:
-        """The gap below which the fit is broken over the motion [mm]; None where it says nothing. Negative is a depth."""
+        """The gap below which the fit is broken over the motion [mm]; None if there is no bound. Negative is a depth."""
         if self.may_touch:
             return None if self.fit.gap_min is None else -self.touches
         bounds = [] if self.fit.gap_min is None else [self.fit.gap_min - self.slack]
@@ -246,8 +246,8 @@ class _Held:
             return row, []
         seen = self._over(row, self.moving)
         if not _is_proven(seen) and (inside := _within(self.moving, proven)) != self.moving:
-            seen, self.claims = self._over(row, inside), ()  # a claim is about all of a joint's range
-        if seen.verdict != "ok" and reached is not None:  # it may be where the linkage never brings it
+            seen, self.claims = self._over(row, inside), ()  # a claim covers all of a joint's range
+        if seen.verdict != "ok" and reached is not None:  # the gap may be where the linkage never brings the joint
             inside = _within(self.moving, reached() if callable(reached) else reached)
             if inside != self.moving:
                 seen, self.claims = self._over(row, inside), ()
@@ -283,7 +283,7 @@ class _Held:
         return "ok", gap, 0.0
 
     def _over(self, row: FitCheck, moving: tuple[Freedom, ...]) -> FitCheck:
-        """Hold the lower bound over a range: by samples, which find what is plainly wrong, then by a proof."""
+        """Check the lower bound over a range: by samples, which find clear violations, then by a proof."""
         poses = 0
         ranges = [sampled_piece(self.joint, freedom) for freedom in moving]
         endless = ranges != list(moving)
@@ -305,14 +305,14 @@ class _Held:
         return replace(row, least=gap, at=_named(moving, values)) if gap < row.least else row
 
     def _proven(self, row: FitCheck, moving: tuple[Freedom, ...]) -> FitCheck | None:
-        """Return the row with a proof or a pose where the fit is broken; None where neither was found."""
+        """Return the row with a proof, or with a pose where the fit is broken; None if neither was found."""
         least = self.least_allowed
         assert least is not None
         for needed, off in ((least + 2 * self.slack, self.slack), (least, 2 * self.slack)) if self.slack else ((least, 0.0),):
             prover = _FitProver(self, moving, max(needed, 0.0))
             shrink = NO_SHRINK if needed > 0 else Shrink(max(-needed, EPSILON_MM))
             if shrink.depth and self.fit.within is not None:
-                return None  # a cut surface has no inside to move it to
+                return None  # a cut surface has no inside towards which to move it
             outcome = prover.search(prover.bounds, shrink)
             if outcome.is_complete:
                 if self.fit.within is None and needed >= self.slack:
@@ -331,7 +331,7 @@ class _Held:
         return None
 
     def _is_within(self, prover: _FitProver, values: Sequence[float]) -> bool:
-        """Return whether a pose of the search is one of the joint: a ball is proven over a little more than its limits."""
+        """Return whether a pose of the search is within the joint's limits: a ball is proven over slightly more."""
         if self.joint.type is not JointType.BALL:
             return True
         sx, sy, twist = prover.pose(values).values()
@@ -392,7 +392,7 @@ def _is_proven(row: FitCheck) -> bool:
 
 
 def _within(moving: tuple[Freedom, ...], spans: Span) -> tuple[Freedom, ...]:
-    """Return freedoms over the part of their ranges that lies within spans."""
+    """Return freedoms with their ranges restricted to spans."""
     return tuple(
         f._replace(lower=max(f.lower, spans[f.name][0]), upper=min(f.upper, spans[f.name][1])) if f.name in spans else f for f in moving
     )
@@ -433,7 +433,7 @@ def _unproven(row: FitCheck) -> Finding:
 
 
 def _unresolved(row: FitCheck) -> list[Finding]:
-    """Return a finding if the meshes may be off by more than half the range of a fit that seems kept: it is not known to be."""
+    """Return a finding if the meshes may deviate by more than half the range of a fit that seems kept: then the verdict is not certain."""
     fit, off = row.declared, row.tolerance
     if fit.gap_max is None or fit.gap_max - (fit.gap_min or 0.0) >= 2 * off:
         return []

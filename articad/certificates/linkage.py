@@ -36,19 +36,19 @@ from articad.kinematics.motion import track_of
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
-Ends = tuple[tuple[float, float], ...]  # of each driver
+Ends = tuple[tuple[float, float], ...]  # for each driver
 
 SMALLEST_STEP = 1e-6  # of the driver's range, below which it is not followed further
-FIRST_STEP = 1.0  # of the way to a bound, halved until what follows is enclosed
+FIRST_STEP = 1.0  # of the way to a bound, halved until the followers are enclosed
 SMALLEST_BOX = 1 / 256  # of the ranges of several drivers, below which they are not followed together
 MOST_BOXES = 3000  # of several drivers
-WIDER = 1.2  # than the distance within which there is a solution: that within which there is no other one
-ROOM = (2e-4, 2e-6)  # rad or mm: of a tube beside what it must hold; much of it lets pieces be long, where many joints follow little holds
-SMALLEST_PIECE = 1e-4  # rad or mm: to which the end of what is free along a driver is found
-LOOKS = 24  # poses looked at beyond contact
-MOST_TURNS = 64  # of a driver of couplings alone, after which what follows is taken never to come back
-REACHED = 1e-6  # rad or mm: by which the middle of a box may miss a pose of the mechanism that is looked at instead
-_CLOSED = 1e-10  # of loops and couplings
+WIDER = 1.2  # factor on the distance within which there is a solution, to get that within which there is no other one
+ROOM = (2e-4, 2e-6)  # rad or mm: margin of a tube; a large one allows long pieces, but with many joints only a small one works
+SMALLEST_PIECE = 1e-4  # rad or mm: precision of the end of the free range along a driver
+LOOKS = 24  # poses sampled beyond contact
+MOST_TURNS = 64  # turns of a driver of couplings alone, after which its followers count as never returning
+REACHED = 1e-6  # rad or mm: largest deviation of the centre of a box from the pose of the mechanism that replaces it
+_CLOSED = 1e-10  # tolerance of loops and couplings
 _STILL = 1e-14  # of a Newton step: rounding
 
 
@@ -98,7 +98,7 @@ class DriverTrack:
     def __init__(self, checker: Checker, drivers: tuple[str, ...], bounds: Ends) -> None:
         self.drivers, self.bounds = drivers, bounds
         self.names: list[str] = checker.followers(drivers)
-        self.group = frozenset(next(group for group in checker.groups if drivers[0] in group))  # its other drivers stand
+        self.group = frozenset(next(group for group in checker.groups if drivers[0] in group))  # the group's other drivers stay at rest
         self._checker, self.rest = checker, np.array([checker.rest[name] for name in drivers])
         self._found = checker.begin(self.names, len(drivers))
         self._others: list[int] = []
@@ -111,7 +111,7 @@ class DriverTrack:
 
     @property
     def count(self) -> int:
-        """How many pieces have been found so far."""
+        """Number of pieces found so far."""
         return len(self._number)
 
     # --- one driver
@@ -139,7 +139,7 @@ class DriverTrack:
         return steps[-1].ends[0][1 if sign > 0 else 0] if steps else float(self.rest[0])
 
     def _tree(self, ends: list[Ends]) -> Ends:
-        """Note how pieces in a row are to be parted, half of them to each side; return the ends of all."""
+        """Record how a row of pieces is split, half of them to each side; return the ends of the union."""
         if len(ends) == 1:
             return ends[0]
         at = (len(ends) + 1) // 2
@@ -233,8 +233,8 @@ class DriverTrack:
         """Return across which driver a piece is cut, where, and its halves, each about a solution of its own; None if there are none.
 
         Args:
-            piece: Of this way.
-            shares: Of the motion that each driver causes `(drivers,)`: a piece that was not cut before is cut across the largest.
+            piece: A piece of this track.
+            shares: Share of the motion that each driver causes `(drivers,)`: a piece that was not cut before is cut across the largest.
         """
         if piece.ends not in self._cuts:
             at, (number,) = int(np.argmax(shares)), piece.numbers
@@ -268,7 +268,7 @@ class DriverTrack:
         return None
 
     def _tube(self, bounds: tuple[Any, ...], room: float) -> FloatArray:
-        """Return distances from a curve that should contain one solution and no other, `(1, n)`: a fixed point of the checker's bound, widened."""
+        """Return distances from a curve that should enclose exactly one solution, `(1, n)`: a widened fixed point of the checker's bound."""
         ends, guess, _, _, off, bend, most, share = bounds
         count: int = ends.shape[1]
         wide: FloatArray = np.zeros(guess.shape)
@@ -279,7 +279,7 @@ class DriverTrack:
         return wide
 
     def solved(self, values: FloatArray, beside: int) -> FloatArray | None:
-        """Return all coordinates of the group at values of the drivers, by Newton's method from what a piece predicts."""
+        """Return all coordinates of the group at values of the drivers, by Newton's method from the prediction of a piece."""
         ends, value, rates, *_ = self._found[beside]
         x = value + (values - ends.mean(axis=1)) @ rates
         x[: len(values)] = values
@@ -294,7 +294,7 @@ class DriverTrack:
         return None
 
     def at(self, values: FloatArray) -> dict[str, float] | None:
-        """Return the coordinates of the group at values of the drivers; None where these have not been followed."""
+        """Return the coordinates of the group at values of the drivers; None if these have not been followed."""
         spans = np.array([row[0] for row in self._found])
         holding = np.flatnonzero(np.all((spans[..., 0] <= values) & (spans[..., 1] >= values), axis=1))
         x = self.solved(values, int(holding[-1])) if len(holding) else None
@@ -318,15 +318,15 @@ class DriverTrack:
 def driven_range(mechanism: Mechanism, checker: Checker, index: int) -> tuple[tuple[float, float], tuple[str, str]]:
     """Return the range over which a driver is to be followed, and what ends it below and above.
 
-    Without limits that is the travel after which all that follows has come back: about rest, or from the one limit there is.
+    Without limits that is the travel after which all its followers have returned: about rest, or from its only limit.
 
     Args:
-        mechanism: With loops or couplings.
-        checker: Of its certificate.
-        index: Of the driver among the mechanism's.
+        mechanism: A mechanism with loops or couplings.
+        checker: The checker of its certificate.
+        index: Index of the driver among the mechanism's.
 
     Raises:
-        ValueError: If it does not come back.
+        ValueError: If its followers do not return.
     """
     driver = mechanism.drivers[index]
     feasible, rest = mechanism.feasible_range(driver.name), float(checker.rest[driver.name])
@@ -346,7 +346,7 @@ def driven_range(mechanism: Mechanism, checker: Checker, index: int) -> tuple[tu
 
 
 def _period(mechanism: Mechanism, checker: Checker, index: int, sign: int) -> float:
-    """Return the travel of a driver after which all that follows it has come back but for whole turns [rad]."""
+    """Return the travel of a driver after which all its followers have returned up to whole turns [rad]."""
     driver = mechanism.drivers[index]
     names = checker.followers((driver.name,))
     rest = np.array([checker.rest[name] for name in names])
@@ -369,13 +369,13 @@ def _period(mechanism: Mechanism, checker: Checker, index: int, sign: int) -> fl
 
 
 class Steps:
-    """Boxes along ways, and of further coordinates that move by themselves.
+    """Boxes along tracks, and of further coordinates that move independently.
 
     Args:
-        ways: Of drivers of different groups.
-        chain: Between two parts.
+        ways: Tracks of drivers of different groups.
+        chain: The chain between two parts.
         others: Bounds of the chain's coordinates that do not follow; NaN for those that do.
-        pieces: To be covered, one of each way; by default all of it.
+        pieces: Pieces to cover, one of each track; by default all of it.
     """
 
     def __init__(self, ways: Sequence[DriverTrack], chain: Chain, others: FloatArray, pieces: Sequence[FollowedBox] | None = None) -> None:
@@ -393,11 +393,11 @@ class Steps:
 
     @property
     def work(self) -> int:
-        """Units of work that the boxes, and the pieces of the ways, have cost so far."""
+        """Units of work that the boxes, and the pieces of the tracks, have cost so far."""
         return PLACED * len(self.spread) + sum(way.work for way in self.ways)
 
     def root(self) -> IntArray:
-        """Add all of it, with the whole range of the other coordinates."""
+        """Add the whole range of the tracks and of the other coordinates."""
         return self._add([(self.pieces, self.others)])
 
     def _add(self, rows: list[tuple[tuple[FollowedBox, ...], FloatArray]]) -> IntArray:
@@ -411,8 +411,8 @@ class Steps:
         return self.spread.add(centres, np.abs(lines).sum(axis=1) + tubes, generators)
 
     def _placed(self, pieces: tuple[FollowedBox, ...], ends: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Return the chain's coordinates; how far each factor goes with each driver `(drivers, F)`, and aside of that `(F,)`."""
-        values = np.where(np.isnan(ends[:, 0]), self.chain.rest, ends.mean(axis=1))  # what no driver here moves stands
+        """Return the chain's coordinates; the range of each factor for each driver `(drivers, F)`, and in addition to that `(F,)`."""
+        values = np.where(np.isnan(ends[:, 0]), self.chain.rest, ends.mean(axis=1))  # coordinates that no driver here moves stay at rest
         lines, aside = np.zeros((self.first[-1], len(self._names))), np.zeros(len(self._names))
         for f, name in enumerate(self._names):
             column = self._columns[f]
@@ -425,7 +425,7 @@ class Steps:
         return values, lines, aside
 
     def cut(self, boxes: IntArray, share: FloatArray) -> IntArray:
-        """Halve a piece of a way, or the range of a coordinate that moves by itself, whichever has the largest share."""
+        """Halve a piece of a track, or the range of an independent coordinate, whichever has the largest share."""
         pairs = [self._cut(int(box), share[row]) for row, box in enumerate(boxes.tolist())]
         numbers = self._add([half for pair in pairs for half in pair]).reshape(-1, 2)
         for box, halves in zip(boxes.tolist(), numbers.tolist(), strict=True):
@@ -437,7 +437,7 @@ class Steps:
         count = self.first[-1]
         by_driver, aside = share[:count], share[count:]
         wide = [column for column in self.free.tolist() if ends[column, 1] > ends[column, 0]]
-        choices = [(float(aside[self._columns == column].sum()), -1, column) for column in wide]  # share, of a way or -1, column
+        choices = [(float(aside[self._columns == column].sum()), -1, column) for column in wide]  # share, index of the track or -1, column
         for way, follows in enumerate(self._follow):
             own = float(by_driver[self.first[way] : self.first[way + 1]].sum() + aside[follows].sum())
             choices.append((own, way, -1))
@@ -455,15 +455,15 @@ class Steps:
         raise CannotCut
 
     def is_reached(self, box: int) -> bool:
-        """Return whether the middle of a box is a pose of the mechanism: loops need not close there in a wide box, or in several as one."""
+        """Return whether the centre of a box is a pose of the mechanism: in a wide box, or in a union, loops need not close there."""
         return all(piece.off <= REACHED for piece in self.rows[box][0])
 
     def contact(self, box: int) -> tuple[float, ...] | None:
-        """Return the chain's coordinates at the middle of a box; none if the mechanism does not reach it."""
+        """Return the chain's coordinates at the centre of a box; None if the mechanism does not reach it."""
         return tuple(self._placed(*self.rows[box])[0].tolist()) if self.is_reached(box) else None
 
     def driven(self, box: int) -> dict[str, float]:
-        """Return the drivers' values at the middle of a box."""
+        """Return the drivers' values at the centre of a box."""
         pairs = zip(self.ways, self.rows[box][0], strict=True)
         return {name: float(value) for way, piece in pairs for name, value in zip(way.drivers, piece.middle, strict=True)}
 
@@ -473,10 +473,10 @@ class LinkageProver(Prover):
 
     Args:
         scene: Bodies and relations.
-        route: Joints from the one part to the other.
-        joints: Names of those that move: all that follow, and those that move by themselves.
-        ways: Of the drivers, one for each group that moves.
-        epsilon: What is closer by no more is contact [mm].
+        route: Joints from the first part to the second.
+        joints: Names of the joints that move: all followers, and those that move independently.
+        ways: Tracks of the drivers, one for each group that moves.
+        epsilon: Distances up to this count as contact [mm].
         budget: Shared by all proofs.
     """
 
@@ -496,22 +496,22 @@ class LinkageProver(Prover):
         mine = np.array([any(freedom.name in way.group for way in ways) for freedom in self.chain.freedoms], dtype=bool)
         self.others = np.where(mine[:, None], np.nan, self.bounds)
         if self.axis is not None and self.axis.dimensions == 3:
-            self.axis = None  # a ball that follows is not held within its cone: nothing proves that it keeps to it
+            self.axis = None  # a ball that follows is not held within its cone: nothing proves that it stays within it
         self._last: Steps | None = None
         self.looked = 0  # poses at which `worst` measured the overlap
 
     @property
     def is_line(self) -> bool:
-        """False: what is found of a range is found along the driver."""
+        """False: a free range is found along the driver."""
         return False
 
     @property
     def is_single(self) -> bool:
-        """True when one driver moves, and nothing by itself."""
+        """True if one driver moves, and nothing independently."""
         return len(self.drivers) == 1 and bool(np.isnan(self.others[:, 0]).all())
 
     def ends(self, column: int) -> tuple[float, float]:
-        """Return between which values a coordinate of the chain stays: those that follow stay near the line over the whole way."""
+        """Return the bounds of a coordinate of the chain: followers stay near the line over the whole track."""
         name = self.chain.freedoms[column].name
         for way in self.ways:
             if way.whole is not None and name in way.whole.line:
@@ -526,7 +526,7 @@ class LinkageProver(Prover):
         return self._last
 
     def vary(self, bounds: FloatArray) -> dict[str, tuple[float, float]]:  # noqa: ARG002
-        """Return the drivers' ranges that were cleared, and those of the coordinates that move by themselves."""
+        """Return the drivers' ranges that were cleared, and those of the independent coordinates."""
         driven = {name: ends for way in self.ways if way.whole for name, ends in zip(way.drivers, way.whole.ends, strict=True)}
         return {**driven, **{freedom.name: (freedom.lower, freedom.upper) for freedom in self._own()}}
 
@@ -549,7 +549,7 @@ class LinkageProver(Prover):
         return replace(found, contacts=({**self.named(outcome.contact), **self._last.driven(outcome.box)},))
 
     def seen(self, begun: Proof) -> dict[str, Any]:
-        """Return where the two overlap beyond what is allowed at one of a few values of what moves, if they do."""
+        """Return where the two overlap beyond what is allowed, at one of a few values of the moving coordinates, if they do."""
         whole = [
             Freedom(name, *ends, 0.0) for way in self.ways if way.whole for name, ends in zip(way.drivers, way.whole.ends, strict=True)
         ]
@@ -566,12 +566,12 @@ class LinkageProver(Prover):
         return {"contacts": ({**known, **place},)}
 
     def collides(self, proof: Proof) -> bool:
-        """Return whether the two overlap beyond what is allowed near where a proof stopped, or further on."""
+        """Return whether the two overlap beyond what is allowed near where a proof stopped, or beyond it."""
         worst, _ = self.worst(proof)
         return worst.depth > self.allowed and worst.volume > UNRELATED_VOLUME_MM3
 
     def free_range(self, shrink: Shrink) -> tuple[float, float]:
-        """Return how far from rest a single driver may go either way."""
+        """Return how far from rest a single driver may go in both directions."""
         (way,) = self.ways
         rest = float(next(iter(self._rest().values())))
         ends = [rest, rest]
@@ -589,7 +589,7 @@ class LinkageProver(Prover):
         return ends[0], ends[1]
 
     def worst(self, proof: Proof) -> tuple[Overlap, dict[str, float] | None]:
-        """Return the deepest overlap from where a proof stopped to the ends of what moves, and the values of drivers and others there."""
+        """Return the deepest overlap between where a proof stopped and the ends of the ranges, and the values there."""
         worst, where = proof.overlap, None
         for contact in proof.contacts:
             for place in self._beyond(contact):
@@ -604,9 +604,9 @@ class LinkageProver(Prover):
         return worst, where
 
     def _beyond(self, contact: Mapping[str, float]) -> Iterator[dict[str, float]]:
-        """Yield values from a contact on, closely at first: each driver to its end away from rest, all to theirs, and all back to rest.
+        """Yield values from a contact on, in growing steps: each driver to its end away from rest, all to theirs, and all back to rest.
 
-        A search may meet the far side of what is in the way first, so that only the way back leads into it.
+        A search may first find the far side of an obstacle, so that only the way back leads into it.
         """
         own = {freedom.name: contact[freedom.name] for freedom in self._own()}
         rest, start = self._rest(), {name: contact.get(name, value) for name, value in self._rest().items()}
@@ -619,7 +619,7 @@ class LinkageProver(Prover):
                 yield {**own, **{name: start[name] + (goal[name] - start[name]) * share * (name in moving) for name in start}}
 
     def placed(self, place: Mapping[str, float]) -> list[float] | None:
-        """Return the chain's coordinates at values of the drivers and of what moves by itself; None where drivers were not followed."""
+        """Return the chain's coordinates at values of the drivers and independent coordinates; None if drivers were not followed there."""
         known = dict(place)
         for way in self.ways:
             self.budget.spend(CLOSED)

@@ -1,7 +1,7 @@
 """Outlines of the pieces of a surface in coordinates that a joint about one axis or point does not change.
 
-A shaft in its bore and a washer on its shoulder never come nearer than their outlines in the plane through the axis, whatever the
-angle. Triangles whose outlines meet none of the other's stand in a tree of their own: no range needs to be cut for them.
+A shaft in its bore and a washer on its shoulder never come closer than their outlines in the plane through the axis, whatever the angle.
+Triangles whose outlines meet none of the other's are in a separate tree: no range needs to be cut for them.
 """
 
 from __future__ import annotations
@@ -18,22 +18,20 @@ from articad.interference.surface import Surface
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
 
-WEIGHT = 10.0  # of outlines against the size of pieces: what they tell apart is cut by them first
-SLIDING_WEIGHT = np.array(
-    [100.0, 100.0, 100.0, 1.0]
-)  # the same of what slides: it is cut lengthwise first, since pieces at all heights meet
+WEIGHT = 10.0  # of outlines relative to the size of pieces: pieces that outlines can separate are cut by them first
+SLIDING_WEIGHT = np.array([100.0, 100.0, 100.0, 1.0])  # the same for sliding joints: cut lengthwise first, since pieces at all heights meet
 
 
 @dataclass(frozen=True, eq=False)
 class Forest:
-    """A surface as the trees over its parts, with what each node is in coordinates that the joint keeps.
+    """A surface as trees over its parts, with the bounds of each node in coordinates that the joint does not change.
 
     Attributes:
         tree: The nodes of all trees.
         roots: The root of each tree.
-        low: Lower ends of the nodes' outlines, `(nodes, k)` [mm], k = 0 where there are none; the first is the radius.
+        low: Lower ends of the nodes' outlines, `(nodes, k)` [mm], k = 0 if there are none; the first is the radius.
         high: Upper ends.
-        meets: Whether a node's triangles have outlines that meet some of the other surface's, `(nodes,)`.
+        meets: Whether a node has triangles whose outlines meet some of the other surface's, `(nodes,)`.
     """
 
     tree: BoxTree
@@ -44,7 +42,7 @@ class Forest:
 
     @classmethod
     def plain(cls, surface: Surface) -> Forest:
-        """Return a surface about no axis."""
+        """Return a surface without an axis."""
         tree = BoxTree.of(surface)
         none = np.empty((len(tree.centre), 0))
         return cls(tree, (0,), none, none, np.ones(len(none), dtype=bool))
@@ -53,7 +51,7 @@ class Forest:
     def pair(
         cls, a: Surface, b: Surface, of_a: Ends, of_b: Ends, limit: float | FloatArray, weight: float | FloatArray = WEIGHT
     ) -> tuple[Forest, Forest]:
-        """Return two surfaces with their outlines; outlines meet that are within `limit` of each other [mm]."""
+        """Return two surfaces with their outlines; outlines meet if they are within `limit` of each other [mm]."""
         met_a = meeting(of_a, of_b, limit)
         met_b = meeting(of_b, (of_a[0][met_a], of_a[1][met_a]), limit)
         return cls._of(a, of_a, met_a, weight), cls._of(b, of_b, met_b, weight)
@@ -76,5 +74,5 @@ class Forest:
 
     @property
     def sizes(self) -> tuple[int, ...]:
-        """How many triangles each tree holds."""
+        """Number of triangles in each tree."""
         return tuple(int(self.tree.size[root]) for root in self.roots)

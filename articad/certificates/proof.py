@@ -1,6 +1,7 @@
-"""Proof that two parts keep apart while some joints move, or the pose at which they meet.
+"""Proof that two parts stay apart while some joints move, or the pose at which they meet.
 
-A search cuts pieces of both surfaces, and the range, until each two are apart (`clearing`). Where parts touch by design, the first one's surface is moved inwards by what is allowed.
+A search cuts pieces of both surfaces, and the range, until each two are apart (`clearing`). If parts touch by design, the first one's
+surface is moved inwards by the allowed depth.
 """
 
 from __future__ import annotations
@@ -30,24 +31,24 @@ from articad.kinematics.joints import JointType
 
 FloatArray = NDArray[np.float64]
 
-LOOK_PAIRS = 300_000  # of pieces, after which a few poses are looked at, lest a collision be sought by proof
+LOOK_PAIRS = 300_000  # of pieces, after which a few poses are sampled, so that no proof is sought where there is a collision
 LOOKS = 40  # poses
-LOOK_GROWTH = 1.6  # poses beyond the one where a proof stopped lie ever further apart, so that thin parts are not jumped over
-PARALLEL = 1e-12  # sine between sliders along one line
-EVERYWHERE = 1e30  # mm or rad: an interval up to here keeps nothing apart
+LOOK_GROWTH = 1.6  # growth of the distance of poses beyond the one where a proof stopped; starts small so that thin parts are not skipped
+PARALLEL = 1e-12  # sine of the angle between sliders along one line
+EVERYWHERE = 1e30  # mm or rad: an interval of this size separates nothing
 CONE_ROUNDING = 1e-9  # of the cosine of an angle
-CLAIM_SLACK_MM = 1e-6  # more than what is claimed is proven, so that a checker's rounding does not matter
-FIRST_STEP = 1 / 16  # of the way to a bound: of the walk to where the parts meet
-BESIDE_CONTACT_MM = 1.0  # beyond the largest radius at which two parts touch, where contact still is meant
+CLAIM_SLACK_MM = 1e-6  # margin of proofs over their claims, so that a checker's rounding does not matter
+FIRST_STEP = 1 / 16  # of the way to a bound, in the walk to where the parts meet
+BESIDE_CONTACT_MM = 1.0  # beyond the largest radius at which two parts touch, within which contact is still intended
 _STEADY = (JointType.REVOLUTE, JointType.CYLINDRICAL, JointType.SCREW, JointType.SLIDER, JointType.BALL)  # about one axis or point
 
 
 class Shrink(NamedTuple):
-    """How a surface is moved inwards before it is kept apart from the other.
+    """How a surface is moved inwards before it is compared with the other.
 
     Attributes:
-        depth: [mm]; 0 leaves it where it is.
-        within: Only vertices within this radius about the joint are moved [mm]: contact that is meant is near its axis.
+        depth: [mm]; 0 leaves it unchanged.
+        within: Only vertices within this radius about the joint are moved [mm]: intended contact is near its axis.
     """
 
     depth: float = 0.0
@@ -59,18 +60,18 @@ NO_SHRINK = Shrink()
 
 @dataclass(frozen=True)
 class Proof:
-    """What came out for one pair and one set of joints.
+    """The result for one pair and one set of joints.
 
     Attributes:
         parts: The pair.
-        joints: What moved.
-        claims: Proven statements; the whole range when `is_complete`.
-        lower: Of a single coordinate, the lower end of the proven range about rest.
+        joints: The joints that moved.
+        claims: Proven statements; they cover the whole range if `is_complete`.
+        lower: For a single coordinate, the lower end of the proven range about rest.
         upper: Its upper end.
-        contacts: Coordinates at which the proof stopped, those of drivers of loops with them.
-        overlap: At the start.
-        out_of_budget: True when the budget or the pairs ran out.
-        epsilon: How deep the solids might overlap nevertheless [mm].
+        contacts: Coordinates at which the proof stopped, including those of drivers of loops.
+        overlap: Overlap at the start.
+        out_of_budget: True if the budget or the number of pairs was used up.
+        epsilon: Depth by which the solids might still overlap [mm].
         shrink: How the first surface was moved inwards.
     """
 
@@ -86,12 +87,12 @@ class Proof:
     shrink: Shrink = NO_SHRINK
 
     def width(self) -> float:
-        """Return how much of a single coordinate is proven [rad or mm]."""
+        """Return the size of the proven range of a single coordinate [rad or mm]."""
         return 0.0 if self.lower is None or self.upper is None else self.upper - self.lower
 
     @property
     def is_complete(self) -> bool:
-        """True when the whole range is proven."""
+        """True if the whole range is proven."""
         return bool(self.claims) and not self.contacts and not self.out_of_budget
 
 
@@ -100,9 +101,9 @@ class Prover:
 
     Args:
         scene: Bodies and relations.
-        route: Joints from the one part to the other.
-        joints: Names of those that move; the others stand at rest.
-        epsilon: What is closer by no more is contact [mm].
+        route: Joints from the first part to the second.
+        joints: Names of the joints that move; the others stay at rest.
+        epsilon: Distances up to this count as contact [mm].
         budget: Shared by all proofs.
     """
 
@@ -124,7 +125,7 @@ class Prover:
         self.axis = self._axis()
 
     def prove(self, *, most: int = MOST_PAIRS, tentative: bool = False) -> Proof:
-        """Prove the whole range, or what of a single coordinate can be; a tentative proof ends at the first contact."""
+        """Prove the whole range, or for a single coordinate as much as possible; a tentative proof ends at the first contact."""
         self.budget.spend(self.look_price)
         start = measured(self.body_a, self.body_b, self.chain.matrix(self.chain.rest)[:3])
         begun = Proof(self.parts, self.joints, overlap=start, epsilon=self.epsilon)
@@ -149,7 +150,7 @@ class Prover:
         return free if self.is_line and not tentative else proof
 
     def _shrinks(self, start: Overlap) -> Iterator[Shrink]:
-        """Yield how the first surface may be moved: not at all, near the joint's axis as far as they touch there, everywhere."""
+        """Yield ways to move the first surface: not at all, near the joint's axis up to where they touch, everywhere."""
         if start.volume == 0:
             yield NO_SHRINK
         if self.axis is not None:
@@ -162,7 +163,7 @@ class Prover:
         yield Shrink(self.allowed)
 
     def _axis(self) -> Core | None:
-        """Return the axis or point about which the parts turn or slide, as a sees it; None where several joints have none in common."""
+        """Return the axis or point about which the parts turn or slide, in the frame of a; None if several joints have none in common."""
         movers = self.chain.movers
         if len(movers) == 1 and movers[0].joint.type in _STEADY:
             return Core(movers[0].before, 3 if movers[0].joint.type is JointType.BALL else 2)
@@ -172,14 +173,14 @@ class Prover:
         return Core(movers[0].before) if np.linalg.norm(np.cross(ways, ways[0]), axis=1).max() <= PARALLEL else None
 
     def _ways(self) -> FloatArray:
-        """Return the directions in which sliders, with nothing that turns between them, carry b as a sees it, `(movers, 3)`."""
+        """Return the directions in which sliders, with no turning joint between them, move b in the frame of a, `(movers, 3)`."""
         turned = itertools.accumulate((mover.before[:3, :3] for mover in self.chain.movers), np.matmul)
         signs = [1.0 if mover.forward else -1.0 for mover in self.chain.movers]
         return np.array([sign * R[:, 2] for R, sign in zip(turned, signs, strict=True)])
 
     @property
     def is_line(self) -> bool:
-        """True when a single coordinate moves."""
+        """True if a single coordinate moves."""
         return len(self.bounds) == 1
 
     def named(self, values: Sequence[float] | FloatArray) -> dict[str, float]:
@@ -187,7 +188,7 @@ class Prover:
         return {freedom.name: float(value) for freedom, value in zip(self.chain.freedoms, values, strict=True)}
 
     def pose(self, values: Sequence[float] | FloatArray) -> dict[str, float]:
-        """Return values by the names under which they are reported: of a ball its swing and twist."""
+        """Return values by the names used in reports: for a ball its swing and twist."""
         found: dict[str, float] = {}
         for mover in self.chain.movers:
             own = [float(values[column]) for column in mover.columns]
@@ -197,7 +198,7 @@ class Prover:
         return found
 
     def boxes(self, bounds: FloatArray) -> Boxes:
-        """Return what covers a range."""
+        """Return the boxes that cover a range."""
         balls = any(mover.joint.type is JointType.BALL for mover in self.chain.movers)
         return Ranges(Spread(self.chain), bounds, self._outside_cone if balls else None)
 
@@ -226,11 +227,11 @@ class Prover:
         return replace(found, claims=(claim,), lower=ends[0], upper=ends[1])
 
     def search(self, bounds: FloatArray, shrink: Shrink, most: int = MOST_PAIRS) -> Cleared:
-        """Keep the surfaces apart over a range."""
+        """Prove that the surfaces stay apart over a range."""
         return self.search_over(self.boxes(bounds), shrink, most)
 
     def search_over(self, boxes: Boxes, shrink: Shrink, most: int = MOST_PAIRS) -> Cleared:
-        """Keep the surfaces apart over boxes."""
+        """Prove that the surfaces stay apart over boxes."""
         a, b = self.forests(shrink)
         needed = self.margin + CLAIM_SLACK_MM
         outcome = clear(a, b, boxes, needed, axis=self.axis, epsilon=self.epsilon, budget=self.budget, most=most)
@@ -238,7 +239,7 @@ class Prover:
         return outcome
 
     def forests(self, shrink: Shrink) -> tuple[Forest, Forest]:
-        """Return trees over both surfaces, with their outlines where a single joint lies between the two."""
+        """Return trees over both surfaces, with their outlines if a single joint connects the two."""
         if shrink not in self._forests:
             a, b = self._sides(shrink)
             self.budget.spend((len(a.corners) + len(b.corners)) / TREE_TRIANGLES)
@@ -250,11 +251,11 @@ class Prover:
         return self._forests[shrink]
 
     def _sides(self, shrink: Shrink) -> tuple[Surface, Surface]:
-        """Return the surfaces that are kept apart."""
+        """Return the two surfaces to compare."""
         return self._surface(shrink)[0], whole_surface(self.body_b.mesh)
 
     def _outlines(self, axis: Core, a: Surface, b: Surface) -> tuple[Ends, Ends, FloatArray]:
-        """Return what of two surfaces the joint between them keeps, and by how much it is to be apart."""
+        """Return the coordinates of two surfaces that the joint between them does not change, and the distance required in them."""
         mover, needed = self.chain.movers[0], self.margin + 2 * CLAIM_SLACK_MM
         frame_b = np.asarray(np.linalg.solve(self.chain.matrix(np.zeros(len(self.bounds))), axis.frame))  # where all coordinates are 0
         turns, core_b = mover.joint.type is not JointType.SLIDER, Core(frame_b, axis.dimensions)
@@ -263,7 +264,8 @@ class Prover:
         limit = np.full(of_a[0].shape[1], needed)
         if axis.dimensions == 2:
             return of_a, of_b, limit
-        if any(self.chain.rest):  # the checker takes angles from the axis at rest: of a ball that rests turned they say nothing
+        # the checker measures angles from the axis at rest, so for a ball that does not rest upright they prove nothing
+        if any(self.chain.rest):
             wide = [np.full((len(surface.corners), 1), EVERYWHERE) for surface in (a, b)]
             return _beside(of_a, (-wide[0], wide[0])), _beside(of_b, (-wide[1], wide[1])), np.append(limit, 0.0)
         cone = self.chain.freedoms[mover.columns[0]].upper
@@ -274,7 +276,7 @@ class Prover:
         return of_a, of_b, np.concatenate([limit, [0.0], np.full(of_a[0].shape[1] - 2, needed)])
 
     def slid(self) -> tuple[float, float]:
-        """Return how far sliders along one line together carry b along the axis, as a sees it [mm]."""
+        """Return how far sliders along one line together move b along the axis, in the frame of a [mm]."""
         ways = self._ways()
         ends = [
             sorted(float(way @ ways[0]) * end for end in self.ends(mover.columns[0]))
@@ -285,7 +287,7 @@ class Prover:
         return low, high
 
     def travel(self, mover: Mover) -> tuple[float, float]:
-        """Return how far a joint about an axis carries b along its axis, as a sees it [mm]."""
+        """Return how far a joint about an axis moves b along its axis, in the frame of a [mm]."""
         match mover.joint.type:
             case JointType.CYLINDRICAL:
                 pitch = 1.0
@@ -297,12 +299,12 @@ class Prover:
         return ends[0], ends[1]
 
     def ends(self, column: int) -> tuple[float, float]:
-        """Return between which values a coordinate of the chain stays."""
+        """Return the bounds of a coordinate of the chain."""
         freedom = self.chain.freedoms[column]
         return freedom.lower, freedom.upper
 
     def _surface(self, shrink: Shrink) -> tuple[Surface, NDArray[np.float32] | None]:
-        """Return the first surface, and by how much its vertices were moved."""
+        """Return the first surface, and the displacements of its vertices."""
         if shrink not in self._kept:
             mesh, near = self.body_a.mesh, self.axis if math.isfinite(shrink.within) else None
             moved = inwards(mesh, shrink.depth, near, shrink.within) if shrink.depth else None
@@ -310,7 +312,7 @@ class Prover:
         return self._kept[shrink]
 
     def seen(self, begun: Proof) -> dict[str, Any]:
-        """Return where the two overlap beyond what is allowed at one of a few poses all over the range, if they do."""
+        """Return where the two overlap beyond what is allowed, at one of a few poses over the range, if they do."""
         places = np.concatenate([[self.bounds[:, 0], self.bounds[:, 1]], scattered(self.chain.freedoms, LOOKS)])
         places = places[~self._outside_cone(places, places)]
         deepest = max(places.tolist(), key=self.depth, default=None)
@@ -319,20 +321,20 @@ class Prover:
         return {"contacts": (self.named(deepest),)}
 
     def depth(self, values: Sequence[float]) -> float:
-        """Return how deeply the two overlap [mm]."""
+        """Return how deep the two overlap [mm]."""
         self.budget.spend(self.look_price)
         found = overlap(self.body_a, self.body_b, SE3.from_matrix(self.chain.matrix(values)))
         return found.depth if found.volume > UNRELATED_VOLUME_MM3 else 0.0
 
     def _free_range(self, begun: Proof) -> Proof:
-        """Walk from rest to both bounds as far as the parts keep apart, in steps that shrink where they come near."""
+        """Walk from rest to both bounds as far as the parts stay apart, in steps that shrink where they come close."""
         rest, (lower, upper) = float(self.chain.rest[0]), self.bounds[0].tolist()
         ends = [self._walked(rest, bound, begun.shrink) for bound in (lower, upper)]
         contacts = tuple(self.named((end,)) for end, bound in zip(ends, (lower, upper), strict=True) if end != bound)
         found = replace(begun, lower=ends[0], upper=ends[1], contacts=contacts, epsilon=begun.shrink.depth or self.epsilon)
         if ends[1] <= ends[0]:
             return found
-        outcome = self.search(np.array([ends]), begun.shrink)  # once more as a whole, for whoever follows it
+        outcome = self.search(np.array([ends]), begun.shrink)  # once more as a whole, so that a checker can follow it
         if not outcome.is_complete:
             return found
         return replace(found, claims=(self.claim(begun.overlap, self.vary(np.array([ends])), begun.shrink, outcome),))
@@ -360,7 +362,7 @@ class Prover:
         return outside
 
     def claim(self, start: Overlap, vary: Mapping[str, tuple[float, float]], shrink: Shrink, outcome: Cleared) -> Claim:
-        """Return what was proven."""
+        """Return what was proven as a claim."""
         chain, (_, moved) = self.chain, self._surface(shrink)
         assert outcome.trail is not None
         assert outcome.course is not None
@@ -387,7 +389,7 @@ def _beside(one: Ends, other: Ends) -> Ends:
 
 
 def cuts_of(boxes: Boxes) -> tuple[NDArray[np.int64], FloatArray]:
-    """Return which coordinate each box was cut across, and where, in the order in which they came from others."""
+    """Return the coordinate across which each box was cut, and the place; each box after the one that it was cut from."""
     numbers = [0]
     for number in numbers:
         if boxes.columns[number] >= 0:
@@ -396,7 +398,7 @@ def cuts_of(boxes: Boxes) -> tuple[NDArray[np.int64], FloatArray]:
 
 
 def beyond(chain: Chain, speeds: FloatArray, start: Sequence[float], depth: float) -> Iterator[tuple[float, ...]]:
-    """Yield poses from one on towards the bounds of each coordinate, away from rest: the first within the motion by `depth` [mm]."""
+    """Yield poses from a pose towards the bounds of each coordinate, away from rest: the first within a motion of `depth` [mm]."""
     yield tuple(start)
     for at, freedom in enumerate(chain.freedoms):
         ends = [end for end in (freedom.lower, freedom.upper) if (end - start[at]) * (start[at] - freedom.rest) >= 0]

@@ -1,9 +1,9 @@
-"""How far points stray while joints move within boxes about a pose: bounds by direction, for many boxes at once.
+"""How far points move while joints move within boxes about a pose: bounds by direction, for many boxes at once.
 
-A chain is a product of one-parameter motions. About the centre of a box a point b·p moves along `u` by no more than its speed
-there times the half width of each coordinate, and half the largest second derivative times the square: for i outside j
-∂²p/∂qᵢ∂qⱼ = ωᵢ × (ωⱼ × (p − oⱼ)), whose share along u is at most |u × ωᵢ| times the speed that j gives the point. So faces that
-slide along each other, and shafts that turn in their bores, stay apart in wide boxes: only their normals count.
+A chain is a product of one-parameter motions. About the centre of a box, a point b·p moves along `u` by at most its speed there times
+the half width of each coordinate, plus half the largest second derivative times the square: for i outside j, ∂²p/∂qᵢ∂qⱼ = ωᵢ × (ωⱼ × (p
+− oⱼ)), whose component along u is at most |u × ωᵢ| times the speed that j gives the point. So faces that slide along each other, and
+shafts that turn in their bores, stay apart in wide boxes: only their normals count.
 """
 
 from __future__ import annotations
@@ -28,8 +28,8 @@ class Factor(NamedTuple):
     Attributes:
         turn: Axis through the origin of the frame before it, or 0.
         slide: Velocity along it [mm per unit].
-        column: Place among the chain's values.
-        sign: −1 where the chain crosses the joint backwards.
+        column: Index among the chain's values.
+        sign: −1 if the chain crosses the joint backwards.
     """
 
     turn: tuple[float, float, float]
@@ -47,15 +47,15 @@ def factors_of(mover: Mover) -> list[Factor]:
 
 @dataclass
 class Spread:
-    """Boxes of a chain's coordinates and what moves in each; `m` boxes, `F` factors, `G` generators.
+    """Boxes of a chain's coordinates and the motion in each; `m` boxes, `F` factors, `G` generators.
 
     Attributes:
-        chain: From the part that stands to the one that moves.
+        chain: From the fixed part to the moving one.
         T: `T_a_b` at the centres, `(m, 4, 4)`.
-        omega: Axes of the factors as a sees them, 0 for slides, `(m, F, 3)`.
+        omega: Axes of the factors in the frame of a, 0 for slides, `(m, F, 3)`.
         moment: Their velocities at a's origin, `(m, F, 3)` [mm].
-        width: How far each factor's coordinate goes from the centre, `(m, F)`.
-        spin: Generators of first order, `(m, G, 3)`: what happens together is one of them.
+        width: Half width of each factor's coordinate, `(m, F)`.
+        spin: Generators of first order, `(m, G, 3)`: coupled motions form one of them.
         flow: Their velocities at a's origin, `(m, G, 3)` [mm].
     """
 
@@ -84,7 +84,7 @@ class Spread:
         Args:
             centres: Values of the chain's coordinates, `(k, n)`.
             width: Half width of each factor's coordinate, `(k, F)`.
-            generators: What the factors' coordinates do together, `(k, G, F)`; by default each for itself.
+            generators: Joint motions of the factors' coordinates, `(k, G, F)`; by default each by itself.
         """
         T, omega, moment = self._placed(centres)
         if generators is None:
@@ -141,14 +141,15 @@ class Spread:
         return np.asarray(moved)
 
     def second_order(self, box: IntArray, u: FloatArray, p: FloatArray, size: FloatArray, extent: FloatArray | None = None) -> FloatArray:
-        """Bound what is left of the motion along directions, `(n, D)` [mm].
+        """Return bounds of the remaining motion along directions, `(n, D)` [mm].
 
         Args:
             box: Which box of the spread, `(n,)`.
             u: Unit directions in a's frame, `(n, D, 3)`.
             p: Points of b at the box's centre, in a's frame, `(n, 3)`.
             size: Radius of a ball about each point, `(n,)` [mm].
-            extent: Half axes of a little box in that ball, `(n, 3, 3)`: a rod is not charged with its length for a turn about its own axis.
+            extent: Half axes of a little box in that ball, `(n, 3, 3)`: then the length of a rod does not count for a turn about its own
+                axis.
         """
         w, v, width = self.omega[box], self.moment[box], self.width[box]
         reach = self.turns * size[:, None]  # how much faster than the centre a point of the little box moves, by each factor
@@ -158,11 +159,11 @@ class Spread:
         speed = _length(_cross(w, p[:, None]) + v) + reach
         turned = width * self.turns
         share = _length(_cross(u[:, :, None], w[:, None]))  # (n, D, F)
-        if not self.is_parallel:  # an axis is turned by the factors outside it
+        if not self.is_parallel:  # the factors outside turn an axis
             outside = np.cumsum(turned, axis=1) - turned
             share = np.minimum(share + outside[:, None], 1.0)
         total = np.zeros(u.shape[:2])
-        inside = np.zeros(len(p))  # how far the factors inside carry the point
+        inside = np.zeros(len(p))  # how far the factors inside move the point
         weighted = share * turned[:, None]
         before = np.cumsum(weighted, axis=2) - weighted
         for f in range(len(self.factors) - 1, -1, -1):

@@ -1,8 +1,7 @@
-"""What a search did with each two pieces in a box, kept so that somebody else can follow it without searching.
+"""Record of a search: what it did with each two pieces in a box, so that a checker can repeat it without searching.
 
-Rows are numbered as they come; each is settled by a direction or by its radii, cut into two further rows, or left out. Written down they
-stand in the order in which they are met who takes the oldest row first and puts the halves of what is cut behind all others. Rows of
-which nothing is noted lie outside what the joints allow.
+Rows are numbered as they arise; each is settled by a direction or by its radii, cut into two further rows, or left out. They are written
+in breadth-first order: oldest row first, halves of cut rows at the end. Rows without a record lie outside the limits of joints.
 """
 
 from __future__ import annotations
@@ -16,16 +15,16 @@ FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
 SWUNG, LEAN, ROUND, OUTSIDE, CUT_A, CUT_B, CUT_RANGE = -7, -6, -5, -4, -3, -2, -1
-OF_A, OF_B = 0, 1  # who sees a direction as it is written
+OF_A, OF_B = 0, 1  # the frame in which a direction is written
 
 
 class Written(NamedTuple):
-    """A trail as a checker reads it.
+    """A trail in the form that a checker reads.
 
     Attributes:
-        codes: Of each row a cut, `SWUNG`, `LEAN`, `ROUND`, `OUTSIDE`, or the number of a direction.
-        along: Directions `(n, 3)`, those of a first.
-        of_a: How many of them are of a.
+        codes: For each row a cut, `SWUNG`, `LEAN`, `ROUND`, `OUTSIDE`, or the number of a direction.
+        along: Directions `(n, 3)`, those in the frame of a first.
+        of_a: How many of them are in the frame of a.
     """
 
     codes: IntArray
@@ -34,7 +33,7 @@ class Written(NamedTuple):
 
 
 class Trail:
-    """What was done, row by row."""
+    """The record, row by row."""
 
     def __init__(self) -> None:
         self.count = self.roots = 0
@@ -53,23 +52,23 @@ class Trail:
         return np.arange(self.count - count, self.count)
 
     def keep(self, rows: IntArray, code: int) -> None:
-        """Note that rows are apart by their radii or angles, which the joint keeps."""
+        """Record that rows are apart in radius or angle, which the joint does not change."""
         self._kept.append((rows, code))
 
     def settle(self, rows: IntArray, kind: int, along: FloatArray) -> None:
-        """Note the directions that settled rows."""
+        """Record the directions that settled rows."""
         if len(rows):
             self._settled.append((rows, kind, along))
 
     def cut(self, rows: IntArray, code: int) -> IntArray:
-        """Note that rows were cut; return the numbers of their halves, two by two."""
+        """Record that rows were cut; return the numbers of their halves, two by two."""
         found = self.numbers(2 * len(rows))
         if len(rows):
             self._cuts.append((rows, code, int(found[0])))
         return found
 
     def written(self) -> Written:
-        """Return the trail as a checker reads it."""
+        """Return the trail in the form that a checker reads."""
         codes, first = np.full(self.count, OUTSIDE, dtype=np.int64), np.zeros(self.count, dtype=np.int64)
         for rows, code in self._kept:
             codes[rows] = code

@@ -27,33 +27,33 @@ from typing import Any
 
 import numpy as np
 
-BYTES = 2**29  # of a file, at most
-PROOF = "_proof"  # no part bears such a name
+BYTES = 2**29  # largest size of a file
+PROOF = "_proof"  # no part has this name
 ROUNDING = 1e-9  # of ranges, distances, and what a driver moves
-HALF = 0.5  # of entries of a rotation, by which a loop may be open: with a turn of less than 1 rad more it is not half a turn
+HALF = 0.5  # largest deviation of entries of a rotation by which a loop may be open: it excludes half a turn, even with 1 rad more
 ALIGNED = 1e-12  # sine of axes that are parallel
 SIDES = np.array(list(itertools.product((0, 1), repeat=3)))
 COURSE = ("uses", "parts_a", "parts_b", "about", "cuts", "at", "codes", "along", "of_a")  # arrays of every claim
-REST = 1e-6  # rad or mm: by which what follows a driver may be off at rest
-STIFF = 1e-4  # rad or mm: about the rest pose of what nothing drives, within which there is to be no other one
-SETTLED = 1e-7  # rad or mm: to which a solution is found at the ends of what repeats itself
-FLOAT = 1e-12  # by which a ratio may be off for whole turns to fit it
-BULK = 2048  # rows looked at together
-TUBES = 16  # pieces of drivers' ranges looked at together
+REST = 1e-6  # rad or mm: largest deviation of a follower at rest
+STIFF = 1e-4  # rad or mm: radius about the rest pose of joints without a driver, within which there is no other solution
+SETTLED = 1e-7  # rad or mm: precision of a solution at the ends of a range that repeats
+FLOAT = 1e-12  # tolerance for a ratio to fit whole turns
+BULK = 2048  # rows processed together
+TUBES = 16  # pieces of drivers' ranges processed together
 NODES = np.array([-1.0, -(0.5**0.5), 0.0, 0.5**0.5, 1.0])  # of quartic interpolation: the extrema of the Chebyshev polynomial T4, whose ...
 LEBESGUE, QUINTIC = 1.8, 1 / 960  # ... Lebesgue constant is below 1.8, and whose error is below 1/960 of the largest fifth derivative
 BERNSTEIN = np.linalg.inv(
     [[math.comb(4, j) * (1 + t) ** j * (1 - t) ** (4 - j) / 16 for j in range(5)] for t in NODES]
 )  # from values to coefficients
-LARGEST = 1e7  # mm or rad: further out, numbers are rounded by more than matters
+LARGEST = 1e7  # mm or rad: beyond it, rounding of numbers matters
 TYPES = {"f": "f8", "i": "i8", "u": "i8", "U": "U"}  # of arrays, by kind: short numbers overflow, and complex ones have no order
-SWUNG = -7  # a piece keeps inside a cone about a ball's axis however it swings, and the other one outside
+SWUNG = -7  # a piece stays inside a cone about a ball's axis however it swings, and the other one outside
 LEAN, ROUND, OUTSIDE = -6, -5, -4  # pieces differ in angle from a ball's axis, or in radius; a box lies outside the cone of a ball
 BESIDE = np.radians([0, *(sign * 2.0**k for sign in (-1, 1) for k in range(-1, 6))])  # of the cones that keep a swing apart
 CUT = -3  # and -2, -1: the piece of a, of b, or the box is cut
 
 
-class Refuted(Exception):  # noqa: N818 - it is no error of the program
+class Refuted(Exception):  # noqa: N818 - not an error of the program
     """The reason why the checker rejects a certificate."""
 
 
@@ -81,7 +81,7 @@ def verify_file(file: Path, folder: Path) -> list[str]:
         Checker(certificate, arrays).check()
     except Refuted as reason:
         return [str(reason)]
-    except Exception as error:  # noqa: BLE001 - what breaks its checker, in whatever way, proves nothing
+    except Exception as error:  # noqa: BLE001 - a certificate that breaks its checker in any way proves nothing
         return [f"it cannot be read: {error!r}"[:500]]
     return []
 
@@ -124,7 +124,7 @@ def is_inside(points: Any, corners: Any) -> bool:
         a, b, c = np.moveaxis(corners - point, 1, 0)
         la, lb, lc = (np.linalg.norm(v, axis=1) for v in (a, b, c))
         below = la * lb * lc + (a * b).sum(1) * lc + (b * c).sum(1) * la + (c * a).sum(1) * lb
-        if abs(np.arctan2((a * np.cross(b, c)).sum(1), below).sum()) > np.pi:  # half of what a surface winds round a point inside
+        if abs(np.arctan2((a * np.cross(b, c)).sum(1), below).sum()) > np.pi:  # half of the winding about a point inside
             return True
     return False
 
@@ -136,16 +136,16 @@ def ordered(corners: Any, order: Any) -> Any:
 
 
 def plane(axis: Any) -> Any:
-    """Return the projection across a unit axis."""
+    """Return the projection perpendicular to a unit axis."""
     return np.eye(3) - np.outer(axis, axis)
 
 
 class Hulls:
-    """Points whose hulls hold pieces of a surface `(n, 3, 3)`: the corners of one or two triangles, or of the box of more."""
+    """Points whose hulls contain pieces of a surface `(n, 3, 3)`: the corners of one or two triangles, or of the box of more."""
 
     def __init__(self, corners: Any) -> None:
         self.points, count = corners.reshape(-1, 3), len(corners)
-        self.ends = [np.append(of(corners, axis=1), corners[:1, 0], axis=0) for of in (np.min, np.max)]  # with a row behind the last
+        self.ends = [np.append(of(corners, axis=1), corners[:1, 0], axis=0) for of in (np.min, np.max)]  # with a row after the last
         self.base, self.known, self.found = count + 1, np.empty(0, dtype=np.int64), np.empty((0, 8, 3))
 
     def of(self, spans: Any) -> Any:
@@ -179,7 +179,7 @@ def radii(flat: Any) -> tuple[Any, Any]:
 
 
 def leans(local: Any, axis: Any) -> tuple[Any, Any]:
-    """Return between which angles from an axis through 0 triangles `(n, 3, 3)` are."""
+    """Return the smallest and largest angle of triangles `(n, 3, 3)` from an axis through 0."""
     height, wide = local @ axis, radii(local @ plane(axis))
     ends = np.arctan2(wide, height.max(1)), np.arctan2(wide, height.min(1))
     return ends[0].min(0), ends[1].max(0)
@@ -211,7 +211,7 @@ def follow(rows: Any, codes: Any, directions: Any, A: Any, B: Any, how: Any, cle
             u = np.where((code < of_a)[:, None], along[code], (moving[0][box] @ along[code][..., None])[..., 0])
             p, q = hulls[0].of(some[:, :2]), hulls[1].of(some[:, 2:4])
             for k in np.flatnonzero(~(apart(u, p, q, [part[box] for part in moving]) > clear)).tolist():
-                one, x, y = slice(k, k + 1), slice(*some[k, :2]), slice(*some[k, 2:4])  # all corners tell more than those of the box
+                one, x, y = slice(k, k + 1), slice(*some[k, :2]), slice(*some[k, 2:4])  # all corners give more than those of the box
                 gap = apart(u[one], A[x].reshape(1, -1, 3), B[y].reshape(1, -1, 3), [part[box[one]] for part in moving])
                 need(gap[0] > clear, "pieces come too close")
         is_cut = (told >= CUT) & (told < 0)
@@ -240,18 +240,18 @@ def spins(axes: Any) -> Any:
 
 
 def framed(parent: Any, child: Any) -> Any:
-    """Return what stands before and behind the motion of a joint, crossed from its parent and from its child."""
+    """Return the transforms before and after the motion of a joint, crossed from its parent and from its child."""
     before, after = np.array(parent), np.linalg.inv(child)
     return (before, after), (np.linalg.inv(after), np.linalg.inv(before))
 
 
 def boxed(ends: Any) -> tuple[tuple[float, float], ...]:
-    """Return ranges `(drivers, 2)` such that they can be looked up."""
+    """Return ranges `(drivers, 2)` in a form that can be a key."""
     return tuple((low, high) for low, high in ends.tolist())
 
 
 def swung(local: Any, axis: Any, cone: float) -> Any:
-    """Return how far triangles `(n, 3, 3)` are outside cones about an axis through 0: at least as they stand, at most while they swing.
+    """Return how far triangles `(n, 3, 3)` are outside cones about an axis through 0: at least at rest, at most while they swing.
 
     That is r cos c - z sin c, which changes by no more than a point moves; a swing adds at most its angle to that from the axis.
     """
@@ -267,7 +267,7 @@ def swung(local: Any, axis: Any, cone: float) -> Any:
 
 
 def joined(ends: Any, rows: list[Any]) -> tuple[Any, Any, Any]:
-    """Return pieces of drivers' ranges as one: value and rates of a linear function over all of them, and how far from it they are.
+    """Return the union of pieces of drivers' ranges: value and rates of a linear function over all, and the largest distance from it.
 
     Ends are (k, drivers, 2); a row is a value (n,), rates (drivers, n) and a distance (n,).
     """
@@ -279,7 +279,7 @@ def joined(ends: Any, rows: list[Any]) -> tuple[Any, Any, Any]:
     places = ends.mean(2)[:, None] + steps - (ends.min((0, 2)) + ends.max((0, 2))) / 2
     design = np.concatenate([np.ones((*places.shape[:2], 1)), places], axis=2).reshape(-1, 1 + ends.shape[1])
     middle, *slopes = np.linalg.lstsq(design, at.reshape(len(design), -1), rcond=None)[0]
-    off = at - middle - places @ np.array(slopes)  # linear on each piece, so that corners tell
+    off = at - middle - places @ np.array(slopes)  # linear on each piece, so the corners decide
     low, high = (off - near[:, None]).min((0, 1)), (off + near[:, None]).max((0, 1))
     return middle + (low + high) / 2, np.array(slopes), (high - low) / 2 + ROUNDING**2
 
@@ -303,9 +303,9 @@ def is_outside(ball: dict[str, Any], box: dict[str, tuple[float, float]]) -> boo
 
 
 def motion(u: Any, p: Any, spins: Any, v: Any, along: Any, aside: Any, turned: Any, outer: Any) -> Any:
-    """Bound how far points `(k, n, 3)` go along directions `(k, 3)` while what moves goes `along` drivers together and `aside` each.
+    """Bound how far points `(k, n, 3)` move along directions `(k, 3)` while factors move `along` drivers together and `aside` each.
 
-    That is their speed, and half the second derivative: along u the factor i outside j turns what j moves by |u x axis i|.
+    That is their speed, plus half the second derivative: along u the factor i outside j turns what j moves by |u x axis i|.
     `spins (k, F, 3, 3)`, `v (k, F, 3)`, `along (k, F, drivers)`, the others `(k, F)`; returns `(k, n)`.
     """
     across, width, turns = (spins @ u[:, None, :, None])[..., 0], np.abs(along).sum(2) + aside, turned > 0  # p @ spin is axis x p
@@ -321,7 +321,7 @@ def motion(u: Any, p: Any, spins: Any, v: Any, along: Any, aside: Any, turned: A
 
 
 def covered(certificate: dict[str, Any]) -> str:
-    """Return, in a sentence, what moves at once in the claims of a certificate that calls itself ok, and what does not."""
+    """Return a sentence on what moves together in the claims of a certificate that is marked ok, and what does not."""
     asked = ", ".join(certificate["asked"]) or "none"
     free = [joint["name"] for joint in certificate["mechanism"]["joints"] if joint["type"] == "free"]
     still = f" Not covered: free joints stay at rest throughout ({', '.join(free)})." if free else ""
@@ -382,7 +382,7 @@ class Checker:
                 raise Refuted(f"{a}/{b} over {over}: no claim, but the certificate is marked ok")
 
     def missing(self, count: int | None = None) -> Iterator[tuple[str, str, str]]:
-        """Yield two parts, and the joints of which so many, or all, can move them together without a claim that says so."""
+        """Yield two parts, and the sets of `count` joints, or of all, that can move them together without a claim that covers it."""
         whole, fixed = self.certificate, {name for name, joint in self.joints.items() if not joint["freedoms"]}
         waived = [{*pair["parts"]} for pair in whole["pairs"] if pair["strength"]["kind"] == "waived"]
         ways = [{f["name"] for name in claim["via"] for f in self.joints[name]["freedoms"]} for claim in whole["claims"]]
@@ -397,7 +397,7 @@ class Checker:
             for group in (group for group in self.groups if own & {*group}):
                 units += [({name}, {*group}) for name in self.drivers if name in group and self.freedoms[name]["joint"] in whole["asked"]]
             for some in itertools.combinations(units, count or len(units)):
-                # what is not on the way of a claim does not move its two parts
+                # joints outside the path of a claim do not move its two parts
                 if not any(all(names <= vary or not whose & via for names, whose in some) for _, vary, via in mine) and some:
                     yield a, b, ", ".join(sorted(name for names, _ in some for name in names))
 
@@ -427,7 +427,7 @@ class Checker:
         tied = {joint["name"] for way, _ in self.loops for joint, _ in way}
         tied |= {j["name"] for j in joints for f in j["freedoms"] for c in couplings if f["name"] in (c["a"], c["b"])}
         need(self.certificate["linkage"] == sorted(tied), "a linked joint is declared independent, or an independent joint linked")
-        self.begin(self.linked, 0)  # which also looks at loops in which nothing moves
+        self.begin(self.linked, 0)  # this also checks loops in which nothing moves
 
     def way(self, a: str, b: str, names: Any = None, *, whole: bool = True) -> Any:
         """Return the joints from a to b, each with whether it is crossed from parent to child: those named, or of the tree."""
@@ -442,7 +442,7 @@ class Checker:
         return ways.get(b)
 
     def grouped(self, couplings: Any) -> list[list[str]]:
-        """Return the coordinates that loops and couplings tie, those that move together in one list: a coupling ties two, not two joints."""
+        """Return the coordinates that loops and couplings connect, grouped by what moves together; couplings connect coordinates, not joints."""
         found: list[set[str]] = []
         ties = [{f["name"] for joint, _ in way for f in joint["freedoms"]} for way, _ in self.loops]
         for tie in [*ties, *({c["a"], c["b"]} for c in couplings), *({name} for name in self.linked)]:
@@ -451,7 +451,7 @@ class Checker:
         return [[name for name in self.linked if name in group] for group in found if group]
 
     def steps_on(self, way: list[Any]) -> Any:
-        """Return the freedoms on a way, their motions (signed spins and slides), the frames that stand before each, and the last one."""
+        """Return the freedoms on a path, their motions (signed spins and slides), the frames before each, and the last one."""
         key = tuple((joint["name"], forward) for joint, forward in way)
         if key not in self.ways:
             names, moves, frames, still = list[str](), list[Any](), list[Any](), np.eye(4)
@@ -471,7 +471,7 @@ class Checker:
         return self.ways[key]
 
     def place(self, way: list[Any], values: Any) -> tuple[Any, dict[str, Any]]:
-        """Return T_a_b, and of each freedom on the way its axis and its speed at a's origin, as a sees them.
+        """Return T_a_b, and for each freedom on the path its axis and its speed at a's origin, in the frame of a.
 
         Values are numbers, or arrays of one shape `(...)` for many poses at once: T is (..., 4, 4), axes and speeds are (..., 3).
         """
@@ -487,7 +487,7 @@ class Checker:
         wide = (len(names), *(1,) * (angles.ndim - 1))
         K, a, slide = spin.reshape(*wide, 4, 4), angles[..., None, None], np.zeros((*angles.shape, 4, 4))
         slide[..., :3, 3] = slides.reshape(*wide, 3) * angles[..., None]
-        motions = np.eye(4) + np.sin(a) * K + (1 - np.cos(a)) * (K @ K) + slide  # Rodrigues; no joint turns and slides but along its axis
+        motions = np.eye(4) + np.sin(a) * K + (1 - np.cos(a)) * (K @ K) + slide  # Rodrigues; a joint that turns slides only along its axis
         motions, at = motions @ frames[1:].reshape(*wide, 4, 4), [np.broadcast_to(frames[0], (*angles.shape[1:], 4, 4))]
         for motion in motions:
             at.append(at[-1] @ motion)
@@ -497,7 +497,7 @@ class Checker:
         return at[-1], names, axes, along + cross(o, axes)
 
     def around(self, way: list[Any]) -> tuple[Any, float]:
-        """Return the first corner of a loop, and how long the loop is: the sum of distances between joints along its parts."""
+        """Return the first corner of a loop, and the length of the loop: the sum of distances between joints along its parts."""
         ends = []
         for joint, forward in way:
             ends += [joint[f"{side}_frame"] for side in (("parent", "child") if forward else ("child", "parent"))]
@@ -511,7 +511,7 @@ class Checker:
 
         Values are (..., n); r is (..., m), the Jacobian (..., m, n). Constraints in which none of the names takes part are left out.
         A loop R, t leaves its gap at the first corner, and the vector of (R - R')/2, whose derivative for a turn w is (tr R - R) w / 2.
-        Lengths are divided by a lever: no turn carries what is round a loop by more than one lever while no slide is further from 0
+        Lengths are divided by a lever: no turn moves a point of the loop by more than one lever as long as no slide is farther from 0
         than 1 more than twice what it is `about` (..., n).
         """
         batch, n = values.shape[:-1], len(names)
@@ -525,7 +525,7 @@ class Checker:
                 continue
             T, on_way, axes, speeds = self.placed(way, known)
             R = T[..., :3, :3]
-            need(np.abs(R - np.eye(3)).max() < HALF, "a loop is not closed")  # half a turn leaves no residual either
+            need(np.abs(R - np.eye(3)).max() < HALF, "a loop is not closed")  # half a turn has no residual either
             distances = [math.hypot(*self.freedoms[name]["slide"]) for name in moving]
             far = [1 + (size[column[name]] if name in column else abs(self.rest[name])) for name in moving]
             lever = np.broadcast_to(length + sum(2 * slide * reach for slide, reach in zip(distances, far, strict=True)), about.shape[:-1])
@@ -552,10 +552,12 @@ class Checker:
         return np.concatenate(r, axis=-1), np.concatenate(J, axis=-2), np.concatenate(shares, axis=-2)
 
     def enclosures(self, names: list[str], ends: Any, guess: Any) -> tuple[Any, ...]:
-        """Bound, for pieces of drivers' ranges `(k, drivers, 2)`, how a Newton map moves what is near a curve through a guess `(k, n)`.
+        """Bound, for pieces of drivers' ranges `(k, drivers, 2)`, how a Newton map moves points near a curve through a guess `(k, n)`.
 
-        The first of the names drive: t from -1 to 1 for each. What follows is near x(t) = guess + S t + t'Qt/2. The map of a deviation d is
-        d - A(t) r(x(t) + d), with A(t) = (1 - sum t_k L_k) A, A the inverse of the Jacobian in the middle, and L_k its relative rate. Both
+        The first of the names drive: t from -1 to 1 for each. The followers are near x(t) = guess + S t + t'Qt/2. The map of a deviation
+        d is
+        d - A(t) r(x(t) + d), with A(t) = (1 - sum t_k L_k) A, A the inverse of the Jacobian in the middle, and L_k its relative rate.
+        Both
         A(t) r and A(t) J - 1 are interpolated on a grid of `NODES`; the largest Bernstein coefficient bounds a polynomial. The error of an
         interpolation is `QUINTIC` of the fifth derivative; along t_k, derivatives of r(x(t)) are below those of exp(v t + a t^2/2).
 
@@ -598,14 +600,14 @@ class Checker:
         return ends, guess, S, Q, off + ROUNDING, bend, most, share
 
     def held(self, names: list[str], bounds: tuple[Any, ...], wide: Any) -> list[Any]:
-        """Return pieces with the distances from their curves within which is a solution; within `wide` `(k, n)` there is no other one.
+        """Return pieces with the distances from their curves within which there is a solution, the only one within `wide` `(k, n)`.
 
-        As soon as the Newton map takes what is within `wide` to what is nearer, it also shrinks distances: Brouwer and Banach. A piece
-        is its ends; value, rates and distance of a line; and of its tube the guess, the curve, the distance, and `wide`.
+        If the Newton map takes the set within `wide` to a smaller one, it also shrinks distances: Brouwer and Banach. A piece is its
+        ends; value, rates and distance of a line; and for its tube the guess, the curve, the distance, and `wide`.
         """
         ends, guess, S, Q, off, bend, most, share = bounds
         count, half, far = ends.shape[1], np.ptp(ends, axis=2) / 2, np.abs(S).sum(1) + np.abs(Q).sum(1) / 2
-        bends, near = share.any(1), wide.copy()  # what no loop carries is in couplings alone, which are exact
+        bends, near = share.any(1), wide.copy()  # coordinates that no loop moves are in couplings alone, which are exact
         near[:, :count] = 0.0
         holds = (wide >= 0).all(1) & ((far + wide <= 1 + np.abs(guess)) | ~bends).all(1) & (share @ (far + wide)[..., None] < 1).all((1, 2))
         for _ in range(4):
@@ -615,7 +617,7 @@ class Checker:
             need(good.all(), f"{', '.join(names[:count])} cannot be followed over {ends[~good][:1].round(9).tolist()}")
             near[:, count:] = closer
         square = Q.reshape(len(Q), count, count, len(names))
-        bow = np.abs(square).sum((1, 2)) / 2 - np.abs(np.diagonal(square, 0, 1, 2)).sum(-1) / 4  # of t'Qt/2 beside the mean of its ends
+        bow = np.abs(square).sum((1, 2)) / 2 - np.abs(np.diagonal(square, 0, 1, 2)).sum(-1) / 4  # of t'Qt/2 beside its ends' mean
         half = np.where(half > 0, half, 1.0)
         value, rates = guess + np.diagonal(square, 0, 1, 2).sum(-1) / 4, S / half[..., None]
         curve = square / (half[:, :, None] * half[:, None])[..., None]
@@ -623,12 +625,12 @@ class Checker:
         return list(zip(ends, value, rates, near + bow, tubes, strict=True))
 
     def followers(self, drivers: Any) -> list[str]:
-        """Return drivers of one group and all that is linked with them, but for its other drivers, which stand."""
+        """Return drivers of one group and everything linked with them, except for its other drivers, which stay at rest."""
         (group,) = (group for group in self.groups if {*drivers} <= {*group})
         return [*drivers, *(name for name in group if name not in self.drivers)]
 
     def is_rigid(self, group: list[str]) -> bool:
-        """Return whether coordinates that nothing drives cannot move: near rest, there is no other solution."""
+        """Return whether coordinates without a driver cannot move: near rest, there is no other solution."""
         rest, wide = np.array([[self.rest[name] for name in group]]), np.full((1, len(group)), STIFF)
         try:
             self.held(group, self.enclosures(group, np.empty((1, 0, 2)), rest), wide)
@@ -637,11 +639,11 @@ class Checker:
         return True
 
     def join(self, found: list[Any], names: list[str], row: Any, other: int) -> None:
-        """Add a piece of drivers' ranges to others if it holds the solution of one that is beside or around it, or at rest."""
+        """Add a piece of drivers' ranges to others if it contains the solution of one that is beside or around it, or at rest."""
         (ends, *_, (_, _, near, wide)), (span, *_, (_, _, close, apart)) = row, found[other]
         at = np.clip(ends.mean(1), *span.T)
         gap = np.abs(on_path(row, at) - on_path(found[other], at)) * (np.arange(len(names)) >= len(ends))
-        same = (gap + near <= apart).all() or (gap + close <= wide).all()  # what one holds is the only solution that the other has
+        same = (gap + near <= apart).all() or (gap + close <= wide).all()  # the solution in one is the only solution of the other
         need(
             same and (ends[:, 0] <= at).all() and (at <= ends[:, 1]).all(),
             f"{', '.join(names[: len(ends)])} leaves its branch at {at.round(9).tolist()}",
@@ -651,14 +653,14 @@ class Checker:
         found.append(row)
 
     def begin(self, names: list[str], count: int) -> list[Any]:
-        """Return the rest pose as a piece, about which a solution is no further than `REST`; the first of the names drive."""
+        """Return the rest pose as a piece, about which a solution is no farther than `REST`; the first of the names drive."""
         at, still = np.array([self.rest[name] for name in names]), np.zeros((count, len(names)))
         need(np.abs(self.closure(names, at, at)[0]).max(initial=0.0) < REST, "a loop or coupling is open at rest")
         near, nothing = REST * (np.arange(len(names)) >= count), np.zeros(len(names))
         return [(np.stack([at[:count]] * 2, axis=1), at, still, near, (at, np.zeros((count, *still.shape)), near, nothing))]
 
     def line(self, drivers: tuple[str, ...]) -> Any:
-        """Return pieces of drivers' ranges, all on the branch of the rest pose, and how ranges are parted into them; by their ends."""
+        """Return pieces of drivers' ranges, all on the branch of the rest pose, and how ranges are split into them; by their ends."""
         if drivers not in self.lines:
             names, key = self.followers(drivers), "+".join(drivers)
             found = self.begin(names, len(drivers))
@@ -676,7 +678,7 @@ class Checker:
         return self.lines[drivers]
 
     def stretch(self, drivers: tuple[str, ...], box: Any) -> Any:
-        """Return value, rates and distance by coordinate, over ranges of drivers: of all pieces into which these are parted."""
+        """Return value, rates and distance by coordinate, over ranges of drivers: of all pieces into which these are split."""
         pieces, parted = self.line(drivers)
         if (drivers, box) not in self.rows:
             todo, found = [box], []
@@ -694,7 +696,7 @@ class Checker:
         return self.rows[drivers, box]
 
     def check_range(self, name: str, low: float, high: float, *, is_driver: bool) -> None:
-        """Refute a range that is not all to which a coordinate comes: of an endless one, a turn, or what its followers repeat."""
+        """Refute a range that does not cover a coordinate's motion: for an endless one, a turn, or the period of its followers."""
         (least, most), (_, _, is_turn, is_slide) = self.freedoms[name]["limits"], self.turns[name]
         is_whole = (least is None or low < least + 1e-6) and (most is None or high > most - 1e-6)
         need(is_whole, f"not over the whole range of {name}")
@@ -704,10 +706,10 @@ class Checker:
             need(not is_driver or self.is_repeated(name, low, high), f"the followers of {name} do not return over its range")
 
     def is_repeated(self, driver: str, low: float, high: float) -> bool:
-        """Return whether all that follows a driver is at the end of a range what it is at its beginning, but for whole turns.
+        """Return whether all followers of a driver are at the end of a range where they were at its beginning, up to whole turns.
 
-        Loops are the same after whole turns, couplings where these fit their ratio; so it moves on as it did before. Other drivers
-        stand here: where they move, what follows stays on the branch on which it is while they stand.
+        Loops are the same after whole turns, couplings if these fit their ratio; so the motion repeats. Other drivers stand still here:
+        when they move, the followers stay on the same branch.
         """
         names, (pieces, _) = self.followers((driver,)), self.line((driver,))
         first = [row for box, row in pieces.items() if box[0][0] == low]
@@ -734,7 +736,7 @@ class Checker:
         return x
 
     def said(self, parts: set[str]) -> float:
-        """Return how deep two parts are said to overlap at most; a waiver says nothing of that."""
+        """Return the stated largest overlap depth of two parts; a waiver does not affect it."""
         found = [pair["strength"] for pair in self.certificate["pairs"] if {*pair["parts"]} == parts]
         depths = [math.inf if how["kind"] == "waived" else how["epsilon_mm"] for how in found if how["kind"] in ("waived", "certified")]
         return max(depths, default=0.0)
@@ -788,13 +790,13 @@ class Checker:
         follow(rows, proof["codes"], along, A, B, (moving, halves, kept), claim["clear_mm"])
 
     def driven(self, way: list[Any], vary: Any) -> list[tuple[str, ...]]:
-        """Return the drivers of each group of which something on a way follows: what does not move by itself."""
+        """Return the drivers of each group with followers on a path, which do not move independently."""
         here = {f["name"] for joint, _ in way for f in joint["freedoms"]} - set(vary)
         found = [tuple(name for name in self.drivers if name in group and name in vary) for group in self.groups if here & {*group}]
         return [drivers for drivers in found if drivers]
 
     def boxes(self, way: list[Any], vary: dict[str, Any], lines: Any, proof: dict[str, Any]) -> tuple[list[Any], list[Any], Any]:
-        """Cut a range into boxes; return for each whether points keep their distance from an axis, and for all the pose in the middle and the motion."""
+        """Cut a range into boxes; return for each whether points keep their distance from an axis, and the centre poses and motions."""
         names, todo, halves = list(vary), [{name: (low, high) for name, (low, high) in vary.items()}], []
         (centre, axis), across, count = proof["about"], plane(proof["about"][1]), sum(map(len, lines))
         for box, cut, place in zip(todo, proof["cuts"].tolist(), proof["at"].tolist(), strict=True):
@@ -804,7 +806,7 @@ class Checker:
                 (low, high), name = box[names[cut]], names[cut]
                 need(low < place < high, "a part of the range is missing")
                 halves.append((len(todo), len(todo) + 1))
-                todo += [{**box, name: (low, place)}, {**box, name: (place, high)}]  # they become more
+                todo += [{**box, name: (low, place)}, {**box, name: (place, high)}]  # their number grows
         spans = {name: np.array([box[name] for box in todo]) for name in names}
         values = {name: (ends.mean(1), np.zeros((len(todo), count)), np.ptp(ends, axis=1) / 2) for name, ends in spans.items()}
         first = 0

@@ -50,10 +50,7 @@ FAR_M = 1e3
 LEAST_VOLUME_MM3 = 1e-3  # MuJoCo reports a smaller mesh as too small to measure
 STL_TRIANGLES = 200_000  # MuJoCo refuses larger STL files; OBJ has no such limit
 TIMESTEP_S = 0.002
-EQUALITY = {
-    "solref": "0.004 1",
-    "solimp": "0.9999 0.9999 0.001",
-}  # as stiff as the time step allows: with MuJoCo's defaults loops sag visibly
+EQUALITY = {"solref": "0.004 1", "solimp": "0.9999 0.9999 0.001"}  # as stiff as the time step allows: the defaults sag visibly
 SERVO_ERROR_TURN = 0.05  # rad: error of a servo at full effort
 SERVO_ERROR_SLIDE = 0.005  # m, likewise
 ROTOR_SHARE = 0.01  # of the moved inertia: the inertia of a motor's rotor as seen through its gears

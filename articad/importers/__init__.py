@@ -1,1 +1,1 @@
-"""Importers: somebody's file in, an assembly out; articad's own files come back as they were."""
+"""Importers: convert files to assemblies; articad's own files come back exactly as they were."""

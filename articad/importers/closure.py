@@ -1,8 +1,8 @@
-"""Which files a URDF or MJCF file makes an engine open: all of them must lie inside one folder.
+"""The files that a URDF or MJCF file makes an engine open: all of them must lie inside one folder.
 
-MuJoCo opens whatever a file names: meshes, textures, height fields, included files and whole models, each of which may name more.
-The walk below follows includes and models and refuses a name that leads outside, or to a pipe or device, before an engine sees the
-file. Folders that any file of the closure sets for meshes or textures count for the names in all of them.
+MuJoCo opens whatever a file names: meshes, textures, height fields, included files and whole models, each of which may name more. The
+walk below follows includes and models. It refuses a name that leads outside, or to a pipe or device, before an engine reads the file.
+Folders that any of these files sets for meshes or textures apply to the names in all of them.
 """
 
 from __future__ import annotations
@@ -16,13 +16,13 @@ from typing import Any
 from articad.errors import ReadError
 from articad.importers.reading import MAX_LINKS, Folder, read_xml, unreadable
 
-MAX_FILES = 100  # that include each other
-MAX_COPIES = 1000  # of <replicate>, <composite> and the like, within each other too
+MAX_FILES = 100  # largest number of files that include each other
+MAX_COPIES = 1000  # largest number of copies by <replicate>, <composite> and the like, nested ones multiplied
 MAX_COPIED = 200_000  # elements of all copies
-MAX_NAMES = 100_000  # places where a file may lie that is named
+MAX_NAMES = 100_000  # largest number of places in which named files may lie
 _FOLDERS = ("meshdir", "texturedir", "assetdir")
 
-Named = list[tuple[str, Path, int]]  # the name, the file in which it stands, and the line
+Named = list[tuple[str, Path, int]]  # the name, the file that contains it, and the line
 
 
 def require_closed(path: Path, root: Path | None = None) -> None:
@@ -33,14 +33,14 @@ def require_closed(path: Path, root: Path | None = None) -> None:
         root: The folder; the file's own by default.
 
     Raises:
-        ReadError: E_UNSAFE_PATH if a name leads out; E_READ if a file of the closure cannot be read, includes go round, or counts are
-            beyond reason.
+        ReadError: E_UNSAFE_PATH if a name leads out; E_READ if one of the files cannot be read, includes form a circle, or counts are
+            too large.
     """
     _Closure(Folder.of(path, root)).follow(path.resolve())
 
 
 def package_of(path: Path) -> Path:
-    """Return the folder that a file may take meshes from: the nearest ROS package above it, else its own."""
+    """Return the folder from which a file may take meshes: the nearest ROS package above it, else its own folder."""
     here = path.resolve().parent
     for folder in (here, *here.parents):
         if (folder / "package.xml").is_file():
@@ -49,12 +49,12 @@ def package_of(path: Path) -> Path:
 
 
 class _Closure:
-    """The files that a model is made of, as far as they are read as XML, and the names in them."""
+    """The files of a model, where they are XML, and the names in them."""
 
     def __init__(self, folder: Folder) -> None:
         self._folder = folder
         self._seen: list[Path] = []
-        self._copied = 0  # elements, each as often as it is copied
+        self._copied = 0  # elements, counted once per copy
 
     def follow(self, path: Path) -> None:
         """Read a model with everything that it includes, check its names, then do the same for the models that it names."""
@@ -72,7 +72,7 @@ class _Closure:
                 self.follow(target)
 
     def _collect(self, path: Path, here: Path, named: Named, folders: dict[str, None], models: Named, times: int) -> None:
-        """Gather what a file and its includes name; `here` is the folder of the model that includes them, `times` how often they are copied."""
+        """Collect the names in a file and its includes; `here` is the folder of the including model, `times` their number of copies."""
         if len(self._seen) >= MAX_FILES:
             raise unreadable(path, "", f"More than {MAX_FILES} files include each other.")
         self._seen.append(path)
@@ -94,7 +94,7 @@ class _Closure:
             self._include(element, path, here, named, folders, models, copies.get(element, times))
 
     def _include(self, element: Any, path: Path, here: Path, named: Named, folders: dict[str, None], models: Named, times: int) -> None:
-        """Follow an include; engines start its name at the file or at the model, so that both are followed."""
+        """Follow an include; engines resolve its name relative to the file or to the model, so both are followed."""
         name = element.get("file", "")
         places = dict.fromkeys(self._checked(base, name, path, element.sourceline) for base in (path.parent, here))
         for number, target in enumerate(place for place in places if place.is_file()):
@@ -104,7 +104,7 @@ class _Closure:
                 raise unreadable(path, f"line {element.sourceline}", f"{name!r} is included again; includes must not form a circle.")
 
     def _checked(self, base: Path, name: str, file: Path, line: int) -> Path:
-        """Return the file that a name means, which lies inside the root."""
+        """Return the file for a name, which lies inside the root."""
         where = f"line {line}"
         if name.startswith("package://"):
             try:
@@ -112,7 +112,7 @@ class _Closure:
             except ReadError as error:
                 if "E_UNSAFE_PATH" in error.findings.codes:
                     raise
-                return base / "package:"  # there is no such file: engines say so themselves
+                return base / "package:"  # there is no such file: engines report that themselves
         try:
             target = (base / name.removeprefix("file://")).resolve()
             is_other = target.exists() and not target.is_file() and not target.is_dir()
@@ -126,7 +126,7 @@ class _Closure:
 
 
 def _read_by_engines(document: Any) -> Iterator[Any]:
-    """Yield the elements in which engines look for files: of URDF not those of Gazebo, ros2_control and others."""
+    """Yield the elements in which engines look for files; in URDF not those of Gazebo, ros2_control and others."""
     if document.tag != "robot":
         yield from document.iter()
         return
@@ -136,10 +136,10 @@ def _read_by_engines(document: Any) -> Iterator[Any]:
 
 
 def _copies(document: Any, path: Path, times: int) -> dict[Any, int]:
-    """Return how often each element that engines read is copied, by the counts of what it lies in; `times` those of the file itself.
+    """Return how often each element that engines read is copied, by the counts of the elements around it; `times` for the file itself.
 
     Raises:
-        ReadError: If a count is no number, or the product of counts within each other is too large.
+        ReadError: If a count is not a number, or the product of nested counts is too large.
     """
     if document.tag == "robot" and document.find("mujoco") is None:
         return {}
@@ -153,7 +153,7 @@ def _copies(document: Any, path: Path, times: int) -> dict[Any, int]:
 
 
 def _count(element: Any, path: Path) -> int:
-    """Return the product of the numbers of a count; what engines may read as a number counts as one."""
+    """Return the product of the numbers of a count; a non-number that engines may accept counts as one."""
     try:
         numbers = [float(word) for word in element.get("count").split()]
         return math.prod(max(math.ceil(number), 1) for number in numbers)

@@ -1,8 +1,8 @@
-"""FreeCAD in: an Assembly document, written by articad or made by hand, without FreeCAD being there.
+"""Reads a FreeCAD assembly document, written by articad or made by hand; FreeCAD need not be installed.
 
-The file is a zip of XML and B-rep: both are read here, the B-rep in the kernels' confined worker. Frames come from the
-document as it is now, so what was edited in FreeCAD is what comes back; what FreeCAD has no words for (cones, leads,
-labels, drivers, couplings, fits) comes from articad's records in it.
+The file is a zip of XML and B-rep; the B-rep is read in the kernels' confined worker. Frames come from the document as it is now, so
+edits in FreeCAD are kept; what FreeCAD cannot represent (cones, leads, labels, drivers, couplings, fits) comes from articad's records in
+it.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ from articad.kinematics.mechanism import Mechanism
 from articad.processes import scratch
 
 MAX_BYTES, MAX_UNPACKED, MAX_ENTRIES = 256 * 2**20, 384 * 2**20, 20_000
-SAME_MM, SAME_RAD = 1e-9, 1e-12  # a frame this close to its record is the record's
+SAME_MM, SAME_RAD = 1e-9, 1e-12  # a frame this close to its record is replaced by the record
 _TYPES = {
     "Fixed": JointType.FIXED,
     "Revolute": JointType.REVOLUTE,
@@ -57,11 +57,11 @@ def read_freecad(path: str | Path, *, root: str | Path | None = None, metadata: 
     Args:
         path: The file, `.FCStd`.
         root: Unused: a FreeCAD file holds all of its shapes.
-        metadata: Use the records that articad left in its own files, for what FreeCAD has no words for.
+        metadata: Use the records that articad left in its own files, for what FreeCAD cannot represent.
         deflection: Largest distance of the meshes from the solids [mm].
 
     Raises:
-        ReadError: If it is no FreeCAD file, or holds no assembly with a grounded part.
+        ReadError: If it is not a FreeCAD file, or contains no assembly with a grounded part.
     """
     del root
     path = Path(path)
@@ -77,7 +77,7 @@ def read_freecad(path: str | Path, *, root: str | Path | None = None, metadata: 
 
 @cache
 def _kept() -> tempfile.TemporaryDirectory[str]:
-    """Return the folder of the B-rep that was read: it can be written again as it is, until this process ends."""
+    """Return the folder for the B-rep files that were read; they can be written again until this process ends."""
     return scratch.folder("read")
 
 
@@ -119,7 +119,7 @@ class _Document:
             number = float(self.value(name, key, "Float") or 0.0)
         except ValueError:
             raise unreadable(self.path, f"{name}.{key}", "It is not a number.") from None
-        if not abs(number) <= LARGEST_MM:  # NaN is not either
+        if not abs(number) <= LARGEST_MM:  # also refuses NaN
             raise unreadable(self.path, f"{name}.{key}", "It is not a plausible number.")
         return number
 
@@ -145,7 +145,7 @@ class _Document:
         return kind == "PartDesign::Body" or (kind.startswith("Part::") and not kind.startswith(("Part::Part2D", "Part::Datum")))
 
     def results(self, members: list[str]) -> list[str]:
-        """Return the shapes among the members of a group that no other of them is made of."""
+        """Return the shapes among the members of a group from which no other member is made."""
         shapes = [name for name in members if self.is_shape(name)]
         used = {link for name in shapes for key in self._properties[name] if key != "Group" for link in self.links(name, str(key))}
         return [name for name in shapes if name not in used]
@@ -165,7 +165,7 @@ class _Document:
         return placed
 
     def reference(self, name: str, key: str) -> list[str]:
-        """Return the objects that a reference leads through, from the one it is stated at."""
+        """Return the objects along a reference, starting at the one that states it."""
         row = self._properties.get(name, {}).get(key)
         link = None if row is None else row.find(".//XLink")
         if link is None:
@@ -177,7 +177,7 @@ class _Document:
 
 
 class _Model:
-    """Parts, connectors and joints of a document, as they stand in it."""
+    """Parts, connectors and joints of a document, as it contains them."""
 
     def __init__(self, document: _Document, deflection: float) -> None:
         self.document, self.deflection = document, deflection
@@ -205,7 +205,7 @@ class _Model:
         return self.document.text(item, "ArticadPart") or _plain(self.document.text(item, "Label") or item)
 
     def container(self, item: str) -> str:
-        """Return what a link shows, or the object itself."""
+        """Return the object that a link shows, or the object itself."""
         seen: set[str] = set()
         while self.document.types.get(item) == "App::Link" and item not in seen:
             seen.add(item)
@@ -231,7 +231,7 @@ class _Model:
             file = self.document.value(item, "Shape", "Part", "file")
             if not file or file not in self.document.archive.names:
                 continue
-            # B-rep is written where its object stands; a body that is a part itself stands in the assembly
+            # B-rep is written in the object's frame; a body that is a part itself is in the assembly's
             T = self.document.placement(item).inverse() if own else IDENTITY
             try:
                 folder = Path(tempfile.mkdtemp(dir=_kept().name))
@@ -241,7 +241,7 @@ class _Model:
         return None
 
     def meshes(self, name: str) -> tuple[Shape, ...]:
-        """Return the meshes of a part that is no solid, in the part's own frame."""
+        """Return the meshes of a part that is not a solid, in the part's own frame."""
         container = self.container(self.parts[name])
         own = self.document.types.get(container) == "Mesh::Feature"
         found = []
@@ -263,7 +263,7 @@ class _Model:
     # ------------------------------------------------------------------ joints
 
     def joints(self) -> Iterator[tuple[str, Joint]]:
-        """Yield each active joint that has a type of ours, with its object."""
+        """Yield each active joint whose type articad supports, with its object."""
         document = self.document
         for item in document.items:
             off = not document.truth(item, "Activated", default=True) or document.truth(item, "Suppressed")  # in FreeCAD 1.0, in 1.1
@@ -338,7 +338,7 @@ class _Model:
         )
 
     def _ends(self, item: str, kind: JointType) -> list[tuple[str, tuple[float, float]]]:
-        """Return what FreeCAD's limits of a joint are called, and where they lie [mm, rad]."""
+        """Return the names of FreeCAD's limits of a joint, and their values [mm, rad]."""
         ends = []
         for axis in _LIMITS.get(kind, ()):
             scale = math.radians(1.0) if axis == "Angle" else 1.0
@@ -377,12 +377,12 @@ class _Model:
 
 
 def _updated(model: _Model, recorded: Assembly) -> Assembly:
-    """Return what the records say, with frames, limits and shapes as the document has them now."""
+    """Return the assembly of the records, with frames, limits and shapes as the document has them now."""
     found = {joint.name: joint for _, joint in model.joints()}
     connectors = {name: model.connectors(name) for name in model.parts}
     parts = {name: _part_now(part, connectors.get(name, {}), model) for name, part in recorded.parts.items() if name in model.parts}
     if set(parts) != set(recorded.parts) or model.ground != recorded.ground:
-        return model.assemble()  # parts were taken away: the records speak of something else
+        return model.assemble()  # parts were removed: the records no longer apply
     joints = [_joint_now(joint, found.get(joint.name), parts) for joint in recorded.joints]
     mechanism = Mechanism(
         tuple(parts),
@@ -429,7 +429,7 @@ def _joint_now(joint: Joint, found: Joint | None, parts: dict[str, Part]) -> Joi
 
 
 def _wound(angle: float, low: float, high: float) -> float:
-    """Return the angle of the same pose that is within limits, or else as near to them as can be [rad]."""
+    """Return the angle of the same pose that is within limits, else the one nearest to them [rad]."""
     bounds = [bound for bound in (low, high) if math.isfinite(bound)]
     if not bounds or low <= angle <= high:
         return angle
@@ -439,7 +439,7 @@ def _wound(angle: float, low: float, high: float) -> float:
 
 
 def _limits(ends: list[tuple[str, tuple[float, float]]], rest: tuple[float, ...]) -> JointLimits:
-    """Return limits that the joint rests within: FreeCAD lets a part rest outside them."""
+    """Return limits that contain the rest value: FreeCAD allows a part to rest outside its limits."""
     pairs = [(min(low, value), max(high, value)) for value, (_, (low, high)) in zip(rest, ends, strict=False)]
     return JointLimits(tuple(low for low, _ in pairs), tuple(high for _, high in pairs))
 
@@ -449,6 +449,6 @@ def _near(now: SE3, recorded: SE3) -> SE3:
 
 
 def _plain(text: str) -> str:
-    """Return a label as a name of ours."""
+    """Return a label as a valid name."""
     name = re.sub(r"[^a-z0-9]+", "_", text.lower()).strip("_")
     return name if name[:1].isalpha() else f"n{name}"

@@ -1,4 +1,4 @@
-"""Meshes as FreeCAD keeps them: points in single precision, and for each facet its points and its neighbours."""
+"""FreeCAD's mesh format: points in single precision, and for each facet its points and its neighbours."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from articad.errors import InvalidSolidError
 from articad.geometry.mesh import TriMesh
 
 _MAGIC, _VERSIONS = 0xA0B0C0D0, (0x010000,)
-_HEADER = 8 + 256  # magic, version, and room for a text
+_HEADER = 8 + 256  # magic, version, and a text field
 _POINT, _FACET = 12, 24  # bytes: three floats; three points and three neighbours
 
 
@@ -18,7 +18,7 @@ def read_mesh_kernel(content: bytes) -> TriMesh:
     """Return the mesh of a `.bms` file [mm].
 
     Raises:
-        InvalidSolidError: If it is no such file, or ends early.
+        InvalidSolidError: If it is not such a file, or ends early.
     """
     if len(content) < _HEADER + 8 or struct.unpack_from("<II", content)[0] != _MAGIC:
         raise InvalidSolidError("This is not a FreeCAD mesh.", status="format")

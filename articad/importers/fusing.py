@@ -1,8 +1,8 @@
-"""Chains of one-freedom joints over bare links, fused back into the joints that they stand for.
+"""Chains of one-freedom joints over bare links, merged into the joints that they represent.
 
-A bare link has no shape, at most a gram of mass, one joint before it and one after it, and both meet in one point. Then, with X the rotation
-between the two joints' frames: a slide and a turn about one axis are a cylindrical joint, or a screw where the slide follows the turn;
-two turns about axes at right angles are a universal joint, three are a ball; two slides and a turn at right angles are planar.
+A bare link has no shape, at most a gram of mass, one joint before it and one after it, and both meet in one point. With X the rotation
+between the two joints' frames: a slide and a turn about one axis form a cylindrical joint, or a screw if the slide follows the turn; two
+turns about perpendicular axes form a universal joint, three a ball; two slides and a turn about perpendicular axes form a planar joint.
 """
 
 from __future__ import annotations
@@ -24,21 +24,21 @@ from articad.kinematics.joints import JointType
 
 FloatArray = NDArray[np.float64]
 
-BARE_MASS_KG = 1e-3  # at most: exporters give carriers a little mass, because engines refuse none
+BARE_MASS_KG = 1e-3  # at most: exporters give carriers a little mass, because engines refuse massless links
 SAME_POINT_MM = 1e-6
 SAME_AXIS = 1e-9  # rad, and sine of the angle
-TWIST_ROUNDING = 1e-12  # rad by which a twist that begins or ends at zero may miss it
+TWIST_ROUNDING = 1e-12  # rad: rounding of a twist that begins or ends at zero
 
 _SLIDE, _TURN = JointType.SLIDER, JointType.REVOLUTE
 
 
 def fused(model: RawModel) -> RawModel:
-    """Return the model with every chain over bare links that is one of our joints made that joint."""
+    """Return the model with each chain over bare links that represents a supported joint replaced by that joint."""
     return _replaced(model, _chains(model))
 
 
 def with_chains_named(model: RawModel) -> RawModel:
-    """Return the model as it is, with a note for every chain that `fused` would make one joint."""
+    """Return the model unchanged, with a note for every chain that `fused` would replace by one joint."""
     findings = [
         Finding(
             code="I_IMPORT_CHAIN",
@@ -52,7 +52,7 @@ def with_chains_named(model: RawModel) -> RawModel:
 
 
 def _chains(model: RawModel) -> dict[str, tuple[RawJoint, tuple[RawJoint, ...]]]:
-    """Return the joints that chains stand for, and the chains, by the name of the last joint of each."""
+    """Return the joints that chains represent, and the chains, by the name of the last joint of each."""
     bare = _bare_links(model)
     before: dict[str, RawJoint] = {joint.child: joint for joint in model.joints}
     beyond: dict[str, RawJoint] = {joint.parent: joint for joint in reversed(model.joints)}
@@ -63,7 +63,7 @@ def _chains(model: RawModel) -> dict[str, tuple[RawJoint, tuple[RawJoint, ...]]]
         while len(chain) < 3 and chain[0].parent in bare and chain[0].parent in before:
             chain.insert(0, before[chain[0].parent])
         if last.child in bare and _continue(last, beyond[last.child]):
-            continue  # a longer chain ends further out
+            continue  # a longer chain ends farther out
         for start in range(len(chain) - 1):
             joints = tuple(chain[start:])
             if used & {joint.name for joint in joints}:
@@ -77,7 +77,7 @@ def _chains(model: RawModel) -> dict[str, tuple[RawJoint, tuple[RawJoint, ...]]]
 
 
 def _bare_links(model: RawModel) -> set[str]:
-    """Return the links that could be carriers: no shape, next to no mass, one tree joint on each side, no constraint."""
+    """Return the links that could be carriers: no shape, almost no mass, one tree joint on each side, no constraint."""
     degree: dict[str, list[int]] = {name: [0, 0] for name in model.links}
     for joint in model.joints:
         for link, side in ((joint.child, 0), (joint.parent, 1)):
@@ -100,7 +100,7 @@ def _continue(last: RawJoint, beyond: RawJoint) -> bool:
 
 
 def _meet(joints: tuple[RawJoint, ...]) -> bool:
-    """True when every link between the joints has both of them at one point."""
+    """True if the two joints of every link between them meet at one point."""
     return all(float(np.linalg.norm(a.frame_c.translation - b.frame_p.translation)) <= SAME_POINT_MM for a, b in pairwise(joints))
 
 
@@ -126,7 +126,7 @@ def _between(first: RawJoint, second: RawJoint) -> SE3:
 def _fuse_cylindrical(joints: tuple[RawJoint, ...], inner: list[RawTie]) -> RawJoint | None:
     """Slide and turn, in either order, along ± one axis: M₁ X M₂(q) = M₁ M₂(± q) X."""
     first, second = joints
-    X = first.frame_c.inverse() @ second.frame_p  # may lie anywhere on the axis: it commutes with slides along it and turns about it
+    X = first.frame_c.inverse() @ second.frame_p  # may be anywhere on the axis: it commutes with slides along it and turns about it
     if math.hypot(*X.z_axis[:2]) > SAME_AXIS or math.hypot(*X.translation[:2]) > SAME_POINT_MM:
         return None
     sign = 1.0 if X.z_axis[2] > 0 else -1.0
@@ -159,7 +159,7 @@ def _fuse_cylindrical(joints: tuple[RawJoint, ...], inner: list[RawTie]) -> RawJ
 
 
 def _fuse_universal(joints: tuple[RawJoint, ...], _inner: list[RawTie]) -> RawJoint | None:
-    """Two turns about axes at right angles: M₁ X M₂ = W Rx(a) Ry(b) W⁻¹ X with W x and W y along the two axes."""
+    """Two turns about perpendicular axes: M₁ X M₂ = W Rx(a) Ry(b) W⁻¹ X with W x and W y along the two axes."""
     first, second = joints
     X = _between(first, second)
     if abs(X.z_axis[2]) > SAME_AXIS:
@@ -209,11 +209,11 @@ def _fuse_planar(joints: tuple[RawJoint, ...], _inner: list[RawTie]) -> RawJoint
 
 
 def _fuse_ball(joints: tuple[RawJoint, ...], _inner: list[RawTie]) -> RawJoint | None:
-    """Three turns about x, y, ±z whose box of limits contains a cone and a twist; None where it does not, or where the three differ.
+    """Three turns about x, y, ±z whose limits contain a cone and a twist; None if they do not, or if the three joints differ.
 
-    A swing s of Rx(a)·Ry(b) has cos s = cos a · cos b, so a swing up to c stays in |a|, |b| ≤ c. The third angle is the ball's twist less
-    the twist of Rx(a)·Ry(b), which is at most w(c) (`swing_twist`), so a twist within [l + w, u − w] keeps it in [l, u]. Both contain 0.
-    A ball has one effort, one velocity, one damping and one friction, so those of the three must be the same.
+    A swing s of Rx(a)·Ry(b) has cos s = cos a · cos b, so a swing up to c stays in |a|, |b| ≤ c. The third angle is the ball's twist
+    minus the twist of Rx(a)·Ry(b), which is at most w(c) (`swing_twist`), so a twist within [l + w, u − w] keeps it in [l, u]. Both
+    contain 0. A ball has one effort, one velocity, one damping and one friction, so those of the three must be equal.
     """
     found = _fuse_three(joints, JointType.BALL)
     if found is None:
@@ -242,7 +242,7 @@ def _fuse_ball(joints: tuple[RawJoint, ...], _inner: list[RawTie]) -> RawJoint |
 
 
 def swing_twist(cone: float) -> float:
-    """Return the largest twist of Rx(a)·Ry(b) with a swing up to `cone` [rad]: that of a = b; endless from a quarter turn on."""
+    """Return the largest twist of Rx(a)·Ry(b) with a swing up to `cone` [rad]: that for a = b; infinite from a quarter turn on."""
     if cone >= math.pi / 2:
         return math.inf
     return 2 * math.atan(math.tan(math.acos(math.sqrt(math.cos(cone))) / 2) ** 2)
@@ -255,7 +255,7 @@ def _capacities(joints: tuple[RawJoint, ...]) -> dict[str, Any]:
 
 
 def _rests(joints: tuple[RawJoint, ...]) -> list[float]:
-    """Return where each joint rests: where it says so, else as near to zero as its limits allow."""
+    """Return the rest value of each joint: the stated one, else the value within its limits nearest to zero."""
     return [joint.rest[0] if joint.rest else min(max(0.0, joint.ranges[0][0]), joint.ranges[0][1]) for joint in joints]
 
 
@@ -271,7 +271,7 @@ _RULES: dict[tuple[JointType, ...], _Rule] = {
 
 
 def _frame_of(x: FloatArray, y: FloatArray) -> SE3:
-    """Return the rotation that takes x and y to two unit vectors at right angles."""
+    """Return the rotation that maps x and y to two perpendicular unit vectors."""
     return SE3.from_axes(np.zeros(3), np.cross(x, y), x) if np.linalg.norm(np.cross(x, y)) > 1e-3 else SE3.identity()
 
 

@@ -1,4 +1,4 @@
-"""MJCF in: articad's own by its records, any other as MuJoCo compiles it, with its defaults, includes and frames resolved."""
+"""Reads MJCF: articad's own files by their records, any other as MuJoCo compiles it, with its defaults, includes and frames resolved."""
 
 from __future__ import annotations
 
@@ -43,24 +43,23 @@ COUNTED: Final = {
     "contact": {"pair": "npair", "exclude": "nexclude"},
     "custom": {"numeric": "nnumeric", "text": "ntext", "tuple": "ntuple"},
 }
-"""Sections, and what MuJoCo's model calls the number of what each kind of their elements makes."""
+"""Sections, and the names of MuJoCo's counts for each kind of their elements."""
 
 
 def read_mjcf(path: str | Path, *, root: str | Path | None = None, metadata: bool = True, fuse: bool = False) -> Assembly:
     """Read an MJCF file.
 
     Bodies become parts in their own frames, the world is the ground; joints keep their names and values, several joints of one body
-    become a chain over bare parts. Equality constraints of points, bodies and joints close loops
-    and couple joints.
+    become a chain over bare parts. Equality constraints of points, bodies and joints close loops and couple joints.
 
     Args:
         path: The file.
         root: Folder that meshes and includes may be read from; the file's own by default.
         metadata: Use the records that articad left in its own files, so that they come back as they were.
-        fuse: Without metadata, make chains over bare links one joint where we have it.
+        fuse: Without metadata, replace chains over bare links by one joint where articad has it.
 
     Raises:
-        ReadError: If the file is not MJCF, names files outside the root, or is no mechanism.
+        ReadError: If the file is not MJCF, names files outside the root, or is not a mechanism.
     """
     path = Path(path)
     folder = Folder.of(path, None if root is None else Path(root))
@@ -87,7 +86,7 @@ def read_mjcf(path: str | Path, *, root: str | Path | None = None, metadata: boo
 
 
 class _Reader:
-    """Turns a compiled model into links and joints."""
+    """Converts a compiled model to links and joints."""
 
     def __init__(self, compiled: Compiled, name: str, document: Any) -> None:
         self.m = compiled
@@ -98,7 +97,7 @@ class _Reader:
         self.document = document
 
     def model(self) -> RawModel:
-        """Return everything that the compiled model holds."""
+        """Return everything that the compiled model contains."""
         self._keep_sections()
         for body in range(self.m.nbody):
             self.raw.kept += self.carrier.body(body)
@@ -128,11 +127,11 @@ class _Reader:
     # ------------------------------------------------------------------ what is kept
 
     def _keep_sections(self) -> None:
-        """Keep what the document says beyond bodies, section by section, where its elements are those of the compiled model.
+        """Keep the document's data beyond bodies, section by section, where its elements are those of the compiled model.
 
-        Copies of `<replicate>` and models of `<attach>` bring elements that no document has in this form; those are kept by name only.
+        Copies of `<replicate>` and models of `<attach>` add elements that no document has in this form; those are kept by name only.
         """
-        self.raw.kept.append(Kept("mjcf", "model", "", "<mujoco/>"))  # that it came from MJCF, where it says nothing else
+        self.raw.kept.append(Kept("mjcf", "model", "", "<mujoco/>"))  # that it came from MJCF, even if it says nothing else
         copied = [section for section in COUNTED if len(section_elements(self.document, section)) != self._count(section)]
         for item in kept_attributes(self.document):
             section = etree.fromstring(item.xml).tag if item.xml else ""
@@ -149,7 +148,7 @@ class _Reader:
                         )
 
     def _count(self, section: str) -> int:
-        """Return how many elements of a section the compiled model has, without our own records."""
+        """Return how many elements of a section the compiled model has, without articad's own records."""
         count = sum(_number_of(self.m, count) for count in COUNTED[section].values())
         if section == "custom":
             texts = (self.m.name("TEXT", index) for index in range(self.m.ntext))
@@ -157,7 +156,7 @@ class _Reader:
         return count
 
     def _keep_equality(self, row: int, name: str, *, joint: str = "") -> None:
-        """Keep an equality word for word; one that the assembly holds as a joint or a coupling has only its softness to say."""
+        """Keep an equality verbatim; for one that the assembly holds as a joint or a coupling, only its softness is kept."""
         elements = section_elements(self.document, "equality")
         if len(elements) != self.m.neq:
             return
@@ -199,7 +198,7 @@ class _Reader:
                 self.raw.kept.append(self.carrier.plane(geom, f"parts.{body}"))
             else:
                 self.raw.kept.append(Kept("mjcf", f"parts.{body}", f"the {kind} geom {name!r}"))
-            self._drop(f"parts.{body}", f"A geom of type {kind} is no shape of the assembly.")
+            self._drop(f"parts.{body}", f"A geom of type {kind} is not a shape of the assembly.")
             return None
         material = self.m.geom_matid[geom]
         rgba = self.m.mat_rgba[material] if material >= 0 else self.m.geom_rgba[geom]
@@ -208,7 +207,7 @@ class _Reader:
         return Shape(mesh, _pose(self.m.geom_pos[geom], self.m.geom_quat[geom]), color, name, form)
 
     def _mesh(self, geom: int) -> tuple[TriMesh | None, Primitive | None]:
-        """Return a geom's mesh, and the primitive body that it stands for."""
+        """Return a geom's mesh, and the primitive that it represents."""
         m = self.m
         a, b, c = (float(size) * MM_PER_M for size in self.m.geom_size[geom])
         kind = int(self.m.geom_type[geom])
@@ -232,7 +231,7 @@ class _Reader:
     # ------------------------------------------------------------------ joints
 
     def _add_joints(self, body: int) -> None:
-        """Add the joints between a body and its parent: a chain over bare links where there are several."""
+        """Add the joints between a body and its parent: a chain over bare links if there are several."""
         m = self.m
         start = _pose(m.body_pos[body], m.body_quat[body])
         parent, child = self.bodies[m.body_parentid[body]], self.bodies[body]
@@ -252,7 +251,7 @@ class _Reader:
         m, name = self.m, self.joints[index]
         kind, at = m.jnt_type[index], m.jnt_qposadr[index]
         qpos, reference = m.qpos, m.qpos0
-        if kind == m.mjJNT_FREE:  # its values are a pose in the world; ours count from where the body stands in the file
+        if kind == m.mjJNT_FREE:  # its values are a pose in the world; articad's are relative to the body's pose in the file
             moved = not np.array_equal(qpos[at : at + 7], reference[at : at + 7])
             home = start.inverse() @ _pose(qpos[at : at + 3], qpos[at + 3 : at + 7]) if moved else IDENTITY
             self.raw.joints.append(RawJoint(name, JointType.FREE, parent, child, start, IDENTITY, rest=tuple(home.data.tolist())))
@@ -278,7 +277,7 @@ class _Reader:
         slides = kind == m.mjJNT_SLIDE
         unit = MM_PER_M if slides else 1.0
         R = anchor @ aligned(m.jnt_axis[index])
-        zero = float(reference[at]) * unit  # the value that the file's own pose has
+        zero = float(reference[at]) * unit  # the value in the file's own pose
         back = SE3.trans(0.0, 0.0, -zero) if slides else SE3.rot_z(-zero)
         bounds = (low * unit, high * unit) if limited else ENDLESS
         joint_type = JointType.SLIDER if slides else JointType.REVOLUTE
@@ -288,7 +287,7 @@ class _Reader:
         )
 
     def _dynamics(self, index: int) -> dict[str, Any]:
-        """Return what a joint states of effort, damping and friction, in N, mm and s; a ball is like a hinge."""
+        """Return a joint's effort, damping and friction, in N, mm and s; a ball is like a hinge."""
         m = self.m
         slides = m.jnt_type[index] == m.mjJNT_SLIDE
         force, length = (1.0, MM_PER_M) if slides else (MM_PER_M, 1.0)
@@ -332,12 +331,12 @@ class _Reader:
         self._keep_equality(row, name, joint=held)
 
     def _add_tie(self, row: int, name: str) -> tuple[str, str]:
-        """Add a line between two joints; return what holds it, or why it is left out."""
+        """Add a linear relation between two joints; return what represents it, or why it is left out."""
         m = self.m
         first, second = m.eq_obj1id[row], m.eq_obj2id[row]
         c0, c1, *higher = (float(c) for c in m.eq_data[row][:5])
         if second < 0 or any(higher):
-            return "", f"Equality {name!r} is not a straight line between two joints; it is left out."
+            return "", f"Equality {name!r} is not a linear relation between two joints; it is left out."
         zero1, zero2 = (float(m.qpos0[m.jnt_qposadr[joint]]) for joint in (first, second))
         unit1, unit2 = (MM_PER_M if m.jnt_type[joint] == m.mjJNT_SLIDE else 1.0 for joint in (first, second))
         offset = (zero1 + c0 - c1 * zero2) * unit1
@@ -346,11 +345,12 @@ class _Reader:
         return f"couplings.{tie.name}", ""
 
     def _add_closing(self, row: int, name: str) -> tuple[str, str]:
-        """Add a point or a body that two bodies share; return what holds it, or why it is left out.
+        """Add a point or a body that two bodies share; return what represents it, or why it is left out.
 
-        A connect shares the point `anchors`. A weld of sites makes their frames agree. A weld of bodies holds, with the compiled data
-        anchor a (in body 2), place p and quaternion Q (in body 1): T₁⁻¹ T₂ = trans(p) · Q · trans(−a); the compiler fills p and Q in
-        from the file's own pose where the file gives no `relpose` (MuJoCo: mj_instantiateEquality). Without torque it shares the point only.
+        A connect shares the point `anchors`. A weld of sites makes their frames coincide. A weld of bodies enforces, with the compiled
+        data anchor a (in body 2), position p and quaternion Q (in body 1): T₁⁻¹ T₂ = trans(p) · Q · trans(−a); the compiler computes p
+        and Q from the file's own pose if the file gives no `relpose` (MuJoCo: mj_instantiateEquality). Without torque it shares the
+        point only.
         """
         m = self.m
         sites = m.eq_objtype[row] == m.mjOBJ_SITE
@@ -371,7 +371,7 @@ class _Reader:
         if weld and data[10] > 0:
             self.raw.joints.append(RawJoint(name, JointType.FIXED, first, second, near, far, closing=True))
             return f"joints.{name}", ""
-        # a point: its frames are turned so that the ball rests at zero where the file's own pose has the bodies
+        # a point: its frames are oriented so that the ball rests at zero in the file's own pose
         turns = [_rotation_pose(m.xpos[body], m.xmat[body]).inverse().quaternion for body in bodies]
         near, far = (SE3.from_quaternion(turn, frame.translation) for turn, frame in zip(turns, (near, far), strict=True))
         self.raw.joints.append(RawJoint(name, JointType.BALL, first, second, near, far, cone=math.pi, closing=True))
@@ -379,7 +379,7 @@ class _Reader:
 
 
 def _number_of(compiled: Compiled, count: str) -> int:
-    """Return a number of a compiled model; before MuJoCo 4 every actuator had one control."""
+    """Return a count of a compiled model; before MuJoCo 4 every actuator had one control."""
     return int(getattr(compiled, count, 0) or (compiled.nu if count == "nactuator" else 0))
 
 

@@ -1,7 +1,7 @@
-"""What a compiled MuJoCo model says of its bodies, joints and geoms beyond an assembly, as elements that `write_mjcf` puts back.
+"""Data of a compiled MuJoCo model about bodies, joints and geoms beyond an assembly, as elements that `write_mjcf` writes again.
 
 The compiled model has every default, class, frame, copy and include resolved, so each value is an attribute of its own element here. A
-value is carried where it is not the one that MuJoCo takes where a file says nothing; the compiler says which those are (`_usual`).
+value is carried if it differs from MuJoCo's value for an empty element, which the compiler provides (`_usual`).
 """
 
 from __future__ import annotations
@@ -70,13 +70,13 @@ class Carrier:
     # ------------------------------------------------------------------ elements
 
     def geom(self, geom: int, where: str) -> Kept:
-        """Return what a geom says beyond its shape and place; `what` is empty where that is nothing."""
+        """Return a geom's data beyond its shape and pose; `what` is empty if there are none."""
         found = self._attributes(_GEOM, geom, 0)
         fluid = self.m.geom_fluid[geom]
         if fluid[0]:
             found |= {"fluidshape": "ellipsoid", "fluidcoef": _numbers(fluid[1:6])}
         bits = int(self.m.geom_contype[geom]), int(self.m.geom_conaffinity[geom])
-        whether = {"contype", "conaffinity"} if bits in {(0, 0), (1, 1)} else set()  # that it collides, or not, is read
+        whether = {"contype", "conaffinity"} if bits in {(0, 0), (1, 1)} else set()  # whether it collides is read elsewhere
         said = {name: value for name, value in found.items() if name not in whether}
         name = self._name("GEOM", geom)
         rgba = self.m.mat_rgba[self.m.geom_matid[geom]] if self.m.geom_matid[geom] >= 0 else self.m.geom_rgba[geom]
@@ -88,13 +88,13 @@ class Carrier:
         return Kept("mjcf", where, f"{words} of {label}" if words else "", _xml("geom", whole))
 
     def plane(self, geom: int, where: str) -> Kept:
-        """Return a geom that is an endless plane, whole."""
+        """Return a geom that is an infinite plane, completely."""
         element = etree.fromstring(self.geom(geom, where).xml)
         element.attrib.update({"type": "plane", "size": _numbers(self.m.geom_size[geom])} | self._place("geom", geom))
         return Kept("mjcf", where, f"the plane geom {self._name('GEOM', geom)!r}", etree.tostring(element, encoding="unicode"))
 
     def joint(self, joint: int) -> Iterator[Kept]:
-        """Yield what a joint says beyond its axis, limits, damping and friction."""
+        """Yield a joint's data beyond its axis, limits, damping and friction."""
         m, at, q = self.m, int(self.m.jnt_dofadr[joint]), int(self.m.jnt_qposadr[joint])
         found = self._attributes(_JOINT, joint, 0) | self._attributes(_DOF, at, 0)
         ball, free = m.jnt_type[joint] == m.mjJNT_BALL, m.jnt_type[joint] == m.mjJNT_FREE
@@ -120,7 +120,7 @@ class Carrier:
             yield Kept("mjcf", f"joints.{self.joints[joint]}", _words(found), _xml("joint", found))
 
     def body(self, body: int) -> Iterator[Kept]:
-        """Yield what a body says and holds beyond joints and geoms: attributes, sites, cameras and lights."""
+        """Yield a body's data beyond joints and geoms: attributes, sites, cameras and lights."""
         m, where = self.m, f"parts.{self.bodies[body]}"
         found = self._attributes(_BODY, body, 0) | ({"mocap": "true"} if m.body_mocapid[body] >= 0 else {})
         if found:
@@ -179,12 +179,12 @@ class Carrier:
         return ({"mode": _MODES[mode]} if mode else {}) | ({"target": self.bodies[target]} if target >= 0 else {})
 
     def _more(self, name: str, index: int) -> list[float]:
-        """Return the higher coefficients of a polynomial, none where they are all zero."""
+        """Return the higher coefficients of a polynomial, empty if they are all zero."""
         values = getattr(self.m, name)[index].tolist() if hasattr(self.m, name) else []
         return values if any(values) else []
 
     def _attributes(self, table: Mapping[str, str], index: int, usual: int) -> dict[str, str]:
-        """Return the attributes whose value is not the usual one."""
+        """Return the attributes with unusual values."""
         found = {}
         for name, field in table.items():
             if not hasattr(self.m, field):  # of a later MuJoCo

@@ -1,8 +1,8 @@
-"""What MuJoCo's compiler makes of a file, from a process of its own: MuJoCo parses strangers' files there and not in ours.
+"""The result of MuJoCo's compiler for a file, from a process of its own: MuJoCo parses untrusted files there and not in this one.
 
-The process runs this module with `FILE ROOT`. It has bounded memory and time, and reads ROOT and no other folder where the machine
-can confine it. It leaves the numbers and names of the compiled model in the file `model` of its private folder: one line of JSON
-that describes the arrays, then their bytes in the same order.
+The process runs this module with `FILE ROOT`. It has limited memory and time, and reads ROOT and no other folder if the machine can
+confine it. It leaves the numbers and names of the compiled model in the file `model` of its private folder: one line of JSON that
+describes the arrays, then their bytes in the same order.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ _PREFIXES: Final = (
     "mesh_face",
     "mesh_pos",
 )
-"""Arrays of a model that readers use; textures, normals, trees of boxes and the like stay behind."""
+"""Arrays of a model that readers use; textures, normals, bounding volumes and the like are left out."""
 _ROWS: Final = {
     "body": "nbody",
     "jnt": "njnt",
@@ -72,8 +72,8 @@ class Compiled:
     `qpos`, `xpos` and `xmat` are those of `MjData` at the keyframe "home", else at the file's own pose.
 
     Attributes:
-        usual: A model whose elements say nothing: what MuJoCo takes where a file is silent.
-        warnings: What MuJoCo warned of.
+        usual: A model of empty elements: MuJoCo's values where a file states nothing.
+        warnings: MuJoCo's warnings.
     """
 
     def __init__(
@@ -90,11 +90,11 @@ class Compiled:
             raise AttributeError(field) from None
 
     def name(self, kind: str, index: int) -> str:
-        """Return the name of an element, "" where it has none; `kind` as in `mjOBJ_KIND`."""
+        """Return the name of an element, "" if it has none; `kind` as in `mjOBJ_KIND`."""
         return self._names[kind][index]
 
     def word(self, enum: str, value: int) -> str:
-        """Return MJCF's word for a value of an enumeration, `word("GEOM", 6)` is "box"."""
+        """Return MJCF's keyword for a value of an enumeration; `word("GEOM", 6)` is "box"."""
         prefix = f"mj{enum}_"
         return (
             next(name for name, number in self._numbers.items() if name.startswith(prefix) and number == value).removeprefix(prefix).lower()
@@ -109,7 +109,7 @@ def compiled_mjcf(path: Path, root: Path) -> Compiled:
         root: Folder that MuJoCo may read.
 
     Raises:
-        ReadError: If MuJoCo refuses the file, or does not end within its bounds.
+        ReadError: If MuJoCo refuses the file, or does not end within its limits.
     """
     limits = launcher.Limits(seconds=SECONDS, memory=MEMORY, file_size=_MOST)
     with scratch.folder("mjcf") as folder:
@@ -129,7 +129,7 @@ def _read(data: bytes, path: Path) -> Compiled:
     try:
         answer = json.loads(head)
         if refused := answer.get("refused"):
-            raise unreadable(path, "", f"MuJoCo does not take it: {refused}")
+            raise unreadable(path, "", f"MuJoCo refuses it: {refused}")
         models, at = [], 0
         for part in (answer["usual"], answer["model"]):
             numbers: dict[str, Any] = {str(name): int(value) for name, value in {**answer["words"], **part["counts"]}.items()}
@@ -148,7 +148,7 @@ def _read(data: bytes, path: Path) -> Compiled:
 
 
 def _array(data: bytes, at: int, kind: str, shape: list[int]) -> tuple[NDArray[Any], int]:
-    """Return an array of the answer, and where the next one begins."""
+    """Return an array of the answer, and the position of the next one."""
     if kind not in _TYPES or any(type(length) is not int or length < 0 for length in shape):
         raise ValueError(f"an array of type {kind} and shape {shape}")
     count = int(np.prod(shape, dtype=np.float64))
@@ -157,7 +157,7 @@ def _array(data: bytes, at: int, kind: str, shape: list[int]) -> tuple[NDArray[A
 
 
 def _require_rows(numbers: Mapping[str, Any]) -> None:
-    """Hold arrays to the numbers of their elements, and indices to the elements that there are."""
+    """Check the sizes of arrays against the numbers of their elements, and indices against the numbers of existing elements."""
     for name, value in numbers.items():
         count = _ROWS.get(name.partition("_")[0])
         if count and isinstance(value, np.ndarray) and len(value) != numbers[count]:
@@ -177,7 +177,7 @@ def _require_rows(numbers: Mapping[str, Any]) -> None:
 
 
 def main(arguments: list[str]) -> int:
-    """Compile a file and leave its model in the working folder."""
+    """Compile a file and write its model into the working folder."""
     path, root = arguments
     sandbox.keep_to([root], [str(Path.cwd())])
     import mujoco  # noqa: PLC0415
@@ -200,7 +200,7 @@ def main(arguments: list[str]) -> int:
 
 
 def _described(mujoco: Any, compiled: Any) -> tuple[dict[str, Any], list[NDArray[Any]]]:
-    """Return the counts, names and shapes of a model at its home, and its arrays."""
+    """Return the counts, names and shapes of a model in its home pose, and its arrays."""
     data = mujoco.MjData(compiled)
     home = mujoco.mj_name2id(compiled, mujoco.mjtObj.mjOBJ_KEY, "home")
     if home >= 0:

@@ -1,9 +1,9 @@
-"""What an MJCF file says beyond bodies, joints, shapes and equalities: every element and attribute that is not read, by name.
+"""Data of an MJCF file beyond bodies, joints, shapes and equalities: every element and attribute that is not read, by name.
 
-MuJoCo's compiler resolves defaults, classes, frames, includes and copies; the reader takes what is left of these from the compiled model.
-`READ` lists the attributes whose meaning arrives in the assembly that way, or is kept with it (`mjcf_carried`). The sections of `WHOLE`
-speak of named things only, so their elements are kept word for word, with the defaults of their kinds, and `write_mjcf` puts them back
-where all that they name is there. Everything else, known to MuJoCo or not, becomes a `Kept` without XML.
+MuJoCo's compiler resolves defaults, classes, frames, includes and copies; the reader takes their results from the compiled model. `READ`
+lists the attributes whose meaning reaches the assembly that way, or is kept with it (`mjcf_carried`). The sections of `WHOLE` refer to
+named objects only, so their elements are kept verbatim, with the defaults of their kinds, and `write_mjcf` writes them again if
+everything that they name exists. Everything else, known to MuJoCo or not, becomes a `Kept` without XML.
 """
 
 from __future__ import annotations
@@ -50,10 +50,10 @@ _GEOM = (
 )
 
 WHOLE: Final = ("option", "size", "visual", "statistic", "custom", "contact", "equality", "tendon", "actuator", "sensor", "keyframe")
-"""Sections whose elements are kept word for word."""
+"""Sections whose elements are kept verbatim."""
 
 SETTINGS: Final = frozenset({"option", "size", "visual", "statistic"})
-"""Of these, those that speak of the whole model and have no elements with names."""
+"""Those of them that apply to the whole model and have no named elements."""
 
 _OWN_DEFAULTS = frozenset(
     {"general", "motor", "position", "velocity", "intvelocity", "damper", "cylinder", "muscle", "adhesion", "dcmotor", "plugin"}
@@ -87,19 +87,19 @@ READ: Final[Mapping[str, frozenset[str]]] = {
 """Attributes that are read or carried, by tag, or by section and tag; `*` for all of them."""
 
 _SECTIONS = frozenset({"default", "asset"})
-_NAMES = 6  # that a row lists
-_PREFIX = "articad."  # of our own records
-_USUAL = {"gravity": ("0", "0", "-9.81")}  # what every reader takes anyway
+_NAMES = 6  # largest number of names in a row
+_PREFIX = "articad."  # of articad's own records
+_USUAL = {"gravity": ("0", "0", "-9.81")}  # the value that every reader uses anyway
 
 
 def with_includes(document: Any, path: Path) -> Any:
-    """Return the document with what it includes in its place.
+    """Return the document with its includes in their places.
 
-    MuJoCo looks for an included file beside the model, then beside the file that includes it, and takes each file once.
+    MuJoCo looks for an included file beside the model, then beside the file that includes it, and reads each file once.
 
     Args:
-        document: The root element; it is left as it is.
-        path: Of the model's file.
+        document: The root element; it is not modified.
+        path: Path of the model's file.
     """
     whole = deepcopy(document)
     _include(whole, path.parent, path.parent, {path.resolve()})
@@ -121,7 +121,7 @@ def _include(element: Any, top: Path, here: Path, seen: set[Path]) -> None:
 
 
 def kept_attributes(document: Any) -> list[Kept]:
-    """Return what an MJCF document says that is not read: the elements of `WHOLE`, and a row for each other kind of element or attribute.
+    """Return the unread data of an MJCF document: the elements of `WHOLE`, and a row for each other kind of element or attribute.
 
     Args:
         document: The root element, with includes in place.
@@ -138,7 +138,7 @@ def kept_attributes(document: Any) -> list[Kept]:
 
 
 def section_elements(document: Any, section: str) -> list[Any]:
-    """Return the elements of all sections of this name, in the order in which MuJoCo numbers what they make."""
+    """Return the elements of all sections of this name, in the order in which MuJoCo numbers their objects."""
     return [element for part in document.iterfind(section) for element in part if isinstance(element.tag, str) and not _own_record(element)]
 
 
@@ -159,7 +159,7 @@ def _section(document: Any, section: str) -> Iterator[Kept]:
 
 
 def _called(element: Any, what: str, number: int) -> str:
-    """Return the words for an element: what it is, its name or number, its tag and what it refers to."""
+    """Return the description of an element: what it is, its name or number, its tag and its references."""
     about = ", ".join(f"{name} {value!r}" for name, value in element.attrib.items() if name in _REFERRING)
     said = " ".join([*([] if element.tag == what else [element.tag]), *([f"of {about}"] if about else [])])
     return f"{what} {element.get('name') or f'{what}_{number}'!r}{f' ({said})' if said else ''}"
@@ -186,7 +186,7 @@ _REFERRING = frozenset(
 
 
 def _compiler(document: Any) -> Iterator[Kept]:
-    """Yield the compiler's settings that what is kept word for word depends on."""
+    """Yield the compiler's settings on which the verbatim elements depend."""
     kept = etree.Element("compiler")
     for compiler in document.iterfind("compiler"):
         if "autolimits" in compiler.attrib:
@@ -197,7 +197,7 @@ def _compiler(document: Any) -> Iterator[Kept]:
 
 
 def _defaults(document: Any) -> Iterator[Kept]:
-    """Yield the defaults of the elements that are kept word for word; they say nothing without those."""
+    """Yield the defaults of the elements that are kept verbatim; without those they have no effect."""
     for default in document.iterfind("default"):
         kept = deepcopy(default)
         for element in list(kept.iter()):
@@ -219,7 +219,7 @@ def _listed(what: str, names: list[str]) -> str:
 
 
 def _unread(element: Any, section: str) -> Iterator[tuple[str, str]]:
-    """Yield what is not read of an element and below, and the name of what has it."""
+    """Yield the unread data of an element and below, and the names of their owners."""
     tag, name = element.tag, _name(element)
     key = _key(element, section)
     if key is None:
@@ -238,18 +238,18 @@ def _unread(element: Any, section: str) -> Iterator[tuple[str, str]]:
 
 
 def _key(element: Any, section: str) -> str | None:
-    """Return the key of `READ` that speaks of an element; None where it is not read at all."""
+    """Return the key of `READ` for an element; None if it is not read at all."""
     tag = element.tag
     if f"{section}/{tag}" in READ:
         return f"{section}/{tag}"
     if tag == "lengthrange":
         return "compiler/lengthrange"
-    # in a section, what stands in bodies has another meaning; in defaults it has the same
+    # in a section, elements of bodies have another meaning; in defaults they have the same
     return tag if tag in READ and (section in {"", "default"} or tag == "include") else None
 
 
 def _whole(element: Any) -> Iterator[tuple[str, str]]:
-    """Yield an element that is not read: a section by what it holds, others by name."""
+    """Yield an element that is not read: a section by its contents, others by name."""
     if len(element) and not element.attrib:
         yield from ((f"<{below.tag}> of <{element.tag}>", below.get("name") or "") for below in element if not _own_record(below))
     elif not _own_record(element):

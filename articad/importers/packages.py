@@ -1,7 +1,7 @@
-"""ROS packages by name: in a folder above a file, or where the environment says that packages are.
+"""ROS packages by name: in a folder above a file, or in the folders that the environment lists.
 
-A package is a folder with a `package.xml`, whose `<name>` counts, as the name of the folder does. `ROS_PACKAGE_PATH` (ROS 1) lists packages
-and folders of packages; `AMENT_PREFIX_PATH` (ROS 2) lists prefixes with packages in `share`.
+A package is a folder with a `package.xml`; its `<name>` counts, and so does the name of the folder. `ROS_PACKAGE_PATH` (ROS 1) lists
+packages and folders of packages; `AMENT_PREFIX_PATH` (ROS 2) lists prefixes with packages in `share`.
 """
 
 from __future__ import annotations
@@ -17,12 +17,12 @@ from articad.files import read_file
 __all__ = ["MANIFEST", "environment_folders", "find_package"]
 
 MANIFEST: Final = "package.xml"
-_MOST: Final = 1 << 20  # bytes of a manifest
+_MOST: Final = 1 << 20  # size limit of a manifest
 _NAME: Final = re.compile(rb"<name>\s*([^<\s]+)\s*</name>")
 
 
 def environment_folders() -> list[Path]:
-    """Return the folders that may be packages or hold packages, as the environment lists them."""
+    """Return the folders of the environment that may be packages or contain packages."""
     ros1 = [Path(entry) for entry in os.environ.get("ROS_PACKAGE_PATH", "").split(os.pathsep) if entry]
     ros2 = [Path(entry) / "share" for entry in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if entry]
     return [folder.resolve() for folder in (*ros1, *ros2)]
@@ -32,9 +32,9 @@ def find_package(name: str, above: Iterable[Path], folders: Iterable[Path] = ())
     """Return the folder of a package.
 
     Args:
-        name: Of the package.
-        above: Folders that may be the package, or hold it, the nearest first: those above a file.
-        folders: Further such folders, which count after these.
+        name: Name of the package.
+        above: Folders that may be the package, or contain it, the nearest first: those above a file.
+        folders: Further such folders, searched after these.
     """
     if not re.fullmatch(r"[A-Za-z0-9_.-]+", name) or set(name) == {"."}:
         return None

@@ -1,6 +1,6 @@
-"""What foreign files hold, in one form: links, and joints between frames on them; then an assembly.
+"""The content of foreign files in one form: links, and joints between frames on them; converted to an assembly.
 
-Links keep their own frames, so that anyone can compare poses with other readers. A joint of a file relates its two links by
+Links keep their own frames, so that poses can be compared with other readers. A joint of a file relates its two links by
 `T_child = T_parent · frame_p · J(q) · frame_c⁻¹`, where J turns about or slides along z like all our joints.
 """
 
@@ -31,7 +31,7 @@ IDENTITY = SE3.identity()
 ENDLESS = (-math.inf, math.inf)
 _CHANGED = frozenset(
     {"W_IMPORT_DROPPED", "W_IMPORT_MESH", "W_IMPORT_LIMITS"}
-)  # findings that say what the file has and the assembly has not
+)  # findings about data that the file has and the assembly has not
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,10 +39,10 @@ class RawLink:
     """A link or body.
 
     Attributes:
-        name: As the file has it.
-        mass: In the link's frame; None where the file gives none.
-        visuals: What is drawn.
-        collisions: What collides.
+        name: Name in the file.
+        mass: In the link's frame; None if the file gives none.
+        visuals: Shapes to draw.
+        collisions: Shapes for collision.
         color: "#rrggbb".
     """
 
@@ -58,8 +58,8 @@ class RawJoint:
     """A joint between two links, in mm and rad.
 
     Attributes:
-        name: As the file has it.
-        type: One of ours.
+        name: Name in the file.
+        type: The joint type.
         parent: Name of the link that carries `frame_p`.
         child: Name of the other.
         frame_p: In the parent link's frame.
@@ -68,12 +68,12 @@ class RawJoint:
         cone: Of a ball.
         twist: Of a ball.
         lead: Of a screw.
-        rest: Wanted rest values; the nearest within the limits are taken.
-        effort: [N·mm] or [N], None where the file gives none.
+        rest: Wanted rest values; the nearest ones within the limits are used.
+        effort: [N·mm] or [N], None if the file gives none.
         velocity: [rad/s] or [mm/s], likewise.
-        damping: [N·mm·s/rad] or [N·s/mm]; a file that says nothing has none.
+        damping: [N·mm·s/rad] or [N·s/mm]; zero if the file states none.
         friction: [N·mm] or [N], likewise.
-        closing: True when it was a constraint in the file, not a joint of its tree.
+        closing: True if it was a constraint in the file, not a joint of its tree.
     """
 
     name: str
@@ -114,13 +114,13 @@ class RawModel:
     """Everything that was read.
 
     Attributes:
-        name: Of the robot.
+        name: Name of the robot.
         ground: Name of the root link.
         links: By name, in the file's order.
         joints: In the file's order.
         ties: Between joints of one coordinate.
-        findings: What could not be taken over.
-        kept: What the file says that no other field holds.
+        findings: Findings about what could not be converted.
+        kept: Data of the file that no other field holds.
     """
 
     name: str
@@ -133,7 +133,7 @@ class RawModel:
 
 
 def aligned(axis: FloatArray) -> SE3:
-    """Return a rotation that takes z to `axis`, the identity or half a turn where it is ±z."""
+    """Return a rotation that maps z to `axis`, the identity or half a turn if it is ±z."""
     x, y, z = axis / np.linalg.norm(axis)
     if x == 0 and y == 0:
         return IDENTITY if z > 0 else FLIP
@@ -141,7 +141,7 @@ def aligned(axis: FloatArray) -> SE3:
 
 
 def require_links(model: RawModel, path: Path) -> None:
-    """Refuse joints of links that are not there.
+    """Refuse joints of missing links.
 
     Raises:
         ReadError: If there is one.
@@ -153,10 +153,10 @@ def require_links(model: RawModel, path: Path) -> None:
 
 
 def assemble(model: RawModel, path: Path) -> Assembly:
-    """Return the assembly of what was read.
+    """Return the assembly.
 
     Raises:
-        ReadError: If it is too large, or is no mechanism.
+        ReadError: If it is too large, or is not a mechanism.
     """
     if len(model.links) > MAX_LINKS:
         raise unreadable(path, "", f"It has {len(model.links)} links; the maximum is {MAX_LINKS}.")
@@ -164,7 +164,7 @@ def assemble(model: RawModel, path: Path) -> Assembly:
     connectors: dict[str, dict[str, Connector]] = {name: {} for name in model.links}
     for joint in model.joints:
         for link, frame in ((joint.parent, joint.frame_p), (joint.child, joint.frame_c)):
-            if not np.abs(frame.translation).max() <= LARGEST_MM:  # NaN is not either
+            if not np.abs(frame.translation).max() <= LARGEST_MM:  # also refuses NaN
                 raise unreadable(path, f"joint {joint.name!r}", "Its position is not plausible.")
             connectors[link][joint.name] = Connector(joint.name, frame)
     ties = _consistent_ties(model)
@@ -176,9 +176,9 @@ def assemble(model: RawModel, path: Path) -> Assembly:
     }
     try:
         mechanism = Mechanism(tuple(parts), model.ground, joints, couplings)
-        mechanism.rest  # noqa: B018 - loops must close before anything is promised
+        mechanism.rest  # noqa: B018 - raises if loops do not close
     except (ArticadError, np.linalg.LinAlgError) as error:
-        raise unreadable(path, "", f"It makes no mechanism: {error}") from error
+        raise unreadable(path, "", f"It is not a valid mechanism: {error}") from error
     kept_at = {item.where for item in model.kept if item.format == "mjcf"}  # what MJCF says there is kept, and reported where it is lost
     changed = [
         Kept("file", finding.where, finding.message)
@@ -189,7 +189,7 @@ def assemble(model: RawModel, path: Path) -> Assembly:
 
 
 def _consistent_ties(model: RawModel) -> list[RawTie]:
-    """Drop ties of joints that are not there or have several coordinates."""
+    """Drop relations of joints that are missing or have several coordinates."""
     single = {joint.name for joint in model.joints if len(joint.ranges) == 1}
     kept = []
     for tie in model.ties:
@@ -204,7 +204,7 @@ def _consistent_ties(model: RawModel) -> list[RawTie]:
 
 
 def _rest_values(joints: list[RawJoint], ties: list[RawTie]) -> dict[str, tuple[float, ...]]:
-    """Return rest values: those wanted, moved into the limits; followers where their leaders put them."""
+    """Return rest values: the wanted ones, moved into the limits; followers where their leaders put them."""
     rests: dict[str, tuple[float, ...]] = {}
     for joint in joints:
         if joint.type.quaternion is not None:
@@ -244,7 +244,7 @@ def _joint(joint: RawJoint, rest: tuple[float, ...], findings: list[Finding]) ->
         effort=joint.effort,
         velocity=joint.velocity,
         damping=joint.damping
-        or ((0.0,) * max(len(ranges), 1) if joint.type not in {JointType.FIXED, JointType.FREE} else ()),  # unstated is none
+        or ((0.0,) * max(len(ranges), 1) if joint.type not in {JointType.FIXED, JointType.FREE} else ()),  # unstated means none
         friction=joint.friction,
     )
 

@@ -1,4 +1,4 @@
-"""Files of unknown origin: XML without entities, paths that stay in their folder, sizes that stay bounded."""
+"""Files of unknown origin: XML without entities, paths confined to their folder, limited sizes."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ MAX_XML_BYTES = 64 << 20  # a robot of 10,000 links is 20 MB; more is a mistake 
 MAX_LINKS = 20_000
 MAX_ELEMENTS = 1_000_000  # of a file; a robot of 10,000 links has 200,000
 MAX_ATTRIBUTES = 200  # of one element; the parser compares each with each
-MAX_DEPTH = 50_000  # of elements within elements: a chain of MAX_LINKS bodies, twice
-_FEW = 20_000  # equals signs, up to which a file is parsed without being counted before: half a second at worst
+MAX_DEPTH = 50_000  # nesting of elements: a chain of MAX_LINKS bodies, twice
+_FEW = 20_000  # equals signs up to which a file is parsed without a prior count: half a second at worst
 MM_PER_M = 1000.0
 ELSEWHERE = "Put the mesh where the file names it, or name a folder above both as the root (--root)."
-LARGEST_MM = 1e12  # of a frame's place: with more, doubles no longer tell a millimetre
+LARGEST_MM = 1e12  # for the position of a frame: beyond it, doubles do not resolve a millimetre
 
 
 def unreadable(path: Path | str, where: str, reason: str, code: str = "E_READ") -> ReadError:
@@ -39,7 +39,7 @@ def unreadable(path: Path | str, where: str, reason: str, code: str = "E_READ") 
 
 
 def color_text(rgba: Iterable[float]) -> str:
-    """Return "#rrggbb" of a colour's channels from 0 to 1; what is no such number counts as the nearer end."""
+    """Return "#rrggbb" for a colour's channels from 0 to 1; values outside are clamped."""
     channels = [float(channel) for channel in islice(rgba, 3)]
     return "#" + "".join(f"{round(255 * min(channel, 1.0)) if channel > 0 else 0:02x}" for channel in channels)  # NaN is not above 0
 
@@ -58,10 +58,10 @@ def read_xml(path: Path) -> Any:
 
 
 def parse_xml(content: bytes, path: Path) -> Any:
-    """Return the root element of XML text; nothing that it names is loaded, and no entity is expanded."""
-    # huge_tree lifts the depth limit of 256, which a chain of bodies exceeds; without entities there is nothing else to blow up
+    """Return the root element of XML text; external references are not loaded, and entities are not expanded."""
+    # huge_tree removes the depth limit of 256, which a chain of bodies exceeds; without entities this is not a risk
     parser = etree.XMLParser(resolve_entities=False, no_network=True, load_dtd=False, huge_tree=True, remove_comments=True, remove_pis=True)
-    # slips that are widespread, and that other readers forgive: version 0.0, blank lines before it, a zero byte at the end
+    # widespread errors that other readers forgive: version 0.0, leading blank lines, a zero byte at the end
     content = re.sub(rb"^\s*<\?xml[^>]*?version\s*=\s*[\"']0\.\d[\"'][^>]*\?>", b"", content.strip(b"\0\r\n\t "))
     _require_bounded(content, path)
     try:
@@ -76,7 +76,7 @@ def parse_xml(content: bytes, path: Path) -> Any:
 
 
 def _require_bounded(content: bytes, path: Path) -> None:
-    """Count elements, attributes and levels by a parser that builds nothing, before the one that builds a tree sees the text.
+    """Count elements, attributes and levels with a parser that builds nothing, before the text reaches the one that builds a tree.
 
     Raises:
         ReadError: If there are too many.
@@ -84,13 +84,13 @@ def _require_bounded(content: bytes, path: Path) -> None:
     counter = _Counter(path)
     try:
         counter.count(content)
-    except (expat.ExpatError, ValueError, LookupError) as error:  # the latter two: encodings that it does not know
-        if content.count(b"=") > _FEW:  # a text that only the other parser would take, in whatever time
+    except (expat.ExpatError, ValueError, LookupError) as error:  # the latter two: unknown encodings
+        if content.count(b"=") > _FEW:  # a text that only the other parser would accept, in unlimited time
             raise unreadable(path, f"line {getattr(error, 'lineno', 1)}", f"It is not XML: {error}.") from None
 
 
 class _Counter:
-    """Counts what an XML text holds."""
+    """Counts the elements of an XML text."""
 
     def __init__(self, path: Path) -> None:
         self._path, self._elements, self._depth = path, 0, 0
@@ -101,7 +101,7 @@ class _Counter:
         self._parser.EntityDeclHandler = self._entity
 
     def count(self, content: bytes) -> None:
-        self._parser.Parse(content, True)  # noqa: FBT003 - the parser takes no names
+        self._parser.Parse(content, True)  # noqa: FBT003 - the parser takes no keywords
 
     def _start(self, _name: str, attributes: list[str]) -> None:
         self._elements += 1
@@ -125,7 +125,7 @@ class _Counter:
 
 @dataclass
 class Folder:
-    """Where a file may take other files from, and what could not be taken.
+    """The folder from which a file may take other files, and findings about those that could not be read.
 
     Attributes:
         root: Nothing above it is read.
@@ -141,15 +141,15 @@ class Folder:
 
     @classmethod
     def of(cls, path: Path, root: Path | None) -> Folder:
-        """Return the folder of a file; its own is the root unless another is given."""
+        """Return the folder of a file; its own folder is the root unless another is given."""
         here = path.resolve().parent
         return cls((root or here).resolve(), here)
 
     def find(self, name: str) -> Path:
-        """Return the file that a name means: relative to the file or the root, `file://`, `package://name/...` or `model://name/...`.
+        """Return the file for a name: relative to the file or the root, `file://`, `package://name/...` or `model://name/...`.
 
-        Of `package://`, the package is looked for in the folders from the file up to the root, then where `ROS_PACKAGE_PATH` and
-        `AMENT_PREFIX_PATH` say that packages are; the file has to lie in the root, or in the package that the environment names.
+        A `package://` package is looked for in the folders from the file up to the root, then in the folders of `ROS_PACKAGE_PATH` and
+        `AMENT_PREFIX_PATH`; the file has to lie in the root, or in the package that the environment names.
 
         Raises:
             ReadError: E_UNSAFE_PATH if it leads out; E_READ if there is no such file.
@@ -173,7 +173,7 @@ class Folder:
         return self._roots.get(target, self.root)
 
     def _candidates(self, name: str) -> list[tuple[Path, Path]]:
-        """Return the places where a named file may be, and the folder that each may not leave."""
+        """Return the places where a named file may be, and the folder that confines each."""
         if "\0" in name or not name:
             raise unreadable(repr(name), "", "This is not a file name.")
         scheme, _, path = name.partition("://")
@@ -193,9 +193,9 @@ class Folder:
         """Return a mesh in mm, or None and a finding.
 
         Args:
-            name: As the file names it.
+            name: The name in the file.
             scale: Millimetres per unit of the mesh file, along its axes.
-            where: What wants it.
+            where: The object that uses it.
         """
         try:
             path = self.find(name)
@@ -218,7 +218,7 @@ class Folder:
         return mesh
 
     def _read(self, path: Path, scale: float) -> TriMesh | ArticadError:
-        """Return a mesh, or why it cannot be read: everything that wants it is told."""
+        """Return a mesh, or why it cannot be read: every user of the mesh gets the reason."""
         try:
             return read_mesh(path, scale=scale, root=self.root_of(path))
         except ArticadError as error:

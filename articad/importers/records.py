@@ -1,4 +1,4 @@
-"""The way back: an assembly from the records that articad's exporters leave in foreign files (`articad.export.metadata`)."""
+"""Restores an assembly from the records that articad's exporters leave in files of other formats (`articad.export.metadata`)."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ _UNIT: Scale = (1.0, 1.0, 1.0)  # articad writes meshes in mm
 
 
 def read_records(texts: Iterable[str], path: Path) -> list[Record]:
-    """Return the records that a file holds.
+    """Return the records in a file.
 
     Raises:
         ReadError: If one is not a JSON object with a kind, or of a later version.
@@ -56,7 +56,7 @@ def read_records(texts: Iterable[str], path: Path) -> list[Record]:
 
 
 def stale(records: list[Record], elements: Iterable[Any], path: Path) -> list[Finding]:
-    """Return a finding if somebody has edited the file since articad wrote it: then the file speaks, not the records."""
+    """Return a finding if the file was edited after articad wrote it: then the file counts, not the records."""
     written = next((record.get("fingerprint") for record in records if record["kind"] == "assembly"), None)
     if written is None or written == fingerprint(elements):
         return []
@@ -192,7 +192,7 @@ def _frame(numbers: list[float]) -> SE3:
     if max(abs(x), abs(y), abs(z)) > LARGEST_MM:
         raise ValueError("the position of a frame is not plausible")
     if len(numbers) != 7 or not all(map(math.isfinite, numbers)) or not abs(math.hypot(*xyzw) - 1) < 1e-12:
-        return SE3.from_quaternion(xyzw, [x, y, z])  # refuses what is no rotation
+        return SE3.from_quaternion(xyzw, [x, y, z])  # refuses anything but a rotation
     return SE3.from_unit_array(np.array([x, y, z, *xyzw]))
 
 

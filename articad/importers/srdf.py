@@ -1,7 +1,7 @@
-"""SRDF in: the groups, states, virtual joints and pairs without collisions that MoveIt keeps beside a URDF, word for word.
+"""Reads SRDF: the groups, states, virtual joints and pairs without collisions that MoveIt keeps beside a URDF, verbatim.
 
-An assembly has no fields for them, so each element is kept with it. `write_urdf` writes them into an SRDF again, where all that an element
-names is in the URDF; every other format reports them as losses.
+An assembly has no fields for them, so each element is kept with it. `write_urdf` writes them into an SRDF again if everything that an
+element names is in the URDF; every other format reports them as losses.
 """
 
 from __future__ import annotations
@@ -17,15 +17,15 @@ from articad.importers.reading import Folder, read_xml, unreadable
 __all__ = ["COMPUTED", "kept_semantics", "semantics_beside"]
 
 COMPUTED: Final = frozenset({"Adjacent", "Never", "Default"})
-"""Reasons of `<disable_collisions>` that `write_urdf` gives to the pairs that it finds by itself."""
+"""Reasons of `<disable_collisions>` that `write_urdf` gives for the pairs that it finds itself."""
 
 
 def semantics_beside(path: Path, folder: Folder) -> Path | None:
-    """Return the SRDF of a URDF: `NAME.srdf` beside it, or in the folder `srdf` beside its folder, as a ROS package has it.
+    """Return the SRDF of a URDF: `NAME.srdf` beside it, or in the folder `srdf` beside its folder, as in a ROS package.
 
     Args:
         path: The URDF or xacro file.
-        folder: Where files may be read.
+        folder: Confines the files that may be read.
     """
     stem = path.name.removesuffix(".xacro").removesuffix(".urdf")
     places = (folder.here / f"{stem}.srdf", folder.here.parent / "srdf" / f"{stem}.srdf")
@@ -41,7 +41,7 @@ def kept_semantics(path: Path, *, own: bool = False) -> list[Kept]:
 
     Args:
         path: The file.
-        own: It lies beside a URDF that articad wrote: pairs with one of the reasons that articad gives are left out, because the writer
+        own: Whether it lies beside a URDF that articad wrote: pairs with one of articad's reasons are then left out, because the writer
             finds them again.
 
     Raises:

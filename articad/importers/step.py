@@ -1,4 +1,4 @@
-"""STEP in: a part for each solid, where it stands. STEP knows no joints, so all are fixed to the largest part."""
+"""Reads STEP: a part for each solid, at its pose. STEP has no joints, so all parts are fixed to the largest one."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from articad.kinematics.joints import Joint, JointLimits, JointType
 from articad.kinematics.mechanism import Mechanism
 
 IDENTITY = SE3.identity()
-ORIGIN = "origin"  # the connector of each part, which holds it to the largest
+ORIGIN = "origin"  # the connector of each part that holds it to the largest
 
 
 def read_step(path: str | Path, *, root: str | Path | None = None, deflection: float = 0.05) -> Assembly:
@@ -25,11 +25,11 @@ def read_step(path: str | Path, *, root: str | Path | None = None, deflection: f
 
     Args:
         path: The file.
-        root: Unused: a STEP file names no others.
+        root: Unused: a STEP file names no other files.
         deflection: Largest distance of the meshes from the surfaces [mm].
 
     Raises:
-        ReadError: If it is no STEP file, or holds no solid.
+        ReadError: If it is not a STEP file, or contains no solid.
     """
     del root
     path = Path(path)

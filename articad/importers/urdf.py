@@ -1,4 +1,4 @@
-"""URDF in: articad's own by its records, any other by its links and joints."""
+"""Reads URDF: articad's own files by their records, any other by its links and joints."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ FloatArray = NDArray[np.float64]
 
 EXPAND = "Run `xacro FILE.urdf.xacro > FILE.urdf` (pip install xacro) and read its output."
 _XACRO = {"http://www.ros.org/wiki/xacro", "http://ros.org/wiki/xacro", "http://wiki.ros.org/xacro"}
-_CAPSULE = "capsule:"  # before the name of a shape that is one
+_CAPSULE = "capsule:"  # prefix of the name of a capsule shape
 _SHAPES = {"box", "cylinder", "sphere", "mesh"}
 _JOINT_TYPES = {"fixed", "revolute", "continuous", "prismatic", "planar", "floating", "spherical"}
 
@@ -47,18 +47,18 @@ def read_urdf(
     """Read a URDF file, and the SRDF of the same name beside it.
 
     Links become parts in their own frames, joints keep their names and values. `mimic` becomes a coupling, `planar` a planar joint,
-    `floating` a free joint. Meshes that are missing are left out with a finding.
+    `floating` a free joint. Missing meshes are left out with a finding.
 
     Args:
         path: The file; one that ends in `.xacro` is expanded first (`articad.importers.xacro`).
-        root: Folder that meshes may be read from; by default the file's own, of a xacro file its ROS package. `package://name/…` is looked
-            for in it, upwards from the file, and then in the packages of `$ROS_PACKAGE_PATH` and `$AMENT_PREFIX_PATH`.
+        root: Folder that meshes may be read from; by default the file's own, for a xacro file its ROS package. `package://name/…` is
+            looked for in it, upwards from the file, and then in the packages of `$ROS_PACKAGE_PATH` and `$AMENT_PREFIX_PATH`.
         metadata: Use the records that articad left in its own files, so that they come back as they were.
-        fuse: Without metadata, make chains over bare links of small mass one joint: cylindrical, screw, universal, planar, ball.
+        fuse: Without metadata, replace chains over bare links of small mass by one joint: cylindrical, screw, universal, planar, ball.
         srdf: The SRDF; by default `NAME.srdf` beside the file, or in the folder `srdf` beside its folder.
 
     Raises:
-        ReadError: If the file is not URDF, names files outside the root, or is no mechanism.
+        ReadError: If the file is not URDF, names files outside the root, or is not a mechanism.
     """
     path = Path(path)
     is_xacro = path.suffix.lower() == ".xacro"
@@ -76,7 +76,7 @@ def read_urdf(
             own = assembly_of(records, folder, path)
             if beside is None:
                 return own
-            stated = kept_semantics(beside, own=True)  # what the file says now counts
+            stated = kept_semantics(beside, own=True)  # the file's present content counts
             return replace(own, kept=(*(item for item in own.kept if item.format != "srdf"), *stated))
     model = _model(document, folder, path)
     model.kept += [] if beside is None else kept_semantics(beside)
@@ -108,7 +108,7 @@ def _model(document: Any, folder: Folder, path: Path) -> RawModel:
 
 
 def _parse(document: Any, path: Path) -> Any:
-    """Let yourdfpy read the cleaned document; whatever it stumbles over is the file's fault."""
+    """Let yourdfpy read the cleaned document; any exception means that the file is invalid."""
     import yourdfpy  # noqa: PLC0415 - half a second, and only readers need it
 
     content = etree.tostring(document)
@@ -126,7 +126,7 @@ def _parse(document: Any, path: Path) -> Any:
 
 
 def _strip(document: Any, path: Path) -> list[Finding]:
-    """Take out what other programs' elements hold, and shapes that have no mesh; return what was lost."""
+    """Remove elements of other programs, and shapes without a mesh; return findings about the losses."""
     if len(document) > 8 * MAX_LINKS:
         raise unreadable(path, "", f"It has {len(document)} elements; the maximum is {8 * MAX_LINKS}.")
     findings = []
@@ -136,7 +136,7 @@ def _strip(document: Any, path: Path) -> list[Finding]:
     for shape in [*document.iterfind("link/visual"), *document.iterfind("link/collision")]:
         geometry = shape.find("geometry")
         if geometry is not None and len(geometry) and geometry[0].tag == "capsule":
-            # yourdfpy does not know capsules; it reads a cylinder with a mark
+            # yourdfpy does not support capsules; it reads a cylinder with a mark
             geometry[0].tag = "cylinder"
             shape.set("name", _CAPSULE + shape.get("name", ""))
         elif geometry is None or not len(geometry) or geometry[0].tag not in _SHAPES:
@@ -149,7 +149,7 @@ def _strip(document: Any, path: Path) -> list[Finding]:
 
 
 def _require_expanded(document: Any, path: Path) -> None:
-    """Refuse instructions of xacro, which say what the file would hold if they were carried out.
+    """Refuse xacro instructions: the content of the file is known only after they are executed.
 
     Properties and arguments alone change nothing, and are kept like any foreign element.
     """
@@ -165,7 +165,7 @@ def _require_expanded(document: Any, path: Path) -> None:
 
 
 def _quaternions_to_angles(document: Any, path: Path) -> None:
-    """Turn the quat_xyzw of an origin, which URDF has from 1.1 on, into the angles that every reader knows."""
+    """Convert the quat_xyzw of an origin, which URDF has since 1.1, to angles, which every reader supports."""
     if document.get("version", "") in {"", "1", "1.0"}:
         return  # urdfdom reads it in later versions only; it is reported as kept
     for origin in document.iter("origin"):
@@ -182,14 +182,14 @@ def _quaternions_to_angles(document: Any, path: Path) -> None:
 
 
 def _angles(R: FloatArray) -> tuple[float, float, float]:
-    """Return roll, pitch and yaw [rad] with R = Rz(yaw) · Ry(pitch) · Rx(roll); the roll is that of R with yaw taken back."""
+    """Return roll, pitch and yaw [rad] with R = Rz(yaw) · Ry(pitch) · Rx(roll); the roll is that of R with yaw removed."""
     yaw = math.atan2(R[1, 0], R[0, 0])
     s, c = math.sin(yaw), math.cos(yaw)
     return math.atan2(s * R[0, 2] - c * R[1, 2], c * R[1, 1] - s * R[0, 1]), math.atan2(-R[2, 0], math.hypot(R[0, 0], R[1, 0])), yaw
 
 
 def _require_numbers(document: Any, path: Path) -> None:
-    """Refuse NaN, infinities and numbers beyond reason, wherever they stand; yourdfpy would take them."""
+    """Refuse NaN, infinities and implausible numbers anywhere; yourdfpy would accept them."""
     names = (
         "xyz",
         "rpy",
@@ -235,13 +235,13 @@ def _require_numbers(document: Any, path: Path) -> None:
                 continue
             if len(numbers) not in _COUNTS.get(name, (1,)) and element.tag in {"origin", "axis", "mesh", "box"}:
                 raise unreadable(path, f"line {element.sourceline}", f"{name}={text!r} has {len(numbers)} numbers.")
-            infinite_limit = element.tag == "limit"  # an infinite limit is none
+            infinite_limit = element.tag == "limit"  # an infinite limit means none
             if any(math.isnan(number) or (abs(number) > _LARGEST and not infinite_limit) for number in numbers):
                 raise unreadable(path, f"line {element.sourceline}", f"{name}={text!r} is not a plausible number.")
 
 
 _COUNTS = {"xyz": (3,), "rpy": (3,), "quat_xyzw": (4,), "size": (3,), "scale": (1, 3)}
-_LARGEST = 1e12  # m, kg, N: beyond it arithmetic on poses means nothing
+_LARGEST = 1e12  # m, kg, N: beyond it arithmetic on poses loses all precision
 
 
 def _root(robot: Any, path: Path) -> str:
@@ -295,7 +295,7 @@ def _shapes(rows: Any, colors: dict[str, str], folder: Folder, where: str) -> tu
 
 
 def _mesh(geometry: Any, folder: Folder, where: str, *, capsule: bool) -> tuple[TriMesh | None, Primitive | None]:
-    """Return a shape's mesh, and what it stands for."""
+    """Return a shape's mesh, and the primitive that it represents."""
     if geometry.box is not None:
         form = Primitive("box", tuple(float(size) * MM_PER_M for size in geometry.box.size))
         x, y, z = form.size
@@ -321,7 +321,7 @@ def _color(material: Any) -> str:
 
 
 def _pose(matrix: FloatArray | None) -> SE3:
-    """Return a pose in mm of one in m; the rotation comes from angles, so it is one."""
+    """Return a pose in mm from one in m; its rotation comes from angles, so it is valid."""
     if matrix is None:
         return IDENTITY
     return SE3.from_rotation(matrix[:3, :3], matrix[:3, 3] * MM_PER_M)
@@ -335,7 +335,7 @@ def _add_joint(model: RawModel, joint: Any, types: dict[str, str], path: Path) -
     if joint.type == "floating":
         model.joints.append(RawJoint(joint.name, JointType.FREE, joint.parent, joint.child, origin, IDENTITY))
         return
-    if joint.type == "spherical":  # not URDF, but written and read by some
+    if joint.type == "spherical":  # not URDF, but some programs write and read it
         model.joints.append(RawJoint(joint.name, JointType.BALL, joint.parent, joint.child, origin, IDENTITY, cone=math.pi))
         return
     if joint.type == "fixed":
@@ -358,7 +358,7 @@ def _add_joint(model: RawModel, joint: Any, types: dict[str, str], path: Path) -
             model.findings.append(
                 Finding(code="W_IMPORT_LIMITS", where=f"joints.{joint.name}", message=message, hint="Give a positive one.")
             )
-    force = 1.0 if slides else MM_PER_M  # our N·mm or N of one N·m or N
+    force = 1.0 if slides else MM_PER_M  # N·mm or N per N·m or N
     dynamics = joint.dynamics
     bounds = _range(model, joint, unit)
     model.joints.append(
@@ -393,7 +393,7 @@ def _range(model: RawModel, joint: Any, unit: float) -> tuple[float, float]:
 
 
 def _tie(joint: Any, types: dict[str, str]) -> RawTie:
-    """Return what a joint follows, in mm and rad on both sides."""
+    """Return the relation of a mimic joint, in mm and rad on both sides."""
     mimic = joint.mimic
     ratio = 1.0 if mimic.multiplier is None else mimic.multiplier
     offset = 0.0 if mimic.offset is None else mimic.offset

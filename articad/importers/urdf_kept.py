@@ -1,8 +1,8 @@
-"""What a URDF file says beyond links, joints and shapes: kept word for word, so that nothing is lost without a word.
+"""Data of a URDF file beyond links, joints and shapes: kept verbatim, so that nothing is lost without notice.
 
-`READ` lists the elements and attributes that `articad.importers.urdf` turns into fields of the assembly. Everything else, known to URDF or
-not, becomes a `Kept`: `write_urdf` puts it back where it was, and other writers report it as a loss. Attributes that have no place of
-their own in what is written (a texture, transparency) are kept without XML, so that `write_urdf` reports them too.
+`READ` lists the elements and attributes that `articad.importers.urdf` converts to fields of the assembly. Everything else, known to URDF
+or not, becomes a `Kept`: `write_urdf` writes it again at its place, and other writers report it as a loss. Attributes without a place of
+their own in the written file (a texture, transparency) are kept without XML, so that `write_urdf` reports them too.
 """
 
 from __future__ import annotations
@@ -50,16 +50,16 @@ READ: Final[Mapping[str, frozenset[str]]] = {
     "joint/dynamics": frozenset({"damping", "friction"}),
     "joint/mimic": frozenset({"joint", "multiplier", "offset"}),
 }
-"""Attributes that are read, by parent and tag; below `link` and `joint` of `<robot>` the parent is left out."""
+"""Attributes that are read, by parent and tag; for children of `link` and `joint` of `<robot>` the parent is omitted."""
 
 _VERSIONS = ("", "1.0", "1")
 
 
 def kept_elements(document: Any) -> list[Kept]:
-    """Return what a URDF document says that is not read.
+    """Return the unread data of a URDF document.
 
     Args:
-        document: The root element, as it came.
+        document: The original root element.
     """
     found: list[Kept] = []
     if document.get("version", "") not in _VERSIONS:
@@ -136,14 +136,14 @@ def _of_joint(joint: Any) -> Iterator[Kept]:
 
 
 def _attributes(element: Any, key: str, where: str) -> Iterator[Kept]:
-    """Yield the attributes that are not read; nothing puts them back, because what they stand on is written anew."""
+    """Yield the attributes that are not read; they are not written again, because their elements are written anew."""
     for name, value in element.attrib.items():
         if name not in READ.get(key, frozenset()):
             yield Kept("urdf", where, f"{name}={value!r} of <{element.tag}>")
 
 
 def _kept(element: Any, where: str) -> Kept:
-    """Return an element as it stands, without the white space after it."""
+    """Return an element verbatim, without the white space after it."""
     name = element.get("name") or element.get("reference")
     text = etree.tostring(element, encoding="unicode", with_tail=False)
     return Kept("urdf", where, f"<{str(element.tag).rpartition('}')[2]}{f' {name}' if name else ''}>", text)

@@ -1,8 +1,8 @@
-"""xacro in: a program that writes a URDF is run in a process of its own, which can read robot packages and nothing else.
+"""Reads xacro: a program that writes a URDF is run in a process of its own, which can read robot packages and nothing else.
 
-xacro's expressions are Python, whose restrictions can be evaded. So the process has no network, starts no program, opens no file for writing
-and none for reading but libraries and the packages (Landlock and seccomp, as for part scripts). Where the kernel offers no Landlock, xacro is
-not run. The process runs this module with a JSON object and prints the URDF.
+xacro's expressions are Python, whose restrictions can be evaded. So the process has no network, starts no program, opens no file for
+writing, and none for reading except libraries and the packages (Landlock and seccomp, as for part scripts). If the kernel offers no
+Landlock, xacro is not run. The process runs this module with a JSON object and prints the URDF.
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ def expanded(path: Path, root: Path | None = None) -> bytes:
     limits = launcher.Limits(seconds=SECONDS, memory=MEMORY)
     ended = launcher.run([json.dumps(order)], module="articad.importers.xacro", limits=limits)
     if ended.late or ended.code != 0:
-        why = f"it was not done after {SECONDS:g} s" if ended.late else ended.last_line
+        why = f"it did not end within {SECONDS:g} s" if ended.late else ended.last_line
         raise _error(
             path,
             f"{path}: xacro fails: {why}",
@@ -89,7 +89,7 @@ def main(arguments: list[str]) -> int:
     substitution_args._eval_find = lambda name: _find(name, order["readable"], order["file"])  # noqa: SLF001 - xacro's own looks for ROS 2
     try:
         document = xacro.process_file(order["file"])
-    except Exception as error:  # noqa: BLE001 - whatever it is, it is the file's, and one line says it
+    except Exception as error:  # noqa: BLE001 - any error is due to the file, and one line reports it
         print(f"{type(error).__name__}: {error}".replace("\n", " "), file=sys.stderr)  # noqa: T201
         return 1
     sys.stdout.write(document.toxml())

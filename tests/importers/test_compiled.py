@@ -58,7 +58,7 @@ def test_the_compiler_reads_nothing_beside_the_root(tmp_path: Path) -> None:
     path = inside / "a.xml"
     path.write_text('<mujoco><include file="../secret.xml"/></mujoco>')
     assert "secret" in [compiled_mjcf(path, tmp_path).name("BODY", index) for index in range(2)]
-    with pytest.raises(ReadError, match="MuJoCo does not take it"):
+    with pytest.raises(ReadError, match="MuJoCo refuses it"):
         compiled_mjcf(path, inside)
 
 
