@@ -1,1 +1,1 @@
-"""Audits of files that anyone made: what is wrong with them, by how much, why, and what to do about it."""
+"""Audits of files from any source: what is wrong with them, by how much, why, and what to do about it."""

@@ -1,6 +1,6 @@
-"""Parts in each other's way at rest, and parts that nothing holds; how they move is looked at in `contact_motion`.
+"""Parts that overlap at rest, and parts that nothing holds; `contact_motion` checks the motion.
 
-All measuring is that of `articad.interference`. This module chooses which shapes stand for the bodies.
+All measuring is done by `articad.interference`. This module chooses which shapes represent the bodies.
 """
 
 from __future__ import annotations
@@ -30,11 +30,11 @@ from articad.interference.verdict import judge
 from articad.interference.work import WorkBudget, look_price
 from articad.kinematics.joints import JointType
 
-FOREIGN = ("urdf", "mjcf")  # formats whose shapes stand for bodies without being them
-FOREIGN_GAP_MM = 1.0  # by which shapes of foreign files may miss each other where they are fixed: they are drawn, not made
-MOST_BODIES = 1000  # parts with shapes whose pairs are looked at
-REST_S = 30.0  # nominal seconds of work, for overlap at rest of what simulators are given: robots take a second
-MOST_UNION = 24  # shapes of one link that are united; more are taken as they are
+FOREIGN = ("urdf", "mjcf")  # formats whose shapes only approximate the bodies
+FOREIGN_GAP_MM = 1.0  # largest gap between fixed shapes of foreign files: they are drawings, not parts to make
+MOST_BODIES = 1000  # parts with shapes whose pairs are checked
+REST_S = 30.0  # nominal seconds of work, for overlap at rest of simulators' models: robots take a second
+MOST_UNION = 24  # shapes of one link that are united; more are used as they are
 ROUND = ("sphere", "capsule")
 SIMPLE = ("box", "cylinder", "sphere", "capsule", "geom")
 
@@ -51,14 +51,14 @@ def contacts(
     """Check an assembly for overlap, collision and parts that nothing holds.
 
     Args:
-        assembly: Of the file.
-        declared: What the file says of its shapes.
+        assembly: The assembly read from the file.
+        declared: The file's declarations about shapes.
         budget: Nominal seconds of work for sampling the motion.
         certified: The same for proving it instead; None samples.
-        simple: Parts that collide with simple shapes, where the file itself does not tell.
-        filtered: Pairs of parts that the file keeps from colliding.
+        simple: Parts that collide with simple shapes, if the file itself does not say so.
+        filtered: Pairs of parts that the file excludes from collision.
     """
-    foreign = declared.format in FOREIGN and all(part.solid is None for part in assembly.parts.values())  # ours come back whole
+    foreign = declared.format in FOREIGN and all(part.solid is None for part in assembly.parts.values())  # articad's own files have solids
     meshes = {name: mesh for name, part in assembly.parts.items() if (mesh := colliding(part)) is not None}
     if len(meshes) > MOST_BODIES:
         return Contacts(Checks(Findings(), (), 0.0, "rest", ()), findings=[_too_many(len(meshes))], strength="none")
@@ -80,11 +80,11 @@ def contacts(
     return found
 
 
-# ---------------------------------------------------------------------- which shapes
+# ---------------------------------------------------------------------- choice of shapes
 
 
 def colliding(part: Part) -> TriMesh | None:
-    """Return what stands for a part: its solid, else what collides, else what is drawn; shapes that overlap are united."""
+    """Return the shape that represents a part: its solid, else its collision shapes, else its visual ones; overlapping ones are united."""
     if part.solid is not None:
         return part.solid.mesh
     shapes = part.collisions or part.visuals
@@ -92,7 +92,7 @@ def colliding(part: Part) -> TriMesh | None:
 
 
 def united(meshes: list[TriMesh]) -> TriMesh:
-    """Return one mesh of what several fill together; side by side where they are no solids."""
+    """Return the union of meshes as one mesh; a plain concatenation if they are not solids."""
     bodies = [body_of(mesh) for mesh in meshes]
     if len(meshes) == 1 or len(meshes) > MOST_UNION or any(body.fault is not None for body in bodies):
         return merged(meshes)
@@ -111,12 +111,12 @@ def _simple_parts(declared: Declared) -> frozenset[str]:
 
 
 def _round(declared: Declared) -> set[str]:
-    """Return the links that are drawn with nothing but balls and capsules."""
+    """Return the links whose visual shapes are all balls and capsules."""
     return {link.name for link in declared.links if link.shapes and all(shape.kind in ROUND for shape in link.shapes)}
 
 
 def _neighbours(assembly: Assembly, meshes: Mapping[str, TriMesh]) -> frozenset[frozenset[str]]:
-    """Return the pairs of parts that one joint lies between, rigid groups taken as one body and bare carriers left out."""
+    """Return the pairs of parts with one joint between them, counting rigid groups as one body and ignoring bare carriers."""
     solid = Groups(assembly.parts)
     for joint in assembly.joints:
         carried = joint.child not in meshes or (joint.parent not in meshes and joint.parent != assembly.ground)
@@ -134,7 +134,7 @@ def _neighbours(assembly: Assembly, meshes: Mapping[str, TriMesh]) -> frozenset[
 
 
 def _at_rest(case: ContactCase, poses: Mapping[str, SE3], budget: WorkBudget) -> Checks:
-    """Check the rest pose. In simulators' formats holding is judged by what is drawn, elsewhere: see `_held`."""
+    """Check the rest pose. In simulators' formats, `_held` checks by visual shapes what holds each part."""
     if not case.foreign:
         return check_scene(case.scene, poses, ground=case.assembly.ground)
     scene, findings, pairs = case.scene, list[Finding](), list[PairCheck]()
@@ -176,12 +176,12 @@ def _unfinished(left: list[tuple[str, str]], count: int, budget: WorkBudget) -> 
 
 
 def _held(case: ContactCase, declared: Declared, poses: Mapping[str, SE3], rest: Checks) -> list[Finding]:
-    """Find parts that touch nothing, or not what they are fixed to: by everything that is drawn or collides, open meshes too."""
+    """Find parts that touch nothing, or not what they are fixed to: by all visual and collision shapes, open meshes included."""
     if not case.foreign:
-        return []  # `check_scene` has judged it
+        return []  # `check_scene` has checked it
     assembly = case.assembly
     unread = {link.name for link in declared.links if any(shape.mesh is None for shape in link.shapes)}
-    # a world is no body, and balls and capsules stand for limbs without being like them
+    # a world is not a body, and balls and capsules only represent limbs
     skipped = unread | ({assembly.ground} | case.simple if declared.format == "mjcf" else _round(declared))
     meshes = {
         name: merged([shape.placed for shape in (*part.visuals, *part.collisions)])

@@ -1,4 +1,4 @@
-"""What contact checks look at and what they found; which causes are told, and what simulators' shapes share by design."""
+"""The input and the results of contact checks; which causes are reported, and which overlaps of simulators' shapes are by design."""
 
 from __future__ import annotations
 
@@ -19,20 +19,20 @@ from articad.interference.verdict import STATIC_SHARE
 from articad.kinematics.joints import JointType
 
 MOST_DIAGNOSED = 20
-SHORTEST = 1.5  # times the depth, the shortest way out: overlaps are seldom boxes
+SHORTEST = 1.5  # times the depth: the shortest way out, because overlaps are seldom boxes
 _ENDS = re.compile(r"ends ([-+.\de]+) mm inside")
 
 
 @dataclass
 class Contacts:
-    """What was found about contact.
+    """pairs: Verdicts on every pair, at the rest pose.
 
     Attributes:
-        pairs: Of the rest pose, with every pair.
+        findings: All findings.
         findings: All of them.
         undone: What was not checked, in words.
-        strength: "sampled", "certified" or "certified in part", of the motion.
-        certificate: Of the motion, if it was to be proven.
+        strength: "sampled", "certified" or "certified in part", for the motion.
+        certificate: Certificate of the motion, if a proof was requested.
     """
 
     pairs: Checks
@@ -44,16 +44,16 @@ class Contacts:
 
 @dataclass(frozen=True, eq=False)
 class ContactCase:
-    """What is checked.
+    """The input of the checks.
 
     Attributes:
-        assembly: Of the file.
+        assembly: The assembly read from the file.
         foreign: True for URDF and MJCF.
-        simple: Parts of whose colliding shapes at least one is a box, cylinder, sphere or capsule.
+        simple: Parts with at least one box, cylinder, sphere or capsule among their collision shapes.
         filtered: Pairs that the file's own engine never lets collide.
-        scene: With the shapes that collide.
-        neighbours: Pairs that one joint lies between.
-        shared: What such pairs have in common, to be told in one note.
+        scene: The scene with the collision shapes.
+        neighbours: Pairs with one joint between them.
+        shared: Overlaps of such pairs, reported in one note.
     """
 
     assembly: Assembly
@@ -65,7 +65,7 @@ class ContactCase:
     shared: list[Finding] = field(default_factory=list)
 
     def by_design(self, parts: Sequence[str]) -> bool:
-        """True when these parts may share space in a simulator's model: neighbours of simple shapes, rigid ones, filtered ones."""
+        """True if these parts may overlap in a simulator's model: neighbours with simple shapes, rigid ones, filtered ones."""
         if not self.foreign or len(parts) != 2:
             return False
         a, b = parts
@@ -75,8 +75,8 @@ class ContactCase:
 
 
 def explained(case: ContactCase, findings: Sequence[Finding]) -> list[Finding]:
-    """Add causes; put aside what simulators' shapes share by design."""
-    measured_ones = [finding for finding in findings if finding.code != "E_MESH_OPEN"]  # `shapes` tells of open meshes
+    """Add causes; remove overlaps of simulators' shapes that are by design."""
+    measured_ones = [finding for finding in findings if finding.code != "E_MESH_OPEN"]  # `shapes` reports open meshes
     case.shared.extend(finding for finding in measured_ones if case.by_design(finding.parts))
     kept = [_by_share(case, finding) for finding in measured_ones if not case.by_design(finding.parts)]
     depths = {(finding.code, finding.parts, str(finding.pose)): finding for finding in kept}
@@ -84,17 +84,17 @@ def explained(case: ContactCase, findings: Sequence[Finding]) -> list[Finding]:
     for finding in (*diagnose(case.scene, case.assembly.mechanism.tree, kept[:MOST_DIAGNOSED]), *kept[MOST_DIAGNOSED:]):
         depth = depths.get((finding.code, finding.parts, str(finding.pose)))
         if depth is not None and _is_doubtful(case, finding, depth):
-            finding = depth  # noqa: PLW2901 - what was measured stays, the cause goes
-        # the cause names its own numbers in the message; the finding's number stays the depth that was measured
+            finding = depth  # noqa: PLW2901 - keep the measured finding, drop the cause
+        # the cause has its own numbers in the message; the finding's value stays the measured depth
         named.append(finding if depth is None else replace(finding, value=depth.value, limit=depth.limit, unit=depth.unit))
-    return [finding for finding in named if finding.code != "E_NOT_ONE_SOLID"]  # `shapes` tells of pieces, once for each file
+    return [finding for finding in named if finding.code != "E_NOT_ONE_SOLID"]  # `shapes` reports pieces, once for each file
 
 
 def _is_doubtful(case: ContactCase, finding: Finding, depth: Finding) -> bool:
-    """True where a cause that explains many machines does not explain these parts.
+    """True if a cause that is typical of machines does not explain these parts.
 
-    A pitch says something of two parts that turn on one base, each by its own joint, and nothing of limbs and chains. A part that
-    ends in another is too long only where its end is the shortest way out.
+    A pitch explains two parts that turn on one base, each by its own joint, but not limbs and chains. A part that ends in another is too
+    long only if its end is the shortest way out.
     """
     if finding.cause == "pitch":
         tree = case.assembly.mechanism.tree
@@ -106,7 +106,7 @@ def _is_doubtful(case: ContactCase, finding: Finding, depth: Finding) -> bool:
 
 
 def _by_share(case: ContactCase, finding: Finding) -> Finding:
-    """In simulators' formats let an overlap of neighbours be an error only when it is much of the smaller one."""
+    """In simulators' formats, an overlap of neighbours is an error only if it is a large share of the smaller one."""
     if not case.foreign or finding.code != "E_STATIC_OVERLAP":
         return finding
     a, b = (case.scene.bodies[name] for name in finding.parts)
@@ -117,7 +117,7 @@ def _by_share(case: ContactCase, finding: Finding) -> Finding:
 
 
 def shared_note(shared: Sequence[Finding]) -> Finding:
-    """Return one note on all pairs that may share space, and do."""
+    """Return one note on all pairs that overlap by design."""
     deepest = max(shared, key=lambda finding: finding.value or 0.0)
     return Finding(
         code="I_AUDIT_SHARED",

@@ -1,4 +1,4 @@
-"""Parts that meet while joints move: over each joint's range, with two joints at once, and where on the way contact begins."""
+"""Parts that collide while joints move: over each joint's range, with two joints at once, and the value at which contact begins."""
 
 from __future__ import annotations
 
@@ -24,19 +24,19 @@ from articad.interference.work import CLOSED, POSE, WorkBudget, look_price
 from articad.kinematics.joints import JointType
 
 STEPS = 25  # poses of a joint: every 15° of a full turn
-FEWEST_STEPS = 9  # … and so many where a pose takes long
+FEWEST_STEPS = 9  # … and this many if a pose takes long
 SIDE = 7  # poses of each of two joints
 SCAN = 24  # poses between rest and a collision, among which the first contact is looked for
 BISECTIONS = 30
-CONTACT_MM3 = 1e-6  # shared volume at which contact begins: an edge 10 mm long is then 0.3 µm deep
+CONTACT_MM3 = 1e-6  # common volume at which contact begins: an edge 10 mm long is then 0.3 µm deep
 MOTION = "E_MOTION_COLLISION"
 UNPROVEN = "E_NOT_CHECKED"
 AT_REST = ("E_OVERLAP", "E_STATIC_OVERLAP", "W_STATIC_OVERLAP")
-DEEPER = 2.0  # a pair that overlaps at rest is told of again where motion makes it so many times as deep
+DEEPER = 2.0  # a pair that overlaps at rest is reported again if motion makes the overlap deeper by this factor
 
 
 class _Quiet(Relations):
-    """Relations for motion: pairs that may share space by design are not looked at."""
+    """Relations for motion: pairs that may overlap by design are skipped."""
 
     def __init__(self, case: ContactCase) -> None:
         super().__init__(case.assembly.joints, case.assembly.waivers)
@@ -49,19 +49,19 @@ class _Together(Groups):
         self._rigid, self._case = rigid, case
 
     def together(self, a: str, b: str) -> bool:
-        """Return whether two parts are not to be looked at."""
+        """Return whether a pair is skipped."""
         return self._rigid.together(a, b) or self._case.by_design((a, b))
 
 
 def sample_motion(case: ContactCase, found: Contacts, seconds: float) -> None:
-    """Move each joint over its range, then two at a time, until so many nominal seconds of work are spent."""
+    """Move each joint over its range, then two at a time, until the nominal seconds of work are spent."""
     budget = WorkBudget(seconds)
     sweep = MotionSampler(replace(case.scene, relations=_Quiet(case)), case.assembly.mechanism, budget)
     ranges = sweep.ranges()
     guilty = {frozenset(finding.parts) for finding in found.findings}
     resting = _depths_at_rest(found)
     late: list[str] = []
-    steps = FEWEST_STEPS if case.assembly.mechanism.loop_joints else STEPS  # to close loops takes long: the first joint tells how long
+    steps = FEWEST_STEPS if case.assembly.mechanism.loop_joints else STEPS  # closing loops takes long
     for at, freedom in enumerate(ranges):
         if budget.left <= 0:
             late.append(freedom.name)
@@ -86,7 +86,7 @@ def _depths_at_rest(found: Contacts) -> dict[frozenset[str], float]:
 
 
 def _is_news(finding: Finding, resting: Mapping[frozenset[str], float], guilty: AbstractSet[frozenset[str]]) -> bool:
-    """True for what has not been told yet: of every joint which parts collide, but not once more what overlaps at rest already."""
+    """True for a new finding: which parts collide with each joint, except for pairs that already overlap at rest."""
     pair = frozenset(finding.parts)
     if pair in resting:
         return finding.code == MOTION and (finding.value or 0.0) > DEEPER * resting[pair]
@@ -101,7 +101,7 @@ def _collisions(
     resting: Mapping[frozenset[str], float],
     budget: WorkBudget,
 ) -> list[Finding]:
-    """Say where each collision begins. In simulators' formats the first one of each joint stands for the others."""
+    """Report where each collision begins. In simulators' formats, the first one of each joint represents the others."""
     met = [
         (finding, None)
         if frozenset(finding.parts) in resting or budget.left <= 0
@@ -122,7 +122,7 @@ def _collisions(
 def _pairs(
     case: ContactCase, found: Contacts, sweep: MotionSampler, ranges: list[Freedom], guilty: set[frozenset[str]], budget: WorkBudget
 ) -> int:
-    """Move two joints at a time on a grid; return how many pairs there was no time for."""
+    """Move two joints at a time on a grid; return the number of pairs left out for lack of time."""
     undone, together = 0, list[Finding]()
     for first, second in combinations(ranges, 2):
         if budget.left <= 0:
@@ -152,7 +152,7 @@ def _pairs(
 
 
 def prove_motion(case: ContactCase, found: Contacts, budget: float) -> None:
-    """Prove the motion free, or say where it is not."""
+    """Prove the motion free of collisions, or report where it is not."""
     scene = case.scene
     certificate = certify(
         scene.meshes, case.assembly.mechanism, budget=budget, deflection=scene.deflections, waivers=case.assembly.waivers, fits=scene.fits
@@ -184,7 +184,7 @@ def _together(finding: Finding, names: tuple[str, str]) -> Finding:
 def _first_contact(
     case: ContactCase, sweep: MotionSampler, freedom: Freedom, finding: Finding, budget: WorkBudget
 ) -> tuple[Finding, float | None]:
-    """Return the value at which, on the way from rest, two parts first meet; None where that cannot be said."""
+    """Return the value at which two parts first meet on the way from rest; None if it is unknown."""
     if finding.code != MOTION or finding.pose is None or freedom.name not in finding.pose:
         return finding, None
     a, b = finding.parts

@@ -1,6 +1,6 @@
-"""What a file declares, before any reader smooths it over: links with inertias and shapes as they stand, joints with their numbers.
+"""The declarations of a file, before any reader changes them: links with inertias and shapes as stated, joints with their numbers.
 
-Lengths are mm, angles rad, masses kg, as everywhere; what a file leaves out is None.
+Lengths are mm, angles rad, masses kg, as everywhere; what a file omits is None.
 """
 
 from __future__ import annotations
@@ -29,12 +29,12 @@ MOVING = ("revolute", "continuous", "prismatic", "planar", "floating", "spherica
 
 @dataclass(frozen=True, eq=False)
 class DeclaredInertial:
-    """Mass properties as declared, however impossible.
+    """Mass properties as declared, even if impossible.
 
     Attributes:
-        mass: [kg]; None where the file gives none.
+        mass: [kg]; None if the file gives none.
         com: Centre of mass in the link's frame, `(3,)` [mm].
-        inertia: About the centre, along the link's axes, `(3, 3)` [kg·mm²]; None where the file gives none.
+        inertia: About the centre, along the link's axes, `(3, 3)` [kg·mm²]; None if the file gives none.
     """
 
     mass: float | None
@@ -47,12 +47,12 @@ class DeclaredShape:
     """A shape of a link.
 
     Attributes:
-        role: What it is for.
-        kind: "box", "cylinder", "sphere", "mesh", "geom" (one of MuJoCo's) or what else the file names.
+        role: "visual", "collision" or another purpose.
+        kind: "box", "cylinder", "sphere", "mesh", "geom" (one of MuJoCo's) or another type that the file names.
         where: Place in the file.
-        mesh: In the link's frame [mm]; None where it could not be read.
-        file: Name of the mesh file as the file has it.
-        scale: Of the mesh file, metres per unit.
+        mesh: In the link's frame [mm]; None if it could not be read.
+        file: Name of the mesh file in the file.
+        scale: Scale of the mesh file, metres per unit.
         problem: Why there is no mesh: "absent", "unreadable", "format", "unsafe" or "".
         reason: The same in words.
     """
@@ -89,7 +89,7 @@ class DeclaredLink:
 
 @dataclass(frozen=True, eq=False)
 class DeclaredJoint:
-    """A joint; `lower` to `velocity` in rad, mm, N·m and N, None where the file gives none."""
+    """A joint; `lower` to `velocity` in rad, mm, N·m and N, None if the file gives none."""
 
     name: str
     where: str
@@ -110,7 +110,7 @@ class DeclaredJoint:
 
     @property
     def turns(self) -> bool:
-        """True when its coordinate is an angle."""
+        """True if its coordinate is an angle."""
         return self.type in {"revolute", "continuous"}
 
 
@@ -120,13 +120,13 @@ class Declared:
 
     Attributes:
         format: "urdf", "mjcf", "freecad", "step" or "plan".
-        name: Of the robot.
+        name: Name of the robot.
         links: In the file's order.
         joints: In the file's order.
-        states_inertia: False where the format leaves masses to others, as CAD does.
-        states_collision: False where a part's solid is what collides.
-        states_frames: True where the file itself says where its base stands and where each joint rests, as articad's own records do:
-            then neither a base above the lowest point nor a range without zero is an oversight. False of files that were only converted.
+        states_inertia: False if the format leaves masses to others, as CAD does.
+        states_collision: False if a part's solid is its collision shape.
+        states_frames: True if the file itself says where its base stands and where each joint rests, as articad's own records do: then
+            neither a base above the lowest point nor a range without zero is an oversight. False for files that were only converted.
     """
 
     format: str
@@ -172,16 +172,16 @@ class Declared:
         return frozenset(name for joint in self.joints if joint.mimics is not None for name in (joint.name, joint.mimics))
 
     def fixed_poses(self, name: str) -> dict[str, SE3]:
-        """Return where the links that are fixed to one stand, as seen from it; itself is one of them."""
+        """Return the poses of the links that are fixed to a link, in its frame, including itself."""
         return self._placed(name, self._fixed_ways)
 
     def poses(self) -> dict[str, SE3]:
-        """Return where each link stands when every joint is at zero, as seen from the first root; links that cannot be reached are left out."""
+        """Return the pose of each link with every joint at zero, in the frame of the first root; unreachable links are left out."""
         return self._placed(self.roots[0], self._ways) if self.roots else {}
 
     @cached_property
     def _ways(self) -> dict[str, list[tuple[str, SE3]]]:
-        """From each link to those that its joints carry, and where these stand."""
+        """For each link, the links that its joints carry, and their poses."""
         ways: dict[str, list[tuple[str, SE3]]] = {}
         for joint in self.joints:
             if joint.frame is not None:
@@ -190,7 +190,7 @@ class Declared:
 
     @cached_property
     def _fixed_ways(self) -> dict[str, list[tuple[str, SE3]]]:
-        """From each link to those that it is fixed to, both ways, and where these stand."""
+        """For each link, the links fixed to it, in both directions, and their poses."""
         ways: dict[str, list[tuple[str, SE3]]] = {}
         for joint in self.joints:
             if joint.type == "fixed" and joint.frame is not None and {joint.parent, joint.child} <= self.by_name.keys():
@@ -212,7 +212,7 @@ class Declared:
 def from_assembly(
     assembly: Assembly, format_name: str, *, states_inertia: bool, states_collision: bool, simple: frozenset[str] = frozenset()
 ) -> Declared:
-    """Return what an assembly declares, for formats whose readers keep everything; `simple` parts have shapes that are no meshes."""
+    """Return the declarations of an assembly, for formats whose readers keep everything; `simple` parts have shapes that are not meshes."""
     links = tuple(_link(part, "geom" if part.name in simple else "mesh") for part in assembly.parts.values())
     return Declared(format_name, assembly.name, links, tuple(_joints(assembly)), states_inertia, states_collision)
 

@@ -1,4 +1,4 @@
-"""Findings about engines that do not take a file, with their own words and the cause behind them."""
+"""Findings about engines that do not load a file, with the engine's message and the cause."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _CAUSES: Final = (
     (r"No valid root|two parents|multiple|root link", "structure", "Give the file one root link."),
     (r"mesh volume is too small|volume", "mesh_flat", "Give the mesh a thickness."),
     (r"qhull", "mesh_flat", "Give the mesh a thickness, or use a box for collision."),
-    (r"was not done after", "time", "Use fewer or smaller meshes."),
+    (r"did not finish within", "time", "Use fewer or smaller meshes."),
 )  # fmt: skip
 
 

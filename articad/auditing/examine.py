@@ -1,4 +1,4 @@
-"""The audit of one file: read it as it stands, read it as a mechanism, look at both, and ask the engines."""
+"""The audit of one file: read its text, read it as a mechanism, check both, and load it in engines."""
 
 from __future__ import annotations
 
@@ -29,9 +29,9 @@ from articad.importers.urdf import read_urdf
 from articad.runs.run import REQUEST_FILE
 from articad.simulation.loading import ENGINES, Loading, load_in_all
 
-BUDGET_S: Final = 12.0  # of sampling the motion
+BUDGET_S: Final = 12.0  # for sampling the motion
 AUDITED: Final = {".urdf": "urdf", ".xml": "mjcf", ".mjcf": "mjcf", ".fcstd": "freecad", ".step": "step", ".stp": "step"}
-"""Format that a file name's ending stands for."""
+"""Format by the extension of a file."""
 
 CHECKS: Final[tuple[Callable[[Declared], Iterator[Finding]], ...]] = (
     *structure.CHECKS,
@@ -40,19 +40,19 @@ CHECKS: Final[tuple[Callable[[Declared], Iterator[Finding]], ...]] = (
     *limits.CHECKS,
     *shapes.CHECKS,
 )
-_CAD_NAMES: Final = {"freecad", "plan", "run"}  # names of labels are free there
+_CAD_NAMES: Final = {"freecad", "plan", "run"}  # names of labels are arbitrary there
 
 
 @dataclass
 class AuditOptions:
-    """What an audit is asked to do.
+    """Options of an audit.
 
     Attributes:
-        root: Folder that meshes may be read from; by default the package that the file lies in.
-        budget: Nominal seconds of work for sampling the motion: the same work on every machine.
+        root: Folder that meshes may be read from; by default the package that contains the file.
+        budget: Nominal seconds of work for sampling the motion: the same amount on every machine.
         certified: The same for proving the motion instead of sampling it.
-        engines: Whether to ask simulators to load the file.
-        motion: Whether to look at motion at all.
+        engines: Whether to load the file in simulators.
+        motion: Whether to check the motion at all.
     """
 
     root: Path | None = None
@@ -64,7 +64,7 @@ class AuditOptions:
 
 @dataclass
 class _Found:
-    """What comes together while a file is looked at."""
+    """Results collected during an audit."""
 
     findings: list[Finding] = field(default_factory=list)
     undone: list[str] = field(default_factory=list)
@@ -79,10 +79,10 @@ def audit_file(path: str | Path, choices: AuditOptions | None = None) -> Audit:
 
     Args:
         path: The file.
-        choices: What to do; everything but proofs by default.
+        choices: Options; everything but proofs by default.
 
     Raises:
-        ReadError: If its ending is none of those, or there is no such file.
+        ReadError: If its extension is none of those, or there is no such file.
     """
     path, choices = Path(path), choices or AuditOptions()
     kind = AUDITED.get(path.suffix.lower())
@@ -99,7 +99,7 @@ def audit_file(path: str | Path, choices: AuditOptions | None = None) -> Audit:
 
 
 def audit_assembly(assembly: Assembly, file: str, kind: str, choices: AuditOptions | None = None) -> Audit:
-    """Audit an assembly that is there already: of a plan or a run."""
+    """Audit an assembly that already exists: of a plan or a run."""
     choices, start, found = choices or AuditOptions(), time.monotonic(), _Found()
     found.declared = from_assembly(assembly, kind, states_inertia=False, states_collision=False)
     found.findings += assembly.findings
@@ -108,7 +108,7 @@ def audit_assembly(assembly: Assembly, file: str, kind: str, choices: AuditOptio
 
 
 def audit_made(assembly: Assembly, folder: str | Path, choices: AuditOptions | None = None) -> Audit:
-    """Audit what a plan or a run makes; engines load the exports of the run."""
+    """Audit the assembly of a plan or a run; engines load the exports of the run."""
     is_run = (Path(folder) / REQUEST_FILE).is_file()
     found = audit_assembly(assembly, str(folder), "run" if is_run else "plan", choices)
     exports = sorted(path for path in Path(folder).glob("export/*/*") if path.suffix.lower() in AUDITED) if is_run else []
@@ -116,7 +116,7 @@ def audit_made(assembly: Assembly, folder: str | Path, choices: AuditOptions | N
 
 
 def _with_engines(found: Audit, exports: Sequence[Path]) -> Audit:
-    """Return an audit with the verdicts of engines on exports; `audit_file` says what else a reader meets in them."""
+    """Return an audit with the verdicts of engines on exports; `audit_file` checks what else concerns readers of them."""
     start, engines, findings = time.monotonic(), [*found.engines], [*found.findings]
     for path in exports:
         names = ENGINES.get(AUDITED.get(path.suffix.lower(), ""), ())
@@ -149,7 +149,7 @@ def _report(file: str, kind: str, found: _Found, start: float) -> Audit:
     )
 
 
-# ---------------------------------------------------------------------- one a format
+# ---------------------------------------------------------------------- one function per format
 
 
 def _urdf(path: Path, choices: AuditOptions, found: _Found) -> None:
@@ -205,16 +205,16 @@ _AUDITORS: Final[dict[str, Callable[[Path, AuditOptions, _Found], None]]] = {
 }
 
 
-# ---------------------------------------------------------------------- looking
+# ---------------------------------------------------------------------- checks
 
 
 def _read_and_look(found: _Found, read: Callable[[], Assembly], choices: AuditOptions, path: Path) -> None:
-    """Look at the text; look at the mechanism, if it is one."""
+    """Check the text; check the mechanism, if there is one."""
     try:
         assembly = read()
     except ArticadError as error:
         _check_text(found)
-        if not any(finding.severity == "error" for finding in found.findings):  # else the text has said why
+        if not any(finding.severity == "error" for finding in found.findings):  # otherwise a finding about the text has said why
             found.findings += error.findings or [_unreadable(path, error)]
         return
     assert found.declared is not None
@@ -243,14 +243,14 @@ def _check_text(found: _Found) -> None:
     assert found.declared is not None
     for check in CHECKS:
         if found.declared.format != "urdf" and check in structure.CHECKS:
-            continue  # other formats' readers refuse what is no mechanism
+            continue  # other formats' readers refuse what is not a mechanism
         if found.declared.format in _CAD_NAMES and check is names.awkward_names:
             continue
         found.findings += check(found.declared)
 
 
 def _carriers(declared: Declared, assembly: Assembly) -> Iterator[Finding]:
-    """Chains over bare links in URDF that stand for a joint that URDF has no word for."""
+    """Return findings about chains over bare links in URDF that represent a joint that URDF does not have."""
     if declared.format != "urdf":
         return
     for finding in assembly.findings.of("I_IMPORT_CHAIN"):
@@ -264,7 +264,7 @@ def _carriers(declared: Declared, assembly: Assembly) -> Iterator[Finding]:
 
 
 def _mask(loadings: tuple[Loading, ...]) -> tuple[frozenset[str], frozenset[frozenset[str]]]:
-    """Return what MuJoCo says of an MJCF's bodies: which collide with simple shapes, which pairs never do."""
+    """Return MuJoCo's data about an MJCF's bodies: which collide with simple shapes, which pairs never collide."""
     for loading in loadings:
         if loading.engine == "mujoco" and loading.loads:
             return frozenset(loading.simple), frozenset(map(frozenset, loading.excluded))

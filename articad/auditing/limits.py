@@ -1,4 +1,4 @@
-"""Ranges, efforts and velocities of joints: there, in order, in the right unit, and more than placeholders."""
+"""Ranges, efforts and velocities of joints: present, in order, in the right unit, and more than placeholders."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from articad.auditing.declared import Declared, DeclaredJoint
 from articad.auditing.wording import counted, listed
 from articad.findings import Finding
 
-FULL_TURN_SLACK = math.radians(0.6)  # ±3.14 is meant to be a full turn
+FULL_TURN_SLACK = math.radians(0.6)  # ±3.14 means a full turn
 DEGREES_FROM = 4 * math.pi  # rad; a range that begins there and consists of round numbers was written in degrees
 ROUND_DEGREES = 5.0
-LEAST_ALIKE = 3  # joints with the same effort or velocity before that is no chance
-BEYOND_MM = 1e5  # a slide of 100 m stands for none
+LEAST_ALIKE = 3  # joints with the same effort or velocity before that is not a coincidence
+BEYOND_MM = 1e5  # a slide of 100 m means an unlimited one
 
 
 def reversed_limits(declared: Declared) -> Iterator[Finding]:
@@ -71,7 +71,7 @@ def locked(declared: Declared) -> Iterator[Finding]:
 
 
 def in_degrees(declared: Declared) -> Iterator[Finding]:
-    """Bounds of a turn that are round numbers of degrees where radians are meant."""
+    """Bounds of a turn that are round numbers of degrees although radians are required."""
     if declared.format != "urdf":
         return
     for joint in _bounded(declared):
@@ -92,7 +92,7 @@ def in_degrees(declared: Declared) -> Iterator[Finding]:
 
 
 def endless(declared: Declared) -> Iterator[Finding]:
-    """A bounded turn of 2π or more: every direction is reached, so the bound stands for no stop that geometry could make."""
+    """A bounded turn of 2π or more: every direction is reached, so the bound is not a stop that geometry could make."""
     for joint in _bounded(declared):
         if not joint.turns or joint.name in declared.tied or _is_degrees(joint):
             continue
@@ -112,7 +112,7 @@ def endless(declared: Declared) -> Iterator[Finding]:
 
 
 def zero_outside(declared: Declared) -> Iterator[Finding]:
-    """Ranges that do not hold zero, where every reader places the joint at first; those that turn and those that slide together."""
+    """Ranges without zero, where every reader first places the joint; turning ones and sliding ones each in one finding."""
     if declared.format != "urdf" or declared.states_frames:
         return
     for turns in (True, False):
@@ -188,7 +188,7 @@ def _bounded(declared: Declared) -> Iterator[DeclaredJoint]:
 
 
 def _shown(joint: DeclaredJoint) -> tuple[float, float, str]:
-    """Return the bounds as people read them."""
+    """Return the bounds in degrees or mm."""
     lower, upper = joint.lower or 0.0, joint.upper or 0.0
     return (math.degrees(lower), math.degrees(upper), "deg") if joint.turns else (lower, upper, "mm")
 
@@ -200,7 +200,7 @@ def _is_degrees(joint: DeclaredJoint) -> bool:
 
 
 def _is_round(value: float) -> bool:
-    """True for powers of ten: what is written where nothing is known."""
+    """True for powers of ten, which are often written where nothing is known."""
     return value > 0 and math.isclose(math.log10(value), round(math.log10(value)), abs_tol=1e-9)
 
 

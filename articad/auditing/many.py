@@ -16,7 +16,7 @@ Progress = Callable[[str, str], None]
 
 
 def models_below(folder: Path) -> Iterator[Path]:
-    """Yield the URDF, MJCF, FreeCAD and STEP files below a folder; XML that is no MJCF, or that another MJCF includes, is passed over."""
+    """Yield the URDF, MJCF, FreeCAD and STEP files below a folder; XML that is not MJCF, or that another MJCF includes, is skipped."""
     files = sorted(path for path in folder.rglob("*") if path.suffix.lower() in AUDITED and path.is_file())
     included: set[Path] = set()
     mjcf: set[Path] = set()
@@ -26,7 +26,7 @@ def models_below(folder: Path) -> Iterator[Path]:
         try:
             document = read_xml(path)
         except ArticadError:
-            continue  # XML of an .xml that cannot be read may be anything
+            continue  # unreadable XML of an .xml may be anything
         if document.tag == "mujoco":
             mjcf.add(path)
             included |= {(path.parent / element.get("file", "")).resolve() for element in document.iter("include")}
@@ -36,12 +36,12 @@ def models_below(folder: Path) -> Iterator[Path]:
 
 
 def audit_folder(folder: str | Path, choices: AuditOptions | None = None, *, progress: Progress | None = None) -> Scoreboard:
-    """Audit every model below a folder; a file that defeats the auditor itself is told as such and the others go on.
+    """Audit every model below a folder; if the auditor itself fails on a file, this is reported and the others continue.
 
     Args:
-        folder: Where to look.
+        folder: The folder.
         choices: As for one file; meshes may be anywhere below the folder unless a root is given.
-        progress: Told of each file's fate.
+        progress: Called with the outcome of each file.
     """
     folder, choices = Path(folder), choices or AuditOptions()
     choices = replace(choices, root=choices.root or folder.resolve())

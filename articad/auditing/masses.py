@@ -1,4 +1,4 @@
-"""Inertias: there where something moves, possible at all, and possible for the shapes they belong to.
+"""Inertias: present where something moves, physically possible, and possible for the shapes they belong to.
 
 The bounds hold for every body whose mass lies within the convex hull of its shapes: its centre of mass is in the hull's box, and no
 principal moment exceeds m·R², with R the largest distance of a vertex from the centre.
@@ -18,11 +18,11 @@ from articad.findings import Finding
 SYMMETRY = 1e-6  # relative rounding of moments written with six digits
 ROUNDING = 1e-12  # relative; a smaller moment is zero
 TRIANGLE = 1e-3  # relative; files round their moments
-SLACK = 1.05  # of bounds from shapes, which are drawn a little smaller than what they stand for
+SLACK = 1.05  # of bounds from shapes, which are drawn a little smaller than the bodies they represent
 SLACK_MM = 1.0
 DENSEST_KG_M3 = 22_600.0  # osmium
 THINNEST_KG_M3 = 1.2  # air
-UNITS = 1e5  # times too dense or too thin: metres for millimetres are a factor of 10⁹, inches of 2·10⁷
+UNITS = 1e5  # times too dense or too thin: metres instead of millimetres are a factor of 10⁹, inches of 2·10⁷
 LEAST_SIZE_MM = 0.1
 
 
@@ -73,7 +73,7 @@ def impossible_mass(declared: Declared) -> Iterator[Finding]:
             continue
         heavy = any((_mass(declared.by_name[name]) or 0.0) > 0 for name in _group(declared, link.name) if name != link.name)
         if link.inertial.mass == 0 and (link.name not in moving or heavy):
-            continue  # zero is how some files say "none"
+            continue  # some files write zero for "none"
         yield Finding(
             code="E_AUDIT_MASS",
             where=link.where,
@@ -87,7 +87,7 @@ def impossible_mass(declared: Declared) -> Iterator[Finding]:
 
 
 def zero(declared: Declared) -> Iterator[Finding]:
-    """Inertias of nothing but zeros, told together."""
+    """Inertias of only zeros, in one finding."""
     found = [(link, mass) for link, inertial, mass in _weighed(declared) if inertial.inertia is not None and not inertial.inertia.any()]
     if found:
         names = tuple(link.name for link, _ in found)
@@ -125,7 +125,7 @@ def not_positive(declared: Declared) -> Iterator[Finding]:
 
 
 def triangle(declared: Declared) -> Iterator[Finding]:
-    """An inertia whose largest moment exceeds the sum of the others: no body has that."""
+    """An inertia whose largest moment exceeds the sum of the others, which is physically impossible."""
     for link, inertial, _ in _weighed(declared):
         assert inertial.inertia is not None
         small, middle, large = np.linalg.eigvalsh(inertial.inertia)
@@ -143,7 +143,7 @@ def triangle(declared: Declared) -> Iterator[Finding]:
 
 
 def beyond_shape(declared: Declared) -> Iterator[Finding]:
-    """An inertia larger than that of all the mass at the farthest point of the shapes; links with one and the same are told together."""
+    """An inertia larger than that of all the mass at the farthest point of the shapes; links with the same inertia in one finding."""
     alike: dict[str, list[tuple[float, float, DeclaredLink, float, float]]] = {}
     for link, inertial, mass in _weighed(declared):
         assert inertial.inertia is not None
@@ -201,7 +201,7 @@ def centre_outside(declared: Declared) -> Iterator[Finding]:
 
 
 def density(declared: Declared) -> Iterator[Finding]:
-    """A body denser than any matter, even if it filled the hull of its shapes; or thinner than air."""
+    """A body denser than any matter, even if it filled the hull of its shapes; or less dense than air."""
     for link in declared.links:
         inertial = link.inertial
         if inertial is None or not (inertial.mass or 0.0) > 0 or not _all_read(link) or _shared(declared, link.name):
@@ -230,7 +230,7 @@ def density(declared: Declared) -> Iterator[Finding]:
 
 
 def _hull_volume(link: DeclaredLink) -> float:
-    """Return the volume of the convex hull of all shapes [mm³]; 0 where they are flat."""
+    """Return the volume of the convex hull of all shapes [mm³]; 0 if they are flat."""
     from scipy.spatial import ConvexHull, QhullError  # noqa: PLC0415 - 0.2 s that only suspicious links need
 
     try:
@@ -259,7 +259,7 @@ def _group(declared: Declared, name: str) -> tuple[str, ...]:
 
 
 def _shared(declared: Declared, name: str) -> bool:
-    """True when a fixed neighbour has no mass of its own: then this link's mass may stand for both."""
+    """True if a fixed neighbour has no mass of its own: then this link's mass may include it."""
     return any(
         declared.by_name[other].shapes and _mass(declared.by_name[other]) in {None, 0.0}
         for other in _group(declared, name)
@@ -272,12 +272,12 @@ def _all_read(link: DeclaredLink) -> bool:
 
 
 def _is_thin(link: DeclaredLink) -> bool:
-    """True when the shapes are flatter than anything that is made: a sheet or a wire has a moment of nearly zero."""
+    """True if the shapes are flatter than any real part: a sheet or a wire has a moment of nearly zero."""
     return bool(len(link.points)) and float(np.ptp(link.points, axis=0).min()) < LEAST_SIZE_MM
 
 
 def _largest_volume(link: DeclaredLink) -> float | None:
-    """Return the larger of what its visual and its collision shapes fill [mm³]; None where one is no closed mesh."""
+    """Return the larger of the volumes of its visual and its collision shapes [mm³]; None if one is not a closed mesh."""
     meshes = [(shape.role, shape.mesh) for shape in link.shapes if shape.mesh is not None]
     if not meshes or any(not mesh.is_closed or mesh.volume <= 0 for _, mesh in meshes):
         return None

@@ -1,7 +1,7 @@
-"""Mend what can be mended without guessing, say what was done, and list the rest.
+"""Repairs what can be repaired without guessing, reports what was done, and lists the rest.
 
-Inertias come from closed meshes and a stated density, collision shapes from what is drawn, endless axes from their span, names from
-their own letters, the base's place from the lowest point. Masses of links without shape, limits, efforts and open meshes are left.
+Inertias come from closed meshes and a stated density, collision shapes from visual ones, endless axes from their span, names from their
+own letters, the base's position from the lowest point. Masses of links without shape, limits, efforts and open meshes are not changed.
 """
 
 from __future__ import annotations
@@ -39,13 +39,13 @@ BAD_INERTIA = ("E_AUDIT_INERTIA", "E_AUDIT_INERTIA_TRIANGLE", "W_AUDIT_INERTIA_S
 
 @dataclass
 class Mended:
-    """What was done, and what is left.
+    """What was done, and what remains.
 
     Attributes:
-        file: The mended file.
-        done: In words.
-        masses: Of links that were weighed [kg].
-        rest: Audit of the mended file.
+        file: The repaired file.
+        done: What was done, in words.
+        masses: Masses of links for which they were computed [kg].
+        rest: Audit of the repaired file.
     """
 
     file: Path
@@ -64,13 +64,13 @@ class Mended:
 
 
 def mend(path: str | Path, out: str | Path, *, density: float | None = None, choices: AuditOptions | None = None) -> Mended:
-    """Write a mended copy of a URDF file and the meshes that it needs.
+    """Write a repaired copy of a URDF file and the meshes that it needs.
 
     Args:
-        path: The file; it is left as it is.
+        path: The file; it is not modified.
         out: Folder to write to.
-        density: Of everything that has no mass [kg/m³]; without it no mass is computed.
-        choices: For the audit of the result.
+        density: Density of everything without mass [kg/m³]; without it no mass is computed.
+        choices: Options for the audit of the result.
 
     Raises:
         ReadError: If the file is not URDF.
@@ -78,11 +78,11 @@ def mend(path: str | Path, out: str | Path, *, density: float | None = None, cho
     path, out, choices = Path(path), Path(out), choices or AuditOptions()
     root = read_xml(path)
     if root.tag != "robot":
-        raise ReadError(f"{path}: --fix mends URDF, and this is <{root.tag}>; convert it first.", path=str(path))
+        raise ReadError(f"{path}: --fix repairs URDF files, but this is <{root.tag}>; convert it first.", path=str(path))
     references = MeshReferences(Folder.of(path, choices.root or package_of(path)))
     declared = UrdfText(references).declared(root, path)
-    declared = replace(declared, states_frames=any(True for _ in root.iterfind("articad")))  # as for the audit of our own files
-    beside = (out / path.name).resolve() == path.resolve()  # the original is left as it is
+    declared = replace(declared, states_frames=any(True for _ in root.iterfind("articad")))  # as for the audit of articad's own files
+    beside = (out / path.name).resolve() == path.resolve()  # the original is not modified
     mended = Mended(out / (f"{path.stem}_mended{path.suffix}" if beside else path.name))
     _Mender(root, declared, references, density, mended).run()
     files = _meshes(root, references, mended)
@@ -121,7 +121,7 @@ class _Mender:
         self.links = {element.get("name"): element for element in root.iterfind("link")}
 
     def run(self) -> None:
-        """Do all that can be done; names last, for everything else finds links by them."""
+        """Do all that can be done; names last, because everything else finds links by them."""
         self._compiler()
         self._endless()
         self._weigh()
@@ -130,7 +130,7 @@ class _Mender:
         self._name()
 
     def _compiler(self) -> None:
-        """Tell MuJoCo to keep folders in the names of meshes, as every other reader does."""
+        """Make MuJoCo keep folders in the names of meshes, as every other reader does."""
         if self.root.find("mujoco") is None:
             settings = {"strippath": "false", "discardvisual": "false", "fusestatic": "false", "balanceinertia": "false"}
             child(child(self.root, "mujoco"), "compiler", settings)
@@ -151,7 +151,7 @@ class _Mender:
             self.mended.done.append(f"made {counted(len(changed), 'joint')} continuous: {listed(changed)}")
 
     def _weigh(self) -> None:
-        """Give mass and inertia to links with closed shapes: at the stated density, or of the stated mass where only the inertia is wrong."""
+        """Give mass and inertia to links with closed shapes: from the density, or from the stated mass if only the inertia is wrong."""
         if self.density is None:
             return
         moving = {name for group in self.declared.moving_groups for name in group}
@@ -190,7 +190,7 @@ class _Mender:
         child(element, "inertia", {f"i{'xyz'[i]}{'xyz'[j]}": number(inertia[i, j]) for i in range(3) for j in range(i, 3)})
 
     def _collide(self) -> None:
-        """Let links collide with what is drawn, where that is closed."""
+        """Use visual shapes for collision, if they are closed."""
         added = []
         for finding in shapes.no_collision(self.declared):
             for name in finding.parts:
@@ -224,7 +224,7 @@ class _Mender:
             self.mended.done.append(f"put {old} {finding.value:.4g} mm above a new base link {name}")
 
     def _name(self) -> None:
-        """Give every link and joint a name that all readers take, wherever it is named."""
+        """Give every link and joint a name that all readers accept, and update all references."""
         changes: dict[str, str] = {}
         for kind in ("link", "joint"):
             names = Names()
@@ -250,7 +250,7 @@ class _Mender:
 
 
 def _body(link: DeclaredLink) -> TriMesh | None:
-    """Return what a link's shapes fill together, in its frame; None where one is not closed."""
+    """Return the union of a link's shapes, in its frame; None if one is not closed."""
     chosen = link.of("visual") or link.of("collision")
     meshes = [shape.mesh for shape in chosen]
     closed = [mesh for mesh in meshes if mesh is not None and mesh.is_closed and mesh.volume > 0]
@@ -261,13 +261,13 @@ def _body(link: DeclaredLink) -> TriMesh | None:
 
 
 def _bodies(mesh: TriMesh) -> tuple[TriMesh, ...]:
-    """Return the bodies of a mesh, so that overlaps of them count once; the mesh itself where one of its pieces is a void."""
+    """Return the bodies of a mesh, so that their overlaps count once; the mesh itself if one of its pieces is a void."""
     pieces = mesh.components()
     return pieces if all(piece.is_closed and piece.volume > 0 for piece in pieces) else (mesh,)
 
 
 def _meshes(root: Any, references: MeshReferences, mended: Mended) -> dict[str, bytes]:
-    """Return the mesh files that the document names, in a format that every simulator reads, and name them so."""
+    """Return the mesh files that the document names, in a format that every simulator reads, and update their names."""
     files: dict[str, bytes] = {}
     taken: dict[Path, str] = {}
     names, converted = Names(), []

@@ -1,4 +1,4 @@
-"""Mesh files that a file names: found or not, readable or not, each read once."""
+"""Mesh files that a file names: whether they exist and can be read; each is read once."""
 
 from __future__ import annotations
 
@@ -21,8 +21,8 @@ class MeshReferences:
     """The meshes that one file names.
 
     Attributes:
-        folder: Where they may be.
-        paths: Files that were found, by the name that the file uses.
+        folder: Confines where they may be.
+        paths: Files that were found, by the name in the file.
     """
 
     folder: Folder
@@ -34,7 +34,7 @@ class MeshReferences:
         """Return a mesh in mm, or what is wrong with it.
 
         Args:
-            name: As the file has it.
+            name: The name in the file.
             scale: Millimetres per unit of the mesh file, along its axes.
 
         Returns:

@@ -1,4 +1,4 @@
-"""Names that simulators and ROS take as they are."""
+"""Names that simulators and ROS accept as they are."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ MOST_CHARACTERS = 64  # of a robot's name: longer ones have been whole prompts
 
 
 def awkward_names(declared: Declared) -> Iterator[Finding]:
-    """Names with spaces or signs that USD prims, ROS topics and ros2_control do not take."""
+    """Names with spaces or characters that USD prims, ROS topics and ros2_control do not accept."""
     for kind, items in (("links", declared.links), ("joints", declared.joints)):
         bad = [item.name for item in items if _is_awkward(item.name)]
         if bad:

@@ -1,4 +1,4 @@
-"""The report of an audit as one static HTML page, and as lines of a terminal: most severe first."""
+"""The report of an audit as one static HTML page, and as lines for a terminal: most severe first."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def audit_page(audit: Audit) -> str:
 
 
 def scoreboard_page(board: Scoreboard) -> str:
-    """Return the page of many files: a table of all, what was found how often, then each file."""
+    """Return the page of many files: a table of all, the findings by frequency, then each file."""
     rows = "".join(
         f'<tr><td><a href="#f{index}">{escape(audit.file)}</a></td><td>{audit.format}</td><td class="n">{audit.links}</td><td class="n">{audit.joints}</td>'
         f'<td class="n error">{audit.count("error")}</td><td class="n warning">{audit.count("warning")}</td><td class="n">{audit.count("info")}</td>'

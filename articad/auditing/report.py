@@ -13,20 +13,20 @@ from articad.simulation.loading import Loading
 
 @dataclass(frozen=True)
 class Audit:
-    """What an audit found.
+    """The result of an audit.
 
     Attributes:
-        file: What was audited.
+        file: The audited file.
         format: "urdf", "mjcf", "freecad", "step", "plan" or "run".
-        name: Of the robot or product.
-        links: How many.
-        joints: How many of them move, fixed ones left out.
+        name: Name of the robot or product.
+        links: Number of links.
+        joints: Number of moving joints.
         findings: All, in order of severity.
-        engines: Which simulators load the file.
-        undone: What was not looked at, in words; none of it was asked for.
+        engines: Results of loading the file in simulators.
+        undone: What was not checked, in words.
         motion: How the motion was checked: "sampled", "certified", "certified in part" or "none".
         seconds: Time spent.
-        certificate: Of the motion, if it was to be proven.
+        certificate: Certificate of the motion, if a proof was requested.
     """
 
     file: str
@@ -80,7 +80,7 @@ class Scoreboard:
 
     @property
     def ok(self) -> bool:
-        """True when every file is."""
+        """True if every file is."""
         return all(audit.ok for audit in self.audits)
 
     @property

@@ -1,4 +1,4 @@
-"""Shapes: mesh files that are there, meshes that are solids, collision shapes where something is drawn, sizes that fit each other."""
+"""Shapes: whether mesh files exist, meshes are solids, visible links have collision shapes, and sizes are consistent."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ from articad.interference.body import Body, body_of
 from articad.interference.overlap import distance, surfaces_touch
 from articad.interference.relations import Groups
 
-APART_MM = 0.1  # pieces of one link that are farther from each other are not held together
-MOST_PIECES = 60  # of a link, beyond which a mesh is a drawing and not a body: its pieces are not compared
+APART_MM = 0.1  # pieces of one link that are farther apart are not connected
+MOST_PIECES = 60  # of a link; a mesh with more is a drawing and not a body: its pieces are not compared
 MOST_PIECE_TRIANGLES = 60_000
 FLAT_MM3 = 1e-3
-SCALE_RATIO = 50.0  # what is drawn and what collides differ so much only by another unit
-UNIT_RATIO = 100.0  # a mesh so many times larger than the rest of its robot was drawn in another unit
-LARGEST_MM = 1e5  # 100 m, of what has joints
-GROUND_MM = 1e6  # 1 km, of a floor or a landscape
+SCALE_RATIO = 50.0  # a larger ratio of visual and collision shapes means another unit
+UNIT_RATIO = 100.0  # a mesh larger than the rest of its robot by this factor was drawn in another unit
+LARGEST_MM = 1e5  # 100 m, for models with joints
+GROUND_MM = 1e6  # 1 km, for a floor or a landscape
 SMALLEST_MM = 1.0
 BELOW_MM = 1.0
 
@@ -34,7 +34,7 @@ _IDENTITY = SE3.identity()
 
 
 def unread_meshes(declared: Declared) -> Iterator[Finding]:
-    """Mesh files that are not there, lead out of the folder, or hold no mesh."""
+    """Mesh files that are missing, lead out of the folder, or contain no mesh."""
     for (problem, _), users in _by_file(declared).items():
         shape = users[0][1]
         names = tuple(dict.fromkeys(user.name for user, _ in users))
@@ -64,7 +64,7 @@ def unread_meshes(declared: Declared) -> Iterator[Finding]:
 
 
 def no_collision(declared: Declared) -> Iterator[Finding]:
-    """Links that are drawn but that nothing can touch."""
+    """Links with visual but no collision shapes."""
     if not declared.states_collision:
         return
     drawn = [link for link in declared.links if link.of("visual")]
@@ -89,7 +89,7 @@ def broken_meshes(declared: Declared) -> Iterator[Finding]:
     for link, shape in _meshes(declared):
         assert shape.mesh is not None
         if shape.kind != "mesh" or (shape.role == "visual" and link.of("collision") and not _closed(shape.mesh).is_closed):
-            continue  # of what is drawn and of what collides, the latter is judged, and may be another shape
+            continue  # if visual and collision shapes differ, the latter are checked
         users.setdefault((shape.file or shape.where, shape.scale), []).append((link, shape))
     for (name, _), rows in users.items():
         link, shape = rows[0]
@@ -154,9 +154,9 @@ def pieces(declared: Declared) -> Iterator[Finding]:
 
 
 def _apart(link: DeclaredLink, own: list[Body], fixed: list[Body], *, whole: bool) -> Finding | None:
-    """Return what is wrong with a link of several bodies; several shapes may touch, but one mesh should be one body.
+    """Return the fault of a link with several bodies; several shapes may touch, but one mesh should be one body.
 
-    What the link is fixed to may hold its bodies together.
+    Links fixed to it may hold its bodies together.
     """
     alone = len(_touching(own)) == 1
     sets = [[0]] if alone else [kept for group in _touching([*own, *fixed]) if (kept := [at for at in group if at < len(own)])]
@@ -190,7 +190,7 @@ def _apart(link: DeclaredLink, own: list[Body], fixed: list[Body], *, whole: boo
 
 
 def _touching(bodies: list[Body]) -> list[list[int]]:
-    """Return the sets of bodies that touch, directly or by others."""
+    """Return the sets of bodies that touch directly or through others."""
     names = [str(at) for at in range(len(bodies))]
     groups = Groups(names)
     for i, a in enumerate(bodies):
@@ -201,7 +201,7 @@ def _touching(bodies: list[Body]) -> list[list[int]]:
 
 
 def scale(declared: Declared) -> Iterator[Finding]:
-    """A robot beyond any size, or a mesh that does not fit the rest of its robot: another unit."""
+    """A robot of implausible size, or a mesh that does not fit the rest of its robot: another unit."""
     sizes = {link.name: min(_sizes(link)) for link in declared.links if len(link.points)}
     if not sizes:
         return
@@ -246,7 +246,7 @@ def scale(declared: Declared) -> Iterator[Finding]:
 
 
 def visual_against_collision(declared: Declared) -> Iterator[Finding]:
-    """What is drawn and what collides differ by the factor of a unit."""
+    """Visual and collision shapes that differ by the factor of a unit."""
     for link in declared.links:
         drawn, touched = (
             np.concatenate([shape.mesh.vertices for shape in link.of(role) if shape.mesh is not None] or [np.empty((0, 3))])
@@ -294,7 +294,7 @@ def base_below(declared: Declared) -> Iterator[Finding]:
 
 
 def gltf_units(declared: Declared) -> Iterator[Finding]:
-    """Meshes of glTF in millimetres: the standard is metres, and importers that follow it scale once more."""
+    """Meshes of glTF in millimetres: the standard is metres, and importers that follow it scale again."""
     files = {}
     for link, shape in _meshes(declared):
         if shape.file and shape.file.lower().endswith((".glb", ".gltf")) and math.isclose(shape.scale[0], 1e-3, rel_tol=1e-6):
@@ -314,7 +314,7 @@ def gltf_units(declared: Declared) -> Iterator[Finding]:
 
 
 def _sizes(link: DeclaredLink) -> list[float]:
-    """Return the sizes of what is drawn and of what collides [mm]; where they differ, `visual_against_collision` says so."""
+    """Return the sizes of visual and of collision shapes [mm]; if they differ, `visual_against_collision` reports it."""
     found = [[shape.mesh.vertices for shape in link.of(role) if shape.mesh is not None] for role in _ROLES]
     return [_diagonal(np.concatenate(points)) for points in found if points]
 
@@ -336,7 +336,7 @@ def _meshes(declared: Declared) -> Iterator[tuple[DeclaredLink, DeclaredShape]]:
 
 
 def _rigid_with(declared: Declared, link: DeclaredLink) -> Iterator[DeclaredLink]:
-    """Yield the links that move with this one and stand where it stands: a shape of theirs may be its."""
+    """Yield the links that are fixed to this one at the same pose: their shapes may be meant as its own."""
     yield link
     for joint in declared.joints:
         if joint.type == "fixed" and link.name in {joint.parent, joint.child}:
@@ -346,7 +346,7 @@ def _rigid_with(declared: Declared, link: DeclaredLink) -> Iterator[DeclaredLink
 
 
 def _fixed_to(declared: Declared, link: DeclaredLink) -> list[Body]:
-    """Return the solids, in the link's frame, of what it is fixed to."""
+    """Return the solids, in the link's frame, of the links to which it is fixed."""
     poses = declared.fixed_poses(link.name)
     meshes = [
         shape.mesh.transformed(T)
@@ -359,7 +359,7 @@ def _fixed_to(declared: Declared, link: DeclaredLink) -> list[Body]:
 
 
 def _solid_pieces(shapes: tuple[DeclaredShape, ...]) -> list[Body] | None:
-    """Return the solid pieces of shapes; None where they are too many, or no solids, so that nothing can be said."""
+    """Return the solid pieces of shapes; None if they are too many, or not solids, so that nothing can be concluded."""
     found: list[TriMesh] = []
     for shape in shapes:
         assert shape.mesh is not None

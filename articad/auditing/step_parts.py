@@ -1,4 +1,4 @@
-"""STEP assemblies: no joints and no masses, but parts with names and places; whether they are solids, overlap, or float."""
+"""STEP assemblies: no joints and no masses, but parts with names and poses; whether they are solids, overlap, or float."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ PLAIN_NAMES = ("", "solid", "part", "compound", "open cascade", "assembly", "sha
 
 
 def audit_step(path: Path) -> tuple[Declared, list[Finding], list[str]]:
-    """Return what a STEP file declares, what is wrong with it, and what was not looked at.
+    """Return the declarations of a STEP file, the findings about it, and what was not checked.
 
     Raises:
-        ReadError: If it is no STEP file.
+        ReadError: If it is not a STEP file.
     """
     parts = StepReader().read_assembly(path, deflection=DEFLECTION_MM)
     links = tuple(DeclaredLink(part.name, part.where, None, (DeclaredShape("visual", "mesh", part.where, part.mesh),)) for part in parts)

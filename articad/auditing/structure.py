@@ -1,4 +1,4 @@
-"""Is the file a mechanism at all: names that are there once, joints between links that exist, one root, no circle."""
+"""Whether the file is a mechanism at all: unique names, joints between existing links, one root, no cycle."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from articad.auditing.wording import counted, listed
 from articad.errors import did_you_mean
 from articad.findings import Finding
 
-MOST_GUESSES = 20  # of what a wrong name may have meant: each looks at all that there are
+MOST_GUESSES = 20  # suggestions for wrong names: each compares with all names
 
 
 def repeated_names(declared: Declared) -> Iterator[Finding]:
-    """Two links or two joints of one name."""
+    """Two links or two joints with the same name."""
     for kind, items in (("links", declared.links), ("joints", declared.joints)):
         places: dict[str, list[str]] = {}
         for item in items:
@@ -32,7 +32,7 @@ def repeated_names(declared: Declared) -> Iterator[Finding]:
 
 
 def unknown_links(declared: Declared) -> Iterator[Finding]:
-    """A joint that names a link that is not there."""
+    """A joint that names a missing link."""
     asked = 0
     for joint in declared.joints:
         for side, link in (("parent", joint.parent), ("child", joint.child)):
@@ -79,7 +79,7 @@ def carried_twice(declared: Declared) -> Iterator[Finding]:
 
 
 def roots(declared: Declared) -> Iterator[Finding]:
-    """None or several links that no joint carries."""
+    """No link, or several links, that no joint carries."""
     found = declared.roots
     if len(found) == 1 or not declared.links:
         return
@@ -101,10 +101,10 @@ def roots(declared: Declared) -> Iterator[Finding]:
 
 
 def circles(declared: Declared) -> Iterator[Finding]:
-    """Joints that go round in a circle beside a root."""
+    """Joints that form a cycle in addition to a root."""
     parents = {joint.child: joint for joint in declared.joints if joint.parent in declared.by_name}
     if not declared.roots:
-        return  # `roots` says so
+        return  # `roots` reports it
     done: set[str] = set(declared.roots)
     for start in parents:
         path: list[str] = []
@@ -127,7 +127,7 @@ def circles(declared: Declared) -> Iterator[Finding]:
 
 
 def unknown_leaders(declared: Declared) -> Iterator[Finding]:
-    """A mimic of a joint that is not there, or does not move."""
+    """A mimic of a joint that is missing, or does not move."""
     moving = {joint.name for joint in declared.joints if joint.moves}
     asked = 0
     for joint in declared.joints:

@@ -1,4 +1,4 @@
-"""URDF as it stands in the text: every link, joint and number, with the line it is on, and what cannot be read as such."""
+"""URDF as its text states it: every link, joint and number, with its line, and findings about what cannot be read."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from articad.importers.reading import MM_PER_M
 FloatArray = NDArray[np.float64]
 
 _AXES = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
-_LARGEST = 1e12  # m, kg, N: beyond it arithmetic on poses means nothing
+_LARGEST = 1e12  # m, kg, N: beyond it arithmetic on poses loses all precision
 
 
 @dataclass
@@ -31,7 +31,7 @@ class UrdfText:
 
     Attributes:
         references: Finds its meshes.
-        findings: Numbers that are none.
+        findings: Findings about invalid numbers.
     """
 
     references: MeshReferences
@@ -130,7 +130,7 @@ class UrdfText:
         return found[0] if len(found) == 1 else default
 
     def _numbers(self, element: Any, key: str, default: tuple[float, ...]) -> tuple[float, ...]:
-        """Return an attribute's numbers; what is none is a finding, and the default is taken."""
+        """Return an attribute's numbers; an invalid one is a finding, and the default is used."""
         text = element.get(key)
         if text is None:
             return default
@@ -158,7 +158,7 @@ _COUNTS = {"xyz": (3,), "rpy": (3,), "size": (3,), "scale": (1, 3), "value": (1,
 
 
 def place(element: Any) -> str:
-    """Return where an element stands: its nearest named ancestor, and the line."""
+    """Return the place of an element: its nearest named ancestor, and the line."""
     named = element
     while named is not None and named.get("name") is None:
         named = named.getparent()

@@ -1,4 +1,4 @@
-"""Words that several checks use."""
+"""Phrases that several checks use."""
 
 from __future__ import annotations
 

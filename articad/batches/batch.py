@@ -1,4 +1,4 @@
-"""Batches: many items side by side, on this machine or on a Dask cluster; a worker that dies loses its own item alone."""
+"""Batches: many items in parallel, on this machine or on a Dask cluster; a worker that dies loses only its own item."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from articad.errors import ReadError
 from articad.plan.schema import AssemblyPlan
 
 MAKE_ITEM: Final = "articad.batches.items:make_stored"
-"""What a worker calls for an item."""
+"""The function that a worker calls for an item."""
 
 
 def read_batch(path: str | Path) -> list[BatchItem]:
@@ -29,7 +29,7 @@ def read_batch(path: str | Path) -> list[BatchItem]:
     relative to the file.
 
     Raises:
-        ReadError: If it is not of the form.
+        ReadError: If it does not have the form.
     """
     file = Path(path)
     try:
@@ -77,7 +77,7 @@ def run_local(
     Args:
         items: What to make.
         out: Folder of the batch.
-        workers: How many at once.
+        workers: Number of parallel processes.
         retries: How often an item is tried again whose worker died.
         memory_gb: Data of a worker beyond which its allocations fail.
         told: Called with each record, from several threads.
@@ -119,7 +119,7 @@ def run_dask(
 
 
 def calls_of(items: Sequence[BatchItem], out: str | Path) -> list[pool.Call]:
-    """Return what workers are told of items."""
+    """Return the calls for items."""
     rows = [item.to_json() | {"plan": str(Path(item.plan).resolve())} for item in items]
     return [
         pool.Call(MAKE_ITEM, {"item": row, "out": str(Path(out).resolve())}, item.digest) for row, item in zip(rows, items, strict=True)
@@ -127,12 +127,12 @@ def calls_of(items: Sequence[BatchItem], out: str | Path) -> list[pool.Call]:
 
 
 def _with_items(items: Sequence[BatchItem], records: Sequence[Json]) -> list[Json]:
-    """Return records with what each was to be, also where none was made."""
+    """Return the records, each with its item, also for items that were not made."""
     return [item.to_json() | record for item, record in zip(items, records, strict=True)]
 
 
 def summary(records: Iterable[Json]) -> Json:
-    """Return the report `articad.batch-report/1`: how many passed, what was built and kept, and where the time went.
+    """Return the report `articad.batch-report/1`: how many passed, what was built or reused, and the time of each stage.
 
     An item that a check refuses is a result. The batch is `ok` if every item was made and at least one passed.
     """

@@ -1,7 +1,7 @@
 """Items of a batch: one assembly each, from a plan with values for its parameters to checked exports in a folder of its own.
 
-An item is known by its digest: plan, scripts, values, gates, formats and version. Its folder appears whole or not at all, so
-any number of processes may work on the same batch, a killed one leaves nothing half done, and a rerun makes nothing twice.
+An item is identified by its digest: plan, scripts, values, gates, formats and version. Its folder appears complete or not at all, so
+any number of processes may work on the same batch, a killed one leaves nothing incomplete, and a rerun makes nothing twice.
 """
 
 from __future__ import annotations
@@ -32,19 +32,19 @@ Gate = Literal["rest", "motion", "certified"]
 
 SCHEMA: Final = "articad.item/1"
 ITEM: Final = "item.json"
-STEPS: Final = 24  # poses of each driver at the gate "motion"
-BUDGET_S: Final = 60.0  # of the gate "certified"
+STEPS: Final = 24  # poses of each driver for the gate "motion"
+BUDGET_S: Final = 60.0  # for the gate "certified"
 
 
 @dataclass(frozen=True)
 class BatchItem:
-    """One assembly to be made.
+    """One assembly to make.
 
     Attributes:
         plan: Folder with `plan.json` and `parts/`.
-        values: Of its parameters, in their own units; the others are the plan's.
-        gates: What must hold for it to be exported: "rest", "motion" (sampled), "certified".
-        formats: What is written.
+        values: Values of parameters in their own units; other parameters keep the plan's values.
+        gates: Checks it must pass to be exported: "rest", "motion" (sampled), "certified".
+        formats: Formats to write.
         kernel: Builds the scripts; the plan's own by default.
     """
 
@@ -56,7 +56,7 @@ class BatchItem:
 
     @cached_property
     def digest(self) -> str:
-        """What the item is known by."""
+        """The digest that identifies the item."""
         folder = Path(self.plan)
         try:
             scripts = {file.name: file.read_text(encoding="utf-8") for file in sorted((folder / "parts").glob("*.py"))}
@@ -67,7 +67,7 @@ class BatchItem:
         return digest(key | {"formats": list(self.formats), "kernel": self.kernel, "articad": __version__})
 
     def to_json(self) -> Json:
-        """Return the item as it goes to other processes."""
+        """Return the item as JSON for other processes."""
         return {
             "plan": self.plan,
             "values": dict(self.values),
@@ -81,7 +81,7 @@ class BatchItem:
         """Read an item.
 
         Raises:
-            ReadError: If it is not of the form; says what is wrong.
+            ReadError: If it does not have the form; the message says what is wrong.
         """
         try:
             item = cls(
@@ -102,12 +102,12 @@ class BatchItem:
 
 
 def make(item: BatchItem, out: str | Path, *, cache_root: str | Path | None = None) -> Json:
-    """Make one item, unless it is there already.
+    """Make one item, unless it already exists.
 
     Args:
         item: What to make.
         out: Folder of the batch; the item's own is `<first two of its digest>/<digest>`.
-        cache_root: Keeps built parts; the user's own by default.
+        cache_root: Cache of built parts; the user's own by default.
 
     Returns:
         Its record `articad.item/1`: provenance, whether it passed, findings, files with the sha256 of each, how long each stage took,
@@ -123,7 +123,7 @@ def make(item: BatchItem, out: str | Path, *, cache_root: str | Path | None = No
 
 
 def make_stored(item: Json, out: str) -> Json:
-    """Make an item as it came from another process."""
+    """Make an item given as JSON from another process."""
     return make(BatchItem.from_json(item), out)
 
 
@@ -165,7 +165,7 @@ def _gated(item: BatchItem, assembly: Assembly) -> Findings:
 
 @cache
 def _kernel(name: str) -> PartKernel:
-    """One kernel a process: its start takes as long as ten parts."""
+    """Return the kernel; one per process, because its start takes as long as ten parts."""
     return kernel_named(name)
 
 

@@ -1,8 +1,8 @@
-"""Calls side by side: in processes of this machine, or on a Dask cluster; a process that dies loses its own call alone.
+"""Parallel calls: in processes of this machine, or on a Dask cluster; a process that dies loses only its own call.
 
-Every call runs in a worker process of ours, `articad.batches.worker`, whose memory is bounded: a Dask worker has one for each of its
-threads, so that what crashes in native code is that process and not the cluster's. A worker ends when whoever started it does, and
-when nobody has called it for minutes: a cluster keeps nothing of a batch that is done.
+Every call runs in a worker process, `articad.batches.worker`, with limited memory: a Dask worker has one for each of its threads, so that
+a crash in native code ends that process and not the cluster's. A worker ends when the process that started it does, or after minutes
+without a call: a finished batch leaves nothing on a cluster.
 """
 
 from __future__ import annotations
@@ -23,19 +23,19 @@ Json = dict[str, Any]
 Told = Callable[[Json], object]
 
 RETRIES: Final = 2  # of a call whose worker died
-_LEAVE_SECONDS: Final = 2.0  # for a worker to end once its pipe is closed
-IDLE_SECONDS: Final = 300.0  # after which a worker that is not called ends
-MEMORY_GB: Final = 4.0  # of a worker, its kernel's processes apart, which have bounds of their own
+_LEAVE_SECONDS: Final = 2.0  # for a worker to end after its pipe is closed
+IDLE_SECONDS: Final = 300.0  # after which an idle worker ends
+MEMORY_GB: Final = 4.0  # of a worker, without its kernel's processes, which have limits of their own
 
 
 @dataclass(frozen=True)
 class Call:
-    """What a worker is to do.
+    """A call for a worker.
 
     Attributes:
-        function: `module:name` of what takes the arguments and returns JSON.
+        function: `module:name` of a function that takes the arguments and returns JSON.
         arguments: JSON.
-        key: What the call is known by: the same key is the same work.
+        key: Identifies the call: the same key is the same work.
         needs_keys: Whether it calls models.
     """
 
@@ -61,7 +61,7 @@ def run_local(
 
     Args:
         calls: What to do.
-        workers: How many at once; as many as there are processors by default.
+        workers: Number of parallel processes; the number of processors by default.
         retries: How often a call is tried again whose worker died.
         memory_gb: Data of a worker beyond which its allocations fail.
         told: Called with each answer, from several threads.
@@ -144,7 +144,7 @@ def _remote(stored: Json, memory_gb: float, retries: int) -> Json:
 
 
 def _answer(future: Any) -> Json:
-    """Return a call's answer, or why there is none: a Dask worker that dies again and again, for instance."""
+    """Return a call's answer, or why there is none, for example because a Dask worker died repeatedly."""
     error = future.exception()
     if error is not None:
         return _never(future.key, f"{type(error).__name__}: {error}")
@@ -156,7 +156,7 @@ def _never(key: str, error: str) -> Json:
 
 
 class Worker:
-    """A process that answers one call after another; started when first needed, and again after it ended."""
+    """A process that answers one call after another; started at the first call, and again after it ended."""
 
     def __init__(self, memory_gb: float, *, idle: float = IDLE_SECONDS) -> None:
         self._memory, self._idle, self._has_keys = memory_gb, idle, False
@@ -169,7 +169,7 @@ class Worker:
         self._end()
 
     def tried(self, call: Call, retries: int) -> Json:
-        """Return the answer to a call, tried again as often where the process died over it."""
+        """Return the answer to a call; if the process dies, the call is tried again up to `retries` times."""
         for _ in range(1 + retries):
             answer = self._answer(call)
             if answer is not None:
@@ -184,7 +184,7 @@ class Worker:
             answer = process.stdout.readline()
         except OSError:
             answer = b""
-        if answer.endswith(b"\n"):  # else it died in the middle of its line
+        if answer.endswith(b"\n"):  # otherwise it died in the middle of its line
             return dict(json.loads(answer))
         self._end()
         return None
@@ -193,13 +193,13 @@ class Worker:
         process, self._process = self._process, None
         if process is None:
             return
-        with contextlib.suppress(OSError):  # a line that a dead worker never read
+        with contextlib.suppress(OSError):  # a line that a dead worker did not read
             process.stdin.close()
         process.wait(_LEAVE_SECONDS)
         process.close()
 
     def _running(self, call: Call) -> launcher.Child:
-        """Return the process; one that may know the user's keys only where calls need them."""
+        """Return the process; it gets the user's keys only if calls need them."""
         if self._process is not None and (self._process.ended() or call.needs_keys != self._has_keys):
             self._end()
         if self._process is None:

@@ -1,6 +1,6 @@
-"""A worker: reads a call a line, does it, answers with a line.
+"""A worker: reads one call per line, does it, answers with one line.
 
-It ends when there are no more lines, or when nobody has called it for long. Its one argument is how long [s].
+It ends when there are no more lines, or after a time without a call [s], which is its only argument.
 """
 
 from __future__ import annotations
@@ -22,8 +22,8 @@ def main() -> int:
     """Serve; return the exit code."""
     idle = float(sys.argv[1])
     answers = os.fdopen(os.dup(1), "w")
-    os.dup2(2, 1)  # whatever else is printed goes to the terminal, not between the answers
-    # A call comes when the one before is answered, so that no second line is read ahead.
+    os.dup2(2, 1)  # other output goes to the terminal, not between the answers
+    # A call comes only after the one before is answered, so no second line is buffered.
     while select.select([sys.stdin], [], [], idle)[0] and (line := sys.stdin.readline()):
         answers.write(json.dumps(_answer(json.loads(line))) + "\n")
         answers.flush()
@@ -31,7 +31,7 @@ def main() -> int:
 
 
 def _answer(stored: Json) -> Json:
-    """Return the answer to a call; an error is one, so that the next call finds a worker."""
+    """Return the answer to a call; an error is an answer too, so the worker survives for the next call."""
     module, name = stored["function"].split(":")
     function: Callable[..., Json] = getattr(importlib.import_module(module), name)
     try:

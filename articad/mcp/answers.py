@@ -1,4 +1,4 @@
-"""Answers: what a command's report says to an agent that pays for each byte, in the units of its plan."""
+"""Answers: a command's report, shortened for an agent that pays for each byte, in the units of its plan."""
 
 from __future__ import annotations
 
@@ -10,16 +10,16 @@ from typing import Any, Final
 Json = dict[str, Any]
 
 _DIGITS: Final = 6  # of a measured number
-_SHOWN: Final = 3  # places that a loss names
+_SHOWN: Final = 3  # places that are listed for a loss
 
 
 def compact(answer: Any) -> str:
-    """Return JSON without spaces, numbers with 6 digits, and nothing that is null."""
+    """Return JSON without spaces, with numbers of 6 digits and without null values."""
     return json.dumps(_spare(answer), ensure_ascii=False, separators=(",", ":"))
 
 
 def drivers(rows: Sequence[Json]) -> list[Json]:
-    """Return what drives: name, range and rest in degrees and mm; an endless joint has no range."""
+    """Return the drivers: name, range and rest value in degrees and mm; an endless joint has no range."""
     return [
         {
             "name": row["name"],
@@ -32,7 +32,7 @@ def drivers(rows: Sequence[Json]) -> list[Json]:
 
 
 def proof(report: Json) -> Json:
-    """Return what a certificate claims: how much of it, and which ranges are free where they are not the declared ones."""
+    """Return the coverage of a certificate, and the free ranges that differ from the declared ones."""
     freedoms = [freedom for joint in report.get("mechanism", {}).get("joints", ()) for freedom in joint["freedoms"]]
     turning = {freedom["name"] for freedom in freedoms if any(freedom["turn"])}
     narrower = {
@@ -49,12 +49,12 @@ def proof(report: Json) -> Json:
 
 
 def trials(report: Json) -> list[str]:
-    """Return a line for each simulator: whether it loads, stands, and what its joints reached."""
+    """Return a line for each simulator: whether it loads and stays at rest, and what its joints reached."""
     return [_trial(row) for row in report.get("engines", ())]
 
 
 def engines(report: Json) -> str:
-    """Return which simulators load the file, and in whose words others do not."""
+    """Return which simulators load the file, and the messages of the others."""
     rows = report.get("engines", ())
     loading = sorted({row["engine"] for row in rows if row.get("loads")})
     failing = [f"not in {row['engine']}: {row['message']}" for row in rows if row.get("loads") is False]
@@ -62,7 +62,7 @@ def engines(report: Json) -> str:
 
 
 def losses(rows: Sequence[Json]) -> list[str]:
-    """Return what a format cannot hold, each thing once with how often and where."""
+    """Return what a format cannot hold, each item once with its number and places."""
     grouped: dict[str, list[str]] = {}
     for row in rows:
         grouped.setdefault(row["lost"], []).append(row["where"])

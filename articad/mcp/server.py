@@ -1,4 +1,4 @@
-"""The server: fourteen tools over one folder of designs. The words of each tool are what an agent reads of it: they are kept few."""
+"""The server: fourteen tools over one folder of designs. Agents read the docstring of each tool, so it is short."""
 
 from __future__ import annotations
 
@@ -31,8 +31,8 @@ _PROMPTS: Final = Path(__file__).parents[1] / "agents" / "prompts"
 _BUILD_S: Final = 600.0
 _PART_S: Final = 180.0
 _LOOK_S: Final = 300.0
-_GRACE_S: Final = 60.0  # beyond a certificate's own budget: reading, and the claim that is under way
-_INLINED: Final = 2  # levels of types within types that a schema tells at once
+_GRACE_S: Final = 60.0  # beyond a certificate's own budget: for reading, and for the claim in progress
+_INLINED: Final = 2  # levels of nested types that a schema shows at once
 _PICTURES: Final = 4  # of one answer
 _PIXELS: Final = 512
 
@@ -41,7 +41,7 @@ Detail = Annotated[bool, Field(description="the whole report, up to 60 kB")]
 
 
 class Tools:
-    """What an agent can do; each public method is a tool, and its docstring what the agent reads of it.
+    """The tools of an agent: each public method is one, and its docstring is the description that the agent reads.
 
     Args:
         root: The folder of designs; made if it is not there.
@@ -185,7 +185,7 @@ class Tools:
         before = self._shapes(design)
         self.bench.write_plan(design, plan)
         report = await self._built(context, folder, kernel)
-        if "error" in report:  # nothing was built: the design stays what it was
+        if "error" in report:  # nothing was built: the design is unchanged
             write_atomically(folder / "plan.json", kept)
             return condensed(report, detail=False)
         after = self._shapes(design)
@@ -222,7 +222,7 @@ class Tools:
         if out.is_symlink():
             raise ReadError.at(out, f"{out.name} of {folder.name} is a link.", "Remove the link; a build makes the folder.")
         if out.exists():
-            shutil.rmtree(out)  # the design is the truth; its run is made of it
+            shutil.rmtree(out)  # the run is derived from the design
         words = ["--out", str(out), "--kernel", kernel, "--no-pictures"]
         report = await self.bench.run("build", str(folder), *words, seconds=_BUILD_S, tell=_teller(context))
         assembly, checks = report.get("assembly", {}), report.get("checks", {})
@@ -236,7 +236,7 @@ class Tools:
         }
 
     def _shapes(self, design: str) -> dict[str, str]:
-        """Return the digest of each built part's mesh and where it came from."""
+        """Return the digest of each built part's mesh and its source."""
         found = {}
         for file in sorted((self.bench.root / design / "run" / "parts").glob("*/part.json")):
             record = json.loads(self.bench.read(str(file.relative_to(self.bench.root))))
@@ -244,13 +244,13 @@ class Tools:
         return found
 
     def _shown(self, file: str) -> str:
-        """Return a file's name as the tools take it: relative to the root."""
+        """Return a file's name as the tools accept it: relative to the root."""
         path = Path(file)
         return str(path.relative_to(self.bench.root)) if path.is_absolute() and path.is_relative_to(self.bench.root) else file
 
 
 def make_server(root: str | Path) -> MCPServer:
-    """Return a server whose tools see one folder and nothing else.
+    """Return a server whose tools can access one folder only.
 
     Args:
         root: The folder of designs; made if it is not there.
@@ -264,7 +264,7 @@ def make_server(root: str | Path) -> MCPServer:
 
 
 def _told(method: Tool) -> Tool:
-    """Tell the agent in one piece what a call was refused for."""
+    """Convert the error of a refused call to one message for the agent."""
 
     @wraps(method)
     async def told(*arguments: Any, **named: Any) -> Any:
@@ -280,7 +280,7 @@ def _told(method: Tool) -> Tool:
 
 
 def _teller(context: Context) -> Tell:
-    """Report progress to the client, where it asked for it."""
+    """Return a function that reports progress to the client, if it requested it."""
 
     async def tell(seconds: float, message: str) -> None:
         await context.report_progress(seconds, None, message)
@@ -300,7 +300,7 @@ def _json_schema(topic: str) -> str:
 
 
 def _inlined(form: Any, definitions: Mapping[str, Any], depth: int) -> Any:
-    """Put the types that a form refers to in their places, so many levels deep."""
+    """Replace references to types by the types themselves, down to a number of levels."""
     if isinstance(form, list):
         return [_inlined(entry, definitions, depth) for entry in form]
     if not isinstance(form, dict):

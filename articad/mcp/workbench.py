@@ -1,4 +1,4 @@
-"""The workbench: one folder that a coding agent's designs live in, and the commands that work on them.
+"""The workbench: the folder with a coding agent's designs, and the commands that work on them.
 
 A design is a folder with `plan.json` and `parts/`; building it leaves a run directory `run/` in it, so that everything can
 be built, checked and shown again without this server. Each piece of work is a process of its own, which can be cancelled, cannot
@@ -22,11 +22,11 @@ from articad.runs.run import write_atomically
 
 Json = dict[str, Any]
 Tell = Callable[[float, str], Awaitable[None]]
-"""Told of seconds that went by, and what is going on."""
+"""Called with the elapsed seconds and the current step."""
 
 PLAN_BYTES: Final = 2_000_000  # ten times the largest example
 SCRIPT_BYTES: Final = 200_000
-BRIEF_BYTES: Final = 6_000  # of an answer, unless details are asked for: a page of text
+BRIEF_BYTES: Final = 6_000  # of an answer without details: a page of text
 FULL_BYTES: Final = 60_000
 SHOWN_FINDINGS: Final = 12
 _FILE_BYTES: Final = 2**32  # of each file that a command writes
@@ -52,7 +52,7 @@ class Workbench:
         """Return a file or folder under the root.
 
         Raises:
-            ReadError: If the name leads out of it, links followed.
+            ReadError: If the name leads out of it, also by links.
         """
         path = (self.root / name).resolve()
         if not path.is_relative_to(self.root) or "\0" in name:
@@ -63,7 +63,7 @@ class Workbench:
         """Return the content of a file under the root.
 
         Raises:
-            ReadError: If it is missing, is no file, is too large, or a link leads to it.
+            ReadError: If it is missing, is not a regular file, is too large, or a link leads to it.
         """
         try:
             return read_file(self.root / name, RECORD_BYTES, root=self.root)
@@ -74,7 +74,7 @@ class Workbench:
         """Return the folder of a design.
 
         Raises:
-            ReadError: If it is no name, or there is no such design and it is not to be `new`.
+            ReadError: If the name is not valid, or there is no such design and it is not `new`.
         """
         if not _NAME.match(name):
             raise ReadError.at(name, f"{name!r} is no name of a design.", "Use letters, digits, - and _, at most 60.")
@@ -87,10 +87,10 @@ class Workbench:
         return folder
 
     def write_plan(self, name: str, plan: Mapping[str, Any]) -> Path:
-        """Keep a plan as the current one of a design.
+        """Save a plan as the current one of a design.
 
         Raises:
-            ReadError: If it is larger than any plan.
+            ReadError: If it is too large.
         """
         content = (json.dumps(plan, indent=1, ensure_ascii=False) + "\n").encode()
         if len(content) > PLAN_BYTES:
@@ -103,7 +103,7 @@ class Workbench:
         """Replace values of a design's plan, by address.
 
         Raises:
-            ReadError: If an address leads nowhere, or the plan is no JSON; it is left as it was.
+            ReadError: If there is nothing at an address, or the plan is not JSON; it is not changed then.
         """
         try:
             self.design(name)
@@ -113,10 +113,10 @@ class Workbench:
         return self.write_plan(name, amended(plan, changes))
 
     def write_script(self, design: str, part: str, script: str, kernel: str) -> Path:
-        """Keep a part's script.
+        """Save a part's script.
 
         Raises:
-            ReadError: If it is too large, or the part's name is none.
+            ReadError: If it is too large, or the part's name is not valid.
         """
         content = script.encode()
         if len(content) > SCRIPT_BYTES:
@@ -130,7 +130,7 @@ class Workbench:
         return file
 
     def target(self, name: str) -> Path:
-        """Return what a name stands for: the run of a design if it was built, else the design, else a file under the root."""
+        """Return the path for a name: the run of a design if it was built, else the design, else a file under the root."""
         path = self.path(name)
         if is_file(path / "run" / "request.json", root=self.root):
             return path / "run"
@@ -144,9 +144,9 @@ class Workbench:
         """Run a command of `articad` and return its report.
 
         Args:
-            arguments: Its words.
-            seconds: It is ended after.
-            tell: Told from time to time that it goes on.
+            arguments: Its arguments.
+            seconds: Time after which it is killed.
+            tell: Called from time to time while it runs.
 
         Raises:
             ReadError: If it takes too long or leaves no report.
@@ -159,7 +159,7 @@ class Workbench:
         )
         try:
             ended = await self._finished(child, arguments[0], tell)
-        finally:  # cancelled: the command and all that it started; the thread that waits for it does the rest
+        finally:  # if cancelled, kill the command and all that it started; the thread that waits for it does the rest
             child.kill()
         if ended.late:
             message = f"`articad {arguments[0]}` was ended after {seconds:.0f} s."
@@ -171,7 +171,7 @@ class Workbench:
             raise ReadError.at(arguments[0], f"`articad {arguments[0]}` left no report: {last}", "Try it with fewer parts.") from error
 
     async def _finished(self, child: launcher.Child, command: str, tell: Tell | None) -> launcher.Ended:
-        """Wait in a thread for the end of a command, and tell from time to time that it goes on."""
+        """Wait in a thread for the end of a command, and report from time to time that it is running."""
         work = asyncio.ensure_future(asyncio.to_thread(child.finish))
         waited = 0.0
         while True:
@@ -184,12 +184,12 @@ class Workbench:
 
 
 def condensed(report: Json, *, detail: bool, keep: Sequence[str] = ()) -> Json:
-    """Return a report as an agent reads it: the verdict, findings first and few, then what was asked for.
+    """Return a report for an agent: the verdict, the most important findings, then what was requested.
 
     Args:
-        report: Of a command.
+        report: Report of a command.
         detail: Everything, up to 60 kB.
-        keep: Keys of the report to return also when no detail is asked for.
+        keep: Keys of the report to return also without detail.
     """
     findings = gathered(report)
     shown = [{key: finding[key] for key in _FINDING_KEYS if finding.get(key) is not None} for finding in findings]
@@ -217,7 +217,7 @@ def gathered(report: Json) -> list[Json]:
 
 
 def _fitted(answer: Json, limit: int) -> Json:
-    """Cut an answer down to a number of bytes, and say so: whole findings and whole entries go, the last first."""
+    """Shorten an answer to a number of bytes, and say so: whole findings and entries are dropped, the last ones first."""
     while len(json.dumps(answer, ensure_ascii=False).encode()) > limit:
         lists = [key for key, value in answer.items() if isinstance(value, list) and len(value) > 1]
         if lists:
@@ -233,4 +233,4 @@ def _fitted(answer: Json, limit: int) -> Json:
     return answer
 
 
-_LEAST: Final = 200  # characters of an entry that is cut
+_LEAST: Final = 200  # characters of a shortened entry

@@ -1,1 +1,1 @@
-"""Child processes: one launcher with limits, and the temporary folders that it leaves to nobody."""
+"""Child processes: one launcher with limits, and private temporary folders."""

@@ -6,8 +6,7 @@ ORDER is a JSON object:
 - `module`: the module of articad to run, with WORDS as its arguments; or null: WORDS are a program to become.
 - `environment`: the names of the variables that the program keeps. Python adds LC_CTYPE to an empty environment.
 
-`-I` keeps the working folder, PYTHONPATH and the user's own packages off the path. The articad that is imported is the one this
-file belongs to. Only the standard library is used here.
+`-I` keeps the working folder, PYTHONPATH and the user's own packages off the path. The imported articad is the one that contains this file. Only the standard library is used here.
 """
 
 from __future__ import annotations
@@ -22,7 +21,7 @@ _PR_SET_PDEATHSIG: Final = 1
 
 
 def main() -> None:
-    """Obey the order."""
+    """Carry out the order."""
     order: dict[str, Any] = json.loads(sys.argv[1])
     words = sys.argv[2:]
     _end_with(order["parent"])
@@ -37,7 +36,7 @@ def main() -> None:
 
 
 def _end_with(parent: int) -> None:
-    """Have the kernel kill this process when its parent ends; end now if that has happened already."""
+    """Ask the kernel to kill this process when its parent ends; exit now if the parent has already ended."""
     if sys.platform == "linux":
         import ctypes  # noqa: PLC0415 - other systems do not need it
 
@@ -47,7 +46,7 @@ def _end_with(parent: int) -> None:
 
 
 def _limit(limits: dict[str, int]) -> None:
-    """Set resource limits, as far as the hard ones allow."""
+    """Set resource limits, within the hard limits in force."""
     if sys.platform == "win32":
         return
     import resource  # noqa: PLC0415 - Windows has none
@@ -60,7 +59,7 @@ def _limit(limits: dict[str, int]) -> None:
 
 
 def _run(module: str, words: list[str]) -> None:
-    """Run a module of the articad that this file belongs to."""
+    """Run a module of the articad that contains this file."""
     import runpy  # noqa: PLC0415 - a program that is executed does not need it
 
     root = os.path.abspath(__file__).rsplit(os.sep, 3)[0]  # noqa: PTH100 - a start without pathlib is faster

@@ -32,9 +32,9 @@ from articad.processes import scratch
 
 PIPE: Final = subprocess.PIPE
 NOWHERE: Final = subprocess.DEVNULL
-OUTPUT: Final = 64 * 2**20  # bytes kept of what a child says, the last ones
+OUTPUT: Final = 64 * 2**20  # bytes of a child's output that are kept, the last ones
 OWN: Final = ("HOME", "XDG_CACHE_HOME", "XDG_DATA_HOME", "CONDA_PREFIX", "ARTICAD_")
-"""What articad's own commands need to find caches, memories and FreeCAD."""
+"""Variables that articad's own commands need to find caches, memories and FreeCAD."""
 SCREEN: Final = (
     "DISPLAY",
     "WAYLAND_DISPLAY",
@@ -48,22 +48,22 @@ SCREEN: Final = (
     "__GLX_",
     "VTK_",
 )
-"""What drawing with OpenGL needs."""
+"""Variables that drawing with OpenGL needs."""
 _BASIC: Final = ("PATH", "LANG", "LC_", "TZ", "LD_LIBRARY_PATH", "DYLD_LIBRARY_PATH", "OMP_", "OPENBLAS_", "SYSTEMROOT")
 _SAFE_PATH: Final = "PYTHONSAFEPATH"  # `-P` for all Python processes that inherit it
 _CHILD: Final = str(Path(__file__).with_name("child.py"))
-_LOOK_S: Final = 0.2  # between two looks whether a child has ended that closed no pipe
-_END_S: Final = 5.0  # for pipes to close once all processes of a group are killed
+_LOOK_S: Final = 0.2  # between two checks whether a child that closed no pipe has ended
+_END_S: Final = 5.0  # for pipes to close after all processes of a group are killed
 
 
 @dataclass(frozen=True)
 class Limits:
-    """What a child may use; None is no limit.
+    """Resource limits of a child; None means no limit.
 
     Attributes:
-        seconds: Wall time until it is killed with its group; its processor time is twice that on each processor, for when nobody watches.
+        seconds: Wall time until it is killed with its group; its processor time is limited to twice that on each processor, in case nothing enforces the wall time.
         memory: Private data of each of its processes [bytes].
-        file_size: Of each file that it writes [bytes].
+        file_size: Largest size of each file that it writes [bytes].
     """
 
     seconds: float | None = None
@@ -83,7 +83,7 @@ class Ended:
 
     Attributes:
         code: Its exit code; negative for a signal.
-        late: It was killed because its time was up.
+        late: Whether it was killed because its time was over.
         out: The end of what it wrote to stdout.
         err: The end of what it wrote to stderr.
     """
@@ -95,7 +95,7 @@ class Ended:
 
     @property
     def last_line(self) -> str:
-        """Its last words on stderr, or how it ended if it said none."""
+        """The last line of its stderr, or how it ended if that is empty."""
         lines = self.err.decode(errors="replace").strip().splitlines()
         return lines[-1] if lines else self.how
 
@@ -122,7 +122,7 @@ class Child:
 
     @property
     def pid(self) -> int:
-        """Its number, which is also that of its group."""
+        """Its process id, which is also that of its group."""
         return self._process.pid
 
     @property
@@ -139,13 +139,13 @@ class Child:
 
     def ended(self) -> bool:
         """Return whether it has ended by itself."""
-        if self._process.returncode is None and hasattr(os, "waitid"):  # it is not reaped: its number stays that of its group
+        if self._process.returncode is None and hasattr(os, "waitid"):  # it is not reaped, so that its id stays that of its group
             with contextlib.suppress(ChildProcessError):
                 return os.waitid(os.P_PID, self.pid, os.WEXITED | os.WNOHANG | os.WNOWAIT) is not None
         return self._process.poll() is not None
 
     def wait(self, seconds: float) -> bool:
-        """Wait for it to end by itself; return whether it did in this time."""
+        """Wait for it to end by itself; return whether it did within this time."""
         until = time.monotonic() + seconds
         while not self.ended():
             if time.monotonic() > until:
@@ -164,20 +164,20 @@ class Child:
             self._process.kill()
 
     def close(self) -> int:
-        """Kill what is left of its group, remove its folder, return its exit code."""
+        """Kill the rest of its group, remove its folder, return its exit code."""
         self.kill()
         with self._lock:
             code = self._process.wait()
         for pipe in (self._process.stdin, self._process.stdout, self._process.stderr):
             if pipe is not None and pipe not in self._held:
-                with contextlib.suppress(OSError):  # words that it never read
+                with contextlib.suppress(OSError):  # input that it did not read
                     pipe.close()
         if self._folder is not None:
             self._folder.cleanup()
         return code
 
     def finish(self) -> Ended:
-        """Read what it says until it ends or its time is up, and close it."""
+        """Read its output until it ends or its time is over, and close it."""
         pipes = [pipe for pipe in (self._process.stdout, self._process.stderr) if pipe is not None]
         texts = [bytearray() for _ in pipes]
         readers = [threading.Thread(target=_drain, args=pair, daemon=True) for pair in zip(pipes, texts, strict=True)]
@@ -193,7 +193,7 @@ class Child:
                 else:
                     reading.join(pause)
             late = not self.ended()
-            self.kill()  # what it left behind may hold its pipes
+            self.kill()  # its own children may hold its pipes open
             for reader in readers:
                 reader.join(_END_S)
             self._held = [pipe for pipe, reader in zip(pipes, readers, strict=True) if reader.is_alive()]
@@ -220,9 +220,9 @@ def start(
     Args:
         words: A program's absolute path and its arguments; with `module` the arguments alone.
         module: A module of articad to run instead of a program.
-        limits: What it may use.
+        limits: Its resource limits.
         environment: All variables that it gets, as given; by default `environment()`, with HOME and TMPDIR in its private folder.
-        folder: Where it works instead of in a private folder.
+        folder: Its working folder, instead of a private one.
         stdin: An open file, `PIPE`, `NOWHERE`, or None for that of this process.
         stdout: The same.
         stderr: The same.
@@ -273,7 +273,7 @@ def run(
         limits: See `start`.
         environment: See `start`.
         folder: See `start`.
-        merged: What it writes to stderr is part of `out`, in the order of writing.
+        merged: Whether stderr is merged into `out`, in the order of writing.
         files: See `start`.
 
     Raises:
@@ -284,7 +284,7 @@ def run(
 
 
 def environment(*more: str) -> dict[str, str]:
-    """Return the variables of this process that a child needs: language, libraries, threads, and what is named.
+    """Return the variables of this process that a child needs: language, libraries, threads, and the named ones.
 
     Args:
         more: Further variables; a name that ends with `_` stands for all that begin with it.
@@ -295,7 +295,7 @@ def environment(*more: str) -> dict[str, str]:
 
 
 def environment_with_keys() -> dict[str, str]:
-    """Return all variables of this process but Python's own, for a child that calls a model: its provider decides what they are called."""
+    """Return all variables of this process except Python's own, for a child that calls a model: providers choose the names of keys."""
     return {name: value for name, value in os.environ.items() if not name.startswith("PYTHON")}
 
 
@@ -317,11 +317,11 @@ def safe_path() -> Iterator[None]:
 
 
 def which(name: str, path: str | None = None) -> str | None:
-    """Return where a program is, searched in the absolute folders of the PATH: an empty entry would stand for the working folder.
+    """Return the path of a program, searched in the absolute folders of the PATH: an empty entry would mean the working folder.
 
     Args:
-        name: Of the program.
-        path: Instead of this process's PATH.
+        name: Name of the program.
+        path: Search path instead of this process's PATH.
     """
     folders = (os.environ.get("PATH", os.defpath) if path is None else path).split(os.pathsep)
     return shutil.which(name, path=os.pathsep.join(filter(os.path.isabs, folders)) or "/nonexistent")
@@ -333,13 +333,13 @@ def _variables(given: Mapping[str, str] | None, private: str | None, is_ours: bo
     if private is not None and (is_ours or given is None):
         variables |= {"TMPDIR": private, "HOME": variables.get("HOME", private)}
     if is_ours:
-        variables |= {_SAFE_PATH: "1", "MUJOCO_GL": "disable"}  # for what its libraries start; we draw nothing with MuJoCo
+        variables |= {_SAFE_PATH: "1", "MUJOCO_GL": "disable"}  # for processes that its libraries start; MuJoCo draws nothing here
     return variables
 
 
 def _drain(stream: IO[bytes], tail: bytearray) -> None:
-    """Read a stream to its end and keep its tail: a program may write for as long as it runs."""
-    with contextlib.suppress(OSError, ValueError):  # closed under it
+    """Read a stream to its end and keep its tail: a program may write any amount."""
+    with contextlib.suppress(OSError, ValueError):  # closed meanwhile
         while piece := os.read(stream.fileno(), 65536):
             tail += piece
             if len(tail) > OUTPUT:

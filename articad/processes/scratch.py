@@ -30,13 +30,13 @@ def folder(name: str) -> tempfile.TemporaryDirectory[str]:
     """Return a new empty folder that only this user can enter; it is removed when it is closed or collected.
 
     Args:
-        name: What it is for; the folder's own name begins with it.
+        name: Prefix of the folder's name.
     """
     return tempfile.TemporaryDirectory(prefix=f"{name}-", dir=_home())
 
 
 def sweep() -> None:
-    """Remove what killed processes of this user left behind."""
+    """Remove the folders of killed processes of this user."""
     with contextlib.suppress(OSError):  # there is no folder for temporary files, or it cannot be listed
         for place in Path(tempfile.gettempdir()).glob(f"{PREFIX}*"):
             if place not in _homes.values():
@@ -102,7 +102,7 @@ def _umask() -> int:
 
 
 def _home() -> Path:
-    """Return the folder of this process, made when it is first needed."""
+    """Return the folder of this process, made at the first call."""
     home = _homes.get(os.getpid())
     if home is None or not home.is_dir():
         sweep()

@@ -1,1 +1,1 @@
-"""Run folders: what was asked, built, checked and written; their record; plan folders made from foreign files."""
+"""Run folders: the request, the built parts, the checks and the exports of a run; plan folders made from foreign files."""

@@ -1,8 +1,9 @@
-"""A plan folder of a file that somebody else made: connectors, joints and limits in `plan.json`, shapes as scripts and as meshes.
+"""Makes a plan folder from a file that articad did not write: connectors and joints in `plan.json`, shapes as scripts and meshes.
 
-Boxes, cylinders, spheres and capsules become scripts with their sizes as dimensions; a mesh becomes a script with few facets, and stays beside
-it as an STL file for whoever draws the part anew. Parts without shape that are fixed to another become part of it. Given a kernel, each part is
-built, and what it refuses is drawn more coarsely until it does not (`articad.runs.facets`): then the folder builds at once.
+Boxes, cylinders, spheres and capsules become scripts with their sizes as dimensions. A mesh becomes a script with few facets, and is
+kept beside it as an STL file for whoever models the part again. Parts without shape that are fixed to another become part of it. With a
+kernel, each part is built, and a part that the kernel refuses is approximated more coarsely until it builds (`articad.runs.facets`), so
+that the folder builds at once.
 """
 
 from __future__ import annotations
@@ -41,8 +42,8 @@ from articad.runs.facets import LEVELS, ROUNDING_MM, one_solid
 FloatArray = NDArray[np.float64]
 Json = dict[str, Any]
 
-SAME_VOLUME: Final = 1e-3  # share by which a solid of few facets may differ from its mesh without a word
-PLACEHOLDER_MM: Final = 1.0  # radius of the ball that stands for a shape that is not there
+SAME_VOLUME: Final = 1e-3  # largest difference, as a share of the volume, between a solid of few facets and its mesh without a finding
+PLACEHOLDER_MM: Final = 1.0  # radius of the ball that replaces a missing shape
 
 _POLYHEDRON: Final = """
 
@@ -60,22 +61,23 @@ def adopt(
     cache: BuildCache | None = None,
     progress: Progress | None = None,
 ) -> tuple[Assembly, Bundle]:
-    """Make a plan folder of a URDF, MJCF, FreeCAD or STEP file; nothing is written yet.
+    """Make a plan folder from a URDF, MJCF, FreeCAD or STEP file; nothing is written yet.
 
     Args:
         source: The file.
         root: Folder that meshes may be read from; the file's own by default.
-        fuse: Make chains of joints over bare links the one joint that they stand for; see `articad.formats.read`.
-        kernel: Builds every part, so that the folder is known to build; without one nothing is built.
-        cache: Keeps what is built; by default `$ARTICAD_CACHE` or `~/.cache/articad`.
-        progress: Receives each part's fate.
+        fuse: Replace chains of joints over bare links by the one joint that they represent; see `articad.formats.read`.
+        kernel: Builds every part, to verify that the folder builds; without one nothing is built.
+        cache: Stores what is built; by default `$ARTICAD_CACHE` or `~/.cache/articad`.
+        progress: Called with the outcome of each part.
 
     Returns:
-        The assembly that the plan tells, and `plan.json`, `parts/*.py`, `meshes/*.stl`, with what could not be taken over.
+        The assembly that the plan describes, and `plan.json`, `parts/*.py`, `meshes/*.stl`, with findings about what could not be
+        converted.
 
     Raises:
-        ReadError: If the file cannot be read, or is a plan already.
-        UnrepresentableError: If a loop rests where a plan cannot let it rest.
+        ReadError: If the file cannot be read, or is already a plan.
+        UnrepresentableError: If a plan cannot express the rest pose of a loop.
     """
     path = Path(source)
     if path.suffix.lower() == ".json":
@@ -102,7 +104,7 @@ def adopt(
 
 
 def _plan_with(document: Json, drafts: Mapping[str, _Draft]) -> AssemblyPlan:
-    """Return the plan with what the drafts say of its parts."""
+    """Return the plan with the drafts' descriptions of its parts."""
     forms = [form | drafts[form["name"]].form for form in document["parts"]]
     return AssemblyPlan.from_json(document | {"parts": forms})
 
@@ -116,7 +118,7 @@ def _built(
     cache: BuildCache | None,
     progress: Progress | None,
 ) -> tuple[dict[str, _Draft], list[Finding]]:
-    """Build every part, and draft more coarsely what is refused; return the drafts and what could not be built or tried."""
+    """Build every part, and draft more coarsely what is refused; return the drafts and findings about what could not be built or tried."""
     for level in (*LEVELS, ""):
         plan = _plan_with(document, drafts)
         try:
@@ -141,7 +143,7 @@ def _built(
 
 
 def _without_frames(assembly: Assembly) -> tuple[Assembly, list[Finding]]:
-    """Return the assembly in which parts without shape, fixed to another part, are part of that one."""
+    """Return the assembly in which parts without shape that are fixed to another part are merged into that one."""
     findings: list[Finding] = []
     while True:
         found = next(_frames(assembly), None)
@@ -155,7 +157,7 @@ def _without_frames(assembly: Assembly) -> tuple[Assembly, list[Finding]]:
 
 
 def _frames(assembly: Assembly) -> Iterator[tuple[str, str, SE3, Joint]]:
-    """Yield a part without shape, the part with shape that it is fixed to, its place in that one's frame, and the joint between."""
+    """Yield a part without shape, the part with shape to which it is fixed, its pose in that one's frame, and the joint between."""
     bare = {name for name, part in assembly.parts.items() if not _shapes(part)}
     closing = {joint.name for joint in assembly.mechanism.loop_joints}
     rest = assembly.at()
@@ -224,14 +226,14 @@ def _shapes(part: Part) -> tuple[Shape, ...]:
 
 @dataclass
 class _Draft:
-    """A part's script as far as it is written.
+    """The present draft of a part's script.
 
     Attributes:
-        description: What the plan says of the part's shape.
+        description: The description of the part's shape in the plan.
         envelope: Sides of its bounding box [mm].
         dimensions: By name [mm].
         script: Its source.
-        findings: What is not as the file has it.
+        findings: Differences from the file.
     """
 
     description: str
@@ -242,16 +244,16 @@ class _Draft:
 
     @property
     def form(self) -> Json:
-        """What the plan says of the part."""
+        """The plan's entries for the part."""
         return {"dimensions": self.dimensions, "description": self.description, "envelope_mm": self.envelope}
 
 
 class _Writer:
-    """Writes one part script: with the primitives that the part has, or one solid of facets at a level of `articad.runs.facets`."""
+    """Writes one part script: with the primitives of the part, or one solid of facets at a level of `articad.runs.facets`."""
 
     def __init__(self, part: Part, name: str, source: str, level: str | None = None) -> None:
         self.part, self.name, self.level = part, name, level
-        self.source = re.sub(r"[^\w .-]", "_", source, flags=re.ASCII)  # it stands in a script
+        self.source = re.sub(r"[^\w .-]", "_", source, flags=re.ASCII)  # part of the script's text
         self.dimensions: dict[str, float] = {}
         self.words: list[str] = []
         self.terms: list[str] = []
@@ -289,7 +291,7 @@ class _Writer:
         return f'd["{base}_{key}"]'
 
     def _primitive(self, shape: Shape) -> bool:
-        """Add a box, cylinder, sphere or capsule, if the mesh is exactly that of one."""
+        """Add a box, cylinder, sphere or capsule, if the mesh is exactly one."""
         kind, sizes = recognised(shape.mesh) if shape.primitive is None else _stated(shape.primitive)
         if not kind:
             return False
@@ -312,7 +314,7 @@ class _Writer:
         return True
 
     def _facets(self, meshes: list[TriMesh]) -> None:
-        """Add a solid of few facets in the place of meshes, and say by how much it differs."""
+        """Add a solid of few facets in place of meshes, and report by how much it differs."""
         whole, found = merged(meshes), one_solid(meshes, self.level or LEVELS[0])
         if found.mesh is None:
             return
@@ -350,13 +352,13 @@ class _Writer:
 
 
 def _stated(form: Primitive) -> tuple[str, dict[str, float]]:
-    """Return what `recognised` would of the primitive's mesh; an ellipsoid has no word in a script."""
+    """Return what `recognised` would return for the primitive's mesh; scripts have no ellipsoid."""
     names = {"box": "xyz", "cylinder": ("radius", "height"), "sphere": ("radius",), "capsule": ("radius", "length")}.get(form.kind)
     return ("", {}) if names is None else (form.kind, dict(zip(names, form.size, strict=True)))
 
 
 def recognised(mesh: TriMesh) -> tuple[str, dict[str, float]]:
-    """Return what primitive a mesh is, as importers make it, and its sizes [mm]; "" for none."""
+    """Return the primitive that a mesh is, in the importers' triangulation, and its sizes [mm]; "" for none."""
     x, y, z = (float(side) for side in mesh.bounds[1] - mesh.bounds[0])
     if min(x, y, z) <= 0:
         return "", {}
@@ -378,6 +380,6 @@ def _rounded(mesh: TriMesh) -> list[list[float]]:
 
 
 def _plane(T: SE3) -> str:
-    """Return a frame as build123d writes it."""
+    """Return a frame in build123d's notation."""
     o, x, z = (tuple(float(number) + 0.0 for number in vector) for vector in (T.translation, T.x_axis, T.z_axis))
     return f"Plane(origin={o}, x_dir={x}, z_dir={z})"

@@ -1,7 +1,7 @@
-"""One closed solid of few facets in the place of meshes: what a CAD kernel can sew, at several levels of likeness.
+"""One closed solid of few facets in place of meshes, in a form that a CAD kernel can sew, at several levels of accuracy.
 
-Meshes of other people are open, cut themselves, or are heaps of loose pieces. A kernel takes none of these: it wants one closed surface that
-meets itself nowhere. The first level stays nearest to the meshes; each further one is coarser and more certain to be sewn.
+Meshes from elsewhere may be open, intersect themselves, or consist of loose pieces. A kernel accepts none of these: it requires one
+closed surface without self-intersections. The first level is the most accurate; each further one is coarser and more certain to be sewn.
 """
 
 from __future__ import annotations
@@ -22,12 +22,12 @@ __all__ = ["LEVELS", "MOST_FACETS", "OneSolid", "one_solid"]
 FloatArray = NDArray[np.float64]
 
 LEVELS: Final = ("mesh", "fine", "coarse", "pieces", "hull", "box")
-"""What a solid is made of, the most likely to do first: the meshes' surface at three finenesses, their convex pieces, hull and box."""
-MOST_FACETS: Final = 400  # of a part: the CAD kernel sews so many in a second
-FINE_FACETS: Final = 1600  # where simplifying further makes the surface cut itself
+"""What a solid is made from, the preferred one first: the meshes' surface at three resolutions, their convex pieces, hull and box."""
+MOST_FACETS: Final = 400  # of a part: the CAD kernel sews this many in a second
+FINE_FACETS: Final = 1600  # used if further simplification makes the surface intersect itself
 COARSE_FACETS: Final = 100
-CELLS: Final = 6  # along the longest side of a part: hulls of what is in each are its pieces
-OVERLAP: Final = 0.05  # of cells, as a share of their side, so that neighbours' hulls are one solid
+CELLS: Final = 6  # along the longest side of a part: the hull of the contents of each cell is a piece
+OVERLAP: Final = 0.05  # of cells, as a share of their side, so that neighbouring hulls form one solid
 ROUNDING_MM: Final = 6  # digits of a facet's corners: a millionth of a millimetre
 CRUMB: Final = 1e-4  # share of the volume below which a loose piece is left out
 BAR: Final = 5e-3  # radius of a bar between loose pieces, as a share of the part's size
@@ -35,14 +35,14 @@ LEAST_BAR_MM: Final = 0.02
 
 
 class OneSolid(NamedTuple):
-    """A solid that stands for meshes.
+    """A solid that replaces meshes.
 
     Attributes:
-        mesh: Closed, of one piece, its corners rounded to `ROUNDING_MM`; None where the meshes have no extent.
-        exact: Volume of the meshes together; 0 where one is open.
-        bars: How many loose pieces bars tie to the others.
-        crumbs: How many loose pieces are left out.
-        level: Of `LEVELS`; later than the one that was asked for where the meshes do not allow that.
+        mesh: Closed, of one piece, its corners rounded to `ROUNDING_MM`; None if the meshes have no extent.
+        exact: Total volume of the meshes; 0 if one is open.
+        bars: Number of loose pieces connected by bars.
+        crumbs: Number of loose pieces left out.
+        level: The level used, of `LEVELS`; later than the requested one if the meshes do not allow that.
     """
 
     mesh: TriMesh | None
@@ -53,7 +53,7 @@ class OneSolid(NamedTuple):
 
 
 def one_solid(meshes: Sequence[TriMesh], level: str = LEVELS[0]) -> OneSolid:
-    """Return one closed solid of few facets in the place of meshes; holes are filled where their rims are whole.
+    """Return one closed solid of few facets in place of meshes; holes are filled if their rims are complete.
 
     Args:
         meshes: In one frame [mm].
@@ -76,7 +76,7 @@ def one_solid(meshes: Sequence[TriMesh], level: str = LEVELS[0]) -> OneSolid:
     return OneSolid(None, exact)
 
 
-_SURFACE: Final = {"mesh": MOST_FACETS, "fine": FINE_FACETS, "coarse": COARSE_FACETS}  # most facets of each
+_SURFACE: Final = {"mesh": MOST_FACETS, "fine": FINE_FACETS, "coarse": COARSE_FACETS}  # largest number of facets at each
 
 
 def _is_solid(body: Any) -> bool:
@@ -84,7 +84,7 @@ def _is_solid(body: Any) -> bool:
 
 
 def _filled(mesh: TriMesh) -> TriMesh:
-    """Return a mesh with its holes filled, as far as that can be done."""
+    """Return a mesh with its holes filled as far as possible."""
     import trimesh  # noqa: PLC0415 - few meshes are open
 
     made = trimesh.Trimesh(mesh.vertices, mesh.triangles, process=True)
@@ -94,7 +94,7 @@ def _filled(mesh: TriMesh) -> TriMesh:
 
 
 def _pieces(mesh: TriMesh, body: Any) -> list[Any]:
-    """Return hulls of what cells of a grid hold: of a closed mesh its solid, of an open one its surface."""
+    """Return hulls of the contents of grid cells: for a closed mesh of its solid, for an open one of its surface."""
     low, high = mesh.vertices.min(axis=0), mesh.vertices.max(axis=0)
     cell = max(float((high - low).max()) / CELLS, LEAST_BAR_MM)
     counts = np.maximum(np.ceil((high - low) / cell - 1e-9), 1).astype(int)
@@ -114,7 +114,7 @@ def _pieces(mesh: TriMesh, body: Any) -> list[Any]:
 
 
 def _dense(mesh: TriMesh, spacing: float) -> FloatArray:
-    """Return points on a mesh no further from each other than a distance along its edges."""
+    """Return points on a mesh that are at most a given distance apart along its edges."""
     import trimesh  # noqa: PLC0415 - few meshes are open
 
     vertices, _ = trimesh.remesh.subdivide_to_size(mesh.vertices, mesh.triangles, spacing, max_iter=20)
@@ -122,7 +122,7 @@ def _dense(mesh: TriMesh, spacing: float) -> FloatArray:
 
 
 def _at_level(name: str, meshes: Sequence[TriMesh], whole: Sequence[Any]) -> Any:
-    """Return the manifold that stands for meshes at a level, None where there is none."""
+    """Return the manifold that replaces meshes at a level, None if there is none."""
     vertices = np.concatenate([mesh.vertices for mesh in meshes])
     if name in _SURFACE:
         return _coarse(_united(whole), _SURFACE[name])
@@ -141,7 +141,7 @@ def _united(bodies: Sequence[Any]) -> Any:
 
 
 def _coarse(solid: Any, most: int) -> Any:
-    """Return a solid with few facets, as near to the given one as that allows."""
+    """Return a solid with few facets, as close to the given one as that allows."""
     if solid.is_empty():
         return solid
     low, high = np.array(solid.bounding_box()).reshape(2, 3)
@@ -155,7 +155,7 @@ def _coarse(solid: Any, most: int) -> Any:
 
 
 def _joined(solid: Any) -> tuple[Any, int, int]:
-    """Return a solid of one piece: crumbs left out, loose pieces tied to the largest one by bars; and how many of both."""
+    """Return a solid of one piece: crumbs left out, loose pieces connected to the largest one by bars; and the numbers of both."""
     bodies = sorted(
         (body for body in solid.decompose() if body.volume() > 0), key=lambda body: (-body.volume(), tuple(body.bounding_box()))
     )
@@ -171,7 +171,7 @@ def _joined(solid: Any) -> tuple[Any, int, int]:
         body, corners = rest.pop(at)
         nearest = int(found[at][0].argmin())
         near, far = tree.data[found[at][1][nearest]], corners[nearest]
-        if float(found[at][0].min()) < radius / 10:  # they touch in a point or along an edge, which is no solid: push it in
+        if float(found[at][0].min()) < radius / 10:  # they touch in a point or along an edge, which is not a solid: push it in
             towards = _middle(whole) - _middle(body)
             push = radius * towards / (float(np.linalg.norm(towards)) or 1.0)
             body, far = body.translate(push.tolist()), far + push
@@ -179,13 +179,13 @@ def _joined(solid: Any) -> tuple[Any, int, int]:
     return whole, len(kept) - 1, len(bodies) - len(kept)
 
 
-_KNOB: FloatArray = np.array([  # corners of an octahedron that is parallel to nothing, so that no faces coincide
+_KNOB: FloatArray = np.array([  # corners of an octahedron in general orientation, so that no faces coincide
     [0.96, 0.11, 0.25], [-0.96, -0.11, -0.25], [-0.06, 0.98, -0.19], [0.06, -0.98, 0.19], [-0.27, 0.17, 0.95], [0.27, -0.17, -0.95],
 ])  # fmt: skip
 
 
 def _middle(body: Any) -> FloatArray:
-    """Return the middle of a body's box."""
+    """Return the centre of a body's bounding box."""
     return np.asarray(np.array(body.bounding_box()).reshape(2, 3).mean(axis=0))
 
 
@@ -194,7 +194,7 @@ def _corners(body: Any) -> FloatArray:
 
 
 def _rounded(solid: Any) -> TriMesh | None:
-    """Return a mesh whose corners are rounded and which is still one closed piece, None where rounding breaks it."""
+    """Return a mesh with rounded corners that is still one closed piece, None if rounding breaks it."""
     row = solid.to_mesh64()
     corners = np.asarray(np.round(row.vert_properties[:, :3], ROUNDING_MM) + 0.0, dtype=np.float64)
     again = manifold(TriMesh(corners, np.asarray(row.tri_verts, dtype=np.int32)))

@@ -1,4 +1,4 @@
-"""Record: what an assembly leaves in a run directory, and how it is made again from there."""
+"""Record: writes an assembly into a run directory, and restores it from there."""
 
 from __future__ import annotations
 
@@ -24,13 +24,13 @@ from articad.runs.run import Run
 
 Report = dict[str, Any]
 
-_PICTURE_PIXELS: Final = 256  # of a picture kept in a run: enough to recognise, cheap enough to draw each time
-HURRIED: Final = {"W_BUILD_UNCHECKED"}  # found where the machine was too slow: in the trace alone, or no replay would be equal
+_PICTURE_PIXELS: Final = 256  # of a picture kept in a run: enough to recognise, quick to draw
+HURRIED: Final = {"W_BUILD_UNCHECKED"}  # findings of a machine that was too slow: only in the trace, or no replay would be equal
 _KERNEL_FILES: Final = ("part.npz", "part.brep", "part.step", "part.FCStd", "seat.json")
 
 
 def record_assembly(run: Run, assembly: Assembly) -> None:
-    """Keep every part with its script, files and measures, and the assembly's report."""
+    """Save every part with its script, files and measurements, and the assembly's report."""
     for name, realised in assembly.realised.items():
         _record_part(run, assembly, name, realised)
     for stranger in sorted(set(run.part_names()) - set(assembly.parts)):
@@ -72,14 +72,14 @@ def assembly_report(assembly: Assembly) -> Report:
 
 
 def record_checks(run: Run, checks: Checks) -> None:
-    """Keep the checks, and tell the trace of each finding."""
+    """Save the checks, and write each finding into the trace."""
     run.save_checks(checks.to_json())
     for finding in checks.findings:
         run.trace_finding(finding)
 
 
 def record_pictures(run: Run, assembly: Assembly) -> None:
-    """Keep views of every part that has a script, and the motion of every joint that drives; nothing that is drawn here is a result."""
+    """Save views of every part that has a script, and the motion of every driving joint; these pictures are not results."""
     from articad.render import filmstrip, motion_gif, png, render_motion, render_part  # noqa: PLC0415 - only where pictures are drawn
 
     for name, realised in assembly.realised.items():
@@ -91,7 +91,7 @@ def record_pictures(run: Run, assembly: Assembly) -> None:
 
 
 def documents_of(run: Run) -> Documents:
-    """Return what a run knows beside its assembly, for its page; paths are those in the run."""
+    """Return a run's documents other than its assembly, for its page; paths are relative to the run."""
     exports = {name: report | {"main": Path(report["main"]).relative_to(run.path).as_posix()} for name, report in run.exports().items()}
     return Documents(
         prompt=run.prompt if run.request.options.get("task") != "build" else "",
@@ -106,12 +106,12 @@ def documents_of(run: Run) -> Documents:
 
 
 def record_page(run: Run, assembly: Assembly) -> Path:
-    """Keep the page that shows a run; return its file."""
+    """Save the HTML page of a run; return its file."""
     return run.save_page(report_page(assembly, documents_of(run)))
 
 
 def record_certificate(run: Run, certificate: Certificate) -> Report:
-    """Keep a certificate and its meshes; return its report."""
+    """Save a certificate and its meshes; return its report."""
     report = certificate.to_json()
     run.save_certificate(report, certificate.mesh_files())
     for finding in certificate.findings:
@@ -120,13 +120,13 @@ def record_certificate(run: Run, certificate: Certificate) -> Report:
 
 
 def _hurried(run: Run) -> list[Report]:
-    """Return the findings that stand in the trace alone, each once."""
+    """Return the findings that are only in the trace, each once."""
     found = {event["where"]: event for event in run.events() if event.get("event") == "finding" and event.get("code") in HURRIED}
     return [{key: value for key, value in event.items() if key not in {"t", "event"}} for event in found.values()]
 
 
 def record_export(run: Run, assembly: Assembly, format_name: str, *, strict: bool = False, **choices: Any) -> Report:
-    """Keep an export; return its report `articad.losses/1`, with the folder. For `choices` see `articad.formats.write`."""
+    """Save an export; return its report `articad.losses/1`, with the folder. For `choices` see `articad.formats.write`."""
     bundle = formats.NAMED[format_name].write(assembly, strict=strict, **choices)
     run.save_export(format_name, bundle.files, bundle.to_json())
     run.trace("artifact", kind=format_name, file=f"export/{format_name}/{bundle.main}")
@@ -134,7 +134,7 @@ def record_export(run: Run, assembly: Assembly, format_name: str, *, strict: boo
 
 
 def run_report(run: Run) -> Report:
-    """Return the report `articad.build/1` of a finished run: its assembly's, its checks' and its exports'.
+    """Return the report `articad.build/1` of a finished run, from those of its assembly, checks and exports.
 
     Raises:
         ReadError: If the run is not finished.
@@ -167,11 +167,11 @@ def run_report(run: Run) -> Report:
 
 
 def assembly_of(run: Run, *, cache: BuildCache | None = None, sandbox: Sandbox = "strict", progress: Progress | None = None) -> Assembly:
-    """Make a run's assembly again from its plan and part scripts; what the cache holds is not built again.
+    """Restore a run's assembly from its plan and part scripts; parts in the cache are not built again.
 
     Raises:
         ReadError: If the run has no plan, or not all parts.
-        ArticadError: As building does.
+        ArticadError: The errors of building.
     """
     text = run.plan_text()
     if text is None:
@@ -186,7 +186,7 @@ def assembly_of(run: Run, *, cache: BuildCache | None = None, sandbox: Sandbox =
 def _record_part(run: Run, assembly: Assembly, name: str, realised: RealisedPart) -> None:
     assert assembly.resolved is not None
     built = realised.built
-    # What depends on the machine and not on the part stands in the trace, so that a replay elsewhere compares equal.
+    # What depends on the machine and not on the part is in the trace, so that a replay elsewhere compares equal.
     run.trace("build", part=name, sandbox=built.sandbox, cached=realised.cached, derived_from=realised.derived_from)
     kernel = run.request.options.get("kernel", assembly.resolved.plan.kernel)
     record: Report = {"kernel": kernel, "editable": realised.derived_from is None, "shape": _shape_json(built.solid)}
@@ -219,7 +219,7 @@ def _shape_json(solid: Solid) -> Report:
 
 
 def _connector_json(realised: Connector, planned: Connector) -> Report:
-    """Where the script has a connector, and how far that is from the plan's."""
+    """Return a connector of the script, and its distance from the plan's."""
     frame, drift = realised.frame, planned.drift(realised.frame)
     return {
         "o": frame.translation.tolist(),
@@ -230,5 +230,5 @@ def _connector_json(realised: Connector, planned: Connector) -> Report:
 
 
 def _finite(bound: float) -> float | None:
-    """A bound that JSON can hold; None where there is none."""
+    """Return a bound that JSON can represent; None if there is none."""
     return bound if abs(bound) < float("inf") else None

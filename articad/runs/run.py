@@ -1,9 +1,8 @@
-"""Run: the directory that holds everything one run was asked, was told and has made.
+"""Run: the directory with the request, the replies and the results of one run.
 
-Only this module knows the names of its files. Every file is written beside itself and renamed, so that a
-killed process leaves whole files only; a file that exists is finished work, and a run that is opened again
-goes on from there. Times stand in `trace.jsonl` and nowhere else, so that two runs of the same replies are equal
-byte for byte. Form: `docs/reference/run.md`.
+Only this module knows the names of its files. Every file is written beside its destination and renamed, so that a killed process leaves
+complete files only; a file that exists is finished work, and a run that is opened again continues from there. Times are in `trace.jsonl`
+and nowhere else, so that two runs with the same replies are equal byte for byte. Form: `docs/reference/run.md`.
 """
 
 from __future__ import annotations
@@ -31,7 +30,7 @@ from articad.findings import Finding
 
 try:
     import fcntl
-except ImportError:  # pragma: no cover - Windows has no flock: two processes in one run are not refused there
+except ImportError:  # pragma: no cover - Windows has no flock: a second process is not refused there
     fcntl = None  # type: ignore[assignment]
 
 Event = Literal["stage", "call", "build", "finding", "artifact", "note"]
@@ -42,7 +41,7 @@ PART_SCHEMA: Final = "articad.part/1"
 DEFAULT_ROOT: Final = Path("runs")
 
 REQUEST_FILE: Final = "request.json"
-"""File that makes a folder a run."""
+"""The file that makes a folder a run."""
 
 _REQUIREMENTS, _PLAN, _ASSEMBLY, _CHECKS, _TRACE = (
     "requirements.json",
@@ -68,18 +67,18 @@ _RECALLED = "recalled"
 _BASE, _EDIT, _REVIEW = "base.json", "edit.json", "review.json"
 _VIEWS, _MOTION, _PAGE = "views", "motion", "report.html"
 _CERTIFICATE, _CERTIFIED = "certificate.json", "certificate"
-_PROBE = ".probe.tmp-00000000"  # a name that a run sweeps away
+_PROBE = ".probe.tmp-00000000"  # a name that a run removes when it is opened
 _TEMPORARY = re.compile(r"\..+\.tmp-[0-9a-f]{8}$")
 
 _IMAGE_FILE = re.compile(rf"{_IMAGES}/[0-9]{{1,6}}\.(png|jpg|gif|webp)")
 _SLUG_LENGTH = 40  # characters of the prompt in a run's name: enough to recognise it in a listing
-_NAME_TRIES = 20  # random names to try before giving up; two equal ones are a 1 in 65536 chance
-_IMAGE_LIMIT = 20 * 2**20  # bytes; no provider takes larger ones
+_NAME_TRIES = 20  # random names to try before giving up; two equal ones have a chance of 1 in 65536
+_IMAGE_LIMIT = 20 * 2**20  # bytes; no provider accepts larger ones
 _IMAGE_KINDS = {b"\x89PNG\r\n\x1a\n": ("image/png", "png"), b"\xff\xd8\xff": ("image/jpeg", "jpg"), b"GIF8": ("image/gif", "gif")}
 
 
 def canonical_json(value: object) -> bytes:
-    """Return the one spelling of a JSON value that digests are taken of: sorted keys, no spaces, `repr` floats."""
+    """Return the canonical form of a JSON value, from which digests are computed: sorted keys, no spaces, `repr` floats."""
     return json.dumps(value, sort_keys=True, separators=(",", ":"), ensure_ascii=False, allow_nan=False).encode()
 
 
@@ -90,7 +89,7 @@ def digest(value: object) -> str:
 
 @dataclass(frozen=True)
 class UserImage:
-    """A picture that the user gave: its bytes, as they are, and the part it belongs to, if to one only."""
+    """A picture from the user: its unmodified bytes, and the part it belongs to, if only to one."""
 
     content: bytes = field(repr=False)
     media_type: str
@@ -102,7 +101,7 @@ class UserImage:
         """Read a PNG, JPEG, GIF or WebP picture.
 
         Raises:
-            ReadError: If it cannot be read, is none of these, or is larger than 20 MiB.
+            ReadError: If it cannot be read, is not of these formats, or is larger than 20 MiB.
         """
         name = "an image" if isinstance(source, bytes) else str(source)
         try:
@@ -126,12 +125,12 @@ class UserImage:
 
 @dataclass(frozen=True, kw_only=True)
 class RunRequest:
-    """What a run was asked for.
+    """The request of a run.
 
     Attributes:
         prompt: The user's words.
         images: The user's pictures, in order.
-        options: Choices that decide what is made, JSON values by name. No model, address or time stands here.
+        options: Choices that determine the result, JSON values by name, without models, addresses or times.
     """
 
     prompt: str
@@ -147,18 +146,18 @@ class RunRequest:
         return {"schema": REQUEST_SCHEMA, "prompt": self.prompt, "images": images, "options": dict(self.options), "articad": version}
 
     def same_as(self, other: RunRequest) -> bool:
-        """Whether both ask for the same, whatever the version of articad."""
+        """Whether both requests are equal, whatever the version of articad."""
         return self.to_json("") == other.to_json("")
 
 
 class Run:
-    """A run directory, opened for writing by one process at a time, or viewed by any number.
+    """A run directory, opened for writing by one process at a time, or for reading by any number.
 
     Use `create`, `open` or `view`. As a context manager it releases its lock at the end.
 
     Attributes:
         path: The directory.
-        request: What was asked for.
+        request: The request.
     """
 
     def __init__(self, path: Path, request: RunRequest, lock: int | None) -> None:
@@ -174,12 +173,12 @@ class Run:
         """Make a new run directory.
 
         Args:
-            request: What is asked for.
+            request: The request.
             out: The directory, new or empty; by default `runs/<date>-<words of the prompt>-<4 hex digits>`.
             version: Version of articad to record; this one's by default.
 
         Raises:
-            RunError: If the directory holds something already.
+            RunError: If the directory is not empty.
             WriteError: If it cannot be written.
         """
         path = _new_directory(request.prompt) if out is None else Path(out)
@@ -198,10 +197,10 @@ class Run:
 
     @classmethod
     def open(cls, path: str | Path) -> Self:
-        """Open a run to go on with it; what a killed process left half-written is swept away.
+        """Open a run to continue it; incomplete files of a killed process are removed.
 
         Raises:
-            RunError: If it is not a run, holds what no run does, or another process works in it.
+            RunError: If it is not a run, contains anything foreign to runs, or another process works in it.
         """
         path = Path(path)
         _require_plain(path)
@@ -216,16 +215,16 @@ class Run:
 
     @classmethod
     def view(cls, path: str | Path) -> Self:
-        """Open a run to read it only; any number of processes may.
+        """Open a run for reading only; any number of processes may.
 
         Raises:
-            RunError: If it is not a run, or holds what no run does.
+            RunError: If it is not a run, or contains anything foreign to runs.
         """
         _require_plain(Path(path))
         return cls(Path(path), _read_request(Path(path)), None)
 
     def close(self) -> None:
-        """Let other processes write; nothing can be written through this object any more."""
+        """Release the lock; nothing can be written through this object any more."""
         if self._lock is not None:
             os.close(self._lock)
             self._lock = None
@@ -239,7 +238,7 @@ class Run:
     def __repr__(self) -> str:
         return f"<Run {self.path}>"
 
-    # ------------------------------------------------------------------ what was asked and told
+    # ------------------------------------------------------------------ requests and replies
 
     @property
     def prompt(self) -> str:
@@ -252,11 +251,11 @@ class Run:
         return str((self._read_json(REQUEST_FILE) or {}).get("articad", ""))
 
     def requirements(self) -> Json | None:
-        """Return what was understood of the request, or None."""
+        """Return the analysis of the request, or None."""
         return self._read_json(_REQUIREMENTS)
 
     def save_requirements(self, requirements: Json) -> None:
-        """Keep what was understood of the request."""
+        """Save the analysis of the request."""
         self._write_json(_REQUIREMENTS, requirements)
 
     def alternatives(self) -> Json | None:
@@ -264,15 +263,15 @@ class Run:
         return self._read_json(_ALTERNATIVES)
 
     def save_alternatives(self, report: Json) -> None:
-        """Keep what an open request could have become, and what was chosen."""
+        """Save the alternatives for an open request, and the choice."""
         self._write_json(_ALTERNATIVES, report)
 
     def recalled(self, label: str) -> Json | None:
-        """Return what was retrieved for a request from memory or documentation, or None."""
+        """Return the text that was retrieved for a request from memory or documentation, or None."""
         return self._read_json(f"{_RECALLED}/{label}.json")
 
     def save_recalled(self, label: str, retrieved: Json) -> None:
-        """Keep what was retrieved for a request: it is part of what was asked."""
+        """Save the text that was retrieved for a request: it is part of the prompt."""
         self._write_json(f"{_RECALLED}/{label}.json", retrieved)
 
     def reply(self, step: str) -> Json | None:
@@ -284,18 +283,18 @@ class Run:
         return tuple(sorted(file.stem.replace(".", "/") for file in (self.path / _REPLIES).glob("*.json")))
 
     def save_reply(self, step: str, record: Json) -> None:
-        """Keep a reply; one to another question at the same step is put aside, not lost."""
+        """Save a reply; an earlier one to a different request at the same step is moved aside, not lost."""
         old = self.reply(step)
         if old is not None and old != record:
             self._write_json(f"{_SUPERSEDED}/{Path(_reply_file(step)).stem}.{old['key'][:8]}.json", old)
         self._write_json(_reply_file(step), record)
 
     def base(self) -> Json | None:
-        """Return what an edit began with, `articad.base/1`, or None."""
+        """Return the base of an edit, `articad.base/1`, or None."""
         return self._read_json(_BASE)
 
     def save_base(self, base: Json) -> None:
-        """Keep what an edit begins with: with it the run needs no other one."""
+        """Save the base of an edit, so that the run does not depend on another one."""
         self._write_json(_BASE, base)
 
     # ------------------------------------------------------------------ the plan
@@ -306,7 +305,7 @@ class Run:
         return None if content is None else content.decode()
 
     def save_plan(self, text: str, version: int) -> None:
-        """Keep a version of the plan, counted from 0, and make it the current one."""
+        """Save a version of the plan, counted from 0, and make it the current one."""
         self._write(f"{_PLANS}/{version}.json", text.encode())
         self._write(_PLAN, text.encode())
 
@@ -325,7 +324,7 @@ class Run:
         return tuple(sorted(file.parent.name for file in (self.path / _PARTS).glob(f"*/{_PART}")))
 
     def part_files(self, name: str) -> dict[str, str]:
-        """Return the sha256 of each file of a part by its name, pictures left out."""
+        """Return the sha256 of each file of a part by its name, except for pictures."""
         return {file.name: self._sha256(file) for file in sorted((self.path / _PARTS / name).iterdir()) if file.is_file()}
 
     def save_part(
@@ -339,14 +338,14 @@ class Run:
         stl: bytes | None = None,
         files: Mapping[str, Path] | None = None,
     ) -> None:
-        """Keep a built part; `part.json` is written last, so that it stands for the whole.
+        """Save a built part; `part.json` is written last, so that its existence means that the part is complete.
 
         Args:
             name: Name of the part.
-            record: Digests, kernel, measures, and of a derived part its source.
-            brief: What the script was given.
+            record: Digests, kernel, measurements, and for a derived part its source.
+            brief: The input of the script.
             script: Its source.
-            connectors: Where the connectors are, and how far from the plan's.
+            connectors: The connectors, and their distances from the plan's.
             stl: The mesh.
             files: The kernel's own files to copy, by name.
         """
@@ -366,7 +365,7 @@ class Run:
         self._write_json(f"{folder}/{_PART}", record)
 
     def remove_part(self, name: str) -> None:
-        """Put a part that the plan no longer has aside."""
+        """Move a part that the plan no longer has aside."""
         source, target = self.path / _PARTS / name, self.path / _REMOVED / name
         self._require_lock()
         with _writing(target):
@@ -376,15 +375,15 @@ class Run:
             source.rename(target)
 
     def attempt(self, name: str, number: int) -> Json | None:
-        """Return what came of an attempt at a part, or None."""
+        """Return the outcome of an attempt at a part, or None."""
         return self._read_json(f"{_ATTEMPTS}/{name}-{number}/{_OUTCOME}")
 
     def attempt_picture(self, name: str, number: int) -> bytes | None:
-        """Return the picture of what an attempt had made, or None."""
+        """Return the picture of an attempt's result, or None."""
         return self._read(f"{_ATTEMPTS}/{name}-{number}/{_PICTURE}")
 
     def save_attempt(self, name: str, number: int, *, script: bytes, outcome: Json, picture: bytes | None = None) -> None:
-        """Keep an attempt at a part that did not succeed; its outcome is written last."""
+        """Save a failed attempt at a part; its outcome is written last."""
         self._write(f"{_ATTEMPTS}/{name}-{number}/{_SCRIPT}", script)
         if picture is not None:
             self._write(f"{_ATTEMPTS}/{name}-{number}/{_PICTURE}", picture)
@@ -397,7 +396,7 @@ class Run:
         return self._read_json(_ASSEMBLY)
 
     def save_assembly(self, report: Json) -> None:
-        """Keep the assembly's report."""
+        """Save the assembly's report."""
         self._write_json(_ASSEMBLY, report)
 
     def checks(self) -> Json | None:
@@ -405,7 +404,7 @@ class Run:
         return self._read_json(_CHECKS)
 
     def save_checks(self, report: Json) -> None:
-        """Keep the report `articad.checks/1`."""
+        """Save the report `articad.checks/1`."""
         self._write_json(_CHECKS, report)
 
     def verdict(self) -> Json | None:
@@ -413,23 +412,23 @@ class Run:
         return self._read_json(_VERDICT)
 
     def save_verdict(self, report: Json) -> None:
-        """Keep the report `articad.verdict/1`."""
+        """Save the report `articad.verdict/1`."""
         self._write_json(_VERDICT, report)
 
     def round(self, number: int) -> Json | None:
-        """Return what a round found and what became of each part, or None."""
+        """Return the findings of a round and what became of each part, or None."""
         return self._read_json(f"{_ROUNDS}/{number}.json")
 
     def save_round(self, number: int, report: Json) -> None:
-        """Keep what a round found and what became of each part."""
+        """Save the findings of a round and what became of each part."""
         self._write_json(f"{_ROUNDS}/{number}.json", report)
 
     def edit(self) -> Json | None:
-        """Return what an edit has changed and what not, `articad.edit/1`, or None."""
+        """Return the report of an edit on what has changed, `articad.edit/1`, or None."""
         return self._read_json(_EDIT)
 
     def save_edit(self, report: Json) -> None:
-        """Keep what an edit has changed and what not."""
+        """Save the report of an edit on what has changed."""
         self._write_json(_EDIT, report)
 
     def review(self) -> Json | None:
@@ -437,7 +436,7 @@ class Run:
         return self._read_json(_REVIEW)
 
     def save_review(self, report: Json) -> None:
-        """Keep the report `articad.review/1`."""
+        """Save the report `articad.review/1`."""
         self._write_json(_REVIEW, report)
 
     def certificate(self) -> Json | None:
@@ -445,14 +444,14 @@ class Run:
         return self._read_json(_CERTIFICATE)
 
     def save_certificate(self, report: Json, meshes: Mapping[str, bytes]) -> Path:
-        """Keep a certificate with the meshes that it is about, which a checker needs; return its file."""
+        """Save a certificate with its meshes, which a checker needs; return its file."""
         for name, content in sorted(meshes.items()):
             self._write(f"{_CERTIFIED}/{name}", content)
         self._write_json(_CERTIFICATE, report)
         return self.path / _CERTIFICATE
 
     def save_export(self, kind: str, files: Mapping[str, bytes], report: Json) -> Path:
-        """Keep an exported format and what was lost in it; return its folder."""
+        """Save an exported format and its losses; return its folder."""
         folder = Path(_EXPORT) / kind
         for name, content in sorted(files.items()):
             if not (self.path / folder / name).resolve().is_relative_to((self.path / folder).resolve()):
@@ -462,7 +461,7 @@ class Run:
         return self.path / folder
 
     def exports(self) -> dict[str, Json]:
-        """Return the report of each export by its format, with the `folder` and the path of the `main` file added."""
+        """Return the report of each export by its format, with the `folder` and the path of the `main` file."""
         reports = {}
         for file in sorted((self.path / _EXPORT).glob("*/losses.json")):
             report = self._read_json(str(file.relative_to(self.path))) or {}
@@ -474,22 +473,22 @@ class Run:
         return reports
 
     def save_views(self, part: str, pictures: Mapping[str, bytes]) -> None:
-        """Keep pictures of a part, as PNG by view."""
+        """Save pictures of a part, as PNG by view."""
         for view, content in pictures.items():
             self._write(f"{_PARTS}/{part}/{_VIEWS}/{view}.png", content)
 
     def save_motion(self, joint: str, strip: bytes, animation: bytes) -> None:
-        """Keep the pictures of a joint's motion: a filmstrip as PNG and an animation as GIF."""
+        """Save the pictures of a joint's motion: a filmstrip as PNG and an animation as GIF."""
         self._write(f"{_MOTION}/{joint}.png", strip)
         self._write(f"{_MOTION}/{joint}.gif", animation)
 
     def save_page(self, text: str) -> Path:
-        """Keep the page that shows the run; return its file."""
+        """Save the HTML page of the run; return its file."""
         self._write(_PAGE, text.encode())
         return self.path / _PAGE
 
     def results(self) -> tuple[str, ...]:
-        """Return the paths, in the run, of what is of use outside it: plan, exports, and each part's CAD files and script."""
+        """Return the paths, in the run, of the results for use elsewhere: plan, exports, and each part's CAD files and script."""
         wanted = [_PLAN, f"{_EXPORT}/*/*", *(f"{_PARTS}/*/{name}" for name in ("part.step", "part.FCStd", _STL, _SCRIPT))]
         found = (file for pattern in wanted for file in sorted(self.path.glob(pattern)) if file.is_file() and file.name != "losses.json")
         return tuple(file.relative_to(self.path).as_posix() for file in found)
@@ -506,7 +505,7 @@ class Run:
         self.trace("finding", **finding.to_json())
 
     def events(self) -> Iterator[Json]:
-        """Yield the trace's events; a line that a killed process left torn is skipped."""
+        """Yield the trace's events; a line that a killed process left incomplete is skipped."""
         for line in (self._read(_TRACE) or b"").decode(errors="replace").splitlines():
             with contextlib.suppress(ValueError, RecursionError):
                 event = json.loads(line)
@@ -514,7 +513,7 @@ class Run:
                     yield event
 
     def hashes(self) -> dict[str, str]:
-        """Return the sha256 of every file by its path in the run, but for the trace, and pictures and page, which are drawn from the rest."""
+        """Return the sha256 of every file by its path in the run, except for the trace, and for pictures and page, which are derived."""
         found = (file for file in sorted(self.path.rglob("*")) if file.is_file() and file.name != _TRACE)
         found = (file for file in found if file.parent.name != _VIEWS and file.parent != self.path / _MOTION and file.name != _PAGE)
         return {file.relative_to(self.path).as_posix(): self._sha256(file) for file in found}
@@ -563,7 +562,7 @@ class Run:
                 os.close(handle)
 
     def _sweep(self) -> None:
-        """Remove what a killed process left half-written; called with the lock held."""
+        """Remove incomplete files of a killed process; called with the lock held."""
         with _writing(self.path):
             for leftover in [entry for entry in self.path.rglob(".*") if _TEMPORARY.fullmatch(entry.name)]:
                 shutil.rmtree(leftover) if leftover.is_dir() else leftover.unlink()
@@ -574,7 +573,7 @@ class Run:
 
 
 def write_atomically(path: Path, content: bytes) -> None:
-    """Write a file so that a reader, or a process that comes after a crash, finds the old one or the new one, whole.
+    """Write a file so that any reader, also after a crash, finds either the old content or the new one, complete.
 
     Raises:
         WriteError: If the disk is full, the folder read-only and the like; the old file is intact.
@@ -601,7 +600,7 @@ def write_atomically(path: Path, content: bytes) -> None:
 
 
 def open_or_create(request: RunRequest, out: str | Path | None) -> Run:
-    """Open the run of this request that is at `out`, or make a new one.
+    """Open the run of this request at `out`, or make a new one.
 
     Raises:
         RunError: If `out` holds another request's run, or something else.
@@ -613,7 +612,7 @@ def open_or_create(request: RunRequest, out: str | Path | None) -> Run:
 
 
 def require_place(request: RunRequest, out: str | Path | None) -> None:
-    """Refuse a directory in which `open_or_create` could not work, before any work is done; nothing is written.
+    """Refuse a directory in which `open_or_create` would fail, before any work is done; nothing is written.
 
     Raises:
         RunError: If `out` holds another request's run, or something else.
@@ -637,7 +636,7 @@ def require_place(request: RunRequest, out: str | Path | None) -> None:
 
 
 def _require_writable(path: Path) -> None:
-    """Make a directory and remove it again, with those above it that are new.
+    """Check that a directory can be made: make it and remove it again, with any new parents.
 
     Raises:
         WriteError: If it cannot be made.
@@ -655,7 +654,7 @@ def _require_writable(path: Path) -> None:
 
 
 def _strangers(path: Path) -> list[str]:
-    """Return what a new run would find in its directory."""
+    """Return what is in the directory of a new run."""
     return sorted(entry.name for entry in path.iterdir() if entry.name != _IMAGES and not _TEMPORARY.fullmatch(entry.name))
 
 
@@ -664,7 +663,7 @@ def _not_empty(path: Path, strangers: Sequence[str]) -> RunError:
 
 
 def _difference(there: RunRequest, wanted: RunRequest) -> str:
-    """Return in which words or options two requests differ."""
+    """Return the words or options in which two requests differ."""
     if there.prompt != wanted.prompt:
         return f" for {there.prompt[:_SLUG_LENGTH]!r}"
     keys = [key for key in dict.fromkeys((*there.options, *wanted.options)) if there.options.get(key) != wanted.options.get(key)]
@@ -672,7 +671,7 @@ def _difference(there: RunRequest, wanted: RunRequest) -> str:
 
 
 def _words(request: RunRequest) -> str:
-    """Return the flags that ask for the same build again; empty for what models made."""
+    """Return the flags of the same build; empty for runs of models."""
     if request.options.get("task") != "build":
         return ""
     parameters = request.options.get("parameters") or {}
@@ -681,7 +680,7 @@ def _words(request: RunRequest) -> str:
 
 
 def differences(first: Run, second: Run) -> Sequence[str]:
-    """Return the paths of the files, the trace apart, that are not equal in both runs."""
+    """Return the paths of the files, except for the trace, that are not equal in both runs."""
     ours, theirs = first.hashes(), second.hashes()
     return sorted(name for name in ours.keys() | theirs.keys() if ours.get(name) != theirs.get(name))
 
@@ -702,10 +701,10 @@ def _new_directory(prompt: str) -> Path:
 
 
 def _require_plain(path: Path) -> None:
-    """Hold a run to files and folders: a run may be a stranger's, whose links would lead what is written out of it, and whose pipes wait.
+    """Refuse anything but files and folders in a run: an untrusted run may have links that lead writes out of it, and pipes that block.
 
     Raises:
-        RunError: If it holds anything else.
+        RunError: If it contains anything else.
     """
     waiting = [path] if path.is_dir() else []
     while waiting:
@@ -728,7 +727,7 @@ def _require_plain(path: Path) -> None:
 
 def _read_request(path: Path) -> RunRequest:
     run = Run(path, RunRequest(prompt=""), None)
-    stored = run._read_json(REQUEST_FILE)  # noqa: SLF001 - the same class, before it is whole
+    stored = run._read_json(REQUEST_FILE)  # noqa: SLF001 - the same class, before initialisation
     if stored is None or stored.get("schema") != REQUEST_SCHEMA:
         hint = "Name a run directory."
         if (path / _PLAN).is_file() and stored is None:
@@ -741,7 +740,7 @@ def _read_request(path: Path) -> RunRequest:
         whole = False
     if not whole:
         raise RunError.at(path, f"{path / REQUEST_FILE} is incomplete.", "Name another run directory.")
-    for name, _ in named:  # a run may be a stranger's, and its pictures are sent to a model
+    for name, _ in named:  # an untrusted run may name any file, and its pictures are sent to a model
         if not _IMAGE_FILE.fullmatch(name):
             raise RunError.at(
                 path, f"{path / REQUEST_FILE} names the picture {name[:100]!r}, which is not in the run.", "Do not use this run."
@@ -766,7 +765,7 @@ def _locked(path: Path) -> int:
 
 @contextlib.contextmanager
 def _writing(path: Path) -> Iterator[None]:
-    """Turn what the file system refuses into the error of that name."""
+    """Convert errors of the file system to `WriteError`."""
     try:
         yield
     except OSError as error:
@@ -774,13 +773,13 @@ def _writing(path: Path) -> Iterator[None]:
         why = reason.get(error.errno or 0, error.strerror or str(error))
         message = f"Cannot write {path}: {why}."
         finding = Finding(
-            code="E_WRITE", where=str(path), message=message, hint="Mend this and give the same command again: finished work is kept."
+            code="E_WRITE", where=str(path), message=message, hint="Correct this and give the same command again: finished work is kept."
         )
         raise WriteError(message, path=str(path), findings=[finding]) from error
 
 
 def _no_number(constant: str) -> None:
-    raise ValueError(f"{constant} is no number of JSON")
+    raise ValueError(f"{constant} is not a JSON number")
 
 
 def _unreadable(name: str, message: str) -> ReadError:

@@ -1,1 +1,1 @@
-"""What simulators make of a file: whether they load it, and what happens when its joints move."""
+"""Trials of files in simulators: whether they load, and what happens when their joints move."""

@@ -14,12 +14,12 @@ from articad.simulation.verdict import EngineOutcome, JointReach, covered
 
 STEPS_PER_S = 240
 HOLD_S = 1.0
-HOLD_FORCE = 1e5  # N or N·m: whatever it takes
+HOLD_FORCE = 1e5  # N or N·m: as large as needed
 
 
 @dataclass(frozen=True)
 class _Joint:
-    """A hinge or slide of a loaded body, driven between two values [rad or m] from where it starts."""
+    """A hinge or slide of a loaded body, driven between two values [rad or m] from its initial value."""
 
     body: int
     index: int
@@ -43,7 +43,7 @@ class _Trial:
     opened: frozenset[str]
 
     def run(self) -> EngineOutcome:
-        """Hold, then drive; return what was measured."""
+        """Hold, then drive; return the measurements."""
         joints = list(self._joints())
         self._reset(joints)
         steps = int(HOLD_S * STEPS_PER_S)
@@ -55,7 +55,7 @@ class _Trial:
             if step >= 0.9 * steps:
                 for joint, values in seen.items():
                     values.append(self._value(joint))
-        # by way over time: a motor at a stop reports a speed for ever, against which the stop sets it back in each step
+        # by travel over time: a motor at a stop always reports a speed, which the stop cancels in each step
         ways = (max(values) - min(values) for values in seen.values())
         self.outcome.speed_at_rest = max(ways, default=0.0) / (0.1 * HOLD_S)
         away = (abs(self._value(joint) - joint.start) for joint in joints)
@@ -88,7 +88,7 @@ class _Trial:
         return JointReach(joint.name, joint.lower, joint.upper, low, high, covered(low, high, joint.lower, joint.upper), joint.unit)
 
     def _joints(self) -> Iterator[_Joint]:
-        """Yield hinges and slides; what is unlimited is driven through one turn or a little travel."""
+        """Yield hinges and slides; unlimited ones are driven through one turn or a short travel."""
         bullet = self.bullet
         for body in self.bodies:
             for index in range(bullet.getNumJoints(body, physicsClientId=self.client)):
@@ -97,7 +97,7 @@ class _Trial:
                 if kind not in {bullet.JOINT_REVOLUTE, bullet.JOINT_PRISMATIC}:
                     continue
                 turns = kind == bullet.JOINT_REVOLUTE
-                if lower > upper:  # PyBullet's word for an endless joint
+                if lower > upper:  # PyBullet's notation for an endless joint
                     lower, upper = (0.0, math.tau) if turns else (-FREE_SLIDE_M, FREE_SLIDE_M)
                 elif turns and upper - lower > 2 * math.tau:
                     lower, upper = max(lower, -math.tau), min(upper, math.tau)
@@ -136,12 +136,13 @@ def run(
     mimics: Mapping[str, tuple[str, float, float]] | None = None,
     opened: frozenset[str] = frozenset(),
 ) -> EngineOutcome:
-    """Load, hold and drive a model; parts of one body do not collide, for PyBullet is asked as most people ask it.
+    """Load, hold and drive a model; parts of one body do not collide, as with PyBullet's defaults.
 
     Args:
         path: A URDF or MJCF file.
-        rest: Where joints start by name [rad or m], zero by default.
-        mimics: Leader, multiplier and offset of joints that follow others: PyBullet ties nothing, so the hand moves them with their leader.
+        rest: Initial values of joints by name [rad or m], zero by default.
+        mimics: Leader, multiplier and offset of joints that follow others: PyBullet couples nothing, so they are driven with their
+            leader.
         opened: Joints that are not driven; "*" for all.
     """
     bullet: Any = importlib.import_module("pybullet")

@@ -25,15 +25,16 @@ SIMULATED = (".urdf", ".xml", ".mjcf")
 
 
 def simulate_file(path: str | Path, *, engines: tuple[Engine, ...] = ENGINES, seconds: float = SECONDS) -> SimulationVerdict:
-    """Hold, drive and let go the model of a URDF or MJCF file, as it stands.
+    """Simulate the model of a URDF or MJCF file as it is: hold it, drive it and let it go.
 
     Args:
         path: The file.
-        engines: Which to ask; those that are not installed are passed over.
-        seconds: For each of them.
+        engines: Engines to use; those that are not installed are skipped.
+        seconds: Time limit of each.
 
     Raises:
-        ReadError: If its ending is neither; E_UNSAFE_PATH if it names files outside its ROS package, or outside its folder without one.
+        ReadError: If its extension is neither; E_UNSAFE_PATH if it names files outside its ROS package, or outside its folder without
+            one.
     """
     path = Path(path)
     if path.suffix.lower() not in SIMULATED:
@@ -53,13 +54,13 @@ def simulate_file(path: str | Path, *, engines: tuple[Engine, ...] = ENGINES, se
 
 
 class _Told(NamedTuple):
-    """What a file and articad's records in it say beyond what engines read.
+    """Data of a file, and of articad's records in it, beyond what engines read.
 
     Attributes:
-        rest: Where joints of a URDF rest by name [rad or m].
+        rest: Rest values of joints of a URDF by name [rad or m].
         mimics: Leader, multiplier and offset of joints of a URDF that follow others.
         loops: Number of loops that a URDF leaves open.
-        opened: Joints of these loops, and those that are coupled with them.
+        opened: Joints of these loops, and those coupled with them.
         equalities: Number of equality constraints of an MJCF, which PyBullet leaves out.
     """
 
@@ -71,7 +72,7 @@ class _Told(NamedTuple):
 
 
 def _told(path: Path) -> _Told:
-    """Return what a file says beyond what engines read of it; nothing where it cannot be parsed, which engines will say."""
+    """Return the data of a file beyond what engines read; empty if it cannot be parsed, which engines will report."""
     try:
         root = etree.parse(str(path), etree.XMLParser(resolve_entities=False, no_network=True)).getroot()
     except (etree.XMLSyntaxError, OSError):
@@ -88,7 +89,7 @@ def _told(path: Path) -> _Told:
     couplings |= {freedom.name for joint in model.joints for freedom in joint.freedoms if freedom.follows is not None}
     inside = {joint.name for loop in mechanism.loop_joints for joint in mechanism.tree.joints_between(loop.parent, loop.child)}
     opened = {freedom.name for joint in model.joints if joint.joint.name in inside for freedom in joint.freedoms}
-    if opened & ({*mimics} - couplings):  # <mimic> stands for the loops
+    if opened & ({*mimics} - couplings):  # <mimic> replaces the loops
         return _Told(rest, mimics)
     for _ in model.couplings:
         for _, name, follows in model.couplings:
@@ -103,7 +104,7 @@ def _mimics(root: Any) -> dict[str, tuple[str, float, float]]:
     for joint in root.iterfind("joint"):
         tie = joint.find("mimic")
         if tie is not None:
-            with contextlib.suppress(ValueError):  # no number: engines will say so
+            with contextlib.suppress(ValueError):  # not a number: engines will report it
                 found[joint.get("name", "")] = (tie.get("joint", ""), float(tie.get("multiplier", 1)), float(tie.get("offset", 0)))
     return found
 
@@ -111,7 +112,7 @@ def _mimics(root: Any) -> dict[str, tuple[str, float, float]]:
 def simulate_assembly(
     assembly: Assembly, file: str, *, engines: tuple[Engine, ...] = ENGINES, seconds: float = SECONDS
 ) -> SimulationVerdict:
-    """Export an assembly and hold, drive and let go what was exported: MJCF in MuJoCo, URDF in PyBullet, which leaves loops open."""
+    """Export an assembly and simulate the exports: MJCF in MuJoCo, and URDF in PyBullet, which leaves loops open."""
     drivers = driving(assembly)
     outcomes = []
     with scratch.folder("simulate") as folder:
@@ -129,14 +130,14 @@ def simulate_assembly(
 
 
 def driving(assembly: Assembly) -> tuple[str, ...]:
-    """Return the names that formats have for the drivers."""
+    """Return the names of the drivers in formats."""
     model, columns = lower(assembly), {driver.name for driver in assembly.drivers}
     return tuple(freedom.name for joint in (*model.joints, *model.loops) for freedom in joint.freedoms if freedom.column in columns)
 
 
 def readable(path: str | Path) -> Assembly | None:
-    """Return the assembly of a file, for pictures of it; None where it cannot be read."""
-    from articad.formats import read  # noqa: PLC0415 - only where there is something to draw
+    """Return the assembly of a file, for pictures of it; None if it cannot be read."""
+    from articad.formats import read  # noqa: PLC0415 - only if there is something to draw
 
     try:
         return read(path, root=Path(path).resolve().parent)

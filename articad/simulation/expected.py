@@ -1,4 +1,4 @@
-"""What kinematics says of a loop: how far its drivers go, and how far they bring the joints that follow."""
+"""The kinematics of a loop: the ranges of its drivers, and of the joints that follow them."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ from articad.simulation.verdict import SHARE, EngineOutcome, JointReach, covered
 
 FloatArray = NDArray[np.float64]
 
-STEPS = 181  # of a driver's way: what lies farther between two of them is far less than the share that may be missing
+STEPS = 181  # of a driver's path: the error between two of them is far less than the share that may be missing
 MM_PER_M = 1000.0
 
 
 def held_to_kinematics(assembly: Assembly, outcome: EngineOutcome) -> EngineOutcome:
-    """Return the outcome with followers held to what their drivers bring them to, and drivers told what their loops allow.
+    """Return the outcome with expected ranges of followers from kinematics, and of drivers as their loops allow.
 
     Args:
-        assembly: Whose export was tried.
-        outcome: Of the engine that tried it; values of joints are found by the names that formats have for them.
+        assembly: The assembly whose export was tried.
+        outcome: Outcome of the engine; values of joints are found by their names in formats.
     """
     if not any(reach.role == "driver" for reach in outcome.reaches):
         return outcome
@@ -43,7 +43,7 @@ def held_to_kinematics(assembly: Assembly, outcome: EngineOutcome) -> EngineOutc
 
 
 def _known(reach: JointReach, brought: dict[str, tuple[float, float]]) -> bool:
-    """False for followers that are no joint of ours: bodies that a format needs to close a loop."""
+    """False for followers that are not joints of the assembly: bodies that a format needs to close a loop."""
     return reach.role != "follower" or reach.joint in brought
 
 
@@ -57,7 +57,7 @@ def _held(reach: JointReach, brought: dict[str, tuple[float, float]], allowed: d
 def _ways(
     assembly: Assembly, model: LoweredModel, column: str, reach: JointReach
 ) -> tuple[tuple[float, float], dict[str, tuple[float, float]]]:
-    """Return how far a driver goes of what it was driven over, and how far that brings every joint [rad or m]."""
+    """Return the reachable part of the range over which a driver was driven, and the resulting ranges of all joints [rad or m]."""
     scale = MM_PER_M if reach.unit == "m" else 1.0
     free = assembly.feasible_range(column)
     low, high = max(free.lower, reach.lower * scale), min(free.upper, reach.upper * scale)
@@ -67,7 +67,7 @@ def _ways(
 
 
 def _values(model: LoweredModel, way: Configuration) -> dict[str, FloatArray]:
-    """Return the values of all one-freedom joints along a way [rad or m]."""
+    """Return the values of all one-freedom joints along a path [rad or m]."""
     found: dict[str, FloatArray] = {}
     names = [name for joint in way.joints for name in joint.column_names]
     freedoms: list[AxisMotion] = [freedom for joint in (*model.joints, *model.loops) for freedom in joint.freedoms]

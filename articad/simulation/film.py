@@ -1,4 +1,4 @@
-"""The filmstrip of a simulation: what the joints did, drawn from what the engine reported."""
+"""The filmstrip of a simulation: the motion of the joints as the engine reported it."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ _SUFFIXES = {"travel": "__t", "angle": "__r", "x": "__x", "y": "__y", "a": "__rx
 
 
 def film(assembly: Assembly, outcome: EngineOutcome, *, size: int = SIZE) -> bytes | None:
-    """Return a filmstrip as PNG; None when nothing moved.
+    """Return a filmstrip as PNG; None if nothing moved.
 
     Args:
-        assembly: Of the model that was simulated; values of its drivers are found by the names of joints.
-        outcome: With the frames that were kept.
+        assembly: The assembly that was simulated; values of its drivers are found by the names of joints.
+        outcome: The outcome with its frames.
         size: Width and height of a frame [pixels].
     """
     frames = _chosen(outcome.frames)
@@ -41,7 +41,7 @@ def film(assembly: Assembly, outcome: EngineOutcome, *, size: int = SIZE) -> byt
 
 
 def _chosen(frames: list[FilmFrame]) -> list[FilmFrame]:
-    """Return at most so many frames, those of some joints in whole rather than bits of all."""
+    """Return a limited number of frames: complete strokes of some joints rather than parts of all."""
     return frames[:MOST_FRAMES]
 
 

@@ -1,4 +1,4 @@
-"""Does an engine load a file as it stands? Asked in a process of its own, for some engines end theirs on a bad file.
+"""Tests whether an engine loads a file as it is. This runs in a process of its own, because some engines abort on a bad file.
 
 The process runs this module with `ENGINE FILE` and prints one JSON object.
 """
@@ -30,22 +30,22 @@ ENGINES: dict[str, tuple[Engine, ...]] = {"urdf": ("mujoco", "pinocchio", "pybul
 SECONDS = 60.0
 MEMORY = 4 << 30  # bytes of data of a process
 FILE_SIZE = 64 << 20  # bytes of each file that an engine writes: its log
-MOST_BODIES = 300  # whose pairs are looked at one by one
-_MESSAGE = 300  # characters kept of what an engine says
+MOST_BODIES = 300  # whose pairs are checked one by one
+_MESSAGE = 300  # characters of an engine's message that are kept
 
 
 @dataclass(frozen=True)
 class Loading:
-    """What an engine made of a file.
+    """The result of loading a file in an engine.
 
     Attributes:
         engine: Its name.
-        version: Its version; "" where it is not installed.
-        loads: Whether it took the file; None where it is not installed.
-        message: In its own words, if it did not.
+        version: Its version; "" if it is not installed.
+        loads: Whether it loaded the file; None if it is not installed.
+        message: The engine's own message, if it did not.
         simple: MuJoCo: bodies with a colliding box, sphere, capsule, cylinder or ellipsoid.
         excluded: MuJoCo: pairs of bodies that masks or exclusions keep from colliding.
-        mass: MuJoCo: of all that moves [kg].
+        mass: MuJoCo: mass of everything that moves [kg].
     """
 
     engine: Engine
@@ -62,20 +62,20 @@ class Loading:
 
 
 def load(engine: Engine, path: Path, *, root: Path | None = None, seconds: float = SECONDS) -> Loading:
-    """Have an engine load a file in a process of its own, with bounded time and memory.
+    """Load a file in an engine, in a process of its own with limited time and memory.
 
     Args:
         engine: Its name.
         path: The file.
-        root: Folder that the engine may read; the file's own by default. Landlock enforces it where the machine has it.
-        seconds: After which it is ended.
+        root: Folder that the engine may read; the file's own by default. Landlock enforces it if the machine has it.
+        seconds: Time after which it is killed.
     """
     with start(engine, path, root=root, seconds=seconds) as child:
         return _answer(engine, child.finish(), seconds)
 
 
 def load_in_all(path: Path, engines: tuple[Engine, ...], *, root: Path | None = None, seconds: float = SECONDS) -> tuple[Loading, ...]:
-    """Have several engines load a file, one beside the other; see `load`."""
+    """Load a file in several engines in parallel; see `load`."""
     with contextlib.ExitStack() as stack:
         started = [(engine, stack.enter_context(start(engine, path, root=root, seconds=seconds))) for engine in engines]
         return tuple(_answer(engine, child.finish(), seconds) for engine, child in started)
@@ -88,7 +88,7 @@ def start(engine: Engine, path: Path, *, root: Path | None = None, seconds: floa
 
 
 def places(path: Path, root: Path | None) -> tuple[str, str]:
-    """Return the absolute names of a file and of the folder that an engine may read."""
+    """Return the absolute paths of a file and of the folder that an engine may read."""
     return str(path.resolve()), str((root or path.resolve().parent).resolve())
 
 
@@ -104,7 +104,7 @@ def _answer(engine: Engine, ended: launcher.Ended, seconds: float) -> Loading:
 
 
 def answer_in(out: bytes) -> dict[str, Any]:
-    """Return the JSON object that a process printed, among whatever else its libraries did.
+    """Return the JSON object that a process printed, among other output of its libraries.
 
     Raises:
         ValueError: If there is none.
@@ -118,7 +118,7 @@ def answer_in(out: bytes) -> dict[str, Any]:
 
 
 def main(arguments: list[str]) -> int:
-    """Load a file and print what came of it."""
+    """Load a file and print the result."""
     engine, path, root = arguments
     sandbox.keep_to([root], [str(Path.cwd())])
     with _captured() as said:
@@ -143,7 +143,7 @@ def _mujoco(path: Path, said: io.StringIO) -> dict[str, Any]:
 
 
 def _filters(mujoco: Any, model: Any) -> dict[str, Any]:
-    """Return which bodies are simple, and which pairs never collide, whatever their pose."""
+    """Return which bodies are simple, and which pairs never collide in any pose."""
     names = [model.body(index).name or f"body_{index}" for index in range(model.nbody)]
     kinds = mujoco.mjtGeom
     simple_kinds = set(
@@ -201,7 +201,7 @@ _LOADERS = {"mujoco": _mujoco, "pinocchio": _pinocchio, "pybullet": _pybullet}
 
 
 class _Said(io.StringIO):
-    """What a library printed, from below Python."""
+    """The output of a library below Python."""
 
     def __init__(self, file: Any) -> None:
         super().__init__()
@@ -216,7 +216,7 @@ class _Said(io.StringIO):
 
 @contextlib.contextmanager
 def _captured() -> Iterator[_Said]:
-    """Lead stdout and stderr of this process into a file, C libraries' too."""
+    """Redirect stdout and stderr of this process to a file, including those of C libraries."""
     with tempfile.TemporaryFile() as file:
         kept = os.dup(1)
         sys.stdout.flush()
@@ -230,7 +230,7 @@ def _captured() -> Iterator[_Said]:
 
 
 def _plain(text: str) -> str:
-    """Return what an engine says as one line, without the machine's folders."""
+    """Return an engine's message as one line, without the machine's folders."""
     line = re.sub(r"\x1b\[[0-9;]*m", "", " ".join(text.split()))
     line = re.sub(r"(?<![\w.:/])/(?:[\w.@+-]+/)+", "", line.replace("file:///", "/"))
     return line[:_MESSAGE]

@@ -1,8 +1,8 @@
-"""A model in MuJoCo: held at rest, driven joint by joint over its ranges, then let go.
+"""A model in MuJoCo: held at rest, driven joint by joint over its ranges, then released.
 
-The hand that holds and drives is computed torque: `τ = M (ω² e - 2 ω v) + bias`, with e clamped so that what is in the way is
-pushed but not pushed through. A model's own actuators are switched off. Everything runs in a process of its own
-(`articad.simulation.trial`), for files come from anybody.
+Joints are held and driven by computed torque: `τ = M (ω² e - 2 ω v) + bias`, with e limited so that an obstacle is pushed but not
+penetrated. A model's own actuators are switched off. Everything runs in a process of its own (`articad.simulation.trial`), because files
+are untrusted.
 """
 
 from __future__ import annotations
@@ -22,16 +22,16 @@ from articad.simulation.verdict import EngineOutcome, FilmFrame, JointReach, Rol
 
 FloatArray = NDArray[np.float64]
 
-STIFFNESS = 20.0  # ω of the hand [1/s]: a tenth of a second to arrive
-MOST_ERROR = 0.2  # rad or m that the hand acts on
+STIFFNESS = 20.0  # ω of the controller [1/s]: a tenth of a second to arrive
+MOST_ERROR = 0.2  # rad or m: largest error on which the controller acts
 HOLD_S = 1.0
 FREE_S = 1.0
-PUSH = 0.2  # rad/s or m/s at which a model is let go
+PUSH = 0.2  # rad/s or m/s with which a model is released
 FRAMES_OF_JOINT = 3
 
 
 class Stroke(NamedTuple):
-    """Least and greatest `qpos` while a joint was driven, and who was in its way."""
+    """Smallest and largest `qpos` while a joint was driven, and the bodies that blocked it."""
 
     low: FloatArray
     high: FloatArray
@@ -45,7 +45,7 @@ class Trial:
     Attributes:
         model: As MuJoCo compiled it.
         data: Its state.
-        outcome: What was measured.
+        outcome: The measurements.
     """
 
     model: Any
@@ -61,11 +61,11 @@ class Trial:
 
         Args:
             path: A URDF or MJCF file.
-            rest: Where hinges and slides start by name [rad or m], for a file that has no key `home`.
-            mimics: Leader, multiplier and offset of joints that follow others and that MuJoCo does not tie.
+            rest: Initial values of hinges and slides by name [rad or m], for a file without a key `home`.
+            mimics: Leader, multiplier and offset of joints that follow others and that MuJoCo does not couple.
 
         Raises:
-            ValueError: If MuJoCo does not take it.
+            ValueError: If MuJoCo refuses it.
         """
         model = mujoco.MjModel.from_xml_path(str(path))
         model.opt.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_ACTUATION)
@@ -75,10 +75,10 @@ class Trial:
         return trial
 
     def run(self, drivers: tuple[str, ...] | None = None, opened: frozenset[str] = frozenset()) -> EngineOutcome:
-        """Hold, drive and let go; return what was measured.
+        """Hold, drive and release; return the measurements.
 
         Args:
-            drivers: Joints that drive closed loops; None where nobody knows, so that each joint is driven.
+            drivers: Joints that drive closed loops; None if they are unknown, so that each joint is driven.
             opened: Joints that are not driven, because the loop that would lead their bodies is open in the file.
         """
         self._hold()
@@ -103,7 +103,7 @@ class Trial:
     # ------------------------------------------------------------------ phases
 
     def _hold(self) -> None:
-        """Hold every joint where it rests, against gravity and contact."""
+        """Hold every joint at rest against gravity and contact."""
         steps, calm = self._steps(HOLD_S), 0.0
         held = self._hinged_dofs()
         for step in range(steps):
@@ -118,7 +118,7 @@ class Trial:
         self.outcome.residual = float(np.abs(self.data.efc_pos[: self.data.nefc][rows]).max(initial=0.0)) if self.model.neq else 0.0
 
     def _drive(self, drivers: tuple[str, ...] | None, opened: frozenset[str]) -> None:
-        """Drive each hinge and slide over its range, of a loop its drivers, with the rest of the loop free to follow."""
+        """Drive each hinge and slide over its range; in a loop only its drivers, with the rest of the loop free to follow."""
         single, count = list(self._single_joints()), 0
         self.outcome.passed_over = tuple(self._name(joint) for joint in single if self._name(joint) in opened)
         single = [joint for joint in single if self._name(joint) not in opened and self._leader(joint) is None]
@@ -140,7 +140,7 @@ class Trial:
                 self.outcome.reaches += self._followed(joint, number, strokes_made)
 
     def _reach(self, joint: int, number: int, role: Role, made: dict[int, Stroke]) -> JointReach:
-        """Return how far a joint came in any stroke of its loop."""
+        """Return how far a joint moved in any stroke of its loop."""
         lower, upper, unit = self._range(joint)
         at = self.model.jnt_qposadr[joint]
         low, high = min(float(stroke.low[at]) for stroke in made.values()), max(float(stroke.high[at]) for stroke in made.values())
@@ -149,9 +149,9 @@ class Trial:
         return JointReach(self._name(joint), lower, upper, low, high, share, unit, blocker, role, None if role == "free" else number)
 
     def _leader(self, joint: int) -> int | None:
-        """Return the hinge or slide that leads a joint by <mimic>; None where nothing does."""
+        """Return the hinge or slide that leads a joint by <mimic>; None if there is none."""
         found = self.mimics.get(self._name(joint))
-        if found is None or self.model.neq:  # a model with equalities ties its joints itself
+        if found is None or self.model.neq:  # a model with equalities couples its joints itself
             return None
         return next((one for one in self._single_joints() if self._name(one) == found[0] and one != joint), None)
 
@@ -160,7 +160,7 @@ class Trial:
         return [(one, *self.mimics[self._name(one)][1:]) for one in self._single_joints() if self._leader(one) == joint]
 
     def _followed(self, leader: int, number: int, made: dict[int, Stroke]) -> list[JointReach]:
-        """Return how far those came that follow a leader, of what it brings them to."""
+        """Return how far the followers of a leader moved, relative to their expected ranges."""
         lower, upper, _ = self._range(leader)
         found = []
         for joint, ratio, offset in self._followers(leader):
@@ -170,7 +170,7 @@ class Trial:
         return found
 
     def _stroke(self, joint: int, following: frozenset[int]) -> Stroke:
-        """Drive one joint over its range, those that follow carried along, all others held."""
+        """Drive one joint over its range with its followers, all others held."""
         lower, upper, unit = self._range(joint)
         self.reset()
         at, target = self.model.jnt_qposadr[joint], np.array(self.start)
@@ -202,7 +202,7 @@ class Trial:
         return Stroke(low, high, blocker)
 
     def _let_go(self) -> None:
-        """Let the model go with a push, without contact or limits; its energy may only fall."""
+        """Release the model with a push, without contact or limits; its energy may only decrease."""
         model = self.model
         model.opt.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_CONTACT) | int(mujoco.mjtDisableBit.mjDSBL_LIMIT)
         model.opt.enableflags |= int(mujoco.mjtEnableBit.mjENBL_ENERGY)
@@ -211,7 +211,7 @@ class Trial:
             return
         rng = np.random.default_rng(0)
         self.data.qvel[:] = PUSH * rng.uniform(-1, 1, model.nv)
-        if model.neq:  # a push that a loop cannot follow is a blow: let it die out first
+        if model.neq:  # a push that a loop cannot follow is an impact: wait until it has decayed
             for _ in range(self._steps(FREE_S / 10)):
                 if not self._step(None, np.zeros(0, dtype=int)):
                     return
@@ -228,7 +228,7 @@ class Trial:
     def _step(
         self, target: FloatArray | None, held: NDArray[np.int_], free: set[int] | None = None, pace: FloatArray | None = None
     ) -> bool:
-        """Step once with the hand at `target`, moving at `pace`; False when the numbers have gone wild."""
+        """Step once with the controller at `target`, moving at `pace`; return False if the numbers diverge."""
         model, data = self.model, self.data
         mujoco.mj_step1(model, data)
         data.qfrc_applied[:] = 0.0
@@ -241,7 +241,7 @@ class Trial:
             mujoco.mj_mulM(model, data, torque, wanted)
             weight = data.qfrc_bias - data.qfrc_passive
             data.qfrc_applied[held] = torque[held] + weight[held]
-            following = sorted(free or ())  # joints of the same loop are carried, not led
+            following = sorted(free or ())  # joints of the same loop follow, they are not controlled
             data.qfrc_applied[following] = weight[following]
         mujoco.mj_step2(model, data)
         bad = data.warning[int(mujoco.mjtWarning.mjWARN_BADQACC)].number or data.warning[int(mujoco.mjtWarning.mjWARN_BADQPOS)].number
@@ -254,18 +254,18 @@ class Trial:
         return True
 
     def _error(self, target: FloatArray) -> FloatArray:
-        """Return the way to a pose, per degree of freedom."""
+        """Return the difference to a pose, per degree of freedom."""
         error = np.zeros(self.model.nv)
         mujoco.mj_differentiatePos(self.model, error, 1.0, self.data.qpos, target)
         return error
 
-    # ------------------------------------------------------------------ what there is
+    # ------------------------------------------------------------------ the model
 
     def _steps(self, seconds: float) -> int:
         return max(1, min(round(seconds / float(self.model.opt.timestep)), 20_000))
 
     def _hinged_dofs(self) -> NDArray[np.int_]:
-        """Return the degrees of freedom that are not those of free bodies."""
+        """Return the degrees of freedom that do not belong to free bodies."""
         kinds = self.model.jnt_type[self.model.dof_jntid] if self.model.nv else np.zeros(0, dtype=int)
         return np.flatnonzero(kinds != int(mujoco.mjtJoint.mjJNT_FREE))
 
@@ -275,7 +275,7 @@ class Trial:
                 yield joint
 
     def _range(self, joint: int) -> tuple[float, float, str]:
-        """Return what a joint is driven over: its limits, else one turn or a little travel."""
+        """Return the range over which a joint is driven: its limits, else one turn or a short travel."""
         turns = self.model.jnt_type[joint] == int(mujoco.mjtJoint.mjJNT_HINGE)
         unit, rest = "rad" if turns else "m", float(self.start[self.model.jnt_qposadr[joint]])
         lower, upper = (float(bound) for bound in self.model.jnt_range[joint])
@@ -290,12 +290,12 @@ class Trial:
         return lower, upper, unit
 
     def _loops(self, single: list[int]) -> list[frozenset[int]]:
-        """Return the sets of joints that move together, in the order of their first; a joint outside of loops is one of its own."""
+        """Return the sets of joints that move together, in the order of their first; a joint outside of loops forms a set of its own."""
         tied = self._tied()
         return list(dict.fromkeys(next((group for group in tied if joint in group), frozenset({joint})) for joint in single))
 
     def _tied(self) -> list[frozenset[int]]:
-        """Return the sets of joints that equality constraints make move together."""
+        """Return the sets of joints that equality constraints couple."""
         sets: list[set[int]] = []
         for row in range(self.model.neq):
             kind, first, second = self.model.eq_type[row], int(self.model.eq_obj1id[row]), int(self.model.eq_obj2id[row])
@@ -323,7 +323,7 @@ class Trial:
         return found
 
     def _contact(self, joint: int) -> str:
-        """Return the two bodies whose contact pushes hardest, one of them moved by the joint; "" when nothing touches."""
+        """Return the two bodies with the largest contact force, one of them moved by the joint; "" if nothing touches."""
         best, found = 0.0, ""
         force = np.zeros(6)
         for index in range(self.data.ncon):

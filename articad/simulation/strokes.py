@@ -1,26 +1,26 @@
-"""How joints are driven, whatever the engine: a smooth way from rest to the lower bound, to the upper one, and back."""
+"""The motion of driven joints, independent of the engine: smoothly from rest to the lower bound, to the upper one, and back."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator
 
-STROKE_S = 1.0  # at least, for each way: rest to lower, lower to upper, upper to rest
+STROKE_S = 1.0  # at least, for each stroke: rest to lower, lower to upper, upper to rest
 PACE_RAD_S = 3.0  # mean speed of a stroke
 PACE_M_S = 1.0
-MOST_SPEED = 100.0  # rad/s or m/s: nothing that is held goes so fast
+MOST_SPEED = 100.0  # rad/s or m/s: joints that are held do not move so fast
 MOST_JOINTS = 80
-FREE_SLIDE_M = 0.1  # either way, that a slide without limits is driven
+FREE_SLIDE_M = 0.1  # in both directions, for a slide without limits
 
 
 def strokes(rest: float, lower: float, upper: float, steps: int) -> Iterator[float]:
-    """Yield where a joint is to be, step by step, with a moment's pause at each end.
+    """Yield the target of a joint, step by step, with a short pause at each end.
 
     Args:
-        rest: Where it starts and ends [rad or m].
-        lower: Bound that it goes to first.
-        upper: Bound that it goes to then.
-        steps: For each of the three ways.
+        rest: Its value at the start and the end [rad or m].
+        lower: Bound that is reached first.
+        upper: Bound that is reached second.
+        steps: Number for each of the three strokes.
     """
     pause = max(1, steps // 5)
     for start, end in ((rest, lower), (lower, upper), (upper, rest)):

@@ -1,4 +1,4 @@
-"""Trials in processes of their own: this module with `ENGINE FILE ROOT DRIVERS REST OPENED MIMICS` prints what an engine measured as JSON."""
+"""Trials in processes of their own: this module with `ENGINE FILE ROOT DRIVERS REST OPENED MIMICS` prints measurements as JSON."""
 
 from __future__ import annotations
 
@@ -27,17 +27,17 @@ def try_out(
     mimics: Mapping[str, tuple[str, float, float]] | None = None,
     seconds: float = SECONDS,
 ) -> EngineOutcome:
-    """Have an engine load a model and move it, in a process of its own with bounded time and memory.
+    """Load a model in an engine and move it, in a process of its own with limited time and memory.
 
     Args:
         engine: "mujoco" or "pybullet".
         path: A URDF or MJCF file.
         root: Folder that the engine may read; see `articad.simulation.loading.load`.
-        drivers: Joints that drive closed loops; None where nobody knows.
-        rest: Where joints rest by name [rad or m], for files that do not say so.
+        drivers: Joints that drive closed loops; None if they are unknown.
+        rest: Rest values of joints by name [rad or m], for files that do not state them.
         opened: Joints that are not driven, because the engine or the file leaves their loop open; "*" for all.
-        mimics: Leader, multiplier and offset of joints that the file lets follow others; the hand that drives the leader drives them.
-        seconds: After which it is ended.
+        mimics: Leader, multiplier and offset of joints that follow others in the file; they are driven with their leader.
+        seconds: Time after which it is killed.
     """
     loading = load(engine, path, root=root)
     if not loading.loads:
@@ -53,7 +53,7 @@ def try_out(
     limits = launcher.Limits(seconds=seconds, memory=MEMORY, file_size=FILE_SIZE)
     ended = launcher.run(words, module="articad.simulation.trial", limits=limits)
     if ended.late:
-        return EngineOutcome(engine, loading.version, loads=False, message=f"it was not done after {seconds:g} s")
+        return EngineOutcome(engine, loading.version, loads=False, message=f"it did not finish within {seconds:g} s")
     try:
         return EngineOutcome.from_json(answer_in(ended.out))
     except (ValueError, IndexError, TypeError):
@@ -61,7 +61,7 @@ def try_out(
 
 
 def main(arguments: list[str]) -> int:
-    """Try a model out and print what was measured."""
+    """Simulate a model and print the measurements."""
     engine, path, root, drivers, rest, opened, mimics = arguments
     sandbox.keep_to([root], [str(Path.cwd())])
     names = json.loads(drivers)

@@ -1,4 +1,4 @@
-"""What was measured in a simulation, and the verdict on it."""
+"""The measurements of a simulation, and the verdict on them."""
 
 from __future__ import annotations
 
@@ -13,27 +13,27 @@ SHARE = 0.99  # of its range that every joint must reach
 CALM = 0.02  # rad/s or m/s: slower is at rest
 DRIFT = 0.05  # rad or m by which a held joint may be pushed away
 RESIDUAL = 1e-3  # m or rad by which a closed loop may be open
-GROWTH = 0.05  # of the largest kinetic energy: integration errors, no more
+GROWTH = 0.05  # of the largest kinetic energy: more than integration errors
 
 Role = Literal["free", "driver", "follower", "tied"]
 
 
 @dataclass(frozen=True)
 class JointReach:
-    """How far a joint came.
+    """How far a joint moved.
 
     Attributes:
         joint: Its name.
-        lower: What it was to reach [rad or m]: its own bound; of a follower what its drivers bring it to.
+        lower: What it should reach [rad or m]: its own bound; for a follower, where its drivers bring it.
         upper: Likewise.
         low: What it reached, whichever joint of its loop was driven.
         high: Likewise.
-        share: Of the range.
+        share: Share of the range that was reached.
         unit: "rad" or "m".
         blocker: Bodies that touched where it lagged most.
-        role: "free" outside of loops; "driver" and "follower" of a loop whose drivers are known; "tied" of one whose drivers are not.
-        loop: Joints of the same number move together.
-        allowed: What kinematics lets a driver reach [rad or m], where that is less than its own bounds.
+        role: "free" outside of loops; "driver" and "follower" in a loop with known drivers; "tied" in one with unknown drivers.
+        loop: Joints with the same number move together.
+        allowed: Range of a driver according to kinematics [rad or m], if that is less than its own bounds.
     """
 
     joint: str
@@ -56,7 +56,7 @@ def covered(low: float, high: float, lower: float, upper: float) -> float:
 
 @dataclass(frozen=True)
 class FilmFrame:
-    """A moment worth showing: which joint was driven, and the values of all [rad, m]."""
+    """A frame of the film: the joint that was driven, and the values of all [rad, m]."""
 
     joint: str
     values: dict[str, float]
@@ -68,18 +68,18 @@ class EngineOutcome:
 
     Attributes:
         engine: "mujoco" or "pybullet".
-        version: Of it.
-        loads: Whether it took the model; None where it is not installed.
-        message: Its own words, if it did not.
-        speed_at_rest: Largest speed at the end of the time it was held [rad/s or m/s].
-        moved_at_rest: By how far a held joint was pushed away [rad or m].
-        top_speed: Largest speed of all [rad/s or m/s].
-        exploded: True when numbers went wild.
-        residual: Of equality constraints [m or rad].
-        energy_growth: As a share of the largest kinetic energy; None where it was not measured.
-        reaches: By joint.
-        untried: Joints that there were too many of.
-        frames: For a filmstrip.
+        version: Its version.
+        loads: Whether it loaded the model; None if it is not installed.
+        message: Its own message, if it did not.
+        speed_at_rest: Largest speed at the end of holding [rad/s or m/s].
+        moved_at_rest: Largest displacement of a held joint [rad or m].
+        top_speed: Largest speed overall [rad/s or m/s].
+        exploded: True if numbers diverged.
+        residual: Largest residual of equality constraints [m or rad].
+        energy_growth: Growth of energy as a share of the largest kinetic energy; None if it was not measured.
+        reaches: Results by joint.
+        untried: Joints that were left out because there were too many.
+        frames: Frames for a filmstrip.
         open_loops: Closed loops, or equality constraints, that the file or the engine leaves out.
         passed_over: Joints that were not driven, because the loop that leads them is open.
     """
@@ -104,8 +104,8 @@ class EngineOutcome:
     def judged(self) -> list[JointReach]:
         """Joints that have to reach their range.
 
-        Of a loop whose drivers nobody has named, any joint may be one that only follows: the joint that comes farthest stands for all.
-        Where a driver falls short, that is told of the driver, not of all that follow it.
+        In a loop with unknown drivers, any joint may only follow: the joint that comes farthest represents all. If a driver falls short,
+        only the driver is reported, not its followers.
         """
         short = {reach.loop for reach in self.reaches if reach.role == "driver" and reach.share < SHARE}
         best: dict[int | None, JointReach] = {}
@@ -124,7 +124,7 @@ class EngineOutcome:
 
     @classmethod
     def from_json(cls, row: dict[str, Any]) -> EngineOutcome:
-        """Return what another process measured."""
+        """Return the measurements of another process."""
         reaches = [JointReach(**reach | {"allowed": reach.get("allowed") and tuple(reach["allowed"])}) for reach in row.pop("reaches", [])]
         frames = [FilmFrame(**frame) for frame in row.pop("frames", [])]
         passed_over = tuple(row.pop("passed_over", ()))
@@ -140,12 +140,12 @@ class SimulationVerdict:
 
     @property
     def findings(self) -> Findings:
-        """What is wrong."""
+        """The findings."""
         return Findings(finding for outcome in self.outcomes for finding in _findings(outcome))
 
     @property
     def ok(self) -> bool:
-        """True when an engine tried it and nothing is wrong."""
+        """True if an engine tried it and nothing is wrong."""
         return self.findings.ok and any(outcome.loads for outcome in self.outcomes)
 
     def to_json(self) -> dict[str, Any]:
@@ -228,7 +228,7 @@ def _findings(outcome: EngineOutcome) -> Iterator[Finding]:
 
 
 def _short_reaches(outcome: EngineOutcome, engine: str) -> Iterator[Finding]:
-    """Joints that do not reach their range."""
+    """Return findings about joints that do not reach their range."""
     for reach in outcome.judged:
         if reach.share >= SHARE:
             continue
