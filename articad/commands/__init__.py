@@ -1,6 +1,6 @@
 """The commands of `articad`, one module for each kind; a command imports what it needs when it runs.
 
-Importing this package registers them all. The distribution `articad-bench` adds its own where it is installed.
+Importing this package registers them all. The distribution `articad-bench` adds its own if it is installed.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Audit files that anyone made; have simulators move them."""
+"""Audit files from any source; simulate them."""
 
 from __future__ import annotations
 
@@ -122,7 +122,7 @@ def _film(assembly: Assembly, outcomes: Sequence[EngineOutcome]) -> bytes | None
 
 
 def _audit_one(options: argparse.Namespace, terminal: Terminal, choices: AuditOptions) -> Audit:
-    """Audit a file, or what a plan or a run makes, with its exports."""
+    """Audit a file, or the assembly of a plan or a run with its exports."""
     from articad.auditing.examine import AUDITED, audit_file, audit_made
 
     if Path(options.target).suffix.lower() in AUDITED:

@@ -1,4 +1,4 @@
-"""Build a plan; check it, or what was built of it."""
+"""Build a plan; check it, or what was built from it."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ def _check(options: argparse.Namespace, terminal: Terminal) -> Report:
 
     try:
         plan = plan_in(options.target)
-    except PlanError as error:  # what is wrong with a plan is what this command is asked for
+    except PlanError as error:  # the findings about the plan are the result of this command
         if not error.findings:
             raise
         name, findings = str(options.target), error.findings

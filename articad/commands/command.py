@@ -1,4 +1,4 @@
-"""What a command of the command line is, and the register that holds them all."""
+"""The type of a command of the command line, and the register of all commands."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 class Command(NamedTuple):
-    """A command: what it says of itself, its arguments, and what runs it and returns its report."""
+    """A command: its summary, its arguments, and the function that runs it and returns its report."""
 
     name: str
     summary: str
@@ -28,7 +28,7 @@ _Body = Callable[[argparse.Namespace, "Terminal"], "Report"]
 
 
 def command(name: str, summary: str, *arguments: _Argument, needs_libraries: bool = True) -> Callable[[_Body], _Body]:
-    """Register a function as a command; one that does not need the system's libraries runs where they are missing."""
+    """Register a function as a command; `needs_libraries=False` lets it run where system libraries are missing."""
 
     def add_all(parser: argparse.ArgumentParser) -> None:
         for add in arguments:
@@ -42,7 +42,7 @@ def command(name: str, summary: str, *arguments: _Argument, needs_libraries: boo
 
 
 def argument(*names: str, **options: Any) -> _Argument:
-    """Return what adds this argument to a parser; several commands may share one."""
+    """Return a function that adds this argument to a parser; several commands may share one."""
 
     def add(parser: argparse.ArgumentParser) -> None:
         parser.add_argument(*names, **options)
@@ -51,6 +51,6 @@ def argument(*names: str, **options: Any) -> _Argument:
 
 
 def closest(word: str, known: Iterable[str]) -> str:
-    """Say which known word is close. (`articad.errors` has the same for names in plans, at the price of its imports)."""
+    """Suggest the closest known word, as `articad.errors` does for names in plans, but with fewer imports."""
     close = difflib.get_close_matches(word, list(known), n=1, cutoff=0.6)
     return f", did you mean {close[0]!r}?" if close else ""

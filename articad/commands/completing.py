@@ -1,4 +1,4 @@
-"""Tell a shell which words may follow."""
+"""Print shell scripts that complete commands."""
 
 from __future__ import annotations
 

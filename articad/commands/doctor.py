@@ -1,7 +1,7 @@
-"""What this machine has of what articad needs, and the line that installs the rest.
+"""What this machine has of what articad needs, and the command that installs the rest.
 
-The probe for shared libraries runs before anything that is linked against them: without libGL the B-rep kernel, and
-without libgomp Pinocchio, end in an ImportError that tells a user nothing, and some renderers in a segmentation fault.
+The probe for shared libraries runs before anything that is linked against them: without libGL the B-rep kernel, and without libgomp
+Pinocchio, fail with an unhelpful ImportError, and some renderers with a segmentation fault.
 """
 
 from __future__ import annotations
@@ -33,17 +33,17 @@ Loader = Callable[[str], object]
 
 
 class Library(NamedTuple):
-    """A shared library of the system: the name the loader knows, the Debian package, and who needs it."""
+    """A shared library of the system: the name for the loader, the Debian package, and what needs it."""
 
     soname: str
     package: str
     needed_by: str
 
 
-_NEEDED_BY = {"libgomp.so.1": "Pinocchio"}  # the others by the B-rep kernel
+_NEEDED_BY = {"libgomp.so.1": "Pinocchio"}  # the B-rep kernel needs the others
 LIBRARIES = tuple(Library(soname, package, _NEEDED_BY.get(soname, "the B-rep kernel")) for soname, package in PACKAGES.items())
 
-# Distribution -> what it does for articad. Reported with versions; all of them come with `pip install articad`.
+# Distribution -> its purpose in articad. Reported with versions; all of them come with `pip install articad`.
 _PACKAGES = {
     "numpy": "everything",
     "scipy": "pieces of meshes",
@@ -66,7 +66,7 @@ _GIB = 2**30
 
 @dataclass(frozen=True)
 class Probe:
-    """One line of the report: what was looked for, whether it is there, and what to do if not."""
+    """One line of the report: the item, whether it exists, and what to do if it does not."""
 
     name: str
     status: Status
@@ -120,7 +120,7 @@ def unavailable(missing: Iterable[Library]) -> KernelUnavailableError:
 
 
 def require_libraries(load: Loader = _load_lazily) -> None:
-    """Refuse to go on without the shared libraries that later imports are linked against.
+    """Raise if a shared library is missing that later imports are linked against.
 
     Raises:
         KernelUnavailableError: If there is one that the dynamic loader does not find.
@@ -130,7 +130,7 @@ def require_libraries(load: Loader = _load_lazily) -> None:
 
 
 def examine(load: Loader = _load_lazily) -> tuple[Probe, ...]:
-    """Look at everything articad needs or can use on this machine. Takes some seconds: it starts the B-rep kernel."""
+    """Check everything that articad needs or can use on this machine. Takes some seconds: it starts the B-rep kernel."""
     libraries = missing_libraries(load)
     return (
         Probe("articad", "ok", metadata.version("articad")),
@@ -148,7 +148,7 @@ def examine(load: Loader = _load_lazily) -> tuple[Probe, ...]:
 
 
 def examine_model(name: str, *, api_base: str | None = None) -> tuple[Probe, ...]:
-    """Say of a model whether its key is there and works, whether it keeps to forms and sees pictures, and what that costs."""
+    """Check whether a model's key exists and works, whether the model keeps to forms and accepts images, and what that costs."""
     from articad.agents.live import LiteLLM
 
     try:
@@ -226,7 +226,7 @@ def _packages() -> Iterator[Probe]:
 
 
 def _kernel() -> Probe:
-    """Start the B-rep kernel in a process of its own, where a crash is only a line of the report."""
+    """Start the B-rep kernel in a process of its own, so that a crash is only a line of the report."""
     name = "build123d starts"
     ended = launcher.run([], module="articad.kernels.trial_start", limits=launcher.Limits(seconds=_KERNEL_SECONDS))
     if ended.late:

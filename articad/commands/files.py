@@ -1,4 +1,4 @@
-"""Write a run in other formats; convert files; adopt what others made."""
+"""Write a run in other formats; convert files; adopt files from elsewhere."""
 
 from __future__ import annotations
 
@@ -94,7 +94,7 @@ def _convert(options: argparse.Namespace, terminal: Terminal) -> Report:
     from articad.formats import convert, format_of
 
     target = Path(options.target)
-    more: dict[str, Any] = {"keep_frames": True} if options.keep_frames else {}  # a format without frames of its own refuses it
+    more: dict[str, Any] = {"keep_frames": True} if options.keep_frames else {}  # a format without link frames refuses it
     read = {"root": options.root, "fuse": options.fuse, "srdf": options.srdf}
     assembly, bundle = convert(options.source, target, strict=options.strict, **read, **more)
     report = bundle.to_json() | {"folder": str(target.parent), "main": str(target)}
@@ -156,7 +156,7 @@ def _adopt(options: argparse.Namespace, terminal: Terminal) -> Report:
 
 
 def _audit_of(source: Path, root: str | None, terminal: Terminal) -> Report:
-    """Audit the file that was adopted; what is wrong with it does not keep it from being adopted."""
+    """Audit the file that was adopted; its faults do not prevent the adoption."""
     from articad.auditing.examine import AuditOptions, audit_file
 
     found = audit_file(source, AuditOptions(root=None if root is None else Path(root)))

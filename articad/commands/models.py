@@ -1,4 +1,4 @@
-"""Have a model design, or change what it has designed; make its run again without it."""
+"""Have a model design a product or change a design; repeat its run without it."""
 
 from __future__ import annotations
 
@@ -87,7 +87,7 @@ def _edit(options: argparse.Namespace, terminal: Terminal) -> Report:
     from articad.agents.recollection import StoredDocumentation, StoredMemory
     from articad.runs.run import Run
 
-    Run.view(options.run)  # before a key is asked for
+    Run.view(options.run)  # fails before a key is required
     budget, sees = asked_model(options, terminal) if options.text.strip() else (None, False)
     with terminal.progress("Editing", note=None if budget is None else lambda: _spent(budget)) as tell:
         run = edit(
@@ -133,7 +133,7 @@ def _resume(options: argparse.Namespace, terminal: Terminal) -> Report:
 
     asked = Run.view(options.run).request.options
     if asked.get("task") == "build":
-        message = f"{options.run} is a run of `articad build`, which asks no model: there are no calls to go on with."
+        message = f"{options.run} is a run of `articad build`, which calls no model: there are no calls to continue."
         raise RunError.at(options.run, message, f"Build it again: articad build PLAN_DIR --out {options.run}; built parts are kept.")
     options.look, options.inspection = bool(asked.get("look")), bool(asked.get("inspection"))
     budget, _ = asked_model(options, terminal)
@@ -153,7 +153,7 @@ def _resume(options: argparse.Namespace, terminal: Terminal) -> Report:
 
 
 def asked_model(options: argparse.Namespace, terminal: Terminal) -> tuple[Budget, bool]:
-    """Return the model that was asked for, within its budget, and whether it sees."""
+    """Return the requested model, within its budget, and whether it accepts images."""
     from articad.agents.live import LiteLLM
     from articad.agents.llm import Budget
 
@@ -171,19 +171,19 @@ def limits(options: argparse.Namespace) -> dict[str, Any]:
 
 
 def model_name(options: argparse.Namespace) -> str:
-    """Return the name of the model that is asked for: by the flag, else by $ARTICAD_MODEL, else the usual one."""
+    """Return the name of the model: from the flag, else from $ARTICAD_MODEL, else the default."""
     from articad.agents.live import DEFAULT_MODEL
 
     return options.model or os.environ.get("ARTICAD_MODEL") or DEFAULT_MODEL
 
 
 def _review(options: argparse.Namespace, *, sees: bool) -> Literal["none", "rules", "model"]:
-    """Return who reviews."""
+    """Return the kind of review."""
     return "none" if not options.review else "model" if sees else "rules"
 
 
 def _told(run: Run, options: argparse.Namespace, terminal: Terminal, budget: Budget | None) -> Report:
-    """Remember a finished run that a model had a part in, draw it, print it and return its report."""
+    """Remember a finished run of a model, draw it, print it and return its report."""
     from articad.agents.pipeline import recalls
     from articad.agents.recollection import remember
     from articad.commands.summaries import print_edit, print_review
@@ -215,12 +215,12 @@ def _spent(budget: Budget) -> str:
 
 
 def _is_asked(options: argparse.Namespace) -> bool:
-    """Whether somebody is there to choose."""
+    """Return whether a person can be asked to choose."""
     return sys.stdin.isatty() and not options.as_json and not options.quiet
 
 
 def _asking(terminal: Terminal) -> Choose:
-    """Return what shows alternatives and asks which one to make; an empty answer is the first."""
+    """Return a function that shows alternatives and asks which one to make; an empty answer is the first."""
 
     def choose(alternatives: Sequence[Alternative]) -> int:
         from articad.agents.brainstorm import structure

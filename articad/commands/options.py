@@ -1,4 +1,4 @@
-"""Arguments that several commands share, and the readers of their values."""
+"""Arguments that several commands share, and the functions that parse their values."""
 
 from __future__ import annotations
 

@@ -77,7 +77,7 @@ def _verify_certificate(options: argparse.Namespace, terminal: Terminal) -> Repo
 
 
 def _stated(certificate: Report) -> list[str]:
-    """Return what an accepted certificate is about: its author chose that, and no proof tells whether it is enough."""
+    """Return what an accepted certificate covers: its author chose that, and no proof shows whether it is enough."""
     from articad.certificates.verifier import covered
 
     moving = [joint["name"] for joint in certificate["mechanism"]["joints"] if joint["freedoms"]]

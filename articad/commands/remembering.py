@@ -1,4 +1,4 @@
-"""Look into the store of earlier runs, fill it, thin it out, carry it elsewhere."""
+"""Inspect, fill, prune and transfer the store of earlier runs."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from articad.memory.case import Case
     from articad.memory.experience import ExperienceStore
 
-_WHAT: Final = {  # each action, and what it needs beside itself
+_WHAT: Final = {  # each action, and the argument that it needs
     "list": "",
     "show": "a case's id",
     "search": "a request",

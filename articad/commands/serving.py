@@ -1,4 +1,4 @@
-"""Serve coding agents: the tools over standard input and output, and the skill that says how to use them."""
+"""Serve coding agents: the tools over standard input and output, and the skill with instructions for them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""See what there is: open a page with the model, begin a product of one's own, watch a folder while it is worked on."""
+"""View results: open a page with the model, start a new product, watch a folder while it is edited."""
 
 from __future__ import annotations
 
@@ -135,7 +135,7 @@ def _kernel_of(script: Path) -> str | None:
 
 
 def _example(name: str) -> Path:
-    """Return an example's folder, by its name or a word of it that no other has."""
+    """Return an example's folder, by its name or a word that is only in its name."""
     from articad import examples
 
     close = [known for known in examples.names() if name in known.split("_")]

@@ -1,4 +1,4 @@
-"""Steps that several commands take: find an assembly, build it, print a finished run."""
+"""Steps that several commands share: find an assembly, build it, print a finished run."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def plan_in(target: str) -> AssemblyPlan:
     """Return the plan of a file or folder.
 
     Raises:
-        PlanError: If it is not of the form; with everything else that is wrong with it, as far as that can be told.
+        PlanError: If it does not have the form; with all other faults that can be found.
         ReadError: If it cannot be read.
     """
     from articad.errors import PlanError
@@ -56,14 +56,14 @@ def plan_in(target: str) -> AssemblyPlan:
 
 @contextmanager
 def stage(tell: Progress, name: str) -> Iterator[None]:
-    """Tell that a step of the program's own begins, and that it is done."""
+    """Report that a step of the program begins, and that it is done."""
     tell(name, "started")
     yield
     tell(name, "done")
 
 
 def reported(run: Run, terminal: Terminal) -> Report:
-    """Print what a finished run holds, and return its report."""
+    """Print a summary of a finished run, and return its report."""
     from articad.commands.summaries import print_run
     from articad.runs.record import run_report
 
@@ -73,7 +73,7 @@ def reported(run: Run, terminal: Terminal) -> Report:
 
 
 def experience(options: argparse.Namespace, budget: Budget | None = None) -> ExperienceStore:
-    """Return the store of earlier runs, by the vectors that were asked for; a provider's are calls of the budget too."""
+    """Return the store of earlier runs, with the requested vectors; a provider's vectors count as calls of the budget."""
     from articad.memory.experience import ExperienceStore
 
     if not options.embeddings:
@@ -102,7 +102,7 @@ def loaded(target: str, options: argparse.Namespace, terminal: Terminal) -> Asse
 
 
 def draw(run: Run, terminal: Terminal) -> None:
-    """Draw what a finished run has made; its parts come from the cache."""
+    """Draw the result of a finished run; its parts come from the cache."""
     from articad.runs.record import assembly_of, record_page, record_pictures
     from articad.runs.run import Run
 
@@ -115,5 +115,5 @@ def draw(run: Run, terminal: Terminal) -> None:
 
 
 def sandbox_level(options: argparse.Namespace) -> Literal["strict", "weak"]:
-    """Return how much isolation is asked for: by the flag, else by $ARTICAD_SANDBOX."""
+    """Return the required isolation: from the flag, else from $ARTICAD_SANDBOX."""
     return "weak" if (options.sandbox or os.environ.get("ARTICAD_SANDBOX")) == "weak" else "strict"

@@ -1,4 +1,4 @@
-"""Summaries: what commands print of their reports, for people to read."""
+"""Summaries: what commands print about their reports, for people."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ if TYPE_CHECKING:
     from articad.findings import Findings
 
 _CELL = 60  # characters of a value in a table
-_NEAREST = 3  # pairs, or coordinates that follow, that are shown unless all are asked for
+_NEAREST = 3  # pairs, or coordinates that follow, that are shown without -v
 
 
 def print_run(report: Report, terminal: Terminal) -> None:
-    """Print what a finished run made, how it was judged, and where it is."""
+    """Print the result of a finished run, its verdicts, and its folder."""
     print_assembly(report["assembly"], terminal)
     print_checks(report["checks"], terminal)
     print_findings([*report["assembly"]["findings"], *report["checks"]["findings"], *report["findings"]], terminal)
@@ -29,7 +29,7 @@ def print_run(report: Report, terminal: Terminal) -> None:
 
 
 def print_assembly(report: Report, terminal: Terminal) -> None:
-    """Print the parts with their measures, the joints, and what moves."""
+    """Print the parts with their measurements, the joints, and the drivers."""
     parts, joints = report["parts"], report["joints"]
     rows = [
         (name, part["material"] or "", _number(part["volume_mm3"], ".1f"), _number(part["mass_kg"], ".4g"), part["derived_from"] or "")
@@ -46,7 +46,7 @@ def print_assembly(report: Report, terminal: Terminal) -> None:
 
 
 def print_checks(report: Report, terminal: Terminal) -> None:
-    """Print how the pairs of parts fared, how that is known, and the deepest overlap."""
+    """Print the verdicts on the pairs of parts, their strengths, and the deepest overlap."""
     pairs = report["pairs"]
     told = _counts(pair["verdict"] for pair in pairs)
     known = _counts(pair["strength"]["kind"].replace("_", " ") for pair in pairs)
@@ -67,7 +67,7 @@ def print_checks(report: Report, terminal: Terminal) -> None:
 
 
 def print_fits(report: Report, terminal: Terminal) -> None:
-    """Print how the declared fits fared, and how that is known over the motion."""
+    """Print the verdicts on the declared fits, and their strength over the motion."""
     rows = report.get("fits", [])
     if rows:
         verdicts, known = (
@@ -78,7 +78,7 @@ def print_fits(report: Report, terminal: Terminal) -> None:
 
 
 def print_certificate(report: Report, terminal: Terminal) -> None:
-    """Print what is proven, what is not, and how far each joint may move freely."""
+    """Print what is proven, what is not, and the free range of each joint."""
     known = _counts(pair["strength"]["kind"].replace("_", " ") for pair in report["pairs"])
     verdict = "ok" if report["ok"] else "NOT ok"
     terminal.say(f"Motion: {verdict}; {report['covers']}")
@@ -95,7 +95,7 @@ def print_certificate(report: Report, terminal: Terminal) -> None:
 
 
 def print_clearances(rows: list[Report], terminal: Terminal) -> None:
-    """Print where parts that no joint connects come nearest to each other; all pairs if that is asked for."""
+    """Print where parts that no joint connects come closest to each other; all pairs with -v."""
     shown = rows if terminal.verbose else [row for row in rows if row["relation"] != "mating"][:_NEAREST]
     if not shown:
         return
@@ -108,7 +108,7 @@ def print_clearances(rows: list[Report], terminal: Terminal) -> None:
 
 
 def print_follows(tables: list[Report], terminal: Terminal) -> None:
-    """Print where what follows a driver is at both ends of the driver's range; whole tables if that is asked for."""
+    """Print the values of followers at both ends of each driver's range; whole tables with -v."""
     for table in tables:
         names, units = list(table["followers"]), table["units"]
         rows = [
@@ -130,7 +130,7 @@ def _in_degrees(value: float, unit: str) -> str:
 
 
 def print_verdict(report: Report, checks: Report, terminal: Terminal) -> None:
-    """Print what the judge ruled, and what of its findings the checks have not said already."""
+    """Print the judge's rulings, and those of its findings that the checks have not already reported."""
     known = {finding["message"] for finding in checks["findings"]}
     terminal.say(f"Inspection, round {report['round']}: {'ok' if report['ok'] else 'NOT ok'}, decided by {report['by']}.")
     for aspect, ruling in report["rulings"].items():
@@ -166,7 +166,7 @@ def print_review(report: Report, terminal: Terminal) -> None:
 
 
 def print_exports(exports: Mapping[str, Report], terminal: Terminal) -> None:
-    """Print each export's main file, everything that was lost in it, and what else its writer had to say."""
+    """Print each export's main file, all its losses, and its writer's findings."""
     for name, export in exports.items():
         losses = counted_things(len(export["rows"]), "loss", "losses")
         meshes = sum(size for path, size in export["files"].items() if path.endswith((".stl", ".obj")))
@@ -182,7 +182,7 @@ def print_exports(exports: Mapping[str, Report], terminal: Terminal) -> None:
 
 
 def print_findings(findings: list[Report], terminal: Terminal) -> None:
-    """Print the findings of a report; of the same fault of the same parts at several poses the worst, unless all are asked for."""
+    """Print the findings of a report; for the same fault of the same parts at several poses only the worst, unless -v is given."""
     groups: dict[tuple[Any, ...], list[Report]] = {}
     for number, finding in enumerate(findings):
         parts = tuple(finding.get("parts") or ())

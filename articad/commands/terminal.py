@@ -1,7 +1,7 @@
-"""Terminal: how commands speak. Lines and tables on stdout, progress and errors on stderr, or one JSON report and nothing else.
+"""Terminal: the output of commands. Lines and tables on stdout, progress and errors on stderr; or one JSON report and nothing else.
 
-Rich is imported only where a person looks: a terminal, without --json. Everywhere else the output is plain text
-with aligned columns, which survives pipes, logs and CI.
+Rich is imported only for a terminal without --json. Everywhere else the output is plain text with aligned columns, which survives pipes,
+logs and CI.
 """
 
 from __future__ import annotations
@@ -22,31 +22,31 @@ if TYPE_CHECKING:
     from articad.findings import Findings
 
 Report = dict[str, Any]
-"""What a command made or found: `{"schema": "articad.<kind>/1", "ok": bool, "findings": […], …}`."""
+"""The report of a command: `{"schema": "articad.<kind>/1", "ok": bool, "findings": […], …}`."""
 
 Progress = Callable[[str, str], None]
-"""Told of a part's or stage's name and its new state; may be called from any thread."""
+"""Called with a part's or stage's name and its new state; may be called from any thread."""
 
 _STARTED = "started"
-_DONE = "done"  # a step of the program's own
+_DONE = "done"  # a step of the program itself
 _UNREMARKABLE = {"cached", "derived", "kept"}  # nothing had to be done
-_SMOOTH = {"built", _DONE, "made", "ok", "read", "written"}  # it went as it should
-_WORTH_A_LINE_S = 2.0  # of a step that takes less there is no news
-# Control and format characters of Unicode, separators of lines, halves of characters; not the end of a line, and not the tab.
+_SMOOTH = {"built", _DONE, "made", "ok", "read", "written"}  # states of success
+_WORTH_A_LINE_S = 2.0  # shorter steps are not reported
+# Control and format characters of Unicode, line separators, surrogates; but not newline and tab.
 _OBEYED = re.compile(
     "[\x00-\x08\x0b-\x1f\x7f-\x9f\xad\u061c\u180e\u200b-\u200f\u2028-\u202e\u2060-\u2064\u2066-\u206f\ufeff\ufff9-\ufffb\ud800-\udfff]"
 )
-_SHOWN_AT_ONCE = 3  # names under way beside the bar: more do not fit into 80 columns
+_SHOWN_AT_ONCE = 3  # names in progress beside the bar: more do not fit into 80 columns
 
 
 class Terminal:
-    """Where a command's words go.
+    """The output of a command.
 
     Args:
         as_json: Print one JSON report and nothing else on stdout.
         quiet: Print findings and errors only.
         verbose: Print details, and tracebacks of defects.
-        color: False forbids colour; by default a terminal decides.
+        color: False forbids colour; by default it is used on a terminal.
     """
 
     def __init__(
@@ -71,7 +71,7 @@ class Terminal:
             print(plain(text), file=self.out)
 
     def detail(self, text: str) -> None:
-        """Print a line for those who asked for more."""
+        """Print a line for -v."""
         if self.verbose:
             print(plain(text), file=self.err)
 
@@ -81,7 +81,7 @@ class Terminal:
         Args:
             columns: Headings.
             rows: Cells.
-            right: Indices of the columns that hold numbers.
+            right: Indices of numeric columns.
         """
         if self.as_json or self.quiet or not rows:
             return
@@ -108,15 +108,15 @@ class Terminal:
             print(self._line_of(finding, self.out), file=self.out)
 
     def finish(self, report: Report) -> None:
-        """Print the report, if that was asked for."""
+        """Print the JSON report, if it was requested."""
         if self.as_json:
             print(plain(json.dumps(report, indent=1, ensure_ascii=False, allow_nan=False)), file=self.out)
         self.out.flush()
 
-    # ------------------------------------------------------------------ what went wrong
+    # ------------------------------------------------------------------ errors
 
     def error(self, error: ArticadError) -> None:
-        """Print an error in full: what happened, its findings with their hints, and how to get what is missing."""
+        """Print an error in full: what happened, its findings with their hints, and how to install what is missing."""
         self.finish(
             {
                 "schema": "articad.error/1",
@@ -144,11 +144,11 @@ class Terminal:
 
     @staticmethod
     def described(error: ArticadError) -> dict[str, Any]:
-        """Return what a report says of an error."""
+        """Return an error as an entry of a report."""
         return {"type": type(error).__name__, "stage": error.stage, "message": error.message}
 
     def failure(self, error: BaseException, explanation: str) -> None:
-        """Print one line about an exception that is not ours, and how to learn more."""
+        """Print one line about an unexpected exception, and how to learn more."""
         name = type(error).__name__
         self.finish(
             {"schema": "articad.error/1", "ok": False, "error": {"type": name, "stage": None, "message": str(error)}, "findings": []}
@@ -159,7 +159,7 @@ class Terminal:
             print(plain("".join(traceback.format_exception(error))), end="", file=self.err)
 
     def interrupted(self) -> None:
-        """Say that the user stopped the program."""
+        """Print that the user stopped the program."""
         if self._is_watched(self.err):
             print("\x1b[?25h", end="", file=self.err)  # a bar that was cut off has hidden the cursor
         self.failure(KeyboardInterrupt(), "interrupted; finished work is kept.")
@@ -170,14 +170,14 @@ class Terminal:
 
     @contextmanager
     def progress(self, title: str, total: int | None = None, note: Callable[[], str] | None = None) -> Iterator[Progress]:
-        """Show what is under way: live on a terminal, a line for each thing that ends otherwise.
+        """Show progress: live on a terminal, otherwise a line for each item that ends.
 
-        On a terminal only what did not go smoothly stays when the bar is gone.
+        On a terminal, only lines of items that did not succeed remain after the bar.
 
         Args:
-            title: What is being done.
-            total: How many things will end, if that is known.
-            note: Says what else changes meanwhile, such as the tokens that were spent.
+            title: The work in progress.
+            total: Number of items, if it is known.
+            note: Returns further text, such as the tokens that were used.
         """
         if self.as_json or self.quiet:
             yield _silent
@@ -272,14 +272,14 @@ class Terminal:
 
 
 def _ended(name: str, state: str, started: dict[str, float], now: float) -> str:
-    """Return the line that says how something ended, and after what time if that is known."""
+    """Return the line about the end of an item, with its duration if that is known."""
     return f"  {name}: {state}" + (f", {now - started[name]:.1f} s" if name in started else "")
 
 
 def plain(text: str) -> str:
-    """Return text that a terminal shows and does not obey: names and messages may come from anyone's file, script or model.
+    """Return text that a terminal displays but does not execute: names and messages may come from untrusted files, scripts or models.
 
-    Escape sequences and what turns the reading direction are shown by their numbers; lines and tabs stay.
+    Escape sequences and bidirectional controls are shown by their code points; newlines and tabs stay.
     """
     return _OBEYED.sub(_spelled, text)
 

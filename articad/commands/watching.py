@@ -1,4 +1,4 @@
-"""Serve one page to this machine's browser, and make it anew when files change."""
+"""Serve one page to this machine's browser, and rebuild it when files change."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ from articad.files import PLAN_BYTES, read_file
 if TYPE_CHECKING:
     from articad.commands.terminal import Terminal
 
-_LOOK_S: Final = 0.3  # between two looks at the files
+_LOOK_S: Final = 0.3  # between two checks of the files
 _WAITING: Final = "<!doctype html><meta charset=utf-8><meta http-equiv=refresh content=1><title>articad</title><p>Building …"
 
 
 class PageServer:
     """Serves a page and its version, on this machine only.
 
-    Requests that name another host are refused: a foreign site whose name was made to point here cannot read the page.
+    Requests that name another host are refused, so that a foreign site whose name resolves to this machine cannot read the page.
 
     Args:
         port: 0 for any that is free.
@@ -42,12 +42,12 @@ class PageServer:
 
     @property
     def port(self) -> int:
-        """Where it listens."""
+        """The port on which it listens."""
         return int(self._server.server_address[1])
 
     @property
     def address(self) -> str:
-        """Of the page."""
+        """Address of the page."""
         return f"http://127.0.0.1:{self.port}/"
 
     def __enter__(self) -> Self:
@@ -82,7 +82,7 @@ def _handler(served: PageServer) -> type[BaseHTTPRequestHandler]:
             self.wfile.write(content)
 
         def log_message(self, *_: object) -> None:
-            """Say nothing: requests are not news."""
+            """Log nothing."""
 
     return Handler
 
@@ -95,14 +95,14 @@ def watch(
     opened: Callable[[str], object] | None = None,
     wait: Callable[[float], object] = time.sleep,
 ) -> int:
-    """Build and serve until interrupted; return how often it was built.
+    """Build and serve until interrupted; return the number of builds.
 
     Args:
-        options: Of the command.
-        terminal: Told of each build and of what is wrong.
+        options: Options of the command.
+        terminal: Gets a line for each build and for each error.
         server: Serves the page.
         opened: Opens an address in a browser.
-        wait: Waits between two looks; a KeyboardInterrupt out of it ends the watch.
+        wait: Waits between two checks; a KeyboardInterrupt from it ends the watch.
     """
     folder = Path(options.plan) if Path(options.plan).is_dir() else Path(options.plan).parent
     before, built = "", 0
@@ -121,19 +121,19 @@ def watch(
 
 
 def fingerprint(folder: Path) -> str:
-    """Return what changes whenever the plan or a part script does."""
+    """Return a value that changes whenever the plan or a part script does."""
     total = hashlib.sha256()
     for file in [folder / "plan.json", *sorted((folder / "parts").glob("*.py"))]:
         try:
             content = read_file(file, PLAN_BYTES)
-        except OSError:  # deleted, or just being replaced: the next look tells
+        except OSError:  # deleted, or just being replaced: the next check will see
             continue
         total.update(f"{file.name}\0{len(content)}\0".encode() + content)
     return total.hexdigest()[:16]
 
 
 def _rebuild(folder: Path, options: argparse.Namespace, terminal: Terminal, server: PageServer, *, version: str) -> None:
-    """Build what has changed; what is wrong is said here and on the page, which stays as it was."""
+    """Rebuild what has changed; errors are printed here and shown on the page, which otherwise stays as it was."""
     from articad.commands.steps import assembled
     from articad.errors import ArticadError
     from articad.plan.schema import AssemblyPlan

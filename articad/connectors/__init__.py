@@ -1,4 +1,4 @@
-"""Connectors and the algebra of rigid motions: numpy only.
+"""Connectors and the algebra of rigid motions: NumPy only.
 
 Lengths are millimetres, angles radians. Names of frames: `T_a_b` maps coordinates of frame b into frame a.
 """

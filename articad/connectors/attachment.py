@@ -9,7 +9,7 @@ from articad.connectors.connector import Connector
 
 @dataclass(frozen=True)
 class Attachment:
-    """One side of a joint, as `part["hinge"]` gives it.
+    """One side of a joint, as `part["hinge"]` returns it.
 
     Attributes:
         part: Name of the part.

@@ -13,12 +13,12 @@ from articad.errors import ConnectorError
 from articad.findings import Finding
 
 _NORMAL_ZERO = 1e-9  # length below which a normal has no direction
-_K = np.diag([1.0, -1.0, 1.0, 1.0])  # y is turned over after a reflection, so that the frame is right-handed again
+_K = np.diag([1.0, -1.0, 1.0, 1.0])  # y is reversed after a reflection, so that the frame is right-handed again
 
 
 @dataclass(frozen=True, eq=False)
 class Plane:
-    """A plane to mirror at.
+    """A mirror plane.
 
     Attributes:
         point: Any of its points `(3,)` [mm].
@@ -53,13 +53,13 @@ class Plane:
 
 @dataclass(frozen=True)
 class Drift:
-    """How far a frame is from where it should be, in components that mean something at an axis.
+    """Deviation of a frame from its target, in components that are meaningful at an axis.
 
     Attributes:
         radial: Distance from the z axis [mm].
         along: Distance along the z axis [mm], without sign.
         axis: Angle between the two z axes [rad], 0 … π.
-        roll: Signed turn about z that is left [rad].
+        roll: Signed angle about z [rad].
     """
 
     radial: float
@@ -69,12 +69,12 @@ class Drift:
 
     @classmethod
     def of(cls, D: SE3) -> Drift:
-        """Return the components of a single mismatch D (kinematics: connector drift)."""
+        """Return the components of a single mismatch D."""
         R, t = D.rotation, D.translation
         return cls(
             radial=float(np.hypot(t[0], t[1])),
             along=float(abs(t[2])),
-            axis=float(np.arctan2(np.hypot(R[0, 2], R[1, 2]), R[2, 2])),  # acos(R33), exact near 0 as well
+            axis=float(np.arctan2(np.hypot(R[0, 2], R[1, 2]), R[2, 2])),  # acos(R33), accurate near 0 as well
             roll=float(np.arctan2(R[1, 0] - R[0, 1], R[0, 0] + R[1, 1])),
         )
 
@@ -88,7 +88,7 @@ class Connector:
         frame: C in the part's frame: origin, z along the joint's axis, x the zero of its angle.
         label: Free text for whoever builds the part.
         kind: hinge_axis, slide_axis, shaft_axis, bore_axis, ball_centre, mount_face, gear_axis, thread_axis or frame.
-        roll_free: True when x was chosen by rule, not stated, so that only origin and z are held to it.
+        roll_free: True if x was chosen by rule, not stated; then only origin and z are compared.
     """
 
     name: str
@@ -98,7 +98,7 @@ class Connector:
     roll_free: bool = False
 
     def moved(self, T: SE3) -> Connector:
-        """Return the same connector with its frame carried along by T."""
+        """Return the same connector with its frame moved by T."""
         return replace(self, frame=T @ self.frame)
 
     def mirrored(self, S: npt.ArrayLike) -> Connector:
@@ -110,7 +110,7 @@ class Connector:
         return replace(self, frame=SE3.from_matrix(np.asarray(S, dtype=np.float64) @ self.frame.matrix @ _K))
 
     def drift(self, realised: SE3) -> Drift:
-        """Return how far a realised frame is from this one."""
+        """Return the deviation of a realised frame from this one."""
         return Drift.of(self.frame.inverse() @ realised)
 
 

@@ -2,8 +2,8 @@
 
     T_child = T_parent · C_p · M · F · C_c⁻¹
 
-M is the joint's motion, measured about and along the parent connector's +z; F is the identity for `aligned` and half a
-turn about x for `opposed`. Two mated connectors coincide, up to F, where M is the identity (ArtiCAD, Representation).
+M is the joint's motion, measured about and along the parent connector's +z; F is the identity for `aligned` and half a turn about x for
+`opposed`. Two mated connectors coincide, up to F, where M is the identity.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from articad.connectors.se3 import SE3
 
 
 class Mate(StrEnum):
-    """How two mated connectors face each other: z axes along, or against, each other."""
+    """The orientation of two mated connectors: z axes aligned or opposed."""
 
     ALIGNED = "aligned"
     OPPOSED = "opposed"

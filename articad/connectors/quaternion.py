@@ -1,6 +1,6 @@
 """Unit quaternions as arrays `(*batch, 4)`, order x y z w: the arithmetic under `SE3`.
 
-Nothing here validates; `SE3` does, once, at its constructors.
+Nothing here validates; the constructors of `SE3` do, once.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ import numpy.typing as npt
 FloatArray = npt.NDArray[np.float64]
 
 _SMALL_SINE = 1e-8  # below it θ/sin(θ/2) equals 2/cos(θ/2) to the last bit
-_SERIES_BELOW = 0.25  # rad; closed forms lose digits to cancellation below it, the series is exact to 1e-17
+_SERIES_BELOW = 0.25  # rad; below it closed forms lose digits by cancellation, while the series is accurate to 1e-17
 
 
 def cross(a: FloatArray, b: FloatArray) -> FloatArray:
@@ -46,7 +46,7 @@ def conjugate(q: FloatArray) -> FloatArray:
 
 
 def rotate(q: FloatArray, v: FloatArray) -> FloatArray:
-    """Turn the vectors v `(*batch, 3)` by q."""
+    """Rotate the vectors v `(*batch, 3)` by q."""
     u, w = q[..., :3], q[..., 3:]
     twice = 2.0 * cross(u, v)
     rotated: FloatArray = v + w * twice + cross(u, twice)
@@ -72,7 +72,7 @@ def to_matrix(q: FloatArray) -> FloatArray:
 def from_matrix(R: FloatArray) -> FloatArray:
     """Return unit quaternions of rotation matrices `(*batch, 3, 3)`.
 
-    Of the four equivalent formulas the one with the largest divisor is taken (Shepperd, J. Guidance and Control 1, 1978).
+    The one of four equivalent formulas with the largest divisor is used (Shepperd, J. Guidance and Control 1, 1978).
     """
     xx, yy, zz = R[..., 0, 0], R[..., 1, 1], R[..., 2, 2]
     # the matrix 4 q qᵀ: each of its columns is a multiple of q
@@ -99,7 +99,7 @@ def normalized(q: FloatArray) -> FloatArray:
 
 
 def positive(q: FloatArray) -> FloatArray:
-    """Return the one of ±q, which are the same rotation, that has w ≥ 0."""
+    """Return the one of ±q, which are the same rotation, with w ≥ 0."""
     return np.where(q[..., 3:] < 0, -q, q)
 
 
@@ -110,7 +110,7 @@ def exp(omega: FloatArray) -> FloatArray:
 
 
 def log(q: FloatArray) -> FloatArray:
-    """Return the rotation vector `(*batch, 3)` [rad], at most π long."""
+    """Return the rotation vector `(*batch, 3)` [rad], of length at most π."""
     q = positive(q)
     u, w = q[..., :3], q[..., 3:]
     sine = np.sqrt((u * u).sum(axis=-1, keepdims=True))

@@ -14,15 +14,15 @@ from articad.connectors.quaternion import FloatArray
 from articad.errors import ConnectorError
 from articad.findings import Finding, Findings
 
-POSE_TOLERANCE_MM = 1e-6  # two poses are equal within a nanometre …
+POSE_TOLERANCE_MM = 1e-6  # tolerances of equal poses: a nanometre …
 POSE_TOLERANCE_RAD = 1e-9  # … and a nanoradian: a nanometre at one metre
-_QUATERNION_TOLERANCE = 1e-3  # | ‖q‖ − 1 |: rounding of a file's few digits passes, another quantity does not
-_ROTATION_TOLERANCE = 1e-6  # |RᵀR − I|: digits of a text file pass, shear and scale do not
+_QUATERNION_TOLERANCE = 1e-3  # | ‖q‖ − 1 |: the rounding of a file's few digits passes, another quantity does not
+_ROTATION_TOLERANCE = 1e-6  # |RᵀR − I|: the digits of a text file pass, shear and scale do not
 _AXIS_ZERO = 1e-9  # length below which an axis has no direction
-_AXIS_PARALLEL = 1e-6  # |z × x| of unit axes below which x has no direction across z
-_AXIS_SILENT = 1e-6  # |x · z| that is rounding: projected without a word
+_AXIS_PARALLEL = 1e-6  # |z × x| of unit axes below which x has no direction perpendicular to z
+_AXIS_SILENT = 1e-6  # |x · z| from rounding: x is projected without a finding
 _AXIS_PROJECTED = 0.0175  # |x · z|, 1 degree: below it x is projected with a warning, above it is an error
-_LEAST_PARALLEL_TIE = 1e-9  # components this close are a tie, decided in the order X, Y, Z
+_LEAST_PARALLEL_TIE = 1e-9  # components this close are a tie, resolved in the order X, Y, Z
 
 
 def _refuse(code: str, where: str, message: str, hint: str, value: float | None = None) -> NoReturn:
@@ -52,7 +52,7 @@ class SE3:
     """
 
     data: FloatArray
-    __array_ufunc__ = None  # `array @ SE3` must not be tried element by element
+    __array_ufunc__ = None  # NumPy must not try `array @ SE3` element by element
 
     def __post_init__(self) -> None:
         given = _floats(self.data, (7,), "pose")
@@ -66,12 +66,12 @@ class SE3:
 
     @classmethod
     def _trusted(cls, t: FloatArray, q: FloatArray) -> SE3:
-        """Return poses of values that are finite and of unit length by construction."""
+        """Return poses from values that are finite and of unit length by construction."""
         return cls.from_unit_array(_packed(t, q))
 
     @classmethod
     def from_unit_array(cls, data: FloatArray) -> SE3:
-        """Return poses that view `data` `(*batch, 7)`: not copied, not checked; for results of other rooms' arithmetic.
+        """Return poses that view `data` `(*batch, 7)`, neither copied nor checked; for results of other packages' arithmetic.
 
         The array is made read-only. Every quaternion must be of unit length with w ≥ 0.
         """
@@ -82,7 +82,7 @@ class SE3:
 
     @classmethod
     def identity(cls, batch: tuple[int, ...] = ()) -> SE3:
-        """Return motions that move nothing."""
+        """Return identity motions."""
         data = np.zeros((*batch, 7))
         data[..., 6] = 1.0
         return cls.from_unit_array(data)
@@ -118,7 +118,7 @@ class SE3:
 
     @classmethod
     def from_translation(cls, t: npt.ArrayLike) -> SE3:
-        """Return shifts by `t` `(*batch, 3)` [mm]."""
+        """Return translations by `t` `(*batch, 3)` [mm]."""
         return cls._trusted(_floats(t, (3,), "translation"), np.array([0.0, 0.0, 0.0, 1.0]))
 
     @classmethod
@@ -131,12 +131,12 @@ class SE3:
 
     @classmethod
     def from_axes(cls, o: npt.ArrayLike, z: npt.ArrayLike, x: npt.ArrayLike | None = None, *, where: str = "frame") -> SE3:
-        """Return the frame with origin `o` [mm], third axis along `z` and first axis along `x`, projected across z.
+        """Return the frame with origin `o` [mm], third axis along `z`, and first axis along `x` projected perpendicular to z.
 
         Args:
             o: Origin `(3,)` [mm].
             z: Direction `(3,)`, any length.
-            x: Direction `(3,)`; left out: the world axis least parallel to z.
+            x: Direction `(3,)`; by default the world axis least parallel to z.
             where: Path for the findings, such as `parts.door.connectors.hinge`.
 
         Raises:
@@ -152,7 +152,7 @@ class SE3:
 
     @classmethod
     def from_axis_angle(cls, axis: npt.ArrayLike, angle: npt.ArrayLike, about: npt.ArrayLike | None = None) -> SE3:
-        """Return turns by `angle` `(*batch)` [rad] round `axis` `(*batch, 3)` (any length), through the point `about` [mm].
+        """Return rotations by `angle` `(*batch)` [rad] about `axis` `(*batch, 3)` (any length), through the point `about` [mm].
 
         Raises:
             ConnectorError: E_AXIS_ZERO, E_NONFINITE.
@@ -167,17 +167,17 @@ class SE3:
 
     @classmethod
     def rot_x(cls, angle: npt.ArrayLike) -> SE3:
-        """Return turns about x by `angle` `(*batch)` [rad]."""
+        """Return rotations about x by `angle` `(*batch)` [rad]."""
         return cls._turn(angle, 0)
 
     @classmethod
     def rot_y(cls, angle: npt.ArrayLike) -> SE3:
-        """Return turns about y by `angle` `(*batch)` [rad]."""
+        """Return rotations about y by `angle` `(*batch)` [rad]."""
         return cls._turn(angle, 1)
 
     @classmethod
     def rot_z(cls, angle: npt.ArrayLike) -> SE3:
-        """Return turns about z by `angle` `(*batch)` [rad]."""
+        """Return rotations about z by `angle` `(*batch)` [rad]."""
         return cls._turn(angle, 2)
 
     @classmethod
@@ -189,7 +189,7 @@ class SE3:
 
     @classmethod
     def trans(cls, x: npt.ArrayLike, y: npt.ArrayLike, z: npt.ArrayLike) -> SE3:
-        """Return shifts by `x`, `y`, `z` `(*batch)` [mm]."""
+        """Return translations by `x`, `y`, `z` `(*batch)` [mm]."""
         return cls.from_translation(np.stack(np.broadcast_arrays(*(np.asarray(c, dtype=np.float64) for c in (x, y, z))), axis=-1))
 
     @classmethod
@@ -251,7 +251,7 @@ class SE3:
     # --- group
 
     def inverse(self) -> SE3:
-        """Return the motions that undo these."""
+        """Return the inverse motions."""
         q = quaternion.conjugate(self.quaternion)
         return SE3._trusted(-quaternion.rotate(q, self.translation), q)
 
@@ -267,7 +267,7 @@ class SE3:
         return quaternion.rotate(self.quaternion, np.asarray(points, dtype=np.float64)) + self.translation
 
     def rotate(self, vectors: npt.ArrayLike) -> FloatArray:
-        """Return the images of directions `(*vectors, 3)`, which a translation does not move."""
+        """Return the images of directions `(*vectors, 3)`, which a translation does not change."""
         return quaternion.rotate(self.quaternion, np.asarray(vectors, dtype=np.float64))
 
     def log(self) -> FloatArray:
@@ -276,7 +276,7 @@ class SE3:
         return np.concatenate([quaternion.log_translation(omega, self.translation), omega], axis=-1)
 
     def adjoint(self) -> FloatArray:
-        """Return the matrices `(*batch, 6, 6)` that take a twist [v; ω] of the inner frame into the outer one."""
+        """Return the matrices `(*batch, 6, 6)` that map a twist [v; ω] of the inner frame to the outer one."""
         R, t = self.rotation, self.translation
         Ad = np.zeros((*self.batch_shape, 6, 6))
         Ad[..., :3, :3] = Ad[..., 3:, 3:] = R
@@ -290,7 +290,7 @@ class SE3:
     # --- comparison
 
     def angle_to(self, other: SE3) -> FloatArray:
-        """Return the angles `(*batch)` [rad] of the turns between these and `other`, 0 … π."""
+        """Return the angles `(*batch)` [rad] of the rotations between these and `other`, 0 … π."""
         q = quaternion.multiply(quaternion.conjugate(self.quaternion), other.quaternion)
         angle: FloatArray = 2.0 * np.arctan2(np.sqrt((q[..., :3] ** 2).sum(axis=-1)), np.abs(q[..., 3]))
         return angle
@@ -301,7 +301,7 @@ class SE3:
         return distance
 
     def allclose(self, other: SE3, mm: float = POSE_TOLERANCE_MM, rad: float = POSE_TOLERANCE_RAD) -> bool:
-        """Tell whether all poses agree within `mm` and `rad`."""
+        """Return whether all poses agree within `mm` and `rad`."""
         return bool((self.distance_to(other) <= mm).all() and (self.angle_to(other) <= rad).all())
 
     def __eq__(self, other: object) -> bool:
@@ -343,7 +343,7 @@ class SE3:
 
 
 def axis_findings(o: npt.ArrayLike, z: npt.ArrayLike, x: npt.ArrayLike | None = None, *, where: str = "frame") -> Findings:
-    """Return everything that is wrong with a frame given as origin, z and x.
+    """Return all faults of a frame given as origin, z and x.
 
     Args:
         o: Origin `(3,)` [mm].
@@ -389,7 +389,7 @@ def _axis_finding(code: str, where: str, message: str, hint: str, angle: float |
 
 
 def world_x(z: npt.ArrayLike) -> FloatArray:
-    """Return the world axis `(3,)` least parallel to `z`, projected across it: X before Y before Z on ties within 1e-9."""
+    """Return the world axis `(3,)` least parallel to `z`, projected perpendicular to it: X before Y before Z on ties within 1e-9."""
     direction = _unit(np.asarray(z, dtype=np.float64))
     components = np.abs(direction)
     first = int(np.argmax(components <= components.min() + _LEAST_PARALLEL_TIE))
@@ -397,7 +397,7 @@ def world_x(z: npt.ArrayLike) -> FloatArray:
 
 
 def _across(x: FloatArray, z: FloatArray) -> FloatArray:
-    """Project x across the unit vector z; twice, because once leaves rounding in proportion to x · z."""
+    """Project x perpendicular to the unit vector z; twice, because one projection leaves rounding proportional to x · z."""
     for _ in range(2):
         x = _unit(x - (x @ z) * z)
     return x
@@ -424,7 +424,7 @@ def _translations(t: npt.ArrayLike | None) -> FloatArray:
 
 
 def _packed(t: FloatArray, q: FloatArray) -> FloatArray:
-    """Return a fresh array `(*batch, 7)` with w ≥ 0."""
+    """Return a new array `(*batch, 7)` with w ≥ 0."""
     batch = t.shape[:-1] if t.shape[:-1] == q.shape[:-1] else np.broadcast_shapes(t.shape[:-1], q.shape[:-1])
     data = np.empty((*batch, 7))
     data[..., :3] = t

@@ -1,17 +1,17 @@
-"""Convex pieces that lie inside a solid: collision shapes that touch nothing that the solid does not touch.
+"""Convex pieces inside a solid: collision shapes that touch nothing that the solid does not touch.
 
-Each piece is an intersection of half-spaces that is grown around a seed point. For each triangle of the surface there is a plane of the
-piece that has the whole triangle on its far side. So no surface point is inside the piece; the piece is connected and its seed is inside
-the solid, hence the piece is.
+Each piece is an intersection of half-spaces, grown around a seed point. For each triangle of the surface, some plane of the piece has
+the whole triangle on its far side. So no surface point is inside the piece. The piece is connected and its seed is inside the solid,
+hence so is the piece.
 
 1. Seeds: from points of the surface, half-way through the material along the inward normal.
-2. Growth (as in IRIS, Deits and Tedrake 2015, without the ellipsoid): the triangle nearest to the seed gives a plane, all triangles beyond
-   that plane are done, and so on until none is left. The plane is the triangle's own one, so that flat faces are exact and bores get
-   tangent planes, or else the plane through its nearest point. Before round outer surfaces the plane moves inwards a little, so that one
-   plane does for many facets.
+2. Growth (as in IRIS, Deits and Tedrake 2015, without the ellipsoid): the triangle nearest to the seed gives a plane, all triangles
+beyond that plane are done, and so on until none is left. The plane is the triangle's own one, so that flat faces are exact and bores get
+tangent planes, or else the plane through its nearest point. In front of convex round surfaces the plane moves inwards a little, so that
+one plane serves many facets.
 3. Choice: the next seed belongs to the surface point that is farthest from all pieces, until each is within the bound.
 
-Balls and cylinders are recognised by their faces and taken whole, as far as they lie inside; pieces with six perpendicular planes are boxes.
+Balls and cylinders are recognised by their faces and used whole if they lie inside; pieces with six perpendicular planes are boxes.
 """
 
 from __future__ import annotations
@@ -37,23 +37,23 @@ __all__ = ["INSIDE_MM", "MOST_PIECES", "Inscribed", "Piece", "inscribed", "missi
 FloatArray = NDArray[np.float64]
 
 MOST_PIECES: Final = 32
-BOUND_MM, BOUND_SHARE = 0.5, 0.01  # how far the solid may reach beyond its pieces: the larger of the two, the share is of its diagonal
-INSIDE_MM: Final = 1e-4  # by which rounding may bring a piece outside the mesh
-SCHEME: Final = "articad.inscribed/1"  # to be changed with anything that changes pieces
+BOUND_MM, BOUND_SHARE = 0.5, 0.01  # how far the solid may extend beyond its pieces: the larger of the two; the share is of its diagonal
+INSIDE_MM: Final = 1e-4  # by which rounding may move a piece outside the mesh
+SCHEME: Final = "articad.inscribed/1"  # must change with anything that changes pieces
 
-_SLACK_MM, _SLACK_SHARE = 0.25, 0.004  # how far a plane moves inwards at most: the larger of the two, the share is of the diagonal
-_SLACKS = (0.0, 0.04, 0.25, 0.5, 1.0)  # of that: what is tried
-_OF_DEPTH = 0.5  # of the material below a point: where walls are thin, less may be missing
-_MOST_CORNERS = 64  # of a piece: PhysX takes no more
-_SAMPLES = 800  # points of the surface that the pieces are measured at, and half as many corners
-_COARSE_TRIANGLES = 3000  # of a mesh that pieces are grown in; a finer one is simplified first
-_SIMPLIFY = 0.1  # of the bound: how far simplification moves the surface
-_ROUND = 6  # digits of mm that are kept of a piece's corners
-_OWN = 0.3  # a triangle's own plane is taken if its distance from the seed is this share of the triangle's
-_MUCH = 0.2  # of what is open: a recognised body that covers as much is taken at once
+_SLACK_MM, _SLACK_SHARE = 0.25, 0.004  # how far a plane may move inwards: the larger of the two; the share is of the diagonal
+_SLACKS = (0.0, 0.04, 0.25, 0.5, 1.0)  # of that: the values that are tried
+_OF_DEPTH = 0.5  # of the material below a point: at thin walls, less may be missing
+_MOST_CORNERS = 64  # of a piece: the limit of PhysX
+_SAMPLES = 800  # points of the surface at which the pieces are measured, and half as many corners
+_COARSE_TRIANGLES = 3000  # of a mesh in which pieces are grown; a finer one is simplified first
+_SIMPLIFY = 0.1  # of the bound: deviation of the surface by simplification
+_ROUND = 6  # digits of mm in a piece's corners
+_OWN = 0.3  # a triangle's own plane is used if its distance from the seed is at least this share of the triangle's
+_MUCH = 0.2  # of the uncovered points: a recognised body that covers this share is used at once
 _TRIES = 3  # seeds that are tried for each piece
 _SMOOTH = np.cos(np.radians(25.0))  # facets of one smooth surface turn by less
-_SEGMENTS = 48  # of the meshes of recognised cylinders
+_SEGMENTS = 48  # in the meshes of recognised cylinders
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,8 +62,8 @@ class Piece:
 
     Attributes:
         mesh: In the piece's own frame [mm].
-        frame: Where that frame is in the solid's.
-        primitive: The body that the mesh stands for, or None.
+        frame: Pose of that frame in the solid's.
+        primitive: The primitive that the mesh represents, or None.
     """
 
     mesh: TriMesh
@@ -73,12 +73,12 @@ class Piece:
 
 @dataclass(frozen=True, eq=False)
 class Inscribed:
-    """The pieces of a solid and how much of it they leave out.
+    """The pieces of a solid and how much of it they omit.
 
     Attributes:
         pieces: Convex pieces; they may overlap.
         missing: Largest distance of a sampled surface point of the solid from the nearest piece [mm].
-        bound: The distance that was asked for [mm].
+        bound: The requested bound of that distance [mm].
         less: Volume of the solid that no piece covers, as a share of the solid's.
     """
 
@@ -89,23 +89,23 @@ class Inscribed:
 
 
 def missing_bound(mesh: TriMesh) -> float:
-    """Return how far a solid may reach beyond its pieces [mm], unless something else is asked for."""
+    """Return the default bound of how far a solid may extend beyond its pieces [mm]."""
     return max(BOUND_MM, BOUND_SHARE * float(np.linalg.norm(mesh.bounds[1] - mesh.bounds[0])))
 
 
 def inscribed(mesh: TriMesh, *, bound: float | None = None, most: int = MOST_PIECES, deflection: float = 0.0) -> Inscribed | None:
-    """Cover a solid with convex pieces that lie inside it.
+    """Cover a solid with convex pieces inside it.
 
-    A piece is outside the mesh by at most `INSIDE_MM`, or by the deflection where it is a ball or a cylinder.
+    A piece is outside the mesh by at most `INSIDE_MM`, or by the deflection if it is a ball or a cylinder.
 
     Args:
-        mesh: Surface of the solid: closed, outside out.
+        mesh: Surface of the solid: closed, with outward normals.
         bound: Largest distance of the solid's surface from the pieces [mm]; `missing_bound` by default.
         most: Number of pieces.
         deflection: Largest distance between mesh and true surface [mm], by which recognised round bodies may be outside the mesh.
 
     Returns:
-        The pieces, or None if the mesh bounds no solid or no piece fits in.
+        The pieces, or None if the mesh bounds no solid or no piece fits inside.
     """
     if not mesh.is_closed or mesh.volume <= 0:
         return None
@@ -122,7 +122,7 @@ def inscribed(mesh: TriMesh, *, bound: float | None = None, most: int = MOST_PIE
 
 @dataclass(frozen=True, eq=False)
 class _Grown:
-    """Planes `(K, 4)`, n·x ≤ d; what is inside all of them by no more than `bound` counts as covered."""
+    """Planes `(K, 4)`, n·x ≤ d; points inside all of them, up to `bound`, count as covered."""
 
     planes: FloatArray
     piece: Piece
@@ -134,7 +134,7 @@ class _Grown:
 
 
 class _Cover:
-    """Pieces found so far, and how far the sampled points are from them."""
+    """The pieces found so far, and the distances of the sampled points from them."""
 
     def __init__(self, mesh: TriMesh, body: manifold3d.Manifold, bound: float, deflection: float) -> None:
         self.mesh, self.bound, self.deflection = mesh, bound, deflection
@@ -154,11 +154,11 @@ class _Cover:
 
     @property
     def open(self) -> NDArray[np.intp]:
-        """Indices of points that are too far from all pieces and worth a try."""
+        """Indices of points that are too far from all pieces and not yet given up."""
         return np.flatnonzero((self.far > self.limits) & ~self.tried)
 
     def add(self) -> bool:
-        """Add the piece that covers most of what is left, around one of the farthest points; False if there is none to try."""
+        """Add the piece that covers most of the rest, around one of the farthest points; return False if there is none to try."""
         while len(open_ := self.open):
             ready = max(self.candidates, key=self._gain, default=None)
             if ready is not None and self._gain(ready) >= _MUCH * len(open_):
@@ -184,7 +184,7 @@ class _Cover:
         self.candidates = [one for one in self.candidates if one is not piece]
 
     def _first(self, open_: NDArray[np.intp]) -> int:
-        """Return the place of the farthest point; where no piece is yet, the one with most material below it."""
+        """Return the index of the farthest point; without a piece, of the one with most material below it."""
         if not self.found:
             return int(self.depths[open_].argmax())
         return int((self.far[open_] / self.limits[open_]).argmax())
@@ -193,7 +193,7 @@ class _Cover:
         return int(((self.far > self.limits) & (one.distance(self.points) <= self.limits)).sum())
 
     def _around(self, seed: FloatArray) -> list[_Grown]:
-        """Return the piece around a seed, and the one around its middle."""
+        """Return the piece around a seed, and the one around its centre."""
         found = []
         for _ in range(2):
             one = self._piece(seed)
@@ -212,7 +212,7 @@ class _Cover:
         return _polytope(planes, seed)
 
     def result(self) -> Inscribed | None:
-        """Return the pieces without those that others make needless."""
+        """Return the pieces without redundant ones."""
         if not self.found:
             return None
         table = np.array([one.distance(self.points) <= self.limits for one in self.found])
@@ -268,7 +268,7 @@ def _samples(facets: _Facets, body: manifold3d.Manifold, size: float) -> tuple[F
     owners = np.repeat(np.arange(facets.count), 3)
     pick = rng.permutation(len(corners))[
         : _SAMPLES // 2
-    ]  # corners stick out farthest; a few in from them, so that a ray has material below
+    ]  # corners protrude most; points a little inside them, so that a ray has material below
     weights = rng.dirichlet((1, 1, 1), _SAMPLES)
     drawn = rng.choice(facets.count, _SAMPLES, p=facets.areas / facets.areas.sum())
     inner = (facets.corners[drawn] * weights[:, :, None]).sum(axis=1)
@@ -290,7 +290,7 @@ def _samples(facets: _Facets, body: manifold3d.Manifold, size: float) -> tuple[F
 
 
 def _nearest(facets: _Facets, seed: FloatArray) -> FloatArray:
-    """Return the point of each triangle that is nearest to the seed, `(N, 3)` (Ericson, Real-Time Collision Detection, 5.1.5)."""
+    """Return the point of each triangle nearest to the seed, `(N, 3)` (Ericson, Real-Time Collision Detection, 5.1.5)."""
     a, b, c = facets.corners[:, 0], facets.corners[:, 1], facets.corners[:, 2]
     ab, ac, bc = b - a, c - a, c - b
     inside = seed - (facets.normals @ seed - facets.offsets)[:, None] * facets.normals
@@ -322,7 +322,7 @@ def _grown(facets: _Facets, seed: FloatArray, slack: float, size: float) -> Floa
     tolerance = 1e-9 * size
     if distance.min() < 1e-6 * size:
         return None
-    heights = facets.offsets - facets.normals @ seed  # of the seed below each triangle's plane
+    heights = facets.offsets - facets.normals @ seed  # depth of the seed below each triangle's plane
     left = np.lexsort((-heights, np.round(distance, 6)))  # triangles in front of all planes so far, nearest first
     relative = np.moveaxis(facets.corners, 1, 0) - seed  # (3, N, 3): the first corners, the second, the third
     planes = []
@@ -338,19 +338,19 @@ def _grown(facets: _Facets, seed: FloatArray, slack: float, size: float) -> Floa
         gained = [float(areas[mask].sum()) for mask in beyond]
         mask = beyond[next(index for index, gain in enumerate(gained) if gain >= 0.5 * gained[-1])]
         mask[0] = True
-        reach = float(least[mask].min())  # as far out as the triangles that it is for allow
+        reach = float(least[mask].min())  # as far out as its triangles allow
         planes.append([*n, float(n @ seed) + min(height, reach)])
         left = left[~mask]
     return np.array(planes)
 
 
 def _least(values: FloatArray) -> FloatArray:
-    """Return the least of three rows, `(3, N)` to `(N,)`."""
+    """Return the minimum of three rows, `(3, N)` to `(N,)`."""
     return np.asarray(np.minimum(np.minimum(values[0], values[1]), values[2]))
 
 
 def _held_off(planes: FloatArray, facets: _Facets) -> FloatArray:
-    """Return the planes moved inwards until each triangle of a finer surface is beyond one of them, each triangle by the shortest way."""
+    """Return the planes moved inwards until each triangle of a finer surface is beyond one of them, by the smallest motion for each."""
     corners = np.ascontiguousarray(np.moveaxis(facets.corners, 1, 0))
     need = np.full(facets.count, np.inf)  # by which a plane would have to move
     which = np.zeros(facets.count, dtype=int)
@@ -384,7 +384,7 @@ def _polytope(planes: FloatArray, seed: FloatArray) -> _Grown | None:
 
 
 def _fewer_corners(one: _Grown) -> _Grown:
-    """Return the hull of few of a piece's corners: those that are farthest out, then each time the one farthest from the hull so far."""
+    """Return the hull of a few of a piece's corners: the farthest ones, then repeatedly the one farthest from the hull so far."""
     corners = one.piece.mesh.vertices
     if one.piece.primitive is not None or len(corners) <= _MOST_CORNERS:
         return one
@@ -430,7 +430,7 @@ def _as_box(mesh: TriMesh) -> Piece | None:
 
 
 def _box_piece(first: FloatArray, edges: FloatArray) -> Piece:
-    """Return the box that a corner and three edges span; its axes are those of the solid's frame as far as they are the same."""
+    """Return the box spanned by a corner and three edges; its axes are those of the solid's frame if they agree."""
     lengths = np.linalg.norm(edges, axis=1)
     axes = edges / lengths[:, None]
     order, free = [], [0, 1, 2]
@@ -451,13 +451,13 @@ def _box_piece(first: FloatArray, edges: FloatArray) -> Piece:
 
 
 def _whole(axis: FloatArray) -> FloatArray:
-    """Return a unit vector with components that are nearly 0 or ±1 made so."""
+    """Return a unit vector with components near 0 or ±1 set to these values."""
     rounded = np.round(axis)
     return np.asarray(rounded if float(np.abs(axis - rounded).max()) < 1e-9 else axis) + 0.0
 
 
 def _round_bodies(mesh: TriMesh, facets: _Facets, deflection: float) -> list[_Grown]:
-    """Return the balls and cylinders that smooth faces of the solid are part of and that lie inside it."""
+    """Return the balls and cylinders of which smooth faces of the solid are part and that lie inside it."""
     found = []
     for chosen in _smooth_faces(mesh, facets):
         corners, normals = facets.corners[chosen].reshape(-1, 3), facets.normals[chosen]
@@ -476,7 +476,7 @@ def _round_bodies(mesh: TriMesh, facets: _Facets, deflection: float) -> list[_Gr
 
 
 def _smooth_faces(mesh: TriMesh, facets: _Facets) -> list[NDArray[np.intp]]:
-    """Return the triangles of each face of the B-rep, or of each smooth patch where the mesh knows no faces; flat ones are left out."""
+    """Return the triangles of each face of the B-rep, or of each smooth patch if the mesh has no faces; without flat ones."""
     label = _patches(mesh, facets) if mesh.face is None else np.asarray(mesh.face)
     order = np.argsort(label, kind="stable")
     groups = np.split(order, np.flatnonzero(np.diff(label[order])) + 1)
@@ -485,7 +485,7 @@ def _smooth_faces(mesh: TriMesh, facets: _Facets) -> list[NDArray[np.intp]]:
 
 
 def _patches(mesh: TriMesh, facets: _Facets) -> NDArray[np.int64]:
-    """Return the number of the patch of each triangle: neighbours across an edge that is hardly bent share one."""
+    """Return the number of the patch of each triangle: neighbours across an edge with a small bend have the same one."""
     start, end = mesh.triangles.astype(np.int64), np.roll(mesh.triangles.astype(np.int64), -1, axis=1)
     keys = np.minimum(start, end) * len(mesh.vertices) + np.maximum(start, end)
     owners = np.repeat(np.arange(facets.count), 3)
@@ -499,7 +499,7 @@ def _patches(mesh: TriMesh, facets: _Facets) -> NDArray[np.int64]:
 
 
 def _ball(facets: _Facets, corners: FloatArray, normals: FloatArray, slack: float) -> _Grown | None:
-    """Return the ball that all these corners are on, if the solid contains it."""
+    """Return the ball through all these corners, if the solid contains it."""
     system = np.column_stack([2 * corners, np.ones(len(corners))])
     solution, *_ = np.linalg.lstsq(system, (corners**2).sum(axis=1), rcond=None)
     center = solution[:3]
@@ -507,7 +507,7 @@ def _ball(facets: _Facets, corners: FloatArray, normals: FloatArray, slack: floa
     if r <= 0 or float(np.abs(np.linalg.norm(corners - center, axis=1) - r).max()) > slack:
         return None
     middles = corners.reshape(-1, 3, 3).mean(axis=1)
-    if float(((middles - center) * normals).sum(axis=1).min()) <= 0:  # a hollow
+    if float(((middles - center) * normals).sum(axis=1).min()) <= 0:  # concave
         return None
     if float(np.linalg.norm(_nearest(facets, center) - center, axis=1).min()) < r - slack - 1e-6 * r:
         return None
@@ -520,7 +520,7 @@ def _ball(facets: _Facets, corners: FloatArray, normals: FloatArray, slack: floa
 
 
 def _cylinder(facets: _Facets, corners: FloatArray, normals: FloatArray, axis: FloatArray, slack: float) -> _Grown | None:
-    """Return the cylinder that all these corners are on, if the solid contains it between the ends of the face."""
+    """Return the cylinder through all these corners, if the solid contains it between the ends of the face."""
     axis = _whole(axis if axis[int(np.abs(axis).argmax())] > 0 else -axis)
     side = np.eye(3)[int(np.abs(axis).argmin())]
     x = side - (side @ axis) * axis
@@ -570,7 +570,7 @@ def _to_origin(triangles: FloatArray) -> FloatArray:
     return np.asarray(np.where(inside, 0.0, best))
 
 
-# ---------------------------------------------------------------------- measure
+# ---------------------------------------------------------------------- measurement
 
 
 def _distance_to(points: FloatArray, grown: list[_Grown], placed: list[TriMesh]) -> float:

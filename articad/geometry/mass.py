@@ -15,8 +15,8 @@ from articad.errors import InvalidSolidError
 FloatArray = NDArray[np.float64]
 
 M3_PER_MM3 = 1e-9
-SYMMETRY_TOLERANCE = 1e-9  # relative; an inertia computed in floating point is symmetric to a few last bits
-TRIANGLE_TOLERANCE = 1e-9  # relative; a flat plate meets Ixx + Iyy = Izz exactly
+SYMMETRY_TOLERANCE = 1e-9  # relative; an inertia computed in floating point is symmetric up to the last bits
+TRIANGLE_TOLERANCE = 1e-9  # relative; a flat plate satisfies Ixx + Iyy = Izz exactly
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,12 +74,12 @@ class MassProperties:
 
     @classmethod
     def none(cls) -> Self:
-        """Return no mass at all, at the origin."""
+        """Return a mass of zero at the origin."""
         return cls(0.0, np.zeros(3), np.zeros((3, 3)))
 
     @classmethod
     def combined(cls, several: Iterable[MassProperties]) -> Self:
-        """Return the mass of several bodies together; all must be given in one frame. Of none: no mass, at the origin."""
+        """Return the combined mass of several bodies, all given in one frame. Without any: zero mass, at the origin."""
         bodies = list(several)
         mass = sum(body.mass for body in bodies)
         if mass == 0:
@@ -96,7 +96,7 @@ class MassProperties:
         return self.inertia + self.mass * (arm @ arm * np.eye(3) - np.outer(arm, arm))
 
     def moved(self, T: SE3) -> MassProperties:
-        """Return the same body in the frame that `T` maps into."""
+        """Return the same body in the frame into which `T` maps."""
         R = T.rotation
         return MassProperties(self.mass, R @ self.com + T.translation, R @ self.inertia @ R.T)
 
@@ -107,7 +107,7 @@ class MassProperties:
             S: A reflection `(4, 4)`, its last column in mm.
 
         Raises:
-            InvalidSolidError: If it is none.
+            InvalidSolidError: If it is not a reflection.
         """
         matrix = np.asarray(S, dtype=np.float64)
         Q = matrix[:3, :3]
@@ -116,7 +116,7 @@ class MassProperties:
         return MassProperties(self.mass, Q @ self.com + matrix[:3, 3], Q @ self.inertia @ Q.T)
 
     def scaled(self, factor: float) -> MassProperties:
-        """Return a body of the same shape and `factor` times the mass."""
+        """Return a body of the same shape with `factor` times the mass."""
         return MassProperties(self.mass * factor, self.com, self.inertia * factor)
 
     @property
@@ -126,7 +126,7 @@ class MassProperties:
 
     @property
     def is_physical(self) -> bool:
-        """True when some body could have this inertia: positive, and no principal moment above the sum of the others."""
+        """True if some body could have this inertia: positive, and no principal moment above the sum of the others."""
         small, middle, large = self.principal_moments
         return bool(self.mass > 0 and small > 0 and large <= (small + middle) * (1 + TRIANGLE_TOLERANCE))
 

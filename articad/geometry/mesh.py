@@ -1,4 +1,4 @@
-"""Triangle meshes as frozen arrays: the one form in which geometry travels between the rooms."""
+"""Triangle meshes as frozen arrays: the form in which all packages exchange geometry."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from articad.errors import InvalidSolidError
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int32]
 
-DIGEST_TAG = b"articad.mesh/1"  # first bytes of what is hashed; a checker that is not ours hashes the same
+DIGEST_TAG = b"articad.mesh/1"  # first bytes of the hashed data; independent checkers hash the same
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,7 +64,7 @@ class TriMesh:
 
     @cached_property
     def bounds(self) -> FloatArray:
-        """Smallest and largest coordinates [mm], `(2, 3)`; of an empty mesh +inf and -inf."""
+        """Smallest and largest coordinates [mm], `(2, 3)`; for an empty mesh +inf and -inf."""
         if not len(self.vertices):
             return _frozen(np.array([[np.inf] * 3, [-np.inf] * 3]), np.float64)
         used = self.vertices if self._all_used else self.vertices[np.unique(self.triangles)]
@@ -72,7 +72,7 @@ class TriMesh:
 
     @property
     def volume(self) -> float:
-        """Enclosed volume [mm³]; negative when the mesh is inside out, meaningless when it is open."""
+        """Enclosed volume [mm³]; negative if the mesh is inside out, meaningless if it is open."""
         return self._integrals[0]
 
     @cached_property
@@ -87,7 +87,7 @@ class TriMesh:
 
     @cached_property
     def normals_of_twice_area(self) -> FloatArray:
-        """Outward normal of each triangle, as long as twice its area [mm²], `(T, 3)`."""
+        """Outward normal of each triangle, with twice its area as length [mm²], `(T, 3)`."""
         a, b, c = (self.vertices[self.triangles[:, i]] for i in range(3))
         return _frozen(np.cross(b - a, c - a), np.float64)
 
@@ -128,11 +128,11 @@ class TriMesh:
         return self._integrals
 
     def transformed(self, T: SE3) -> TriMesh:
-        """Return the mesh moved by one rigid motion: coordinates in the frame that `T` maps into."""
+        """Return the mesh moved by one rigid motion: coordinates in the frame into which `T` maps."""
         return TriMesh(self.vertices @ T.rotation.T + T.translation, self.triangles, self.face)
 
     def reflected(self, S: FloatArray) -> TriMesh:
-        """Return the mesh mapped by an orientation-reversing `(4, 4)` matrix, its winding reversed so that it stays outside out.
+        """Return the mesh mapped by an orientation-reversing `(4, 4)` matrix, with reversed winding so that normals stay outward.
 
         Raises:
             InvalidSolidError: If the linear part of `S` does not reverse orientation.
@@ -162,7 +162,7 @@ class TriMesh:
         """Return the mesh with coinciding vertices merged and collapsed triangles dropped.
 
         Args:
-            tol: Vertices closer than this become one [mm]; 0 merges exactly equal ones. Pairs up to 2√3 tol apart may merge too.
+            tol: Vertices closer than this are merged [mm]; 0 merges exactly equal ones. Pairs up to 2√3 tol apart may be merged too.
         """
         group = _groups_of_equal(self.vertices) if tol <= 0 else _groups_within(self.vertices, tol)
         first = np.full(int(group.max(initial=-1)) + 1, len(self.vertices), dtype=np.int64)
@@ -188,7 +188,7 @@ class TriMesh:
         """Return the chosen triangles as a mesh of their own, without unused vertices.
 
         Args:
-            chosen: Truth per triangle, `(T,)`.
+            chosen: Mask of triangles, `(T,)`.
         """
         triangles = self.triangles[chosen]
         used, inverse = np.unique(triangles, return_inverse=True)
@@ -213,7 +213,7 @@ class TriMesh:
 
 
 def merged(meshes: list[TriMesh]) -> TriMesh:
-    """Return one mesh that holds all of them, side by side; face indices are dropped."""
+    """Return one mesh with all of them, not united; face indices are dropped."""
     if len(meshes) == 1:
         return meshes[0]
     starts = np.cumsum([0, *(len(mesh.vertices) for mesh in meshes)])
@@ -234,9 +234,10 @@ def _frozen(array: Any, dtype: type) -> NDArray[Any]:
 def _solid_integrals(vertices: FloatArray, triangles: IntArray) -> tuple[float, FloatArray, FloatArray]:
     """Sum signed tetrahedra from a point inside the bounding box.
 
-    About the box's centre and not the origin: at 1e5 mm from it the plain sum has an inertia 100 times wrong, this one 1e-13.
+    About the box's centre and not the origin: at 1e5 mm from it the plain sum has a relative error of 100 in the inertia, this one
+    1e-13.
     With d = a·(b x c), s = a + b + c:  6V = Σd,  24 V com = Σ d s,  120 ∫x xᵀ = Σ d (s sᵀ + a aᵀ + b bᵀ + c cᵀ)  (Tonon 2004).
-    The last three terms are gathered per vertex, so that one small product remains.
+    The last three terms are summed per vertex, so that one small product remains.
     """
     if not len(triangles):
         return 0.0, np.zeros(3), np.zeros((3, 3))
@@ -259,7 +260,7 @@ def _solid_integrals(vertices: FloatArray, triangles: IntArray) -> tuple[float, 
 
 
 def _groups_of_equal(points: FloatArray) -> NDArray[np.int64]:
-    """Number the points so that equal ones bear the same number, `(V,)`."""
+    """Number the points so that equal ones have the same number, `(V,)`."""
     rows = np.ascontiguousarray(points + 0.0)  # -0.0 becomes 0.0
     order = np.lexsort(rows.T)
     ordered = rows[order]
@@ -272,9 +273,10 @@ def _groups_of_equal(points: FloatArray) -> NDArray[np.int64]:
 
 
 def _groups_within(points: FloatArray, tol: float) -> NDArray[np.int64]:
-    """Number the points so that those closer than `tol` bear the same number.
+    """Number the points so that those closer than `tol` have the same number.
 
-    Eight grids of cell 2 tol, shifted by half a cell along each set of axes: any two points closer than tol share a cell in one.
+    Eight grids of cell size 2 tol, shifted by half a cell along each set of axes: any two points closer than tol share a cell in one of
+    them.
     """
     label = np.arange(len(points))
     for shift in np.ndindex(2, 2, 2):
@@ -298,8 +300,8 @@ def _joined(label: NDArray[Any], group: NDArray[np.int64]) -> NDArray[Any]:
 
 
 def _connected_labels(count: int, triangles: IntArray) -> NDArray[Any]:
-    """Label vertices so that those connected by triangles bear the same label, `(count,)`."""
-    from scipy.sparse import coo_array  # noqa: PLC0415 - 0.2 s to load, for those who ask for pieces
+    """Label vertices so that those connected by triangles have the same label, `(count,)`."""
+    from scipy.sparse import coo_array  # noqa: PLC0415 - 0.2 s to load, only needed for pieces
     from scipy.sparse.csgraph import connected_components  # noqa: PLC0415 - the same
 
     ends = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]]])

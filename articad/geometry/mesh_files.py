@@ -54,7 +54,7 @@ def read_mesh(path: str | Path, scale: float = 1.0, root: Path | None = None) ->
         root: A folder above the file; no component below it may be a link.
 
     Raises:
-        ReadError: If the file is missing, too large, of another form, truncated or holds no triangle.
+        ReadError: If the file is missing, too large, malformed, truncated or contains no triangle.
     """
     path = Path(path)
     reader = _READERS.get(path.suffix.lower())
@@ -76,7 +76,7 @@ def write_stl(mesh: TriMesh) -> bytes:
     u, v = (corners[:, 1] - corners[:, 0]).T, (corners[:, 2] - corners[:, 0]).T
     normal = np.stack([u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]])
     length = np.sqrt((normal * normal).sum(axis=0))
-    length[length == 0] = 1.0  # a flat triangle has no normal, and zeros say so
+    length[length == 0] = 1.0  # a degenerate triangle has no normal, which zeros state
     numbers = np.empty((len(corners), 12), dtype="<f4")
     numbers[:, :3] = (normal / length).T
     numbers[:, 3:] = corners.reshape(-1, 9)
@@ -92,7 +92,7 @@ def write_obj(mesh: TriMesh) -> bytes:
 
 
 def _obj_triangles(mesh: TriMesh) -> bytes:
-    """Return the lines "f a b c". Each vertex's word is made once, filled up to one length with zero bytes that go in the end."""
+    """Return the lines "f a b c". Each vertex's text is made once, padded to one length with zero bytes that are removed at the end."""
     number = np.arange(1, len(mesh.vertices) + 1)
     digits = len(str(len(mesh.vertices)))
     words = np.zeros((len(number), 1 + digits), dtype=np.uint8)
@@ -167,7 +167,7 @@ def write_glb(mesh: TriMesh, color: str | None = None) -> bytes:
 
 
 def _linear_color(color: str) -> list[float]:
-    """Turn "#rrggbb" (sRGB) into the linear factors that glTF wants."""
+    """Convert "#rrggbb" (sRGB) to the linear factors of glTF."""
     channels = [int(color[i : i + 2], 16) / 255 for i in (1, 3, 5)]
     return [c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in channels]
 
@@ -276,7 +276,7 @@ def _obj_vertices(path: Path, lines: list[bytes], vertex_lines: list[bytes]) -> 
 
 
 def _obj_faces_one_by_one(path: Path, lines: list[bytes], total: int) -> NDArray[np.int64]:
-    """Read polygons, fanned from their first corner, and indices that count back from the last vertex so far."""
+    """Read polygons, triangulated as fans from their first corner, and negative indices, which count back from the last vertex so far."""
     triangles: list[tuple[int, int, int]] = []
     known = 0
     for number, line in enumerate(lines, 1):
@@ -300,7 +300,7 @@ def _obj_faces_one_by_one(path: Path, lines: list[bytes], total: int) -> NDArray
 def _read_with_trimesh(path: Path, content: bytes) -> TriMesh:
     """Read GLB, PLY or DAE; nodes of a scene are placed and merged.
 
-    Only what is inside the file is read: buffers and pictures that a glTF names beside itself are not looked up.
+    Only the content of the file is read: external buffers and pictures of a glTF are not loaded.
     """
     import trimesh  # noqa: PLC0415  half a second, for two formats
 
@@ -318,11 +318,11 @@ def _read_with_trimesh(path: Path, content: bytes) -> TriMesh:
 
 
 _DAE_LOOKS = re.compile(rb"<(bind_material|library_materials|library_effects|library_images)\b[^>]*>.*?</\1>", re.DOTALL)
-"""What a DAE says of looks: a material that is missing would take its mesh with it."""
+"""DAE elements about appearance: a missing material would make its mesh unreadable."""
 
 
 def _unit_of_dae(content: bytes) -> float:
-    """Return the metres of one unit of a DAE: `<asset><unit meter="…"/>`, one where nothing is stated."""
+    """Return the size of one unit of a DAE in metres: `<asset><unit meter="…"/>`, 1 if none is stated."""
     match = re.search(rb"<unit\b[^>]*\bmeter\s*=\s*[\"']\s*([^\"'\s]+)", content[: content.find(b"</asset>") + 1 or None])
     unit = float(match[1]) if match else 1.0
     if not 0 < unit < math.inf:
@@ -344,7 +344,7 @@ def _require_whole(path: Path, kind: str, content: bytes) -> None:
 
 
 def _checked(path: Path, read: Callable[[], TriMesh]) -> TriMesh:
-    """Run a reader over bytes that may be hostile; whatever it stumbles over is the file's fault."""
+    """Run a reader on untrusted bytes; any exception means that the file is invalid."""
     try:
         return read()
     except ReadError:

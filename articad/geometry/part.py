@@ -1,4 +1,4 @@
-"""Part: one type for what kernels build, what importers read and what is made from a mesh in Python."""
+"""Part: one type for the results of kernels and importers and for meshes given in Python."""
 
 from __future__ import annotations
 
@@ -31,10 +31,10 @@ IDENTITY = SE3.identity()
 
 @dataclass(frozen=True)
 class Primitive:
-    """What a mesh stands for exactly, in the mesh's frame.
+    """The exact primitive that a mesh represents, in the mesh's frame.
 
     Attributes:
-        kind: Of the body; all are centred, and a cylinder and a capsule lie along z.
+        kind: Type of the body; all are centred, and a cylinder and a capsule lie along z.
         size: [mm]: x, y, z of a box; radius and length of a cylinder; radius and length between the balls' centres of a capsule; radius of a
             sphere; half axes x, y, z of an ellipsoid.
     """
@@ -45,14 +45,14 @@ class Primitive:
 
 @dataclass(frozen=True, eq=False)
 class Shape:
-    """A mesh to look at or to collide with.
+    """A mesh for drawing or for collision.
 
     Attributes:
         mesh: In its own frame [mm].
-        frame: `T_part_mesh`: where that frame is in the part.
+        frame: `T_part_mesh`: pose of that frame in the part.
         color: "#rrggbb", or None for the part's.
         name: For files and reports.
-        primitive: What the mesh stands for, where a file said so.
+        primitive: The primitive that the mesh represents, if a file stated it.
     """
 
     mesh: TriMesh
@@ -68,26 +68,26 @@ class Shape:
 
     @cached_property
     def digest(self) -> str:
-        """SHA-256 over mesh, frame and colour: equal digests are drawn by one file."""
+        """SHA-256 over mesh, frame and colour: shapes with equal digests share one file."""
         total = hashlib.sha256(self.mesh.digest.encode())
         total.update(np.ascontiguousarray(self.frame.data, dtype="<f8").tobytes())
         total.update((self.color or "").encode())
         return total.hexdigest()
 
     def reflected(self, S: FloatArray) -> Shape:
-        """Return the mirror image under `S (4, 4)` of the part's frame, baked into the mesh."""
+        """Return the mirror image under `S (4, 4)` of the part's frame, applied to the mesh."""
         return Shape(self.placed.reflected(S), IDENTITY, self.color, self.name)
 
 
 @dataclass(frozen=True, eq=False)
 class Solid:
-    """One closed body, with its numbers exact where a B-rep stands behind it.
+    """One closed body, with exact numbers if it has a B-rep.
 
     Attributes:
         mesh: Its surface in the part's frame, closed.
         brep: File of the B-rep, if there is one.
         step: The same as STEP.
-        deflection: Largest distance between mesh and true surface [mm]; 0 when the mesh itself is the solid.
+        deflection: Largest distance between mesh and true surface [mm]; 0 if the mesh itself is the solid.
         volume: [mm³].
         area: [mm²].
         com: Centre of the volume [mm], `(3,)`.
@@ -107,7 +107,7 @@ class Solid:
 
     @classmethod
     def from_mesh(cls, mesh: TriMesh, *, deflection: float = 0.0) -> Self:
-        """Return the solid that a closed mesh bounds, measured on the mesh.
+        """Return the solid bounded by a closed mesh, with numbers computed from the mesh.
 
         Raises:
             InvalidSolidError: If the mesh is open or inside out.
@@ -126,7 +126,7 @@ class Solid:
         return MassProperties.from_solid(self.volume, self.com, self.inertia_mm5, density)
 
     def mirrored(self, S: ArrayLike) -> Solid:
-        """Return the mirror image under `S (4, 4)`; its B-rep files are left out, for they show the original."""
+        """Return the mirror image under `S (4, 4)`, without B-rep files, which show the original."""
         matrix = np.asarray(S, dtype=np.float64)
         mesh = self.mesh.reflected(matrix)
         Q = matrix[:3, :3]
@@ -135,7 +135,7 @@ class Solid:
         )
 
     def moved(self, T: SE3) -> Solid:
-        """Return the solid in the frame that `T` maps into; the B-rep files stay where they are and are kept."""
+        """Return the solid in the frame into which `T` maps; the B-rep files stay unmoved and are kept."""
         mesh = self.mesh.transformed(T)
         R = T.rotation
         return replace(self, mesh=mesh, com=R @ self.com + T.translation, inertia_mm5=R @ self.inertia_mm5 @ R.T, bbox=mesh.bounds)
@@ -152,10 +152,10 @@ class Part:
     Attributes:
         name: Unique in the assembly.
         connectors: By name, in the part's own frame.
-        visuals: What is drawn.
-        collisions: What collides, where it is not the solid.
+        visuals: Shapes to draw.
+        collisions: Shapes for collision, if not the solid.
         solid: The body itself, if it is known; None for a part without geometry or from a file of loose triangles.
-        mass: Given, or from solid and density; None when neither is known.
+        mass: Given, or from solid and density; None if neither is known.
         color: "#rrggbb".
         material: Name of its material, if it has one.
     """
@@ -175,7 +175,7 @@ class Part:
         object.__setattr__(self, "collisions", tuple(self.collisions))
 
     def __reduce__(self) -> tuple[object, ...]:
-        """Let a part cross to another process: a read-only mapping does not go as it is."""
+        """Support pickling: a read-only mapping cannot be pickled as it is."""
         values = [dict(self.connectors) if entry.name == "connectors" else getattr(self, entry.name) for entry in fields(self)]
         return type(self), tuple(values)
 
@@ -191,9 +191,9 @@ class Part:
         color: str = DEFAULT_COLOR,
         material: str | None = None,
     ) -> Self:
-        """Return a part made of a triangle mesh or of a file that holds one.
+        """Return a part made from a triangle mesh or from a mesh file.
 
-        A closed mesh becomes the solid; an open one is drawn and collided with, but has no volume and so no mass.
+        A closed mesh becomes the solid; an open one is only drawn and used for collision: it has no volume and so no mass.
 
         Args:
             name: Name of the part.
@@ -226,12 +226,12 @@ class Part:
         color: str = DEFAULT_COLOR,
         material: str | None = None,
     ) -> Self:
-        """Return a part that is one solid; its mesh is what is drawn and what collides.
+        """Return a part with one solid, whose mesh is drawn and used for collision.
 
         Args:
-            name: Of the part.
+            name: Name of the part.
             solid: Its shape.
-            density: Gives it mass [kg/m³]; None leaves it without.
+            density: Density for its mass [kg/m³]; None for no mass.
             connectors: By name, in the part's frame.
             color: "#rrggbb".
             material: Name of the material.
@@ -254,14 +254,14 @@ class Part:
     ) -> Self:
         """Return a part from a STEP file.
 
-        B-rep never enters this process, so the reader is handed in: the kernels' worker, which meshes and measures the solid.
+        B-rep never enters this process, so the reader is an argument: the kernels' worker, which meshes and measures the solid.
 
         Args:
-            name: Of the part.
-            path: Of the file.
+            name: Name of the part.
+            path: Path of the file.
             read: Reads a file with a deflection and returns the solid.
             deflection: Largest distance of the mesh from the solid [mm].
-            density: Gives it mass [kg/m³]; None leaves it without.
+            density: Density for its mass [kg/m³]; None for no mass.
             connectors: By name, in the part's frame.
             color: "#rrggbb".
             material: Name of the material.
@@ -289,14 +289,14 @@ class Part:
 
     @cached_property
     def mesh(self) -> TriMesh | None:
-        """What interference is checked with: the solid's mesh, else all collision shapes as one mesh, else None."""
+        """The mesh for interference checks: the solid's mesh, else all collision shapes as one mesh, else None."""
         if self.solid is not None:
             return self.solid.mesh
         return merged([shape.placed for shape in self.collisions]) if self.collisions else None
 
     @property
     def deflection(self) -> float:
-        """Largest distance between `mesh` and the true surface [mm]; 0 where the mesh is all there is."""
+        """Largest distance between `mesh` and the true surface [mm]; 0 if there is only the mesh."""
         return 0.0 if self.solid is None else self.solid.deflection
 
     def mirrored(self, name: str, S: ArrayLike) -> Part:

@@ -17,7 +17,7 @@ _BOX_TRIANGLES = np.array(
 
 
 def box(sx: float, sy: float, sz: float, *, center: bool = True) -> TriMesh:
-    """Return a box of the given sides [mm], about the origin or with its lowest corner there."""
+    """Return a box with the given sides [mm], centred at the origin or with its lowest corner there."""
     _require_positive(sx=sx, sy=sy, sz=sz)
     corners = np.array([[x, y, z] for z in (0, 1) for y in (0, 1) for x in (0, 1)], dtype=np.float64)
     face = np.repeat(np.arange(6, dtype=np.int32), 2)
@@ -31,7 +31,7 @@ def cylinder(r: float, h: float, segments: int = 64, *, center: bool = True, pha
         r: Radius [mm]; the vertices lie on it.
         h: Height [mm].
         segments: Number of side faces.
-        center: Whether the origin is its middle or the middle of its lower face.
+        center: Whether the origin is its centre or the centre of its lower face.
         phase: Angle of the first vertex from x [rad].
     """
     _require_positive(r=r, h=h)
@@ -70,12 +70,12 @@ def sphere(r: float, segments: int = 32) -> TriMesh:
 
 
 def capsule(r: float, length: float, segments: int = 32) -> TriMesh:
-    """Return a cylinder along z with half a sphere on each end, its vertices on the surface.
+    """Return a cylinder along z with a hemisphere on each end, its vertices on the surface.
 
     Args:
         r: Radius [mm].
-        length: Between the centres of the two spheres [mm].
-        segments: Meridians; half of a sphere has a quarter as many bands.
+        length: Distance of the centres of the two spheres [mm].
+        segments: Meridians; a hemisphere has a quarter as many bands.
     """
     _require_positive(r=r, length=length)
     _require_segments(segments)
@@ -85,7 +85,7 @@ def capsule(r: float, length: float, segments: int = 32) -> TriMesh:
 
 
 def _round_ended(r: float, length: float, polar: FloatArray, segments: int) -> TriMesh:
-    """Return rings at angles from the north pole on a sphere that is cut at the equator and pulled apart by `length`."""
+    """Return rings at angles from the north pole on a sphere that is cut at the equator and separated by `length`."""
     bands = len(polar) + 1
     half = np.where(np.arange(len(polar)) < len(polar) / 2, length / 2, -length / 2)
     rings = [_at_height(_circle(r * np.sin(angle), segments, 0.0), r * np.cos(angle) + up) for angle, up in zip(polar, half, strict=True)]

@@ -1,1 +1,1 @@
-"""What earlier runs taught, and what the kernels' own documentation says: stored, found again, handed out as text."""
+"""Experience of earlier runs and the kernels' own documentation: stored, retrieved, returned as text."""

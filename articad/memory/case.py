@@ -1,4 +1,4 @@
-"""A case: what one run was asked, how it was answered, what came of it."""
+"""A case: the request of one run, its answer, and its outcome."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ SCHEMA: Final = "articad.case/1"
 
 @dataclass(frozen=True)
 class PartExample:
-    """One part of a case: what its modeller was told, and the script that was built.
+    """One part of a case: the specification that its author was given, and the script that was built.
 
     Attributes:
         name: Name of the part.
-        specification: The part's entry, as the modeller reads it.
-        kernel: Whose dialect the script is.
+        specification: The part's entry, as its author reads it.
+        kernel: The kernel, which determines the dialect of the script.
         script: The script.
     """
 
@@ -38,18 +38,18 @@ class PartExample:
 
 @dataclass(frozen=True, kw_only=True)
 class Case:
-    """A run, distilled.
+    """A summary of a run.
 
     Attributes:
-        kind: "good" ended with every deterministic check passed; "issue" with a measured defect.
-        prompt: What was asked for.
-        requirements: What was understood of it.
+        kind: "good" if every deterministic check passed; "issue" with a measured defect.
+        prompt: The request.
+        requirements: The analysis of the request.
         design: The connector plan in words: parts, joints, ranges.
         parts: Scripts that were built.
-        repairs: What went wrong on the way and was mended.
-        defects: What the checks measured at the end; of an issue there is at least one.
+        repairs: Faults that were corrected on the way.
+        defects: Faults that the checks measured at the end; an issue has at least one.
         scores: Numbers of the review, by name.
-        lessons: What the review would tell the next designer.
+        lessons: The review's advice to the next designer.
         articad: Version that made the run.
     """
 
@@ -72,22 +72,22 @@ class Case:
 
     @property
     def request(self) -> str:
-        """What a similar request is recognised by."""
+        """The text by which a similar request is recognised."""
         return f"{self.prompt}\n{self.requirements}".strip()
 
     def to_json(self) -> Json:
         """Return the form `articad.case/1`."""
         stored = {"schema": SCHEMA} | asdict(self)
         if not self.lessons:
-            stored.pop("lessons")  # cases without any are what they were before there were lessons, to their id
+            stored.pop("lessons")  # so that cases without lessons keep their ids from before there were any
         return stored
 
     @classmethod
     def from_json(cls, stored: Mapping[str, Any]) -> Case:
-        """Return the case of a stored form.
+        """Return the case for a stored form.
 
         Raises:
-            ReadError: If it is of another form.
+            ReadError: If it does not have the form.
         """
         try:
             content = dict(stored)

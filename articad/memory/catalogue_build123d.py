@@ -1,8 +1,7 @@
-"""Write down build123d's own documentation: run in a process of its own, for the kernel takes seconds to import.
+"""Extract build123d's own documentation: run in a process of its own, because the kernel takes seconds to import.
 
-Prints one JSON object: name, signature, summary and text of everything that a part script may use. The package says how a
-thing is called and what its arguments are; what designers use it for, it says in few words: PURPOSES adds ours.
-"""
+Prints one JSON object: name, signature, summary and text of everything that a part script may use. The package documents
+names and arguments but says little about what designers use them for: PURPOSES adds that."""
 
 from __future__ import annotations
 
@@ -18,7 +17,7 @@ import build123d
 
 Json = dict[str, Any]
 
-# Not for parts: contexts of the other mode, files, drawings, joints, units.
+# Not for parts: builder contexts, files, drawings, joints, units.
 _OTHERS: Final = re.compile(
     r"(import_|export_|Export|Build(Line|Part|Sketch)|Base\w+Object|\w*Joint$|Arrow|Dimension|Extension|Technical|Draft\b|DraftAngle|Page|"
     r"Number|Position|Geom(Encoder)|Font|available_fonts|Line(Type)|Dot|Mesher|MeshType|Approx|Unit$|Head|topo_|detect_|add$|insert$|pack$|"
@@ -88,7 +87,7 @@ PURPOSES: Final = {
 
 
 def entries() -> Iterator[Json]:
-    """Yield an entry for each name of the algebra that parts are made with, and for the methods of what it returns."""
+    """Yield an entry for each name of the algebra that makes parts, and for the methods of the resulting shapes."""
     for name in build123d.__all__:
         item = getattr(build123d, name)
         if _OTHERS.match(name) or not callable(item):

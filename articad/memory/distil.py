@@ -1,4 +1,4 @@
-"""Distilling: from a plan, its scripts and what the checks measured to a case."""
+"""Distilling: makes a case from a plan, its scripts and the measurements of the checks."""
 
 from __future__ import annotations
 
@@ -30,14 +30,14 @@ def case_of(
     Args:
         resolved: The plan with its numbers.
         scripts: Source of each part that has one.
-        kernel: Whose dialect they are.
-        prompt: What was asked for.
-        requirements: What was understood of it.
+        kernel: The kernel, which determines their dialect.
+        prompt: The request.
+        requirements: The analysis of the request.
         defects: Errors that were found at the end.
-        repairs: What went wrong on the way and was mended.
+        repairs: Faults that were corrected on the way.
         scores: Numbers of the review.
-        lessons: What the review would tell the next designer.
-        version: Of articad.
+        lessons: The review's advice to the next designer.
+        version: Version of articad.
     """
     parts = [PartExample(name, specification(resolved, name), kernel, scripts[name].decode(errors="replace")) for name in sorted(scripts)]
     return Case(
@@ -55,12 +55,12 @@ def case_of(
 
 
 def specification(resolved: ResolvedPlan, part: str) -> str:
-    """Return the entry of a part as its modeller is given it, in few lines."""
+    """Return the entry of a part as its author is given it, in few lines."""
     return json.dumps(_rounded(brief(resolved, part)), ensure_ascii=False)
 
 
 def design_in_words(resolved: ResolvedPlan) -> str:
-    """Return a plan's parts, joints and couplings, a line each: what a designer may learn from."""
+    """Return a plan's parts, joints and couplings, one per line, as an example for designers."""
     lines = [f"Ground: {resolved.ground}. Parameters: {', '.join(f'{name} = {value:.6g}' for name, value in resolved.parameters.items())}."]
     for name, part in resolved.parts.items():
         source = f", {part.derivation.op} of {part.derivation.source}" if part.derivation else ""

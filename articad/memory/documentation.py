@@ -1,7 +1,7 @@
-"""The kernels' own documentation, looked up by name or by what one wants to do.
+"""The kernels' own documentation, looked up by name or by purpose.
 
-Built from what is installed: names, signatures and texts come from the packages themselves, once for each version, and
-are kept beside the cache of parts. Worked snippets are our own; each is a whole part script that our tests build.
+Extracted from the installed packages: names, signatures and texts come from the packages themselves, once for each version, and are
+stored beside the cache of parts. Worked snippets are articad's own; each is a whole part script that tests build.
 """
 
 from __future__ import annotations
@@ -31,10 +31,10 @@ Dialect = Literal["build123d", "freecad"]
 
 _HERE: Final = Path(__file__).parent
 _HELPERS: Final = Path(freecad_install.__file__).parent / "inside_freecad" / "part.py"
-_SECONDS: Final = 120.0  # to write a catalogue down; it takes 4
-_OF_SNIPPETS: Final = 0.9  # a snippet's title speaks for the names that it shows, a little less than their own words do
-_LETTERS: Final = 0.3  # weight of words in common beside likeness of meaning: names are words that vectors know badly
-_METHODS: Final = 0.1  # what asks a shape something is looked for less often than what makes one
+_SECONDS: Final = 120.0  # to extract a catalogue; it takes 4
+_OF_SNIPPETS: Final = 0.9  # a snippet's title counts for the names that it shows, a little less than their own words do
+_LETTERS: Final = 0.3  # weight of common words in addition to similarity of meaning: vectors represent names badly
+_METHODS: Final = 0.1  # methods that query a shape are needed less often than functions that make one
 _STOP: Final = frozenset(
     re.findall(r"\w+", "a an and as at by for from in into is it of on or so such that the this to with which where whose")
 )
@@ -45,10 +45,10 @@ class Entry:
     """A name that part scripts may use.
 
     Attributes:
-        name: As scripts write it: "fillet", "Shape.bounding_box", "part.pad", "PartDesign::Hole".
-        signature: How it is called.
+        name: As written in scripts: "fillet", "Shape.bounding_box", "part.pad", "PartDesign::Hole".
+        signature: Its signature.
         summary: What it does, in a sentence or two.
-        text: All that its documentation says.
+        text: Its complete documentation.
     """
 
     name: str
@@ -65,9 +65,9 @@ class Snippet:
     """A worked part script.
 
     Attributes:
-        title: What it shows.
-        shows: Names that it uses for that.
-        dimensions: What its `part.dimensions` holds.
+        title: What it demonstrates.
+        shows: Names that it demonstrates.
+        dimensions: Content of its `part.dimensions`.
         script: The script.
     """
 
@@ -81,9 +81,9 @@ class DocumentationStore:
     """Entries and snippets of one dialect.
 
     Args:
-        dialect: "build123d" or "freecad". Without FreeCAD on this machine, the latter knows our own helpers and snippets.
-        folder: Where catalogues are kept; beside the cache of parts by default.
-        embedder: By what likeness is measured.
+        dialect: "build123d" or "freecad". Without FreeCAD on this machine, the latter has only articad's own helpers and snippets.
+        folder: Folder of catalogues; beside the cache of parts by default.
+        embedder: Measures similarity.
     """
 
     def __init__(self, dialect: Dialect, folder: Path | None = None, embedder: Embedder | None = None) -> None:
@@ -112,7 +112,7 @@ class DocumentationStore:
         return tuple(_snippet(file) for file in sorted((_HERE / "snippets" / self.dialect).glob("*.py")))
 
     def named(self, names: Sequence[str], limit: int = 12) -> tuple[Entry, ...]:
-        """Return the entries of names that someone believes to exist, in that order; of near misses the nearest.
+        """Return the entries for names that a model believes to exist, in that order; for a near miss the nearest one.
 
         A name may be qualified or not, in any case: `Fillet`, `bd.fillet` and `fillet` find `fillet`.
         """
@@ -147,7 +147,7 @@ class DocumentationStore:
         likeness = self._snippet_vectors @ self.embedder.embed([intent])[0]
         return tuple(self.snippets[index] for index in np.lexsort((np.arange(len(likeness)), -likeness))[:limit])
 
-    # ------------------------------------------------------------------ within
+    # ------------------------------------------------------------------ internals
 
     @cached_property
     def _vectors(self) -> FloatArray:
@@ -167,13 +167,13 @@ class DocumentationStore:
         file = self.folder / f"{self.dialect}-{version}-{mark}.json"
         try:
             stored = json.loads(file.read_bytes())
-        except (OSError, ValueError):  # not there yet, or torn
+        except (OSError, ValueError):  # missing or incomplete
             stored = self._written_down(program)
             write_atomically(file, json.dumps(stored, indent=1).encode())
         return tuple(Entry(**entry) for entry in stored["entries"])
 
     def _written_down(self, program: Path) -> dict[str, Any]:
-        """Run a program that writes a catalogue, where the package can be imported."""
+        """Run a program that writes a catalogue, in a process that can import the package."""
         with scratch.folder("docs") as name:
             folder = Path(name)
             if self.dialect == "freecad":
@@ -194,7 +194,7 @@ class DocumentationStore:
 
 
 def _helpers() -> Iterator[Entry]:
-    """Yield our own helpers for FreeCAD scripts, read from their source: they can be imported in FreeCAD only."""
+    """Yield articad's own helpers for FreeCAD scripts, read from their source: they can be imported in FreeCAD only."""
     tree = ast.parse(_HELPERS.read_text(encoding="utf-8"))
     authoring = next(node for node in tree.body if isinstance(node, ast.ClassDef) and node.name == "Authoring")
     for node in authoring.body:

@@ -1,4 +1,4 @@
-"""Texts as vectors: near in meaning, near in angle."""
+"""Texts as vectors: a similar meaning gives a small angle."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ FloatArray = NDArray[np.float32]
 
 
 class Embedder(Protocol):
-    """Turns texts into vectors of one space, which its name stands for: vectors of two spaces are never compared."""
+    """Converts texts to vectors of one space, identified by its name: vectors of two spaces are never compared."""
 
     @property
     def name(self) -> str:
@@ -27,7 +27,7 @@ class Embedder(Protocol):
 
 
 class WordLlamaEmbedder:
-    """The default: static word vectors, 256 numbers a text, offline."""
+    """The default: static word vectors, 256 numbers per text, offline."""
 
     name = "wordllama-l2-256"
 
@@ -39,7 +39,7 @@ class WordLlamaEmbedder:
 
 
 def normalised(vectors: Any) -> FloatArray:
-    """Return vectors of length 1; a zero vector, as of a text without words, stays one."""
+    """Return vectors of length 1; a zero vector, as for a text without words, stays zero."""
     rows = np.asarray(vectors, np.float32)
     lengths = np.linalg.norm(rows, axis=1, keepdims=True)
     return np.asarray(rows / np.where(lengths > 0.0, lengths, 1.0), np.float32)
@@ -47,7 +47,7 @@ def normalised(vectors: Any) -> FloatArray:
 
 @cache
 def _word_vectors() -> Any:
-    import wordllama  # noqa: PLC0415 - takes a second: loaded when something is looked for
+    import wordllama  # noqa: PLC0415 - takes a second: loaded for the first search
 
-    # Told where its tokenizer is, it does not look for one on a network.
+    # With its tokenizer's path given, it does not look for one on a network.
     return wordllama.WordLlama.load(cache_dir=Path(wordllama.__file__).parent, disable_download=True)

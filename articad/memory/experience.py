@@ -1,7 +1,7 @@
-"""The experience store: cases of earlier runs, found by likeness. SQLite is the truth; whatever speeds it up can be rebuilt.
+"""The experience store: cases of earlier runs, retrieved by similarity. SQLite holds the data; indices can be rebuilt.
 
-Several processes may write at once, and a killed one loses nothing that was committed: each case is one transaction in
-a write-ahead log. The store lives outside runs, in one folder, and is shipped empty.
+Several processes may write at once, and a killed one loses nothing that was committed: each case is one transaction in a write-ahead
+log. The store is outside runs, in one folder, and is empty at first.
 """
 
 from __future__ import annotations
@@ -42,8 +42,8 @@ create table vectors (
 );
 create index texts_of_topic on texts (topic, kind);
 """
-_TEXTS_OF_A_CASE: Final = 50  # of one topic, for FAISS: it must look for more texts than cases are wanted
-# A topic is what a text is looked up as: a whole request, or the specification of a part for one kernel.
+_TEXTS_OF_A_CASE: Final = 50  # of one topic, for FAISS: it must retrieve more texts than the wanted cases
+# The topic of a text is what it is retrieved as: a whole request, or the specification of a part for one kernel.
 _REQUEST: Final = "request"
 
 
@@ -61,7 +61,7 @@ class Hit:
     Attributes:
         case: The case.
         likeness: Cosine of the angle between the texts' vectors, at most 1.
-        item: Name of the part whose specification is alike; empty if a request was looked for.
+        item: Name of the part with the similar specification; empty for a search by request.
     """
 
     case: Case
@@ -70,12 +70,12 @@ class Hit:
 
 
 class ExperienceStore:
-    """Cases in a folder; made when the first one is added.
+    """Cases in a folder; the folder is made when the first case is added.
 
     Args:
-        folder: Where; `default_folder()` by default.
-        embedder: By what likeness is measured. Texts that it has not seen yet are embedded when something is looked for.
-        index: "exact" compares with every text, a millisecond for 2000; "faiss" keeps an index of the extra `faiss`.
+        folder: The folder; `default_folder()` by default.
+        embedder: Measures similarity. New texts are embedded at the next search.
+        index: "exact" compares with every text, a millisecond for 2000; "faiss" keeps an index (extra `faiss`).
     """
 
     def __init__(
@@ -88,7 +88,7 @@ class ExperienceStore:
     # ------------------------------------------------------------------ writing
 
     def add(self, *cases: Case) -> int:
-        """Keep cases, all or none; return how many of them were new.
+        """Store cases, all or none; return how many of them were new.
 
         Raises:
             WriteError: If the folder cannot be written, or is another version's.
@@ -97,12 +97,12 @@ class ExperienceStore:
             return sum(self._insert(database, case) for case in cases)
 
     def remove(self, *ids: str) -> int:
-        """Forget cases; return how many there were."""
+        """Remove cases; return how many existed."""
         with self._connection(writing=True) as database:
             return sum(database.execute("delete from cases where id = ?", (name,)).rowcount for name in ids)
 
     def prune(self, keep: int) -> int:
-        """Forget all but the newest cases of each kind; return how many were forgotten."""
+        """Remove all but the newest cases of each kind; return how many were removed."""
         ranked = "select id, row_number() over (partition by kind order by added desc, id) as rank from cases"
         with self._connection(writing=True) as database:
             return database.execute(f"delete from cases where id in (select id from ({ranked}) where rank > ?)", (keep,)).rowcount  # noqa: S608
@@ -116,7 +116,7 @@ class ExperienceStore:
         return tuple(Case.from_json(json.loads(content)) for (content,) in rows)
 
     def case(self, name: str) -> Case:
-        """Return one case by its id, or by a beginning of it that no other has.
+        """Return one case by its id, or by a unique prefix of it.
 
         Raises:
             ReadError: If there is none, or more than one.
@@ -129,18 +129,18 @@ class ExperienceStore:
         return Case.from_json(json.loads(rows[0][0]))
 
     def like_request(self, text: str, kind: Kind, limit: int = 3, least: float = -1.0) -> tuple[Hit, ...]:
-        """Return the cases of one kind whose request is most like a text, the nearest first.
+        """Return the cases of one kind whose request is most similar to a text, the nearest first.
 
         Args:
             text: A request.
             kind: "good" or "issue".
-            limit: How many at most.
-            least: Likeness below which nothing is returned.
+            limit: Largest number of cases.
+            least: Similarity below which nothing is returned.
         """
         return self._search(text, _REQUEST, kind, limit, least)
 
     def like_part(self, specification: str, kernel: str, limit: int = 2, least: float = -1.0) -> tuple[Hit, ...]:
-        """Return good cases with a part whose specification is most like this one, in the kernel's dialect."""
+        """Return good cases with a part whose specification is most similar, in the kernel's dialect."""
         return self._search(specification, _topic_of_parts(kernel), "good", limit, least)
 
     def __len__(self) -> int:
@@ -148,7 +148,7 @@ class ExperienceStore:
         with self._connection() as database:
             return int(database.execute("select count(*) from cases").fetchone()[0])
 
-    # ------------------------------------------------------------------ in and out
+    # ------------------------------------------------------------------ import and export
 
     def export(self) -> Iterator[str]:
         """Yield each case as a line of JSON."""
@@ -169,7 +169,7 @@ class ExperienceStore:
                 raise _unreadable(Path(f"line {number}"), f"Line {number} is not a case: {error}", "Nothing was added.") from error
         return self.add(*cases)
 
-    # ------------------------------------------------------------------ within
+    # ------------------------------------------------------------------ internals
 
     @staticmethod
     def _insert(database: sqlite3.Connection, case: Case) -> int:
@@ -191,11 +191,11 @@ class ExperienceStore:
                     break
                 query = "select cases.id, item, content from texts join cases on cases.id = case_id where number = ?"
                 name, item, content = database.execute(query, (number,)).fetchone()
-                found.setdefault(name, (likeness, item, content))  # of each case the nearest text
+                found.setdefault(name, (likeness, item, content))  # the nearest text of each case
         return tuple(Hit(Case.from_json(json.loads(content)), value, item) for value, item, content in found.values())
 
     def _nearest(self, database: sqlite3.Connection, text: str, topic: str, kind: Kind, limit: int) -> Iterator[tuple[int, float]]:
-        """Yield texts' numbers and their likeness to a text, the nearest first."""
+        """Yield texts' numbers and their similarity to a text, the nearest first."""
         query = self.embedder.embed([text])[0]
         if self.index == "exact":
             numbers, vectors = self._vectors(database, topic, kind)
@@ -216,9 +216,9 @@ class ExperienceStore:
             yield int(numbers[place]), float(likeness[place])
 
     def _vectors(self, database: sqlite3.Connection, topic: str, kind: Kind) -> tuple[IntArray, FloatArray]:
-        """Return the numbers and vectors of all texts of a topic; those that this space lacks are embedded and kept."""
+        """Return the numbers and vectors of all texts of a topic; missing vectors of this space are computed and stored."""
         joined = "texts left join vectors on vectors.text = number and space = ? where topic = ? and kind = ?"
-        query = f"select number, texts.text, vector from {joined} order by number"  # noqa: S608 - our own words
+        query = f"select number, texts.text, vector from {joined} order by number"  # noqa: S608 - the text is articad's own
         rows = database.execute(query, (self.embedder.name, topic, kind)).fetchall()
         if not rows:
             return np.zeros(0, np.int64), np.zeros((0, 1), np.float32)
@@ -230,7 +230,7 @@ class ExperienceStore:
         return np.array([number for number, _, _ in rows]), np.stack(vectors)
 
     def _keep(self, rows: Sequence[tuple[int, str, bytes]]) -> None:
-        """Keep vectors, so that they need not be made again; a store that can only be read does without."""
+        """Store vectors, so that they need not be computed again; ignored if the store is read-only."""
         with contextlib.suppress(WriteError), self._connection(writing=True) as database:
             database.executemany("insert or ignore into vectors values (?, ?, ?)", rows)
 
@@ -257,10 +257,10 @@ class ExperienceStore:
 
 
 def _prepare(database: sqlite3.Connection, path: Path, *, writing: bool) -> None:
-    """Set a connection up; make the tables where there are none yet.
+    """Set up a connection; make the tables if there are none yet.
 
     Raises:
-        ReadError: If the file is a later version's.
+        ReadError: If the file was written by a later version.
     """
     database.execute("pragma foreign_keys = on")
     version = int(database.execute("pragma user_version").fetchone()[0])
@@ -274,7 +274,7 @@ def _prepare(database: sqlite3.Connection, path: Path, *, writing: bool) -> None
     if str(database.execute("pragma database_list").fetchone()[2]):
         database.execute("pragma journal_mode = wal")
     database.execute("begin immediate")
-    if int(database.execute("pragma user_version").fetchone()[0]) == 0:  # else another process was first
+    if int(database.execute("pragma user_version").fetchone()[0]) == 0:  # otherwise another process was first
         for statement in _SCHEMA.split(";"):
             database.execute(statement)
         database.execute(f"pragma user_version = {VERSION}")

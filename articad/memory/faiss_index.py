@@ -1,4 +1,4 @@
-"""FAISS, for stores of a hundred thousand cases: an index beside the database, made anew whenever it does not fit."""
+"""FAISS, for stores of a hundred thousand cases: an index beside the database, rebuilt whenever it is outdated."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from articad.runs.run import write_atomically
 
 
 def load(folder: Path, label: str, stamp: str) -> Any | None:
-    """Return the index of a label if one is kept that has this stamp, else None; a torn file counts as none."""
+    """Return the stored index of a label if it has this stamp, else None; an incomplete file counts as missing."""
     faiss = _faiss()
     path = _path(folder, label)
     try:
@@ -29,7 +29,7 @@ def load(folder: Path, label: str, stamp: str) -> Any | None:
 
 
 def build(folder: Path, label: str, stamp: str, numbers: NDArray[np.int64], vectors: FloatArray) -> Any:
-    """Return an index of vectors by their numbers, and keep it under a stamp that says what it was made of."""
+    """Return an index of vectors by their numbers, and store it under a stamp that identifies its content."""
     faiss = _faiss()
     index = faiss.IndexIDMap(faiss.IndexFlatIP(vectors.shape[1]))
     index.add_with_ids(vectors, numbers)

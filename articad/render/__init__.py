@@ -1,4 +1,4 @@
-"""Pictures of parts, poses and motion, with no display, GPU or GL."""
+"""Pictures of parts, poses and motion, without display, GPU or OpenGL."""
 
 from articad.render.camera import VIEWS, Camera
 from articad.render.pictures import (

@@ -1,4 +1,4 @@
-"""What is written over a picture: names, joint axes, directions, a scale bar, a title."""
+"""Annotations of a picture: names, joint axes, directions, a scale bar, a title."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ from articad.render.scene import AxisMark, DrawnScene
 FloatArray = NDArray[np.float64]
 Color = tuple[int, int, int]
 Labels = bool | Literal["aside"]
-"""Whether parts bear their names, or have them beside the picture, each with a line to its part."""
+"""Whether parts are labelled in place, or beside the picture with a line to each part."""
 
-_Name = tuple[tuple[float, float], str, Color]  # where what it names is, the name, its colour
+_Name = tuple[tuple[float, float], str, Color]  # the point that is named, the name, its colour
 
 INK: Color = (30, 34, 40)
 QUIET: Color = (110, 116, 124)
@@ -26,18 +26,18 @@ HALO: Color = (250, 250, 248)
 AXIS_COLORS: tuple[Color, Color, Color] = ((200, 40, 40), (30, 140, 60), (40, 80, 200))
 JOINT: Color = (0, 96, 160)
 MARK: Color = (214, 28, 36)
-_SMALLEST_LABELLED = 40  # pixels: a part of which less is seen gets no name
+_SMALLEST_LABELLED = 40  # pixels: a part with a smaller visible area gets no name
 _MOST_NAMES = 12  # names in one picture; more would hide it
 _MOST_AXES = 7
-_END_ON = 14.0  # pixels: half of the box of an axis that is seen end on
-_SMALLEST_RING = 13.0  # pixels: radius round a highlight however small it is
-_LARGEST_RING = 0.16  # of the picture's width: a larger highlight is seen without a ring
+_END_ON = 14.0  # pixels: half of the box around an axis that is seen end on
+_SMALLEST_RING = 13.0  # pixels: smallest radius of a ring around a highlight
+_LARGEST_RING = 0.16  # of the picture's width: a larger highlight needs no ring
 _MOST_RINGS = 12
-_LOWERED = 4  # how often a name gives way to others before it is left out
-_MOST_ASIDE = 40  # names beside a picture, joints' among them: more do not stand under each other
+_LOWERED = 4  # how often a name moves down before it is left out
+_MOST_ASIDE = 40  # names beside a picture, including those of joints: more do not fit in the columns
 _LINE = 15  # pixels from one name in a column to the next
 _WIDEST_NAME = 190  # pixels
-_ABOVE, _BELOW = 26, 92  # pixels of a column that the title takes, and the arrows of the axes with the last name's own height
+_ABOVE, _BELOW = 26, 92  # pixels of a column for the title, and for the arrows of the axes with the last name's own height
 _TRIAD_PIXELS = 26
 _AXIS_SHARE = 0.13  # of the picture's width, to each side of the joint
 
@@ -59,7 +59,7 @@ def annotate(
     if labels == "aside":
         _columns(draw, names[:_MOST_ASIDE], camera)
     else:
-        for at, text, color in names:  # all marks first: none lies on a name
+        for at, text, color in names:  # all marks first: none covers a name
             _place(draw, at, text, color, camera, taken)
     _triad(draw, camera)
     _scale_bar(draw, camera)
@@ -85,7 +85,7 @@ def _place(
     camera: Camera,
     taken: list[tuple[float, float, float, float]],
 ) -> None:
-    """Write a name near a point, lower where another name stands already, and never outside the picture."""
+    """Write a name near a point, lower if another name is there, and never outside the picture."""
     x0, y0, x1, y1 = draw.textbbox((0, 0), text, font=font(11))
     width, height = x1 - x0, y1 - y0 + 3
     left = min(max(at[0] - width / 2, 2), camera.width - width - 2)
@@ -96,7 +96,7 @@ def _place(
             break
         top = max(box[3] for box in clash) + 1
     else:
-        return  # too far from what it names: no name is better than one that misleads
+        return  # too far from what it names: no name is better than a misleading one
     if top > camera.height - height - 2:
         return
     taken.append((left, top, left + width, top + height))
@@ -104,7 +104,7 @@ def _place(
 
 
 def room_beside(scene: DrawnScene) -> int:
-    """Return the width of the column on each side of a picture whose names stand aside [pixels]."""
+    """Return the width of the columns for names on both sides of a picture [pixels]."""
     names = {item.name for item in scene.items} | {axis.name for axis in scene.axes}
     return min(max((math.ceil(_measured(name)) for name in names), default=0), _WIDEST_NAME) + 10
 
@@ -124,7 +124,7 @@ def _columns(draw: ImageDraw.ImageDraw, names: list[_Name], camera: Camera) -> N
             lowest = max(lowest + _LINE, round(y) - _LINE // 2)
             tops.append(lowest)
         highest = camera.height - _BELOW + _LINE
-        for index in reversed(range(len(tops))):  # what does not fit below moves up, and pushes those above it
+        for index in reversed(range(len(tops))):  # names that do not fit below move up, and push those above them
             tops[index] = highest = min(tops[index], highest - _LINE)
         for (at, text, color), top in zip(down, tops, strict=True):
             width = _measured(text)
@@ -137,7 +137,7 @@ def _columns(draw: ImageDraw.ImageDraw, names: list[_Name], camera: Camera) -> N
 
 
 def _part_names(scene: DrawnScene, camera: Camera, buffers: Buffers, most: int) -> list[_Name]:
-    """Return the names of the parts of which most is seen, and where; small ones are left out where names would hide the picture."""
+    """Return the names of the parts with the largest visible areas, and their places; small parts get none if names would hide much."""
     ratio = buffers.item.shape[1] / camera.width
     by_name: dict[str, list[int]] = {}
     for index, item in enumerate(scene.items):
@@ -150,14 +150,14 @@ def _part_names(scene: DrawnScene, camera: Camera, buffers: Buffers, most: int) 
         rows, columns = seen[name]
         if len(rows) < _SMALLEST_LABELLED * ratio**2:
             continue
-        # The pixel nearest to the mean lies on the part, even where the part has a hole in its middle.
+        # The pixel nearest to the mean lies on the part, even if the part has a hole in its middle.
         nearest = np.argmin((rows - rows.mean()) ** 2 + (columns - columns.mean()) ** 2)
         names.append(((float(columns[nearest] / ratio), float(rows[nearest] / ratio)), name, INK))
     return names
 
 
 def _rings(draw: ImageDraw.ImageDraw, camera: Camera, buffers: Buffers, taken: list[tuple[float, float, float, float]]) -> None:
-    """Draw a ring round each highlight that could be missed, and keep names out of it."""
+    """Draw a ring around each small highlight, and keep names out of it."""
     ratio = buffers.item.shape[1] / camera.width
     found = []
     for index in np.unique(buffers.over[buffers.over != BACKGROUND]).tolist():
@@ -176,7 +176,7 @@ def _rings(draw: ImageDraw.ImageDraw, camera: Camera, buffers: Buffers, taken: l
 def _joint_axis(
     draw: ImageDraw.ImageDraw, axis: AxisMark, camera: Camera, taken: list[tuple[float, float, float, float]]
 ) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Draw a joint's axis and its positive motion; return where its name belongs, and a point of the axis."""
+    """Draw a joint's axis and its positive direction; return the place for its name, and a point of the axis."""
     direction = np.array(axis.direction)
     along = camera.project(camera.centre + direction * camera.mm_per_pixel) - camera.project(camera.centre[None])
     seen = float(np.linalg.norm(along))
@@ -218,7 +218,7 @@ def _arrow_head(draw: ImageDraw.ImageDraw, tip: FloatArray, unit: FloatArray, *,
 
 
 def _end_on(draw: ImageDraw.ImageDraw, at: FloatArray, *, towards: bool, turns: bool) -> None:
-    """Draw an axis that points at the viewer (a dot) or away (a cross), and round it the positive turn."""
+    """Draw an axis that points at the viewer (a dot) or away (a cross), and the positive turn around it."""
     radius = 5.0
     draw.ellipse((at[0] - radius, at[1] - radius, at[0] + radius, at[1] + radius), outline=JOINT, width=2)
     if towards:
@@ -232,10 +232,10 @@ def _end_on(draw: ImageDraw.ImageDraw, at: FloatArray, *, towards: bool, turns: 
 
 
 def _turn_arrow(draw: ImageDraw.ImageDraw, at: FloatArray, unit: FloatArray, towards: float) -> None:
-    """Draw an arc round a slanted axis whose arrow shows the positive turn, by the right hand.
+    """Draw an arc around an oblique axis whose arrow shows the positive turn, right-handed.
 
     Args:
-        draw: Where to.
+        draw: Drawing context.
         at: Middle of the arc [pixels].
         unit: Direction of the axis in the picture, rows downwards.
         towards: Cosine of the angle between the axis and the direction to the viewer, who sees the circle's upper side when it is positive.
@@ -246,7 +246,7 @@ def _turn_arrow(draw: ImageDraw.ImageDraw, at: FloatArray, unit: FloatArray, tow
 
 
 def _arc_arrow(draw: ImageDraw.ImageDraw, at: FloatArray, right: FloatArray, back: FloatArray) -> None:
-    """Draw most of an ellipse with an arrow head, from `right` by way of `back`; it is open in front."""
+    """Draw most of an ellipse with an arrow head, from `right` through `back`; it is open in front."""
     points = [at + right * math.cos(angle) + back * math.sin(angle) for angle in np.radians(np.linspace(-50, 230, 29))]
     draw.line([(point[0], point[1]) for point in points], fill=HALO, width=5)
     draw.line([(point[0], point[1]) for point in points], fill=JOINT, width=2)

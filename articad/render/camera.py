@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 FloatArray = NDArray[np.float64]
 
-# Where the eye stands, and what points up in the picture. X right, Y back, Z up: "front" looks along +Y.
+# Direction to the eye, and the up direction of the picture. X right, Y back, Z up: "front" looks along +Y.
 VIEWS: dict[str, tuple[tuple[float, float, float], tuple[float, float, float]]] = {
     "iso": ((1.0, -1.4, 0.9), (0.0, 0.0, 1.0)),
     "iso_left": ((-1.0, -1.4, 0.9), (0.0, 0.0, 1.0)),
@@ -33,9 +33,9 @@ class Camera:
 
     Attributes:
         eye: Unit vector from the scene to the viewer, `(3,)`.
-        right: Direction of growing columns, `(3,)`.
-        up: Direction of falling rows, `(3,)`.
-        centre: Point shown in the middle of the picture [mm], `(3,)`.
+        right: Direction of increasing columns, `(3,)`.
+        up: Direction of decreasing rows, `(3,)`.
+        centre: Point in the middle of the picture [mm], `(3,)`.
         mm_per_pixel: Scale.
         width: Columns.
         height: Rows.
@@ -51,7 +51,7 @@ class Camera:
 
     @classmethod
     def fit(cls, view: str, bounds: ArrayLike, *, width: int = 512, height: int = 512) -> Camera:
-        """Return the camera of a named view that shows a box whole.
+        """Return the camera of a named view that shows a whole box.
 
         Args:
             view: A key of `VIEWS`.
@@ -77,11 +77,11 @@ class Camera:
         return cls(eye, right, up, centre, float(scale), width, height)
 
     def scaled(self, factor: int) -> Camera:
-        """Return the same picture with `factor` times as many pixels each way."""
+        """Return the same picture with `factor` times as many pixels in each direction."""
         return Camera(self.eye, self.right, self.up, self.centre, self.mm_per_pixel / factor, self.width * factor, self.height * factor)
 
     def widened(self, columns: int) -> Camera:
-        """Return the same picture with room for `columns` more on either side [pixels]."""
+        """Return the same picture with `columns` more pixels on both sides."""
         return replace(self, width=self.width + 2 * columns)
 
     def project(self, points: ArrayLike) -> FloatArray:
@@ -92,7 +92,7 @@ class Camera:
         return np.stack([columns, rows], axis=-1)
 
     def plane_points(self) -> FloatArray:
-        """Return the points of the picture plane through `centre` that the pixels' rays pass, relative to `centre`, `(height * width, 3)`."""
+        """Return the points where the pixels' rays pass the picture plane through `centre`, relative to `centre`, `(height * width, 3)`."""
         x = (np.arange(self.width) + 0.5 - self.width / 2) * self.mm_per_pixel
         y = -(np.arange(self.height) + 0.5 - self.height / 2) * self.mm_per_pixel
         grid = x[None, :, None] * self.right + y[:, None, None] * self.up

@@ -49,7 +49,7 @@ def write_motion(assembly: Assembly, joint: str, folder: Path, *, size: int = 32
     """Write `<joint>.png`, a filmstrip, and `<joint>.gif`, an animation.
 
     Raises:
-        UnknownJointError: If the joint drives nothing.
+        UnknownJointError: If the joint does not drive anything.
     """
     strip = filmstrip(render_motion(assembly, joint, frames=_STRIP_FRAMES, size=size))
     animation = motion_gif(render_motion(assembly, joint, frames=_ANIMATION_FRAMES, size=size))

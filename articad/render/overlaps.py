@@ -15,7 +15,7 @@ from articad.interference.overlap import VOLUME_NOISE_MM3, intersection
 
 
 def overlap_meshes(parts: Mapping[str, Part], poses: Mapping[str, SE3]) -> list[TriMesh]:
-    """Return the common solids of all pairs of parts, in the ground frame; parts that are no solids are left out.
+    """Return the common solids of all pairs of parts, in the ground frame; parts that are not solids are left out.
 
     Args:
         parts: By name.

@@ -36,13 +36,13 @@ DEFAULT_VIEWS = ("iso", "front", "right", "top")
 DEFAULT_SIZE = 512
 MOTION_VIEWS = ("iso", "iso_left", "front", "right", "top", "iso_back", "iso_below")
 FRAMES = 8
-_PROBE_SIZE = 96  # pixels of the pictures by which a view is chosen
-_FREE_TRAVEL = 0.1  # of the assembly's size: how far a travel without limits is shown
+_PROBE_SIZE = 96  # pixels of the pictures that serve to choose a view
+_FREE_TRAVEL = 0.1  # of the assembly's size: range shown of a travel without limits
 _MOST_MOTIONS = 14  # of a sheet
-_SHEET_FRAMES = 5  # of which two are shown: first and last, or the first quarter of more than half a turn
+_SHEET_FRAMES = 5  # two of which are shown: first and last, or the first quarter if it turns more than half a turn
 _SHEET_COLUMNS = 4
-_NEAR = 0.3  # of the assembly's size: what moves and is smaller than this is shown from nearby…
-_CONTEXT = 1.5  # …with this much of its own size round it
+_NEAR = 0.3  # of the assembly's size: smaller moving parts are shown close up…
+_CONTEXT = 1.5  # …with this share of their own size around them
 _BETWEEN = (226, 228, 231)
 _GAP = 6  # pixels between the pictures of a sheet
 _GIF_MILLISECONDS = 60
@@ -62,15 +62,15 @@ def picture(
 
     Args:
         scene: What to draw.
-        camera: From where.
+        camera: The camera.
         supersample: Rays per pixel in each direction; 1 is fastest.
-        labels: Write the parts' names; "aside": in columns beside what is drawn.
+        labels: Write the parts' names; "aside": in columns beside the picture.
         axes: Draw the joints' axes with the direction of positive motion.
         title: Written in the upper left corner.
-        renderer: "embree" works everywhere and always gives the same pixels; "pyvista" is smoother, where it can be had.
+        renderer: "embree" works everywhere and always gives the same pixels; "pyvista" is smoother, if it is available.
 
     Raises:
-        KernelUnavailableError: If PyVista was asked for and cannot draw here.
+        KernelUnavailableError: If PyVista was requested and cannot draw here.
     """
     if renderer == "pyvista":
         _require_pyvista()
@@ -108,11 +108,11 @@ def render_views(
         size: Width and height of each picture [pixels].
         only: Parts shown in full; the others are faded.
         section: A cutting plane, or its short form such as `x` or `-y=12.5`.
-        explode: How far parts are moved apart, as a share of their distance from the middle.
+        explode: Distance by which parts are moved apart, as a share of their distance from the middle.
         highlights: Meshes in the ground frame drawn over everything.
-        show_overlaps: Draw what parts have in common in red, over everything.
+        show_overlaps: Draw common volumes of parts in red, over everything.
         supersample: Rays per pixel in each direction.
-        labels: Write the parts' names; "aside": in columns beside what is drawn.
+        labels: Write the parts' names; "aside": in columns beside the picture.
         axes: Draw the joints' axes.
         renderer: As in `picture`.
     """
@@ -148,7 +148,7 @@ def render_part(
             scene,
             Camera.fit(view, scene.bounds, width=size, height=size),
             supersample=supersample,
-            labels=False,  # the title names it; a label would lie on the very part
+            labels=False,  # the title names it; a label would cover the part
             title=f"{part.name} · {view}",
         )
         for view in views
@@ -156,16 +156,16 @@ def render_part(
 
 
 def motion_frames(assembly: Assembly, joint: str, count: int = FRAMES) -> tuple[list[str], FloatArray]:
-    """Return configurations that show what a driving joint does, all other drivers at rest.
+    """Return configurations that show the motion of a driving joint, all other drivers at rest.
 
-    Each coordinate runs from its lower to its upper limit, an endless angle over one turn from rest; a ball swings about
-    both axes across z and then twists.
+    Each coordinate runs from its lower to its upper limit, an endless angle over one turn from rest; a ball swings about both axes
+    perpendicular to z and then twists.
 
     Returns:
         A caption for each frame, and `q`, `(frames, nq)`.
 
     Raises:
-        UnknownJointError: If the joint drives nothing.
+        UnknownJointError: If the joint does not drive anything.
     """
     driving = assembly.mechanism.driving_joints
     if joint not in driving:
@@ -207,8 +207,8 @@ def render_motion(
     Args:
         assembly: What to draw.
         joint: The joint that moves.
-        view: A key of `articad.render.VIEWS`; by default the one in which most of the motion is seen.
-        frames: How many pictures for each coordinate of the joint.
+        view: A key of `articad.render.VIEWS`; by default the one that shows most of the motion.
+        frames: Number of pictures for each coordinate of the joint.
         size: Width and height of each picture [pixels].
         supersample: Rays per pixel in each direction.
         axes: Draw the joint's axis.
@@ -223,9 +223,9 @@ def render_motion(
 
 
 def best_view(scenes: Sequence[DrawnScene], candidates: Sequence[str] = MOTION_VIEWS) -> str:
-    """Return the view that shows a motion best: what moves goes far across the picture, and much of it is seen to change.
+    """Return the view that shows a motion best: moving items travel far across the picture, and much of it changes.
 
-    Both are measured in millimetres: a view that is nearer because the product is slim from there shows no more.
+    Both are measured in millimetres: a view that is closer because the product is slim from there shows no more.
 
     Args:
         scenes: The same items in different places.
@@ -258,9 +258,9 @@ def before_after(
 
 
 def product_sheet(assembly: Assembly, *, size: int = 480) -> Image.Image:
-    """Return one picture from which one can tell what a product is and which joint moves which way.
+    """Return one picture that shows what a product is and in which direction each joint moves.
 
-    Two views with names and axes, then for each driving joint its first and last keyframe, from where the motion is seen best.
+    Two views with names and axes, then for each driving joint its first and last keyframe, in the view that shows the motion best.
 
     Args:
         assembly: What to draw.
@@ -283,7 +283,7 @@ def product_sheet(assembly: Assembly, *, size: int = 480) -> Image.Image:
 
 
 def contact_sheet(pictures: Sequence[Image.Image], columns: int) -> Image.Image:
-    """Return pictures of one size side by side in rows."""
+    """Return pictures of one size arranged in rows."""
     width, height = pictures[0].size
     rows = math.ceil(len(pictures) / columns)
     sheet = Image.new("RGB", (columns * (width + _GAP) - _GAP, rows * (height + _GAP) - _GAP), _BETWEEN)
@@ -298,7 +298,7 @@ def filmstrip(frames: Sequence[Image.Image], columns: int = 4) -> Image.Image:
 
 
 def motion_gif(frames: Sequence[Image.Image]) -> bytes:
-    """Return an animation that runs forth and back without end."""
+    """Return an animation that runs forwards and backwards endlessly."""
     palette = [frame.quantize(colors=128, method=Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE) for frame in frames]
     loop = [*palette, *palette[-2:0:-1]]
     stream = io.BytesIO()
@@ -314,7 +314,7 @@ def png(image: Image.Image) -> bytes:
 
 
 def _range(assembly: Assembly, driver: Coordinate) -> tuple[float, float]:
-    """Return how far a driver really goes: in a loop, a dead point or another joint may stop it before its own limits."""
+    """Return the actual range of a driver: in a loop, a dead point or another joint may stop it before its own limits."""
     if assembly.mechanism.is_tree:
         return driver.lower, driver.upper
     feasible = assembly.feasible_range(driver.name)
@@ -353,19 +353,19 @@ def _displacement(before: DrawnScene, after: DrawnScene) -> float:
 
 
 def _envelope(scenes: Sequence[DrawnScene]) -> FloatArray:
-    """Return the box that holds every scene [mm], `(2, 3)`."""
+    """Return the box that contains every scene [mm], `(2, 3)`."""
     return np.array([np.min([scene.bounds[0] for scene in scenes], axis=0), np.max([scene.bounds[1] for scene in scenes], axis=0)])
 
 
 def _motion_scenes(assembly: Assembly, joint: str, q: FloatArray) -> list[DrawnScene]:
-    """Return the scene of each configuration, with what stands still in all of them faded."""
+    """Return the scene of each configuration, with everything faded that never moves."""
     poses = [_poses(assembly, row) for row in q]
     moving = [name for name in assembly.parts if not all(poses[0][name].allclose(pose[name]) for pose in poses)]
     return [scene_of(assembly.parts, pose, joints=_of(assembly.joints, joint), only=moving or None) for pose in poses]
 
 
 def _shown(scenes: Sequence[DrawnScene]) -> FloatArray:
-    """Return the box that pictures of a motion show: all of it, or only the surroundings of what moves where that is small."""
+    """Return the box that pictures of a motion show: the whole, or only the surroundings of small moving parts."""
     whole = _envelope(scenes)
     moving = [replace(scene, items=tuple(item for item in scene.items if item.manner == "solid")) for scene in scenes]
     part = _envelope(moving)
@@ -377,7 +377,7 @@ def _shown(scenes: Sequence[DrawnScene]) -> FloatArray:
 
 
 def _turns_far(assembly: Assembly, joint: str, index: int) -> bool:
-    """Whether a joint's coordinate turns by more than half a turn, so that first and last frame do not tell which way."""
+    """Whether a joint's coordinate turns by more than half a turn, so that first and last frame do not show the direction."""
     declared = next(entry for entry in assembly.joints if entry.name == joint)
     if declared.type is JointType.BALL:
         twist = declared.limits.twist

@@ -1,4 +1,4 @@
-"""Which part each pixel sees, how far away and how it is turned: the only user of Embree."""
+"""For each pixel: the visible part, its distance and its normal. The only user of Embree."""
 
 from __future__ import annotations
 
@@ -17,18 +17,18 @@ FloatImage = NDArray[np.float32]
 IndexImage = NDArray[np.int32]
 
 BACKGROUND = -1
-_STEP = 1e-4  # of the scene's size: how far behind a surface a ray goes on; float32 resolves 1e-7
+_STEP = 1e-4  # of the scene's size: offset behind a surface at which a ray continues; float32 resolves 1e-7
 
 
 @dataclass(frozen=True, eq=False)
 class Buffers:
-    """What the rays of a picture met.
+    """The results of the rays of a picture.
 
     Attributes:
-        item: Index into `DrawnScene.items`, `BACKGROUND` where nothing is, `(height, width)`.
-        depth: Distance in front of (negative: nearer than) the plane through the camera's centre [mm]; inf for background.
+        item: Index into `DrawnScene.items`, `BACKGROUND` if there is nothing, `(height, width)`.
+        depth: Distance behind the plane through the camera's centre (negative: in front) [mm]; inf for background.
         normal: Unit normal towards the viewer, `(height, width, 3)`; zero for background.
-        cut: True where the section plane cuts through a solid.
+        cut: True if the section plane cuts through a solid.
         over: Index of the highlighted item that lies anywhere on the ray, else `BACKGROUND`.
     """
 
@@ -40,10 +40,10 @@ class Buffers:
 
 
 def cast(scene: DrawnScene, camera: Camera) -> Buffers:
-    """Send one ray through the centre of each pixel.
+    """Cast one ray through the centre of each pixel.
 
-    Vertices are taken relative to the camera's centre before they become float32, so that a scene far from the origin is
-    as sharp as one at it.
+    Vertices are made relative to the camera's centre before the conversion to float32, so that a scene far from the origin is as sharp
+    as one at it.
     """
     plain = [index for index, item in enumerate(scene.items) if item.manner != "highlight"]
     marked = [index for index, item in enumerate(scene.items) if item.manner == "highlight"]
@@ -68,7 +68,7 @@ def cast(scene: DrawnScene, camera: Camera) -> Buffers:
 
 
 def _kept_interval(scene: DrawnScene, camera: Camera, origins: FloatArray, end: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return from where to where each ray runs through the half-space that a section keeps."""
+    """Return the interval of each ray inside the half-space that a section keeps."""
     assert scene.section is not None
     normal = np.array(scene.section.normal) / np.linalg.norm(scene.section.normal)
     toward = -camera.eye
@@ -112,7 +112,7 @@ def _first_hits(
         toward_viewer = np.array(scene.section.normal) / np.linalg.norm(scene.section.normal)
         if toward_viewer @ camera.eye < 0:
             toward_viewer = -toward_viewer
-        # Each solid alone: where two touch, the first of all surfaces does not tell inside which of them the ray began.
+        # Each solid alone: if two touch, the first of all surfaces does not show inside which of them the ray began.
         for index in indices:
             alone = _embree_scene(scene, (index,), tuple(camera.centre)).run(begin, direction, dists=dists.copy(), output=1)
             inside = (alone["geomID"] >= 0) & (alone["Ng"].astype(np.float64) @ camera.eye < 0) & (start > step) & (end > start)

@@ -1,4 +1,4 @@
-"""Scene: what is drawn, placed in the ground frame."""
+"""Scene: the items to draw, placed in the ground frame."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class DrawnMesh:
     Attributes:
         name: Name of the part.
         mesh: Its surface in its own frame [mm].
-        T_ground: Where that frame is.
+        T_ground: Pose of that frame.
         color: "#rrggbb".
         manner: solid; faded for context; highlight is drawn over everything in front of it.
     """
@@ -45,11 +45,11 @@ class DrawnMesh:
 
 @dataclass(frozen=True)
 class Section:
-    """A cutting plane; what lies on the side of its normal is taken away.
+    """A cutting plane; what lies on the side of its normal is removed.
 
     Attributes:
         point: A point of the plane [mm].
-        normal: Towards what is taken away; need not be of unit length.
+        normal: Towards the removed side; need not be of unit length.
     """
 
     point: tuple[float, float, float]
@@ -57,10 +57,10 @@ class Section:
 
     @classmethod
     def parse(cls, text: str, bounds: FloatArray) -> Section:
-        """Read `x`, `-y`, `z=12.5` …: the axis of the normal, and where it cuts (the middle of `bounds` by default).
+        """Parse `x`, `-y`, `z=12.5` …: the axis of the normal, and the position of the cut (the middle of `bounds` by default).
 
         Raises:
-            ValueError: If the text is not of this form.
+            ValueError: If the text does not have this form.
         """
         axis, _, offset = text.partition("=")
         sign = -1.0 if axis.startswith("-") else 1.0
@@ -77,7 +77,7 @@ class Section:
 
 @dataclass(frozen=True)
 class AxisMark:
-    """A joint's axis to be drawn: where it is, along what, and what it is called."""
+    """A joint's axis to draw: a point, a direction and a name."""
 
     name: str
     point: tuple[float, float, float]
@@ -90,7 +90,7 @@ class DrawnScene:
     """Items, and what is drawn over them.
 
     Attributes:
-        items: Meshes with their places and colours.
+        items: Meshes with their poses and colours.
         axes: Joint axes to draw.
         section: Cutting plane, or None.
     """
@@ -101,7 +101,7 @@ class DrawnScene:
 
     @cached_property
     def bounds(self) -> FloatArray:
-        """Smallest and largest coordinates of all items [mm], `(2, 3)`; a unit box when there are none."""
+        """Smallest and largest coordinates of all items [mm], `(2, 3)`; a unit box if there are none."""
         corners = [item.vertices for item in self.items if len(item.mesh.vertices)]
         if not corners:
             return np.array([[-0.5] * 3, [0.5] * 3])
@@ -130,7 +130,7 @@ def scene_of(
     Args:
         parts: By name.
         poses: `T_ground_part` by name.
-        joints: Whose axes are drawn.
+        joints: Joints whose axes are drawn.
         only: Parts to show in full; the others are faded. All by default.
         highlights: Meshes in the ground frame that are drawn over everything, such as overlaps.
     """

@@ -1,4 +1,4 @@
-"""From buffers to colours: light, edges, cut faces, highlights."""
+"""Converts buffers to colours: light, edges, cut faces, highlights."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ Picture = NDArray[np.uint8]
 PAPER = np.array([250.0, 250.0, 248.0])
 INK = np.array([38.0, 42.0, 48.0])
 _AMBIENT, _KEY, _FILL = 0.42, 0.50, 0.16
-_DARKEST = 104.0  # brightness, of 255: edges and hollows of a darker part would not be seen
-_FADE = 0.78  # towards paper, for parts that are only context
+_DARKEST = 104.0  # brightness, of 255: edges and hollows of a darker part would not be visible
+_FADE = 0.78  # towards the background, for parts that are only context
 _CREASE = 0.86  # cosine of 30 degrees: a sharper bend between neighbours is an edge
-_STEP_PIXELS = 4.0  # a jump in depth of more pixels than this is an outline
+_STEP_PIXELS = 4.0  # a larger jump in depth, in pixels, is an outline
 _HATCH_PIXELS = 7  # distance of hatching lines on cut faces
 _OVER_OPACITY = 0.82
 
@@ -105,7 +105,7 @@ def _edges(camera: Camera, buffers: Buffers) -> FloatArray:
         differ = buffers.item[a] != buffers.item[b]
         same = ~differ & (buffers.item[a] != BACKGROUND)
         crease = same & ((buffers.normal[a] * buffers.normal[b]).sum(axis=-1) < _CREASE)
-        # A slanted face changes depth by its slope; only what exceeds that is a step.
+        # An oblique face changes depth by its slope; only more than that is a step.
         slope = np.abs(buffers.normal[a] @ camera.eye)
         allowed = camera.mm_per_pixel * _STEP_PIXELS / np.maximum(slope, 0.1)
         step = same & (np.abs(depth[a] - depth[b]) > allowed)

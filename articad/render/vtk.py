@@ -1,4 +1,4 @@
-"""The nicer pictures: VTK by way of PyVista, where OpenGL can be had (extra `render`).
+"""Smoother pictures: VTK through PyVista, if OpenGL is available (extra `render`).
 
 Without OpenGL, VTK does not raise but ends the process, so it is first tried in a process of its own.
 """
@@ -24,7 +24,7 @@ _CREASE_DEGREES = 30.0
 
 @cache
 def available() -> bool:
-    """True when PyVista is installed and can draw here; found out once, in a process of its own."""
+    """True if PyVista is installed and can draw here; tested once, in a process of its own."""
     if importlib.util.find_spec("pyvista") is None:
         return False
     limits = launcher.Limits(seconds=_PROBE_SECONDS)
@@ -43,7 +43,7 @@ def _draws() -> bool:
 def draw(scene: DrawnScene, camera: Camera) -> NDArray[np.uint8]:
     """Return the picture of a scene, `(height, width, 3)`, with the same camera as `articad.render.raycast`.
 
-    Call it only where `available()` is true.
+    Call it only if `available()` is true.
     """
     import pyvista  # noqa: PLC0415 - an extra, and half a second to load
 

@@ -1,4 +1,4 @@
-"""One self-contained page for each run or build: a model that moves, and everything that is known about it."""
+"""One self-contained page for each run or build: a movable model, and all reports about it."""
 
 from articad.report.model import viewer_model
 from articad.report.notebook import notebook_page

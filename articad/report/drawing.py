@@ -1,4 +1,4 @@
-"""Meshes as the page holds them: single precision, triangles sorted by smooth face, the edges between faces."""
+"""Meshes in the page's form: single precision, triangles sorted by smooth face, the edges between faces."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from articad.geometry.mesh import TriMesh
 
 IntArray = NDArray[np.int64]
 
-_CREASE = math.cos(math.radians(30.0))  # two triangles that bend more have an edge between them, where no B-rep tells faces
-_WIDE = 65536  # vertices from which indices need four bytes
+_CREASE = math.cos(math.radians(30.0))  # a larger bend between two triangles is an edge, if no B-rep gives the faces
+_WIDE = 65536  # number of vertices from which indices need four bytes
 
 
 def drawn_mesh(mesh: TriMesh) -> dict[str, Any]:
@@ -46,7 +46,7 @@ def drawn_mesh(mesh: TriMesh) -> dict[str, Any]:
 
 
 def _shared_edges(mesh: TriMesh) -> tuple[IntArray, IntArray]:
-    """Return each edge's two vertices and its first two triangles, −1 where there is no second one."""
+    """Return each edge's two vertices and its first two triangles, −1 if there is no second one."""
     triangles = np.asarray(mesh.triangles, dtype=np.int64)
     sides = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
     owner = np.tile(np.arange(len(triangles)), 3)
@@ -61,7 +61,7 @@ def _shared_edges(mesh: TriMesh) -> tuple[IntArray, IntArray]:
 
 
 def _smooth_faces(mesh: TriMesh, neighbours: IntArray) -> IntArray:
-    """Number the sets of triangles that hang together without a crease."""
+    """Number the sets of triangles that are connected without a crease."""
     count = len(mesh.triangles)
     if not count:
         return np.zeros(0, dtype=np.int64)

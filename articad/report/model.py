@@ -1,4 +1,4 @@
-"""The model that a page moves: parts, meshes and the mechanism, all numbers in full."""
+"""The model of a page: parts, meshes and the mechanism, all numbers at full precision."""
 
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ from articad.report.drawing import drawn_mesh
 Json = dict[str, Any]
 
 MODEL_SCHEMA = "articad.viewer/1"
-_FREE_TRAVEL = 0.25  # of the assembly's size: how far the slider of a travel without limits goes to each side
-_DEFAULT_CONE = math.pi / 2  # how far a ball without limits is swung by its sliders
-_DEFAULT_LENGTH = 100.0  # mm, where nothing has a size
+_FREE_TRAVEL = 0.25  # of the assembly's size: slider range of a travel without limits, in both directions
+_DEFAULT_CONE = math.pi / 2  # slider range of a ball without limits
+_DEFAULT_LENGTH = 100.0  # mm, if nothing has a size
 
 
 def viewer_model(assembly: Assembly) -> Json:
-    """Return what the page needs to draw and move an assembly, `articad.viewer/1`; loops are solved in the page.
+    """Return the data that the page needs to draw and move an assembly, `articad.viewer/1`; the page solves loops itself.
 
     Args:
-        assembly: Any, from a plan, from Python or from a file.
+        assembly: Any assembly, from a plan, from Python or from a file.
     """
     mechanism = assembly.mechanism
     index = {name: number for number, name in enumerate(mechanism.parts)}
@@ -129,7 +129,7 @@ def _dependent_freedoms(assembly: Assembly) -> set[int]:
 
 
 def _drivers(assembly: Assembly) -> list[Json]:
-    """Return what has a slider: each driving coordinate with the range in which it can go, and each driving ball."""
+    """Return the sliders: each driving coordinate with its feasible range, and each driving ball."""
     mechanism = assembly.mechanism
     joints = {joint.name: joint for joint in mechanism.joints}
     size = _size(assembly)
@@ -152,7 +152,7 @@ def _range(assembly: Assembly, driver: Coordinate, size: float) -> Json:
     if not assembly.mechanism.is_tree:
         try:
             feasible = assembly.feasible_range(driver.name)
-        except ArticadError:  # the page finds out by itself how far it goes
+        except ArticadError:  # the page itself finds how far it goes
             pass
         else:
             lower, upper = feasible.lower, feasible.upper
@@ -165,7 +165,7 @@ def _range(assembly: Assembly, driver: Coordinate, size: float) -> Json:
 
 
 def _size(assembly: Assembly) -> float:
-    """Return the length of the diagonal of the box round everything at rest [mm]."""
+    """Return the diagonal of the bounding box of everything at rest [mm]."""
     poses = assembly.poses(assembly.mechanism.rest)
     points = [
         poses[number].apply(shape.placed.bounds)

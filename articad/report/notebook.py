@@ -1,4 +1,4 @@
-"""The page inside another page, as notebooks show it."""
+"""The page inside another page, for notebooks."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ _HEIGHT = 620  # pixels: model and sliders without scrolling on a laptop
 
 
 def notebook_page(assembly: Assembly) -> str:
-    """Return an element that shows the assembly's page; it can run its own script and save files, and reach nothing else."""
+    """Return an element that shows the assembly's page; it can run its own script and save files, and access nothing else."""
     return (
         f'<iframe title="{escape(assembly.name)}" srcdoc="{escape(report_page(assembly))}" sandbox="allow-scripts allow-downloads" '
         f'style="width: 100%; height: {_HEIGHT}px; border: 1px solid #8888; border-radius: 6px"></iframe>'

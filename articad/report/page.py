@@ -1,7 +1,7 @@
 """The page itself: one file that needs nothing else and may do nothing else.
 
-Its policy allows exactly the one script and the one style sheet that it holds, by their digests; there is no address in
-it that a browser would fetch. Texts from plans, files and models are escaped; the model's JSON cannot end its element.
+Its policy allows exactly the one script and the one style sheet that it contains, by their digests; it has no address that a browser
+would fetch. Texts from plans, files and models are escaped; the model's JSON cannot end its element.
 """
 
 from __future__ import annotations
@@ -26,9 +26,9 @@ def report_page(assembly: Assembly, documents: Documents | None = None, *, watch
     """Return the page of an assembly; the same input gives the same text.
 
     Args:
-        assembly: What is shown and moved.
-        documents: Reports to stand beside it.
-        watch: Version of the page as `articad watch` serves it: the page then asks its server for newer ones.
+        assembly: The assembly to show and move.
+        documents: Reports to show beside it.
+        watch: Version of the page served by `articad watch`; the page then asks its server for newer ones.
     """
     documents = documents or Documents()
     model = viewer_model(assembly)
@@ -82,7 +82,7 @@ def _asset(name: str) -> str:
 
 
 def _json_text(text: str) -> str:
-    """Return JSON that cannot end the element it stands in, nor open a comment: `<` and `>` occur in strings only."""
+    """Return JSON that cannot end its element, nor open a comment: `<` and `>` occur in strings only."""
     return text.replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026")
 
 

@@ -1,4 +1,4 @@
-"""What stands beside the model: tables of parts, checks, proofs, fits, exports, and what was said to whom."""
+"""The sections beside the model: tables of parts, checks, proofs, fits, exports, and the conversation with models."""
 
 from __future__ import annotations
 
@@ -24,16 +24,16 @@ _VERDICT = {"clear": "good", "contact": "good", "overlap": "bad", "unknown": "wa
 
 @dataclass(frozen=True)
 class Documents:
-    """What is known of an assembly beyond itself, as the reports of a run; all may be left out.
+    """The documents about an assembly, as the reports of a run; each may be omitted.
 
     Attributes:
-        prompt: What was asked for.
+        prompt: The request.
         checks: Report `articad.checks/1`.
         certificate: Report `articad.certificate/2`.
         verdict: Report `articad.verdict/1`.
         audit: Report `articad.audit/1`.
         exports: Reports `articad.losses/1` by format.
-        replies: Records `articad.llm/1`, in the order in which they are to be read.
+        replies: Records `articad.llm/1`, in reading order.
         plan: The plan's text.
         files: Paths beside the page, to be linked.
     """
@@ -57,7 +57,7 @@ class Documents:
 
 
 def all_sections(assembly: Assembly, documents: Documents) -> str:
-    """Return all sections that have something to say."""
+    """Return all sections with content."""
     known = set(assembly.parts)
     findings = [*documents.findings, *(finding.to_json() for finding in assembly.findings)]
     return "".join(
@@ -152,7 +152,7 @@ def _parts(assembly: Assembly) -> str:
 
 
 def total_mass(assembly: Assembly) -> str:
-    """Return the mass of all parts, and of how many it is not known."""
+    """Return the mass of all parts, and the number of parts with unknown mass."""
     known = [part.mass.mass for part in assembly.parts.values() if part.mass is not None]
     if not known:
         return "mass unknown"

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 
 class Html(NamedTuple):
-    """Markup made by us, which is not escaped again."""
+    """Trusted markup, which is not escaped again."""
 
     text: str
 
@@ -17,7 +17,7 @@ Cell = str | int | float | None | Html
 
 
 def html_text(cell: Cell) -> str:
-    """Return a cell's markup: texts escaped, numbers with six significant digits, nothing for None."""
+    """Return a cell's markup: texts escaped, numbers with six significant digits, empty for None."""
     if isinstance(cell, Html):
         return cell.text
     if isinstance(cell, float):
@@ -26,12 +26,12 @@ def html_text(cell: Cell) -> str:
 
 
 def html_table(columns: Sequence[str], rows: Iterable[Sequence[Cell]], *, numbers: Sequence[int] = ()) -> str:
-    """Return a table; nothing if there are no rows.
+    """Return a table; empty if there are no rows.
 
     Args:
         columns: Headings.
         rows: Cells.
-        numbers: Indices of the columns that hold numbers.
+        numbers: Indices of numeric columns.
     """
     kind = [' class="number"' if index in numbers else "" for index in range(len(columns))]
     body = "".join(

@@ -1,1 +1,1 @@
-"""Programs that run inside FreeCAD's own process and know nothing of articad: files in, files out."""
+"""Programs that run inside FreeCAD's own process and do not import articad: files in, files out."""

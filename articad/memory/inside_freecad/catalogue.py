@@ -1,6 +1,6 @@
-"""Write down FreeCAD's own documentation: run inside FreeCAD, in a process of its own; leaves `/work/catalogue.json`.
+"""Extract FreeCAD's own documentation: run inside FreeCAD, in a process of its own; writes `/work/catalogue.json`.
 
-FreeCAD says what each property is and which values it takes, but not what a feature is for: PURPOSES does, in our words.
+FreeCAD documents each property and its values, but not the purpose of a feature: PURPOSES adds that.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ PURPOSES = {
     "SubShapeBinder": "Refer to other geometry, also across bodies.",
     "Thickness": "Hollow the solid out to a shell of thin walls, open at the selected faces.",
 }
-# Features that add material and, by the same name, features that cut it away.
+# Features that add material, and the features of the same name that remove it.
 SHAPES = {
     "Box": "cuboid, block with three side lengths",
     "Cylinder": "cylinder, round rod",
@@ -61,7 +61,7 @@ _SHARED = {"Refine", "AllowMultiFace", "AttacherEngine", "AttacherType", "MapMod
 
 
 def features() -> Iterator[Json]:
-    """Yield an entry for each feature of a body, with its properties and the values that they take."""
+    """Yield an entry for each feature of a body, with its properties and their values."""
     document = App.newDocument("Catalogue")
     body = document.addObject("PartDesign::Body", "Body")
     for kind in sorted(set(document.supportedTypes())):
@@ -82,7 +82,7 @@ def features() -> Iterator[Json]:
 
 
 def module() -> Iterator[Json]:
-    """Yield an entry for each geometry class and maker of the module Part, and for what a shape is asked."""
+    """Yield an entry for each geometry class and maker of the module Part, and for the queries of a shape."""
     for name in dir(Part):
         item = getattr(Part, name)
         text = (getattr(item, "__doc__", None) or "").strip()
