@@ -1,7 +1,8 @@
 """Extract build123d's own documentation: run in a process of its own, because the kernel takes seconds to import.
 
 Prints one JSON object: name, signature, summary and text of everything that a part script may use. The package documents
-names and arguments but says little about what designers use them for: PURPOSES adds that."""
+names and arguments but says little about what designers use them for: PURPOSES adds that.
+"""
 
 from __future__ import annotations
 
