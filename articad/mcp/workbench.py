@@ -77,7 +77,7 @@ class Workbench:
             ReadError: If the name is not valid, or there is no such design and it is not `new`.
         """
         if not _NAME.match(name):
-            raise ReadError.at(name, f"{name!r} is no name of a design.", "Use letters, digits, - and _, at most 60.")
+            raise ReadError.at(name, f"{name!r} is not a valid name of a design.", "Use letters, digits, - and _, at most 60.")
         folder = self.path(name)
         if folder != self.root / name:
             raise ReadError.at(name, f"The design {name!r} is a link.", "Copy the folder to the root.")
@@ -122,7 +122,7 @@ class Workbench:
         if len(content) > SCRIPT_BYTES:
             raise ReadError.at(part, f"The script has {len(content)} bytes; at most {SCRIPT_BYTES} are accepted.", "Write it shorter.")
         if not _NAME.match(part):
-            raise ReadError.at(part, f"{part!r} is no name of a part.", "Use the name that the plan gives it.")
+            raise ReadError.at(part, f"{part!r} is not a valid name of a part.", "Use the name that the plan gives it.")
         file = self.design(design) / "parts" / f"{part}{'.freecad.py' if kernel == 'freecad' else '.py'}"
         if file.parent.is_symlink() or file.is_symlink():
             raise ReadError.at(part, f"{file} leads out of the root.", "Remove the link.")

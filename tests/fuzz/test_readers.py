@@ -222,7 +222,7 @@ def test_what_makes_mujoco_stumble_is_an_error_of_ours(tmp_path: Path, monkeypat
         raise RuntimeError("Caught an unknown exception!")
 
     monkeypatch.setattr("mujoco.MjModel.from_xml_path", stumbles)
-    with pytest.raises(ReadError, match="MuJoCo does not load it"):
+    with pytest.raises(ReadError, match="MuJoCo refuses it"):
         read_mjcf(path)
 
 

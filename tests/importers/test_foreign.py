@@ -26,14 +26,14 @@ REFUSED = {
     "torus_deform.urdf": "0 root links",
     "torus/torus_with_plane.urdf": "0 root links",
     "torus/torus_with_separate_plane.urdf": "0 root links",
-    "mjcf/ground.xml": "MuJoCo does not load it",
-    "mjcf/ground_plane.xml": "MuJoCo does not load it",
-    "mjcf/half_cheetah.xml": "MuJoCo does not load it",
-    "mjcf/hopper.xml": "MuJoCo does not load it",
-    "mjcf/humanoid_fixed.xml": "MuJoCo does not load it",
-    "mjcf/humanoid_symmetric.xml": "MuJoCo does not load it",
-    "mjcf/swimmer.xml": "MuJoCo does not load it",
-    "mjcf/walker2d.xml": "MuJoCo does not load it",
+    "mjcf/ground.xml": "MuJoCo refuses it",
+    "mjcf/ground_plane.xml": "MuJoCo refuses it",
+    "mjcf/half_cheetah.xml": "MuJoCo refuses it",
+    "mjcf/hopper.xml": "MuJoCo refuses it",
+    "mjcf/humanoid_fixed.xml": "MuJoCo refuses it",
+    "mjcf/humanoid_symmetric.xml": "MuJoCo refuses it",
+    "mjcf/swimmer.xml": "MuJoCo refuses it",
+    "mjcf/walker2d.xml": "MuJoCo refuses it",
 }
 
 UNREAD_BY_PINOCCHIO = {"spherical_joint_limit.urdf", "humanoid/humanoid.urdf"}

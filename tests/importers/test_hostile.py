@@ -72,7 +72,7 @@ def test_a_broken_urdf_is_a_named_error(name: str, tmp_path: Path) -> None:
 
 MJCFS = {
     "another root": ("<robot/>", "not <mujoco>"),
-    "not MJCF": ("<mujoco><nonsense/></mujoco>", "MuJoCo does not load it"),
+    "not MJCF": ("<mujoco><nonsense/></mujoco>", "MuJoCo refuses it"),
     "a file outside": ('<mujoco><asset><mesh name="m" file="../../etc/passwd"/></asset></mujoco>', "leads out"),
     "an absolute file": ('<mujoco><asset><hfield name="m" file="/etc/passwd"/></asset></mujoco>', "leads out"),
     "an outside folder": ('<mujoco><compiler meshdir="../.."/><asset><mesh name="m" file="x.stl"/></asset></mujoco>', "leads out"),
