@@ -51,7 +51,7 @@ _LIMIT_SLACK = 1e-9  # rad or mm: a value computed to be at its limit is at its 
 
 
 class Poses(Mapping[str, SE3]):
-    """Where each part is: part name -> its pose in the ground frame."""
+    """Pose of each part in the ground frame, by the part's name."""
 
     def __init__(self, names: Sequence[str], stacked: SE3) -> None:
         self._names = tuple(names)
@@ -78,7 +78,7 @@ class Kept:
     """Data of a file for which an assembly has no field.
 
     Attributes:
-        format: Of the file, such as "urdf".
+        format: Format of the file, such as "urdf".
         where: What it belongs to: `joints.elbow`, `parts.arm`, or `model`.
         what: In words, for reports.
         xml: The element, to be written below `where` into a file of the same format; empty where that is not possible.
@@ -270,7 +270,7 @@ class Assembly:
             self.resolved.plan, scripts, kernel=self._kernel, cache=self._cache, deflection=self.deflection, parameters=parameters
         )
 
-    # ------------------------------------------------------------------ what it is
+    # ------------------------------------------------------------------ structure
 
     @property
     def plan(self) -> AssemblyPlan | None:
@@ -292,7 +292,7 @@ class Assembly:
         """The columns of `q`."""
         return self.mechanism.drivers
 
-    # ------------------------------------------------------------------ where things are
+    # ------------------------------------------------------------------ poses
 
     def q(self, **by_joint: JointValue) -> FloatArray:
         """Return the configuration with these joints set and all other drivers at rest; limits of joints that follow are checked.
@@ -362,8 +362,7 @@ class Assembly:
         Return waypoints of the drivers from one configuration to another; on the straight lines between them, branch and limits hold.
             start: Values of the drivers `(nq,)` [rad, mm].
             goal: Values of the drivers `(nq,)` [rad, mm].
-            clear: Whether parts must not meet on the way either: poses every 0.1 rad or lengths of a link are looked at, which
-                is sampled; `certify` proves.
+            clear: Whether the path must also be free of collisions; this is sampled every 0.1 rad or 0.1 lengths of a link, not proven.
 
         Returns:
             `(n, nq)`, start and goal included.
@@ -434,7 +433,7 @@ class Assembly:
         accept = (lambda q: self._is_clear(self.mechanism.configuration(q))) if clear else None
         return self.mechanism.reach(part, target, self._frame(part, frame), accept=accept)
 
-    # ------------------------------------------------------------------ what is true of it
+    # ------------------------------------------------------------------ checks and proofs
 
     def check(
         self,

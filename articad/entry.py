@@ -1,4 +1,4 @@
-"""What a user does with a file, a folder or an assembly: read it, audit it, certify it, simulate it.
+"""Operations on a file, a folder or an assembly: read, audit, certify, simulate.
 
 Each function takes an assembly, a file in any format that is read, a plan folder, or a run folder.
 """
@@ -39,7 +39,7 @@ def read(
     Args:
         source: A URDF, MJCF, FreeCAD or STEP file; a plan, `plan.json` or its folder, with part scripts beside it; or a run folder.
         root: Folder that meshes of a file may be read from; the file's own by default.
-        fuse: For URDF and MJCF: replace chains of joints over links without shapes by the one joint that they stand for, such as a ball.
+        fuse: For URDF and MJCF: replace chains of joints over links without shapes by the one joint that they represent, such as a ball.
         sandbox: "weak" runs part scripts with less isolation than Landlock or bubblewrap give.
         progress: Called with the outcome of each part that is built.
 

@@ -102,7 +102,7 @@ class Line:
     # ------------------------------------------------------------------ steps that variants replace
 
     def requirements(self) -> Requirements:
-        """Return what is wanted."""
+        """Return the analysis of the request."""
         self.builder.announce("requirements", "started")
         ideas = self.options.get("ideas", "never")
         requirements = None if ideas == "always" else analyse(self.run.request, self.port)

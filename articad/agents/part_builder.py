@@ -169,7 +169,7 @@ class PartBuilder:
         return self._shown(self.scripts[name])
 
     def announce(self, what: str, event: str) -> None:
-        """Note what happens in the trace, and tell who waits."""
+        """Write an event into the trace, and report it to the caller."""
         self.run.trace("stage", name=what, state=event)
         if self.progress is not None:
             self.progress(what, event)

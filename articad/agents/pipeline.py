@@ -213,7 +213,7 @@ def _work(
 
 
 def _line(builder: PartBuilder, chooser: Chooser, memory: Memory | None) -> Line:
-    """Return the line that a run's request asks for."""
+    """Return the pipeline for a run's request."""
     options = builder.run.request.options
     kind = EditLine if options.get("task") == "edit" else _LINES.get(options.get("variant", "full"), Line)
     return kind(builder, chooser, memory)

@@ -128,9 +128,7 @@ def remember(run: Run, store: ExperienceStore) -> Case | None:
         return None
     resolved = resolve(AssemblyPlan.loads(text))
     scripts = {name: script for name in run.part_names() if (script := run.script(name)) is not None}
-    scripts = {
-        name: script for name, script in scripts.items() if not script.endswith(ENDING)
-    }  # those are no examples: they define no connectors
+    scripts = {name: script for name, script in scripts.items() if not script.endswith(ENDING)}  # not examples: they define no connectors
     verdict, review = run.verdict() or {}, run.review() or {}
     measured = [finding for finding in checks["findings"] if finding["severity"] == "error"]
     judged = [finding for finding in verdict.get("findings", ()) if finding["severity"] == "error" and finding not in measured]

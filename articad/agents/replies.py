@@ -15,7 +15,7 @@ from articad.errors import OutputError
 from articad.findings import Finding
 from articad.plan.reading import MOST_LEVELS, is_nested_deeper
 
-TRIES: Final = 3  # a model that misses a form three times does not find it
+TRIES: Final = 3  # a model that fails three times does not find the form
 _FENCED: Final = re.compile(r"^[ \t]*```[ \t]*([\w+-]*)[^\n]*\n(.*?)^[ \t]*```[ \t]*$", re.DOTALL | re.MULTILINE)
 _OPEN_FENCE: Final = re.compile(r"\A\s*```[ \t]*[\w+-]*[^\n]*\n")
 _SHOWN = 60  # characters of a reply that an error quotes
@@ -118,11 +118,11 @@ def ask(
     The first try is the step itself, later ones `<step>/2`, `<step>/3`.
 
     Args:
-        llm: Who answers.
+        llm: The model.
         role: Which agent asks.
         step: The address of the first try.
         opening: The question.
-        read: Makes the value of a reply's text and its step, or raises `OutputError`.
+        read: Converts a reply's text and its step to a value, or raises `OutputError`.
         schema: JSON schema of the reply.
 
     Raises:
@@ -156,7 +156,7 @@ def reader(form: type[_Form], *, ignore: frozenset[str] = frozenset()) -> Callab
 
 
 def schema_of(form: type[BaseModel], *, without: frozenset[str] = frozenset()) -> dict[str, Any]:
-    """Return the JSON schema of a form as every provider takes it: references written out, titles dropped."""
+    """Return the JSON schema of a form as every provider accepts it: references expanded, titles removed."""
     schema = form.model_json_schema(by_alias=True)
     for name in without:
         schema["properties"].pop(name)

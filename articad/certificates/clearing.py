@@ -417,7 +417,7 @@ class Slides:
     their projections along g, and those at both ends.
 
     Args:
-        spread: Of boxes.
+        spread: Bounds of the boxes.
         ways: Unit vectors along g, `(k, 3)`.
         groups: Generators of first order along each of them, `(k, G)`: those along the same line add up.
     """

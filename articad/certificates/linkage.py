@@ -58,7 +58,7 @@ class FollowedBox:
 
     Attributes:
         ends: Lower and upper end for each driver [rad or mm].
-        numbers: Indices, in the way, of the followed boxes of which it consists.
+        numbers: Indices of its followed boxes in the track.
         line: For each coordinate of the group: its value in the middle, its rate for each driver `(drivers,)`, and the largest distance
             of the coordinate from this line [rad or mm].
         off: Distance of the line from a pose of the mechanism in the middle [rad or mm]; infinite for a union.

@@ -1,4 +1,4 @@
-"""Check a motion certificate without trusting it: what `articad verify-certificate` asks.
+"""Check a motion certificate without trusting it: the checker behind `articad verify-certificate`.
 
 The checker is independent of the prover and uses NumPy alone. A certificate claims that parts stay apart while joints move within
 ranges. A proof file says how to cut surfaces and ranges, and which direction separates each two pieces. The checker trusts none of it

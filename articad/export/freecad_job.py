@@ -312,7 +312,7 @@ class Job:
 
     @property
     def losses(self) -> tuple[Loss, ...]:
-        """What FreeCAD cannot represent; complete after `told`."""
+        """Losses of what FreeCAD cannot represent; complete after the conversion to JSON."""
         return (*losses_of("freecad", self._told), *kept_losses("freecad", self.assembly.kept))
 
 

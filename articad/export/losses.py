@@ -402,7 +402,7 @@ _FREECAD: dict[str, LossRow] = {
     "freecad.frame": LossRow("a fixed frame", "the link to parameters"),
     "freecad.direction": LossRow("a fixed direction", "the link of its direction to parameters: its x is chosen by rule"),
 }
-"""What a FreeCAD document holds for FreeCAD itself; its records hold the rest."""
+"""How a FreeCAD document represents each feature for FreeCAD itself; its records hold the rest."""
 
 _PLAN: dict[str, LossRow] = {
     "mass.missing": LossRow("a density of 1000 kg/m³", "the mass of a moving part is not known", refused=True),
@@ -421,7 +421,7 @@ _PLAN: dict[str, LossRow] = {
     ),
     "plan.capacity": LossRow("the first effort or velocity", "the others: a plan states one for rotation and one for translation"),
 }
-"""What a plan does not hold as it is; everything else that a mechanism has, it was made for."""
+"""Features that a plan cannot represent exactly; it was designed for all others."""
 
 TABLE |= {key: {} for key in (*_FREECAD, *_PLAN) if key not in TABLE}
 for _key, _row in _FREECAD.items():
@@ -474,7 +474,7 @@ def kept_losses(format_name: Format, kept: Iterable[Kept], written: Container[Ke
 
 
 def assumed_finding(joints: Iterable[str], format_name: Format) -> list[Finding]:
-    """Return the finding that says whose effort, velocity or damping is computed because nobody states it."""
+    """Return the finding that lists joints whose effort, velocity or damping is computed because it is not stated."""
     names = list(dict.fromkeys(joints))
     if not names:
         return []

@@ -61,8 +61,8 @@ def write_sdf(
     """Write an assembly as an SDFormat model.
 
     Links of a file keep their frames; a ground part without shape and mass that is called world is the world. A tree is posed where all
-    values are zero, as in URDF. A model with loops is posed at rest, where its loops are closed, and values and
-    limits are measured from there. Cylindrical and planar joints become chains over carrier links.
+    values are zero, as in URDF. A model with loops is posed at rest, where its loops are closed, and values and limits are measured from
+    there. Cylindrical and planar joints become chains over carrier links.
 
     Args:
         assembly: What to write.
@@ -93,7 +93,7 @@ def write_sdf(
 
 
 class _Kept:
-    """What the SDFormat file that an assembly came from says beyond it, and where it is written again."""
+    """Data of the assembly's original SDFormat file beyond the assembly, and where it is written again."""
 
     def __init__(self, assembly: Assembly, model: LoweredModel) -> None:
         self.written: list[Kept] = []
@@ -102,7 +102,7 @@ class _Kept:
         there = {f"joints.{row.joint.name}" for row in joints} | {"model"}
         for link in model.links:
             if not link.T_link_part.allclose(SE3.identity(), mm=1e-9, rad=1e-9):
-                continue  # what stands in a link is posed in its frame, which is another one now
+                continue  # it is posed in the link's frame, which has changed
             where = f"parts.{link.part.name}"
             there |= {where, *(f"{where}.visuals.{n}" for n in range(len(link.part.visuals)))}
             if link.collisions and all(a.shape is b for a, b in zip(link.collisions, link.part.collisions, strict=False)):
@@ -113,13 +113,13 @@ class _Kept:
                 self._at.setdefault(item.where, []).append(etree.fromstring(item.xml))
 
     def write(self, element: Any, where: str) -> None:
-        """Append what was said of something to its element."""
+        """Append kept data of an object to its element."""
         for kept in self._at.get(where, []):
             _merge(element, kept)
 
 
 def _merge(element: Any, kept: Any) -> None:
-    """Append an element; where the element has such a child that is read again, what is in it goes into that child."""
+    """Append an element; if the parent has such a child that is also read, append the content to that child."""
     there = element.find(kept.tag) if kept.tag in {"material", "axis", "axis2", "limit", "dynamics", "surface", "friction", "ode"} else None
     if there is None:
         element.append(kept)
@@ -136,7 +136,7 @@ class _Writer:
         self.follows = followers(model, [driver.name for driver in assembly.mechanism.drivers])
         self.poses: dict[str, SE3] = {}
         self.kept = _Kept(assembly, model)
-        # links and joints share one space of names, so a joint that bears a link's name gives way
+        # links and joints share one namespace, so a joint with a link's name is renamed
         self.taken = {link.name for link in model.links} | {name for joint in model.joints for name in joint.carriers}
 
     def document(self) -> Any:
@@ -180,7 +180,7 @@ class _Writer:
         T = self.poses[joint.parent] @ joint.T_parent_joint
         T_end = SE3.identity() if joint.end is None else joint.end[1]
         at = None if joint.end is None else T_end.inverse()  # the joint's frame in the child's
-        if joint.is_free:  # no joint at all: what nothing holds is free
+        if joint.is_free:  # no joint at all: an unconnected link is free
             self.poses[link.name] = T @ joint.T_rest @ T_end
             self._link(model, link, inertial)
             return
@@ -298,7 +298,7 @@ class _Writer:
 
 
 def _has_world(assembly: Assembly) -> bool:
-    """Return whether the ground part is the world itself: SDFormat has that without a link."""
+    """Return whether the ground part is the world itself, which SDFormat has without a link."""
     ground = assembly.parts[assembly.mechanism.ground]
     bare = not ground.visuals and not ground.collisions and ground.solid is None and ground.mass is None
     still = assembly.mechanism.T_ground.allclose(SE3.identity(), mm=0.0, rad=0.0)

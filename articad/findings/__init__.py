@@ -1,7 +1,7 @@
-"""Findings: what a check has to say, as values.
+"""Findings: the results of checks, as values.
 
 A finding is never raised by itself: checks return all findings at once, and exceptions (`articad.errors`)
-carry the finding of the same cause when the work cannot go on. Forms: `docs/reference/findings.md`.
+carry the finding of the same cause when the work cannot continue. Forms: `docs/reference/findings.md`.
 """
 
 from __future__ import annotations
@@ -21,8 +21,8 @@ Stage = Literal["plan", "build", "interference", "motion", "fit", "export", "imp
 _SEVERITY_OF_PREFIX: dict[str, Severity] = {"E": "error", "W": "warning", "I": "info"}
 _SEVERITY_ORDER = {"error": 0, "warning": 1, "info": 2}
 _NUMBER = re.compile(r"\d+(?:\.\d+)?(?:e[+-]?\d+)?")
-_SAID = 2e-3  # a message that names a number this near, relatively, has said it
-_SIGNIFICANT_DIGITS = 6  # numbers in reports are for reading, and must not depend on the last bits
+_SAID = 2e-3  # relative difference up to which a number in a message counts as the same
+_SIGNIFICANT_DIGITS = 6  # reports are for people, and must not depend on the last bits of numbers
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -36,9 +36,9 @@ class Finding:
         hint: What would be valid; what to change, to which value.
         parts: Names of the parts concerned.
         value: The measured number, in `unit`.
-        limit: The tolerance or bound it was held against, in `unit`.
+        limit: The tolerance or bound it was compared with, in `unit`.
         unit: Unit of `value` and `limit`.
-        cause: Root cause where geometry tells it.
+        cause: Root cause, if geometry shows it.
         pose: Coordinates at which it was found [rad, mm], by coordinate name.
         stage: Which check found it; by default the one registered with the code.
         route: Who must act, the plan's author or a script's; by default the one registered with the code.
@@ -66,7 +66,7 @@ class Finding:
 
     @property
     def severity(self) -> Severity:
-        """What the first letter of the code says."""
+        """The severity that the first letter of the code states."""
         return _SEVERITY_OF_PREFIX[self.code[0]]
 
     def to_json(self) -> dict[str, Any]:
@@ -105,7 +105,7 @@ class Findings(Sequence[Finding]):
 
     @property
     def errors(self) -> tuple[Finding, ...]:
-        """The findings that forbid going on."""
+        """The findings that are errors."""
         return tuple(finding for finding in self if finding.severity == "error")
 
     @property
@@ -114,7 +114,7 @@ class Findings(Sequence[Finding]):
         return tuple(finding.code for finding in self)
 
     def of(self, *codes: str) -> tuple[Finding, ...]:
-        """Return the findings that bear one of these codes."""
+        """Return the findings with one of these codes."""
         return tuple(finding for finding in self if finding.code in codes)
 
     def to_json(self) -> dict[str, Any]:
@@ -150,7 +150,7 @@ class Findings(Sequence[Finding]):
         return f"Findings({list(self.codes)})"
 
     def _repr_html_(self) -> str:
-        """Return the table by which a notebook shows findings."""
+        """Return the table of findings for a notebook."""
         from articad.report.tables import html_table  # noqa: PLC0415 - what a notebook shows, loaded when it is shown
 
         rows = [(finding.code, finding.where, finding.message, finding.hint) for finding in self]
@@ -174,10 +174,10 @@ def _rounded(number: float | None) -> float | None:
 
 
 def measured_against(finding: Mapping[str, Any]) -> str:
-    """Return what was measured and the limit, such as ` (5.3 against 0.12 mm)`; nothing where the message says the number itself.
+    """Return what was measured and the limit, such as ` (5.3 against 0.12 mm)`; empty if the message contains the number itself.
 
     Args:
-        finding: As a report has it.
+        finding: A finding of a report.
     """
     value, limit = finding.get("value"), finding.get("limit")
     if value is None or limit is None:

@@ -65,9 +65,9 @@ class RawJoint:
         frame_p: In the parent link's frame.
         frame_c: In the child link's frame.
         ranges: Limits of each coordinate; empty for a ball, a fixed and a free joint.
-        cone: Of a ball.
-        twist: Of a ball.
-        lead: Of a screw.
+        cone: Cone of a ball.
+        twist: Twist range of a ball.
+        lead: Lead of a screw.
         rest: Wanted rest values; the nearest ones within the limits are used.
         effort: [N·mm] or [N], None if the file gives none.
         velocity: [rad/s] or [mm/s], likewise.

@@ -1,4 +1,4 @@
-"""SDFormat in: articad's own by its records, any other by its models, links and joints."""
+"""Reads SDFormat: articad's own files by their records, any other by its models, links and joints."""
 
 from __future__ import annotations
 
@@ -30,10 +30,10 @@ __all__ = ["read_sdf"]
 
 FloatArray = NDArray[np.float64]
 
-MAX_DEPTH: Final = 20  # of models within models
-MAX_FILES: Final = 200  # that a file includes
-NO_BOUND: Final = 1e16  # what SDFormat takes for a bound, an effort or a velocity that is not stated
-_ACROSS: Final = 1e-9  # by which the axes of a universal joint may miss a right angle
+MAX_DEPTH: Final = 20  # of nested models
+MAX_FILES: Final = 200  # largest number of included files
+NO_BOUND: Final = 1e16  # SDFormat's value for a bound, an effort or a velocity that is not stated
+_ACROSS: Final = 1e-9  # largest deviation of the axes of a universal joint from a right angle
 _NAMED_IN_MODEL: Final = ("link", "joint", "frame", "model", "include")
 _TYPES: Final = {"fixed", "revolute", "continuous", "prismatic", "ball", "universal", "revolute2", "screw"}
 
@@ -42,17 +42,17 @@ def read_sdf(path: str | Path, *, root: str | Path | None = None, metadata: bool
     """Read an SDFormat file: one model, or all models of one world.
 
     Links become parts in their own frames; the ground is the world, a part without a shape. Joints keep their names, `revolute2` becomes
-    two revolute joints over a bare part. A model is free in the world unless it is static or a joint holds it. Models in models, and several
-    models of a world, have names such as `arm::hand`. `<include>` is read where the file lies in the root.
+    two revolute joints over a bare part. A model is free in the world unless it is static or a joint holds it. Nested models, and
+    several models of a world, have names such as `arm::hand`. `<include>` is read if the file is below the root.
 
     Args:
         path: The file.
         root: Folder that meshes and included models may be read from; the file's own by default. `model://name/…` is looked for in it.
         metadata: Use the records that articad left in its own files, so that they come back as they were.
-        fuse: Without metadata, make chains over bare links of small mass one joint.
+        fuse: Without metadata, replace chains over bare links of small mass by one joint.
 
     Raises:
-        ReadError: If the file is not SDFormat, names files outside the root, or is no mechanism.
+        ReadError: If the file is not SDFormat, names files outside the root, or is not a mechanism.
     """
     path = Path(path)
     folder = Folder.of(path, None if root is None else Path(root))
@@ -82,7 +82,7 @@ def _version(document: Any, path: Path) -> tuple[int, ...]:
     try:
         return tuple(int(word) for word in text.split("."))
     except ValueError:
-        raise unreadable(path, f"line {document.sourceline}", f"{text!r} is no version of SDFormat.") from None
+        raise unreadable(path, f"line {document.sourceline}", f"{text!r} is not a version of SDFormat.") from None
 
 
 class _Reader:
@@ -96,7 +96,7 @@ class _Reader:
         self.files = 0
 
     def model(self, document: Any) -> RawModel:
-        """Return everything that the document holds."""
+        """Return the content of the document."""
         version = _version(document, self.path)
         worlds, models = document.findall("world"), document.findall("model")
         if len(worlds) + len(models) != 1:
@@ -126,7 +126,7 @@ class _Reader:
     # ------------------------------------------------------------------ models
 
     def _beside(self, element: Any, read: set[str]) -> None:
-        """Keep by name what stands in the world, or beside the model, and is not read."""
+        """Keep by name the elements of the world, or beside the model, that are not read."""
         for below in element:
             if below.tag not in read:
                 name = f" {below.get('name')}" if below.get("name") else ""
@@ -168,7 +168,7 @@ class _Reader:
             self.raw.kept += [Kept("sdf", "model", f"<frame {frame.get('name')}>") for frame in inner.iterfind("frame")]
 
     def _included(self, scope: Scope, element: Any) -> tuple[Any, Path, tuple[int, ...]] | None:
-        """Return the model that an include names, under the name that it gives; None and a finding where it cannot be read."""
+        """Return the model that an include names, under the name that it gives; None and a finding if it cannot be read."""
         uri = (element.findtext("uri") or "").strip()
         self.files += 1
         if self.files > MAX_FILES:
@@ -187,13 +187,13 @@ class _Reader:
             return None
         inner = document.find("model")
         if inner is None:
-            raise unreadable(path, f"line {document.sourceline}", "It is included, and has no model.")
+            raise unreadable(path, f"line {document.sourceline}", "The included file has no model.")
         if name := (element.findtext("name") or "").strip():
             inner.set("name", name)
         return inner, path, _version(document, path)
 
     def _file_of(self, uri: str, scope: Scope) -> Path:
-        """Return the file of a model: the one that is named, or the latest that `model.config` in the named folder lists."""
+        """Return the file of a model: the named file, or the latest one that `model.config` in the named folder lists."""
         folder = Folder(self.folder.root, scope.path.resolve().parent)
         if uri.endswith((".sdf", ".world")):
             return folder.find(uri)
@@ -211,7 +211,7 @@ class _Reader:
         )
 
     def _frames(self, scope: Scope) -> None:
-        """Add the links, joints and frames of a model, after the models in it."""
+        """Add the links, joints and frames of a model, after those of its nested models."""
         for element in scope.element:
             if element.tag in _NAMED_IN_MODEL and element.tag != "include" and not element.get("name"):
                 raise scope.fault(element, f"A <{element.tag}> has no name.")
@@ -228,7 +228,7 @@ class _Reader:
             pose, relative_to = pose_of(element, scope)
             child = (element.findtext("child") or "").strip()
             name = element.get("name")
-            if scope.version >= (1, 7) or name not in links:  # until 1.7 a joint could bear a link's name, and nothing referred to it
+            if scope.version >= (1, 7) or name not in links:  # before 1.7 a joint could have a link's name, and nothing referred to it
                 scope.add(element, name, relative_to or child, pose, child)
             self.joints.append((scope, element))
         for element in scope.element.iterfind("frame"):
@@ -247,7 +247,7 @@ class _Reader:
         self.raw.links[name] = RawLink(name, self._mass(element, scope, where), visuals, collisions, color)
 
     def _mass(self, link: Any, scope: Scope, where: str) -> MassProperties | None:
-        """Return the mass; 1 kg with moments of 1 kg·m² where nothing is stated, as SDFormat has it."""
+        """Return the mass; 1 kg with moments of 1 kg·m² if none is stated, as SDFormat specifies."""
         inertial = link.find("inertial")
         if inertial is None:
             return MassProperties(1.0, np.zeros(3), np.eye(3) * MM_PER_M**2)
@@ -292,7 +292,7 @@ class _Reader:
             yield Shape(mesh, pose, color_text(rgba) if rgba and len(rgba) >= 3 else None, name, form)
 
     def _mesh(self, element: Any, scope: Scope, where: str) -> tuple[TriMesh | None, Primitive | None]:
-        """Return a shape's mesh, and what it stands for; None and a finding for what is no shape of an assembly."""
+        """Return a shape's mesh, and the primitive that it represents; None and a finding for a shape that an assembly cannot have."""
         geometry = element.find("geometry")
         shape: Any = None if geometry is None or not len(geometry) else geometry[0]
         kind: Any = "nothing" if shape is None else shape.tag
@@ -310,7 +310,7 @@ class _Reader:
             return here.mesh((shape.findtext("uri") or "").strip(), (x, y, z), where), None
         if kind != "empty":
             what = "mesh with a submesh" if kind == "mesh" else kind
-            self._drop(where, f"The {element.tag} {element.get('name')!r} of type {what} is no shape of the assembly.")
+            self._drop(where, f"The {element.tag} {element.get('name')!r} of type {what} is not a shape of the assembly.")
         return None, None
 
     # ------------------------------------------------------------------ joints
@@ -377,7 +377,7 @@ class _Reader:
     def _axis(self, scope: Scope, joint: Any, axis: Any, T: SE3) -> FloatArray:
         """Return an axis as a unit vector in the joint's frame; T is that frame in the world.
 
-        Until 1.4 it is stated in the model's frame, in 1.5 and 1.6 where `use_parent_model_frame` says so, from 1.7 in `expressed_in`.
+        Up to 1.4 it is stated in the model's frame, in 1.5 and 1.6 if `use_parent_model_frame` says so, from 1.7 on in `expressed_in`.
         """
         xyz = axis.find("xyz")
         vector = np.array([0.0, 0.0, 1.0] if xyz is None else numbers_of(xyz, 3, scope))
@@ -408,22 +408,22 @@ class _Reader:
             found["ranges"].append(ENDLESS if endless else bounds)
             for name, factor in (("effort", force), ("velocity", unit)):
                 value = _number(limit, name, math.inf, scope)
-                found[name].append(value * factor if 0 <= value < NO_BOUND else None)  # a negative one is none
+                found[name].append(value * factor if 0 <= value < NO_BOUND else None)  # a negative value means none
             found["damping"].append(_number(dynamics, "damping", 0.0, scope) * force / unit)
             found["friction"].append(_number(dynamics, "friction", 0.0, scope) * force)
         return {name: tuple(values) for name, values in found.items()}
 
     def _lead(self, joint: Any, scope: Scope) -> float:
-        """Return how far a screw advances in a turn [mm]: `screw_thread_pitch` in m, or the older `thread_pitch`, rad per m and left-handed."""
+        """Return the advance of a screw per turn [mm]: `screw_thread_pitch` in m, or the older `thread_pitch`, left-handed rad per m."""
         old = joint.find("thread_pitch")
         if joint.find("screw_thread_pitch") is None and old is not None:
             pitch = numbers_of(old, 1, scope)[0]
             if pitch == 0:
-                raise scope.fault(old, "A thread pitch of zero is no screw.")
+                raise scope.fault(old, "A screw needs a thread pitch other than zero.")
             return -math.tau / pitch * MM_PER_M
         lead = _number(joint, "screw_thread_pitch", 1.0, scope) * MM_PER_M
         if lead == 0:
-            raise scope.fault(joint, "A thread pitch of zero is no screw.")
+            raise scope.fault(joint, "A screw needs a thread pitch other than zero.")
         return lead
 
     def _tie(self, follower: str, axis: Any, scope: Scope, *, slides: bool) -> None:
@@ -442,7 +442,7 @@ class _Reader:
         self.raw.ties.append(RawTie(follower, leader, ratio * mine / its, (offset - ratio * reference) * mine))
 
     def _hold(self) -> None:
-        """Connect what no joint connects with the world: what is static stands, everything else is free."""
+        """Connect links without a joint to the world: static ones are fixed, all others are free."""
         group = {name: name for name in self.raw.links}
 
         def of(name: str) -> str:
@@ -484,7 +484,7 @@ _FORMS: Final[dict[Any, tuple[tuple[str, int, float], ...]]] = {
     "capsule": (("radius", 1, 0.5), ("length", 1, 1.0)),
     "ellipsoid": (("radii", 3, 1.0),),
 }
-"""Elements with the sizes of primitive bodies, how many numbers they hold, and SDFormat's own value [m]."""
+"""Elements with the sizes of primitives, how many numbers they have, and SDFormat's default [m]."""
 
 _OF_INCLUDE: Final = frozenset({"uri", "name", "pose", "static", "placement_frame"})
 
@@ -509,10 +509,10 @@ def _is_number(word: str) -> bool:
 
 
 def _number(above: Any, tag: str, usual: float, scope: Scope) -> float:
-    """Return the number in an element below another; `usual` where there is none. Infinities and huge numbers are none.
+    """Return the number in an element below another; `usual` if there is none. Infinities and huge numbers count as none.
 
     Raises:
-        ReadError: If it is no number.
+        ReadError: If it is not a number.
     """
     element = None if above is None else above.find(tag)
     if element is None or not (element.text or "").strip():

@@ -1,8 +1,8 @@
-"""The frames of an SDFormat file: poses that are relative to each other, in models within models.
+"""The frames of an SDFormat file: poses that are relative to each other, in nested models.
 
 A name means a link, joint, frame or model of the model in which it is used; `a::b` is b in the model a; `__model__` is the model's own frame.
-Without `relative_to`, a link, a frame and a model are posed in the model around them (a frame that is attached, in what it is attached to),
-a joint in its child. The pose of a model is that of its `placement_frame`, if it has one.
+Without `relative_to`, a link, a frame and a model are posed in the model around them (an attached frame, in what it is attached to), a
+joint in its child. The pose of a model is that of its `placement_frame`, if it has one.
 """
 
 from __future__ import annotations
@@ -28,11 +28,11 @@ class Scope:
 
     Attributes:
         element: `<model>` or `<world>`.
-        path: The file in which it stands.
-        prefix: What stands before the names of its links: "" or `a::`.
+        path: The file that contains it.
+        prefix: Prefix of the names of its links: "" or `a::`.
         parent: The scope around it.
         static: Whether it, or a model around it, is static.
-        version: Of the file.
+        version: Version of the file.
         models: Models in it, by name.
     """
 
@@ -43,8 +43,8 @@ class Scope:
     static: bool = False
     version: tuple[int, ...] = (1, 11)
     models: dict[str, Scope] = field(default_factory=dict)
-    _posed: dict[str, tuple[str, SE3]] = field(default_factory=dict)  # name -> what it is relative to, and its pose in that
-    _attached: dict[str, str] = field(default_factory=dict)  # name -> what it is attached to; a link to itself
+    _posed: dict[str, tuple[str, SE3]] = field(default_factory=dict)  # name -> the frame it is relative to, and its pose in that
+    _attached: dict[str, str] = field(default_factory=dict)  # name -> the frame it is attached to; a link to itself
     _known: dict[str, SE3] = field(default_factory=lambda: {MODEL: _IDENTITY})
 
     def fault(self, element: Any, reason: str) -> Exception:
@@ -66,7 +66,7 @@ class Scope:
         """Return the pose of a frame in this model's own frame [mm].
 
         Raises:
-            ReadError: If there is no such frame, or frames go round.
+            ReadError: If there is no such frame, or frames form a cycle.
         """
         chain: list[tuple[str, SE3]] = []
         at, seen = name, set()
@@ -88,7 +88,7 @@ class Scope:
         for frame, pose in reversed(chain):
             T = T @ pose
             if not abs(T.translation).max() <= LARGEST_MM:
-                raise self.fault(element, f"The frame {frame!r} stands beyond reason.")
+                raise self.fault(element, f"The frame {frame!r} has a position that is not plausible.")
             self._known[frame] = T
         return T
 
@@ -103,7 +103,7 @@ class Scope:
         return T
 
     def body(self, name: str, element: Any) -> str:
-        """Return the link, by its whole name, that a frame is attached to; "" for the world.
+        """Return the link, by its full name, to which a frame is attached; "" for the world.
 
         Raises:
             ReadError: If there is none.
@@ -132,7 +132,7 @@ class Scope:
                 raise self.fault(element, f"There is no link or frame {at!r} in {self.element.get('name') or 'the world'!r}.")
 
     def canonical(self, element: Any) -> str:
-        """Return the link that carries the model's own frame: the one it names, else its first.
+        """Return the link that carries the model's own frame: the named one, else its first.
 
         Raises:
             ReadError: If the model has no link.
@@ -160,10 +160,10 @@ def numbers_of(element: Any, count: int, scope: Scope) -> list[float]:
 
 
 def pose_of(above: Any, scope: Scope) -> tuple[SE3, str]:
-    """Return the pose in an element's `<pose>` [mm], and what it is relative to ("" if it does not say).
+    """Return the pose in an element's `<pose>` [mm], and the frame it is relative to ("" if none is stated).
 
     Raises:
-        ReadError: If it is no pose.
+        ReadError: If it is not a pose.
     """
     element = above.find("pose")
     if element is None or (not (element.text or "").strip() and not element.attrib):
@@ -175,7 +175,7 @@ def pose_of(above: Any, scope: Scope) -> tuple[SE3, str]:
         x, y, z, *xyzw = numbers_of(element, 7, scope)
         length = math.hypot(*xyzw)
         if not length > 1e-9:
-            raise scope.fault(element, "Its quaternion is no rotation.")
+            raise scope.fault(element, "Its quaternion is not a rotation.")
         turn = SE3.from_quaternion([number / length for number in xyzw])
     else:
         x, y, z, roll, pitch, yaw = numbers_of(element, 6, scope)

@@ -1,7 +1,7 @@
-"""What an SDFormat file says beyond links, joints and shapes: every element and attribute that is not read, by name.
+"""Data of an SDFormat file beyond links, joints and shapes: every element and attribute that is not read, by name.
 
-`READ` lists what `articad.importers.sdf` reads, by the path below `<model>`. Everything else becomes a `Kept`: `write_sdf` puts elements of
-links, joints, shapes and models back where they were, unless they name frames, and every other format reports them as losses.
+`READ` lists what `articad.importers.sdf` reads, by the path below `<model>`. Everything else becomes a `Kept`: `write_sdf` writes
+elements of links, joints, shapes and models again, unless they name frames, and every other format reports them as losses.
 """
 
 from __future__ import annotations
@@ -88,19 +88,19 @@ READ_SDF: Final[Mapping[str, frozenset[str]]] = {
     "joint/screw_thread_pitch": _NONE,
     **{f"joint/{axis}{key}": value for axis in ("axis", "axis2") for key, value in _AXIS.items()},
 }
-"""Attributes that are read, by the path of their element below `<model>`; an element whose path is not here is not read."""
+"""Attributes that are read, by the path of their element below `<model>`; an element without its path here is not read."""
 
 _RECORDS: Final = "records"  # articad's own
 
 
 def kept_of(element: Any, key: str, where: str, above: tuple[str, ...] = ()) -> Iterator[Kept]:
-    """Yield what an element says that is not read.
+    """Yield the unread data of an element.
 
     Args:
-        element: A `<model>`, `<link>`, `<joint>`, `<visual>` or `<collision>`, or what stands in one.
+        element: A `<model>`, `<link>`, `<joint>`, `<visual>` or `<collision>`, or an element in one.
         key: Its path below `<model>`.
-        where: What it speaks of.
-        above: The tags from there to the element.
+        where: The object that it describes.
+        above: The tags between that object and the element.
     """
     for name, value in element.attrib.items():
         if name not in READ_SDF[key]:
@@ -118,17 +118,17 @@ def kept_of(element: Any, key: str, where: str, above: tuple[str, ...] = ()) -> 
         yield Kept("sdf", where, f"<{etree.QName(below).localname}{f' {name}' if name else ''}>{inside}{_value(below)}", text)
 
 
-_LISTED: Final = frozenset({"link", "joint", "link/visual", "link/collision", "model", "include", "frame"})  # each is asked by itself
+_LISTED: Final = frozenset({"link", "joint", "link/visual", "link/collision", "model", "include", "frame"})  # each is read separately
 _REPLACED: Final = ("link/inertial", "link/visual/geometry", "link/collision/geometry")  # written anew, in another form
 
 
 def _says_nothing(element: Any, path: str) -> bool:
-    """Return whether an element states what every reader takes without it: a spring that is none."""
+    """Return whether an element states a default, such as a spring without stiffness."""
     return path.rpartition("/")[2] in {"spring_reference", "spring_stiffness"} and (element.text or "").strip() in {"0", "0.0", ""}
 
 
 def _can_return(element: Any, key: str) -> bool:
-    """Return whether `write_sdf` can put an element back: it stands in what is written again, and does not name frames."""
+    """Return whether `write_sdf` can write an element again: its parent is written again, and it does not name frames."""
     return not key.startswith(_REPLACED) and not any(one.get("relative_to") or one.get("attached_to") for one in element.iter())
 
 
@@ -138,6 +138,6 @@ def _text(element: Any, above: tuple[str, ...]) -> str:
 
 
 def _value(element: Any) -> str:
-    """Return ` 0.5` for an element that holds only a short text."""
+    """Return ` 0.5` for an element that contains only a short text."""
     text = " ".join((element.text or "").split())
     return f" {text}" if text and not len(element) and len(text) <= 40 else ""

@@ -84,7 +84,7 @@ class Body:
 
     @cached_property
     def manifold_id(self) -> int:
-        """By which solids that were cut from `manifold` tell where their triangles come from."""
+        """Identifier by which solids cut from `manifold` name the source of their triangles."""
         return int(self.manifold.to_mesh64().run_original_id[0])
 
     def _new_manifold(self) -> Any:

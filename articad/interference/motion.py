@@ -154,7 +154,7 @@ def proven_freedoms(joint: Joint) -> tuple[Freedom, ...]:
 
 
 def turns(R: FloatArray) -> list[float]:
-    """Return the turns about x, y and z of a rotation `(3, 3)`, one after the other: what a ball is proven along."""
+    """Return the turns about x, y and z of a rotation `(3, 3)`, one after the other: the coordinates along which a ball is proven."""
     return [math.atan2(-R[1, 2], R[2, 2]), math.asin(max(-1.0, min(1.0, R[0, 2]))), math.atan2(-R[0, 1], R[0, 0])]
 
 

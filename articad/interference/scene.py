@@ -148,7 +148,7 @@ def boxes_apart(a: tuple[FloatArray, FloatArray], b: tuple[FloatArray, FloatArra
 
     Args:
         a: Centre and half sides in its own frame, `(3,)` each [mm], or `(n, 3)`.
-        b: Of the other box.
+        b: The same for the other box.
         T_a_b: Pose of the second in the frame of the first [mm].
     """
     R, h, g = T_a_b[..., :3], np.atleast_2d(a[1]), np.atleast_2d(b[1])

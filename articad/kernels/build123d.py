@@ -191,7 +191,7 @@ class Build123dKernel:
         return self.moved(built, S)
 
     def read_step(self, path: Path, deflection: float = 0.01, *, cache: BuildCache | None = None) -> Solid:
-        """Read a STEP file that holds one solid; it is parsed in the sandbox like everything else.
+        """Read a STEP file that contains one solid; it is parsed in the sandbox.
 
         Args:
             path: The file.
@@ -246,7 +246,7 @@ class Build123dKernel:
         return Path(tempfile.mkdtemp(dir=self._scratch.name))
 
     def _run(self, task: str, job: Path, request: Json, files: Mapping[str, str], limits: isolation.ScriptLimits) -> _Ran:
-        """Run one task. A zygote that dies under it is replaced once.
+        """Run one task. If the zygote dies during the task, it is replaced once.
 
         Args:
             task: Its name.
@@ -318,16 +318,16 @@ class Build123dKernel:
         probe: str | None,
         own: float,
     ) -> BuiltPart:
-        """Measure what a script left, probe its dimensions, and hold it to the contract.
+        """Measure what a script left, probe its dimensions, and check it against the contract.
 
         Args:
             job: Folder of the script's job.
-            brief: Of the part.
-            ran: What the script's process left.
-            folder: For the result.
-            deflection: Of the mesh [mm].
+            brief: Brief of the part.
+            ran: Results of the script's process.
+            folder: Folder for the result.
+            deflection: Deflection of the mesh [mm].
             inspect: Further checks of connectors and bounding box.
-            probe: The script, to be run with each dimension moved; None leaves that out.
+            probe: The script, to be run with each dimension changed; None omits the probe.
             own: Wall clock of the script [s].
 
         Raises:
@@ -353,7 +353,7 @@ class Build123dKernel:
         return BuiltPart.load(folder)
 
     def _probed(self, script: str, brief: Mapping[str, Any], before: list[float], own: float) -> list[Json]:
-        """Build the part with each dimension moved; return an outcome for each that was done in time."""
+        """Build the part with each dimension changed; return an outcome for each that was done in time."""
 
         def attempt(dimensions: Json, seconds: float) -> list[float] | Json | None:
             limits = replace(self.limits, seconds=seconds, probe_seconds=0.0)

@@ -1,6 +1,6 @@
-"""The dimension probe: each dimension is moved, and the script runs again in a process of its own that knows nothing of other runs.
+"""The dimension probe: each dimension is changed, and the script runs again in a process of its own, independent of other runs.
 
-What the moved part is like is measured by one more process, in which no script ran.
+The changed part is measured by one more process, in which no script ran.
 """
 
 from __future__ import annotations
@@ -14,27 +14,27 @@ from articad.kernels.results import number, numbers
 __all__ = ["failed_attempt", "fingerprint", "probed"]
 
 STEP: Final = 0.02  # the contract's 2 %
-ZERO_MM, ZERO_DEG = 0.1, 1.0  # by which a dimension that is zero is moved
-LEAST_SECONDS, PATIENCE = 3.0, 10.0  # a dimension moved by 2 % does not make a script ten times as slow
+ZERO_MM, ZERO_DEG = 0.1, 1.0  # steps for a dimension that is zero
+LEAST_SECONDS, PATIENCE = 3.0, 10.0  # a dimension changed by 2 % does not make a script ten times as slow
 SAME: Final = 1e-9  # relative change of a number that is rounding
 _ORDER: Final = ("changed", "unused", "refused", "broken", "crashed")
 
 Json = dict[str, Any]
 Fingerprint = list[float]
 Attempt = Callable[[Json, float], Fingerprint | Json | None]
-"""Builds a part with other dimensions within some seconds: its fingerprint, why it fails (an outcome), or None if it was not done."""
+"""Builds a part with other dimensions within some seconds: its fingerprint, why it fails (an outcome), or None if time ran out."""
 
 
 def probed(dimensions: Mapping[str, float], before: Fingerprint, attempt: Attempt, *, seconds: float, own: float) -> Iterator[Json]:
-    """Move each dimension by 2 % (a count by 1), up and, if that changes nothing or fails, down, and build again.
+    """Change each dimension by 2 % (a count by 1), upwards and, if that changes nothing or fails, downwards, and build again.
 
-    Outcomes: `changed`; `unused`, both ways give the same part; `refused`, the script itself raised a ValueError or
-    AssertionError both ways; `broken`, it failed otherwise both ways; `crashed`, the kernel's process died. A dimension that was not
-    done in time has no outcome.
+    Outcomes: `changed`; `unused`: both directions give the same part; `refused`: the script itself raised a ValueError or AssertionError
+        in both directions; `broken`: it failed otherwise in both directions; `crashed`: the kernel's process died. A dimension without
+        time has no outcome.
 
     Args:
-        dimensions: Of the part.
-        before: The fingerprint of the part as it is.
+        dimensions: Dimensions of the part.
+        before: The fingerprint of the unchanged part.
         attempt: Builds it with other dimensions.
         seconds: Wall clock for all dimensions.
         own: Wall clock that the part itself took [s].
@@ -59,14 +59,14 @@ def probed(dimensions: Mapping[str, float], before: Fingerprint, attempt: Attemp
 def fingerprint(shape: Json, connectors: Mapping[str, Json]) -> Fingerprint:
     """Return volume, centre, bounding box, connectors and the squares of the radii of gyration as numbers.
 
-    The last see what moves in a pattern, which leaves all the others alone.
+    The last detect motion in a pattern, which changes none of the others.
 
     Args:
         shape: Properties of a solid, as a process that ran no script reports them.
         connectors: As the script returned them.
 
     Raises:
-        PoisonedError: If something is no number.
+        PoisonedError: If something is not a number.
     """
     volume = number(shape.get("volume_mm3"))
     box, inertia = numbers(shape.get("bbox_mm"), 2, 3), numbers(shape.get("inertia_mm5"), 3, 3)
@@ -83,12 +83,12 @@ def fingerprint(shape: Json, connectors: Mapping[str, Json]) -> Fingerprint:
 
 
 def failed_attempt(said: Json, signal: str, *, late: bool) -> Json | None:
-    """Return the outcome of a run that left no part, or None if its time was up.
+    """Return the outcome of a run that left no part, or None if its time was over.
 
     Args:
-        said: What the script's process reported, if anything; not to be trusted.
-        signal: That ended the process, or empty.
-        late: It was killed because its time was up.
+        said: Report of the script's process, if any; untrusted.
+        signal: The signal that ended the process, or empty.
+        late: Whether it was killed because its time was over.
     """
     if isinstance(said.get("problems"), list):
         return {"outcome": "broken", "error": {"message": "; ".join(map(str, said["problems"][:20]))}}

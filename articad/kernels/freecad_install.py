@@ -53,7 +53,7 @@ _TAIL = 8000  # bytes of its output that are kept
 
 @dataclass(frozen=True)
 class FreeCADLimits:
-    """What a process inside FreeCAD may use.
+    """Resources that a process inside FreeCAD may use.
 
     Attributes:
         seconds: Wall clock.

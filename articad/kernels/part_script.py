@@ -1,6 +1,6 @@
 """Run one part script: untrusted code, in a confined process of its own that does nothing else afterwards.
 
-What it leaves is a report, a JSON object, and the shape. Whoever reads them must not trust them.
+The result is a report, a JSON object, and the shape. Whoever reads them must not trust them.
 """
 
 from __future__ import annotations
@@ -18,8 +18,8 @@ from OCP.BRepCheck import BRepCheck_Analyzer
 from articad.kernels import measure
 from articad.kernels.tessellation import Same
 
-FILE = "part.py"  # the name that a script's code bears: tracebacks are cut down to it
-PARTIAL_SOLIDS = 32  # of a failed script that are kept
+FILE = "part.py"  # the file name of a script's code: tracebacks are cut down to it
+PARTIAL_SOLIDS = 32  # solids of a failed script that are kept
 _TEXT = 2000  # characters of a message that are kept
 
 Write = Callable[[dict[str, Any]], None]
@@ -35,14 +35,14 @@ class NotAPart(Exception):  # noqa: N818 - not an error in the script's code, bu
 
 
 def run(script: str, part: Json, *, seconds: float, report: Write, shape: Callable[[bytes], None]) -> None:
-    """Run a script, hand over its shape and its report.
+    """Run a script, deliver its shape and its report.
 
     Args:
         script: The source.
         part: The brief of the part.
         seconds: Wall clock for the script; the process is killed by SIGALRM after it.
-        report: Takes the report.
-        shape: Takes the shape, in the form that `measure.read_shape("bin", …)` reads.
+        report: Receives the report.
+        shape: Receives the shape, in the form that `measure.read_shape("bin", …)` reads.
     """
     signal.setitimer(signal.ITIMER_REAL, seconds)
     namespace: Json = {"__name__": "part", "__builtins__": __builtins__}

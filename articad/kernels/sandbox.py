@@ -51,13 +51,13 @@ _PROBE = launcher.Limits(seconds=20.0)  # bubblewrap answers in 0.02 s; a machin
 
 @dataclass(frozen=True)
 class ScriptLimits:
-    """What one script may use.
+    """Resources that one script may use.
 
     Attributes:
         seconds: Wall clock until its shape must be there.
         probe_seconds: Wall clock for what follows: the dimension probe, or further checks of a shape that was measured.
         memory: Address space [bytes], libraries (1 GiB) included.
-        file_size: Of each result [bytes].
+        file_size: Largest size of each result [bytes].
     """
 
     seconds: float = 60.0

@@ -316,7 +316,7 @@ class Branch:
 
     Args:
         tree: The tree that carries all parts.
-        layout: Of all joints.
+        layout: Layout of all joints.
         loop_joints: Joints that close loops.
         couplings: Relations between coordinates.
 

@@ -13,7 +13,7 @@ from articad.connectors import SE3, FloatArray, Mate, flip, quaternion
 from articad.kinematics.joints import Joint, JointType
 from articad.kinematics.layout import IndexArray, Layout
 
-# types that do more than turn about and slide along their z axis, and what the others do
+# types that do more than turn about and slide along their z axis, and the motions of the others
 GENERAL = tuple(kind for kind in JointType if any(step.axis != 2 for step in kind.steps))
 TURNING = frozenset(kind for kind in JointType if kind not in GENERAL and any(step.kind == "turn" for step in kind.steps))
 SLIDING = frozenset(kind for kind in JointType if kind not in GENERAL and any(step.kind == "slide" for step in kind.steps))
@@ -44,7 +44,7 @@ class Crossings:
         near: Index of the part from which each is crossed.
         far: Index of the part to which it leads.
         backwards: True where it is crossed from its declared child.
-        layout: Of the coordinates.
+        layout: Layout of the coordinates.
 
     Attributes:
         sign: −1 where a joint is crossed backwards, else 1 `(n,)`.

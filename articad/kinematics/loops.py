@@ -3,7 +3,7 @@
 A loop joint gets a ghost of its child: the loop is closed where the ghost A = T_parent · C_p · J(q) · F meets the real
 connector B = T_child · C_c. With M = A⁻¹B the residual is [t(M)/L ; log R(M)] for a characteristic length L, so every joint
 type closes by the same code, and loop joints have coordinates, limits and drivers like all others. A coupling is a row
-q_b − k q_a − c. Lengths are divided by L throughout: results are the same in mm, m and km (kinematics: closed loops).
+q_b − k q_a − c. Lengths are divided by L throughout: results are the same in mm, m and km.
 """
 
 from __future__ import annotations

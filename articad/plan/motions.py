@@ -65,7 +65,7 @@ class JointNumbers:
         return sum(value for value, unit in zip(self.rest, self.type.units, strict=True) if unit == "rad")
 
     def mirrored(self) -> JointNumbers:
-        """Return the motion of the mirror image (kinematics: derive): signs of the type, and a screw's hand."""
+        """Return the motion of the mirror image: coordinates change sign by type, and a screw changes hand."""
         signs = self.type.mirror_signs()
         rest = tuple(float(value * sign) + 0.0 for value, sign in zip(self.rest, signs, strict=True))
         limits = self.limits.signed(signs)

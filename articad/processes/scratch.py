@@ -44,7 +44,7 @@ def sweep() -> None:
 
 
 def write(path: Path, content: bytes) -> None:
-    """Write a file so that a reader finds the old one or the new one, whole; its folder is made if there is none.
+    """Write a file so that a reader finds the complete old or new one; its folder is made if it does not exist.
 
     Raises:
         OSError: If it cannot be written; the old file is intact, and nothing is left.
