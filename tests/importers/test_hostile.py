@@ -40,7 +40,7 @@ URDFS = {
     "a circle beside the tree": (
         robot(f'{LINKS}<link name="c"/><joint name="j" type="fixed"><parent link="b"/><child link="c"/></joint>'
               '<joint name="k" type="fixed"><parent link="c"/><child link="b"/></joint>'),
-        "no mechanism",
+        "not a valid mechanism",
     ),
     "a link twice": (robot('<link name="a"/><link name="a"/>'), "Two links|root links"),
     "an unknown link": (joint("", ends='<parent link="a"/><child link="nowhere"/>'), "Its link 'nowhere' is not in the file"),
