@@ -381,7 +381,7 @@ def test_an_include_that_leads_out_of_the_root_or_round_is_refused(tmp_path: Pat
         ('<link name="a"><inertial><mass>heavy</mass></inertial></link>', "not a number"),
         ("", "no link"),
         ('<sdf version="1.6"><model><link name="a"/></model></sdf>', "<model> has no name"),
-        ('<sdf version="one"><model name="m"><link name="a"/></model></sdf>', "no version"),
+        ('<sdf version="one"><model name="m"><link name="a"/></model></sdf>', "not a version"),
         ('<sdf version="1.6"/>', "0 worlds and 0 models"),
     ],
 )
