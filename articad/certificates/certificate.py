@@ -314,7 +314,8 @@ class _Certifying:
         """Report what the search for least clearances finds to collide: several joints at once, which no proof by twos excludes."""
         known = Checks(Findings(self.findings), (), self.scene.deflection)
         found = collisions_at(motion, clearances, known)
-        self.verdicts += [pair for pair in found.pairs if pair.verdict == "overlap"]
+        colliding = [set(finding.parts) for finding in found.findings]
+        self.verdicts += [pair for pair in found.pairs if set(pair.parts) in colliding]
         self.findings += found.findings
 
     def _with_drivers(self) -> Sequence[str] | None:

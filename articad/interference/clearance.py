@@ -3,8 +3,9 @@
 Poses along each driver, on a grid of every two, and scattered over all are looked at. Each pair has a lower bound of its distance at each
 pose: the gap of the boxes about both parts, and any distance measured at another pose, minus how far the corners of a box move between
 the two (`_Known`). The pose of the smallest bound is measured next, until no bound is below the distance found by more than a tolerance (`_close`).
-From there a compass search (Kolda, Lewis, Torczon 2003) moves one driver at a time, and to the lowest point of a quadratic model of the
-distances just measured, by steps that shrink, until a step changes the distance by less than that. The result is the smallest distance seen: the true one may be smaller, so every row says "sampled".
+From there a compass search (Kolda, Lewis, Torczon 2003) moves one driver at a time, to the lowest point of a quadratic model of the
+distances just measured, and further on in a direction that helped. Its steps shrink until a step changes the distance by less than that.
+The result is the smallest distance seen: the true one may be smaller, so every row says "sampled".
 """
 
 from __future__ import annotations
@@ -36,6 +37,7 @@ ROUNDS = 60  # of that search
 FIRST_STEP = 1 / (LINE - 1)  # of a range
 LEAST_STEP = 1e-5  # of a range
 AROUND, LEAP = 3.5, 6.0  # steps: what is measured that near is part of a model; how far that leads at most
+FURTHER = 3.0  # times the last improvement's way, at which the next pose is tried (a pattern move, Hooke and Jeeves 1961)
 MODELLED = 3  # freedoms of a pair, up to which a quadratic model of its distance is fitted: valleys need not run along a freedom
 JOINED = 9  # poses of two parts that a joint connects: they keep their fit, and distances of mating surfaces cost most
 _KEY_DIGITS = 6  # of mm and rotation entries: relative poses that agree so far are one
@@ -218,6 +220,7 @@ class _Pair:
         step: Of the search, as a share of the ranges.
         measured: Values and distances beside the nearest pose.
         guess: Values at which a model of the distance is lowest, to be tried next.
+        further: Values further on in the direction of the last improvement, to be tried next.
     """
 
     i: int
@@ -233,6 +236,7 @@ class _Pair:
     step: float = FIRST_STEP
     measured: list[tuple[FloatArray, float]] = field(default_factory=list)
     guess: FloatArray | None = None
+    further: FloatArray | None = None
 
     def clearance(self, motion: MotionSampler, ranges: Sequence[Freedom]) -> Clearance:
         names = list(motion.scene.bodies)
@@ -325,7 +329,7 @@ class _Search:
 
     def _try(self, pair: _Pair, points: FloatArray, relative: FloatArray) -> None:
         """Measure a pair at some poses `(n, freedoms)` beside its nearest one and go to the best, or make smaller steps."""
-        before, seen, is_modelled = pair.gap, list[float](), 1 < len(pair.movers) <= MODELLED
+        start, before, seen, is_modelled = pair.at, pair.gap, list[float](), 1 < len(pair.movers) <= MODELLED
         for k in range(len(points)):
             pair.poses += 1
             T = relative[k : k + 1]
@@ -349,6 +353,9 @@ class _Search:
             if lowest is not None:
                 pair.guess, fall = pair.at.copy(), lowest[1]
                 pair.guess[pair.movers] = np.clip(pair.at[pair.movers] + lowest[0] * size, low, high)
+        pair.further = None
+        if pair.gap < before and len(pair.movers) > 1:
+            pair.further = np.clip(start + FURTHER * (pair.at - start), self.low, self.high)
         if pair.gap == before:
             pair.step = 0.0 if is_flat or fall < self._close(before) else pair.step / 3  # flat: as two parts that turn about one axis
 
@@ -363,8 +370,8 @@ class _Search:
                 row[k] = np.clip(row[k] + sign * pair.step * (self.high[k] - self.low[k]), self.low[k], self.high[k])
             if (row != pair.at).any():
                 yield row
-        if together and pair.guess is not None:
-            yield pair.guess
+        if together:
+            yield from (row for row in (pair.guess, pair.further) if row is not None)
 
     def _close(self, gap: float) -> float:
         """Return the tolerance to which the least distance is found, near one that is known [mm]."""

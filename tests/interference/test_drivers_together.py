@@ -437,3 +437,22 @@ def test_random_linkages_agree_with_dense_sampling(seed: int) -> None:
             assert not is_hit
             assert certificate.ok, str(certificate.findings)
             assert verified(stated(certificate), certificate) == []
+
+
+def test_three_joints_that_collide_only_together_are_seen_beside_the_proof_of_every_two() -> None:
+    """A chain of three hinges whose tip meets a post only where all three are at their ends."""
+    reach, end = 50.0, 0.5
+    joints = [
+        joint(f"a{k}", "revolute", parent, f"l{k}", at_parent=at(reach if k > 1 else 0.0), lower=(-end,), upper=(end,))
+        for k, parent in ((1, "frame"), (2, "l1"), (3, "l2"))
+    ]
+    mechanism = Mechanism(("frame", "l1", "l2", "l3"), "frame", joints)
+    tip = sum(reach * np.array([math.cos(k * end), math.sin(k * end)]) for k in (1, 2, 3))
+    post = cylinder(1.0, 10).transformed(at(*tip))
+    meshes = {"frame": post, "l3": cylinder(2.0, 10).transformed(at(reach))}
+    certificate = certify(meshes, mechanism, budget=60.0)
+    (found,) = certificate.findings.of("E_MOTION_COLLISION")
+    assert not certificate.ok
+    assert found.pose is not None
+    assert all(found.pose[name] > end - 0.05 for name in ("a1", "a2", "a3"))
+    assert verified(json.loads(json.dumps(certificate.to_json())), certificate) == []

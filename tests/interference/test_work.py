@@ -80,12 +80,12 @@ def test_the_verdict_and_the_work_are_the_same_beside_eight_busy_processes() -> 
 
 def test_the_verdict_and_the_work_do_not_follow_the_clock(monkeypatch: pytest.MonkeyPatch) -> None:
     still = verdict(arm(TIGHT_S))
-    monkeypatch.setattr(certifying, "Budget", partial(WorkBudget, clock=jumping(0.01)))
+    monkeypatch.setattr(certifying, "WorkBudget", partial(WorkBudget, clock=jumping(0.01)))
     assert verdict(arm(TIGHT_S)) == still
 
 
 def test_the_emergency_brake_says_that_the_clock_stopped_the_work(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(certifying, "Budget", partial(WorkBudget, clock=jumping(BRAKE * TIGHT_S + BRAKE_SECONDS)))
+    monkeypatch.setattr(certifying, "WorkBudget", partial(WorkBudget, clock=jumping(BRAKE * TIGHT_S + BRAKE_SECONDS)))
     stopped = arm(TIGHT_S)
     assert not stopped.ok
     assert all("stopped by the clock" in finding.message for finding in stopped.findings)
@@ -116,7 +116,7 @@ def test_an_audit_looks_at_the_same_motion_whatever_the_clock_shows(tmp_path: An
     choices = AuditOptions(engines=False, budget=1e-4)
     alone = [finding.to_json() for finding in audit_file(path, choices).findings]
     assert "W_AUDIT_NOT_CHECKED" in str(alone)
-    monkeypatch.setattr(contact_motion, "Budget", partial(WorkBudget, clock=jumping(0.01)))
+    monkeypatch.setattr(contact_motion, "WorkBudget", partial(WorkBudget, clock=jumping(0.01)))
     assert [finding.to_json() for finding in audit_file(path, choices).findings] == alone
     with busy(BUSY):
         assert [finding.to_json() for finding in audit_file(path, choices).findings] == alone
