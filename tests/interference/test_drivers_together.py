@@ -447,7 +447,8 @@ def test_three_joints_that_collide_only_together_are_seen_beside_the_proof_of_ev
         for k, parent in ((1, "frame"), (2, "l1"), (3, "l2"))
     ]
     mechanism = Mechanism(("frame", "l1", "l2", "l3"), "frame", joints)
-    tip = sum(reach * np.array([math.cos(k * end), math.sin(k * end)]) for k in (1, 2, 3))
+    angles = end * np.arange(1, 4)
+    tip = reach * np.cos(angles).sum(), reach * np.sin(angles).sum()
     post = cylinder(1.0, 10).transformed(at(*tip))
     meshes = {"frame": post, "l3": cylinder(2.0, 10).transformed(at(reach))}
     certificate = certify(meshes, mechanism, budget=60.0)
