@@ -11,10 +11,13 @@ from __future__ import annotations
 
 import json
 import math
+import os
 import re
 import sys
+import tempfile
 import unicodedata
 from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from types import MappingProxyType
@@ -437,12 +440,12 @@ def common_of_mujoco(path: Path) -> Facts:
     m = compiled.m
     names = [compiled.name("BODY", body) or f"body_{body}" for body in range(m.nbody)]
     return {
-        "link": _links_of_mujoco(compiled, names),
+        **_links_of_mujoco(compiled, names),
         "joint": [
             Element(compiled.name("JOINT", joint) or f"joint_{joint}", "", names[int(m.jnt_bodyid[joint])], _common_joint(compiled, joint))
             for joint in range(m.njnt)
         ],
-        "shape": list(_shapes_of_mujoco(compiled, names)),
+        "shape": list(_shapes_of_mujoco(compiled, names, _posed(compiled, moved=False))),
         "mimic": _ties(compiled),
         "model": [Element("", "", "", {"gravity": np.array(m.opt.gravity)})],
     } | _only_mjcf(compiled, names)
@@ -464,8 +467,8 @@ def _posed(compiled: Compiled, *, moved: bool) -> list[FloatArray]:
     return [_pose(data.xmat[body].reshape(3, 3), data.xpos[body]) for body in range(m.nbody)]
 
 
-def _links_of_mujoco(compiled: Compiled, names: list[str]) -> list[Element]:
-    """Return where links are, and the inertia of those that move, with all that is fixed to them."""
+def _links_of_mujoco(compiled: Compiled, names: list[str]) -> Facts:
+    """Return where links are, and the inertia of the ground and of those that move, with all that is fixed to them."""
     m = compiled.m
     at_zero, moved = (_posed(compiled, moved=moved) for moved in (False, True))
     groups: dict[int, list[tuple[float, FloatArray, FloatArray]]] = {}
@@ -475,16 +478,18 @@ def _links_of_mujoco(compiled: Compiled, names: list[str]) -> list[Element]:
         R = at_zero[body][:3, :3] @ _turn(m.body_iquat[body])
         com = at_zero[body] @ np.array([*m.body_ipos[body], 1.0])
         groups.setdefault(roots[body], []).append((float(m.body_mass[body]), com[:3], R @ np.diag(m.body_inertia[body]) @ R.T))
-    return [
+    members = {root: tuple(other for other, above in zip(names, roots, strict=True) if above == root) for root in set(roots)}
+    links = [
         Element(
             name,
             "",
             name,
             {"frame": at_zero[body], "frame in motion": moved[body]} | (_combined(groups[body]) if body and roots[body] == body else {}),
-            tuple(other for other, root in zip(names, roots, strict=True) if root == body),
+            members.get(body, ()),
         )
         for body, name in enumerate(names)
     ]
+    return {"link": links, "ground": [Element("ground", "", "", _combined(groups[0]), members[0])]}
 
 
 def _common_joint(compiled: Compiled, joint: int) -> dict[str, Any]:
@@ -534,7 +539,11 @@ def _combined(bodies: list[tuple[float, FloatArray, FloatArray]]) -> dict[str, A
     return {"mass": np.array(mass), "com": com, "inertia": inertia}
 
 
-def _shapes_of_mujoco(compiled: Compiled, names: list[str]) -> Iterator[Element]:
+_BEYOND_SHAPES = {"mjGEOM_PLANE": " plane", "mjGEOM_HFIELD": " hfield", "mjGEOM_SDF": " sdf"}
+
+
+def _shapes_of_mujoco(compiled: Compiled, names: list[str], at_zero: list[FloatArray]) -> Iterator[Element]:
+    """Yield shapes to see and to collide with, as they stand in the world where all joints are at zero."""
     counts: dict[str, int] = {}
     m = compiled.m
     words = {
@@ -546,13 +555,16 @@ def _shapes_of_mujoco(compiled: Compiled, names: list[str]) -> Iterator[Element]
     }
     for geom in range(m.ngeom):
         body = int(m.geom_bodyid[geom])
-        key = f"{names[body]} {'collision' if m.geom_contype[geom] or m.geom_conaffinity[geom] else 'visual'}"
+        kind = compiled.mj.mjtGeom(int(m.geom_type[geom])).name
+        without = _BEYOND_SHAPES.get(kind, "")  # URDF leaves these out, and counts the others
+        key = f"{names[body]}{without} {'collision' if m.geom_contype[geom] or m.geom_conaffinity[geom] else 'visual'}"
         counts[key] = counts.get(key, -1) + 1
-        said = _geom(compiled, geom)
-        kind = str(said["type"])
+        T = at_zero[body] @ _pose(_turn(m.geom_quat[geom]), m.geom_pos[geom])
         found: dict[str, Any] = {"type": words.get(kind, kind)}
         if kind == "mjGEOM_MESH":
-            found["box"] = said["box"]
+            mesh = int(m.geom_dataid[geom])
+            points = m.mesh_vert[m.mesh_vertadr[mesh] :][: m.mesh_vertnum[mesh]].astype(np.float64) @ T[:3, :3].T + T[:3, 3]
+            found["box"] = np.array([points.min(axis=0), points.max(axis=0)])
         elif kind in words:
             a, b, c = (float(x) for x in m.geom_size[geom])
             sizes = {
@@ -561,7 +573,7 @@ def _shapes_of_mujoco(compiled: Compiled, names: list[str]) -> Iterator[Element]
                 "mjGEOM_CYLINDER": (a, 2 * b),
                 "mjGEOM_CAPSULE": (a, 2 * b),
             }
-            found |= {"size": np.array(sizes[kind]), "place": np.array(m.geom_pos[geom]), "turn": said["turn"]}
+            found |= {"size": np.array(sizes[kind]), "place": T[:3, 3], "turn": _axes(kind, T[:3, :3])}
         yield Element(f"{key} {counts[key]}", compiled.name("GEOM", geom), names[body], found)
 
 
@@ -654,14 +666,16 @@ def _by_name(compiled: Compiled, names: list[str]) -> Facts:
     return facts
 
 
-def common_of_pinocchio(path: Path, packages: Path) -> Facts:
-    """Return the same of a URDF."""
+def common_of_pinocchio(path: Path, packages: Path, *, both: bool = False) -> Facts:
+    """Return the same of a URDF; what fixed joints hold, link by link, where both files are URDF."""
     import pinocchio as pin
 
     model = pin.buildModelFromUrdf(str(path))
     shapes, unread = _shapes_of_pinocchio(model, path, packages)
     return {
         "link": _links_of_pinocchio(model),
+        "ground": [_ground_of_pinocchio(model)],
+        "fixed joint": _fixed_in_pinocchio(model) if both else [],
         "joint": [
             Element(model.names[index], "", model.names[index], _joint_of_pinocchio(model, index)) for index in range(1, model.njoints)
         ],
@@ -702,6 +716,32 @@ def _links_of_pinocchio(model: Any) -> list[Element]:
 
 _PINOCCHIO = {"FreeFlyer": "free", "Spherical": "ball", "Planar": "planar", "P": "slide", "R": "turn"}
 """How the names of Pinocchio's joints begin, after `JointModel`."""
+
+
+def _ground_of_pinocchio(model: Any) -> Element:
+    """Return the inertia of what does not move."""
+    import pinocchio as pin
+
+    Y = model.inertias[0]
+    fixed = tuple(frame.name for frame in model.frames if frame.parentJoint == 0 and frame.type == pin.FrameType.BODY)
+    return Element("ground", "", "", _combined([(float(Y.mass), Y.lever, Y.inertia)]), fixed)
+
+
+def _fixed_in_pinocchio(model: Any) -> list[Element]:
+    """Return the fixed joints, each with the inertia of the link that it holds."""
+    import pinocchio as pin
+
+    return [
+        Element(
+            frame.name,
+            "",
+            model.frames[index + 1].name,
+            {"mass": np.array(Y.mass), "com": np.array(Y.lever) * (Y.mass > 0), "inertia": np.array(Y.inertia)},
+        )
+        for index, frame in enumerate(model.frames)
+        if index and frame.type == pin.FrameType.FIXED_JOINT
+        for Y in [frame.inertia]
+    ]
 
 
 def _joint_of_pinocchio(model: Any, index: int) -> dict[str, Any]:
@@ -747,6 +787,8 @@ def _shapes_of_pinocchio(model: Any, path: Path, packages: Path) -> tuple[list[E
     import pinocchio as pin
 
     folders = [str(folder) for folder in (path.parent, *path.parents) if folder.is_relative_to(packages)]
+    data = model.createData()
+    pin.forwardKinematics(model, data, pin.neutral(model))
     elements, unread = [], []
     for kind, word in ((pin.GeometryType.VISUAL, "visual"), (pin.GeometryType.COLLISION, "collision")):
         try:
@@ -759,7 +801,7 @@ def _shapes_of_pinocchio(model: Any, path: Path, packages: Path) -> tuple[list[E
             link = model.frames[shape.parentFrame].name
             key = f"{link} {word}"
             counts[key] = counts.get(key, -1) + 1
-            T = model.frames[shape.parentFrame].placement.inverse() * shape.placement
+            T = data.oMi[shape.parentJoint] * shape.placement
             elements.append(Element(f"{key} {counts[key]}", "", link, _shape(shape, T)))
     return elements, unread
 
@@ -792,7 +834,7 @@ def _renamed(name: str, renames: Mapping[str, str]) -> str:
     """Return the new name of an element, or of the link that a shape such as `arm visual 0` belongs to."""
     if name in renames:
         return renames[name]
-    link = re.sub(r" (?:visual|collision) \d+$", "", name)
+    link = re.sub(r"(?: plane| hfield| sdf)? (?:visual|collision) \d+$", "", name)
     return renames.get(link, link) + name[len(link) :]
 
 
@@ -822,7 +864,8 @@ def differences(one: Facts, other: Facts, renames: Mapping[str, str] = MappingPr
         by_path = {element.path: element for element in right}
         seen = set()
         for element in left:
-            new = _renamed(element.name, renames) if element.name not in by_name else element.name
+            new = _renamed(element.name, renames)
+            new = new if new in by_name else element.name
             twin = by_name.get(new) if element.name else by_path.get(element.path)
             label = element.name or f"{element.holder} {element.path}".strip()
             if twin is None:
@@ -830,7 +873,7 @@ def differences(one: Facts, other: Facts, renames: Mapping[str, str] = MappingPr
                 said = [(name, _text(value)) for name, value in fields]
                 found += [Difference(kind, label, element.holder, name, value, "no", _of_free(element, free)) for name, value in said]
                 continue
-            if element.name in renames and kind in {"link", "joint"}:
+            if element.name in renames and kind in {"link", "joint", "fixed joint"}:
                 found.append(Difference(kind, label, element.holder, "name", element.name, renames[element.name], _of_free(element, free)))
             seen.add(id(twin))
             for name, value in element.facts.items():
@@ -943,45 +986,57 @@ def _text(value: Any) -> str:
 WORDS: Mapping[str, str] = {
     # by kind and field: a word of these must stand in the row
     "geom.exists": "geom|shape|plane|hfield|height|sdf|mesh",
-    "shape.exists": "geom|shape|mesh|plane|visual|ellipsoid",
-    "shape.*": "geom|shape|primitive|mesh|hull|flat|capsule|ellipsoid",
-    "link.frame": "frame|left out|names|mate",
-    "link.frame in motion": "frame",
-    "link.mass": "mass",
-    "link.com": "mass|inertia|centre",
-    "link.inertia": "inertia|mass",
-    "link.exists": "link|part|bodies|carrier|freedoms",
+    "shape.exists": r"<capsule>|the \w+ geom|without shapes|\ba mesh\b|left out",
+    "shape.*": "primitive|hull|flat|capsule|ellipsoid|<collision_checking>",
+    "link.frame": "original frame",
+    "link.frame in motion": "original frame",
+    **dict.fromkeys(("link.mass", "ground.mass", "fixed joint.mass", "body.mass"), r"\bmass\b|1e-4 kg"),
+    **dict.fromkeys(("link.com", "ground.com", "fixed joint.com", "body.com"), r"\bmass\b|1e-4 kg|centre"),
+    **dict.fromkeys(("link.inertia", "ground.inertia", "fixed joint.inertia", "body.inertia"), r"\binertia\b|\bmass\b|1e-4 kg"),
+    "fixed joint.exists": "joint is left out|carrier",
+    "fixed joint.name": "the name as given",
+    "link.exists": "carrier|bodies|chain of joints|nothing between them",
     "link.name": "the name as given",
     "joint.name": "the name as given",
     "settings.*": "option|visual",
     "cam.it": "camera",
+    "cam.exists": "camera",
     "mjcf body.*": "gravcomp|mocap",
     "body.exists": "body|bodies|carrier",
     "body.turn": "frame",
     "body.pos": "frame",
-    "body.mass": "mass",
-    "body.com": "mass|inertia",
-    "body.inertia": "inertia|mass",
-    "joint.exists": "joint|three|ball|tree|floats|freedoms",
-    "joint.nv": "joint|three",
-    "joint.type": "joint|three|endless",
-    "joint.limit": "limit|range|endless|cone",
+    "joint.exists": "joints?",
+    "joint.nv": "joints?",
+    "joint.type": "joints?|endless",
+    "joint.limit": "limits?|range|lower|upper|endless|cone|twist",
     "joint.effort": "effort|actuatorfrcrange|force",
     "joint.velocity": "velocity",
     "joint.friction": "friction",
-    "joint.frictionloss": "friction",
+    "joint.frictionloss": "friction|frictionloss",
     "joint.qpos0": "rest|qpos0|ref",
     "joint.cone": "cone|limit",
     "mjcf joint.actgravcomp": "actuatorgravcomp",
     "mjcf joint.solref": "solreflimit",
     "mjcf joint.solimp": "solimplimit",
+    "exclude.exists": "excluded?",
     "mimic.exists": "mimic|follow|tie|equality",
     "mimic.*": "mimic|follow|tie|equality",
     "equality.*": "equality|loop|weld|connect",
     "key.*": "key",
     "model.gravity": "gravity",
 }
-"""Words that speak of a field; a field that is not here must be named itself."""
+"""Whole words that speak of a field; a field that is not here must be named itself."""
+
+ASIDES = re.compile(
+    r"(?<=no )limit on a joint's (?=velocity)"
+    r"|: MuJoCo reads an empty range as unlimited|(?<=force may )drive the joint"
+    r"|that a joint connects: MuJoCo lets a body touch what stands still"
+    r"|, with which engines cannot collide|on the joint(?=;)|: the joint does not pass through its origin"
+    r"|: zero is outside of its limits|readers that ignore <mimic>.*|in readers that ignore <mimic>.*"
+    r"|the joint is (?=endless in that direction)|at rest or in motion.*|(?<=no friction )between surfaces.*"
+    r"|its carriers take a small share of the part's (?=mass)"
+)
+"""What rows of losses say by the way, about other fields than the one that they are about."""
 
 
 @dataclass(frozen=True)
@@ -1005,7 +1060,7 @@ def names_it(difference: Difference, row: Row) -> bool:
     )
     if kind == "geom":
         words += r"|the \w+ geom"  # that is left out as a whole
-    if not re.search(words, f"{row.where} {row.text}", re.IGNORECASE):
+    if not re.search(rf"(?<![A-Za-z])(?:{words})(?![A-Za-z])", ASIDES.sub("", row.text), re.IGNORECASE):
         return False
     if kind == "settings":
         return name.rpartition(".")[2].strip("_") in row.text or f"<{name.partition('.')[0]}>" in row.text
@@ -1056,7 +1111,24 @@ def facts_of(path: Path, target: str, packages: Path, *, both: bool) -> Facts:
     """Return what the engine of a file's format reads; all of it where both files are MJCF."""
     if target == "mjcf":
         return mujoco_facts(Compiled(path)) if both else common_of_mujoco(path)
-    return common_of_pinocchio(path, packages)
+    return common_of_pinocchio(path, packages, both=both)
+
+
+@contextmanager
+def _heard() -> Iterator[list[str]]:
+    """Yield a list that holds, at the end, what libraries wrote to the standard error: parsers of URDF give their reasons there."""
+    lines: list[str] = []
+    sys.stderr.flush()
+    kept = os.dup(2)
+    with tempfile.TemporaryFile() as file:
+        os.dup2(file.fileno(), 2)
+        try:
+            yield lines
+        finally:
+            os.dup2(kept, 2)
+            os.close(kept)
+            file.seek(0)
+            lines += file.read().decode(errors="replace").splitlines()
 
 
 def examine(source: Path, target: str, folder: Path, packages: Path) -> dict[str, Any]:
@@ -1065,19 +1137,28 @@ def examine(source: Path, target: str, folder: Path, packages: Path) -> dict[str
     from articad.formats import convert
 
     origin = "urdf" if source.suffix == ".urdf" else "mjcf"
+
+    def reason(error: Exception, heard: Iterable[str] = ()) -> str:
+        first = next((line for line in heard if line.startswith("Error:")), str(error) or type(error).__name__)
+        words = re.sub(r"^(?:(?:XML )?Error: )+", "", " ".join(first.split())).replace(f"{source}: ", "")
+        return words.replace(f"{packages}/", "").replace(str(packages), "its package")[:200]
+
+    heard: list[str] = []
     try:
-        before = facts_of(source, origin, packages, both=origin == target)
+        with _heard() as heard:
+            before = facts_of(source, origin, packages, both=origin == target)
     except Exception as error:  # noqa: BLE001 - engines raise what they like
-        return {"original refused": str(error).splitlines()[0][:200]}
+        return {"original refused": reason(error, heard)}
     try:
         _, bundle = convert(source, folder / f"copy.{ {'urdf': 'urdf', 'mjcf': 'xml'}[target] }", root=packages)
     except ArticadError as error:
-        return {"not converted": str(error).splitlines()[0][:200]}
+        return {"not converted": reason(error)}
     bundle.write(folder)
     try:
-        after = facts_of(folder / bundle.main, target, folder, both=origin == target)
+        with _heard() as heard:
+            after = facts_of(folder / bundle.main, target, folder, both=origin == target)
     except Exception as error:  # noqa: BLE001
-        return {"copy refused": str(error).splitlines()[0][:300]}
+        return {"copy refused": reason(error, heard)}
     rows = rows_of(bundle.to_json())
     renames = {
         row.where.partition(".")[2]: match[1] for row in rows if (match := re.search(r"underscores \((.*)\); the name as given", row.text))
@@ -1092,43 +1173,178 @@ def examine(source: Path, target: str, folder: Path, packages: Path) -> dict[str
     }
 
 
-PAGE_HEAD = """# What conversions change
+COMPARED = {
+    "urdf→urdf": "in Pinocchio: names of links and joints, the type of each joint, its limits, effort, velocity, damping, friction, armature and "
+    "`<mimic>`; the frame of each link at zero and in motion; mass, centre of mass and inertia of what moves, of what stands still, and of each "
+    "link that a fixed joint holds; kind, size and place of each shape, and the box around each mesh",
+    "urdf→mjcf": "the original in Pinocchio, the conversion in MuJoCo: all of that, fixed links with what they are fixed to; and equalities, "
+    "actuators, sensors, excluded pairs and keys that the conversion adds",
+    "mjcf→urdf": "the original in MuJoCo, the conversion in Pinocchio: all of that; and everything that only MJCF can say, where it is not "
+    "MuJoCo's default: contact parameters of geoms, options, visual settings, springs, reference values, ranges of forces, gravity compensation, "
+    "mocap bodies, sites, cameras, lights, equalities, tendons, actuators, sensors, pairs, keys and custom data",
+    "mjcf→mjcf": "in MuJoCo: every field of the compiled model (`mjModel`) of every body, joint, geom, site, camera, light, equality, tendon, "
+    "actuator, sensor, pair and key, custom data and all options; of meshes the box around them; no textures and materials but their colours",
+}
+"""What is compared, by direction."""
 
-Every model that these packages ship is converted to its own format and to the other. MuJoCo compiles the MJCF files, Pinocchio the URDF
-files, and a program that uses only these engines compares the original with the conversion: frames at zero and in motion, axes, limits,
-damping, armature, friction, efforts, masses, inertias, shapes, actuators, tendons, sensors, equalities, contacts, options, keys. Two MJCF
-files are compared in every field of MuJoCo's model but pictures. A difference is named when a row of the conversion's losses speaks of this
-field of this element; otherwise it is silent. Rows without a difference are about what engines do not read, such as other programs'
-elements and pictures, or about the format in general.
-
-`scripts/corpus` fetches the packages, does all of it and checks this page. The table has the runs that were finished when it was written.
-
-| package | from | to | models | refused | named differences | rows without a difference | silent differences |
-| --- | --- | --- | ---: | ---: | ---: | ---: | ---: |
-"""
+ENGINES = {"urdf": "Pinocchio", "mjcf": "MuJoCo"}
 
 
 def page(results: Iterable[Mapping[str, Any]]) -> str:
     """Return the page of the documentation that says what conversions change.
 
     Args:
-        results: Of `examine`, each with `package`, `origin` and `target`.
+        results: Of `examine`, each with `package`, `path` (below the package), `origin` and `target`.
     """
+    found = sorted(results, key=lambda result: (result["package"], result["origin"], result["target"], result["path"]))
+    return PAGE.format(
+        compared="".join(f"- **{direction}**, {text}.\n" for direction, text in COMPARED.items()),
+        table=_counts(found),
+        refused=_refused(found),
+        idle=_idle(found),
+        relative=RELATIVE,
+        silent=sum(_silent(result) for result in found),
+        models=len({(result["package"], result["path"]) for result in found}),
+        conversions=len(found),
+    )
+
+
+def _silent(result: Mapping[str, Any]) -> int:
+    return len(result.get("silent", ())) + len(result.get("free", ()))
+
+
+def _counts(results: list[Mapping[str, Any]]) -> str:
     rows: dict[tuple[str, str, str], list[Mapping[str, Any]]] = {}
     for result in results:
-        rows.setdefault((result["package"], result["origin"], result["target"]), []).append(result)
+        for package in (result["package"], "**all**"):
+            rows.setdefault((package, result["origin"], result["target"]), []).append(result)
     lines = []
-    for (package, origin, target), found in sorted(rows.items()):
+    for (package, origin, target), found in sorted(rows.items(), key=lambda item: (item[0][0].startswith("*"), item[0])):
         compared = [result for result in found if "silent" in result]
-        counts = [sum(len(result[kind]) for result in compared) for kind in ("named", "idle")]
-        counts.append(sum(len(result["silent"]) + len(result["free"]) for result in compared))
-        numbers = [len(found), len(found) - len(compared), *counts]
-        lines.append(f"| {package} | {origin} | {target} | {' | '.join(f'{number:,}' for number in numbers)} |\n")
-    return PAGE_HEAD + "".join(lines) + PAGE_END
+        refused = [sum(key in result for result in found) for key in ("original refused", "not converted", "copy refused")]
+        counts = [
+            sum(result["rows"] for result in compared),
+            *(sum(len(result[kind]) for result in compared) for kind in ("named", "idle")),
+        ]
+        numbers = [len(found), len(compared), *refused, *counts, sum(map(_silent, compared))]
+        lines.append(f"| {package} | {origin}→{target} | {' | '.join(f'{number:,}' for number in numbers)} |\n")
+    return "".join(lines)
 
 
-PAGE_END = """
-Refused are files that an engine does not take as they are, most of them pieces that other files include.
+def _refused(results: list[Mapping[str, Any]]) -> str:
+    rows: dict[tuple[str, str, str, str], None] = {}
+    for result in results:
+        who = {
+            "original refused": ENGINES[result["origin"]],
+            "not converted": "articad",
+            "copy refused": f"{ENGINES[result['target']]}, the copy",
+        }
+        for key in who.keys() & result.keys():
+            rows[result["package"], result["path"], who[key], str(result[key]).replace("|", "\\|").replace("`", "'")] = None
+    return "".join(f"| {package} | `{path}` | {who} | `{reason}` |\n" for package, path, who, reason in rows)
+
+
+LISTED = 30  # subjects of rows without a difference
+
+
+def _idle(results: list[Mapping[str, Any]]) -> str:
+    """Return the rows without a difference by what they speak of, the most frequent first."""
+    counts: dict[str, dict[str, int]] = {}
+    for result in results:
+        for row in result.get("idle", ()):
+            by_direction = counts.setdefault(_subject(row), {})
+            direction = f"{result['origin']}→{result['target']}"
+            by_direction[direction] = by_direction.get(direction, 0) + 1
+    ordered = sorted(counts.items(), key=lambda item: (-sum(item[1].values()), item[0]))
+    shown = ordered[:LISTED] + ([("others", _added(rest for _, rest in ordered[LISTED:]))] if ordered[LISTED:] else [])
+    return "".join(f"| {subject} | {' | '.join(f'{by.get(direction, 0):,}' for direction in COMPARED)} |\n" for subject, by in shown)
+
+
+def _added(counts: Iterable[Mapping[str, int]]) -> dict[str, int]:
+    total: dict[str, int] = {}
+    for one in counts:
+        for direction, count in one.items():
+            total[direction] = total.get(direction, 0) + count
+    return total
+
+
+_SUBJECTS = (
+    (r"; group \S+(?:, transparency alpha \S+)? of (?:a )?geom", "group or transparency of a geom"),
+    (r" of (?:a )?geom", "contact parameters of a geom that is only seen"),
+    (r"transparency|alpha", "transparency"),
+    (r"[Tt]exture|tex(?:repeat|uniform)", "textures"),
+    (r"(?:reflectance|shininess|specular|emission|metallic|roughness) of <material>|<specular>", "materials beyond their colour"),
+    (r"; Mesh .* is left out", "a mesh that is not in the package"),
+    (r"physically possible", "an inertia that no body can have"),
+    (r"the name as given", "names of fixed joints, models and links with other characters"),
+    (r"names of <(?:visual|collision)>", "names of shapes"),
+    (r"; <option>", "`<option>` with MuJoCo's defaults"),
+    (r"; (?:damping|frictionloss|armature)\b", "damping, friction or armature of a free joint"),
+    (r"<mimic>; readers", "`<mimic>`, which some readers ignore"),
+)
+"""Words of rows, and what a row with them speaks of; the first that is there counts."""
+
+
+def _subject(row: str) -> str:
+    """Return what a row speaks of, in a few words."""
+    text = row[row.find(": ") :]
+    for pattern, subject in _SUBJECTS:
+        if re.search(pattern, text):
+            return subject
+    if match := re.search(r"; (?:<([\w-]+)|.*(?:of|in) <([\w-]+)>)", text):
+        return f"`<{match[1] or match[2]}>`"
+    return re.sub(r"\(.*?\)|'[^']*'", "", text.partition("; ")[2]).strip()[:60] or "others"
+
+
+PAGE = """# What conversions change
+
+This page says what articad's conversions between URDF and MJCF keep of robots that other people made: {models:,} models, the URDF and MJCF
+files of seven packages from PyPI, in {conversions:,} conversions. A program wrote it that knows nothing of articad but the file that it wrote
+and the report of its losses. The engines Pinocchio (for URDF) and MuJoCo (for MJCF) compile the original and the conversion, and the program
+compares the compiled models field by field. Two numbers are the same when they differ by less than {relative:g} of the largest number of their
+field.
+
+- A *named difference* is one that a row of the conversion's losses speaks of: of this field of this element. Every conversion prints these rows.
+- A *silent difference* is any other. There are {silent:,}.
+- A *row without a difference* is a loss that no engine sees, such as an element of another program, a picture or the name of a shape.
+
+## The table
+
+*Models* are files. The refused ones are not compiled by the engine of the original, not converted by articad, or not compiled once they are
+converted.
+
+| package | conversion | models | compared | refused by the engine | refused by articad | copy refused | rows of losses | named differences | rows without a difference | silent differences |
+| --- | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |
+{table}
+Of the 1,000 random objects that PyBullet ships, ten are converted.
+
+## What is compared
+
+{compared}
+Shapes are compared where the engine can read all meshes of the file; Pinocchio reads none where one is missing.
+
+## What is refused, by whom and why
+
+| package | file | by | why |
+| --- | --- | --- | --- |
+{refused}
+Most of the MJCF files among these are pieces that other files include.
+
+## Rows without a difference
+
+| what the rows speak of | urdf→urdf | urdf→mjcf | mjcf→urdf | mjcf→mjcf |
+| --- | ---: | ---: | ---: | ---: |
+{idle}
+## To repeat it
+
+```console
+$ scripts/corpus DIR                            # compares, and checks that this page is what comes out
+$ ARTICAD_CORPUS_WRITE=1 scripts/corpus DIR     # writes the page
+```
+
+The script fetches the packages into DIR (2 GB) without installing them and runs `pytest -m corpus tests/importers/test_corpus.py`, which takes
+about an hour of one processor. Each result is appended to a file in `DIR.results` when it is made, so that a run that was interrupted continues;
+results of other versions of the code are not used. For one file, `python -m tests.differences FILE TARGET FOLDER` prints what differs.
 """
 
 

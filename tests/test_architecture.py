@@ -160,7 +160,7 @@ def test_every_import_is_declared() -> None:
         ),  # the latter only asks whether it loads a file
         ("fcl", ("interference/",)),
         ("litellm", ("agents/provider.py",)),
-        ("mujoco", ("simulation/", "importers/mjcf.py")),  # its MjSpec is the reader of MJCF
+        ("mujoco", ("simulation/", "importers/mjcf_compiled.py")),  # the process that compiles foreign MJCF
     ],
 )
 def test_one_place_each_imports_the_engines(module: str, owner: tuple[str, ...]) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from dataclasses import replace
 from itertools import product
 from typing import TYPE_CHECKING
@@ -109,6 +110,18 @@ def _part_features(assembly: Assembly) -> list[Feature]:
         if part.material in assembly.materials:
             features.append(Feature("friction", where))
     return features
+
+
+def steps_of_bodies(assembly: Assembly) -> set[str]:
+    """Return the parts that stand for nothing but the step from one joint of an MJCF body to the next."""
+    if not any(item.format == "mjcf" for item in assembly.kept):
+        return set()
+    joined = Counter(end for joint in assembly.joints if joint.type is not JointType.FIXED for end in (joint.parent, joint.child))
+    return {
+        name
+        for name, part in assembly.parts.items()
+        if part.mass is None and not part.visuals and not part.collisions and joined[name] == 2 and name not in rigid_with_ground(assembly)
+    }
 
 
 def without_own_mass(assembly: Assembly) -> set[str]:

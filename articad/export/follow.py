@@ -1,10 +1,37 @@
-"""Which freedoms follow which: couplings and screws as linear relations to one leader, the only ones that <mimic> can state."""
+"""Which freedoms follow which: couplings and screws as linear relations to one leader, and chains where a URDF file states them."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Container, Iterable
+from typing import TYPE_CHECKING
 
 from articad.export.lowering import AxisMotion, Follows, LoweredModel
+
+if TYPE_CHECKING:
+    from articad.assembly import Assembly
+
+
+STATES_MIMIC = "<mimic/>"  # what is kept with a joint whose URDF file states what it follows
+
+
+def leaders(assembly: Assembly) -> list[str]:
+    """Return the columns that lead the others, best first: those that a foreign file calls leaders, then the drivers."""
+    couplings = assembly.mechanism.couplings if assembly.foreign else ()
+    tied = {coupling.b for coupling in couplings}
+    stated = [coupling.a for coupling in couplings if coupling.a not in tied]
+    return list(dict.fromkeys([*stated, *(driver.name for driver in assembly.mechanism.drivers)]))
+
+
+def as_stated(follows: dict[str, Follows], model: LoweredModel, stated: Container[str]) -> dict[str, Follows]:
+    """Return the relations with those as they came that a file states: there, a follower may lead others.
+
+    Args:
+        follows: What each tied freedom follows.
+        model: Its couplings.
+        stated: Places such as `couplings.a_follows_b`.
+    """
+    chains = {name: relation for coupling, name, relation in model.couplings if f"couplings.{coupling}" in stated and name in follows}
+    return follows | chains
 
 
 def followers(model: LoweredModel, leaders: Iterable[str]) -> dict[str, Follows]:

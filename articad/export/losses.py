@@ -52,6 +52,8 @@ class Feature(NamedTuple):
     detail: str = ""
 
 
+_ONE_BODY = "that the joints before and after it are joints of one body, with nothing between them"
+
 TABLE: dict[str, dict[Format, LossRow]] = {
     # --- joints
     "fixed": {
@@ -197,6 +199,12 @@ TABLE: dict[str, dict[Format, LossRow]] = {
         "mjcf": LossRow("joints of one body"),
         "sdf": LossRow("a joint, or a chain of joints"),
         "usd": LossRow("a joint"),
+    },
+    "chain.step": {
+        "urdf": LossRow("a link of 1e-4 kg", _ONE_BODY),
+        "mjcf": LossRow("a body of 1e-4 kg", _ONE_BODY),
+        "sdf": LossRow("a link of 1e-4 kg", _ONE_BODY),
+        "usd": LossRow("a body of 1e-4 kg", _ONE_BODY),
     },
     "contact.joined": {
         "urdf": LossRow("collision meshes"),

@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 
 from articad.connectors.mate import flip
 from articad.connectors.se3 import SE3
-from articad.export.features import features_of, rigid_with_ground, solid_enough, without_own_mass
+from articad.export.features import features_of, rigid_with_ground, solid_enough, steps_of_bodies, without_own_mass
 from articad.export.inertia import MM_PER_M, Inertial
 from articad.export.loads import Load, joint_loads
 from articad.export.losses import Feature
@@ -40,6 +40,8 @@ Kind = Literal["turn", "slide"]
 
 
 ON_AXIS_MM = 1e-6  # largest distance of a turning axis from the origin of a link that keeps its frame
+FAR_RAD = 1e6  # replaces an open end of a range
+FAR_M = 1e3
 ROUND = 1e-12  # largest difference of a component of an axis from a whole number that is rounded away
 
 
@@ -82,6 +84,12 @@ class AxisMotion:
     load: Load
     follows: Follows | None = None
     column: str | None = None
+
+    @property
+    def finite_range(self) -> tuple[float, float]:
+        """Lower and upper, with a far limit for an open end; a stated limit stays, however far it is."""
+        far = FAR_RAD if self.kind == "turn" else FAR_M
+        return (self.lower if math.isfinite(self.lower) else -far), (self.upper if math.isfinite(self.upper) else far)
 
 
 @dataclass(frozen=True, eq=False)
@@ -217,6 +225,7 @@ def lower(assembly: Assembly, reserved: Iterable[str] = (), *, as_it_came: bool 
     moved: list[Feature] = []
     if part_frames and not mechanism.T_ground.allclose(SE3.identity(), mm=ON_AXIS_MM, rad=1e-9):
         moved.append(_moved(mechanism.ground, mechanism.T_ground)._replace(key="root.frame"))
+    steps = steps_of_bodies(assembly)
     for edge in mechanism.tree.edges:
         head, K = _frames(edge.joint, backwards=edge.reversed)
         T_link_part[edge.part] = K
@@ -224,7 +233,7 @@ def lower(assembly: Assembly, reserved: Iterable[str] = (), *, as_it_came: bool 
         apart = not keeps and not K.allclose(SE3.identity(), mm=ON_AXIS_MM, rad=1e-9)
         if keeps or (apart and part_frames):
             T_link_part[edge.part] = SE3.identity()
-        elif assembly.foreign and apart:
+        elif assembly.foreign and edge.part not in steps and apart:
             moved.append(_moved(edge.part, K))
         T_parent_joint = metres(T_link_part[edge.parent] @ head @ (K if keeps else SE3.identity()))
         row = _lowered(edge.joint, edge.parent, edge.part, T_parent_joint, SE3.identity(), loads, names, backwards=edge.reversed)
@@ -250,7 +259,7 @@ def lower(assembly: Assembly, reserved: Iterable[str] = (), *, as_it_came: bool 
         tuple(joints),
         tuple(loops),
         _couplings(assembly, [*joints, *loops]),
-        (*features_of(assembly), *names.features(assembly), *moved),
+        (*_with_steps(features_of(assembly), steps), *names.features(assembly), *moved),
     )
 
 
@@ -267,6 +276,14 @@ def _keeps_frame(joint: Joint, K: SE3, *, anywhere: bool = False) -> bool:
     origin = K.translation  # of the part, in the joint's frame
     turning = [np.array(step.vector) for step in motions(joint.type) if step.kind == "turn"]
     return all(float(np.linalg.norm(np.cross(axis, origin))) <= ON_AXIS_MM for axis in turning)
+
+
+def _with_steps(features: Iterable[Feature], steps: set[str]) -> list[Feature]:
+    """Return the features with what links between the joints of a body are: they lack no mass, because the file has no such bodies."""
+    wheres = {f"parts.{name}" for name in steps}
+    return [
+        feature._replace(key="chain.step") if feature.key == "mass.missing" and feature.where in wheres else feature for feature in features
+    ]
 
 
 def _moved(part: str, K: SE3) -> Feature:

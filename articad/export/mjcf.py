@@ -45,8 +45,7 @@ if TYPE_CHECKING:
     from articad.assembly import Assembly
 
 RESERVED = ("world",)  # the name of MuJoCo's own root body
-FAR_RAD = 1e6  # replaces an open end of a range whose other end is limited
-FAR_M = 1e3
+LEAST_RANGE = 1e-9  # rad or m: MuJoCo takes a range without width as no limit at all
 LEAST_VOLUME_MM3 = 1e-3  # MuJoCo reports a smaller mesh as too small to measure
 STL_TRIANGLES = 200_000  # MuJoCo refuses larger STL files; OBJ has no such limit
 TIMESTEP_S = 0.002
@@ -291,7 +290,7 @@ class _Writer:
             attributes = {"name": joint.name, "type": "ball"} | anchor
             total = ball_total_angle(joint.joint)
             if total < math.pi:
-                attributes["range"] = numbers([0, total])
+                attributes["range"] = numbers([0, max(total, LEAST_RANGE)])
             if "range" in kept and float(kept["range"].split()[-1]) == joint.joint.limits.cone:
                 self.exact.add(f"joints.{joint.joint.name}")
             else:
@@ -512,8 +511,11 @@ def _joint(freedom: AxisMotion, *, foreign: bool = False) -> dict[str, str]:
 def _range(freedom: AxisMotion) -> str | None:
     if math.isinf(freedom.lower) and math.isinf(freedom.upper):
         return None
-    far = FAR_RAD if freedom.kind == "turn" else FAR_M
-    return numbers(tidy([max(freedom.lower, -far), min(freedom.upper, far)]))
+    lower, upper = freedom.finite_range
+    width = max(LEAST_RANGE, 8 * math.ulp(lower))
+    if upper - lower < width:
+        lower, upper = (lower + upper - width) / 2, (lower + upper + width) / 2
+    return numbers(tidy([lower, upper]))
 
 
 def _servo(freedom: AxisMotion) -> dict[str, str]:

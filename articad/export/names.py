@@ -9,6 +9,16 @@ from collections.abc import Iterable
 MAX_LENGTH = 120  # characters; files are named after parts, and file systems allow 255 bytes
 
 
+def called(tag: str, names: Iterable[str]) -> str:
+    """Return the words for the names that the shapes of a link have.
+
+    Args:
+        tag: "visual" or "collision".
+        names: Of those that have one, in order.
+    """
+    return f"names of <{tag}>: {', '.join(names)}"
+
+
 class Names:
     """Assigns valid names, each once, and none that is reserved."""
 

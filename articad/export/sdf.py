@@ -12,7 +12,7 @@ from lxml import etree
 from articad.connectors.se3 import SE3
 from articad.export.bundle import Bundle
 from articad.export.collisions import Collision, kind_of, shape_model
-from articad.export.follow import followers
+from articad.export.follow import followers, leaders
 from articad.export.inertia import Inertial
 from articad.export.losses import Feature, assumed_finding, kept_losses, losses_of, refuse
 from articad.export.lowering import AxisMotion, Follows, Link, LoweredJoint, LoweredModel, Placed, lower
@@ -133,7 +133,7 @@ class _Writer:
         self.assembly, self.model, self.files = assembly, model, files
         files.expect(link.part for link in model.links)
         self.at_rest = bool(model.loops)
-        self.follows = followers(model, [driver.name for driver in assembly.mechanism.drivers])
+        self.follows = followers(model, leaders(assembly))
         self.poses: dict[str, SE3] = {}
         self.kept = _Kept(assembly, model)
         # links and joints share one namespace, so a joint with a link's name is renamed

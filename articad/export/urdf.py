@@ -12,7 +12,7 @@ from articad.connectors.se3 import SE3
 from articad.export.bundle import Bundle
 from articad.export.closing import TiedPoint, tied_points
 from articad.export.collisions import Collision, collide, contact_feature, kind_of
-from articad.export.follow import followers
+from articad.export.follow import STATES_MIMIC, as_stated, followers, leaders
 from articad.export.hulls import HullOverlap, Pair, mating_pairs, same_group_pairs
 from articad.export.inertia import Inertial
 from articad.export.losses import Feature, assumed_finding, kept_losses, losses_of, refuse
@@ -21,6 +21,7 @@ from articad.export.markup import child, document, number, numbers, rgba, rpy, t
 from articad.export.meshes import MM_TO_M, MeshFiles, MeshKind
 from articad.export.metadata import dumps, records
 from articad.export.mimic import linear_followers
+from articad.export.names import called
 from articad.export.ros import add_control, package_files, require_package_name, srdf_names
 from articad.export.ros import srdf as write_srdf
 from articad.findings import Findings
@@ -32,9 +33,7 @@ if TYPE_CHECKING:
 
 Loops = Literal["none", "isaac", "drake", "mimic"]
 
-FAR_RAD = 1e6  # replaces an open end of a range whose other end is limited
 DRAKE = "http://drake.mit.edu"  # the namespace of Drake's own elements
-FAR_M = 1e3  # URDF has no endless prismatic joint
 
 
 def write_urdf(
@@ -89,13 +88,15 @@ def write_urdf(
         model, contacts = collide(assembly, model, collision, _skipped(assembly, model), cache)
     tied = {loop.name: tied_points(model, loop) for loop in model.loops} if loops in {"isaac", "drake"} else {}
     keeper = _Keeper(assembly, model)
-    features = [*_loop_features(model, loops, tied), *map(contact_feature, contacts), *_features_of_file(assembly, model, keeper)]
+    stated = keeper.stated_couplings(assembly)
+    told = [feature for feature in _loop_features(model, loops, tied) if feature.key != "coupling" or feature.where not in stated]
+    features = [*told, *map(contact_feature, contacts), *_features_of_file(assembly, model, keeper)]
     losses = (*losses_of("urdf", features), *kept_losses("urdf", assembly.kept, keeper.written))
     if strict:
         refuse(losses)
     files = MeshFiles(meshes, draws=kind_of(assembly, collision) != "solid", prefix="" if package is None else f"package://{package}/")
     files.expect(link.part for link in model.links)
-    follows = followers(model, [driver.name for driver in assembly.mechanism.drivers])
+    follows = as_stated(followers(model, leaders(assembly)), model, stated)
     if loops == "mimic" and model.loops:
         follows |= linear_followers(assembly, model)
     version = {"version": keeper.version} if keeper.version else {}
@@ -145,7 +146,15 @@ class _Keeper:
         self.written: list[Kept] = []
         self.semantics: list[Any] = []  # elements of the SRDF that are written
         self._keep_semantics([item for item in assembly.kept if item.format == "srdf" and item.xml], model)
+        named = {
+            (f"parts.{link.part.name}", called(tag, names))
+            for link in model.links
+            for tag, placed in (("visual", link.visuals), ("collision", link.collisions))
+            if self.foreign and (names := [one.shape.name for one in placed if one.shape.name])
+        }
         for item in assembly.kept:
+            if item.format == "urdf" and (item.where, item.what) in named:
+                self.written.append(item)
             if item.format != "urdf" or not item.xml or item.where not in self._places or any(name in item.xml for name in renamed):
                 continue
             self.written.append(item)
@@ -169,12 +178,19 @@ class _Keeper:
         """Whether <capsule> may be written: URDF has it since 1.2."""
         return self.version not in {"", "1.0", "1.1"}
 
+    def stated_couplings(self, assembly: Assembly) -> set[str]:
+        """Return the couplings that the file itself states as mimics: written as such again, they lose nothing."""
+        tied = {item.where for item in self.written if item.xml == STATES_MIMIC}
+        return {f"couplings.{coupling.name}" for coupling in assembly.mechanism.couplings if f"joints.{coupling.b}" in tied}
+
     def write(self, root: Any) -> None:
         """Restore every element, or its attributes if the element already exists."""
         places = {("link", element.get("name")): element for element in root.iterfind("link")}
         places |= {("joint", element.get("name")): element for element in root.iterfind("joint")}
         places["robot", ""] = root
         for item in self.written:
+            if item.xml in {"", STATES_MIMIC}:  # the names of shapes and what joints follow are written with these
+                continue
             element, target = etree.fromstring(item.xml), places[self._places[item.where]]
             there = target.find(element.tag) if element.tag in {"limit", "dynamics", "mimic"} else None
             if element.tag == "robot":
@@ -301,7 +317,7 @@ def _inertial(link: Any, inertial: Inertial) -> None:
 
 
 def _shape(link: Any, tag: str, placed: Placed, name: str, files: MeshFiles, keeper: _Keeper) -> Any:
-    element = child(link, tag)
+    element = child(link, tag, {"name": placed.shape.name} if keeper.foreign and placed.shape.name else None)
     _origin(element, placed.T_link_shape)
     form = None if placed.shape.primitive is None else _form(placed.shape.primitive, keeper)
     if form is not None:
@@ -370,8 +386,8 @@ def _limit(freedom: AxisMotion, keeper: _Keeper) -> dict[str, str]:
     if _says_no_limit(freedom, keeper):
         return bounds
     if _type(freedom) != "continuous":
-        far = FAR_RAD if freedom.kind == "turn" else FAR_M
-        bounds = {"lower": number(max(freedom.lower, -far)), "upper": number(min(freedom.upper, far))}
+        lower, upper = freedom.finite_range  # URDF has no endless prismatic joint
+        bounds = {"lower": number(lower), "upper": number(upper)}
     return bounds | {"effort": number(freedom.load.effort), "velocity": number(freedom.load.velocity)}
 
 

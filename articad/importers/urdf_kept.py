@@ -9,11 +9,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from typing import Any, Final
 
 from lxml import etree
 
 from articad.assembly import Kept
+from articad.export.follow import STATES_MIMIC
+from articad.export.names import called
 
 __all__ = ["READ", "kept_elements"]
 
@@ -53,6 +56,8 @@ READ: Final[Mapping[str, frozenset[str]]] = {
 """Attributes that are read, by parent and tag; for children of `link` and `joint` of `<robot>` the parent is omitted."""
 
 _VERSIONS = ("", "1.0", "1")
+_OF_MOTION = ("axis", "limit", "dynamics", "mimic", "safety_controller", "calibration")  # say nothing of a joint that does not move
+_WITHOUT_CAPSULES = (*_VERSIONS, "1.1")
 
 
 def kept_elements(document: Any) -> list[Kept]:
@@ -67,6 +72,7 @@ def kept_elements(document: Any) -> list[Kept]:
     for name, value in document.attrib.items():
         if name not in READ["robot"] | {"version"}:
             found.append(Kept("urdf", "model", f"{name}={value!r} of <robot>"))
+    found.extend(_early_capsules(document))
     for element in document:
         if not isinstance(element.tag, str) or element.tag == "articad":
             continue
@@ -83,9 +89,23 @@ def kept_elements(document: Any) -> list[Kept]:
     return list(dict.fromkeys(found))
 
 
+def _early_capsules(document: Any) -> Iterator[Kept]:
+    """Yield the links with capsules in a file of a version that has none: we read them, other readers leave them out."""
+    if document.get("version", "") not in _WITHOUT_CAPSULES:
+        return
+    for link in document.iterfind("link"):
+        if link.find("*/geometry/capsule") is not None:
+            said = "the fact that readers leave <capsule> out: URDF has it from version 1.2 on"
+            yield Kept("urdf", f"parts.{link.get('name')}", said)
+
+
 def _of_link(link: Any) -> Iterator[Kept]:
     where = f"parts.{link.get('name')}"
     yield from _attributes(link, "link", where)
+    for tag in ("visual", "collision"):
+        names = [name for element in link.iterfind(tag) if (name := element.get("name"))]
+        if names:
+            yield Kept("urdf", where, called(tag, names))
     for element in link:
         if element.tag not in {"inertial", "visual", "collision"}:
             yield _kept(element, where)
@@ -107,6 +127,8 @@ def _of_link(link: Any) -> Iterator[Kept]:
 def _of_material(material: Any, where: str) -> Iterator[Kept]:
     name = material.get("name")
     for element in material:
+        if element.tag == "texture" and not element.get("filename"):
+            continue  # of no picture
         if element.tag != "color":
             what = f"texture {element.get('filename')!r}" if element.tag == "texture" else f"<{element.tag}>"
             yield Kept("urdf", where, f"{what} of material {name!r}")
@@ -124,8 +146,11 @@ def _of_joint(joint: Any) -> Iterator[Kept]:
         key = f"joint/{element.tag}"
         acts = element.tag not in {"limit", "dynamics", "mimic", "axis"} or kind in MOVING or (element.tag == "axis" and kind == "planar")
         if key not in READ or not acts:
-            yield _kept(element, where)
+            kept = _kept(element, where)
+            yield replace(kept, what="") if kind == "fixed" and element.tag in _OF_MOTION else kept
             continue
+        if element.tag == "mimic":
+            yield Kept("urdf", where, "", STATES_MIMIC)
         read = READ[key] - ({"lower", "upper"} if kind == "continuous" else set())
         more = {name: value for name, value in element.attrib.items() if name not in read}
         if more and element.tag in {"limit", "dynamics", "mimic"}:

@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from tests.differences import Compiled, compare, differences, examine, facts_of, mujoco_facts
+from articad.export.losses import TABLE
+from tests.differences import Compiled, Difference, Row, compare, differences, examine, facts_of, mujoco_facts, names_it
 from tests.importers.test_doors import EVERYTHING, random_urdf
 
 pytestmark = pytest.mark.engines
@@ -27,7 +28,7 @@ WHOLE = """<mujoco model="a whole one">
  <mesh name="wedge" vertex="0 0 0  .1 0 0  0 .1 0  0 0 .1"/></asset>
 <include file="sub/more.xml"/>
 <worldbody><light name="sun" pos="0 0 3" dir="0 0 -1" diffuse="0.5 0.5 0.5" castshadow="false"/><camera name="eye" pos="1 1 1" mode="targetbody" target="arm" fovy="60"/>
- <geom name="floor" type="plane" size="2 2 .1" material="shiny"/><site name="origin" size="0.01" rgba="0 1 0 0.4"/>
+ <geom name="floor" type="plane" size="2 2 .1" material="shiny"/><geom name="stone" size="0.1" pos="2 0 0"/><site name="origin" size="0.01" rgba="0 1 0 0.4"/>
  <body name="arm" pos="0 0 1" childclass="stiff" gravcomp="0.5"><joint name="shoulder" axis="0 1 0.2" pos="0.1 0 0.2" range="-80 120" ref="20" frictionloss="0.1"/>
   <joint name="lift" type="slide" axis="0 0 1" range="-0.1 0.3" actuatorfrcrange="-4 9" springref="0.1" class="main"/>
   <geom name="bone" type="capsule" fromto="0 0 0 0 0 -0.4" size="0.03" mass="0.7"/><geom type="mesh" mesh="wedge" contype="0" conaffinity="0" group="2"/>
@@ -213,6 +214,85 @@ def test_random_urdf_files_are_converted_without_a_silent_difference(seed: int, 
     result = examine(tmp_path / "a.urdf", target, tmp_path / "out", tmp_path)
 
     assert result.get("silent") == [], result
+
+
+def tied_urdf(random: np.random.Generator) -> str:
+    """Return a tree with masses that stand still, stars of mimics in any order, limits at any distance and shapes with names."""
+
+    def inertial() -> str:
+        return (
+            f'<inertial><origin xyz="0.01 0 {random.uniform(0, 0.1):.3f}"/><mass value="{random.uniform(0.1, 3):.3f}"/>{INERTIA}</inertial>'
+        )
+
+    def shape(number: int) -> str:
+        words = f'<capsule name="rod {number}"/>' if random.random() < 0.5 else ""  # makes a capsule of it, for Pinocchio
+        form = '<geometry><cylinder radius="0.1" length="0.3"/></geometry>'
+        return f'<collision name="rod {number}">{form}</collision><visual>{form}</visual><collision_checking>{words}</collision_checking>'
+
+    count = 9
+    leaders, alone = np.split(random.choice(np.arange(1, count), 4, replace=False), 2)
+    rows = [f'<robot name="tied"><link name="l0">{inertial()}{shape(0)}</link><link name="foot">{inertial()}</link>']
+    rows.append('<joint name="stands" type="fixed"><parent link="l0"/><child link="foot"/><origin xyz="0 0.1 -0.2" rpy="0.3 0 0"/></joint>')
+    for index in range(1, count):
+        low, high = random.choice([(0.0, 0.0), (0.5, 0.5), (-1e8, -1e8)] if index in alone else [(-1.0, 1.0), (-1e4, 1e16), (-1e7, 1e7)])
+        ratio = f'multiplier="{random.choice([-1, 1, 0.5])}" offset="{random.choice([0, 0.1])}"'
+        above = [*leaders, *(one for one in range(1, index) if one not in alone)]
+        tie = f'<mimic joint="j{random.choice(above)}" {ratio}/>' if index not in [*leaders, *alone] else ""
+        rows.append(
+            f'<link name="l{index}">{inertial()}{shape(index)}</link><joint name="j{index}" type="{random.choice(["revolute", "prismatic"])}">'
+            f'<parent link="l{random.integers(0, index)}"/><child link="l{index}"/><origin xyz="0.1 0 0.2"/><axis xyz="0 1 0"/>'
+            f'<limit lower="{low}" upper="{high}" effort="3" velocity="2"/>{tie}</joint>'
+        )
+    return "".join([*rows, "</robot>"])
+
+
+INERTIA = '<inertia ixx="0.2" ixy="0" ixz="0" iyy="0.3" iyz="0" izz="0.25"/>'
+
+
+@pytest.mark.parametrize("target", ["mjcf", "urdf"])
+@pytest.mark.parametrize("seed", range(4))
+def test_ties_far_limits_and_names_of_shapes_are_converted_without_a_silent_difference(seed: int, target: str, tmp_path: Path) -> None:
+    (tmp_path / "a.urdf").write_text(tied_urdf(np.random.default_rng(seed)))
+    result = examine(tmp_path / "a.urdf", target, tmp_path / "out", tmp_path)
+
+    assert result.get("silent") == [], result
+    if target == "urdf":
+        assert result["named"] == []
+
+
+STANDS = [
+    (r'name="l0"><inertial><origin xyz="0.01', 'name="l0"><inertial><origin xyz="0.02'),
+    (r'(name="foot"><inertial>.*?<mass value=")', r"\g<1>1"),
+    (r'name="stands"', 'name="stood"'),
+    (r'(name="l1"><inertial>.*?ixx=")0.2', r"\g<1>0.21"),
+    (r'<mimic joint="j\d" multiplier="', r"\g<0>1"),
+    (r'upper="', 'upper="1'),
+    (r'<collision name="rod 3"><geometry><cylinder radius="0.1"', '<collision name="rod 3"><geometry><cylinder radius="0.11"'),
+]
+
+
+@pytest.mark.parametrize("edit", STANDS, ids=lambda edit: edit[0])
+def test_the_comparison_sees_every_edit_of_a_urdf(edit: tuple[str, str], tmp_path: Path) -> None:
+    text = tied_urdf(np.random.default_rng(0))
+    path = tmp_path / "a.urdf"
+    path.write_text(text)
+    before = facts_of(path, "urdf", tmp_path, both=True)
+    path.write_text(re.sub(*edit, text, count=1))
+    found = differences(before, facts_of(path, "urdf", tmp_path, both=True))
+
+    assert found
+    assert compare(found, []).silent == found
+
+
+def test_a_row_names_only_the_field_that_it_is_about() -> None:
+    limit = Difference("joint", "j", "l", "limit", "-1 1", "-2 2")
+    velocity = Difference("joint", "j", "l", "velocity", "3", "inf")
+    row = Row("joints.j", "metadata; MJCF has no limit on a joint's velocity")
+
+    assert names_it(velocity, row)
+    assert not names_it(limit, row)
+    assert not names_it(limit, Row("joints.j", TABLE["effort.zero"]["mjcf"].lost))
+    assert not names_it(Difference("shape", "l collision 0", "l", "type", "box", "mesh"), Row("parts.l", "nothing; group 3 of geom 'l'"))
 
 
 # ---------------------------------------------------------------------- what moves
