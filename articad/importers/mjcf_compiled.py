@@ -162,14 +162,15 @@ def _require_rows(numbers: Mapping[str, Any]) -> None:
         count = _ROWS.get(name.partition("_")[0])
         if count and isinstance(value, np.ndarray) and len(value) != numbers[count]:
             raise ValueError(f"{name} has {len(value)} rows, and {count} is {numbers[count]}")
-    for name, count in (
-        ("body_parentid", "nbody"),
-        ("jnt_dofadr", "nv"),
-        ("jnt_qposadr", "nq"),
-        ("site_bodyid", "nbody"),
-        ("geom_dataid", "nmesh"),
+    of_meshes = numbers["geom_dataid"][numbers["geom_type"] == numbers["mjGEOM_MESH"]]  # of other geoms it leads to height fields
+    for name, indices, count in (
+        ("body_parentid", numbers["body_parentid"], "nbody"),
+        ("jnt_dofadr", numbers["jnt_dofadr"], "nv"),
+        ("jnt_qposadr", numbers["jnt_qposadr"], "nq"),
+        ("site_bodyid", numbers["site_bodyid"], "nbody"),
+        ("geom_dataid", of_meshes, "nmesh"),
     ):
-        if np.any(numbers[name] >= numbers[count]) or (name != "geom_dataid" and np.any(numbers[name] < 0)):
+        if np.any(indices >= numbers[count]) or np.any(indices < 0):
             raise ValueError(f"{name} leads beyond {count}")
 
 

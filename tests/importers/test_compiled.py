@@ -44,6 +44,16 @@ def test_numbers_and_names_are_those_of_mujoco(arm: Path) -> None:
     assert compiled.word("GEOM", int(compiled.geom_type[1])) == "capsule"
 
 
+def test_a_height_field_is_no_mesh(tmp_path: Path) -> None:
+    path = tmp_path / "terrain.xml"
+    path.write_text(
+        '<mujoco><asset><hfield name="hills" nrow="3" ncol="3" size="1 1 1 1"/></asset><worldbody><geom type="hfield" hfield="hills"/>'
+        '<body><joint/><geom size="0.1"/></body></worldbody></mujoco>'
+    )
+
+    assert len(read_mjcf(path).joints) == 1
+
+
 def test_our_process_does_not_import_mujoco(arm: Path) -> None:
     statement = f"import sys; from articad.importers.mjcf import read_mjcf; read_mjcf({str(arm)!r}); assert 'mujoco' not in sys.modules"
     subprocess.run([sys.executable, "-P", "-c", statement], check=True, timeout=200)
@@ -72,10 +82,10 @@ def answer(**changes: object) -> bytes:
     """Return the answer of a process for one body, with changes to the description of its model."""
     counts = dict.fromkeys(("nbody", "njnt", "nv", "nq", "ngeom", "nmesh", "nsite", "ncam", "nlight", "neq"), 0) | {"nbody": 1}
     arrays = [("body_parentid", "int32", [1])] + [
-        (name, "int32", [0]) for name in ("jnt_dofadr", "jnt_qposadr", "site_bodyid", "geom_dataid")
+        (name, "int32", [0]) for name in ("jnt_dofadr", "jnt_qposadr", "site_bodyid", "geom_type", "geom_dataid")
     ]
     usual = {"counts": counts, "names": {}, "arrays": arrays}
-    head = {"words": {}, "usual": usual, "model": usual | changes, "warnings": []}
+    head = {"words": {"mjGEOM_MESH": 7}, "usual": usual, "model": usual | changes, "warnings": []}
     return json.dumps(head).encode() + b"\n" + bytes(8)
 
 
