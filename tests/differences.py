@@ -1190,22 +1190,24 @@ COMPARED = {
 ENGINES = {"urdf": "Pinocchio", "mjcf": "MuJoCo"}
 
 
-def page(results: Iterable[Mapping[str, Any]]) -> str:
+def page(results: Iterable[Mapping[str, Any]], files: Mapping[tuple[str, str], int]) -> str:
     """Return the page of the documentation that says what conversions change.
 
     Args:
         results: Of `examine`, each with `package`, `path` (below the package), `origin` and `target`.
+        files: How many files there are, by package and format; each is converted into both formats.
     """
     found = sorted(results, key=lambda result: (result["package"], result["origin"], result["target"], result["path"]))
     return PAGE.format(
         compared="".join(f"- **{direction}**, {text}.\n" for direction, text in COMPARED.items()),
-        table=_counts(found),
+        table=_counts(found, files),
         refused=_refused(found),
         idle=_idle(found),
         relative=RELATIVE,
         silent=sum(_silent(result) for result in found),
-        models=len({(result["package"], result["path"]) for result in found}),
+        models=sum(files.values()),
         conversions=len(found),
+        all=2 * sum(files.values()),
     )
 
 
@@ -1213,7 +1215,7 @@ def _silent(result: Mapping[str, Any]) -> int:
     return len(result.get("silent", ())) + len(result.get("free", ()))
 
 
-def _counts(results: list[Mapping[str, Any]]) -> str:
+def _counts(results: list[Mapping[str, Any]], files: Mapping[tuple[str, str], int]) -> str:
     rows: dict[tuple[str, str, str], list[Mapping[str, Any]]] = {}
     for result in results:
         for package in (result["package"], "**all**"):
@@ -1226,7 +1228,8 @@ def _counts(results: list[Mapping[str, Any]]) -> str:
             sum(result["rows"] for result in compared),
             *(sum(len(result[kind]) for result in compared) for kind in ("named", "idle")),
         ]
-        numbers = [len(found), len(compared), *refused, *counts, sum(map(_silent, compared))]
+        models = sum(count for (name, format_), count in files.items() if package in {name, "**all**"} and format_ == origin)
+        numbers = [models, models - len(found), len(compared), *refused, *counts, sum(map(_silent, compared))]
         lines.append(f"| {package} | {origin}→{target} | {' | '.join(f'{number:,}' for number in numbers)} |\n")
     return "".join(lines)
 
@@ -1240,7 +1243,12 @@ def _refused(results: list[Mapping[str, Any]]) -> str:
             "copy refused": f"{ENGINES[result['target']]}, the copy",
         }
         for key in who.keys() & result.keys():
-            rows[result["package"], result["path"], who[key], str(result[key]).replace("|", "\\|").replace("`", "'")] = None
+            rows[
+                result["package"],
+                result["path"],
+                who[key],
+                str(result[key]).partition(" Element ")[0].replace("|", "\\|").replace("`", "'"),
+            ] = None
     return "".join(f"| {package} | `{path}` | {who} | `{reason}` |\n" for package, path, who, reason in rows)
 
 
@@ -1299,7 +1307,7 @@ def _subject(row: str) -> str:
 PAGE = """# What conversions change
 
 This page says what articad's conversions between URDF and MJCF keep of robots that other people made: {models:,} models, the URDF and MJCF
-files of seven packages from PyPI, in {conversions:,} conversions. A program wrote it that knows nothing of articad but the file that it wrote
+files of seven packages from PyPI. It has {conversions:,} of {all:,} conversions. A program wrote it that knows nothing of articad but the file that it wrote
 and the report of its losses. The engines Pinocchio (for URDF) and MuJoCo (for MJCF) compile the original and the conversion, and the program
 compares the compiled models field by field. Two numbers are the same when they differ by less than {relative:g} of the largest number of their
 field.
@@ -1310,11 +1318,11 @@ field.
 
 ## The table
 
-*Models* are files. The refused ones are not compiled by the engine of the original, not converted by articad, or not compiled once they are
-converted.
+*Models* are files; those *not run* had not been converted when the page was written. The refused ones are not compiled by the engine of the
+original, not converted by articad, or not compiled once they are converted.
 
-| package | conversion | models | compared | refused by the engine | refused by articad | copy refused | rows of losses | named differences | rows without a difference | silent differences |
-| --- | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |
+| package | conversion | models | not run | compared | refused by the engine | refused by articad | copy refused | rows of losses | named differences | rows without a difference | silent differences |
+| --- | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |
 {table}
 Of the 1,000 random objects that PyBullet ships, ten are converted.
 
