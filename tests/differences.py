@@ -517,6 +517,7 @@ def _value(name: str) -> float:
     if re.search(r"__r?[xyz]$", name):  # of a ball or a free body, which are left at rest
         return 0.0
     plain = unicodedata.normalize("NFKD", name).encode("ascii", "ignore").decode()  # names of URDF are such
+    plain = re.sub(r"^n(?=\d)", "", plain)  # and begin with a letter
     return 0.05 + 0.3 * (sum(ord(letter) for letter in plain if letter.isalnum()) % 17) / 17
 
 
