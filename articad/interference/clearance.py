@@ -44,6 +44,7 @@ _KEY_DIGITS = 6  # of mm and rotation entries: relative poses that agree so far 
 CLOSE_MM, CLOSE_SHARE = 1e-3, 1e-3  # mm, and of the distance: an improvement below both is not looked for
 QUICK_SHARE = 1e-2  # of the distance: the same of a quick search
 PATIENCE = 8  # poses in a row, measured without an improvement, after which a quick search leaves parts that are distant
+LOOKS, FEW = 500, 3  # distances that a quick search measures before it refines, the nearest boxes first; and of each pair beyond that
 STEADY = 16  # poses at which the distance was the same, after which a quick search takes it for constant
 DISTANT_SHARE = 0.05  # of the diagonal of the smaller box: parts further apart are distant
 FLAT_MM = 1e-6  # distances that differ by less are equal
@@ -100,9 +101,11 @@ def least_clearances(
         return ()
     search = _Search(motion, ranges, quick=quick)
     kept, matrices = search.placed(points)
-    pairs = [found for i, j in search.pairs() if (found := search.pair(i, j, points[kept], matrices)) is not None]
-    for pair in pairs:
-        search.look(pair)
+    reached = points[kept]
+    pairs = [found for i, j in search.pairs() if (found := search.pair(i, j, reached, matrices)) is not None]
+    left = LOOKS
+    for pair in sorted(pairs, key=lambda pair: float(pair.bound[0])):  # the boxes that are nearest first
+        left -= search.look(pair, max(left, FEW) if quick else None)
     pairs.sort(key=lambda pair: pair.gap)
     apart = [pair for pair in pairs if not search.are_joined(pair.i, pair.j)]
     search.refine(apart[: QUICK_NEAREST if quick else NEAREST], together=together)
@@ -248,6 +251,7 @@ class _Pair:
 class _Search:
     def __init__(self, motion: MotionSampler, ranges: Sequence[Freedom], *, quick: bool) -> None:
         self.motion, self.scene, self.ranges, self.quick = motion, motion.scene, ranges, quick
+        self._alone_in: tuple[FloatArray, list[NDArray[np.bool_]]] | None = None
         self.names = list(self.scene.bodies)
         self.bodies = list(self.scene.bodies.values())
         self.low, self.high = (np.array([getattr(freedom, end) for freedom in ranges]) for end in ("lower", "upper"))
@@ -272,11 +276,8 @@ class _Search:
         relative = relatives(matrices[:, i], matrices[:, j])
         if not len(relative) or np.abs(relative - relative[0]).max() < _SAME_MM:
             return None
-        still = np.array([freedom.rest for freedom in self.ranges])
         movers = [
-            k
-            for k in range(len(self.ranges))
-            if np.abs((alone := relative[(np.delete(points != still, k, axis=1) == 0).all(axis=1)]) - alone[0]).max(initial=0.0) > _SAME_MM
+            k for k, alone in enumerate(self._alone(points)) if np.abs(relative[alone] - relative[alone][:1]).max(initial=0.0) > _SAME_MM
         ]
         _, first = np.unique(np.round(relative, _KEY_DIGITS), axis=0, return_index=True)
         bound = self.scene.boxes_gap(i, j, relative[first])
@@ -288,11 +289,26 @@ class _Search:
         movers = movers or list(range(len(self.ranges)))
         return _Pair(i, j, movers, points[chosen], relative[chosen], bound[order], known, len(order))
 
-    def look(self, pair: _Pair) -> None:
-        """Measure distances at the poses of smallest bounds, until no bound is below the smallest distance by more than the tolerance."""
+    def _alone(self, points: FloatArray) -> list[NDArray[np.bool_]]:
+        """Return, for each freedom, at which points all others rest; found once for the same array."""
+        if self._alone_in is None or self._alone_in[0] is not points:
+            moved = points != np.array([freedom.rest for freedom in self.ranges])
+            self._alone_in = points, [(moved.sum(axis=1) == moved[:, k]) for k in range(len(self.ranges))]
+        return self._alone_in[1]
+
+    def look(self, pair: _Pair, allowed: int | None) -> int:
+        """Measure distances at the poses of smallest bounds, until no bound is below the smallest distance by more than the tolerance.
+
+        Args:
+            pair: Is updated.
+            allowed: Largest number of measurements; None for any.
+
+        Returns:
+            The number of measurements.
+        """
         distant = DISTANT_SHARE * 2 * min(float(np.linalg.norm(self.scene.local_boxes[1][k])) for k in (pair.i, pair.j))
-        stale, most = 0, -math.inf
-        while pair.gap > 0.0 and np.isfinite(pair.bound).any():
+        count, stale, most = 0, 0, -math.inf
+        while pair.gap > 0.0 and count != allowed and np.isfinite(pair.bound).any():
             at = int(np.argmin(pair.bound))
             if pair.gap < math.inf and pair.bound[at] >= pair.gap - self._close(pair.gap):
                 break
@@ -300,13 +316,14 @@ class _Search:
                 (stale >= PATIENCE and pair.gap > distant) or (stale >= STEADY and most - pair.gap <= self._close(pair.gap))
             ):
                 break
-            gap = self._distance(pair.i, pair.j, pair.relative[at])
+            gap, count = self._distance(pair.i, pair.j, pair.relative[at]), count + 1
             stale, most = 0 if gap < pair.gap - self._close(gap) else stale + 1, max(most, gap)
             pair.known.add(gap, pair.relative[at : at + 1])
             pair.bound = np.maximum(pair.bound, pair.known.bounds(pair.relative, last=1))
             pair.bound[at] = math.inf
             if gap < pair.gap:
                 pair.gap, pair.at = gap, pair.points[at].copy()
+        return count
 
     def refine(self, pairs: Sequence[_Pair], *, together: bool) -> None:
         """Search for closer poses around those found, all pairs in one batch per round."""
