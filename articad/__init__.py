@@ -18,7 +18,7 @@ _MODULE_OF = {
     "Attachment": "connectors.attachment",
     "Budget": "agents.llm",
     "Bundle": "export.bundle",
-    "Checks": "interference.check",
+    "Checks": "interference.report",
     "Connector": "connectors.connector",
     "Coupling": "kinematics.joints",
     "Dynamics": "kinematics.dynamics",
@@ -123,7 +123,7 @@ if TYPE_CHECKING:
     from articad.geometry.mass import MassProperties as MassProperties
     from articad.geometry.mesh import TriMesh as TriMesh
     from articad.geometry.part import Part as Part
-    from articad.interference.check import Checks as Checks
+    from articad.interference.report import Checks as Checks
     from articad.kinematics.declare import ball as ball
     from articad.kinematics.declare import cylindrical as cylindrical
     from articad.kinematics.declare import fixed as fixed

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, field
 from functools import cached_property
 from threading import Lock
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -13,9 +13,9 @@ import numpy as np
 
 from articad.connectors import SE3, FloatArray, quaternion
 from articad.errors import KinematicsError
-from articad.kinematics.crossings import Crossing, rotations
+from articad.kinematics.crossings import Crossing
 from articad.kinematics.equations import Closures
-from articad.kinematics.joints import Joint, JointType
+from articad.kinematics.joints import Joint
 from articad.kinematics.layout import QUATERNION_TOLERANCE, IndexArray, Layout
 
 if TYPE_CHECKING:
@@ -24,48 +24,39 @@ if TYPE_CHECKING:
 # pinocchio.Data allocates about this many bytes times nv³ (68 MiB at nv = 100, 4.0 GiB at nv = 400, measured with 4.1.0)
 _DATA_BYTES_PER_CUBE = 64
 _DATA_LIMIT_BYTES = 1 << 30
+MOST_FREEDOMS = 60  # of models that are made unasked: a workspace of 14 MB, which takes as long to make as a hundred evaluations
 _EYE = np.eye(3)
-_CLOSED = 1e-13  # |r| of a loop: the Jacobian changes only by rounding
 _ONE = np.ones(())  # an array: making one from a number takes longer than the signs of ten parts
+_CLOSED = 1e-13  # |r| of a loop: the Jacobian changes only by rounding
 
 
 class _Map(NamedTuple):
     """Maps the coordinates of all joints to Pinocchio's configuration.
 
     Attributes:
-        columns: For each place in Pinocchio's q, the column of the coordinate that it comes from.
-        signs: −1 where Pinocchio measures in the opposite direction.
-        turned: Places of the cosine, which precedes the sine, of each planar joint's angle; None without planar joints.
+        columns: For each place in Pinocchio's q, the column of the coordinate that it comes from; None where the order is the same.
+        signs: −1 where Pinocchio measures in the opposite direction; None where it never does.
     """
 
-    columns: IndexArray
-    signs: FloatArray
-    turned: IndexArray | None
+    columns: IndexArray | None
+    signs: FloatArray | None
 
     def q(self, Q: FloatArray) -> FloatArray:
         """Return Pinocchio's configuration `(nq,)` for coordinates `(n_columns,)`; quaternions are copied."""
-        q: FloatArray = self.signs * Q.take(self.columns)
-        if self.turned is not None:  # Pinocchio stores a planar joint's angle as cosine and sine
-            q[self.turned] = np.cos(q[self.turned])
-            q[self.turned + 1] = np.sin(q[self.turned + 1])
-        return q
+        q = Q if self.columns is None else Q.take(self.columns)
+        return q if self.signs is None else self.signs * q
 
 
 def _map_of(model: Any, crossed: Sequence[tuple[Crossing, int]], layout: Layout) -> _Map:
     """Return the map for a model, from its joints as crossed with their numbers."""
     columns, signs = np.zeros(model.nq, dtype=np.intp), np.ones(model.nq)
-    turned: list[int] = []
     for c, joint_id in crossed:
-        if not c.joint.type.freedoms:
-            continue
-        first, start = layout.columns[c.joint.name].start, model.joints[joint_id].idx_q
-        n = len(c.signs)
-        columns[start : start + n] = range(first, first + n)
-        signs[start : start + n] = c.signs
-        if c.joint.type is JointType.PLANAR:
-            turned.append(start + n - 1)
-            columns[start + n], signs[start + n] = columns[start + n - 1], signs[start + n - 1]
-    return _Map(columns, signs, np.array(turned, dtype=np.intp) if turned else None)
+        if c.joint.type.freedoms:
+            first, start, n = layout.columns[c.joint.name].start, model.joints[joint_id].idx_q, len(c.signs)
+            columns[start : start + n] = range(first, first + n)
+            signs[start : start + n] = c.signs
+    in_order = np.array_equal(columns, np.arange(layout.n_columns))
+    return _Map(None if in_order else columns, None if (signs > 0).all() else signs)
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,6 +76,7 @@ class CompiledModel:
     crossings: tuple[Crossing, ...]
     joint_ids: tuple[int, ...]
     frame_ids: dict[str, int]
+    _lock: Any = field(default_factory=Lock, repr=False)
 
     @cached_property
     def data(self) -> Any:
@@ -102,11 +94,9 @@ class CompiledModel:
         Raises:
             KinematicsError: E_NONFINITE; E_QUAT_NORM if a ball's quaternion is off by more than 1e-3.
         """
-        if not Q.dot(Q) < np.inf:  # refuse infinity here, before cosines are computed
-            self.mechanism.layout.normalized(Q)
         q = self._map.q(Q)
         unit: FloatArray = self._pin.normalize(self.model, q)
-        off = unit - q  # for a quaternion, the length of this difference is its deviation from unit length
+        off = unit - q  # for a quaternion as long as its deviation from unit length; NaN where a coordinate is not finite
         if not off.dot(off) < QUATERNION_TOLERANCE**2:
             self.mechanism.layout.normalized(Q)  # raises the exact error, if there is one: here the deviations of all balls were summed
         return unit
@@ -124,16 +114,17 @@ class CompiledModel:
     def poses(self, Q: FloatArray) -> SE3:
         """Return the poses `(N,)` of all parts for the coordinates `(n_columns,)` of all joints.
 
-        For one configuration this is several times faster than `Mechanism.poses`; Pinocchio's `Data` must not be too large.
+        Pinocchio's `Data` must not be too large.
 
         Raises:
             KinematicsError: As `q`, and if `data` would take more than 1 GiB.
         """
-        pin = self._pin
-        pin.framesForwardKinematics(self.model, self.data, self.q(Q))
-        placed = np.concatenate(list(map(pin.SE3ToXYZQUAT, self._placed))).reshape(-1, 7)
+        pin, q = self._pin, self.q(Q)
+        with self._lock:  # the workspace belongs to one call at a time
+            pin.framesForwardKinematics(self.model, self.data, q)
+            placed = np.frombuffer(bytearray().join(map(pin.SE3ToXYZQUAT, self._placed))).reshape(-1, 7)  # faster than concatenate
         rotations = placed[:, 3:]
-        np.multiply(rotations, np.copysign(_ONE, placed[:, 6:]), out=rotations)
+        np.multiply(rotations, np.copysign(_ONE, placed[:, 6:]), rotations)  # w ≥ 0
         return SE3.from_unit_array(placed)
 
     @cached_property
@@ -141,20 +132,6 @@ class CompiledModel:
         import pinocchio  # noqa: PLC0415 - this import costs 50 ms, paid where it is used
 
         return pinocchio
-
-
-class _Turned(NamedTuple):
-    """Joints whose velocity Pinocchio measures in another frame.
-
-    Attributes:
-        places: Places of each joint's rotation in the matrix that maps Pinocchio's freedoms to the layout's: rows, columns.
-        columns: Coordinates `(n, c)`.
-        rotations: Function from coordinates `(n, c)` to rotations `(n, 3, 3)`.
-    """
-
-    places: tuple[IndexArray, IndexArray]
-    columns: IndexArray
-    rotations: Callable[[FloatArray], FloatArray]
 
 
 class LoopModel:
@@ -165,8 +142,9 @@ class LoopModel:
 
         dt = v − t × ω,    dφ = (I − ½[φ] + c [φ]²) ω,
 
-    where (v, ω) is less Pinocchio's constraint Jacobian times the velocity. Pinocchio measures the velocity of a ball and of a planar
-    joint in the frame after the motion, articad in the frame before it.
+    where (v, ω) is less Pinocchio's constraint Jacobian times the velocity. Pinocchio measures the spin of a quaternion R in the frame
+    after the motion, articad in the frame before it: the columns of the Jacobian are turned by R, which is `dIntegrateTransport`
+    along −log R.
 
     Args:
         closures: The closing conditions of the loops.
@@ -196,8 +174,10 @@ class LoopModel:
             order[own] = range(first, first + own.stop - own.start)
             sign[own] = -1.0 if c.backwards else 1.0
         self._order = None if np.array_equal(order, np.arange(model.nv)) else order
-        self._turned = _turned(layout, [c.joint for c, _ in crossed if not c.backwards], order)
-        self._ordered = np.eye(model.nv)[order]
+        forwards = np.zeros(model.nv)  # 1 for freedoms of joints that are crossed from parent to child
+        forwards[order] = sign > 0
+        self._neutral = pin.neutral(model) if any(c.joint.type.quaternion is not None and not c.backwards for c, _ in crossed) else None
+        self._forwards = None if forwards.all() else forwards
         constraints, workspaces = pin.StdVec_RigidConstraintModel(), pin.StdVec_RigidConstraintData()
         local = pin.ReferenceFrame.LOCAL
         for (ghost, real), C_c in zip(closures.ends.T.tolist(), closures.connectors, strict=True):
@@ -208,7 +188,9 @@ class LoopModel:
         self._constraints, self._workspaces, self._data = constraints, workspaces, model.createData()
         self._lengths = closures.lengths[:, None]
         rows = np.concatenate([np.repeat(1.0 / self._lengths, 3, axis=1), np.ones((len(self._lengths), 3))], axis=1)
-        self._weights = -np.outer(rows, sign * closures.scale)  # Pinocchio's constraint Jacobian is that of A against B
+        # Pinocchio's constraint Jacobian is that of A against B; in the memory order of what it is multiplied with
+        in_columns = self._neutral is not None or self._order is not None
+        self._weights = np.require(-np.outer(rows, sign * closures.scale), requirements="F" if in_columns else "C")
         self._pairs = list(zip(constraints, workspaces, strict=True))
         # M of each loop, which each call updates in its workspace, and L
         self._mismatches = [(workspace.c1Mc2, float(length)) for workspace, length in zip(workspaces, closures.lengths, strict=True)]
@@ -220,33 +202,35 @@ class LoopModel:
 
     def residual(self, Q: FloatArray) -> FloatArray:
         """Return the residuals (6 per loop) at `Q` `(columns,)`."""
-        return self._evaluated(Q)[0]
+        return self._evaluated(self._map.q(Q))[0]
 
-    def fill(self, Q: FloatArray, J: FloatArray) -> FloatArray:
-        """Return the residuals, and write their derivatives, scaled, into the first rows of `J` `(rows, freedoms)`."""
-        r, D = self._evaluated(Q)
-        if self._turned:  # one product reorders the columns and rotates those of balls: a block of three each
-            T = self._ordered.copy()
-            for places, columns, turned in self._turned:
-                T[places] = turned(Q.take(columns))
-            D = D @ T.T
-        elif self._order is not None:
-            D = D.take(self._order, axis=1)
+    def evaluate(self, Q: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return the residuals `(6 loops,)` and their derivatives `(6 loops, freedoms)`, scaled."""
+        q = self._map.q(Q)
+        r, D = self._evaluated(q)
+        if self._neutral is not None:
+            pin = self._pin
+            back = pin.difference(self._model, q, self._neutral)  # −log R of quaternions; other freedoms are not turned
+            if self._forwards is not None:  # crossed backwards, the frame after the motion is that before it
+                back *= self._forwards
+            D = pin.dIntegrateTransport(self._model, self._neutral, back, D.T, pin.ARG0).T
+        if self._order is not None:
+            D = D.T.take(self._order, axis=0).T
         if r.dot(r) > _CLOSED**2:
+            D = np.ascontiguousarray(D)
             V = D.reshape(-1, 6, D.shape[1])  # (v, ω) of each loop by each freedom, a view
             t, phi = r.reshape(-1, 2, 3).swapaxes(0, 1)
             S = _crossed(phi)
             V[:, :3] -= _crossed(t * self._lengths) @ V[:, 3:]
             V[:, 3:] = (_EYE - 0.5 * S + quaternion.inverse_coefficient(phi)[..., None] * (S @ S)) @ V[:, 3:]
-        np.multiply(D, self._weights, out=J[: len(D)])
-        return r
+        return r, D * self._weights
 
-    def _evaluated(self, Q: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return the residuals `(6 loops,)` and Pinocchio's constraint Jacobian `(6 loops, nv)`."""
+    def _evaluated(self, q: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return, at Pinocchio's configuration, the residuals `(6 loops,)` and Pinocchio's constraint Jacobian `(6 loops, nv)`."""
         pin = self._pin
         r: list[float] = []
-        with self._lock:  # only one call may use the workspace at a time
-            pin.computeJointJacobians(self._model, self._data, self._map.q(Q))
+        with self._lock:  # the workspace belongs to one call at a time
+            pin.computeJointJacobians(self._model, self._data, q)
             for constraint, workspace in self._pairs:
                 constraint.calc(self._model, self._data, workspace)
             D = pin.getConstraintsJacobian(self._model, self._data, self._constraints, self._workspaces)
@@ -256,29 +240,6 @@ class LoopModel:
                 factor = math.copysign(2.0, w) * math.atan2(sine, abs(w)) / sine
                 r += (x / length, y / length, z / length, a * factor, b * factor, c * factor)
         return np.array(r), D
-
-
-def _turned(layout: Layout, joints: Sequence[Joint], order: IndexArray) -> list[_Turned]:
-    """Return the joints whose velocity Pinocchio measures in the frame after the motion, by type; `order` gives their freedoms."""
-    found = []
-    for kind, turned in ((JointType.BALL, rotations), (JointType.FREE, rotations), (JointType.PLANAR, _about_z)):
-        names = [joint.name for joint in joints if joint.type is kind]
-        first = kind.quaternion or 0
-        columns = np.array([range(layout.columns[name].start + first, layout.columns[name].stop) for name in names])
-        for block in range(0, kind.freedoms if names else 0, 3):  # for a free joint, linear and angular velocity are both rotated
-            freedoms = np.array([range(layout.freedoms[name].start + block, layout.freedoms[name].start + block + 3) for name in names])
-            found.append(_Turned((freedoms[:, :, None], order[freedoms][:, None, :]), columns, turned))
-    return found
-
-
-def _about_z(q: FloatArray) -> FloatArray:
-    """Return the rotations `(n, 3, 3)` of planar joints at x, y, angle `(n, 3)`."""
-    R = np.zeros((len(q), 3, 3))
-    R[:, 0, 0] = R[:, 1, 1] = np.cos(q[:, 2])
-    R[:, 1, 0] = np.sin(q[:, 2])
-    R[:, 0, 1] = -R[:, 1, 0]
-    R[:, 2, 2] = 1.0
-    return R
 
 
 def _crossed(a: FloatArray) -> FloatArray:
@@ -335,24 +296,18 @@ def _pin_pose(pin: Any, T: SE3) -> Any:
     return pin.SE3(T.rotation, T.translation.copy())
 
 
-def _joint_model(pin: Any, joint: Joint) -> Any:  # noqa: PLR0911 - one row per type
-    match joint.type:
-        case JointType.REVOLUTE:
-            return pin.JointModelRZ()
-        case JointType.SLIDER:
-            return pin.JointModelPZ()
-        case JointType.CYLINDRICAL:
-            composite = pin.JointModelComposite(2)
-            composite.addJoint(pin.JointModelPZ())
-            composite.addJoint(pin.JointModelRZ())
-            return composite
-        case JointType.BALL:
-            return pin.JointModelSpherical()
-        case JointType.SCREW:
-            return pin.JointModelHZ(joint.lead / (2 * np.pi))  # Pinocchio's pitch is length per radian
-        case JointType.PLANAR:
-            return pin.JointModelPlanar()
-        case JointType.FREE:
-            return pin.JointModelFreeFlyer()
-        case _:
-            return pin.JointModelUniversal(np.array([1.0, 0.0, 0.0]), np.array([0.0, 1.0, 0.0]))
+def _joint_model(pin: Any, joint: Joint) -> Any:
+    """Return Pinocchio's joint with the same coordinates: one for each step of the joint's type, a screw or a quaternion as a whole."""
+    kind, axes = joint.type, "XYZ"
+    if any(step.advances for step in kind.steps):  # a screw: Pinocchio's pitch is length per radian
+        return getattr(pin, f"JointModelH{axes[kind.steps[0].axis]}")(joint.lead / (2 * np.pi))
+    plain = [step for step in kind.steps if step.coordinate is not None]
+    models = [getattr(pin, f"JointModel{'R' if step.kind == 'turn' else 'P'}{axes[step.axis]}")() for step in plain]
+    if kind.quaternion is not None:
+        models.append(pin.JointModelSpherical())
+    if len(models) == 1:
+        return models[0]
+    composite = pin.JointModelComposite(len(models))
+    for model in models:
+        composite.addJoint(model)
+    return composite

@@ -21,7 +21,7 @@ from articad.errors import KinematicsError
 from articad.kinematics.batch import TreeArrays
 from articad.kinematics.equations import BatchEquations, closures
 from articad.kinematics.factors import one_thread, singular_values, svd
-from articad.kinematics.forward import LoopModel
+from articad.kinematics.forward import MOST_FREEDOMS, LoopModel
 from articad.kinematics.joints import Coupling, Joint, JointLimits, JointType
 from articad.kinematics.layout import IndexArray, Layout
 from articad.kinematics.ties import Basis, BoolArray, Ties
@@ -35,7 +35,6 @@ _DROPPED = 1e-10  # σ/σ₁ below which a direction is left out of a step
 _LARGEST_STEP = 0.5  # rad, or lengths L: the linear model is not valid beyond
 _DAMPING_FALL, _DAMPING_RISE = 0.2, 8.0  # after a step that helped, and after one that did not
 _DAMPING_START = 1e-3
-_MOST_FREEDOMS = 60  # Pinocchio's workspace grows with their cube: 14 MB here, and making it takes as long as a hundred evaluations
 _COINCIDENT = 1e-4  # of the longest link
 _FALLBACK_LENGTH = 100.0  # mm, if no part has two separate connectors
 
@@ -147,8 +146,8 @@ class ClosureSystem:
 
     @cached_property
     def _one(self) -> LoopModel | None:
-        """The equations at one configuration by Pinocchio; None if nothing moves in a loop, or if the workspace would be too large."""
-        return LoopModel(self._closures) if self.loops and 0 < self.layout.n_freedoms <= _MOST_FREEDOMS else None
+        """The equations at one configuration by Pinocchio; None where nothing moves in a loop, or where the workspace is too large."""
+        return LoopModel(self._closures) if self.loops and 0 < self.layout.n_freedoms <= MOST_FREEDOMS else None
 
     # --- equations
 
@@ -171,8 +170,8 @@ class ClosureSystem:
         if self._one is None:
             r, J = self.evaluate(Q[None])
             return r[0], J[0]
-        J = self._linear.copy()
-        return self._with_couplings(self._one.fill(Q, J), Q), J
+        r, J = self._one.evaluate(Q)
+        return (self._with_couplings(r, Q), np.concatenate([J, self.ties.J])) if self.couplings else (r, J)
 
     def residual_one(self, Q: FloatArray) -> FloatArray:
         """Return the residuals alone `(rows,)`."""

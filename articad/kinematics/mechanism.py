@@ -17,6 +17,7 @@ from articad.findings import Finding, Findings
 from articad.kinematics.batch import TreeArrays
 from articad.kinematics.branch import Branch
 from articad.kinematics.configuration import Configuration
+from articad.kinematics.forward import MOST_FREEDOMS, CompiledModel, compile  # noqa: A004 - it compiles the tree
 from articad.kinematics.graph import JointGraph
 from articad.kinematics.inexact import NOISE, Correction, nearest
 from articad.kinematics.joint_check import joint_findings
@@ -264,7 +265,20 @@ class Mechanism:
                 others.
             LoopError: E_LOOP_OPEN if a loop cannot be closed at rest.
         """
-        return self.arrays.poses(self._columns(q))
+        compiled = self._compiled_model
+        if np.ndim(q) != 1 or compiled is None:
+            return self.arrays.poses(self._columns(q))
+        # of a tree the drivers are all coordinates, and the compiled model looks for NaN and for the length of quaternions
+        return compiled.poses(self._drivers_array(q) if self.is_tree else self._columns(q))
+
+    @cached_property
+    def _compiled_model(self) -> CompiledModel | None:
+        """The tree as a Pinocchio model for one configuration at a time; None where nothing moves or its workspace would be large."""
+        return compile(self) if 0 < self.layout.n_freedoms <= MOST_FREEDOMS else None
+
+    def __getstate__(self) -> dict[str, object]:
+        """Return what is copied and pickled: Pinocchio's workspaces stay in their process."""
+        return {name: value for name, value in self.__dict__.items() if name != "_compiled_model"}
 
     def solve(self, q: npt.ArrayLike) -> Solution:
         """Place every part, and mark the rows of drivers' values that the mechanism does not reach.

@@ -48,7 +48,7 @@ def test_poses_are_the_product_of_exponentials(tree: tuple[Mechanism, np.ndarray
 @given(posed_trees(max_parts=25))
 def test_poses_agree_with_pinocchio_to_rounding(tree: tuple[Mechanism, np.ndarray]) -> None:
     mechanism, q = tree
-    ours, theirs = mechanism.poses(q), forward.compile(mechanism).poses(q)
+    ours, theirs = mechanism.arrays.poses(mechanism.layout.normalized(q)), forward.compile(mechanism).poses(q)
     reach = max(1.0, float(np.abs(theirs.translation).max()))
     assert ours.distance_to(theirs).max() < ROUNDING_MM * len(mechanism.parts) * reach
     assert ours.angle_to(theirs).max() < ROUNDING_RAD
@@ -141,7 +141,7 @@ def test_the_jacobian_agrees_with_pinocchio(tree: tuple[Mechanism, np.ndarray]) 
         start = compiled.model.joints[joint_id].idx_v
         block = theirs[:, start : start + c.joint.type.freedoms]
         mine = ours[:, mechanism.layout.freedoms[c.joint.name]]
-        # Pinocchio's velocity of ball, free and planar joints is in the moving frame; ours is in the parent connector's
+        # Pinocchio's spin of ball and free joints is in the moving frame; ours is in the parent connector's
         if c.joint.type is JointType.BALL:
             R = c.joint.motion(values[c.joint.name]).rotation
             backwards = c.signs[0] < 0
