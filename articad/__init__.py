@@ -33,8 +33,10 @@ _MODULE_OF = {
     "Part": "geometry.part",
     "Replay": "agents.llm",
     "Run": "runs.run",
+    "RunOptions": "agents.settings",
     "SE3": "connectors.se3",
     "Scripted": "agents.llm",
+    "Services": "agents.settings",
     "TriMesh": "geometry.mesh",
     "Waiver": "plan.resolve",
     "ball": "kinematics.declare",
@@ -95,6 +97,8 @@ if TYPE_CHECKING:
     from articad.agents.llm import Scripted as Scripted
     from articad.agents.pipeline import generate as generate
     from articad.agents.pipeline import replay as replay
+    from articad.agents.settings import RunOptions as RunOptions
+    from articad.agents.settings import Services as Services
     from articad.assembly import Assembly as Assembly
     from articad.assembly import build as build
     from articad.auditing.examine import AuditOptions as AuditOptions

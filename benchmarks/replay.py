@@ -18,6 +18,7 @@ from pathlib import Path
 from typing import Any
 
 from articad.agents.pipeline import replay
+from articad.agents.settings import Services
 from articad.examples import folder
 from articad.kernels.choice import kernel_named
 from articad.kernels.kernel import BuildCache
@@ -59,7 +60,7 @@ def main() -> int:
     kernel: Any = Watched(kernel_named(str(Run.view(recording).request.options.get("kernel", "build123d"))))
     with tempfile.TemporaryDirectory() as scratch:
         began = time.perf_counter()
-        replayed = replay(recording, out=Path(scratch) / "run", kernel=kernel, cache=BuildCache(None))
+        replayed = replay(recording, out=Path(scratch) / "run", services=Services(kernel=kernel, cache=BuildCache(None)))
         whole = time.perf_counter() - began
         parts = len(replayed.run.part_names())
     share = (whole - kernel.seconds) / whole

@@ -10,27 +10,26 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from functools import cached_property
 from pathlib import Path
-from typing import Any, Final, Literal, NoReturn
+from typing import Any, Final, NoReturn
 
 from articad.agents import edit_report
-from articad.agents.design import TRIES, listed
+from articad.agents.design import listed
 from articad.agents.drift import note
 from articad.agents.edit_base import Base, document_of, with_values
 from articad.agents.evidence import Evidence, Known, examine
-from articad.agents.line import FORMATS, ROUNDS, Chooser, Line, PlanAuthor
+from articad.agents.line import Chooser, Line, PlanAuthor
 from articad.agents.llm import LLM, Image, Message, Recorded, Reply, Request, assistant, system, user
-from articad.agents.part_builder import PartBuilder, Progress
-from articad.agents.part_writer import REPAIRS
+from articad.agents.part_builder import PartBuilder
 from articad.agents.prompts import prompt, prompt_section
 from articad.agents.recollection import KeptDocumentation, KeptMemory
 from articad.agents.replies import ReplyForm, reader, schema_of
 from articad.agents.requirements import Requirements, pictures_of
-from articad.agents.retrieval import Documentation, Memory
+from articad.agents.retrieval import Memory
+from articad.agents.settings import RunOptions, Services
 from articad.assembly import Assembly
 from articad.errors import AgentError, OutputError, PlanError, ReadError, did_you_mean
 from articad.findings import Finding, Findings
-from articad.kernels.choice import kernel_named
-from articad.kernels.kernel import BuildCache, PartKernel
+from articad.kernels.kernel import BuildCache
 from articad.plan.amending import amended
 from articad.plan.check import check_plan
 from articad.plan.resolve import resolve
@@ -49,20 +48,8 @@ def edit(
     values: Mapping[str, float] | None = None,
     images: Iterable[str | Path | bytes] = (),
     out: str | Path | None = None,
-    kernel: PartKernel | None = None,
-    sandbox: Literal["strict", "weak"] = "strict",
-    cache: BuildCache | None = None,
-    formats: Sequence[str] = FORMATS,
-    designs: int = TRIES,
-    repairs: int = REPAIRS,
-    rounds: int = ROUNDS,
-    look: bool = True,
-    inspection: bool = True,
-    review: Literal["none", "rules", "model"] = "none",
-    memory: Memory | None = None,
-    documentation: Documentation | None = None,
-    jobs: int | None = None,
-    progress: Progress | None = None,
+    options: RunOptions | None = None,
+    services: Services | None = None,
 ) -> Run:
     """Change a finished run; the original run is not modified.
 
@@ -72,23 +59,12 @@ def edit(
         run: The finished run, made by a model or by `build`.
         text: The change, in words.
         llm: The model; not needed with `values` alone, as long as all scripts build with them.
-        values: New values of parameters of the plan, in mm and degrees.
+        values: New values of the plan's parameters, in mm and degrees.
         images: Pictures that belong to the text.
         out: The directory of the new run; by default a new one under `runs/`.
-        kernel: Builds the part scripts; the run's own by default.
-        sandbox: As for `generate`.
-        cache: As for `generate`.
-        formats: As for `generate`.
-        designs: Answers within which a changed plan must be valid.
-        repairs: As for `generate`.
-        rounds: As for `generate`.
-        look: As for `generate`; only parts that are written anew are inspected.
-        inspection: As for `generate`; without a text, nothing is inspected.
-        review: As for `generate`.
-        memory: As for `generate`.
-        documentation: As for `generate`.
-        jobs: As for `generate`.
-        progress: As for `generate`.
+        options: As for `generate`; only parts that are written anew are looked at, and without a text nobody inspects. Ideas,
+            pick and variant have no meaning here.
+        services: As for `generate`; the kernel is the run's own by default.
 
     Returns:
         The new run, closed; `run.edit()` says what has changed and proves that nothing else has.
@@ -100,21 +76,18 @@ def edit(
     finished = run if isinstance(run, Run) else Run.view(run)
     if not text.strip() and not values:
         raise ReadError("No change is given: give a text, or values of parameters.", path=str(finished.path))
+    options, services = options or RunOptions(), services or Services()
     base = Base.of(finished)
-    worded = bool(text.strip())
-    options: dict[str, Any] = {"task": "edit", "base": base.mark, "set": dict(sorted((values or {}).items()))}
-    options |= {"designs": designs, "repairs": repairs, "rounds": rounds if worded else 1, "formats": list(formats)}
-    options |= {"kernel": base.stored["kernel"], "variant": "full", "finetune": worded}
-    options |= {"look": look and worded, "inspection": inspection and worded}
-    options |= {} if review == "none" else {"review": review}
-    request = RunRequest(prompt=text.strip(), images=tuple(UserImage.read(image) for image in images), options=options)
-    kernel = kernel or kernel_named(base.stored["kernel"], sandbox=sandbox)
+    stored = options.editing(base.stored["kernel"], base.mark, values or {}, worded=bool(text.strip()))
+    request = RunRequest(prompt=text.strip(), images=tuple(UserImage.read(image) for image in images), options=stored)
+    kernel = services.kernel_or(base.stored["kernel"])
     with open_or_create(request, out) as edited:
         edited.save_base(base.stored)
         note(edited, kernel)
-        known, told = KeptMemory(edited, memory), KeptDocumentation(edited, documentation)
-        builder = PartBuilder(edited, Recorded(llm or Nobody(), edited), kernel, cache or BuildCache(), jobs, progress, known, told)
-        EditLine(builder, _nothing_to_choose, known).work()
+        port, cache = Recorded(llm or Nobody(), edited), services.cache or BuildCache()
+        memory, documentation = KeptMemory(edited, services.memory), KeptDocumentation(edited, services.documentation)
+        builder = PartBuilder(edited, port, kernel, cache, services.jobs, services.progress, memory, documentation)
+        EditLine(builder, _nothing_to_choose, memory).work()
     return edited
 
 

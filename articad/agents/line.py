@@ -27,8 +27,6 @@ from articad.plan.resolve import resolve
 from articad.plan.schema import AssemblyPlan
 from articad.runs.record import record_assembly, record_checks, record_export
 
-ROUNDS: Final = 3
-FORMATS: Final = ("urdf", "mjcf")
 _SHOWN_PLACES: Final = 3  # pictures of places of findings that one agent gets at once
 
 Chooser = Callable[[Sequence[Alternative]], tuple[int, str]]

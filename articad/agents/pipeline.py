@@ -10,28 +10,23 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import Any, Final, Literal
+from typing import Any, Final
 
 from articad.agents.brainstorm import Alternative, Choose
-from articad.agents.design import TRIES
 from articad.agents.drift import drift, note
 from articad.agents.edit import EditLine, Nobody
 from articad.agents.late import LateLine
-from articad.agents.line import FORMATS, ROUNDS, Chooser, Line
+from articad.agents.line import Chooser, Line
 from articad.agents.llm import LLM, Recorded, Replay
-from articad.agents.part_builder import PartBuilder, Progress
-from articad.agents.part_writer import REPAIRS
+from articad.agents.part_builder import PartBuilder
 from articad.agents.recollection import KeptDocumentation, KeptMemory
-from articad.agents.retrieval import Documentation, Memory
+from articad.agents.retrieval import Memory
+from articad.agents.settings import RunOptions, Services, recalls
 from articad.agents.single import SingleLine
 from articad.errors import AgentError, RunError
 from articad.findings import Findings
-from articad.kernels.choice import kernel_named
 from articad.kernels.kernel import BuildCache, PartKernel
 from articad.runs.run import Run, RunRequest, UserImage, differences, open_or_create
-
-Variant = Literal["full", "late", "no-rollback", "no-memory", "single-loop"]
-Brainstorm = Literal["auto", "always", "never"]
 
 
 def generate(
@@ -41,24 +36,8 @@ def generate(
     images: Iterable[str | Path | bytes] = (),
     part_images: Mapping[str, str | Path | bytes] | None = None,
     out: str | Path | None = None,
-    kernel: PartKernel | None = None,
-    sandbox: Literal["strict", "weak"] = "strict",
-    cache: BuildCache | None = None,
-    formats: Sequence[str] = FORMATS,
-    designs: int = TRIES,
-    repairs: int = REPAIRS,
-    rounds: int = ROUNDS,
-    look: bool = True,
-    inspection: bool = True,
-    ideas: Brainstorm = "auto",
-    pick: int | None = None,
-    choose: Choose | None = None,
-    review: Literal["none", "rules", "model"] = "none",
-    variant: Variant = "full",
-    memory: Memory | None = None,
-    documentation: Documentation | None = None,
-    jobs: int | None = None,
-    progress: Progress | None = None,
+    options: RunOptions | None = None,
+    services: Services | None = None,
 ) -> Run:
     """Make an articulated assembly from words, pictures or both.
 
@@ -70,26 +49,8 @@ def generate(
         images: Pictures of the product, PNG, JPEG, GIF or WebP.
         part_images: Pictures of single parts, by the part's name; they enter only the requests of that part.
         out: The run directory; by default a new one under `runs/`.
-        kernel: Builds the part scripts; build123d by default.
-        sandbox: "weak" accepts less isolation than landlock or bwrap give.
-        cache: Keeps built parts; by default `$ARTICAD_CACHE` or `~/.cache/articad`.
-        formats: Formats to export.
-        designs: Answers within which a plan must be valid.
-        repairs: How often a failed part script may be repaired.
-        rounds: How often parts are assembled and checked; findings of the last check stay in the report.
-        look: Whether a model compares each part's pictures with its specification. It must accept images.
-        inspection: Whether one model describes the assembly from pictures and one judges it. It must accept images.
-        ideas: Whether alternatives are proposed first; "auto" does so if the request leaves open what to build.
-        pick: The alternative to make, from 1; alternatives are then always proposed.
-        choose: Called with the alternatives, returns the number of the one to make; without it and `pick` the first is made.
-        review: Who scores the finished assembly: "rules" uses measurements, "model" also a model that sees pictures.
-        variant: The paper's ablations: "late" plans connectors and joints after the parts exist; "no-rollback" neither inspects nor
-            judges, and sends nothing back after assembly; "no-memory" recalls no cases. And its baseline: in "single-loop", one script
-            makes and assembles all parts, and goes back only if it fails to run.
-        memory: Source of cases from earlier runs; none by default.
-        documentation: Source of the kernel's API documentation; none by default.
-        jobs: How many parts are built at once; by default the number of processors.
-        progress: Called for each stage and part.
+        options: How the run is made; stored in it.
+        services: What the run is given to work with.
 
     Returns:
         The run, closed: `run.path`, `run.checks()`, `articad.runs.record.assembly_of(run)`.
@@ -99,49 +60,26 @@ def generate(
         ContractError: If a part could not be built.
         AgentError: If the model cannot be asked, the budget is used up or answers do not have the required form. Finished work is kept.
     """
+    options, services = options or RunOptions(), services or Services()
     pictures = [UserImage.read(image) for image in images]
     pictures += [UserImage.read(image, part) for part, image in sorted((part_images or {}).items())]
-    kernel = kernel or kernel_named("build123d", sandbox=sandbox)
-    rolls_back = variant not in {"no-rollback", "single-loop"}
-    options: dict[str, Any] = {"task": "generate", "designs": designs, "repairs": repairs, "rounds": rounds, "formats": list(formats)}
-    options |= {"kernel": kernel.name, "variant": variant, "look": look and rolls_back, "inspection": inspection and rolls_back}
-    options |= {"ideas": "always" if pick is not None else ideas, "pick": pick, "finetune": True}
-    options |= {} if review == "none" else {"review": review}  # left out by default, so that older recordings stay valid
-    request = RunRequest(prompt=prompt, images=tuple(pictures), options=options)
+    kernel = services.kernel_or("build123d")
+    request = RunRequest(prompt=prompt, images=tuple(pictures), options=options.generating(kernel.name))
     with open_or_create(request, out) as run:
-        taught = _taught(run, variant, memory, documentation)
-        _work(run, llm, kernel, cache, partial(_chosen_by_user, pick, choose), taught, jobs, progress)
+        taught = _taught(run, options.variant, services)
+        _work(run, llm, kernel, services, partial(_chosen_by_user, options.pick, services.choose), taught)
     return run
 
 
-def resume(
-    path: str | Path,
-    *,
-    llm: LLM | None = None,
-    sandbox: Literal["strict", "weak"] = "strict",
-    kernel: PartKernel | None = None,
-    cache: BuildCache | None = None,
-    choose: Choose | None = None,
-    memory: Memory | None = None,
-    documentation: Documentation | None = None,
-    jobs: int | None = None,
-    progress: Progress | None = None,
-) -> Run:
-    """Resume a run of `generate` or `edit` where it was interrupted; no call is repeated, no part built twice.
+def resume(path: str | Path, *, llm: LLM | None = None, services: Services | None = None) -> Run:
+    """Resume an interrupted run of `generate` or `edit`; no call is repeated, no part is built twice.
 
     The request and its options are stored in the run; the model and its budget are given anew.
 
     Args:
         path: The run directory.
         llm: As for `generate`; not needed if all answers are stored.
-        sandbox: As for `generate`.
-        kernel: As for `generate`; by default that of the run's request.
-        cache: As for `generate`.
-        choose: As for `generate`.
-        memory: As for `generate`.
-        documentation: As for `generate`.
-        jobs: As for `generate`.
-        progress: As for `generate`.
+        services: As for `generate`.
 
     Returns:
         The run, closed; a finished run is returned unchanged.
@@ -150,11 +88,12 @@ def resume(
         RunError: If it is not a run of a model, its request lacks options, or another process works in it.
         PlanError, ContractError, AgentError: As `generate`.
     """
+    services = services or Services()
     with Run.open(path) as run:
         options = _options_of(run)
-        kernel = kernel or kernel_named(options["kernel"], sandbox=sandbox)
-        chooser = partial(_chosen_by_user, options.get("pick"), choose)
-        _work(run, llm or Nobody(), kernel, cache, chooser, _taught(run, options["variant"], memory, documentation), jobs, progress)
+        chooser = partial(_chosen_by_user, options.get("pick"), services.choose)
+        kernel = services.kernel_or(options["kernel"])
+        _work(run, llm or Nobody(), kernel, services, chooser, _taught(run, options["variant"], services))
     return run
 
 
@@ -185,30 +124,17 @@ def _options_of(run: Run) -> Mapping[str, Any]:
 _Taught = tuple[KeptMemory, KeptDocumentation]
 
 
-def recalls(variant: str) -> bool:
-    """Return whether runs of a variant read earlier ones from memory, and are remembered."""
-    return variant not in {"no-memory", "single-loop"}
-
-
-def _taught(run: Run, variant: str, memory: Memory | None, documentation: Documentation | None) -> _Taught:
+def _taught(run: Run, variant: str, services: Services) -> _Taught:
     """Return the memory that a run of a variant may use."""
-    memory = memory if recalls(variant) else None
-    return KeptMemory(run, memory), KeptDocumentation(run, None if variant == "single-loop" else documentation)
+    memory = services.memory if recalls(variant) else None
+    return KeptMemory(run, memory), KeptDocumentation(run, None if variant == "single-loop" else services.documentation)
 
 
-def _work(
-    run: Run,
-    llm: LLM,
-    kernel: PartKernel,
-    cache: BuildCache | None,
-    chooser: Chooser,
-    taught: _Taught,
-    jobs: int | None,
-    progress: Progress | None,
-) -> None:
+def _work(run: Run, llm: LLM, kernel: PartKernel, services: Services, chooser: Chooser, taught: _Taught) -> None:
     """Carry out a run's request."""
     note(run, kernel)
-    builder = PartBuilder(run, Recorded(llm, run), kernel, cache or BuildCache(), jobs, progress, *taught)
+    port, cache = Recorded(llm, run), services.cache or BuildCache()
+    builder = PartBuilder(run, port, kernel, cache, services.jobs, services.progress, *taught)
     _line(builder, chooser, taught[0]).work()
 
 
@@ -260,42 +186,28 @@ class Replayed:
         return tuple(name for name in self.differences if name not in drifted)
 
 
-def replay(
-    recording: str | Path,
-    *,
-    out: str | Path | None = None,
-    strict: bool = False,
-    kernel: PartKernel | None = None,
-    sandbox: Literal["strict", "weak"] = "strict",
-    cache: BuildCache | None = None,
-    jobs: int | None = None,
-    progress: Progress | None = None,
-) -> Replayed:
+def replay(recording: str | Path, *, out: str | Path | None = None, strict: bool = False, services: Services | None = None) -> Replayed:
     """Repeat a recorded run from its replies and its retrieved texts: no key, no network, no store.
 
     Args:
         recording: The run to repeat.
         out: Where to; by default a new directory under `runs/`.
         strict: Refuse a prompt that differs from the recorded one, instead of reporting it.
-        kernel: As for `generate`.
-        sandbox: As for `generate`.
-        cache: As for `generate`; `BuildCache(None)` builds every part anew.
-        jobs: As for `generate`.
-        progress: As for `generate`.
+        services: As for `generate`; memory and documentation are the recorded ones.
 
     Raises:
         ReplayMissError: If a reply is missing, or when strict, a prompt differs.
         ArticadError: As `generate`.
     """
+    services = services or Services()
     source = Run.view(recording)
     options = _options_of(source)
     answers = Replay(source, strict=strict)
     with Run.create(source.request, out=out, version=source.version) as run:
         if (base := source.base()) is not None:
             run.save_base(base)
-        kernel = kernel or kernel_named(options["kernel"], sandbox=sandbox)
         taught = KeptMemory(run, recorded=source), KeptDocumentation(run, recorded=source)
-        _work(run, answers, kernel, cache, partial(_chosen_before, source), taught, jobs, progress)
+        _work(run, answers, services.kernel_or(options["kernel"]), services, partial(_chosen_before, source), taught)
         for finding in answers.findings:
             run.trace_finding(finding)
     different = tuple(differences(source, run))

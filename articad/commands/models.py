@@ -6,7 +6,7 @@ import argparse
 import os
 import sys
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any
 
 from articad.commands.command import argument, command
 from articad.commands.options import ANSWERING, BUDGET, EXPORT, FORCE, GENERATING, JOBS, MODELS, OUT, PICTURES, SANDBOX, SET, TEACHING
@@ -15,7 +15,9 @@ from articad.commands.steps import build_cache, draw, experience, reported, sand
 if TYPE_CHECKING:
     from articad.agents.brainstorm import Alternative, Choose
     from articad.agents.llm import Budget
-    from articad.commands.terminal import Report, Terminal
+    from articad.agents.settings import RunOptions, Services
+    from articad.commands.terminal import Progress, Report, Terminal
+    from articad.memory.experience import ExperienceStore
     from articad.runs.run import Run
 
 
@@ -34,8 +36,6 @@ if TYPE_CHECKING:
 )
 def _generate(options: argparse.Namespace, terminal: Terminal) -> Report:
     from articad.agents.pipeline import generate
-    from articad.agents.recollection import StoredDocumentation, StoredMemory
-    from articad.kernels.choice import kernel_named
 
     budget, sees = asked_model(options, terminal)
     store = experience(options, budget)
@@ -46,22 +46,8 @@ def _generate(options: argparse.Namespace, terminal: Terminal) -> Report:
             images=options.images,
             part_images=dict(options.part_images),
             out=options.out,
-            kernel=kernel_named(options.kernel, sandbox=sandbox_level(options)),
-            cache=build_cache(options),
-            formats=options.formats,
-            repairs=options.repairs,
-            rounds=options.rounds,
-            look=options.look and sees,
-            inspection=options.inspection and sees,
-            ideas=options.ideas,
-            pick=options.pick,
-            choose=_asking(terminal) if _is_asked(options) else None,
-            review=_review(options, sees=sees),
-            variant=options.variant,
-            memory=StoredMemory(store),
-            documentation=StoredDocumentation() if options.docs else None,
-            jobs=options.jobs,
-            progress=tell,
+            options=_run_options(options, sees=sees),
+            services=_services(options, terminal, tell, store),
         )
     return _told(run, options, terminal, budget)
 
@@ -84,7 +70,6 @@ def _generate(options: argparse.Namespace, terminal: Terminal) -> Report:
 )
 def _edit(options: argparse.Namespace, terminal: Terminal) -> Report:
     from articad.agents.edit import edit
-    from articad.agents.recollection import StoredDocumentation, StoredMemory
     from articad.runs.run import Run
 
     Run.view(options.run)  # fails before a key is required
@@ -97,18 +82,8 @@ def _edit(options: argparse.Namespace, terminal: Terminal) -> Report:
             values=dict(options.parameters),
             images=options.images,
             out=options.out,
-            sandbox=sandbox_level(options),
-            cache=build_cache(options),
-            formats=options.formats,
-            repairs=options.repairs,
-            rounds=options.rounds,
-            look=options.look and sees,
-            inspection=options.inspection and sees,
-            review=_review(options, sees=sees),
-            memory=StoredMemory(experience(options, budget)),
-            documentation=StoredDocumentation() if options.docs else None,
-            jobs=options.jobs,
-            progress=tell,
+            options=_run_options(options, sees=sees),
+            services=_services(options, terminal, tell, experience(options, budget)),
         )
     return _told(run, options, terminal, budget)
 
@@ -127,7 +102,6 @@ def _edit(options: argparse.Namespace, terminal: Terminal) -> Report:
 )
 def _resume(options: argparse.Namespace, terminal: Terminal) -> Report:
     from articad.agents.pipeline import resume
-    from articad.agents.recollection import StoredDocumentation, StoredMemory
     from articad.errors import RunError
     from articad.runs.run import Run
 
@@ -138,18 +112,43 @@ def _resume(options: argparse.Namespace, terminal: Terminal) -> Report:
     options.look, options.inspection = bool(asked.get("look")), bool(asked.get("inspection"))
     budget, _ = asked_model(options, terminal)
     with terminal.progress("Going on", note=lambda: _spent(budget)) as tell:
-        run = resume(
-            options.run,
-            llm=budget,
-            sandbox=sandbox_level(options),
-            cache=build_cache(options),
-            choose=_asking(terminal) if _is_asked(options) else None,
-            memory=StoredMemory(experience(options, budget)),
-            documentation=StoredDocumentation() if options.docs else None,
-            jobs=options.jobs,
-            progress=tell,
-        )
+        run = resume(options.run, llm=budget, services=_services(options, terminal, tell, experience(options, budget)))
     return _told(run, options, terminal, budget)
+
+
+def _run_options(options: argparse.Namespace, *, sees: bool) -> RunOptions:
+    """Return how the run is made; a model that does not see neither looks nor inspects."""
+    from articad.agents.settings import RunOptions
+
+    stated = {name: value for name in ("ideas", "pick", "variant") if (value := getattr(options, name, None)) is not None}
+    return RunOptions(
+        formats=options.formats,
+        repairs=options.repairs,
+        rounds=options.rounds,
+        look=options.look and sees,
+        inspection=options.inspection and sees,
+        review="none" if not options.review else "model" if sees else "rules",
+        **stated,
+    )
+
+
+def _services(options: argparse.Namespace, terminal: Terminal, tell: Progress, store: ExperienceStore) -> Services:
+    """Return what the run is given to work with."""
+    from articad.agents.recollection import StoredDocumentation, StoredMemory
+    from articad.agents.settings import Services
+    from articad.kernels.choice import kernel_named
+
+    sandbox, name = sandbox_level(options), getattr(options, "kernel", None)
+    return Services(
+        kernel=None if name is None else kernel_named(name, sandbox=sandbox),
+        sandbox=sandbox,
+        cache=build_cache(options),
+        choose=_asking(terminal) if _is_asked(options) else None,
+        memory=StoredMemory(store),
+        documentation=StoredDocumentation() if options.docs else None,
+        jobs=options.jobs,
+        progress=tell,
+    )
 
 
 def asked_model(options: argparse.Namespace, terminal: Terminal) -> tuple[Budget, bool]:
@@ -177,15 +176,10 @@ def model_name(options: argparse.Namespace) -> str:
     return options.model or os.environ.get("ARTICAD_MODEL") or DEFAULT_MODEL
 
 
-def _review(options: argparse.Namespace, *, sees: bool) -> Literal["none", "rules", "model"]:
-    """Return the kind of review."""
-    return "none" if not options.review else "model" if sees else "rules"
-
-
 def _told(run: Run, options: argparse.Namespace, terminal: Terminal, budget: Budget | None) -> Report:
-    """Remember a finished run of a model, draw it, print it and return its report."""
-    from articad.agents.pipeline import recalls
+    """Remember a finished run that a model had a part in, draw it, print it and return its report."""
     from articad.agents.recollection import remember
+    from articad.agents.settings import recalls
     from articad.commands.summaries import print_edit, print_review
     from articad.errors import BudgetError
 
@@ -248,6 +242,7 @@ def _asking(terminal: Terminal) -> Choose:
 )
 def _replay(options: argparse.Namespace, terminal: Terminal) -> Report:
     from articad.agents.pipeline import replay
+    from articad.agents.settings import Services
     from articad.errors import ReadError
     from articad.runs.run import Run
 
@@ -261,10 +256,7 @@ def _replay(options: argparse.Namespace, terminal: Terminal) -> Report:
             options.run,
             out=options.out,
             strict=options.strict,
-            sandbox=sandbox_level(options),
-            cache=build_cache(options),
-            jobs=options.jobs,
-            progress=tell,
+            services=Services(sandbox=sandbox_level(options), cache=build_cache(options), jobs=options.jobs, progress=tell),
         )
     report = reported(replayed.run, terminal)
     drifted = replayed.findings.of("I_PROMPT_DRIFT")

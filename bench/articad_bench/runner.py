@@ -15,12 +15,11 @@ from pathlib import Path
 from typing import Any
 
 from articad.agents.edit import edit
-from articad.agents.line import ROUNDS
 from articad.agents.llm import LLM
-from articad.agents.part_writer import REPAIRS
-from articad.agents.pipeline import Variant, generate
+from articad.agents.pipeline import generate
 from articad.agents.retrieval import Memory
 from articad.agents.review import trajectory
+from articad.agents.settings import REPAIRS, ROUNDS, RunOptions, Services, Variant
 from articad.errors import TransportError
 from articad.kernels.kernel import BuildCache, PartKernel
 from articad.runs.record import assembly_of
@@ -81,12 +80,12 @@ def run_tasks(
         folder, task = pair
         place = Path(out) / task.name
         way = {"variant": variant, "look": look, "model": model, "kernel": None if kernel is None else kernel.name}
-        tries = {"repairs": repairs, "rounds": rounds}
-        key = digest({"task": task.model_dump(mode="json"), **way, **tries})
+        key = digest({"task": task.model_dump(mode="json"), **way, "repairs": repairs, "rounds": rounds})
         row = kept_row(place, key)
         if row is None:
             made = _Made(task, folder, place, key, (ask, ask_edit or ask), finished)
-            row = made.row(variant=variant, kernel=kernel, cache=cache, memory=memory, look=look, **tries)
+            options = RunOptions(variant=variant, look=look, inspection=look, ideas="never", repairs=repairs, rounds=rounds)
+            row = made.row(options, Services(kernel=kernel, cache=cache, memory=memory))
             if not made.unreached:
                 keep_row(place, row)
         if progress is not None:
@@ -110,27 +109,26 @@ class _Made:
         self._key = key
         self.unreached = False
 
-    def row(self, *, look: bool, **options: Any) -> Row:
+    def row(self, options: RunOptions, services: Services) -> Row:
         """Return what comes of it."""
         task, row, started = self._task, Row.of(self._task, self._key), time.monotonic()
-        options |= {"look": look, "inspection": look}
         try:
             images = [self._folder / image for image in task.images]
-            run = generate(task.prompt, llm=self._asks[0](task), images=images, out=self._run, ideas="never", **options)
-            assembly = assembly_of(run, cache=options["cache"])
+            run = generate(task.prompt, llm=self._asks[0](task), images=images, out=self._run, options=options, services=services)
+            assembly = assembly_of(run, cache=services.cache)
             row = replace(row, judgements=task.judge(Subject(assembly)))
             self._tell(run)
             if task.edit is not None:
-                row = self._with_edit(row, run, Subject(assembly), {name: value for name, value in options.items() if name != "variant"})
+                row = self._with_edit(row, run, Subject(assembly), options, services)
         except Exception as error:  # noqa: BLE001 - a defect of ours costs one task, not the benchmark
             row = replace(row, error=self._told(error))
         return replace(row, seconds=time.monotonic() - started, **_effort(self._run, self._edit))
 
-    def _with_edit(self, row: Row, run: Run, before: Subject, options: dict[str, Any]) -> Row:
+    def _with_edit(self, row: Row, run: Run, before: Subject, options: RunOptions, services: Services) -> Row:
         assert self._task.edit is not None
         try:
-            edited = edit(run, self._task.edit.prompt, llm=self._asks[1](self._task), out=self._edit, **options)
-            subject = Subject(assembly_of(edited, cache=options["cache"]), before=before.assembly)
+            edited = edit(run, self._task.edit.prompt, llm=self._asks[1](self._task), out=self._edit, options=options, services=services)
+            subject = Subject(assembly_of(edited, cache=services.cache), before=before.assembly)
             row = replace(row, edited=self._task.judge_edit(subject))
             self._tell(edited)
         except Exception as error:  # noqa: BLE001 - as above

@@ -6,11 +6,13 @@ import atexit
 import functools
 import json
 import tempfile
+from dataclasses import fields
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
 from articad.agents.llm import Scripted
+from articad.agents.settings import RunOptions, Services
 from articad.kernels.build123d import Build123dKernel
 from articad.kernels.kernel import BuildCache
 
@@ -147,3 +149,12 @@ def shared_cache() -> BuildCache:
     folder = tempfile.TemporaryDirectory(prefix="articad-tests-")
     atexit.register(folder.cleanup)
     return BuildCache(Path(folder.name))
+
+
+def settings(**given: Any) -> dict[str, Any]:
+    """Return the arguments `options` and `services` of a run made of the keywords of either; others stay."""
+    found: dict[str, Any] = {}
+    for argument, kind in (("options", RunOptions), ("services", Services)):
+        names = {field.name for field in fields(kind)} & given.keys()
+        found[argument] = kind(**{name: given.pop(name) for name in names})
+    return found | given

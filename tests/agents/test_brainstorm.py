@@ -11,6 +11,7 @@ import pytest
 from articad.agents.brainstorm import Alternative, problems, propose, same_structure
 from articad.agents.llm import Scripted
 from articad.agents.pipeline import generate, replay
+from articad.agents.settings import Services
 from articad.errors import AgentError, OutputError
 from articad.runs.run import Run, RunRequest
 from tests.agents import stories
@@ -97,7 +98,9 @@ def open_flap(**answers: Any) -> Scripted:
 
 
 def made(tmp_path: Path, llm: Any, name: str = "run", **options: Any) -> Run:
-    return generate("a toy", llm=llm, out=tmp_path / name, kernel=stories.kernel(), cache=stories.shared_cache(), **options)
+    return generate(
+        "a toy", llm=llm, out=tmp_path / name, **stories.settings(kernel=stories.kernel(), cache=stories.shared_cache(), **options)
+    )
 
 
 def chosen(run: Run) -> tuple[int, str]:
@@ -132,7 +135,7 @@ def test_a_callback_is_shown_the_alternatives_and_is_not_asked_again_on_resuming
 
     run = made(tmp_path, open_flap(), choose=choose)
     made(tmp_path, Scripted({}), choose=choose)
-    again = replay(run.path, out=tmp_path / "again", strict=True, kernel=stories.kernel(), cache=stories.shared_cache())
+    again = replay(run.path, out=tmp_path / "again", strict=True, services=Services(kernel=stories.kernel(), cache=stories.shared_cache()))
 
     assert shown == [["chain", "ring", "mixed"]]
     assert chosen(run) == chosen(again.run) == (3, "user")

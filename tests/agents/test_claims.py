@@ -87,7 +87,7 @@ def test_a_wardrobe_with_a_mirrored_door_makes_one_call_for_both_doors(tmp_path:
     script: dict[str, Any] = {"requirements": stories.requirements("wardrobe"), "design/1": json.dumps(plan)} | watched(*joints)
     script |= {f"part/{part['name']}/1": fenced((folder / f"parts/{part['name']}.py").read_text()) for part in written(plan)}
     llm = Scripted(script)
-    run = generate("a wardrobe", llm=llm, out=tmp_path / "run", kernel=stories.kernel(), cache=stories.shared_cache())
+    run = generate("a wardrobe", llm=llm, out=tmp_path / "run", **stories.settings(kernel=stories.kernel(), cache=stories.shared_cache()))
 
     assert [step for step in llm.steps if "door" in step and step.startswith("part")] == ["part/door_left/1"]
     assert [step for step in llm.steps if "door" in step and step.startswith("look")] == ["look/door_left/1"]
@@ -152,7 +152,9 @@ def row_of(pegs: int, tmp_path: Path, wrong: str | None = None) -> tuple[Scripte
     if wrong:
         script |= {f"part/{wrong}/1": fenced(BENT), "judge/1/1": judged("placement", "code", wrong, what="it is turned by 45 degrees")}
     llm = Scripted(script)
-    return llm, generate("pegs", llm=llm, out=tmp_path / f"{pegs}{wrong}", kernel=stories.kernel(), cache=stories.shared_cache())
+    return llm, generate(
+        "pegs", llm=llm, out=tmp_path / f"{pegs}{wrong}", **stories.settings(kernel=stories.kernel(), cache=stories.shared_cache())
+    )
 
 
 def test_of_many_parts_with_one_broken_exactly_one_is_made_again(tmp_path: Path) -> None:

@@ -10,6 +10,7 @@ import pytest
 
 from articad.agents import drift
 from articad.agents.pipeline import Replayed, generate, replay
+from articad.agents.settings import Services
 from articad.findings import Findings
 from articad.kernels.kernel import BuildCache
 from articad.kernels.results import read_mesh
@@ -26,12 +27,19 @@ class OtherKernel(FixedKernel):
 
 @pytest.fixture
 def recorded(tmp_path: Path) -> Path:
-    generate(stories.FLAP_PROMPT, llm=stories.flap(), out=tmp_path / "run", kernel=FixedKernel(), cache=BuildCache(None), **OPTIONS)  # type: ignore[arg-type]
+    generate(
+        stories.FLAP_PROMPT,
+        llm=stories.flap(),
+        out=tmp_path / "run",
+        **stories.settings(kernel=FixedKernel(), cache=BuildCache(None), **OPTIONS),
+    )
     return tmp_path / "run"
 
 
 def again(recorded: Path, kernel: FixedKernel | None = None) -> Replayed:
-    return replay(recorded, out=recorded.parent / "again", kernel=kernel or FixedKernel(), cache=BuildCache(None), jobs=1)
+    return replay(
+        recorded, out=recorded.parent / "again", services=Services(kernel=kernel or FixedKernel(), cache=BuildCache(None), jobs=1)
+    )
 
 
 def moved(recorded: Path, by: float) -> None:

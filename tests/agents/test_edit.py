@@ -16,6 +16,7 @@ from articad.agents.edit_base import with_values
 from articad.agents.evidence import examine
 from articad.agents.llm import Scripted
 from articad.agents.pipeline import generate, replay
+from articad.agents.settings import Services
 from articad.errors import AgentError, PlanError, ReadError
 from articad.kernels.kernel import BuildCache
 from articad.plan.resolve import resolve
@@ -40,7 +41,7 @@ def edited(base: Run, folder: Path, *answers: Any, text: str = "change it", **op
     script = {f"edit/{number}": answer if isinstance(answer, str) else json.dumps(answer) for number, answer in enumerate(answers, 1)}
     llm = Scripted(script | options.pop("also", {}))
     made: dict[str, Any] = {"kernel": stories.kernel(), "cache": stories.shared_cache()} | QUIET
-    return edit(base, text, llm=llm, out=folder, **(made | options)), llm
+    return edit(base, text, llm=llm, out=folder, **stories.settings(**(made | options))), llm
 
 
 @pytest.fixture(scope="module")
@@ -48,7 +49,10 @@ def box(tmp_path_factory: pytest.TempPathFactory) -> Run:
     """A sewing box: body, two lids, drawer and knob."""
     folder = tmp_path_factory.mktemp("box") / "run"
     return generate(
-        stories.SEWING_BOX_PROMPT, llm=stories.sewing_box(), out=folder, kernel=stories.kernel(), cache=stories.shared_cache(), **QUIET
+        stories.SEWING_BOX_PROMPT,
+        llm=stories.sewing_box(),
+        out=folder,
+        **stories.settings(kernel=stories.kernel(), cache=stories.shared_cache(), **QUIET),
     )
 
 
@@ -56,7 +60,9 @@ def box(tmp_path_factory: pytest.TempPathFactory) -> Run:
 def plate(tmp_path_factory: pytest.TempPathFactory) -> Run:
     """A plate with a flap."""
     folder = tmp_path_factory.mktemp("plate") / "run"
-    return generate(stories.FLAP_PROMPT, llm=flap(), out=folder, kernel=stories.kernel(), cache=stories.shared_cache(), **QUIET)
+    return generate(
+        stories.FLAP_PROMPT, llm=flap(), out=folder, **stories.settings(kernel=stories.kernel(), cache=stories.shared_cache(), **QUIET)
+    )
 
 
 @pytest.fixture(scope="module")
@@ -126,7 +132,9 @@ def flush(tmp_path_factory: pytest.TempPathFactory) -> Run:
     planned = FLAP_SCRIPTS["plate"].replace('(0, d["side"] / 2, d["side"])', 'part.connectors["axis"].o')
     llm = flap(design__1=json.dumps(plan), part__flap__1=fenced(lower), part__plate__1=fenced(planned))
     folder = tmp_path_factory.mktemp("flush") / "run"
-    return generate(stories.FLAP_PROMPT, llm=llm, out=folder, kernel=stories.kernel(), cache=stories.shared_cache(), **QUIET)
+    return generate(
+        stories.FLAP_PROMPT, llm=llm, out=folder, **stories.settings(kernel=stories.kernel(), cache=stories.shared_cache(), **QUIET)
+    )
 
 
 def test_a_pair_whose_solids_are_the_same_is_looked_at_again_where_they_stand_otherwise(flush: Run, tmp_path: Path) -> None:
@@ -158,7 +166,9 @@ def test_the_run_that_is_edited_stays_as_it_is_and_is_not_needed_any_more(plate:
     assert plate.hashes() == base.hashes() == before
     shutil.rmtree(base.path)
 
-    again = replay(run.path, out=tmp_path / "again", strict=True, kernel=stories.kernel(), cache=BuildCache(tmp_path / "empty"))
+    again = replay(
+        run.path, out=tmp_path / "again", strict=True, services=Services(kernel=stories.kernel(), cache=BuildCache(tmp_path / "empty"))
+    )
     assert again.differences == ()
 
 
@@ -166,7 +176,7 @@ def test_the_run_that_is_edited_stays_as_it_is_and_is_not_needed_any_more(plate:
 def test_of_a_recorded_run_with_gears_only_what_a_number_reaches_is_built_and_looked_at_again(tmp_path: Path) -> None:
     recorded = Run.view(examples.folder("metronome") / "recording")
     cache = BuildCache(tmp_path / "cache")
-    run = edit(recorded, values={"scale_z": 96}, out=tmp_path / "run", kernel=stories.kernel(), cache=cache)
+    run = edit(recorded, values={"scale_z": 96}, out=tmp_path / "run", **stories.settings(kernel=stories.kernel(), cache=cache))
     report = run.edit() or {}
     before, after = recorded.hashes(), run.hashes()
     digests = [{name: (one.part(name) or {}).get("digests") for name in one.part_names()} for one in (recorded, run)]
@@ -315,13 +325,15 @@ def test_files_that_were_changed_by_hand_are_not_taken_for_untouched(plate: Run,
 
 
 def test_numbers_need_no_model(plate: Run, tmp_path: Path) -> None:
-    run = edit(plate, values={"lift": 2}, out=tmp_path / "run", kernel=stories.kernel(), cache=stories.shared_cache())
+    run = edit(plate, values={"lift": 2}, out=tmp_path / "run", **stories.settings(kernel=stories.kernel(), cache=stories.shared_cache()))
     report = run.edit() or {}
 
     assert report["changes"] == [{"where": "parameters.lift.value", "before": 1, "after": 2}]
     assert {name: row["fate"] for name, row in report["parts"].items()} == {"plate": "untouched", "flap": "rebuilt"}
     assert run.replies() == ()
-    assert replay(run.path, out=tmp_path / "again", strict=True, kernel=stories.kernel(), cache=stories.shared_cache()).ok
+    assert replay(
+        run.path, out=tmp_path / "again", strict=True, services=Services(kernel=stories.kernel(), cache=stories.shared_cache())
+    ).ok
 
 
 def test_numbers_that_do_not_hold_are_refused(plate: Run, tmp_path: Path) -> None:
@@ -330,7 +342,7 @@ def test_numbers_that_do_not_hold_are_refused(plate: Run, tmp_path: Path) -> Non
     with pytest.raises(ReadError, match="No change is given"):
         edit(plate, out=tmp_path / "b")
     with pytest.raises(AgentError, match="needs a model"):
-        edit(plate, "wider", out=tmp_path / "c", kernel=stories.kernel(), cache=stories.shared_cache())
+        edit(plate, "wider", out=tmp_path / "c", **stories.settings(kernel=stories.kernel(), cache=stories.shared_cache()))
 
 
 def test_an_edit_can_be_edited_and_interrupted(plate: Run, tmp_path: Path) -> None:

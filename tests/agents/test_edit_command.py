@@ -30,7 +30,12 @@ def quiet(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 def plate(tmp_path_factory: pytest.TempPathFactory) -> Run:
     folder = tmp_path_factory.mktemp("plate") / "run"
     options: dict[str, Any] = {"look": False, "inspection": False}
-    return generate(stories.FLAP_PROMPT, llm=stories.flap(), out=folder, kernel=stories.kernel(), cache=stories.shared_cache(), **options)
+    return generate(
+        stories.FLAP_PROMPT,
+        llm=stories.flap(),
+        out=folder,
+        **stories.settings(kernel=stories.kernel(), cache=stories.shared_cache(), **options),
+    )
 
 
 def test_numbers_alone_ask_nobody_and_print_what_changed(plate: Run, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

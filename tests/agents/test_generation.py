@@ -168,7 +168,9 @@ def test_designers_are_told_of_good_and_bad_runs_and_modellers_of_good_ones(tmp_
     llm = stories.flap()
     folder = tmp_path / "run"
     cache, kernel = stories.shared_cache(), stories.kernel()
-    generate("a flap", llm=llm, out=folder, kernel=kernel, cache=cache, memory=Remembers(), documentation=Knows(), look=False)
+    generate(
+        "a flap", llm=llm, out=folder, **stories.settings(kernel=kernel, cache=cache, memory=Remembers(), documentation=Knows(), look=False)
+    )
     told = {request.step: json.dumps(request.to_json(), ensure_ascii=False) for request in llm.requests}
 
     assert "Of a flap: hinge it outside." in told["design/1"]
@@ -183,7 +185,12 @@ def test_an_empty_memory_is_as_none(tmp_path: Path) -> None:
     for memory in (None, NoMemory()):
         llm = stories.flap()
         folder, cache = tmp_path / str(memory is None), stories.shared_cache()
-        generate("a flap", llm=llm, out=folder, kernel=stories.kernel(), cache=cache, memory=memory, documentation=NoDocumentation())
+        generate(
+            "a flap",
+            llm=llm,
+            out=folder,
+            **stories.settings(kernel=stories.kernel(), cache=cache, memory=memory, documentation=NoDocumentation()),
+        )
         keys.append({request.step: request.key for request in llm.requests})
 
     assert keys[0] == keys[1]

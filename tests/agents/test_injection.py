@@ -41,11 +41,7 @@ def made(folder: Path, plan: dict[str, Any], words: str = stories.FLAP_PROMPT, *
         words,
         llm=llm,
         out=folder,
-        kernel=stories.kernel(),
-        cache=stories.shared_cache(),
-        look=False,
-        inspection=False,
-        rounds=1,
+        **stories.settings(kernel=stories.kernel(), cache=stories.shared_cache(), look=False, inspection=False, rounds=1),
     )
     return run, llm
 
@@ -82,7 +78,12 @@ def test_orders_do_not_become_instructions(tmp_path: Path) -> None:
 def test_an_order_cannot_lengthen_a_budget(tmp_path: Path) -> None:
     llm = Budget(stories.flap(design__1=json.dumps(ordering_plan())), calls=3)
     with pytest.raises(BudgetError):
-        generate(ORDER, llm=llm, out=tmp_path / "run", kernel=stories.kernel(), cache=stories.shared_cache(), look=False, inspection=False)
+        generate(
+            ORDER,
+            llm=llm,
+            out=tmp_path / "run",
+            **stories.settings(kernel=stories.kernel(), cache=stories.shared_cache(), look=False, inspection=False),
+        )
     assert llm.calls == 3
 
 

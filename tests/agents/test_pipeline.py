@@ -16,6 +16,7 @@ import pytest
 from articad.agents import design as design_module
 from articad.agents.llm import Budget, Replay, Reply, Request, Scripted, transport_error
 from articad.agents.pipeline import generate, replay, resume
+from articad.agents.settings import Services
 from articad.errors import BudgetError, ContractError, OutputError, PlanError, ReplayMissError, RunError, TransportError
 from articad.runs.run import Run, differences
 from tests.agents import stories
@@ -26,7 +27,9 @@ PNG = b"\x89PNG\r\n\x1a\n" + bytes(16)
 
 def made(tmp_path: Path, llm: Any, name: str = "run", prompt: str = FLAP_PROMPT, **options: Any) -> Run:
     options = {"look": False, "inspection": False} | options
-    return generate(prompt, llm=llm, out=tmp_path / name, kernel=stories.kernel(), cache=stories.shared_cache(), **options)
+    return generate(
+        prompt, llm=llm, out=tmp_path / name, **stories.settings(kernel=stories.kernel(), cache=stories.shared_cache(), **options)
+    )
 
 
 def said(request: Request) -> str:
@@ -291,7 +294,7 @@ def dies(_):
 
 llm = flap(part__flap__1=fenced({crash!r}), part__flap__2=dies)
 folder = Path({str(tmp_path)!r})
-generate(FLAP_PROMPT, llm=llm, out=folder / "run", kernel=kernel(), cache=cache(folder), jobs=1, look=False, inspection=False)
+generate(FLAP_PROMPT, llm=llm, out=folder / "run", **settings(kernel=kernel(), cache=cache(folder), jobs=1, look=False, inspection=False))
 """
     killed = subprocess.run([sys.executable, "-c", script], check=False)
     assert killed.returncode == -signal.SIGKILL
@@ -310,11 +313,11 @@ def test_a_run_is_gone_on_with_by_its_folder_alone(tmp_path: Path) -> None:
     with pytest.raises(BudgetError):
         made(tmp_path, Budget(flap(), calls=3))
     llm = flap()
-    run = resume(tmp_path / "run", llm=llm, kernel=stories.kernel(), cache=stories.shared_cache())
+    run = resume(tmp_path / "run", llm=llm, services=Services(kernel=stories.kernel(), cache=stories.shared_cache()))
 
     assert len(llm.steps) == 1
     assert list(differences(run, made(tmp_path, flap(), "undisturbed"))) == []
-    finished = resume(tmp_path / "run", kernel=stories.kernel(), cache=stories.shared_cache())
+    finished = resume(tmp_path / "run", services=Services(kernel=stories.kernel(), cache=stories.shared_cache()))
     assert finished.hashes() == run.hashes()
 
 
@@ -359,7 +362,7 @@ def test_a_replay_makes_every_file_but_the_trace_byte_for_byte(tmp_path: Path) -
     crash = FLAP_SCRIPTS["flap"].replace("return shape", "shape = shape.no_such_thing()\n    return shape")
     run = made(tmp_path, flap(part__flap__1=fenced(crash), part__flap__2=fenced(FLAP_SCRIPTS["flap"])), images=[PNG])
     other = tmp_path / "other"
-    result = replay(run.path, out=other / "run", strict=True, kernel=stories.kernel(), cache=stories.cache(other))
+    result = replay(run.path, out=other / "run", strict=True, services=Services(kernel=stories.kernel(), cache=stories.cache(other)))
 
     assert result.differences == ()
     assert result.ok
@@ -370,21 +373,21 @@ def test_a_replay_makes_every_file_but_the_trace_byte_for_byte(tmp_path: Path) -
 def test_a_prompt_that_drifted_is_reported_and_strictly_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     run = made(tmp_path, flap())
     monkeypatch.setattr(design_module, "_instructions", lambda: "Design it.")
-    result = replay(run.path, out=tmp_path / "again", kernel=stories.kernel(), cache=stories.shared_cache())
+    result = replay(run.path, out=tmp_path / "again", services=Services(kernel=stories.kernel(), cache=stories.shared_cache()))
 
     assert result.findings.codes == ("I_PROMPT_DRIFT",)
     assert result.differences == ("llm/design.1.json",)
     assert result.results_that_differ == ()
     assert result.ok
     with pytest.raises(ReplayMissError, match="design/1"):
-        replay(run.path, out=tmp_path / "strict", strict=True, kernel=stories.kernel(), cache=stories.shared_cache())
+        replay(run.path, out=tmp_path / "strict", strict=True, services=Services(kernel=stories.kernel(), cache=stories.shared_cache()))
 
 
 def test_a_recording_without_an_answer_says_which(tmp_path: Path) -> None:
     run = made(tmp_path, flap())
     (run.path / "llm/part.flap.1.json").unlink()
     with pytest.raises(ReplayMissError, match="part/flap/1"):
-        replay(run.path, out=tmp_path / "again", kernel=stories.kernel(), cache=stories.shared_cache())
+        replay(run.path, out=tmp_path / "again", services=Services(kernel=stories.kernel(), cache=stories.shared_cache()))
 
 
 def test_replay_is_a_model_like_any_other(tmp_path: Path) -> None:

@@ -12,6 +12,7 @@ from articad.agents.llm import Scripted
 from articad.agents.pipeline import generate, replay
 from articad.agents.recollection import StoredDocumentation, StoredMemory, remember
 from articad.agents.review import scores
+from articad.agents.settings import Services
 from articad.memory.case import Case, PartExample
 from articad.memory.experience import ExperienceStore
 from articad.runs.run import Run
@@ -23,7 +24,7 @@ MARK = "BURIED_HINGE"  # stands in every text of the bad run that is not a numbe
 
 def made(folder: Path, llm: Scripted, prompt: str = PROMPT, **options: Any) -> Run:
     made: dict[str, Any] = {"kernel": stories.kernel(), "cache": stories.shared_cache(), "look": False, "inspection": False, "rounds": 1}
-    return generate(prompt, llm=llm, out=folder, **(made | options))
+    return generate(prompt, llm=llm, out=folder, **stories.settings(**(made | options)))
 
 
 def overlapping() -> Scripted:
@@ -65,10 +66,14 @@ def test_a_measured_defect_is_told_to_the_next_designer_and_to_no_modeller(tmp_p
     assert "Parts of other products that were built well" in told["part/flap/1"]
     assert "def build(part)" in told["part/flap/1"].split("built well")[1]
 
-    repeated = replay(run.path, out=tmp_path / "again", strict=True, kernel=stories.kernel(), cache=stories.shared_cache())
+    repeated = replay(
+        run.path, out=tmp_path / "again", strict=True, services=Services(kernel=stories.kernel(), cache=stories.shared_cache())
+    )
     assert repeated.ok, repeated.differences
     store.remove(bad.id, good.id)  # a replay needs no store
-    assert replay(run.path, out=tmp_path / "later", strict=True, kernel=stories.kernel(), cache=stories.shared_cache()).ok
+    assert replay(
+        run.path, out=tmp_path / "later", strict=True, services=Services(kernel=stories.kernel(), cache=stories.shared_cache())
+    ).ok
 
 
 def test_an_empty_store_asks_what_is_asked_without_one(tmp_path: Path, store: ExperienceStore) -> None:

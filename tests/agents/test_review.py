@@ -9,6 +9,7 @@ from typing import Any
 from articad.agents.llm import Image, Scripted
 from articad.agents.pipeline import generate, replay
 from articad.agents.recollection import StoredMemory, remember
+from articad.agents.settings import Services
 from articad.memory.experience import ExperienceStore
 from articad.runs.run import Run
 from tests.agents import stories
@@ -22,7 +23,7 @@ OPINION = json.dumps(SCORES | {"lessons": [LESSON]})
 
 def made(folder: Path, llm: Scripted, **options: Any) -> Run:
     quiet: dict[str, Any] = {"look": False, "inspection": False, "kernel": stories.kernel(), "cache": stories.shared_cache()}
-    return generate(stories.FLAP_PROMPT, llm=llm, out=folder, **(quiet | options))
+    return generate(stories.FLAP_PROMPT, llm=llm, out=folder, **stories.settings(**(quiet | options)))
 
 
 def test_nobody_reviews_who_was_not_asked_to(tmp_path: Path) -> None:
@@ -45,7 +46,7 @@ def test_a_model_that_sees_everything_scores_it_and_the_rules_do(tmp_path: Path)
     request = next(request for request in llm.requests if request.step == "review")
     recipes = [dict(part.recipe or {})["of"] for message in request.messages for part in message.parts if isinstance(part, Image)]
     assert recipes == ["assembly", "part", "part", "motion"]
-    again = replay(run.path, out=tmp_path / "again", strict=True, kernel=stories.kernel(), cache=stories.shared_cache())
+    again = replay(run.path, out=tmp_path / "again", strict=True, services=Services(kernel=stories.kernel(), cache=stories.shared_cache()))
     assert again.differences == ()
 
 

@@ -16,6 +16,7 @@ from articad.agents.llm import Image, Replay, Request, Scripted, closed_port, re
 from articad.agents.part_writer import _EXAMPLES
 from articad.agents.pipeline import generate, replay
 from articad.agents.requirements import Requirements
+from articad.agents.settings import Services
 from articad.errors import ContractError, TransportError
 from articad.plan.schema import AssemblyPlan
 from articad.render.pictures import RECIPE
@@ -27,7 +28,9 @@ THINNER = FLAP_SCRIPTS["flap"].replace('d["thickness"]', '0.9 * d["thickness"]')
 
 
 def made(tmp_path: Path, llm: Any, name: str = "run", **options: Any) -> Run:
-    return generate("a product", llm=llm, out=tmp_path / name, kernel=stories.kernel(), cache=stories.shared_cache(), **options)
+    return generate(
+        "a product", llm=llm, out=tmp_path / name, **stories.settings(kernel=stories.kernel(), cache=stories.shared_cache(), **options)
+    )
 
 
 def said(llm: Scripted, step: str) -> str:
@@ -502,7 +505,7 @@ def test_a_run_with_every_kind_of_detour_is_replayed_byte_for_byte_and_draws_not
     )
     run = made(tmp_path, llm)
     monkeypatch.setattr("articad.agents.pictures._drawing", None)  # who draws fails
-    again = replay(run.path, out=tmp_path / "again", strict=True, kernel=stories.kernel(), cache=stories.shared_cache())
+    again = replay(run.path, out=tmp_path / "again", strict=True, services=Services(kernel=stories.kernel(), cache=stories.shared_cache()))
 
     assert {"rollback/1", "judge/2/1", "design/3", "judge/3/1"} <= set(llm.steps)
     assert again.differences == ()

@@ -12,10 +12,11 @@ import pytest
 
 from articad.agents.late import ENDING
 from articad.agents.llm import Scripted
-from articad.agents.pipeline import Variant, generate, replay
+from articad.agents.pipeline import generate, replay
 from articad.agents.prompts import prompt_file
 from articad.agents.recollection import StoredMemory, remember
 from articad.agents.replies import parse_script
+from articad.agents.settings import Services, Variant
 from articad.agents.single import _plan, _whole
 from articad.commands.command import COMMANDS
 from articad.errors import ContractError
@@ -54,7 +55,9 @@ def late(**answers: Any) -> Scripted:
 
 
 def made(folder: Path, llm: Scripted, **options: Any) -> Run:
-    return generate(stories.FLAP_PROMPT, llm=llm, out=folder, kernel=stories.kernel(), cache=stories.shared_cache(), **options)
+    return generate(
+        stories.FLAP_PROMPT, llm=llm, out=folder, **stories.settings(kernel=stories.kernel(), cache=stories.shared_cache(), **options)
+    )
 
 
 def said(llm: Scripted, step: str) -> str:
@@ -63,7 +66,7 @@ def said(llm: Scripted, step: str) -> str:
 
 
 def assert_replayed(run: Run, folder: Path) -> None:
-    again = replay(run.path, out=folder, strict=True, kernel=stories.kernel(), cache=stories.shared_cache())
+    again = replay(run.path, out=folder, strict=True, services=Services(kernel=stories.kernel(), cache=stories.shared_cache()))
     assert again.differences == ()
 
 

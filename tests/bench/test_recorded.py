@@ -34,8 +34,14 @@ def test_eight_recorded_tasks_give_the_stored_table_byte_for_byte(tmp_path: Path
 def test_a_benchmark_s_own_folder_is_a_recording_edits_included(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     thicker = {"summary": "Thicker.", "touches": ["flap"], "changes": {"parts.flap.dimensions.thickness": 3}}
     quiet = {"look": False, "inspection": False, "kernel": stories.kernel(), "cache": stories.shared_cache()}
-    run = generate("a flap", llm=stories.flap(), out=tmp_path / "before" / "flap" / "run_1", **quiet)  # type: ignore[arg-type]
-    edited = edit(run, "thicker", llm=Scripted({"edit/1": json.dumps(thicker)}), out=tmp_path / "before" / "flap" / "edit_1", **quiet)  # type: ignore[arg-type]
+    run = generate("a flap", llm=stories.flap(), out=tmp_path / "before" / "flap" / "run_1", **stories.settings(**quiet))
+    edited = edit(
+        run,
+        "thicker",
+        llm=Scripted({"edit/1": json.dumps(thicker)}),
+        out=tmp_path / "before" / "flap" / "edit_1",
+        **stories.settings(**quiet),
+    )
     assert assembly_of(edited).parts
     task = {
         "name": "flap",

@@ -81,7 +81,12 @@ def proven(folder: Path) -> None:
 def generated(folder: Path, kernel_name: str = "fixed", recording: Path | None = None) -> None:
     """What `articad generate` does, answered from a recording."""
     llm: LLM = stories.flap() if recording is None else Counted(Replay(recording), folder / "calls")
-    generate(stories.FLAP_PROMPT, llm=llm, out=folder / "run", kernel=kernel(kernel_name), cache=BuildCache(folder / "cache"), **OPTIONS)  # type: ignore[arg-type]
+    generate(
+        stories.FLAP_PROMPT,
+        llm=llm,
+        out=folder / "run",
+        **stories.settings(kernel=kernel(kernel_name), cache=BuildCache(folder / "cache"), **OPTIONS),
+    )
 
 
 def live(folder: Path, address: str) -> None:
@@ -108,7 +113,13 @@ def edited(folder: Path, recording: Path) -> None:
     change = {"summary": "x", "touches": ["flap"], "changes": {"parts.flap.dimensions.thickness": 3}}
     llm = Counted(Scripted({"edit/1": json.dumps(change)}), folder / "calls")
     options = {name: value for name, value in OPTIONS.items() if name != "ideas"}
-    edit(recording, "a thicker flap", llm=llm, out=folder / "run", kernel=kernel("fixed"), cache=BuildCache(folder / "cache"), **options)  # type: ignore[arg-type]
+    edit(
+        recording,
+        "a thicker flap",
+        llm=llm,
+        out=folder / "run",
+        **stories.settings(kernel=kernel("fixed"), cache=BuildCache(folder / "cache"), **options),
+    )
 
 
 def files(folder: Path) -> Mapping[str, str]:
