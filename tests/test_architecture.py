@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import functools
 import graphlib
 import importlib
 import re
@@ -43,6 +44,7 @@ def modules_after(statement: str) -> set[str]:
     return set(done.stdout.split())
 
 
+@functools.cache
 def imported_by(path: Path) -> set[str]:
     """Return the top-level modules that a source file imports anywhere, inside functions too."""
     names: set[str] = set()
@@ -305,6 +307,17 @@ def test_every_import_is_declared() -> None:
         for name in third_party(imported_by(source)) - (known | inside if source.parent.name == "inside_freecad" else known)
     }
     assert not unknown
+
+
+def test_the_table_of_dependencies_says_which_rooms_import_each() -> None:
+    rows = re.search(r"## At run time\n\n(.*?)\n\n", (ROOT / "docs" / "dependencies.md").read_text(), re.DOTALL)
+    stated = {cells[0].split()[0]: cells[3] for line in (rows or [""])[1].splitlines()[2:] if (cells := line.strip("| ").split(" | "))}
+    declared = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["dependencies"]
+    assert stated.keys() == {re.split(r"[^A-Za-z0-9_-]", line, maxsplit=1)[0] for line in declared}
+    for name, rooms in stated.items():
+        module = (FIXED | {"pillow": "PIL"}).get(name, name)
+        found = {source.relative_to(PACKAGE).parts[0].removesuffix(".py") for source in SOURCES if module in imported_by(source)}
+        assert rooms.startswith(("nearly", "none")) or set(rooms.split(", ")) == found - {"starter"}, name
 
 
 @pytest.mark.parametrize(

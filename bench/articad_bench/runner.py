@@ -16,10 +16,11 @@ from typing import Any
 
 from articad.agents.edit import edit
 from articad.agents.llm import LLM
+from articad.agents.part_writer import REPAIRS
 from articad.agents.pipeline import generate
 from articad.agents.retrieval import Memory
 from articad.agents.review import trajectory
-from articad.agents.settings import REPAIRS, ROUNDS, RunOptions, Services, Variant
+from articad.agents.settings import ROUNDS, RunOptions, Services, Variant
 from articad.errors import TransportError
 from articad.kernels.kernel import BuildCache, PartKernel
 from articad.runs.record import assembly_of
