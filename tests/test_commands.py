@@ -91,7 +91,7 @@ def report(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) 
         return stories.kernel() if name == "build123d" else kernel_named(name, **options)
 
     monkeypatch.setattr("articad.runs.record.kernel_named", shared)
-    monkeypatch.setattr("articad.agents.pipeline.kernel_named", shared)
+    monkeypatch.setattr("articad.agents.settings.kernel_named", shared)
 
     def run(*arguments: object) -> tuple[int, dict[str, Any]]:
         code = cli.main([*map(str, arguments), "--json"])

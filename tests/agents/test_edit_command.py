@@ -22,7 +22,7 @@ REVIEWED = json.dumps({aspect: {"score": 4, "reason": "as asked"} for aspect in 
 def quiet(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("ARTICAD_MEMORY", str(tmp_path / "memory"))
     monkeypatch.setenv("ARTICAD_CACHE", str(stories.shared_cache().root))
-    for place in ("articad.runs.record.kernel_named", "articad.agents.edit.kernel_named"):
+    for place in ("articad.runs.record.kernel_named", "articad.agents.settings.kernel_named"):
         monkeypatch.setattr(place, lambda *_, **__: stories.kernel())
 
 
@@ -74,7 +74,7 @@ def test_words_ask_a_model_and_are_remembered_with_what_was_edited(
 def test_a_run_that_was_interrupted_is_resumed_by_its_name(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("articad.agents.pipeline.kernel_named", lambda *_, **__: stories.kernel())
+    monkeypatch.setattr("articad.agents.settings.kernel_named", lambda *_, **__: stories.kernel())
     model = stories.flap()
     monkeypatch.setattr("articad.agents.live.LiteLLM", lambda *_, **__: model)
     run = str(tmp_path / "run")
