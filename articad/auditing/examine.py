@@ -21,10 +21,10 @@ from articad.auditing.urdf_text import UrdfText
 from articad.certificates.certificate import Certificate
 from articad.errors import ArticadError, ReadError
 from articad.findings import Finding, Findings
-from articad.importers.closure import package_of, require_closed
 from articad.importers.freecad import read_freecad
 from articad.importers.mjcf import read_mjcf
 from articad.importers.reading import MAX_LINKS, Folder, read_xml, unreadable
+from articad.importers.referenced_files import package_of, require_closed
 from articad.importers.urdf import read_urdf
 from articad.runs.run import REQUEST_FILE
 from articad.simulation.loading import ENGINES, Loading, load_in_all

@@ -31,8 +31,8 @@ from articad.export.urdf import write_urdf
 from articad.geometry.mass import MassProperties
 from articad.geometry.mesh import TriMesh
 from articad.geometry.mesh_files import write_obj, write_stl
-from articad.importers.closure import package_of
 from articad.importers.reading import MM_PER_M, Folder, read_xml
+from articad.importers.referenced_files import package_of
 
 BAD_INERTIA = ("E_AUDIT_INERTIA", "E_AUDIT_INERTIA_TRIANGLE", "W_AUDIT_INERTIA_SHAPE", "W_AUDIT_COM")
 

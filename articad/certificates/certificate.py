@@ -20,8 +20,9 @@ import numpy as np
 
 from articad.certificates.claims import Claim
 from articad.certificates.clearing import MOST_PAIRS
-from articad.certificates.linkage import DriverTrack, LinkageProver, driven_range
+from articad.certificates.linkage import DriverTrack, LinkageProver
 from articad.certificates.proof import Proof, Prover, beyond
+from articad.certificates.ranges import driven_range
 from articad.certificates.verifier import PROOF, Checker, Refuted, covered, widened
 from articad.connectors.mate import flip
 from articad.connectors.se3 import SE3

@@ -24,15 +24,13 @@ from numpy.typing import NDArray
 from articad.certificates.clearing import Boxes, CannotCut, Cleared
 from articad.certificates.proof import Proof, Prover, Shrink
 from articad.certificates.spread import Spread
-from articad.certificates.verifier import FLOAT, Checker, Refuted, joined
+from articad.certificates.verifier import Checker, Refuted, joined
 from articad.connectors.se3 import SE3
 from articad.interference.motion import Chain, Freedom, Route, scattered
 from articad.interference.overlap import Overlap, overlap
 from articad.interference.scene import Scene
 from articad.interference.verdict import UNRELATED_VOLUME_MM3
 from articad.interference.work import CLOSED, PLACED, WorkBudget, piece_price
-from articad.kinematics.mechanism import Mechanism
-from articad.kinematics.motion import track_of
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -46,7 +44,6 @@ WIDER = 1.2  # factor on the distance within which there is a solution, to get t
 ROOM = (2e-4, 2e-6)  # rad or mm: margin of a tube; a large one allows long pieces, but with many joints only a small one works
 SMALLEST_PIECE = 1e-4  # rad or mm: precision of the end of the free range along a driver
 LOOKS = 24  # poses sampled beyond contact
-MOST_TURNS = 64  # turns of a driver of couplings alone, after which its followers count as never returning
 REACHED = 1e-6  # rad or mm: largest deviation of the centre of a box from the pose of the mechanism that replaces it
 _CLOSED = 1e-10  # tolerance of loops and couplings
 _STILL = 1e-14  # of a Newton step: rounding
@@ -313,59 +310,6 @@ class DriverTrack:
             f"{key}.cuts": np.array([cut[0] for _, cut in cuts], dtype=np.int64),
             f"{key}.at": np.array([cut[1] for _, cut in cuts], dtype=np.float64),
         }
-
-
-def driven_range(mechanism: Mechanism, checker: Checker, index: int) -> tuple[tuple[float, float], tuple[str, str]]:
-    """Return the range over which a driver is to be followed, and what ends it below and above.
-
-    Without limits that is the travel after which all its followers have returned: about rest, or from its only limit.
-
-    Args:
-        mechanism: A mechanism with loops or couplings.
-        checker: The checker of its certificate.
-        index: Index of the driver among the mechanism's.
-
-    Raises:
-        ValueError: If its followers do not return.
-    """
-    driver = mechanism.drivers[index]
-    feasible, rest = mechanism.feasible_range(driver.name), float(checker.rest[driver.name])
-    reasons = feasible.lower_reason, feasible.upper_reason
-    ends, declared = (feasible.lower, feasible.upper), (driver.lower, driver.upper)
-    open_ends = [
-        math.isinf(limit) and (math.isinf(end) or reason in ("endless", "not followed further"))
-        for limit, end, reason in zip(declared, ends, reasons, strict=True)
-    ]
-    if not any(open_ends):
-        return ends, reasons
-    length = _period(mechanism, checker, index, 1 if open_ends[1] else -1)
-    if all(open_ends):
-        return (rest - length / 2, rest + length / 2), reasons
-    turns = max(1, math.ceil((ends[1] - rest if open_ends[0] else rest - ends[0]) / length))
-    return ((ends[1] - turns * length, ends[1]) if open_ends[0] else (ends[0], ends[0] + turns * length)), reasons
-
-
-def _period(mechanism: Mechanism, checker: Checker, index: int, sign: int) -> float:
-    """Return the travel of a driver after which all its followers have returned up to whole turns [rad]."""
-    driver = mechanism.drivers[index]
-    names = checker.followers((driver.name,))
-    rest = np.array([checker.rest[name] for name in names])
-    _, J, share = checker.closure(names, rest, rest)
-    turns = np.array([checker.turns[name][2] and not checker.turns[name][3] for name in names])
-    if not turns[0]:
-        raise ValueError(f"{driver.name} slides without limits")
-    if not share.any():  # couplings alone: each follower turns at its own fixed rate
-        rates = np.append(1.0, -np.linalg.pinv(J[:, 1:], rcond=1e-7) @ J[:, 0])
-        for count in range(1, MOST_TURNS + 1):
-            whole = np.where(turns, np.round(count * rates), 0.0)
-            if (np.abs(count * rates - whole) <= FLOAT / 2 * np.maximum(1.0, np.abs(whole))).all():
-                return 2 * math.pi * count
-        raise ValueError(f"the followers of {driver.name} do not return within {MOST_TURNS} of its turns")
-    track = track_of(mechanism, index, mechanism.rest)
-    period = None if track is None else track.period(sign)
-    if period is None:
-        raise ValueError(f"the followers of {driver.name} are not known to return after a number of its turns")
-    return period.length
 
 
 class Steps:

@@ -20,7 +20,6 @@ from articad.geometry.mass import MassProperties
 from articad.geometry.mesh import TriMesh
 from articad.geometry.part import DEFAULT_COLOR, Primitive, Shape
 from articad.geometry.shapes import box, capsule, cylinder, sphere
-from articad.importers.closure import require_closed
 from articad.importers.fusing import fused, with_chains_named
 from articad.importers.mjcf_carried import Carrier
 from articad.importers.mjcf_compiled import Compiled, compiled_mjcf
@@ -28,6 +27,7 @@ from articad.importers.mjcf_kept import kept_attributes, section_elements, with_
 from articad.importers.raw import ENDLESS, IDENTITY, RawJoint, RawLink, RawModel, RawTie, aligned, assemble, require_links
 from articad.importers.reading import MM_PER_M, Folder, color_text, read_xml, unreadable
 from articad.importers.records import assembly_of, read_records, stale
+from articad.importers.referenced_files import require_closed
 from articad.kinematics.joints import JointType
 
 FloatArray = NDArray[np.float64]

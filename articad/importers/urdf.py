@@ -22,11 +22,11 @@ from articad.geometry.mesh import TriMesh
 from articad.geometry.part import DEFAULT_COLOR, Primitive, Shape
 from articad.geometry.shapes import box, cylinder, sphere
 from articad.geometry.shapes import capsule as capsule_mesh
-from articad.importers.closure import package_of
 from articad.importers.fusing import fused, with_chains_named
 from articad.importers.raw import ENDLESS, IDENTITY, RawJoint, RawLink, RawModel, RawTie, aligned, assemble, require_links
 from articad.importers.reading import MAX_LINKS, MM_PER_M, Folder, color_text, parse_xml, read_xml, unreadable
 from articad.importers.records import assembly_of, read_records, stale
+from articad.importers.referenced_files import package_of
 from articad.importers.srdf import kept_semantics, semantics_beside
 from articad.importers.urdf_kept import kept_elements
 from articad.importers.xacro import expanded

@@ -15,8 +15,8 @@ from typing import Any, Final
 
 from articad.errors import ReadError
 from articad.findings import Finding
-from articad.importers.closure import package_of
 from articad.importers.packages import environment_folders, find_package
+from articad.importers.referenced_files import package_of
 from articad.kernels import sandbox
 from articad.processes import launcher
 

@@ -13,7 +13,7 @@ from articad.errors import ArticadError, ReadError
 from articad.export.lowering import lower
 from articad.export.mjcf import write_mjcf
 from articad.export.urdf import write_urdf
-from articad.importers.closure import package_of, require_closed
+from articad.importers.referenced_files import package_of, require_closed
 from articad.processes import scratch
 from articad.simulation.expected import held_to_kinematics
 from articad.simulation.loading import Engine

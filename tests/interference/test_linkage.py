@@ -14,7 +14,8 @@ import pytest
 
 from articad.certificates import linkage, verifier
 from articad.certificates.certificate import Certificate, certify, constrained_joints, driver_names, mechanism_json
-from articad.certificates.linkage import DriverTrack, FollowedBox, driven_range
+from articad.certificates.linkage import DriverTrack, FollowedBox
+from articad.certificates.ranges import driven_range
 from articad.certificates.verifier import PROOF, Checker
 from articad.connectors import SE3
 from articad.geometry import TriMesh, box, cylinder, merged

@@ -11,8 +11,8 @@ import trimesh
 
 from articad.auditing.examine import AuditOptions, audit_file
 from articad.errors import ReadError
-from articad.importers.closure import require_closed
 from articad.importers.mjcf import read_mjcf
+from articad.importers.referenced_files import require_closed
 from articad.kernels import landlock
 from articad.simulation.examine import simulate_file
 from articad.simulation.loading import load
