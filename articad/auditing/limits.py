@@ -14,7 +14,6 @@ FULL_TURN_SLACK = math.radians(0.6)  # ±3.14 means a full turn
 DEGREES_FROM = 4 * math.pi  # rad; a range that begins there and consists of round numbers was written in degrees
 ROUND_DEGREES = 5.0
 LEAST_ALIKE = 3  # joints with the same effort or velocity before that is not a coincidence
-BEYOND_MM = 1e5  # a slide of 100 m means an unlimited one
 
 
 def reversed_limits(declared: Declared) -> Iterator[Finding]:

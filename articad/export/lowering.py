@@ -194,10 +194,6 @@ class LoweredModel:
     couplings: tuple[tuple[str, str, Follows], ...]
     features: tuple[Feature, ...]
 
-    def link_of(self, part: str) -> Link:
-        """Return the link of a part."""
-        return next(link for link in self.links if link.part.name == part)
-
 
 def metres(T: SE3) -> SE3:
     """Return the same motion with its translation in m: divided by 1000 exactly, the rotation unchanged."""

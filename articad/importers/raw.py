@@ -7,7 +7,7 @@ Links keep their own frames, so that poses can be compared with other readers. A
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
@@ -247,8 +247,3 @@ def _joint(joint: RawJoint, rest: tuple[float, ...], findings: list[Finding]) ->
         or ((0.0,) * max(len(ranges), 1) if joint.type not in {JointType.FIXED, JointType.FREE} else ()),  # unstated means none
         friction=joint.friction,
     )
-
-
-def with_ranges(joint: RawJoint, *ranges: tuple[float, float]) -> RawJoint:
-    """Return the joint with other limits."""
-    return replace(joint, ranges=ranges)

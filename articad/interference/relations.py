@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from itertools import combinations
 from typing import Literal, Protocol
 
 from articad.kinematics.joints import Joint, JointType
@@ -109,8 +108,3 @@ class Relations:
         """Return the path in the plan at which an overlap of two parts is reported."""
         joints = self.between(a, b)
         return f"joints.{joints[0].name}" if joints else f"parts.{a}"
-
-
-def all_pairs(names: Iterable[str]) -> list[tuple[str, str]]:
-    """Return all unordered pairs, each in the order given."""
-    return list(combinations(names, 2))

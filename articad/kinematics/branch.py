@@ -391,11 +391,6 @@ class Branch:
             sum(group.analysis.multiple for group in self.groups),
         )
 
-    def group_of(self, joint: str) -> Group | None:
-        """Return the group of a joint, the first one if its coordinates belong to several; None if the joint moves independently."""
-        first = self.layout.columns[joint]
-        return next((group for group in self.groups if any(first.start <= c < first.stop for c in group.columns)), None)
-
     def driven_by(self, column: int) -> tuple[Group, int] | None:
         """Return the group that a driver's column moves, and its place there; None if nothing follows it."""
         for group in self.groups:

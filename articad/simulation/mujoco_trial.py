@@ -27,7 +27,6 @@ MOST_ERROR = 0.2  # rad or m: largest error on which the controller acts
 HOLD_S = 1.0
 FREE_S = 1.0
 PUSH = 0.2  # rad/s or m/s with which a model is released
-FRAMES_OF_JOINT = 3
 
 
 class Stroke(NamedTuple):

@@ -18,12 +18,12 @@ from pydantic import Field
 
 from articad.assembly import Assembly
 from articad.connectors import FloatArray
-from articad.interference.captivity import escapes
 from articad.interference.gauge import Gauge
 from articad.kinematics.joints import Joint, JointType
 from articad.plan.fields import PlanObject
 from articad.plan.resolve import Fit
 from articad.simulation.examine import simulate_assembly, simulate_file
+from articad_bench.captivity import escapes
 from articad_bench.check import Bounds, Vector, in_words
 from articad_bench.check import Check as Check  # noqa: PLC0414  (others take them from here)
 from articad_bench.check import Judgement as Judgement  # noqa: PLC0414

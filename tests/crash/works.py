@@ -92,7 +92,8 @@ def generated(folder: Path, kernel_name: str = "fixed", recording: Path | None =
 def live(folder: Path, address: str) -> None:
     """What `articad generate` does with an endpoint; each call is a process of its own."""
     llm = Counted(LiteLLM("stub", api_base=address), folder / "calls")
-    generate(stories.FLAP_PROMPT, llm=llm, out=folder / "run", kernel=kernel("fixed"), cache=BuildCache(folder / "cache"), **OPTIONS)  # type: ignore[arg-type]
+    given = stories.settings(kernel=kernel("fixed"), cache=BuildCache(folder / "cache"), **OPTIONS)
+    generate(stories.FLAP_PROMPT, llm=llm, out=folder / "run", **given)
 
 
 def batch(folder: Path) -> None:

@@ -11,9 +11,9 @@ import pytest
 
 from articad.connectors import SE3
 from articad.geometry import TriMesh, box, cylinder
-from articad.interference.captivity import Escape, escapes, insertion_order
 from articad.interference.scene import Scene
 from articad.kinematics.joints import Joint
+from articad_bench.captivity import Escape, escapes, insertion_order
 from tests.interference.mechanisms import IDENTITY, at, block_with_bore, joint, manifold_mesh
 
 OUT = SE3.from_axes([0.0, 0, 0], [0.0, -1, 0], [1.0, 0, 0])
