@@ -25,7 +25,7 @@ from articad.agents.recollection import KeptDocumentation, KeptMemory
 from articad.agents.replies import ReplyForm, reader, schema_of
 from articad.agents.requirements import Requirements, pictures_of
 from articad.agents.retrieval import Memory
-from articad.agents.settings import RunOptions, Services
+from articad.agents.settings import RunOptions, Services, edit_request
 from articad.assembly import Assembly
 from articad.errors import AgentError, OutputError, PlanError, ReadError, did_you_mean
 from articad.findings import Finding, Findings
@@ -78,7 +78,7 @@ def edit(
         raise ReadError("No change is given: give a text, or values of parameters.", path=str(finished.path))
     options, services = options or RunOptions(), services or Services()
     base = Base.of(finished)
-    stored = options.editing(base.stored["kernel"], base.mark, values or {}, worded=bool(text.strip()))
+    stored = edit_request(options, base.stored["kernel"], base.mark, values or {}, worded=bool(text.strip()))
     request = RunRequest(prompt=text.strip(), images=tuple(UserImage.read(image) for image in images), options=stored)
     kernel = services.kernel_or(base.stored["kernel"])
     with open_or_create(request, out) as edited:

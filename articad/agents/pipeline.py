@@ -21,7 +21,7 @@ from articad.agents.llm import LLM, Recorded, Replay
 from articad.agents.part_builder import PartBuilder
 from articad.agents.recollection import KeptDocumentation, KeptMemory
 from articad.agents.retrieval import Memory
-from articad.agents.settings import RunOptions, Services, recalls
+from articad.agents.settings import RunOptions, Services, generate_request, recalls
 from articad.agents.single import SingleLine
 from articad.errors import AgentError, RunError
 from articad.findings import Findings
@@ -64,7 +64,7 @@ def generate(
     pictures = [UserImage.read(image) for image in images]
     pictures += [UserImage.read(image, part) for part, image in sorted((part_images or {}).items())]
     kernel = services.kernel_or("build123d")
-    request = RunRequest(prompt=prompt, images=tuple(pictures), options=options.generating(kernel.name))
+    request = RunRequest(prompt=prompt, images=tuple(pictures), options=generate_request(options, kernel.name))
     with open_or_create(request, out) as run:
         taught = _taught(run, options.variant, services)
         _work(run, llm, kernel, services, partial(_chosen_by_user, options.pick, services.choose), taught)

@@ -50,42 +50,42 @@ class RunOptions:
     review: Literal["none", "rules", "model"] = "none"
     variant: Variant = "full"
 
-    def generating(self, kernel: str) -> dict[str, Any]:
-        """Return what the request of a new run stores."""
-        judged = self.variant not in {"no-rollback", "single-loop"}
-        return {
-            "task": "generate",
-            **self._numbers(self.rounds),
-            "kernel": kernel,
-            "variant": self.variant,
-            "look": self.look and judged,
-            "inspection": self.inspection and judged,
-            "ideas": "always" if self.pick is not None else self.ideas,
-            "pick": self.pick,
-            "finetune": True,
-            **self._review(),
-        }
 
-    def editing(self, kernel: str, base: str, values: Mapping[str, float], *, worded: bool) -> dict[str, Any]:
-        """Return what the request of an edit stores; without words no model looks, judges or plans."""
-        return {
-            "task": "edit",
-            "base": base,
-            "set": dict(sorted(values.items())),
-            **self._numbers(self.rounds if worded else 1),
-            "kernel": kernel,
-            "variant": "full",
-            "finetune": worded,
-            "look": self.look and worded,
-            "inspection": self.inspection and worded,
-            **self._review(),
-        }
+def generate_request(options: RunOptions, kernel: str) -> dict[str, Any]:
+    """Return what the request of a new run stores."""
+    judged = options.variant not in {"no-rollback", "single-loop"}
+    return {
+        "task": "generate",
+        **_common(options),
+        "kernel": kernel,
+        "variant": options.variant,
+        "look": options.look and judged,
+        "inspection": options.inspection and judged,
+        "ideas": "always" if options.pick is not None else options.ideas,
+        "pick": options.pick,
+        "finetune": True,
+    }
 
-    def _numbers(self, rounds: int) -> dict[str, Any]:
-        return {"designs": self.designs, "repairs": self.repairs, "rounds": rounds, "formats": list(self.formats)}
 
-    def _review(self) -> dict[str, Any]:
-        return {} if self.review == "none" else {"review": self.review}  # left out of requests without it, as in older recordings
+def edit_request(options: RunOptions, kernel: str, base: str, values: Mapping[str, float], *, worded: bool) -> dict[str, Any]:
+    """Return what the request of an edit stores; without words no model looks, judges or plans."""
+    return {
+        "task": "edit",
+        "base": base,
+        "set": dict(sorted(values.items())),
+        **_common(options),
+        "rounds": options.rounds if worded else 1,
+        "kernel": kernel,
+        "variant": "full",
+        "finetune": worded,
+        "look": options.look and worded,
+        "inspection": options.inspection and worded,
+    }
+
+
+def _common(options: RunOptions) -> dict[str, Any]:
+    common = {"designs": options.designs, "repairs": options.repairs, "rounds": options.rounds, "formats": list(options.formats)}
+    return common if options.review == "none" else common | {"review": options.review}  # as in older recordings, which have no reviews
 
 
 def recalls(variant: str) -> bool:
