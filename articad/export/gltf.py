@@ -16,6 +16,7 @@ from articad.connectors.se3 import SE3
 from articad.errors import KinematicsError
 from articad.export.bundle import Bundle
 from articad.export.losses import Feature, kept_losses, losses_of, refuse
+from articad.export.markup import tidy
 from articad.export.names import Names, valid_name
 from articad.geometry.mesh import TriMesh
 from articad.kinematics.joints import Joint, JointType
@@ -281,7 +282,7 @@ def _continuous(quaternions: FloatArray) -> FloatArray:
 
 
 def _placement(T: SE3) -> dict[str, list[float]]:
-    return {"translation": [float(x) / MM_PER_M for x in T.translation], "rotation": [float(x) for x in T.quaternion]}
+    return {"translation": tidy(T.translation / MM_PER_M), "rotation": tidy(T.quaternion)}
 
 
 def _linear(color: str) -> list[float]:
