@@ -332,7 +332,8 @@ class Assembly:
 
         See `q` for the arguments and errors.
         """
-        return Poses(self.mechanism.parts, self.poses(self.q(**by_joint)))
+        q = self.q(**by_joint)
+        return Poses(self.mechanism.parts, self.poses(q) if by_joint else self.mechanism.at_rest)
 
     def poses(self, q: ArrayLike) -> SE3:
         """Place every part in the ground frame. Limits of joints are not checked here; `q` and `at` check them.
@@ -465,7 +466,7 @@ class Assembly:
         return self._with_fits(checks) if q is None else checks
 
     def _checked_at(self, q: ArrayLike | None, known: Mapping[tuple[str, str], PairCheck] | None) -> Checks:
-        poses = Poses(self.mechanism.parts, self.poses(self.mechanism.rest if q is None else q))
+        poses = Poses(self.mechanism.parts, self.mechanism.at_rest if q is None else self.poses(q))
         return check_scene(self.scene(), poses, over="rest" if q is None else "pose", ground=self.ground, known=known)
 
     def _moved(self) -> MotionSampler:
@@ -561,7 +562,7 @@ class Assembly:
         Args:
             q: Configuration `(nq,)` [rad, mm]; the rest pose by default.
         """
-        poses = Poses(self.mechanism.parts, self.poses(self.mechanism.rest if q is None else q))
+        poses = Poses(self.mechanism.parts, self.mechanism.at_rest if q is None else self.poses(q))
         return MassProperties.combined([part.mass.moved(poses[name]) for name, part in self.parts.items() if part.mass is not None])
 
     def dynamics(self, *, gravity: Sequence[float] = GRAVITY) -> Dynamics:

@@ -65,7 +65,7 @@ def contacts(
     deflections = {name: part.deflection for name, part in assembly.parts.items()}
     scene = Scene.of(meshes, assembly.joints, waivers=assembly.waivers, deflection=deflections, fits=assembly.fits)
     case = ContactCase(assembly, foreign, simple | _simple_parts(declared), filtered, scene, _neighbours(assembly, meshes))
-    poses = dict(zip(assembly.mechanism.parts, assembly.poses(assembly.mechanism.rest), strict=True))
+    poses = dict(zip(assembly.mechanism.parts, assembly.mechanism.at_rest, strict=True))
     found = Contacts(pairs=_at_rest(case, poses, WorkBudget(REST_S)))
     found.findings += explained(case, found.pairs.findings)
     found.findings += _held(case, declared, poses, found.pairs)

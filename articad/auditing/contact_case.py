@@ -110,7 +110,7 @@ def _by_share(case: ContactCase, finding: Finding) -> Finding:
     if not case.foreign or finding.code != "E_STATIC_OVERLAP":
         return finding
     a, b = (case.scene.bodies[name] for name in finding.parts)
-    poses = case.assembly.poses(case.assembly.mechanism.rest)
+    poses = case.assembly.mechanism.at_rest
     T = relative(*(poses[case.assembly.mechanism.part_index(name)] for name in finding.parts))
     much = volume(a, b, T.matrix[:3]) > STATIC_SHARE * min(a.volume, b.volume)
     return finding if much else replace(finding, code="W_STATIC_OVERLAP")

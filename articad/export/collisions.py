@@ -60,7 +60,7 @@ def collide(
     own = {link.part.name: tuple(placed.shape for placed in link.collisions) for link in model.links}
     formed = {link.part.name: tuple(placed.shape for placed in link.collisions) for link in shaped.links}
     asked = any(own[a] and own[b] and (a, b) not in skip and (b, a) not in skip for a, b in combinations(assembly.mechanism.parts, 2))
-    at_rest = assembly.poses(assembly.mechanism.rest)[None].matrix
+    at_rest = assembly.mechanism.at_rest[None].matrix
 
     def begun() -> ContactSearch:
         search = ContactSearch(assembly.mechanism.parts, at_rest, own)

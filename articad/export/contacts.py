@@ -38,7 +38,7 @@ def poses_in_motion(mechanism: Mechanism) -> FloatArray:
     joint excludes are omitted.
     """
     sweep = MotionSampler(Scene.of({}, mechanism.joints), mechanism)
-    found = [mechanism.poses(mechanism.rest)[None].matrix]
+    found = [mechanism.at_rest[None].matrix]
     for freedom in sweep.ranges():
         with contextlib.suppress(KinematicsError):  # a loop that is open at rest has only its rest pose
             found.append(sweep.placed([{freedom.name: value} for value in sweep.values(freedom, POSES_PER_FREEDOM).tolist()])[1])

@@ -61,7 +61,7 @@ def write_glb(assembly: Assembly, *, strict: bool = False) -> Bundle:
         {"name": valid_name(assembly.name), "rotation": Z_UP_TO_Y_UP, "children": []},
     ]
     tree = _Tree(assembly)
-    rest = tree.local(assembly.poses(assembly.mechanism.rest)[None])[0]
+    rest = tree.local(assembly.mechanism.at_rest[None])[0]
     for index, (name, part) in enumerate(assembly.parts.items()):
         node: dict[str, Any] = {"name": names.claim(name), **_placement(rest[index])}
         shapes = part.visuals or part.collisions

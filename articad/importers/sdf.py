@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from articad.arrays import FloatArray
 from articad.assembly import Assembly, Kept
 from articad.connectors.se3 import SE3
 from articad.errors import InvalidSolidError, ReadError
@@ -28,7 +28,6 @@ from articad.kinematics.joints import JointType
 
 __all__ = ["read_sdf"]
 
-FloatArray = NDArray[np.float64]
 
 MAX_DEPTH: Final = 20  # of nested models
 MAX_FILES: Final = 200  # largest number of included files

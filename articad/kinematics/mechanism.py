@@ -311,7 +311,15 @@ class Mechanism:
 
     def rest_poses(self) -> dict[str, SE3]:
         """Return the pose of every part at rest."""
-        return dict(zip(self.parts, self.poses(self.rest), strict=True))
+        return dict(zip(self.parts, self.at_rest, strict=True))
+
+    @cached_property
+    def at_rest(self) -> SE3:
+        """Poses of all parts at rest `(N,)` [mm, quaternion xyzw].
+
+        In NumPy also for one configuration: files state these numbers in full, and have the same bytes with every build of Pinocchio.
+        """
+        return self.arrays.poses(self._columns(self.rest))
 
     def jacobian(self, q: npt.ArrayLike, part: str, T_part_frame: SE3 | None = None) -> FloatArray:
         """Return how fast a frame of a part moves with each driver.

@@ -166,7 +166,7 @@ def _range(assembly: Assembly, driver: Coordinate, size: float) -> Json:
 
 def _size(assembly: Assembly) -> float:
     """Return the diagonal of the bounding box of everything at rest [mm]."""
-    poses = assembly.poses(assembly.mechanism.rest)
+    poses = assembly.mechanism.at_rest
     points = [
         poses[number].apply(shape.placed.bounds)
         for number, part in enumerate(assembly.parts.values())
