@@ -11,8 +11,10 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Literal, Self
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from articad.aliases import Progress
+from articad.arrays import FloatArray
 from articad.certificates.certificate import DEFAULT_BUDGET_S, DEFAULT_EPSILON_MM, Certificate, certify, constrained_joints
 from articad.certificates.fits import PROOF_SECONDS, FitReport, certified_fits, check_fits, followed
 from articad.connectors.se3 import SE3
@@ -28,7 +30,7 @@ from articad.interference.scene import Scene
 from articad.interference.sweep import DEFAULT_STEPS, MotionSampler
 from articad.kernels.choice import kernel_named
 from articad.kernels.kernel import BuildCache, PartKernel
-from articad.kernels.parts import Progress, RealisedPart, build_parts, find_scripts
+from articad.kernels.parts import RealisedPart, build_parts, find_scripts
 from articad.kinematics.configuration import Configuration
 from articad.kinematics.dynamics import GRAVITY, Dynamics
 from articad.kinematics.joints import Coordinate, Coupling, Joint, JointType
@@ -43,7 +45,6 @@ from articad.plan.schema import AssemblyPlan
 if TYPE_CHECKING:
     from PIL import Image
 
-FloatArray = NDArray[np.float64]
 JointValue = float | Sequence[float]
 
 DEFLECTION_MM = 0.01  # meshes stay this close to their solids; interference tolerances are derived from it

@@ -10,11 +10,11 @@ from pathlib import Path
 from typing import Literal
 
 from articad import formats
+from articad.aliases import Progress
 from articad.assembly import Assembly
 from articad.auditing.examine import AUDITED, AuditOptions, audit_assembly, audit_file, audit_made
 from articad.auditing.report import Audit
 from articad.certificates.certificate import DEFAULT_BUDGET_S, DEFAULT_EPSILON_MM, Certificate
-from articad.kernels.parts import Progress
 from articad.plan.schema import AssemblyPlan
 from articad.runs.record import assembly_of
 from articad.runs.run import REQUEST_FILE, Run

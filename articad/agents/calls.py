@@ -16,9 +16,8 @@ import time
 from concurrent.futures import Future
 from typing import Any, ClassVar, Final
 
+from articad.aliases import Json
 from articad.processes import launcher
-
-Json = dict[str, Any]
 
 START_S: Final = 180.0  # the import takes 2 s, on a cold and busy disk 10 s
 DESCRIBE_S: Final = 30.0  # to look up LiteLLM's data about some models, without network

@@ -10,6 +10,7 @@ from typing import Any, Final, Self
 
 from articad.agents.evidence import Known
 from articad.agents.requirements import Component, Requirements
+from articad.aliases import Json
 from articad.assembly import Assembly
 from articad.errors import ReadError
 from articad.interference.report import PairCheck, Strength
@@ -19,7 +20,6 @@ from articad.plan.resolve import ResolvedPlan, resolve
 from articad.plan.schema import AssemblyPlan
 from articad.runs.run import Run, digest
 
-Json = dict[str, Any]
 Pair = tuple[str, str]
 
 SCHEMA: Final = "articad.base/1"

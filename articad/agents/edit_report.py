@@ -13,6 +13,7 @@ import numpy as np
 
 from articad.agents.edit_base import Base
 from articad.agents.evidence import Known
+from articad.aliases import Json
 from articad.findings import Finding, Findings
 from articad.interference.check import Checks
 from articad.plan.brief import brief, brief_digest
@@ -20,7 +21,6 @@ from articad.plan.resolve import ResolvedPart, ResolvedPlan
 from articad.plan.schema import AssemblyPlan
 from articad.runs.run import Run
 
-Json = dict[str, Any]
 Reach = Literal["new", "removed", "described anew", "other numbers", "follows its source", "mirrored anew"]
 
 SCHEMA: Final = "articad.edit/1"

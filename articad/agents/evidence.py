@@ -13,7 +13,8 @@ from typing import Final
 
 from articad.agents.numbers import placed, short
 from articad.agents.travel import travels
-from articad.assembly import Assembly, FloatArray, Poses
+from articad.arrays import FloatArray
+from articad.assembly import Assembly, Poses
 from articad.certificates.fits import FitCheck
 from articad.findings import Finding, Findings
 from articad.interference.check import check_scene

@@ -9,11 +9,11 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator, Mapping
-from typing import Any
 
 import numpy as np
 
-from articad.assembly import FloatArray
+from articad.aliases import Json
+from articad.arrays import FloatArray
 from articad.errors import PlanError
 from articad.findings import Finding
 from articad.kernels.contract import DRIFT_ANGLE, primary_connector, seating
@@ -23,7 +23,6 @@ from articad.plan.resolve import ResolvedPlan
 from articad.plan.schema import AssemblyPlan
 
 _DIGITS = 6  # decimals of mm
-Json = dict[str, Any]
 
 
 def absorbed(resolved: ResolvedPlan, realised: Mapping[str, RealisedPart]) -> AssemblyPlan | None:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Any, Final
+from typing import Final
 
 from pydantic import Field
 
@@ -22,14 +22,13 @@ from articad.agents.pictures import part_picture
 from articad.agents.prompts import prompt, prompt_file, prompt_section
 from articad.agents.replies import ReplyForm, reader, schema_of
 from articad.agents.requirements import Requirements, pictures_of
+from articad.aliases import Json
 from articad.errors import OutputError, PlanError
 from articad.findings import Finding, Findings
 from articad.kernels.parts import RealisedPart
 from articad.plan.check import check_plan
 from articad.plan.resolve import ResolvedPlan, resolve
 from articad.plan.schema import AssemblyPlan, PartSpec
-
-Json = dict[str, Any]
 
 ROLE: Final = "connect"
 PICTURES: Final = 8  # parts whose pictures one agent gets at once

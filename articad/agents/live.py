@@ -20,10 +20,9 @@ import numpy as np
 
 from articad.agents.calls import DESCRIBE_S, Calls
 from articad.agents.llm import Image, Message, Meter, Reply, Request, Text, Usage, require_open_port, transport_error
+from articad.aliases import Json
 from articad.errors import TransportError
 from articad.memory.embedding import FloatArray, normalised
-
-Json = dict[str, Any]
 
 DEFAULT_MODEL: Final = "gemini/gemini-3-flash-preview"  # the paper's backbone: it accepts images and schemas, and its price is known
 TIMEOUT_S: Final = 600.0  # for one answer; a thinking model writes a large plan in minutes

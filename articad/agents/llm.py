@@ -20,11 +20,11 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any, Final, Literal, Protocol, runtime_checkable
 
+from articad.aliases import Json
 from articad.errors import BudgetError, ReadError, ReplayMissError, TransportError
 from articad.findings import Finding, Findings
 from articad.runs.run import Run, canonical_json, digest
 
-Json = dict[str, Any]
 Speaker = Literal["system", "user", "assistant"]
 
 RECORD_SCHEMA: Final = "articad.llm/1"

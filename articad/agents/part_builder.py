@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import threading
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
 from typing import Any, Final
@@ -14,6 +14,7 @@ from articad.agents.llm import LLM, Image, closed_port
 from articad.agents.part_writer import Attempt, PartWriter, failure_text
 from articad.agents.retrieval import Documentation, Memory
 from articad.agents.rollback import Fate
+from articad.aliases import Progress
 from articad.assembly import DEFLECTION_MM, Assembly
 from articad.errors import AgentError, ArticadError, ContractError, KernelError, OutputError
 from articad.findings import Finding, Findings
@@ -26,9 +27,6 @@ from articad.plan.schema import AssemblyPlan
 from articad.runs.run import Run
 
 CALLS_AT_ONCE: Final = 8  # parts requested in parallel; a model's answer takes minutes, and providers limit the rate
-
-Progress = Callable[[str, str], None]
-"""Called with a stage or a part and its outcome; from several threads."""
 
 
 class PartsError(ContractError):

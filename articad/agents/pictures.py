@@ -14,7 +14,8 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from articad.agents.llm import Image
-from articad.assembly import Assembly, FloatArray
+from articad.arrays import FloatArray
+from articad.assembly import Assembly
 from articad.connectors.se3 import SE3
 from articad.findings import Finding
 from articad.geometry.part import Part

@@ -26,7 +26,7 @@ import zlib
 from collections.abc import Callable, Iterable
 from typing import Any, Final, NoReturn
 
-Json = dict[str, Any]
+from articad.aliases import Json
 
 LARGEST_BODY: Final = 8 * 2**20  # bytes of an answer, as sent and decompressed: twice the longest text that is accepted
 MEMORY: Final = 224 * 2**20  # bytes of private data that a call may add to what the import took

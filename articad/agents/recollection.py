@@ -18,6 +18,7 @@ from articad.agents.replies import ReplyForm, ask, reader, schema_of
 from articad.agents.requirements import Requirements
 from articad.agents.retrieval import Documentation, Memory, NoDocumentation, NoMemory, Recalled
 from articad.agents.review import scores
+from articad.aliases import Json
 from articad.memory.case import Case
 from articad.memory.distil import case_of
 from articad.memory.documentation import DocumentationStore
@@ -25,8 +26,6 @@ from articad.memory.experience import ExperienceStore
 from articad.plan.resolve import resolve
 from articad.plan.schema import AssemblyPlan
 from articad.runs.run import Run
-
-Json = dict[str, Any]
 
 _LEAST: Final = 0.2  # similarity below which a case is not used; unrelated products are under 0.15
 _CASES: Final = 2  # of each kind, for a designer

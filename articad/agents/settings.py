@@ -10,9 +10,9 @@ from articad.agents.brainstorm import Choose
 from articad.agents.design import TRIES
 from articad.agents.part_writer import REPAIRS
 from articad.agents.retrieval import Documentation, Memory
+from articad.aliases import Progress
 from articad.kernels.choice import kernel_named
 from articad.kernels.kernel import BuildCache, PartKernel
-from articad.kernels.parts import Progress
 
 Variant = Literal["full", "late", "no-rollback", "no-memory", "single-loop"]
 Brainstorm = Literal["auto", "always", "never"]

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import ast
 import json
-from typing import Any, Final
+from typing import Final
 
 from pydantic import ValidationError
 
@@ -20,6 +20,7 @@ from articad.agents.part_writer import failure_text
 from articad.agents.prompts import prompt, prompt_section
 from articad.agents.replies import ReplyForm, parse_script, unusable
 from articad.agents.requirements import pictures_of
+from articad.aliases import Json
 from articad.assembly import Assembly
 from articad.errors import KernelError, OutputError, PlanError
 from articad.findings import Findings
@@ -27,8 +28,6 @@ from articad.plan.check import check_plan
 from articad.plan.resolve import resolve
 from articad.plan.schema import AssemblyPlan
 from articad.runs.record import record_assembly, record_checks
-
-Json = dict[str, Any]
 
 ROLE: Final = "single"
 RETRIES: Final = 5  # the paper's

@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 from typing import Final
 
-from articad.assembly import Assembly, FloatArray
+from articad.arrays import FloatArray
+from articad.assembly import Assembly
 from articad.kinematics.joints import Joint, JointType, swing, twist
 from articad.render.pictures import motion_frames
 

@@ -12,8 +12,8 @@ from functools import cached_property
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
+from articad.arrays import FloatArray
 from articad.assembly import Assembly
 from articad.connectors.se3 import SE3
 from articad.geometry.mesh import TriMesh
@@ -21,7 +21,6 @@ from articad.geometry.part import Part
 from articad.interference.relations import Groups
 from articad.kinematics.joints import JointType
 
-FloatArray = NDArray[np.float64]
 Role = Literal["visual", "collision"]
 
 MOVING = ("revolute", "continuous", "prismatic", "planar", "floating", "spherical", "screw")

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
+from articad.aliases import Progress
 from articad.auditing.examine import AUDITED, AuditOptions, audit_file
 from articad.auditing.report import Audit, Scoreboard
 from articad.errors import ArticadError
 from articad.findings import Finding, Findings
 from articad.importers.reading import read_xml
-
-Progress = Callable[[str, str], None]
 
 
 def models_below(folder: Path) -> Iterator[Path]:

@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from articad.auditing.declared import Declared, DeclaredInertial, DeclaredJoint, DeclaredLink, DeclaredShape, Role
 from articad.auditing.mesh_references import MeshReferences
@@ -18,8 +17,6 @@ from articad.findings import Finding
 from articad.geometry.mesh import TriMesh
 from articad.geometry.shapes import box, cylinder, sphere
 from articad.importers.reading import MM_PER_M
-
-FloatArray = NDArray[np.float64]
 
 _AXES = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
 _LARGEST = 1e12  # m, kg, N: beyond it arithmetic on poses loses all precision

@@ -11,8 +11,9 @@ from typing import Any, Final
 import numpy as np
 from scipy.stats import qmc
 
+from articad.aliases import Json
 from articad.batches import pool
-from articad.batches.items import BatchItem, Json
+from articad.batches.items import BatchItem
 from articad.batches.pool import MEMORY_GB, RETRIES, Told
 from articad.errors import ReadError
 from articad.plan.schema import AssemblyPlan

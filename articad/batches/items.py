@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import Any, Final, Literal
 
 from articad import __version__
+from articad.aliases import Json
 from articad.assembly import Assembly
 from articad.errors import ArticadError, ReadError
 from articad.findings import Findings
@@ -27,7 +28,6 @@ from articad.plan.schema import AssemblyPlan
 from articad.processes import scratch
 from articad.runs.run import digest
 
-Json = dict[str, Any]
 Gate = Literal["rest", "motion", "certified"]
 
 SCHEMA: Final = "articad.item/1"

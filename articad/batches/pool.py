@@ -16,10 +16,10 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Final, Self
 
+from articad.aliases import Json
 from articad.errors import ReadError
 from articad.processes import launcher
 
-Json = dict[str, Any]
 Told = Callable[[Json], object]
 
 RETRIES: Final = 2  # of a call whose worker died

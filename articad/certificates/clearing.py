@@ -17,13 +17,13 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from articad.arrays import FloatArray
 from articad.certificates.profile import Forest
 from articad.certificates.spread import Spread
 from articad.certificates.trail import CUT_A, CUT_B, CUT_RANGE, LEAN, OF_A, OF_B, ROUND, SWUNG, Trail
 from articad.interference.surface import Core
 from articad.interference.work import BOX, STEP, WorkBudget
 
-FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.signedinteger[Any]]
 
 ROUNDING_MM = 1e-9  # margin on distances for rounding in the arithmetic of poses

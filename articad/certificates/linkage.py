@@ -19,8 +19,8 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from articad.arrays import FloatArray, IntArray
 from articad.certificates.clearing import Boxes, CannotCut, Cleared
 from articad.certificates.proof import Proof, Prover, Shrink
 from articad.certificates.spread import Spread
@@ -32,8 +32,6 @@ from articad.interference.scene import Scene
 from articad.interference.verdict import UNRELATED_VOLUME_MM3
 from articad.interference.work import CLOSED, PLACED, WorkBudget, piece_price
 
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 Ends = tuple[tuple[float, float], ...]  # for each driver
 
 SMALLEST_STEP = 1e-6  # of the driver's range, below which it is not followed further

@@ -11,12 +11,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from articad.arrays import BoolArray, FloatArray
 from articad.interference.boxtree import BoxTree
 from articad.interference.meridian import Ends, meeting
 from articad.interference.surface import Surface
-
-FloatArray = NDArray[np.float64]
-BoolArray = NDArray[np.bool_]
 
 WEIGHT = 10.0  # of outlines relative to the size of pieces: pieces that outlines can separate are cut by them first
 SLIDING_WEIGHT = np.array([100.0, 100.0, 100.0, 1.0])  # the same for sliding joints: cut lengthwise first, since pieces at all heights meet

@@ -15,6 +15,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from articad.arrays import FloatArray
 from articad.certificates.claims import Claim, Course
 from articad.certificates.clearing import MOST_PAIRS, Boxes, Cleared, Ranges, clear
 from articad.certificates.profile import SLIDING_WEIGHT, WEIGHT, Forest
@@ -28,8 +29,6 @@ from articad.interference.surface import Core, Surface, inwards, near_by, whole_
 from articad.interference.verdict import UNRELATED_VOLUME_MM3
 from articad.interference.work import TREE_TRIANGLES, WorkBudget, look_price
 from articad.kinematics.joints import JointType
-
-FloatArray = NDArray[np.float64]
 
 LOOK_PAIRS = 300_000  # of pieces, after which a few poses are sampled, so that no proof is sought where there is a collision
 LOOKS = 40  # poses

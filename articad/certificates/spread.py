@@ -12,12 +12,9 @@ from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from articad.arrays import FloatArray, IntArray
 from articad.interference.motion import Chain, Mover
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 _PARALLEL = 1e-12  # |sine| of axes that are declared parallel, after the arithmetic of a few frames
 

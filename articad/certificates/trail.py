@@ -9,10 +9,8 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
+from articad.arrays import FloatArray, IntArray
 
 SWUNG, LEAN, ROUND, OUTSIDE, CUT_A, CUT_B, CUT_RANGE = -7, -6, -5, -4, -3, -2, -1
 OF_A, OF_B = 0, 1  # the frame in which a direction is written

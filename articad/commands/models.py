@@ -16,7 +16,8 @@ if TYPE_CHECKING:
     from articad.agents.brainstorm import Alternative, Choose
     from articad.agents.llm import Budget
     from articad.agents.settings import RunOptions, Services
-    from articad.commands.terminal import Progress, Report, Terminal
+    from articad.aliases import Progress
+    from articad.commands.terminal import Report, Terminal
     from articad.memory.experience import ExperienceStore
     from articad.runs.run import Run
 

@@ -11,8 +11,9 @@ from typing import TYPE_CHECKING, Literal
 
 if TYPE_CHECKING:
     from articad.agents.llm import Budget
+    from articad.aliases import Progress
     from articad.assembly import Assembly
-    from articad.commands.terminal import Progress, Report, Terminal
+    from articad.commands.terminal import Report, Terminal
     from articad.kernels.kernel import BuildCache
     from articad.memory.experience import ExperienceStore
     from articad.plan.schema import AssemblyPlan

@@ -17,6 +17,8 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, TextIO
 
+from articad.aliases import Progress
+
 if TYPE_CHECKING:
     from articad.errors import ArticadError
     from articad.findings import Findings
@@ -24,8 +26,6 @@ if TYPE_CHECKING:
 Report = dict[str, Any]
 """The report of a command: `{"schema": "articad.<kind>/1", "ok": bool, "findings": […], …}`."""
 
-Progress = Callable[[str, str], None]
-"""Called with a part's or stage's name and its new state; may be called from any thread."""
 
 _STARTED = "started"
 _DONE = "done"  # a step of the program itself

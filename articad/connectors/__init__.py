@@ -6,7 +6,6 @@ Lengths are millimetres, angles radians. Names of frames: `T_a_b` maps coordinat
 from articad.connectors.attachment import Attachment
 from articad.connectors.connector import Connector, Drift, Plane
 from articad.connectors.mate import FLIP, Mate, child_pose, drift_of, flip, parent_pose, rest_mismatch
-from articad.connectors.quaternion import FloatArray
 from articad.connectors.se3 import SE3, axis_findings, world_x
 
 __all__ = [
@@ -15,7 +14,6 @@ __all__ = [
     "Attachment",
     "Connector",
     "Drift",
-    "FloatArray",
     "Mate",
     "Plane",
     "axis_findings",

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
-from articad.connectors.quaternion import FloatArray
+from articad.arrays import FloatArray
 from articad.connectors.se3 import SE3
 from articad.errors import ConnectorError
 from articad.findings import Finding

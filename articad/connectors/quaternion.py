@@ -6,9 +6,8 @@ Nothing here validates; the constructors of `SE3` do, once.
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
-FloatArray = npt.NDArray[np.float64]
+from articad.arrays import FloatArray
 
 _SMALL_SINE = 1e-8  # below it θ/sin(θ/2) equals 2/cos(θ/2) to the last bit
 _SERIES_BELOW = 0.25  # rad; below it closed forms lose digits by cancellation, while the series is accurate to 1e-17

@@ -9,8 +9,8 @@ from typing import Any, NoReturn
 import numpy as np
 import numpy.typing as npt
 
+from articad.arrays import FloatArray
 from articad.connectors import quaternion
-from articad.connectors.quaternion import FloatArray
 from articad.errors import ConnectorError
 from articad.findings import Finding, Findings
 

@@ -19,8 +19,8 @@ from dataclasses import dataclass, field
 from itertools import product
 
 import numpy as np
-from numpy.typing import NDArray
 
+from articad.arrays import FloatArray
 from articad.connectors.mate import flip
 from articad.connectors.se3 import SE3
 from articad.geometry.mass import MassProperties
@@ -29,7 +29,6 @@ from articad.kinematics.joints import Joint, JointType
 from articad.kinematics.mechanism import Mechanism
 from articad.kinematics.tree import Edge
 
-FloatArray = NDArray[np.float64]
 Span = tuple[int, int]  # consecutive parts in the tree's order: a part with everything below it
 
 LEAST_REACH_M = 1e-3  # a joint whose parts have no extent still gets a finite velocity

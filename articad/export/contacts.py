@@ -12,6 +12,7 @@ import manifold3d
 import numpy as np
 from numpy.typing import NDArray
 
+from articad.arrays import FloatArray
 from articad.errors import KinematicsError
 from articad.export.convex import manifold
 from articad.export.hulls import HULL_DEPTH_MM, HULL_VOLUME_MM3, HullOverlap, Pair
@@ -24,7 +25,6 @@ from articad.interference.sweep import MotionSampler
 if TYPE_CHECKING:
     from articad.kinematics.mechanism import Mechanism
 
-FloatArray = NDArray[np.float64]
 
 POSES_PER_FREEDOM = 13  # over its range or each of its turns, the others at rest
 CONVEX_SHARE = 1e-9  # of its volume: rounding in the hull of a convex part

@@ -10,16 +10,14 @@ from typing import Any, Final
 
 import manifold3d
 import numpy as np
-from numpy.typing import NDArray
 
+from articad.arrays import FloatArray
 from articad.connectors.se3 import SE3
 from articad.errors import ArticadError
 from articad.geometry.inscribed import MOST_PIECES, SCHEME, Inscribed, Piece, inscribed
 from articad.geometry.mesh import TriMesh
 from articad.geometry.part import Primitive
 from articad.kernels.cache import BuildCache
-
-FloatArray = NDArray[np.float64]
 
 _FILE: Final = "pieces.npz"
 

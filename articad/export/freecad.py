@@ -33,8 +33,6 @@ SOLVED_MM, SOLVED_RAD = 1e-6, 1e-8  # largest motions of parts by FreeCAD's solv
 _SECONDS, _SECONDS_A_PART = 120.0, 5.0
 _PROGRESS = re.compile(r"\(\d+ %\)|^MbD:|^Time = |^Recompute\.")  # lines that FreeCAD always writes
 
-Json = dict[str, Any]
-
 
 def write_freecad(assembly: Assembly, *, strict: bool = False, freecad: FreeCAD | None = None) -> Bundle:
     """Write an assembly as a FreeCAD 1.0 document; FreeCAD 1.1 opens it as well.

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from articad.aliases import Json
 from articad.connectors.mate import FLIP, Mate
 from articad.connectors.se3 import SE3
 from articad.export.bundle import Loss
@@ -48,8 +49,6 @@ _TYPES = {
     JointType.UNIVERSAL: "Ball",  # together with a Perpendicular
 }
 _COUPLINGS = {"gear": "Gears", "belt": "Belt", "rack": "RackPinion", "screw": "Screw"}
-
-Json = dict[str, Any]
 
 
 class Job:

@@ -11,13 +11,12 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from lxml import etree
 from lxml.etree import _Element as Element
-from numpy.typing import NDArray
 
+from articad.aliases import Json
 from articad.connectors.se3 import SE3
 from articad.errors import ExportError
 from articad.export.freecad_file import Appearance
@@ -53,9 +52,6 @@ _KINDS = (
 _STAYS = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0]
 _NO_XML = re.compile(r"[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")  # characters that XML cannot contain
 _NULL = "bnVsbA=="  # base64 of null: FreeCAD's state of a Python object without one
-
-Json = dict[str, Any]
-FloatArray = NDArray[np.float64]
 
 
 def document(job: Json, folder: Path, names: Names) -> tuple[bytes, Appearance]:

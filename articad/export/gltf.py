@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from articad.arrays import FloatArray
 from articad.connectors.mate import flip
 from articad.connectors.se3 import SE3
 from articad.errors import KinematicsError
@@ -24,7 +25,6 @@ from articad.kinematics.joints import Joint, JointType
 if TYPE_CHECKING:
     from articad.assembly import Assembly
 
-FloatArray = NDArray[np.float64]
 
 MM_PER_M = 1000.0
 SECONDS = 4.0  # of one animation, forwards and back

@@ -10,12 +10,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from articad.arrays import FloatArray
 from articad.connectors.se3 import SE3
 from articad.geometry.mass import TRIANGLE_TOLERANCE, MassProperties
-
-FloatArray = NDArray[np.float64]
 
 CARRIER_MASS_KG = 1e-4  # small compared with any part, but far above the minimum of simulators (1e-15)
 CARRIER_INERTIA_KG_M2 = 1e-7  # of a ball of 50 mm radius and the carrier's mass: this keeps mass matrices well conditioned

@@ -19,8 +19,8 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
+from articad.arrays import FloatArray
 from articad.connectors.mate import flip
 from articad.connectors.se3 import SE3
 from articad.export.features import features_of, rigid_with_ground, solid_enough, steps_of_bodies, without_own_mass
@@ -35,7 +35,6 @@ from articad.kinematics.joints import Joint, JointType, Step
 if TYPE_CHECKING:
     from articad.assembly import Assembly
 
-FloatArray = NDArray[np.float64]
 Kind = Literal["turn", "slide"]
 
 

@@ -6,8 +6,8 @@ import math
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from articad.arrays import FloatArray
 from articad.errors import ExportError, KinematicsError
 from articad.export.lowering import Follows, LoweredModel
 from articad.findings import Finding
@@ -17,7 +17,6 @@ from articad.kinematics.mechanism import Mechanism
 if TYPE_CHECKING:
     from articad.assembly import Assembly
 
-FloatArray = NDArray[np.float64]
 
 LARGEST_GAP_MM = 0.1  # largest error of any point of a part if a linear relation replaces a loop
 SAMPLES = 33  # of the driver's range

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 from lxml import etree
-from numpy.typing import NDArray
 
+from articad.arrays import FloatArray
 from articad.connectors.se3 import SE3
 from articad.errors import ExportError
 from articad.export.bundle import Bundle
@@ -24,7 +24,6 @@ from articad.kinematics.joints import JointType
 if TYPE_CHECKING:
     from articad.assembly import Assembly
 
-FloatArray = NDArray[np.float64]
 Process = Literal["fdm", "sla", "sls"]
 
 CLEARANCE_MM: dict[Process, float] = {"fdm": 0.2, "sla": 0.1, "sls": 0.3}

@@ -10,8 +10,8 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from articad.arrays import FloatArray
 from articad.connectors.mate import flip
 from articad.connectors.se3 import SE3
 from articad.export.bundle import Bundle
@@ -32,7 +32,6 @@ from articad.kinematics.joints import Joint, JointType
 if TYPE_CHECKING:
     from articad.assembly import Assembly
 
-FloatArray = NDArray[np.float64]
 
 MM_PER_M = 1000.0
 _WHOLE = re.compile(r"\.0(?=[,\]])")  # of numbers in JSON

@@ -27,6 +27,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import ConvexHull, HalfspaceIntersection, QhullError
 
+from articad.arrays import FloatArray
 from articad.connectors.se3 import SE3
 from articad.geometry.mesh import TriMesh
 from articad.geometry.part import Primitive
@@ -34,7 +35,6 @@ from articad.geometry.shapes import box, cylinder, sphere
 
 __all__ = ["INSIDE_MM", "MOST_PIECES", "Inscribed", "Piece", "inscribed", "missing_bound"]
 
-FloatArray = NDArray[np.float64]
 
 MOST_PIECES: Final = 32
 BOUND_MM, BOUND_SHARE = 0.5, 0.01  # how far the solid may extend beyond its pieces: the larger of the two; the share is of its diagonal

@@ -7,12 +7,11 @@ from dataclasses import dataclass
 from typing import Self
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from articad.arrays import FloatArray
 from articad.connectors.se3 import SE3
 from articad.errors import InvalidSolidError
-
-FloatArray = NDArray[np.float64]
 
 M3_PER_MM3 = 1e-9
 SYMMETRY_TOLERANCE = 1e-9  # relative; an inertia computed in floating point is symmetric up to the last bits

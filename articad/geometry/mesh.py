@@ -11,10 +11,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from articad.arrays import FloatArray
 from articad.connectors.se3 import SE3
 from articad.errors import InvalidSolidError
 
-FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int32]
 
 DIGEST_TAG = b"articad.mesh/1"  # first bytes of the hashed data; independent checkers hash the same

@@ -20,12 +20,11 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from articad.arrays import FloatArray
 from articad.errors import ArticadError, ReadError
 from articad.files import read_file
 from articad.findings import Finding
 from articad.geometry.mesh import TriMesh, merged
-
-FloatArray = NDArray[np.float64]
 
 MAX_FILE_BYTES = 1 << 30  # a mesh of 20 million triangles; more is a mistake or an attack
 STL_HEADER = b"articad binary STL, mm".ljust(80, b" ")  # must not begin with "solid", or readers take it for text

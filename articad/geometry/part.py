@@ -11,8 +11,9 @@ from types import MappingProxyType
 from typing import Literal, Self
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from articad.arrays import FloatArray
 from articad.connectors.attachment import Attachment
 from articad.connectors.connector import Connector
 from articad.connectors.se3 import SE3
@@ -23,7 +24,6 @@ from articad.geometry.mesh_files import read_mesh
 
 __all__ = ["MassProperties", "Part", "Primitive", "Shape", "Solid", "SolidReader"]
 
-FloatArray = NDArray[np.float64]
 
 DEFAULT_COLOR = "#9aa5b1"
 IDENTITY = SE3.identity()

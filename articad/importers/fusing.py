@@ -14,15 +14,13 @@ from itertools import pairwise
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from articad.arrays import FloatArray
 from articad.connectors.se3 import SE3
 from articad.findings import Finding
 from articad.geometry.mass import MassProperties
 from articad.importers.raw import RawJoint, RawLink, RawModel, RawTie
 from articad.kinematics.joints import JointType
-
-FloatArray = NDArray[np.float64]
 
 BARE_MASS_KG = 1e-3  # at most: exporters give carriers a little mass, because engines refuse massless links
 SAME_POINT_MM = 1e-6

@@ -11,8 +11,8 @@ from typing import Any, Final
 
 import numpy as np
 from lxml import etree
-from numpy.typing import NDArray
 
+from articad.arrays import FloatArray
 from articad.assembly import Assembly, Kept
 from articad.connectors.se3 import SE3
 from articad.findings import Finding
@@ -29,8 +29,6 @@ from articad.importers.reading import MM_PER_M, Folder, color_text, read_xml, un
 from articad.importers.records import assembly_of, read_records, stale
 from articad.importers.referenced_files import require_closed
 from articad.kinematics.joints import JointType
-
-FloatArray = NDArray[np.float64]
 
 _RECORD_PREFIX = "articad."
 

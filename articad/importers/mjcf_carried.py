@@ -12,14 +12,12 @@ from typing import Any, Final
 
 import numpy as np
 from lxml import etree
-from numpy.typing import NDArray
 
 from articad.assembly import Kept
 from articad.importers.mjcf_compiled import Compiled
 
 __all__ = ["CARRIED", "Carrier"]
 
-FloatArray = NDArray[np.float64]
 Names = Callable[[str, int], str]
 
 _GEOM: Final = {

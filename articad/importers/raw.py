@@ -11,8 +11,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
+from articad.arrays import FloatArray
 from articad.assembly import Assembly, Kept
 from articad.connectors.connector import Connector
 from articad.connectors.mate import FLIP, Mate
@@ -24,8 +24,6 @@ from articad.geometry.part import DEFAULT_COLOR, Part, Shape
 from articad.importers.reading import LARGEST_MM, MAX_LINKS, unreadable
 from articad.kinematics.joints import Coupling, Joint, JointLimits, JointType
 from articad.kinematics.mechanism import Mechanism
-
-FloatArray = NDArray[np.float64]
 
 IDENTITY = SE3.identity()
 ENDLESS = (-math.inf, math.inf)

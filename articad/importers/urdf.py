@@ -11,8 +11,8 @@ from typing import Any
 
 import numpy as np
 from lxml import etree
-from numpy.typing import NDArray
 
+from articad.arrays import FloatArray
 from articad.assembly import Assembly
 from articad.connectors.se3 import SE3
 from articad.errors import InvalidSolidError
@@ -31,8 +31,6 @@ from articad.importers.srdf import kept_semantics, semantics_beside
 from articad.importers.urdf_kept import kept_elements
 from articad.importers.xacro import expanded
 from articad.kinematics.joints import JointType
-
-FloatArray = NDArray[np.float64]
 
 EXPAND = "Run `xacro FILE.urdf.xacro > FILE.urdf` (pip install xacro) and read its output."
 _XACRO = {"http://www.ros.org/wiki/xacro", "http://ros.org/wiki/xacro", "http://wiki.ros.org/xacro"}

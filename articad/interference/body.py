@@ -11,10 +11,9 @@ import manifold3d
 import numpy as np
 from numpy.typing import NDArray
 
+from articad.arrays import FloatArray
 from articad.connectors.se3 import SE3
 from articad.geometry.mesh import TriMesh
-
-FloatArray = NDArray[np.float64]
 
 _EXTREME_DIRECTIONS = np.array([[x, y, z] for x in (-1, 0, 1) for y in (-1, 0, 1) for z in (-1, 0, 1) if x or y or z], dtype=np.float64)
 _SCATTERED = 600

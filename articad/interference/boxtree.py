@@ -10,9 +10,9 @@ from weakref import WeakKeyDictionary
 import numpy as np
 from numpy.typing import NDArray
 
+from articad.arrays import FloatArray
 from articad.interference.surface import Surface
 
-FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.signedinteger[Any]]
 Bounds = NDArray[np.float32]
 

@@ -19,6 +19,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from articad.arrays import FloatArray
 from articad.errors import KinematicsError
 from articad.findings import Findings
 from articad.interference.motion import Freedom, scattered
@@ -27,8 +28,6 @@ from articad.interference.relations import Relation
 from articad.interference.report import Checks, Strength, rounded
 from articad.interference.scene import relatives
 from articad.interference.sweep import MotionSampler
-
-FloatArray = NDArray[np.float64]
 
 LINE, SIDE, SCATTERED = 17, 6, 96  # poses along one driver, on a side of a grid of two, and over all
 MOST_GRIDS = 60  # of two drivers

@@ -11,16 +11,14 @@ from typing import NamedTuple
 from weakref import WeakKeyDictionary
 
 import numpy as np
-from numpy.typing import NDArray
 
+from articad.arrays import FloatArray
 from articad.interference.body import Body
 from articad.interference.meridian import Ends, meeting, outline
 from articad.interference.overlap import one_contains_the_other
 from articad.interference.scene import Scene, box_about, boxes_apart
 from articad.interference.surface import Core
 from articad.kinematics.joints import JointType
-
-FloatArray = NDArray[np.float64]
 
 _TURNING = (JointType.REVOLUTE, JointType.CYLINDRICAL, JointType.SCREW)
 _WORTH_OUTLINES = 8  # queries of two shapes on one axis from which comparing outlines is cheaper

@@ -10,12 +10,9 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
 from articad.interference.motion import Distance
 from articad.interference.work import DISTANCE, WorkBudget
-
-FloatArray = NDArray[np.float64]
 
 STRICT = 1e-7  # share by which a box is smaller than its distance allows, so that the inequality is strict despite rounding
 _GUESS = 0.97  # of the width that a linear distance would allow: a miss costs one query, too small a guess costs many

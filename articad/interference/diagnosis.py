@@ -13,8 +13,8 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from articad.arrays import FloatArray
 from articad.connectors.se3 import SE3
 from articad.findings import Finding, Findings
 from articad.interference.body import Body, winding_numbers
@@ -25,8 +25,6 @@ from articad.interference.surface import Core
 from articad.interference.verdict import UNRELATED_VOLUME_MM3
 from articad.kinematics.joints import Joint, JointType
 from articad.kinematics.tree import KinematicTree
-
-FloatArray = NDArray[np.float64]
 
 CLEARANCE_MM = 0.2  # proposed for the radius of a bore and for both sides of a slot
 ROUND_SHARE = 0.9  # of the cylinder about the axis: an overlap that fills this share of it is a pin

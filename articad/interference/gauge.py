@@ -15,8 +15,8 @@ from weakref import WeakKeyDictionary
 
 import fcl
 import numpy as np
-from numpy.typing import NDArray
 
+from articad.arrays import FloatArray
 from articad.connectors.mate import flip
 from articad.connectors.se3 import SE3
 from articad.errors import InvalidSolidError
@@ -28,8 +28,6 @@ from articad.interference.relations import FitLike
 from articad.interference.scene import Scene
 from articad.interference.surface import Core, Surface, split_by_radius, surface_distance, whole_surface
 from articad.kinematics.joints import Joint, JointType
-
-FloatArray = NDArray[np.float64]
 
 STOP_MM = 1e-3  # surfaces this close have met
 _MOST_STEPS = 200  # towards a stop

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from articad.arrays import FloatArray
 from articad.connectors.se3 import SE3
 from articad.findings import Finding
 from articad.interference.body import Body
@@ -15,8 +15,6 @@ from articad.interference.relations import Groups
 from articad.interference.report import PairCheck
 from articad.interference.scene import Placement
 from articad.kinematics.joints import Joint, JointType
-
-FloatArray = NDArray[np.float64]
 
 TOUCH_MM = 0.1  # largest distance of surfaces that are fixed to each other: glue, or a bolt in its hole
 NEAR_MM = 5.0  # a part within this distance of another is held by it: runners, shadow gaps

@@ -7,13 +7,11 @@ Only the triangles whose outlines meet need a proof over the range.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from articad.arrays import BoolArray, FloatArray
 from articad.interference.boxtree import BoxTree
 from articad.interference.surface import Core
 
-FloatArray = NDArray[np.float64]
-BoolArray = NDArray[np.bool_]
 Ends = tuple[FloatArray, FloatArray]
 
 _ROUNDING = 1e-9  # rad, of angles

@@ -14,13 +14,11 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from articad.arrays import FloatArray
 from articad.connectors.mate import flip
 from articad.connectors.se3 import SE3
 from articad.kinematics.joints import Joint, JointType
-
-FloatArray = NDArray[np.float64]
 
 _PRIMES = (2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53, 59, 61, 67, 71)
 _TINY = 1e-9  # rad: for smaller angles the sine equals the angle

@@ -7,18 +7,13 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from articad.arrays import BoolArray, FloatArray, IntArray
 from articad.connectors.se3 import SE3
 from articad.geometry.mesh import TriMesh
 from articad.interference.body import Body, body_of
 from articad.interference.relations import FitLike, Relations, WaiverLike
 from articad.kinematics.joints import Joint
-
-FloatArray = NDArray[np.float64]
-
-BoolArray = NDArray[np.bool_]
-IntArray = NDArray[np.int64]
 
 _PARALLEL = 1e-12  # added to the cosines between edges
 _NEXT, _LAST = [1, 2, 0], [2, 0, 1]

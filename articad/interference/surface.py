@@ -15,10 +15,9 @@ import fcl
 import numpy as np
 from numpy.typing import NDArray
 
+from articad.arrays import FloatArray
 from articad.geometry.mesh import TriMesh
 from articad.interference.body import body_of, make_bvh
-
-FloatArray = NDArray[np.float64]
 
 _SHORTER = 1 - 1e-6  # so that no vertex moves farther than stated, despite rounding
 

@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from articad.arrays import FloatArray
 from articad.errors import KinematicsError, LoopError
 from articad.findings import Finding, Findings
 from articad.geometry.mesh import TriMesh
@@ -32,8 +33,6 @@ from articad.interference.work import CLOSED, PAIRS_PLACED, POSE, TREE_TRIANGLES
 from articad.kinematics.joints import Joint, JointType
 from articad.kinematics.mechanism import Mechanism
 from articad.kinematics.solution import Solution
-
-FloatArray = NDArray[np.float64]
 
 DEFAULT_STEPS = 60
 LIMIT_SLACK = 1e-6  # mm or rad by which a joint that follows may exceed its limits

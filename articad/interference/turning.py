@@ -5,17 +5,14 @@ from __future__ import annotations
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from articad.arrays import BoolArray, FloatArray
 from articad.interference.body import Body
 from articad.interference.meridian import Ends, meeting, outline
 from articad.interference.scene import Scene, box_about, boxes_apart
 from articad.interference.surface import Core
 from articad.kinematics.joints import Joint, JointType
 from articad.kinematics.mechanism import Mechanism
-
-FloatArray = NDArray[np.float64]
-BoolArray = NDArray[np.bool_]
 
 
 class Turning:

@@ -20,6 +20,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from articad.aliases import Json
 from articad.connectors.connector import Connector
 from articad.connectors.se3 import SE3
 from articad.errors import BuildError, ContractError, KernelError, ReadError, SandboxError
@@ -44,8 +45,6 @@ _MAGIC = {"brep": b"\nCASCADE Topology", "step": b"ISO-10303-21;"}
 MEASURE_SPARE_SECONDS = 30.0  # beyond a script's own, for the checks after the files are written
 _ATTEMPTS = 2  # a zygote that dies during a job is started again once
 _CRASH_BYTES = 65536
-
-Json = dict[str, Any]
 
 
 @dataclass(frozen=True)

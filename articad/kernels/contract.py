@@ -7,8 +7,8 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from articad.arrays import FloatArray
 from articad.connectors.connector import Connector, Drift
 from articad.connectors.se3 import SE3, axis_findings
 from articad.errors import ConnectorError, did_you_mean
@@ -26,7 +26,6 @@ TOLD_EXTRAS = 20  # unrequested connectors that get a finding each; a script may
 _NAME_CHARACTERS = 60  # of a name that a script chose
 DRIFT_ERROR = 10.0  # up to this multiple of these bounds, drift is a warning
 
-FloatArray = NDArray[np.float64]
 Json = Mapping[str, Any]
 
 

@@ -24,6 +24,7 @@ import numpy as np
 from lxml import etree
 from numpy.typing import ArrayLike
 
+from articad.aliases import Json
 from articad.connectors.se3 import SE3
 from articad.errors import BuildError, ContractError, ReadError
 from articad.findings import Finding, Findings
@@ -64,8 +65,6 @@ _PSEUDO = re.compile(
 _DOCUMENT_XML = "Document.xml"
 _KINDS = {"App::VarSet", "App::Origin", "App::Line", "App::Plane", "App::Point", "App::LocalCoordinateSystem"}
 _START_SECONDS = 20.0  # for FreeCAD to start, on a cold and busy disk
-
-Json = dict[str, Any]
 
 
 class _Left(NamedTuple):

@@ -10,8 +10,9 @@ from pathlib import Path
 from typing import Any, Protocol
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from articad.arrays import FloatArray
 from articad.connectors.connector import Connector
 from articad.connectors.se3 import SE3
 from articad.errors import KernelError
@@ -25,7 +26,6 @@ from articad.plan.resolve import ResolvedPart, ResolvedPlan
 
 __all__ = ["BuildCache", "BuiltPart", "Inspect", "PartKernel", "build_part", "mirror_part", "realise"]
 
-FloatArray = NDArray[np.float64]
 _OF_NUMBERS = {"W_CONNECTOR_DRIFT"}  # findings about this plan's numbers, not about the script: never carried over to other numbers
 SEATED_MM, SEATED_RAD = 1e-7, 1e-10  # a smaller seat is rounding of numbers in a script; the files stay as they are
 

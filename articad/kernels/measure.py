@@ -33,15 +33,13 @@ from OCP.TopExp import TopExp_Explorer
 from OCP.TopoDS import TopoDS, TopoDS_Compound, TopoDS_Shape
 from OCP.TopTools import TopTools_FormatVersion
 
+from articad.aliases import Json
 from articad.kernels.tessellation import Mesh, Same, is_closed, tessellate
 
 EMPTY_MM3 = 1e-3  # the contract's smallest volume
 STEP_TIME = "2000-01-01T00:00:00"
 ZIP_TIME = (2000, 1, 1, 0, 0, 0)
 _STEP_TIME_FIELD = re.compile(rb"(FILE_NAME\('(?:[^']|'')*',\s*')[^']*'")
-
-
-Json = dict[str, Any]
 
 
 class Measured(NamedTuple):

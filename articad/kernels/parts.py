@@ -6,11 +6,12 @@ Every failure of every part is reported at once; finished parts stay in the cach
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from articad.aliases import Progress
 from articad.errors import ContractError, KernelError, ReadError, did_you_mean
 from articad.files import SCRIPT_BYTES, read_file
 from articad.findings import Finding, Findings
@@ -43,10 +44,6 @@ class RealisedPart:
     derived_from: str | None
     cached: bool
     findings: Findings
-
-
-Progress = Callable[[str, str], None]
-"""Called with the part's name and one of "started", "built", "cached", "derived", "failed"; from several threads."""
 
 
 def find_scripts(folder: Path, resolved: ResolvedPlan, kernel: str) -> dict[str, bytes]:

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from articad.aliases import Json
 from articad.errors import InvalidSolidError
 from articad.geometry.mesh import TriMesh
 
@@ -25,8 +26,6 @@ _ARRAYS: dict[str, tuple[np.dtype[Any], int]] = {
     "triangles": (np.dtype("<i4"), 2),
     "face": (np.dtype("<i4"), 1),
 }
-
-Json = dict[str, Any]
 
 
 class PoisonedError(Exception):

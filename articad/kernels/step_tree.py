@@ -21,14 +21,13 @@ from OCP.TopLoc import TopLoc_Location
 from OCP.TopoDS import TopoDS_Shape
 from OCP.XCAFDoc import XCAFDoc_DocumentTool, XCAFDoc_ShapeTool
 
+from articad.aliases import Json
 from articad.kernels import measure
 from articad.kernels.tessellation import Mesh, tessellate
 
 MOST_DEPTH = 50  # levels of nested products
 MOST_PARTS = 2000
 _GENERATED = re.compile(r"=>|NAUO\d*$|\d*$")  # names of instances in files of programs that name only products
-
-Json = dict[str, Any]
 
 
 def read(content: bytes, *, deflection: float, angle: float) -> tuple[list[Json], bytes]:

@@ -12,7 +12,8 @@ from functools import cached_property
 
 import numpy as np
 
-from articad.connectors import SE3, FloatArray, quaternion
+from articad.arrays import FloatArray
+from articad.connectors import SE3, quaternion
 from articad.kinematics.bulk import BulkPoses
 from articad.kinematics.crossings import Crossing, Crossings, Transforms
 from articad.kinematics.joints import Joint

@@ -14,7 +14,7 @@ from typing import NamedTuple, NoReturn
 
 import numpy as np
 
-from articad.connectors import FloatArray
+from articad.arrays import BoolArray, FloatArray, IndexArray
 from articad.errors import DeadPointError, KinematicsError, LoopError
 from articad.findings import Finding
 from articad.kinematics.continuation import Follower, Stop, Trace
@@ -22,11 +22,10 @@ from articad.kinematics.deflation import regularized
 from articad.kinematics.factors import least_squares
 from articad.kinematics.inexact import shown_gap
 from articad.kinematics.joints import Coordinate, Coupling, Joint, JointType
-from articad.kinematics.layout import IndexArray, Layout
+from articad.kinematics.layout import Layout
 from articad.kinematics.loops import CLOSED, ClosureSystem
 from articad.kinematics.mobility import Mobility, choose_drivers, idle_parts, mobility_of, null_space
 from articad.kinematics.roadmap import Roadmap
-from articad.kinematics.ties import BoolArray
 from articad.kinematics.track import Track
 from articad.kinematics.tree import KinematicTree
 

@@ -12,7 +12,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from articad.connectors import SE3, FloatArray
+from articad.arrays import FloatArray
+from articad.connectors import SE3
 from articad.kinematics.crossings import Crossings
 
 _CHUNK = 4096  # configurations at a time: with fewer the calls dominate, with more the rows do not fit into the cache

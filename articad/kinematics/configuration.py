@@ -11,7 +11,8 @@ from types import MappingProxyType
 import numpy as np
 import numpy.typing as npt
 
-from articad.connectors import SE3, FloatArray, quaternion
+from articad.arrays import FloatArray
+from articad.connectors import SE3, quaternion
 from articad.errors import KinematicsError, LimitError, UnknownJointError
 from articad.kinematics.joints import LIMIT_SLACK, Joint, JointType, swing, twist
 

@@ -15,10 +15,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from articad.connectors import FloatArray
+from articad.arrays import BoolArray, FloatArray
 from articad.kinematics.factors import least_squares, right_singular, svd
 from articad.kinematics.loops import CLOSED, RANK_TOLERANCE, ClosureSystem
-from articad.kinematics.ties import BoolArray
 
 _STEP_LIMIT = 0.35  # rad, or lengths L: largest change of any freedom in one step
 _SIGMA_SHARE = 0.5  # share of σ_min that a step may take: beyond it another branch may be equally near

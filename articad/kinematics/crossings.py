@@ -9,9 +9,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from articad.connectors import SE3, FloatArray, Mate, flip, quaternion
+from articad.arrays import FloatArray, IndexArray
+from articad.connectors import SE3, Mate, flip, quaternion
 from articad.kinematics.joints import Joint, JointType
-from articad.kinematics.layout import IndexArray, Layout
+from articad.kinematics.layout import Layout
 
 # types that do more than turn about and slide along their z axis, and the motions of the others
 GENERAL = tuple(kind for kind in JointType if any(step.axis != 2 for step in kind.steps))

@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from articad.connectors import FloatArray
+from articad.arrays import FloatArray
 from articad.kinematics.factors import singular_values, svd
 from articad.kinematics.loops import ClosureSystem
 from articad.kinematics.mobility import Mobility

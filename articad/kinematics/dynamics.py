@@ -21,11 +21,10 @@ from typing import Final, NamedTuple, Protocol
 import numpy as np
 import numpy.typing as npt
 
-from articad.connectors import FloatArray
+from articad.arrays import FloatArray, IndexArray
 from articad.errors import KinematicsError
 from articad.kinematics.factors import svd
 from articad.kinematics.forward import CompiledModel, compile  # noqa: A004 - of a model
-from articad.kinematics.layout import IndexArray
 from articad.kinematics.loops import RANK_TOLERANCE
 from articad.kinematics.mechanism import Mechanism
 

@@ -7,10 +7,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from articad.connectors import FloatArray, quaternion
+from articad.arrays import FloatArray, IndexArray
+from articad.connectors import quaternion
 from articad.kinematics.batch import TreeArrays
 from articad.kinematics.joints import Joint
-from articad.kinematics.layout import IndexArray
 
 NEAR_PI = -0.9  # cos θ below which the logarithm is computed from quaternions instead of the sine
 _STRAIGHT = 1e-8  # rad: for a smaller mismatch the square term of the logarithm's Jacobian is below rounding

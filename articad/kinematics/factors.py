@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from articad.connectors import FloatArray
+from articad.arrays import FloatArray
 
 _SHARED = 2000  # entries of a matrix; BLAS begins to use threads at four times as many
 

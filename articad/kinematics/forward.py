@@ -11,12 +11,13 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from articad.connectors import SE3, FloatArray, quaternion
+from articad.arrays import FloatArray, IndexArray
+from articad.connectors import SE3, quaternion
 from articad.errors import KinematicsError
 from articad.kinematics.crossings import Crossing
 from articad.kinematics.equations import Closures
 from articad.kinematics.joints import Joint
-from articad.kinematics.layout import QUATERNION_TOLERANCE, IndexArray, Layout
+from articad.kinematics.layout import QUATERNION_TOLERANCE, Layout
 
 if TYPE_CHECKING:
     from articad.kinematics.mechanism import Mechanism

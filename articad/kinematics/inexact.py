@@ -22,7 +22,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from articad.connectors import SE3, FloatArray
+from articad.arrays import FloatArray
+from articad.connectors import SE3
 from articad.kinematics.factors import least_squares
 from articad.kinematics.graph import JointGraph
 from articad.kinematics.joints import Coupling, Joint

@@ -16,7 +16,8 @@ from typing import Literal, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from articad.connectors import SE3, FloatArray, Mate
+from articad.arrays import FloatArray
+from articad.connectors import SE3, Mate
 from articad.errors import KinematicsError
 from articad.findings import Finding
 

@@ -9,11 +9,10 @@ from itertools import accumulate
 import numpy as np
 import numpy.typing as npt
 
-from articad.connectors import FloatArray, quaternion
+from articad.arrays import FloatArray, IndexArray
+from articad.connectors import quaternion
 from articad.errors import KinematicsError, UnknownJointError
 from articad.kinematics.joints import Coordinate, Joint, JointType
-
-IndexArray = npt.NDArray[np.intp]
 
 QUATERNION_TOLERANCE = 1e-3  # | ‖q‖ − 1 | of given coordinates: rounding passes, other quantities do not
 _N_COLUMNS = {joint_type: len(joint_type.coordinates) for joint_type in JointType}

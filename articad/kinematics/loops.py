@@ -16,15 +16,16 @@ from typing import NamedTuple
 
 import numpy as np
 
-from articad.connectors import SE3, FloatArray
+from articad.arrays import BoolArray, FloatArray, IndexArray
+from articad.connectors import SE3
 from articad.errors import KinematicsError
 from articad.kinematics.batch import TreeArrays
 from articad.kinematics.equations import BatchEquations, closures
 from articad.kinematics.factors import one_thread, singular_values, svd
 from articad.kinematics.forward import MOST_FREEDOMS, LoopModel
 from articad.kinematics.joints import Coupling, Joint, JointLimits, JointType
-from articad.kinematics.layout import IndexArray, Layout
-from articad.kinematics.ties import Basis, BoolArray, Ties
+from articad.kinematics.layout import Layout
+from articad.kinematics.ties import Basis, Ties
 from articad.kinematics.tree import KinematicTree
 
 CLOSED = 1e-10  # |t|/L and rad: a loop with a smaller residual is closed

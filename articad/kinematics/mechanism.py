@@ -11,7 +11,8 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from articad.connectors import SE3, FloatArray, quaternion
+from articad.arrays import FloatArray
+from articad.connectors import SE3, quaternion
 from articad.errors import KinematicsError, LoopError, PlanError, did_you_mean
 from articad.findings import Finding, Findings
 from articad.kinematics.batch import TreeArrays

@@ -27,7 +27,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from articad.connectors import FloatArray
+from articad.arrays import FloatArray
 from articad.kinematics.factors import least_squares, right_singular, svd
 from articad.kinematics.graph import JointGraph
 from articad.kinematics.joints import Coupling, Joint, JointLimits, JointType

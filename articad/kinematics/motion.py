@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from articad.connectors import SE3, FloatArray
+from articad.arrays import FloatArray
+from articad.connectors import SE3
 from articad.errors import KinematicsError, UnknownJointError
 from articad.findings import Finding, Findings
 from articad.kinematics.branch import shown

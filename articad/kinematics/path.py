@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from articad.connectors import FloatArray
+from articad.arrays import FloatArray
 from articad.errors import KinematicsError
 from articad.findings import Finding
 from articad.kinematics.branch import driver_freedoms

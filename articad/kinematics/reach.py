@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from articad.connectors import SE3, FloatArray, quaternion
+from articad.arrays import FloatArray
+from articad.connectors import SE3, quaternion
 from articad.errors import KinematicsError
 from articad.findings import Finding
 from articad.kinematics.configuration import Configuration

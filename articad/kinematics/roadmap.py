@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from articad.connectors import FloatArray
+from articad.arrays import FloatArray
 
 if TYPE_CHECKING:
     from articad.kinematics.branch import Group

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from articad.connectors import SE3, FloatArray
+from articad.arrays import FloatArray
+from articad.connectors import SE3
 from articad.findings import Findings
 
 

@@ -6,13 +6,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
-from articad.connectors import FloatArray
+from articad.arrays import BoolArray, FloatArray, IndexArray
 from articad.kinematics.joints import Coupling
-from articad.kinematics.layout import IndexArray, Layout
-
-BoolArray = npt.NDArray[np.bool_]
+from articad.kinematics.layout import Layout
 
 _SAME_RATIO = 1e-7  # relative: two paths of couplings that agree to this are consistent, like RANK_TOLERANCE for equations
 _ROUNDING = 1e-13  # of the largest coordinate: residual of couplings from rounding alone

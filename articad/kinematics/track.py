@@ -10,11 +10,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from articad.connectors import FloatArray
+from articad.arrays import BoolArray, FloatArray, IndexArray
 from articad.kinematics.continuation import ROUNDING, Follower, Stop, Trace
-from articad.kinematics.layout import IndexArray
 from articad.kinematics.loops import CLOSED
-from articad.kinematics.ties import BoolArray
 
 _MOST_TURNS = 12  # turns of a loop's slowest driven angle after which a motion is not expected to repeat
 _SAME = 1e-9  # rad, mm: tolerance for a configuration to be the same again

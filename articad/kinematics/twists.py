@@ -6,7 +6,8 @@ import math
 
 import numpy as np
 
-from articad.connectors import SE3, FloatArray, quaternion
+from articad.arrays import FloatArray
+from articad.connectors import SE3, quaternion
 from articad.kinematics.joints import Step
 from articad.kinematics.layout import Layout
 

@@ -7,7 +7,7 @@ import math
 from collections.abc import Sequence
 from typing import Any, Final
 
-Json = dict[str, Any]
+from articad.aliases import Json
 
 _DIGITS: Final = 6  # of a measured number
 _SHOWN: Final = 3  # places that are listed for a loss

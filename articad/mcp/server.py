@@ -15,11 +15,12 @@ from mcp.server.mcpserver.exceptions import ToolError
 from pydantic import Field
 
 from articad import __version__
+from articad.aliases import Json
 from articad.errors import ArticadError, ReadError, did_you_mean
 from articad.findings.codes import CODES
 from articad.mcp import answers
 from articad.mcp.skill import section
-from articad.mcp.workbench import BRIEF_BYTES, Json, Tell, Workbench, condensed
+from articad.mcp.workbench import BRIEF_BYTES, Tell, Workbench, condensed
 from articad.processes import scratch
 from articad.runs.run import write_atomically
 

@@ -14,13 +14,13 @@ from collections.abc import Awaitable, Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, Final
 
+from articad.aliases import Json
 from articad.errors import ReadError
 from articad.files import RECORD_BYTES, ROOT_VARIABLE, is_file, read_file
 from articad.plan.amending import amended
 from articad.processes import launcher
 from articad.runs.run import write_atomically
 
-Json = dict[str, Any]
 Tell = Callable[[float, str], Awaitable[None]]
 """Called with the elapsed seconds and the current step."""
 

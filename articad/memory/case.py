@@ -10,10 +10,10 @@ from dataclasses import asdict, dataclass, field
 from functools import cached_property
 from typing import Any, Final, Literal
 
+from articad.aliases import Json
 from articad.errors import ReadError
 from articad.findings import Finding
 
-Json = dict[str, Any]
 Kind = Literal["good", "issue"]
 
 SCHEMA: Final = "articad.case/1"

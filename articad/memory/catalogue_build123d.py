@@ -16,7 +16,7 @@ from typing import Any, Final
 
 import build123d
 
-Json = dict[str, Any]
+from articad.aliases import Json
 
 # Not for parts: builder contexts, files, drawings, joints, units.
 _OTHERS: Final = re.compile(

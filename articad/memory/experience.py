@@ -17,15 +17,13 @@ from pathlib import Path
 from typing import Final, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
+from articad.arrays import IntArray
 from articad.errors import ReadError, WriteError
 from articad.findings import Finding
 from articad.memory import faiss_index
 from articad.memory.case import Case, Kind
 from articad.memory.embedding import Embedder, FloatArray, WordLlamaEmbedder
-
-IntArray = NDArray[np.int64]
 
 VERSION: Final = 1
 FILE: Final = "experience.sqlite3"

@@ -6,9 +6,8 @@ import copy
 from collections.abc import Mapping
 from typing import Any
 
+from articad.aliases import Json
 from articad.errors import ReadError, did_you_mean
-
-Json = dict[str, Any]
 
 
 def amended(plan: Json, changes: Mapping[str, Any]) -> Json:

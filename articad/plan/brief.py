@@ -13,12 +13,11 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
+from articad.aliases import Json
 from articad.connectors import Connector, world_x
 from articad.kinematics.joints import Joint, JointType
 from articad.plan.motions import AXES
 from articad.plan.resolve import Fit, ResolvedPart, ResolvedPlan
-
-Json = dict[str, Any]
 
 _DIGITS = 12  # decimals of mm: rounding of frames and of degrees must not show in a script or a digest
 

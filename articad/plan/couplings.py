@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from articad.connectors import FloatArray
+from articad.arrays import FloatArray
 from articad.errors import did_you_mean
 from articad.kinematics.joints import Coupling, JointType, Unit
 from articad.plan.evaluation import Evaluation

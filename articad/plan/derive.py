@@ -13,7 +13,8 @@ from typing import Literal
 
 import numpy as np
 
-from articad.connectors import SE3, Connector, FloatArray, Plane
+from articad.arrays import FloatArray
+from articad.connectors import SE3, Connector, Plane
 from articad.errors import did_you_mean
 from articad.plan.evaluation import Evaluation
 from articad.plan.fields import MAX_NAME, is_name

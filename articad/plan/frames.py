@@ -13,7 +13,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from articad.connectors import SE3, Connector, FloatArray, axis_findings, world_x
+from articad.arrays import FloatArray
+from articad.connectors import SE3, Connector, axis_findings, world_x
 from articad.plan.derive import DraftConnector, DraftPart
 from articad.plan.evaluation import Evaluation, Triple
 

@@ -11,7 +11,8 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Literal
 
-from articad.connectors import SE3, Connector, FloatArray
+from articad.arrays import FloatArray
+from articad.connectors import SE3, Connector
 from articad.errors import PlanError
 from articad.findings import Findings
 from articad.kinematics.joints import Coupling, Joint

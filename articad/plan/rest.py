@@ -11,7 +11,8 @@ import math
 
 import numpy as np
 
-from articad.connectors import FLIP, SE3, FloatArray, Mate
+from articad.arrays import FloatArray
+from articad.connectors import FLIP, SE3, Mate
 from articad.findings import Finding
 from articad.kinematics.joints import Joint, JointType
 from articad.plan.derive import DraftPart

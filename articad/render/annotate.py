@@ -6,14 +6,13 @@ import math
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 from PIL import Image, ImageDraw, ImageFont
 
+from articad.arrays import FloatArray
 from articad.render.camera import Camera
 from articad.render.raycast import BACKGROUND, Buffers
 from articad.render.scene import AxisMark, DrawnScene
 
-FloatArray = NDArray[np.float64]
 Color = tuple[int, int, int]
 Labels = bool | Literal["aside"]
 """Whether parts are labelled in place, or beside the picture with a line to each part."""

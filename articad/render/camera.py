@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-FloatArray = NDArray[np.float64]
+from articad.arrays import FloatArray
 
 # Direction to the eye, and the up direction of the picture. X right, Y back, Z up: "front" looks along +Y.
 VIEWS: dict[str, tuple[tuple[float, float, float], tuple[float, float, float]]] = {

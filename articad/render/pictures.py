@@ -9,9 +9,9 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 from PIL import Image
 
+from articad.arrays import FloatArray
 from articad.connectors.se3 import SE3
 from articad.errors import KernelUnavailableError, UnknownJointError
 from articad.geometry.mesh import TriMesh
@@ -28,7 +28,6 @@ from articad.render.shade import overlaid, reduced, shade
 if TYPE_CHECKING:
     from articad.assembly import Assembly
 
-FloatArray = NDArray[np.float64]
 Renderer = Literal["embree", "pyvista"]
 
 RECIPE = "articad.picture/4"  # changes when the same scene would be drawn differently; part of a model request's key

@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from articad.arrays import FloatArray
 from articad.render.camera import Camera
 from articad.render.scene import DrawnScene
 
-FloatArray = NDArray[np.float64]
 FloatImage = NDArray[np.float32]
 IndexImage = NDArray[np.int32]
 

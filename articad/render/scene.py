@@ -8,14 +8,13 @@ from functools import cached_property
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
+from articad.arrays import FloatArray
 from articad.connectors.se3 import SE3
 from articad.geometry.mesh import TriMesh
 from articad.geometry.part import Part
 from articad.kinematics.joints import Joint
 
-FloatArray = NDArray[np.float64]
 Manner = Literal["solid", "faded", "highlight"]
 
 

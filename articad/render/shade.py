@@ -7,11 +7,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from articad.arrays import FloatArray
 from articad.render.camera import Camera
 from articad.render.raycast import BACKGROUND, Buffers
 from articad.render.scene import DrawnScene
 
-FloatArray = NDArray[np.float64]
 Picture = NDArray[np.uint8]
 
 PAPER = np.array([250.0, 250.0, 248.0])

@@ -7,13 +7,11 @@ import math
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
+from articad.arrays import IntArray
 from articad.geometry.mesh import TriMesh
-
-IntArray = NDArray[np.int64]
 
 _CREASE = math.cos(math.radians(30.0))  # a larger bend between two triangles is an edge, if no B-rep gives the faces
 _WIDE = 65536  # number of vertices from which indices need four bytes

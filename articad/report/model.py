@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 
+from articad.aliases import Json
 from articad.assembly import Assembly
 from articad.connectors.mate import Mate
 from articad.errors import ArticadError
 from articad.geometry.part import Part
 from articad.kinematics.joints import Coordinate, Joint, JointType
 from articad.report.drawing import drawn_mesh
-
-Json = dict[str, Any]
 
 MODEL_SCHEMA = "articad.viewer/1"
 _FREE_TRAVEL = 0.25  # of the assembly's size: slider range of a travel without limits, in both directions

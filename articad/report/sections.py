@@ -8,14 +8,12 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from html import escape
-from typing import Any
 from urllib.parse import quote
 
+from articad.aliases import Json
 from articad.assembly import Assembly
 from articad.findings import measured_against
 from articad.report.tables import Cell, Html, html_table
-
-Json = dict[str, Any]
 
 _LONGEST_TEXT = 20_000  # characters of one message: a page is read, and the run keeps the rest
 _SEVERITY = {"error": "bad", "warning": "warn", "info": "quiet"}

@@ -16,8 +16,8 @@ from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from articad.aliases import Json, Progress
 from articad.assembly import Assembly
 from articad.connectors.connector import Connector
 from articad.connectors.se3 import SE3
@@ -33,14 +33,10 @@ from articad.geometry.part import Part, Primitive, Shape
 from articad.geometry.shapes import box, capsule, cylinder, sphere
 from articad.kernels.cache import BuildCache
 from articad.kernels.kernel import PartKernel
-from articad.kernels.parts import Progress
 from articad.kinematics.joints import Joint, JointType
 from articad.kinematics.mechanism import Mechanism
 from articad.plan.schema import PLAN_FILE, AssemblyPlan
 from articad.runs.facets import LEVELS, ROUNDING_MM, one_solid
-
-FloatArray = NDArray[np.float64]
-Json = dict[str, Any]
 
 SAME_VOLUME: Final = 1e-3  # largest difference, as a share of the volume, between a solid of few facets and its mesh without a finding
 PLACEHOLDER_MM: Final = 1.0  # radius of the ball that replaces a missing shape

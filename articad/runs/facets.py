@@ -10,16 +10,15 @@ from collections.abc import Sequence
 from typing import Any, Final, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
+from articad.arrays import FloatArray
 from articad.export.convex import hull_mesh, manifold
 from articad.geometry.mesh import TriMesh
 from articad.geometry.shapes import box
 
 __all__ = ["LEVELS", "MOST_FACETS", "OneSolid", "one_solid"]
 
-FloatArray = NDArray[np.float64]
 
 LEVELS: Final = ("mesh", "fine", "coarse", "pieces", "hull", "box")
 """What a solid is made from, the preferred one first: the meshes' surface at three resolutions, their convex pieces, hull and box."""

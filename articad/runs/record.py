@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from articad import formats
+from articad.aliases import Progress
 from articad.assembly import Assembly
 from articad.certificates.certificate import Certificate
 from articad.connectors.connector import Connector
@@ -16,7 +17,7 @@ from articad.geometry.part import Solid
 from articad.interference.check import Checks
 from articad.kernels.choice import Sandbox, kernel_named
 from articad.kernels.kernel import BuildCache
-from articad.kernels.parts import Progress, RealisedPart
+from articad.kernels.parts import RealisedPart
 from articad.plan.brief import brief
 from articad.plan.schema import AssemblyPlan
 from articad.report import Documents, report_page

@@ -24,6 +24,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Final, Literal, Self
 
+from articad.aliases import Json
 from articad.errors import ReadError, RunError, WriteError
 from articad.files import RECORD_BYTES, read_file
 from articad.findings import Finding
@@ -34,7 +35,6 @@ except ImportError:  # pragma: no cover - Windows has no flock: a second process
     fcntl = None  # type: ignore[assignment]
 
 Event = Literal["stage", "call", "build", "finding", "artifact", "note"]
-Json = dict[str, Any]
 
 REQUEST_SCHEMA: Final = "articad.request/1"
 PART_SCHEMA: Final = "articad.part/1"

@@ -4,15 +4,11 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-import numpy as np
-from numpy.typing import NDArray
-
+from articad.arrays import FloatArray
 from articad.assembly import Assembly
 from articad.export.lowering import AxisMotion, LoweredModel, lower
 from articad.kinematics.configuration import Configuration
 from articad.simulation.verdict import SHARE, EngineOutcome, JointReach, covered
-
-FloatArray = NDArray[np.float64]
 
 STEPS = 181  # of a driver's path: the error between two of them is far less than the share that may be missing
 MM_PER_M = 1000.0

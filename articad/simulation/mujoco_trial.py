@@ -17,10 +17,9 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from articad.arrays import FloatArray
 from articad.simulation.strokes import FREE_SLIDE_M, MOST_JOINTS, MOST_SPEED, PACE_M_S, PACE_RAD_S, STROKE_S, strokes
 from articad.simulation.verdict import EngineOutcome, FilmFrame, JointReach, Role, covered
-
-FloatArray = NDArray[np.float64]
 
 STIFFNESS = 20.0  # ω of the controller [1/s]: a tenth of a second to arrive
 MOST_ERROR = 0.2  # rad or m: largest error on which the controller acts

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy import stats
 
-from articad.connectors import FloatArray
+from articad.arrays import FloatArray
 
 Level = Literal["nominal", "ordinal", "interval"]
 

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from articad.arrays import FloatArray
 from articad.connectors.se3 import SE3
 from articad.findings import Finding, Findings
 from articad.interference.cover import cover_line
@@ -22,8 +22,6 @@ from articad.interference.report import rounded
 from articad.interference.scene import Scene
 from articad.interference.surface import Surface, inwards, surface_distance
 from articad.interference.work import WorkBudget
-
-FloatArray = NDArray[np.float64]
 
 CLEAR_MM = 1.0  # a part this far beyond everything else has left
 CONTACT_MM = 1e-4  # of a shrunk surface: anything closer is in the way

@@ -16,8 +16,8 @@ from typing import Annotated, Any, Final, Literal
 import numpy as np
 from pydantic import Field
 
+from articad.arrays import FloatArray
 from articad.assembly import Assembly
-from articad.connectors import FloatArray
 from articad.interference.gauge import Gauge
 from articad.kinematics.joints import Joint, JointType
 from articad.plan.fields import PlanObject

@@ -15,8 +15,8 @@ from typing import Final
 import numpy as np
 from PIL import Image, ImageDraw
 
+from articad.arrays import FloatArray
 from articad.assembly import Assembly
-from articad.connectors import FloatArray
 from articad.kinematics.joints import Joint, JointType
 from articad.render.annotate import font
 from articad.render.camera import Camera

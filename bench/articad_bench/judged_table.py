@@ -11,7 +11,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from articad.connectors import FloatArray
+from articad.arrays import FloatArray
 from articad_bench.agreement import bootstrap_items, icc_2k, krippendorff_alpha
 from articad_bench.judge import DIMENSIONS, Judged, judges_of
 from articad_bench.numbers import mean_of, rounded, share_of

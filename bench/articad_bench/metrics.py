@@ -16,7 +16,7 @@ from scipy.ndimage import binary_fill_holes
 from scipy.optimize import linear_sum_assignment
 from scipy.spatial import cKDTree
 
-from articad.connectors import FloatArray
+from articad.arrays import FloatArray
 from articad.geometry import TriMesh, box
 
 Scaling = Callable[[FloatArray], FloatArray]

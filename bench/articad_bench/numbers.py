@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from articad.connectors import FloatArray
+from articad.arrays import FloatArray
 from articad_bench.agreement import bootstrap_interval
 
 

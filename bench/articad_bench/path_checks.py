@@ -8,7 +8,8 @@ from typing import Final, Literal
 
 import numpy as np
 
-from articad.connectors import SE3, FloatArray
+from articad.arrays import FloatArray
+from articad.connectors import SE3
 from articad.kinematics.joints import JointType
 from articad_bench.check import Bounds, Check, in_words
 from articad_bench.subject import Subject

@@ -18,8 +18,9 @@ from typing import Any, Final
 
 import numpy as np
 
+from articad.arrays import FloatArray
 from articad.assembly import Assembly
-from articad.connectors import SE3, FloatArray
+from articad.connectors import SE3
 from articad.errors import ReadError
 from articad.geometry import TriMesh, merged, read_mesh
 from articad.kinematics.joints import Joint, JointType

@@ -9,6 +9,7 @@ from typing import Any
 from articad.agents.live import LiteLLM
 from articad.agents.llm import Budget
 from articad.agents.recollection import StoredMemory, remember
+from articad.aliases import Json
 from articad.batches.pool import Call
 from articad.kernels.choice import kernel_named
 from articad.kernels.kernel import BuildCache
@@ -18,8 +19,6 @@ from articad_bench.row import Row
 from articad_bench.runner import run_tasks
 from articad_bench.scoring import score_files
 from articad_bench.task import Task, read_task
-
-Json = dict[str, Any]
 
 
 def score_calls(tasks: Iterable[tuple[Path, Task]], models: str | Path) -> list[Call]:

@@ -6,7 +6,7 @@ from typing import Final, Literal
 
 import numpy as np
 
-from articad.connectors import FloatArray
+from articad.arrays import FloatArray
 from articad.geometry import TriMesh
 from articad_bench.check import Bounds, Check, Vector, in_words
 from articad_bench.solids import Round, asymmetry, held_volume, occupied, rounds, tipping_angle, wall_thickness

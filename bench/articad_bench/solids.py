@@ -18,7 +18,7 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import ConvexHull, QhullError
 
-from articad.connectors import FloatArray
+from articad.arrays import FloatArray
 from articad.geometry import TriMesh
 
 BEND_RAD: Final = math.radians(31)  # between neighbours: a cylinder of twelve facets is still one face, a chamfer of 45° is another

@@ -10,8 +10,9 @@ from pathlib import Path
 
 import numpy as np
 
+from articad.arrays import FloatArray
 from articad.assembly import Assembly, Poses
-from articad.connectors import SE3, FloatArray
+from articad.connectors import SE3
 from articad.errors import ArticadError
 from articad.interference.check import check_scene
 from articad.interference.report import Checks

@@ -19,8 +19,9 @@ import mujoco
 import pytest
 
 from articad import __version__
+from articad.aliases import Json
 from articad.batches.batch import calls_of, read_batch, run_dask, run_local, summary
-from articad.batches.items import ITEM, BatchItem, Json, make
+from articad.batches.items import ITEM, BatchItem, make
 from articad.batches.pool import Worker
 from articad.cli import main
 from articad.errors import ReadError

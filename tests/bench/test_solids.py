@@ -7,7 +7,8 @@ import math
 import numpy as np
 import pytest
 
-from articad.connectors import SE3, FloatArray
+from articad.arrays import FloatArray
+from articad.connectors import SE3
 from articad.geometry import TriMesh, box, cylinder, merged
 from articad.geometry.shapes import sphere, tube
 from articad_bench.solids import Round, asymmetry, held_volume, occupied, rounds, tipping_angle, wall_thickness

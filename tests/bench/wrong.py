@@ -12,8 +12,9 @@ from pathlib import Path
 
 import numpy as np
 
+from articad.arrays import FloatArray
 from articad.assembly import Assembly
-from articad.connectors import SE3, FloatArray
+from articad.connectors import SE3
 from articad.export.urdf import write_urdf
 from articad.geometry import MassProperties, Part, TriMesh, box, merged
 from articad.geometry.part import Solid

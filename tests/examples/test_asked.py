@@ -17,8 +17,8 @@ import numpy as np
 import pytest
 
 from articad.agents.pipeline import replay
+from articad.arrays import FloatArray
 from articad.assembly import Assembly
-from articad.connectors import FloatArray
 from articad.export.threemf import lying, write_3mf
 from articad.runs.record import assembly_of
 from articad.runs.run import Run
