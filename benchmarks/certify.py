@@ -25,9 +25,9 @@ from articad.certificates.verifier import verify_file
 from articad.connectors import SE3
 from articad.geometry import TriMesh, box, cylinder, tube
 from articad.interference.check import check_pose
-from articad.interference.cover import Budget, cover_line
 from articad.interference.motion import Chain, Route
 from articad.interference.surface import Surface, surface_distance
+from articad.interference.work import WorkBudget, cover_line
 from articad.kinematics.joints import Joint, JointLimits, JointType
 from articad.kinematics.mechanism import Mechanism
 
@@ -66,7 +66,7 @@ def by_distances(a: TriMesh, b: TriMesh, joint: Joint) -> tuple[float, int, floa
     def distance(values: object) -> float:
         return surface_distance(here, there, chain.matrix(values))  # type: ignore[arg-type]
 
-    budget = Budget(600.0)
+    budget = WorkBudget(600.0)
     started = time.perf_counter()
     cover = cover_line(distance, (freedom.lower, freedom.upper), freedom.rest, reach=reach, budget=budget)
     seconds = time.perf_counter() - started
