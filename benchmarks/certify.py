@@ -25,9 +25,10 @@ from articad.certificates.verifier import verify_file
 from articad.connectors import SE3
 from articad.geometry import TriMesh, box, cylinder, tube
 from articad.interference.check import check_pose
+from articad.interference.cover import cover_line
 from articad.interference.motion import Chain, Route
 from articad.interference.surface import Surface, surface_distance
-from articad.interference.work import WorkBudget, cover_line
+from articad.interference.work import WorkBudget
 from articad.kinematics.joints import Joint, JointLimits, JointType
 from articad.kinematics.mechanism import Mechanism
 
