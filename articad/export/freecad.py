@@ -10,14 +10,14 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from articad.errors import ExportError, KernelUnavailableError
 from articad.export.bundle import Bundle
 from articad.export.freecad_file import Appearance, normalised
 from articad.export.freecad_job import Job
+from articad.export.freecad_look import verify
 from articad.export.freecad_native import document
 from articad.export.losses import refuse
 from articad.findings import Finding, Findings
@@ -29,7 +29,6 @@ if TYPE_CHECKING:
     from articad.assembly import Assembly
 
 PROGRAM = Path(freecad_install.__file__).parent / "inside_freecad" / "document.py"
-SOLVED_MM, SOLVED_RAD = 1e-6, 1e-8  # largest motions of parts by FreeCAD's solver that count as agreement
 _SECONDS, _SECONDS_A_PART = 120.0, 5.0
 _PROGRESS = re.compile(r"\(\d+ %\)|^MbD:|^Time = |^Recompute\.")  # lines that FreeCAD always writes
 
@@ -44,7 +43,8 @@ def write_freecad(assembly: Assembly, *, strict: bool = False, freecad: FreeCAD 
             `write_freecad_alone`.
 
     Returns:
-        One file, `<name>.FCStd`, the same bytes each time with the same FreeCAD; a finding says if its solver disagrees.
+        One file, `<name>.FCStd`, the same bytes each time on the same FreeCAD. It was opened in FreeCAD again: the findings name
+        each part whose shape is not the assembly's, and say whether FreeCAD's solver agrees with the placements.
 
     Raises:
         UnrepresentableError: If `strict` and something is lost.
@@ -67,7 +67,8 @@ def write_freecad(assembly: Assembly, *, strict: bool = False, freecad: FreeCAD 
         report = json.loads((folder / "report.json").read_text())
         content = (folder / "assembly.FCStd").read_bytes()
     look = Appearance(report["colors"], tuple(report["hidden"]), tuple(report["joints"]), report["grounded"], tuple(report["tips"]))
-    return Bundle({f"{job.name}.FCStd": normalised(content, look)}, job.losses, _opinion(report))
+    written = normalised(content, look)
+    return Bundle({f"{job.name}.FCStd": written}, job.losses, verify(written, assembly, freecad))
 
 
 def write_freecad_alone(assembly: Assembly, *, strict: bool = False) -> Bundle:
@@ -95,36 +96,6 @@ def write_freecad_alone(assembly: Assembly, *, strict: bool = False) -> Bundle:
         hint=f"{freecad_install.HOW_TO_GET}.",
     )
     return Bundle({f"{job.name}.FCStd": normalised(content, look)}, job.losses, Findings([unseen]))
-
-
-def _opinion(report: Mapping[str, Any]) -> Findings:
-    """Return the findings of FreeCAD's solver about articad's placements."""
-    found = []
-    if report["invalid"]:
-        found.append(
-            Finding(
-                code="E_FREECAD",
-                where="assembly",
-                message=f"FreeCAD reports invalid objects: {', '.join(report['invalid'][:10])}.",
-                hint="Open the document and look at the marked objects.",
-            )
-        )
-    moved = {part: row for part, row in report["moved"].items() if row[0] > SOLVED_MM or row[1] > SOLVED_RAD}
-    if report["solve"] != 0 or moved:
-        said = f"returns {report['solve']}" if report["solve"] else f"moves {', '.join(sorted(moved)[:10])}"
-        worst = max((row[0] for row in report["moved"].values()), default=0.0)
-        found.append(
-            Finding(
-                code="W_FREECAD_SOLVER",
-                where="assembly",
-                message=f"FreeCAD's solver {said} at the placements of the plan, which are exact and were kept.",
-                hint="The file is correct: the solver gives up on long chains and mistakes redundant loops for conflicts.",
-                value=worst,
-                limit=SOLVED_MM,
-                unit="mm",
-            )
-        )
-    return Findings(found)
 
 
 def _failed(said: str, *, late: bool) -> ExportError:

@@ -18,7 +18,7 @@ import numpy as np
 from lxml import etree
 
 from articad.geometry.mesh import TriMesh
-from articad.kernels.freecad_file import packed, settle, xml_parser
+from articad.kernels.freecad_file import bounded, packed, settle, xml_parser
 
 _NOTHING = "bnVsbA=="  # base64 of null: FreeCAD's own entry for a view provider without state
 _SHOWN = (  # besides parts and assemblies, objects with a shape of their own
@@ -67,7 +67,7 @@ def normalised(content: bytes, look: Appearance | None = None) -> bytes:
         _show(root, types, look)
         files["GuiDocument.xml"] = _gui(types, look)
     files["Document.xml"] = etree.tostring(root, xml_declaration=True, encoding="utf-8", standalone=False)
-    return packed(files)
+    return packed({name: bounded(data) if name.endswith(".brp") else data for name, data in files.items()})
 
 
 def _is_shown(name: str, kind: str, look: Appearance) -> bool:

@@ -28,6 +28,7 @@ from articad.export.meshes import MeshFiles
 from articad.export.metadata import dumps, records
 from articad.export.names import Names
 from articad.geometry.part import Part
+from articad.kernels.freecad_file import bounded
 from articad.kinematics.joints import Coupling, Joint, JointType
 from articad.plan.resolve import ResolvedPart
 
@@ -166,7 +167,10 @@ class Job:
         return {"kind": "mesh", "file": f"{self.objects[name]}.bms"}
 
     def _file(self, path: Path, name: str) -> str:
-        shutil.copyfile(path, self.folder / name)
+        if path.suffix == ".brep":
+            (self.folder / name).write_bytes(bounded(path.read_bytes()))
+        else:
+            shutil.copyfile(path, self.folder / name)
         return name
 
     def _dimensions(self, target: ResolvedPart) -> Iterator[Json]:

@@ -19,6 +19,9 @@ DIGITS = 12  # decimals of mm kept of a shape
 # Both match a number from its first digit only; matching from every digit of a long number would take time quadratic in its length.
 _NUMBER = re.compile(rb"(?<!\d)-?\d+(?:\.\d+)?e[+-]?\d+|(?<!\d)-?\d+\.\d{%d,}" % (DIGITS + 1))
 _LONG = re.compile(rb"(?<!\d)-?\d{30,}\.\d+")  # FreeCAD writes 2e100, where a surface has no end, with all its digits
+ENDLESS = 1e99  # from here on a bound of a surface or curve is OCCT's infinity, 2e100
+# The row of a trimmed surface (type 10) or curve (type 8): its bounds alone; what it trims follows on the next row.
+_TRIMMED = re.compile(rb"^(?:10((?: +[-+.\de]+){4})|8((?: +[-+.\de]+){2})) *\n", re.MULTILINE)
 _ZIP_TIME = (2000, 1, 1, 0, 0, 0)
 _NAMESPACE = uuid.UUID("6d1d9a3e-0c1b-5b6e-9b35-0a2f4f1c7c11")  # for the Uids that replace random ones
 _DATES = {"CreationDate", "LastModifiedDate"}
@@ -35,6 +38,16 @@ def shortened(brep: bytes) -> bytes:
     return _LONG.sub(lambda number: b"%r" % float(number[0]), brep)
 
 
+def bounded(brep: bytes) -> bytes:
+    """Return a B-rep as text without trimmed surfaces and curves that have no end.
+
+    OCCT trims a surface without an end at 2e100, and FreeCAD writes such a bound with all of its 101 digits. FreeCAD 1.1 then
+    loses the shape, or crashes. A trimmed surface has the parametrisation of the surface that it trims, so the latter takes its
+    place: faces are bounded by their edges, which stay as they are.
+    """
+    return _TRIMMED.sub(lambda row: b"" if any(abs(float(number)) >= ENDLESS for number in (row[1] or row[2]).split()) else row[0], brep)
+
+
 def settled(content: bytes) -> bytes:
     """Return a part's document in reproducible form: no date, no random Uid, shapes to 12 decimals."""
     with zipfile.ZipFile(io.BytesIO(content)) as archive:
@@ -42,7 +55,7 @@ def settled(content: bytes) -> bytes:
     root = etree.fromstring(files["Document.xml"], xml_parser())
     settle(root)
     files["Document.xml"] = etree.tostring(root, xml_declaration=True, encoding="utf-8", standalone=False)
-    return packed({name: rounded(data) if name.endswith(".brp") else data for name, data in files.items()})
+    return packed({name: rounded(bounded(data)) if name.endswith(".brp") else data for name, data in files.items()})
 
 
 def packed(files: Mapping[str, bytes]) -> bytes:

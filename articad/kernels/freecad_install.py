@@ -240,6 +240,17 @@ def find() -> FreeCAD:
     return _found(os.environ.get("ARTICAD_FREECAD", ""), os.environ.get("PATH", ""), os.environ.get("CONDA_PREFIX", ""), str(tree()))
 
 
+def installed() -> tuple[FreeCAD, ...]:
+    """Return the FreeCAD to use, and the newer one that `scripts/install-freecad --next` leaves beside it, where they are."""
+    found: list[FreeCAD] = []
+    with contextlib.suppress(KernelUnavailableError):
+        found.append(find())
+    beside = _at(tree().with_name("freecad-next"))
+    if beside is not None and beside not in found and beside.version is not None:
+        found.append(beside)
+    return tuple(found)
+
+
 def tree() -> Path:
     """Return the folder that scripts/install-freecad fills."""
     return Path(os.environ.get("XDG_DATA_HOME") or Path.home() / ".local" / "share") / "articad" / "freecad"

@@ -65,15 +65,11 @@ class _Writer:
         self.document.recompute()
         self.document.recompute()
         self._place()
-        code, moved = self._solved()
-        self._place()
         self._touch_nothing()
         self.document.saveAs(str(Path("assembly.FCStd").resolve()))
         invalid = [item.Name for item in self.document.Objects if "Invalid" in item.State]
         return {
             "version": list(App.Version()[:3]),
-            "solve": code,
-            "moved": moved,
             "invalid": invalid,
             "colors": self.colors,
             "hidden": self.hidden,
@@ -236,20 +232,6 @@ class _Writer:
             return [self.parts[part], [tail, tail]]
         path = f"{head}.{tail}"
         return [self.assembly, [path, path]]
-
-    # ------------------------------------------------------------------ FreeCAD's own solver
-
-    def _solved(self) -> tuple[int, Json]:
-        """Run FreeCAD's solver; return its code and how far it moved each part [mm, rad]."""
-        code = self.assembly.solve()
-        moved = {}
-        for part in self.job["parts"]:
-            before, after = placement(part["placement"]), self.parts[part["name"]].Placement
-            difference = before.inverse() * after
-            axis = difference.Rotation.Q
-            angle = 2.0 * (axis[0] ** 2 + axis[1] ** 2 + axis[2] ** 2) ** 0.5
-            moved[part["name"]] = [(after.Base - before.Base).Length, angle]
-        return code, moved
 
     def _touch_nothing(self) -> None:
         for item in self.document.Objects:

@@ -1,7 +1,9 @@
 """Open a FreeCAD document in a new process and report its content: `job.json` in, `report.json` out, in the working folder.
 
-The job names a file and steps, done in order: `solve`; `perturb`, which moves one part, solves, reports and restores everything; `set`,
-which changes a parameter and recomputes; `look`, which reports; `save`. Nothing here imports articad; the report is judged outside.
+The job names a file and steps, done in order: `solve`; `perturb`, which moves one part, solves, reports and puts
+everything back; `set`, which changes a parameter and recomputes; `look`, which reports; `save`; `verify`, which recomputes,
+solves, saves, opens the file again and reports before and after. Nothing here imports articad: what is reported is judged
+outside.
 """
 
 from __future__ import annotations
@@ -54,7 +56,18 @@ def _look(document: Any, _: Json) -> Json:
         ),
         "visible": sorted(name for name, item in parts.items() if item.Visibility),
         "meshes": {name: found for name, item in parts.items() if (found := _mesh(item)) is not None},
+        "labels": {item.Name: item.Label for item in document.Objects},
+        "parameters": _parameters(document.getObject("Parameters")),
         "objects": sorted(f"{item.TypeId} {item.Name}" for item in document.Objects),
+    }
+
+
+def _parameters(values: Any) -> Json:
+    """Return the group, the tooltip and whether it can be edited of each parameter."""
+    names = [] if values is None else [name for name in values.PropertiesList if name.startswith("p_")]
+    return {
+        name: [values.getGroupOfProperty(name), values.getDocumentationOfProperty(name), "ReadOnly" not in values.getEditorMode(name)]
+        for name in names
     }
 
 
@@ -133,10 +146,49 @@ def _save(document: Any, step: Json) -> Json:
     return {}
 
 
+def _verify(document: Any, _: Json) -> Json:
+    """Recompute, measure, solve and save; then open what was saved and do the same again."""
+    first = _measured(document)
+    saved = str(Path("verified.FCStd").resolve())
+    document.saveAs(saved)
+    App.closeDocument(document.Name)
+    again = App.openDocument(saved, True)
+    return {"first": first, "again": _measured(again)}
+
+
+def _measured(document: Any) -> Json:
+    """Return what stands in the document as it was opened, after a recompute, and after its joints are solved."""
+    opened = {name: _shape_now(item) for name, item in _parts(document).items()}
+    for item in document.Objects:
+        item.touch()
+    document.recompute()
+    placed = {name: _seven(item.Placement) for name, item in _parts(document).items()}
+    return {
+        "opened": opened,
+        "recomputed": {name: _shape_now(item) for name, item in _parts(document).items()},
+        "placed": placed,
+        "invalid": [f"{item.Name} ({item.getStatusString()})" for item in document.Objects if "Invalid" in item.State],
+        "solved": _solve(document, {}),
+    }
+
+
+def _shape_now(part: Any) -> Json:
+    """Return whether a part has a shape, whether that is valid, its volume and its centre in the part's own frame [mm]."""
+    shape = _shape(part)
+    if shape is None:
+        mesh = _mesh(part)
+        return {"kind": "nothing"} if mesh is None else {"kind": "mesh", "volume": mesh["volume"]}
+    if shape.isNull():
+        return {"kind": "null"}
+    solids = shape.Solids
+    center = solids[0].CenterOfMass if len(solids) == 1 else App.Vector()
+    return {"kind": "shape", "valid": shape.isValid(), "solids": len(solids), "volume": shape.Volume, "center": list(center)}
+
+
 def _seven(placement: Any) -> list[float]:
     return [*placement.Base, *placement.Rotation.Q]
 
 
-_STEPS = {"look": _look, "solve": _solve, "perturb": _perturb, "set": _set, "save": _save}
+_STEPS = {"look": _look, "solve": _solve, "perturb": _perturb, "set": _set, "save": _save, "verify": _verify}
 
 main()
