@@ -18,6 +18,7 @@ from hypothesis import strategies as st
 from articad.connectors.mate import Mate
 from articad.connectors.se3 import SE3
 from articad.errors import KinematicsError, PlanError, ReadError
+from articad.importers import mjcf_compiled
 from articad.importers.freecad import read_freecad
 from articad.importers.mjcf import read_mjcf
 from articad.importers.reading import color_text
@@ -215,15 +216,17 @@ def test_a_joint_to_a_link_that_is_not_there_is_named(tmp_path: Path) -> None:
 
 
 def test_what_makes_mujoco_stumble_is_an_error_of_ours(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    path = tmp_path / "a.xml"
-    path.write_text('<mujoco><worldbody><body name="a"><geom size="1"/></body></worldbody></mujoco>')
+    """What the process does that compiles, done here; it would confine itself first."""
 
     def stumbles(_: str) -> None:
         raise RuntimeError("Caught an unknown exception!")
 
     monkeypatch.setattr("mujoco.MjModel.from_xml_path", stumbles)
-    with pytest.raises(ReadError, match="MuJoCo refuses it"):
-        read_mjcf(path)
+    monkeypatch.setattr("articad.kernels.sandbox.keep_to", lambda *_: None)
+    monkeypatch.chdir(tmp_path)
+    assert mjcf_compiled.main(["a.xml", "."]) == 0
+    with pytest.raises(ReadError, match="MuJoCo refuses it: Caught an unknown exception!"):
+        mjcf_compiled._read((tmp_path / "model").read_bytes(), Path("a.xml"))
 
 
 def test_an_integer_beyond_every_float_is_poison() -> None:
