@@ -118,13 +118,14 @@ def shells(V: Any, F: Any) -> Any:
     return np.unique(label[F])
 
 
-def is_inside(points: Any, corners: Any) -> bool:
+def is_inside(points: Any, vertices: Any, triangles: Any) -> bool:
     """Return whether a closed surface encloses any of the points: its solid angle there is not 0 (van Oosterom and Strackee, 1983)."""
-    for point in points:
-        a, b, c = np.moveaxis(corners - point, 1, 0)
-        la, lb, lc = (np.linalg.norm(v, axis=1) for v in (a, b, c))
-        below = la * lb * lc + (a * b).sum(1) * lc + (b * c).sum(1) * la + (c * a).sum(1) * lb
-        if abs(np.arctan2((a * np.cross(b, c)).sum(1), below).sum()) > np.pi:  # half of the winding about a point inside
+    low, high = vertices.min(0), vertices.max(0)
+    for point in points[((low <= points) & (points <= high)).all(1)]:  # outside its bounding box the angle is 0
+        a, b, c = (vertices[column] - point for column in triangles.T)
+        la, lb, lc = (np.sqrt(dot(v, v)) for v in (a, b, c))
+        below = la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb
+        if abs(np.arctan2(dot(a, cross(b, c)), below).sum()) > np.pi:  # half of the winding about a point inside
             return True
     return False
 
@@ -145,7 +146,8 @@ class Hulls:
 
     def __init__(self, corners: Any) -> None:
         self.points, count = corners.reshape(-1, 3), len(corners)
-        self.ends = [np.append(of(corners, axis=1), corners[:1, 0], axis=0) for of in (np.min, np.max)]  # with a row after the last
+        ends = (functools.reduce(of, np.moveaxis(corners, 1, 0)) for of in (np.minimum, np.maximum))
+        self.ends = [np.append(end, corners[:1, 0], axis=0) for end in ends]  # with a row after the last
         self.base, self.known, self.found = count + 1, np.empty(0, dtype=np.int64), np.empty((0, 8, 3))
 
     def of(self, spans: Any) -> Any:
@@ -170,12 +172,13 @@ class Hulls:
 
 def radii(flat: Any) -> tuple[Any, Any]:
     """Return the least and largest distance of triangles `(n, 3, 3)` from 0."""
-    edge = np.roll(flat, -1, 1) - flat
-    n, along = np.cross(edge[:, 0], edge[:, 1]), -(flat * edge).sum(2) / np.maximum((edge**2).sum(2), 1e-300)
-    least = np.linalg.norm(flat + np.clip(along, 0, 1)[..., None] * edge, axis=2).min(1)
-    over = (np.cross(n[:, None], edge) * -flat).sum(2).min(1) > 0  # 0 lies above the triangle, or below it
-    height = np.abs((n * flat[:, 0]).sum(1)) / np.maximum(np.linalg.norm(n, axis=1), 1e-300)
-    return np.where(over, np.minimum(least, height), least), np.linalg.norm(flat, axis=2).max(1)
+    edge = flat[:, [1, 2, 0]] - flat
+    n, along = cross(edge[:, 0], edge[:, 1]), -dot(flat, edge) / np.maximum(dot(edge, edge), 1e-300)
+    nearest = flat + np.clip(along, 0, 1)[..., None] * edge
+    least = np.sqrt(functools.reduce(np.minimum, dot(nearest, nearest).T))
+    over = functools.reduce(np.minimum, dot(cross(n[:, None], edge), -flat).T) > 0  # 0 lies above the triangle, or below it
+    height = np.abs(dot(n, flat[:, 0])) / np.maximum(np.sqrt(dot(n, n)), 1e-300)
+    return np.where(over, np.minimum(least, height), least), np.sqrt(functools.reduce(np.maximum, dot(flat, flat).T))
 
 
 def leans(local: Any, axis: Any) -> tuple[Any, Any]:
@@ -225,6 +228,11 @@ def follow(rows: Any, codes: Any, directions: Any, A: Any, B: Any, how: Any, cle
         which = kind == CUT + 2
         level[which, 4] = halves[level[which, 4], second[which]]
         need((level >= 0).all(), "a box is not halved")
+
+
+def dot(a: Any, b: Any) -> Any:
+    """Return the inner products of vectors `(..., 3)`."""
+    return np.einsum("...i,...i->...", a, b)
 
 
 def cross(a: Any, b: Any) -> Any:
@@ -758,8 +766,8 @@ class Checker:
             if whole["ok"]:
                 self.check_range(name, low, high, is_driver=any(name in drivers for drivers in lines))
         beside = W @ T[:3, :3].T + T[:3, 3]  # if none is inside the other here, surfaces that never meet keep it so
-        for points, corners in ((here[self.shells(a)], beside[G]), (beside[self.shells(b)], here[F])):
-            need(not is_inside(points, corners), "one is inside the other at rest")
+        for points, vertices, triangles in ((here[self.shells(a)], beside, G), (beside[self.shells(b)], here, F)):
+            need(not is_inside(points, vertices, triangles), "one is inside the other at rest")
         boxes, moving, halves = self.boxes(way, vary, lines, proof)
         A, B, (centre, axis) = ordered(here[F], order_a), ordered(W[G], order_b), proof["about"]
         both = A - centre, B @ T[:3, :3].T + T[:3, 3] - centre
