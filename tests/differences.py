@@ -1346,9 +1346,9 @@ Most of the MJCF files among these are pieces that other files include.
 {idle}
 ## To repeat it
 
-```console
-$ scripts/corpus DIR                            # compares, and checks that this page is what comes out
-$ ARTICAD_CORPUS_WRITE=1 scripts/corpus DIR     # writes the page
+```sh
+scripts/corpus DIR                            # compares, and checks that this page is what comes out
+ARTICAD_CORPUS_WRITE=1 scripts/corpus DIR     # writes the page
 ```
 
 The script fetches the packages into DIR (2 GB) without installing them and runs `pytest -m corpus tests/importers/test_corpus.py`, which takes

@@ -39,7 +39,7 @@ def read_batch(path: str | Path) -> list[BatchItem]:
             *stored.get("items", []),
             *itertools.chain.from_iterable(_sampled(sample, file.parent) for sample in stored.get("sample", [])),
         ]
-        return [BatchItem.from_json(row | {"plan": str((file.parent / row["plan"]).resolve())}) for row in rows]
+        return [BatchItem.from_json(row | ({"plan": str((file.parent / row["plan"]).resolve())} if "plan" in row else {})) for row in rows]
     except OSError as error:
         raise _refused(file, f"It cannot be read: {error.strerror}.") from error
     except (ValueError, KeyError, TypeError, AttributeError) as error:

@@ -97,7 +97,8 @@ class CompiledModel:
         """
         q = self._map.q(Q)
         unit: FloatArray = self._pin.normalize(self.model, q)
-        off = unit - q  # for a quaternion as long as its deviation from unit length; NaN where a coordinate is not finite
+        with np.errstate(invalid="ignore"):
+            off = unit - q  # for a quaternion as long as its deviation from unit length; NaN where a coordinate is not finite
         if not off.dot(off) < QUATERNION_TOLERANCE**2:
             self.mechanism.layout.normalized(Q)  # raises the exact error, if there is one: here the deviations of all balls were summed
         return unit

@@ -486,7 +486,7 @@ def test_what_cannot_be_audited_ends_with_exit_code_3_and_a_word(name: str, tmp_
 
     assert cli.main(["audit", str(tmp_path / name), "--no-engines"]) == 3
     said = " ".join(capsys.readouterr().err.split())
-    assert {"missing.urdf": "does not exist", "empty": "no model below", "robot.urdf.xacro": "b.xacro"}[name] in said
+    assert {"missing.urdf": "There is no ", "empty": "no model below", "robot.urdf.xacro": "b.xacro"}[name] in said
     assert "JSON" not in said
 
 

@@ -172,7 +172,7 @@ def test_rest_names_and_counts_of_a_tree() -> None:
     assert len(mechanism.findings()) == 0
     assert mechanism.rest.tolist() == [value for joint in joints for value in joint.rest]
     assert mechanism.configuration(mechanism.rest).values == Configuration.rest(joints).values
-    assert mechanism.rest_poses()["p8"] == mechanism.poses(mechanism.rest)[8]
+    np.testing.assert_allclose(mechanism.rest_poses()["p8"].matrix, mechanism.poses(mechanism.rest)[8].matrix, rtol=0, atol=1e-12)
     assert repr(mechanism) == "Mechanism(10 parts, 9 joints, 0 loops)"
     assert isinstance(mechanism.configuration(mechanism.rest).values, MappingProxyType)
 
