@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import threading
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
@@ -30,6 +30,23 @@ class Stub:
     keys: list[str] = field(default_factory=list)
 
 
+def completion(text: str | None) -> bytes:
+    """Return the body of a completion."""
+    choice = {"index": 0, "finish_reason": "stop", "message": {"role": "assistant", "content": text}}
+    usage = {"prompt_tokens": 7, "completion_tokens": 3, "total_tokens": 10}
+    whole = {"id": "1", "object": "chat.completion", "created": 0, "model": "m", "choices": [choice], "usage": usage}
+    return json.dumps(whole | {"system_fingerprint": "stub"}).encode()
+
+
+def respond(handler: BaseHTTPRequestHandler, status: int, body: bytes, headers: Mapping[str, str]) -> None:
+    """Send an answer in JSON."""
+    handler.send_response(status)
+    for name, value in {"content-type": "application/json", "content-length": str(len(body)), **headers}.items():
+        handler.send_header(name, value)
+    handler.end_headers()
+    handler.wfile.write(body)
+
+
 @contextmanager
 def openai_stub(answers: Sequence[Canned]) -> Iterator[Stub]:
     stub = Stub("")
@@ -40,15 +57,8 @@ def openai_stub(answers: Sequence[Canned]) -> Iterator[Stub]:
             stub.keys.append(self.headers.get("authorization", ""))
             canned = answers[min(len(stub.received), len(answers)) - 1]
             time.sleep(canned.wait)
-            message = {"index": 0, "finish_reason": "stop", "message": {"role": "assistant", "content": canned.text}}
-            usage = {"prompt_tokens": 7, "completion_tokens": 3, "total_tokens": 10}
-            whole = {"id": "1", "object": "chat.completion", "created": 0, "model": "m", "choices": [message], "usage": usage}
-            body = canned.body if canned.body is not None else json.dumps(whole | {"system_fingerprint": "stub"}).encode()
-            self.send_response(canned.status)
-            for name, value in ({"content-type": "application/json", "content-length": str(len(body))} | canned.headers).items():
-                self.send_header(name, value)
-            self.end_headers()
-            self.wfile.write(body)
+            body = canned.body if canned.body is not None else completion(canned.text)
+            respond(self, canned.status, body, canned.headers)
 
         def log_message(self, format: str, *args: object) -> None:  # noqa: A002 - the base class's name
             pass

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from articad.runs.run import Run
+from tests.agents.openai_stub import completion, respond
 
 
 @contextmanager
@@ -25,15 +26,7 @@ def endpoint(recording: Path) -> Iterator[str]:
         def do_POST(self) -> None:
             asked = json.loads(self.rfile.read(int(self.headers["content-length"])))
             text = replies.get(_texts(asked["messages"]))
-            choice = {"index": 0, "finish_reason": "stop", "message": {"role": "assistant", "content": text}}
-            usage = {"prompt_tokens": 7, "completion_tokens": 3, "total_tokens": 10}
-            whole = {"id": "1", "object": "chat.completion", "created": 0, "model": "m", "choices": [choice], "usage": usage}
-            body = json.dumps(whole).encode()
-            self.send_response(400 if text is None else 200)
-            self.send_header("content-type", "application/json")
-            self.send_header("content-length", str(len(body)))
-            self.end_headers()
-            self.wfile.write(body)
+            respond(self, 400 if text is None else 200, completion(text), {})
 
         def log_message(self, format: str, *args: object) -> None:  # noqa: A002 - the base class's name
             pass
