@@ -26,7 +26,7 @@ from articad.importers.mjcf_compiled import Compiled, compiled_mjcf
 from articad.importers.mjcf_kept import kept_attributes, section_elements, with_includes
 from articad.importers.raw import ENDLESS, IDENTITY, RawJoint, RawLink, RawModel, RawTie, aligned, assemble, require_links
 from articad.importers.reading import MM_PER_M, Folder, color_text, read_xml, unreadable
-from articad.importers.records import assembly_of, read_records, stale
+from articad.importers.records import unedited
 from articad.importers.referenced_files import require_closed
 from articad.kinematics.joints import JointType
 
@@ -65,12 +65,9 @@ def read_mjcf(path: str | Path, *, root: str | Path | None = None, metadata: boo
     if document.tag != "mujoco":
         raise unreadable(path, f"line {document.sourceline}", f"The root element is <{document.tag}>, not <mujoco>.")
     texts = [text.get("data", "") for text in document.iterfind("custom/text") if text.get("name", "").startswith(_RECORD_PREFIX)]
-    edited: list[Finding] = []
-    if metadata and texts:
-        records = read_records(texts, path)
-        edited = stale(records, [*document.iterfind("worldbody"), *document.iterfind("equality")], path)
-        if not edited:
-            return assembly_of(records, folder, path)
+    own, edited = unedited(texts if metadata else (), [*document.iterfind("worldbody"), *document.iterfind("equality")], folder, path)
+    if own is not None:
+        return own
     require_closed(path, folder.root)
     whole = with_includes(document, path)
     compiled = compiled_mjcf(path, folder.root)

@@ -65,6 +65,23 @@ def stale(records: list[Record], elements: Iterable[Any], path: Path) -> list[Fi
     return [Finding(code="W_IMPORT_STALE", where=str(path), message=message, hint=hint)]
 
 
+def unedited(texts: Iterable[str], elements: Iterable[Any], folder: Folder, path: Path) -> tuple[Assembly | None, list[Finding]]:
+    """Return the assembly that a file's records describe; None if it has none, or with a finding if it was edited since.
+
+    Args:
+        texts: The records.
+        elements: The elements that tell an edit.
+        folder: For the meshes.
+        path: The file.
+
+    Raises:
+        ReadError: If records are missing, or do not have the form that articad writes.
+    """
+    records = read_records(texts, path)
+    edited = stale(records, elements, path) if records else []
+    return (assembly_of(records, folder, path) if records and not edited else None), edited
+
+
 def assembly_of(records: list[Record], folder: Folder, path: Path) -> Assembly:
     """Return the assembly that the records describe, with the meshes of the files that they name.
 

@@ -21,7 +21,7 @@ from articad.geometry.shapes import box, capsule, cylinder, sphere
 from articad.importers.fusing import fused, with_chains_named
 from articad.importers.raw import ENDLESS, IDENTITY, RawJoint, RawLink, RawModel, RawTie, aligned, assemble, require_links
 from articad.importers.reading import MAX_LINKS, MM_PER_M, Folder, color_text, read_xml, unreadable
-from articad.importers.records import assembly_of, read_records, stale
+from articad.importers.records import unedited
 from articad.importers.sdf_frames import MODEL, WORLD, Scope, numbers_of, pose_of
 from articad.importers.sdf_kept import kept_of
 from articad.kinematics.joints import JointType
@@ -57,12 +57,9 @@ def read_sdf(path: str | Path, *, root: str | Path | None = None, metadata: bool
     folder = Folder.of(path, None if root is None else Path(root))
     document = _document(path)
     texts = [element.text or "" for element in document.iterfind("model/{*}records/{*}record")]
-    edited: list[Finding] = []
-    if metadata and texts:
-        records = read_records(texts, path)
-        edited = stale(records, [*document.iterfind("model/link"), *document.iterfind("model/joint")], path)
-        if not edited:
-            return assembly_of(records, folder, path)
+    own, edited = unedited(texts if metadata else (), [*document.iterfind("model/link"), *document.iterfind("model/joint")], folder, path)
+    if own is not None:
+        return own
     model = _Reader(folder, path).model(document)
     model.findings += [*edited, *folder.findings]
     require_links(model, path)

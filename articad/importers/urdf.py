@@ -25,7 +25,7 @@ from articad.geometry.shapes import capsule as capsule_mesh
 from articad.importers.fusing import fused, with_chains_named
 from articad.importers.raw import ENDLESS, IDENTITY, RawJoint, RawLink, RawModel, RawTie, aligned, assemble, require_links
 from articad.importers.reading import MAX_LINKS, MM_PER_M, Folder, color_text, parse_xml, read_xml, unreadable
-from articad.importers.records import assembly_of, read_records, stale
+from articad.importers.records import unedited
 from articad.importers.referenced_files import package_of
 from articad.importers.srdf import kept_semantics, semantics_beside
 from articad.importers.urdf_kept import kept_elements
@@ -66,16 +66,12 @@ def read_urdf(
     if document.tag != "robot":
         raise unreadable(path, f"line {document.sourceline}", f"The root element is <{document.tag}>, not <robot>.")
     texts = [element.text or "" for element in document.iterfind("articad")]
-    edited: list[Finding] = []
-    if metadata and texts:
-        records = read_records(texts, path)
-        edited = stale(records, [*document.iterfind("link"), *document.iterfind("joint")], path)
-        if not edited:
-            own = assembly_of(records, folder, path)
-            if beside is None:
-                return own
-            stated = kept_semantics(beside, own=True)  # the file's present content counts
-            return replace(own, kept=(*(item for item in own.kept if item.format != "srdf"), *stated))
+    own, edited = unedited(texts if metadata else (), [*document.iterfind("link"), *document.iterfind("joint")], folder, path)
+    if own is not None:
+        if beside is None:
+            return own
+        stated = kept_semantics(beside, own=True)  # the file's present content counts
+        return replace(own, kept=(*(item for item in own.kept if item.format != "srdf"), *stated))
     model = _model(document, folder, path)
     model.kept += [] if beside is None else kept_semantics(beside)
     model.findings += edited
