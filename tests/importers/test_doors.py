@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import trimesh
 from lxml import etree
 
 from articad import cli
@@ -518,3 +519,28 @@ def test_a_negative_effort_is_said(tmp_path: Path) -> None:
     path.write_text(three((-1, 1), (-1, 1), (-1, 1), efforts=(5, -6, 5)))
 
     assert [finding.where for finding in read_urdf(path).findings.of("W_IMPORT_LIMITS")] == ["joints.pitch"]
+
+
+def test_a_mesh_with_a_negative_scale_is_mirrored_and_its_mass_is_positive(tmp_path: Path) -> None:
+    """A tetrahedron without symmetry, scaled by -1, 2, 1: trimesh scales it, and MuJoCo weighs the conversion."""
+    import mujoco
+
+    corner = trimesh.Trimesh([[0, 0, 0], [0.5, 0, 0], [0, 0.25, 0], [0, 0, 0.125]], [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]])
+    corner.export(tmp_path / "corner.stl")
+    shape = '<geometry><mesh filename="corner.stl" scale="-1 2 1"/></geometry>'
+    text = f'<robot name="n"><link name="a"><visual>{shape}</visual><collision>{shape}</collision></link></robot>'
+    source, copy, _ = converted(text, "mjcf", tmp_path)
+    expected = corner.apply_transform(np.diag([-1.0, 2.0, 1.0, 1.0]))
+    (mesh,) = {id(item.mesh): item.mesh for item in read_urdf(source).parts["a"].visuals}.values()
+
+    assert expected.volume > 0
+    assert mesh.solid_integrals()[0] == pytest.approx(1e9 * expected.volume)
+    assert np.allclose(sorted(map(tuple, mesh.vertices)), sorted(map(tuple, 1000 * expected.vertices)))
+
+    model = mujoco.MjModel.from_xml_path(str(copy))
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    for geom in range(model.ngeom):
+        start, count = model.mesh_vertadr[model.geom_dataid[geom]], model.mesh_vertnum[model.geom_dataid[geom]]
+        placed = model.mesh_vert[start : start + count] @ data.geom_xmat[geom].reshape(3, 3).T + data.geom_xpos[geom]
+        assert np.allclose(sorted(map(tuple, placed.round(6))), sorted(map(tuple, expected.vertices)), atol=2e-6)
