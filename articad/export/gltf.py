@@ -140,7 +140,7 @@ class _Buffer:
     def _primitive(self, mesh: TriMesh) -> dict[str, Any]:
         """Return a primitive; equal meshes share their data."""
         if mesh.digest not in self._geometry:
-            positions, normals, indices = _shaded(mesh)
+            positions, normals, indices = shaded(mesh)
             self._geometry[mesh.digest] = {
                 "attributes": {
                     "POSITION": self.add((positions / MM_PER_M).astype(np.float32), "VEC3", target=34962, bounds=True),
@@ -151,8 +151,8 @@ class _Buffer:
         return dict(self._geometry[mesh.digest])
 
 
-def _shaded(mesh: TriMesh) -> tuple[FloatArray, FloatArray, NDArray[np.int64]]:
-    """Return vertices, normals and indices: corners whose faces meet smoothly share a vertex, those at creases get their own."""
+def shaded(mesh: TriMesh) -> tuple[FloatArray, FloatArray, NDArray[np.int64]]:
+    """Return vertices, normals and indices: corners whose faces meet smoothly share their vertex, those at creases get their own."""
     twice = mesh.normals_of_twice_area
     flat = twice / np.maximum(np.linalg.norm(twice, axis=1), np.finfo(float).tiny)[:, None]
     index = mesh.triangles.reshape(-1)

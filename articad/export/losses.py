@@ -170,19 +170,19 @@ TABLE: dict[str, dict[Format, LossRow]] = {
         "urdf": LossRow("the velocity of <limit>"),
         "mjcf": LossRow("metadata", "MJCF has no limit on a joint's velocity"),
         "sdf": LossRow("the velocity of <limit>"),
-        "usd": LossRow("nothing", "UsdPhysics has no limit on a joint's velocity"),
+        "usd": LossRow("the velocity limits of NewtonJointAPI and PhysxJointAPI"),
     },
     "joint.damping": {
         "urdf": LossRow("the damping of <dynamics>"),
         "mjcf": LossRow("the damping of the joint"),
         "sdf": LossRow("the damping of <dynamics>"),
-        "usd": LossRow("nothing", "damping: UsdPhysics has drives only"),
+        "usd": LossRow("the damping of NewtonJointAPI"),
     },
     "joint.friction": {
         "urdf": LossRow("the friction of <dynamics>"),
         "mjcf": LossRow("the frictionloss of the joint"),
         "sdf": LossRow("the friction of <dynamics>"),
-        "usd": LossRow("nothing", "friction in joints"),
+        "usd": LossRow("the friction of NewtonJointAPI"),
     },
     "effort.assumed": {
         name: LossRow("effort and velocity that carry the load", "the fact that the file states none; this format requires them")
@@ -247,7 +247,7 @@ TABLE: dict[str, dict[Format, LossRow]] = {
         "urdf": LossRow("<mimic>", "readers that ignore <mimic> let the joints move on their own"),
         "mjcf": LossRow("an equality of joints"),
         "sdf": LossRow("<mimic>", "readers that ignore <mimic> let the joints move on their own"),
-        "usd": LossRow("nothing", "UsdPhysics has no couplings: the joints move independently", refused=True),
+        "usd": LossRow("nothing", "NewtonMimicAPI couples single joints of one kind only: the joints move independently", refused=True),
     },
     "coupling.loop": {
         "urdf": LossRow(
@@ -257,7 +257,7 @@ TABLE: dict[str, dict[Format, LossRow]] = {
         "sdf": LossRow(
             "metadata", "the coupling: it names a joint that closes a loop, or couples joints that are already coupled", refused=True
         ),
-        "usd": LossRow("nothing", "UsdPhysics has no couplings: the joints move independently", refused=True),
+        "usd": LossRow("nothing", "the coupling: the joints move independently", refused=True),
     },
     "loop.rest": {
         "urdf": LossRow("the tree with all values at zero"),
@@ -352,12 +352,17 @@ TABLE: dict[str, dict[Format, LossRow]] = {
         name: LossRow("its mesh for collision, of which engines take the hull", "convex pieces: the surface encloses no volume")
         for name in MECHANISM_FORMATS
     },
-    "color": {"urdf": LossRow("<material>"), "mjcf": LossRow("a material"), "sdf": LossRow("a material"), "usd": LossRow("displayColor")},
+    "color": {
+        "urdf": LossRow("<material>"),
+        "mjcf": LossRow("a material"),
+        "sdf": LossRow("a material"),
+        "usd": LossRow("a material and displayColor"),
+    },
     "friction": {
         "urdf": LossRow("metadata", "URDF has no friction between surfaces: readers use their own"),
         "mjcf": LossRow("the geoms' friction"),
         "sdf": LossRow("friction of the collision's surface"),
-        "usd": LossRow("nothing", "friction between surfaces"),
+        "usd": LossRow("PhysicsMaterialAPI"),
     },
     "connector": {
         "urdf": LossRow("metadata"),
@@ -379,6 +384,14 @@ TABLE: dict[str, dict[Format, LossRow]] = {
     },
 }
 
+
+# What UsdPhysics and its extensions hold for some joints only.
+TABLE["coupling.mimic"] = TABLE["coupling"] | {
+    "usd": LossRow("NewtonMimicAPI", "readers that do not know NewtonMimicAPI let the joints move on their own")
+}
+for _key, _lost in {"velocity": "velocity limits", "joint.damping": "damping", "joint.friction": "friction"}.items():
+    _row = LossRow("nothing", f"{_lost} of a joint of several freedoms: NewtonJointAPI has one number for all of them")
+    TABLE[f"{_key}.several"] = TABLE[_key] | {"usd": _row}
 
 _BALL = LossRow("a ball joint", "its cone and twist: a ball of FreeCAD has no limits")
 _FREECAD: dict[str, LossRow] = {

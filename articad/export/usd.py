@@ -5,9 +5,9 @@ from __future__ import annotations
 import json
 import math
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -17,6 +17,7 @@ from articad.connectors.se3 import SE3
 from articad.export.bundle import Bundle
 from articad.export.collisions import Collision, kind_of, shape_model
 from articad.export.features import features_of, primitive_features, solid_enough
+from articad.export.gltf import shaded
 from articad.export.inertia import Inertial, is_possible
 from articad.export.losses import Feature, kept_losses, losses_of, refuse
 from articad.export.lowering import lower
@@ -27,7 +28,7 @@ from articad.geometry.mass import MassProperties
 from articad.geometry.mesh import TriMesh
 from articad.geometry.part import Part, Shape
 from articad.kernels.cache import BuildCache
-from articad.kinematics.joints import Joint, JointType
+from articad.kinematics.joints import Coupling, Joint, JointType
 
 if TYPE_CHECKING:
     from articad.assembly import Assembly
@@ -42,6 +43,8 @@ _PRIMS = {
     JointType.SLIDER: "PhysicsPrismaticJoint",
     JointType.BALL: "PhysicsSphericalJoint",
 }
+_NORMAL_DIGITS = 4  # of the components of unit normals
+_POINT_DIGITS = 8  # of coordinates in m: USD keeps points in single precision
 _ROOT = '"PhysicsArticulationRootAPI"'
 _DEGREES = ("transX", "transY", "transZ", "rotX", "rotY", "rotZ")
 
@@ -49,9 +52,10 @@ _DEGREES = ("transX", "transY", "transZ", "rotX", "rotY", "rotZ")
 def write_usd(assembly: Assembly, *, strict: bool = False, collision: Collision | None = None, cache: BuildCache | None = None) -> Bundle:
     """Write an assembly as one `.usda` file in metres, z-up, with meshes inside.
 
-    Bodies keep the parts' own frames and are posed at rest. A joint's two local frames coincide where its values are zero, so limits
-    equal articad's, in degrees and metres. Cylindrical, planar, universal and screw joints become generic joints with their other
-    degrees locked.
+    Bodies keep the parts' own frames and are posed at rest. A joint's two local frames coincide where its values are zero, so limits are
+    ours, in degrees and metres. Cylindrical, planar, universal and screw joints become generic joints with their other degrees locked.
+    Couplings of joints of one kind are written as NewtonMimicAPI, velocity limits, damping and friction of joints as NewtonJointAPI (the
+    velocity also as PhysxJointAPI), friction of surfaces as PhysicsMaterialAPI.
 
     Args:
         assembly: What to write.
@@ -66,25 +70,34 @@ def write_usd(assembly: Assembly, *, strict: bool = False, collision: Collision 
     Raises:
         UnrepresentableError: If `strict` and there is such a loss.
     """
-    links, joints = Names(), Names()
+    links, joints = Names(("joints", "materials")), Names(("to_world",))
     root = valid_name(assembly.name)
     bodies = {name: links.claim(name) for name in assembly.parts}
     names = {joint.name: joints.claim(joint.name) for joint in assembly.joints}
     kind = kind_of(assembly, collision)
     model = shape_model(assembly, replace(lower(assembly), features=()), kind, cache)
     colliding = {link.part.name: tuple(placed.shape for placed in link.collisions) or solid_enough(link.part) for link in model.links}
-    features = (*features_of(assembly), *model.features, *_name_features(assembly, bodies, names), *primitive_features(assembly))
+    ties = _mimics(assembly)
+    features = (
+        *_held(assembly, features_of(assembly), ties),
+        *model.features,
+        *_name_features(assembly, bodies, names),
+        *primitive_features(assembly),
+    )
     losses = (*losses_of("usd", features), *kept_losses("usd", assembly.kept))
     if strict:
         refuse(losses)
     rest = assembly.mechanism.rest_poses()
     closing = {joint.name for joint in assembly.mechanism.loop_joints}
     lines = [_HEADER.format(root=root)]
+    materials = _Materials(f"/{root}/materials")
     free = {joint.child for joint in assembly.joints if joint.type is JointType.FREE and joint.name not in closing}
     lines.append(f'def Xform "{root}"\n{{' if free else f'def Xform "{root}" (\n    prepend apiSchemas = [{_ROOT}]\n)\n{{')
     for name, part in assembly.parts.items():
         schemas = (_ROOT,) if name in free else ()
-        lines += _indented(_body(part, bodies[name], rest[name], colliding[name], schemas, draws=kind != "solid"))
+        surface = materials.surface(model.link_of(name).friction)
+        lines += _indented(_body(part, bodies[name], rest[name], colliding[name], materials, surface, schemas, draws=kind != "solid"))
+    lines += _indented(materials.prims())
     lines += _indented(['def Scope "joints"', "{"])
     ground = f"</{root}/{bodies[assembly.ground]}>"
     held = [_ROOT] if free else []  # roots of articulations may not be nested, so each is on a prim of its own
@@ -93,7 +106,8 @@ def write_usd(assembly: Assembly, *, strict: bool = False, collision: Collision 
         if joint.type is JointType.FREE:
             continue
         ends = (f"</{root}/{bodies[joint.parent]}>", f"</{root}/{bodies[joint.child]}>")
-        lines += _indented(_joint(joint, names[joint.name], ends, closes=joint.name in closing), 2)
+        more = [*_dynamics(joint), *_mimic(joint, ties.get(joint.name), names, root)]
+        lines += _indented(_joint(joint, names[joint.name], ends, more, closes=joint.name in closing), 2)
     lines += ["    }", "}"]
     return Bundle({f"{root}.usda": ("\n".join(lines) + "\n").encode("ascii")}, losses)
 
@@ -108,8 +122,69 @@ _HEADER = """#usda 1.0
 """
 
 
-def _body(part: Part, name: str, T: SE3, collisions: tuple[Shape, ...], schemas: Iterable[str] = (), *, draws: bool) -> list[str]:
-    """Return a rigid body with its meshes; visual meshes of a built part are simplified."""
+class _Materials:
+    """Materials that are drawn, by colour, and surfaces that rub, by coefficient of friction."""
+
+    def __init__(self, path: str) -> None:
+        self._path = path
+        self._colors: dict[str, str] = {}
+        self._frictions: dict[float, str] = {}
+
+    def look(self, color: str) -> str:
+        """Return the path of the material of a colour."""
+        name = self._colors.setdefault(color, f"color_{color.removeprefix('#')}")
+        return f"{self._path}/{name}"
+
+    def surface(self, friction: float | None) -> str | None:
+        """Return the path of the material of a coefficient of friction; None where it is not known."""
+        if friction is None:
+            return None
+        name = self._frictions.setdefault(friction, valid_name(f"friction_{number(friction)}"))
+        return f"{self._path}/{name}"
+
+    def prims(self) -> list[str]:
+        """Return the scope that holds them."""
+        lines = ['def Scope "materials"', "{"]
+        for color, name in self._colors.items():
+            shader = f"{self._path}/{name}/surface"
+            lines += _indented([
+                f'def Material "{name}"',
+                "{",
+                f"    token outputs:surface.connect = <{shader}.outputs:surface>",
+                '    def Shader "surface"',
+                "    {",
+                '        uniform token info:id = "UsdPreviewSurface"',
+                f"        color3f inputs:diffuseColor = {_tuple(_linear(color))}",
+                "        float inputs:roughness = 0.5",
+                "        token outputs:surface",
+                "    }",
+                "}",
+            ])  # fmt: skip
+        for friction, name in self._frictions.items():
+            lines += _indented([
+                f'def Material "{name}" (',
+                '    prepend apiSchemas = ["PhysicsMaterialAPI"]',
+                ")",
+                "{",
+                f"    float physics:dynamicFriction = {number(friction)}",
+                f"    float physics:staticFriction = {number(friction)}",
+                "}",
+            ])  # fmt: skip
+        return [*lines, "}"]
+
+
+def _body(
+    part: Part,
+    name: str,
+    T: SE3,
+    collisions: tuple[Shape, ...],
+    materials: _Materials,
+    surface: str | None,
+    schemas: Iterable[str] = (),
+    *,
+    draws: bool,
+) -> list[str]:
+    """Return a rigid body with what is drawn and what collides in scopes of their own; built parts are drawn with simplified meshes."""
     listed = ", ".join(['"PhysicsRigidBodyAPI"', '"PhysicsMassAPI"', *schemas])
     mass = part.mass if part.mass is not None and part.mass.mass > 0 else None
     lines = [
@@ -125,12 +200,16 @@ def _body(part: Part, name: str, T: SE3, collisions: tuple[Shape, ...], schemas:
     visuals = part.visuals or part.collisions
     built = built_meshes([part]) if draws else {}
     looks = {id(one): replace(one, mesh=drawn(built[one.mesh.digest]).mesh) if one.mesh.digest in built else one for one in visuals}
-    surfaces = {id(one): one for one in collisions if _form(one) is None} | looks
-    written = {key: _surface(one.placed) for key, one in surfaces.items()}  # a visual shape may also be a collision shape
-    for index, one in enumerate(visuals):
-        lines += _indented(_mesh(f"visual_{index}", written[id(one)], one.color or part.color))
-    for index, one in enumerate(collisions):
-        lines += _indented(_form(one, f"collision_{index}") or _mesh(f"collision_{index}", written[id(one)], None))
+    surfaces = {id(one): one for one in collisions if _form(one, "", None) is None} | looks
+    written = {key: _surface(one.placed) for key, one in surfaces.items()}  # what is drawn may collide too
+    drawings = [_mesh(f"visual_{index}", written[id(one)], one.color or part.color, materials) for index, one in enumerate(visuals)]
+    shapes = [
+        _form(one, f"collision_{index}", surface) or _mesh(f"collision_{index}", written[id(one)], None, materials, surface)
+        for index, one in enumerate(collisions)
+    ]
+    for scope, prims, fields in (("visuals", drawings, []), ("collisions", shapes, ['    uniform token purpose = "guide"'])):
+        if prims:
+            lines += _indented([f'def Scope "{scope}"', "{", *fields, *_indented(line for prim in prims for line in prim), "}"])
     return [*lines, "}"]
 
 
@@ -151,63 +230,174 @@ def _mass(mass: MassProperties | None) -> list[str]:
     ]
 
 
-def _form(shape: Shape, name: str = "") -> list[str] | None:
-    """Return a primitive for collision, None if USD has none or the shape is a mesh."""
+def _form(shape: Shape, name: str, surface: str | None) -> list[str] | None:
+    """Return a primitive body that collides, None where USD has none or the shape is a mesh."""
     form, T = shape.primitive, shape.frame
     if form is None or form.kind not in {"box", "sphere", "cylinder", "capsule"}:
         return None
     sizes = [size / MM_PER_M for size in form.size]
     r, order = number(sizes[0]), '"xformOp:translate", "xformOp:orient"'
+    high = sizes[-1] / 2 + (sizes[0] if form.kind == "capsule" else 0.0)
+    round_ = [
+        'uniform token axis = "Z"',
+        f"double radius = {r}",
+        f"double height = {number(sizes[-1])}",
+        _extent([sizes[0], sizes[0], high]),
+    ]
     prims = {
-        "box": ("Cube", ["double size = 1", f"float3 xformOp:scale = {_tuple(sizes)}"]),
-        "sphere": ("Sphere", [f"double radius = {r}"]),
-        "cylinder": ("Cylinder", ['uniform token axis = "Z"', f"double radius = {r}", f"double height = {number(sizes[-1])}"]),
-        "capsule": ("Capsule", ['uniform token axis = "Z"', f"double radius = {r}", f"double height = {number(sizes[-1])}"]),
+        "box": ("Cube", ["double size = 1", f"float3 xformOp:scale = {_tuple(sizes)}", _extent([0.5] * 3)]),
+        "sphere": ("Sphere", [f"double radius = {r}", _extent([sizes[0]] * 3)]),
+        "cylinder": ("Cylinder", round_),
+        "capsule": ("Capsule", round_),
     }
     prim, fields = prims[form.kind]
     order += ', "xformOp:scale"' if form.kind == "box" else ""
     return [
         f'def {prim} "{name}" (',
-        '    prepend apiSchemas = ["PhysicsCollisionAPI"]',
+        f"    prepend apiSchemas = [{_schemas('PhysicsCollisionAPI', bound=surface)}]",
         ")",
         "{",
         *_indented(fields),
+        *_bound(surface, "physics"),
         f"    double3 xformOp:translate = {_tuple(T.translation / MM_PER_M)}",
         f"    quatd xformOp:orient = {_quaternion(T)}",
         f"    uniform token[] xformOpOrder = [{order}]",
-        '    uniform token purpose = "guide"',
         "}",
     ]
 
 
+def _extent(half: Iterable[float]) -> str:
+    half = list(half)
+    return f"float3[] extent = [{_tuple(-size for size in half)}, {_tuple(half)}]"
+
+
+def _schemas(*names: str, bound: str | None) -> str:
+    return ", ".join(f'"{name}"' for name in (*names, *(["MaterialBindingAPI"] if bound else [])))
+
+
+def _bound(material: str | None, purpose: str = "") -> list[str]:
+    """Return the binding of a material."""
+    return [] if material is None else [f"    rel material:binding{':' + purpose if purpose else ''} = <{material}>"]
+
+
 def _surface(mesh: TriMesh) -> list[str]:
-    """Return the triangles of a mesh."""
+    """Return the triangles of a mesh, with normals that are smooth but for creases."""
+    points = np.round(mesh.vertices / MM_PER_M, _POINT_DIGITS)
+    _, normals, indices = shaded(mesh)
+    normals, places = np.unique(np.round(normals, _NORMAL_DIGITS) + 0.0, axis=0, return_inverse=True)
     return [
+        f"    float3[] extent = [{_tuple(points.min(axis=0))}, {_tuple(points.max(axis=0))}]",
         f"    int[] faceVertexCounts = [{', '.join('3' * len(mesh.triangles))}]",
         f"    int[] faceVertexIndices = [{', '.join(map(str, mesh.triangles.ravel().tolist()))}]",
-        f"    point3f[] points = {_points(mesh.vertices / MM_PER_M)}",
+        f"    point3f[] points = {_points(points)}",
+        f"    normal3f[] primvars:normals = {_points(normals)} (",
+        '        interpolation = "faceVarying"',
+        "    )",
+        f"    int[] primvars:normals:indices = [{', '.join(map(str, places.ravel()[indices].tolist()))}]",
     ]
 
 
-def _mesh(name: str, surface: list[str], color: str | None) -> list[str]:
-    """Return a mesh: drawn in a colour, or for collision by its convex hull."""
-    lines = [f'def Mesh "{name}"'] if color is not None else [
+def _mesh(name: str, triangles: list[str], color: str | None, materials: _Materials, surface: str | None = None) -> list[str]:
+    """Return a mesh: drawn in a colour, or collided with as its convex hull."""
+    drawn_ = color is not None
+    own = () if drawn_ else ("PhysicsCollisionAPI", "PhysicsMeshCollisionAPI")
+    bound = materials.look(color) if color is not None else surface
+    listed = _schemas(*own, bound=bound)
+    lines = [
         f'def Mesh "{name}" (',
-        '    prepend apiSchemas = ["PhysicsCollisionAPI", "PhysicsMeshCollisionAPI"]',
+        f"    prepend apiSchemas = [{listed}]",
         ")",
-    ]  # fmt: skip
-    lines += ["{", *surface, '    uniform token subdivisionScheme = "none"']
+        "{",
+        *triangles,
+        '    uniform token subdivisionScheme = "none"',
+    ]
+    lines += _bound(bound, "" if drawn_ else "physics")
     if color is None:
-        lines += ['    uniform token physics:approximation = "convexHull"', '    uniform token purpose = "guide"']
+        lines.append('    uniform token physics:approximation = "convexHull"')
     else:
         lines.append(f"    color3f[] primvars:displayColor = [{_tuple(_linear(color))}]")
     return [*lines, "}"]
 
 
-def _joint(joint: Joint, name: str, ends: tuple[str, str], *, closes: bool) -> list[str]:
-    """Return a joint; its frame on the child includes the mate's flip, so that both coincide at zero."""
+class _Extra(NamedTuple):
+    """What a joint has beyond its frames and limits: a schema, and its fields."""
+
+    schema: str
+    fields: list[str]
+
+
+def _is_single(joint: Joint) -> bool:
+    """True for joints to whose one coordinate, or three alike, a number of NewtonJointAPI belongs."""
+    return joint.type in {JointType.REVOLUTE, JointType.SLIDER, JointType.BALL}
+
+
+def _dynamics(joint: Joint) -> list[_Extra]:
+    """Return stated velocity limit, damping and friction; torques are stated in N·mm, angles in USD are degrees."""
+    if not _is_single(joint):
+        return []
+    turns = joint.type is not JointType.SLIDER
+    effort = 1 / MM_PER_M if turns else 1.0  # N·mm to N·m
+    value = math.degrees(1.0) if turns else 1 / MM_PER_M  # rad to degrees, mm to m
+    velocity, damping, friction = (next(iter(values), None) for values in (joint.velocity, joint.damping, joint.friction))
+    rows = []
+    if velocity is not None:
+        rows.append(f"float newton:velocityLimit = {number(velocity * value)}")
+    if damping:
+        rows.append(f"float newton:damping = {number(damping * effort / value)}")
+    if friction:
+        rows.append(f"float newton:friction = {number(friction * effort)}")
+    found = [_Extra("NewtonJointAPI", rows)] if rows else []
+    if velocity is not None:
+        found.append(_Extra("PhysxJointAPI", [f"float physxJoint:maxJointVelocity = {number(velocity * value)}"]))
+    return found
+
+
+def _mimics(assembly: Assembly) -> dict[str, Coupling]:
+    """Return the couplings that NewtonMimicAPI holds, by the joint that follows: both joints of the tree and of one kind."""
+    single = {joint.name: joint for joint in assembly.joints if joint.type in {JointType.REVOLUTE, JointType.SLIDER}}
+    written = {feature.where for feature in features_of(assembly) if feature.key == "coupling"}
+    found: dict[str, Coupling] = {}
+    for coupling in assembly.mechanism.couplings:
+        a, b = single.get(coupling.a), single.get(coupling.b)
+        if f"couplings.{coupling.name}" in written and a is not None and b is not None and a.type is b.type and b.name not in found:
+            found[b.name] = coupling
+    return found
+
+
+def _mimic(joint: Joint, coupling: Coupling | None, names: Mapping[str, str], root: str) -> list[_Extra]:
+    """Return follower = offset + ratio · leader; the offset in degrees or m."""
+    if coupling is None:
+        return []
+    offset = math.degrees(coupling.offset) if joint.type is JointType.REVOLUTE else coupling.offset / MM_PER_M
+    fields = [
+        f"float newton:mimicCoef0 = {number(offset)}",
+        f"float newton:mimicCoef1 = {number(coupling.ratio)}",
+        f"rel newton:mimicJoint = </{root}/joints/{names[coupling.a]}>",
+    ]
+    return [_Extra("NewtonMimicAPI", fields)]
+
+
+def _held(assembly: Assembly, features: Iterable[Feature], ties: Mapping[str, Coupling]) -> list[Feature]:
+    """Return the features with those named apart that USD holds for some joints only."""
+    tied = {f"couplings.{coupling.name}" for coupling in ties.values()}
+    several = {f"joints.{joint.name}" for joint in assembly.joints if not _is_single(joint)}
+    found = []
+    for feature in features:
+        if feature.key == "coupling" and feature.where in tied:
+            found.append(feature._replace(key="coupling.mimic"))
+        elif feature.key in {"velocity", "joint.damping", "joint.friction"} and feature.where in several:
+            found.append(feature._replace(key=f"{feature.key}.several"))
+        else:
+            found.append(feature)
+    return found
+
+
+def _joint(joint: Joint, name: str, ends: tuple[str, str], more: Sequence[_Extra], *, closes: bool) -> list[str]:
+    """Return a joint; its frame on the child is turned over with the mate, so that both coincide at zero."""
     frames = (joint.T_parent_connector, joint.T_child_connector @ flip(joint.mate))
     extra = ["bool physics:excludeFromArticulation = true"] if closes else []
+    extra += [line for one in more for line in one.fields]
+    schemas = [f'"{one.schema}"' for one in more]
     kind = _PRIMS.get(joint.type)
     if kind is None:
         return _generic(joint, name, ends, frames, extra)
@@ -220,7 +410,7 @@ def _joint(joint: Joint, name: str, ends: tuple[str, str], *, closes: bool) -> l
     for *bounds, unit in zip(joint.limits.lower, joint.limits.upper, joint.type.units, strict=False):
         low, high = (_in_usd(bound, unit) for bound in bounds)
         extra += [f"float physics:lowerLimit = {low}", f"float physics:upperLimit = {high}"]
-    return _joint_prim(kind, name, ends, frames, extra)
+    return _joint_prim(kind, name, ends, frames, extra, schemas)
 
 
 def _generic(joint: Joint, name: str, ends: tuple[str, str], frames: tuple[SE3, SE3], extra: list[str]) -> list[str]:

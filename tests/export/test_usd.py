@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -10,10 +11,15 @@ import numpy as np
 import pytest
 
 from articad.assembly import Assembly
+from articad.connectors.connector import Connector
 from articad.connectors.se3 import SE3
 from articad.export.usd import write_usd
 from articad.geometry.part import Part
+from articad.geometry.shapes import sphere
+from articad.kernels.cache import BuildCache
 from articad.kinematics import declare
+from articad.kinematics.joints import Coupling
+from articad.plan.resolve import Material
 from tests.assemblies import all_joint_kinds, block, closed, four_bar, frame, geared_pair
 
 ASSEMBLIES = {
@@ -55,7 +61,8 @@ def test_limits_are_degrees_and_metres_and_other_degrees_are_locked() -> None:
 
 
 def test_losses_of_couplings_and_screws_are_refused() -> None:
-    assert {loss.where for loss in write_usd(geared_pair()).losses if loss.refused} == {"couplings.mesh", "couplings.pinion"}
+    """NewtonMimicAPI holds the wheels, which both turn; a pinion turns while its rack slides."""
+    assert {loss.where for loss in write_usd(geared_pair()).losses if loss.refused} == {"couplings.pinion"}
     assert {loss.where for loss in write_usd(all_joint_kinds()).losses if loss.refused} == {"joints.nut", "joints.bolt"}
 
 
@@ -108,6 +115,102 @@ def test_usd_core_reads_bodies_masses_and_joints_that_meet_at_rest(name: str, tm
         motion = joint.motion(configuration[joint.name]).matrix
         motion[:3, 3] /= 1000
         assert np.allclose(near @ motion, far, atol=1e-6)  # local frames are single precision in UsdPhysics
+
+
+@pytest.fixture
+def stage(tmp_path: Path) -> Any:
+    """A hinge with velocity, damping and friction, a wheel that turns with it, and a drawer of another material, as usd-core reads them."""
+    Usd: Any = pytest.importorskip("pxr.Usd", reason="usd-core is an extra")
+    steel, rubber = Material("steel", 7850.0, "#888888", 0.2), Material("rubber", 1100.0, "#222222", 0.9)
+    base = block("base", a=frame(), b=frame(at=(100, 0, 0)), c=frame(at=(0, 100, 0)))
+    arm, wheel, drawer = (block(name, a=frame()) for name in ("arm", "wheel", "drawer"))
+    ball = Part.from_mesh("ball", sphere(10, 24), density=7850.0, connectors={"a": Connector("a", SE3.identity())})
+    joints = [
+        declare.revolute("arm", base["a"], arm["a"], limits=(-1, 2)),
+        declare.revolute("wheel", base["b"], wheel["a"], limits="endless"),
+        declare.slider("drawer", base["c"], drawer["a"], limits=(0, 50)),
+        declare.fixed("knob", arm["a"], ball["a"]),
+    ]
+    joints[0] = replace(joints[0], velocity=(1.5,), damping=(0.4,), friction=(3.0,))
+    joints[2] = replace(joints[2], velocity=(250.0,))
+    parts = [replace(one, material="rubber" if one is drawer else "steel") for one in (base, arm, wheel, drawer, ball)]
+    assembly = Assembly.from_parts(
+        "model",
+        parts=parts,
+        joints=joints,
+        ground="base",
+        couplings=[Coupling("mesh", "gear", "arm", "wheel", -2.0, 0.5)],
+    )
+    assembly = replace(assembly, materials={"steel": steel, "rubber": rubber})
+    bundle = write_usd(assembly, cache=BuildCache(tmp_path / "cache"))
+    bundle.write(tmp_path)
+    return Usd.Stage.Open(str(tmp_path / bundle.main))
+
+
+@pytest.mark.engines
+def test_surfaces_have_their_friction_and_pictures_one_material(stage: Any) -> None:
+    from pxr import UsdPhysics, UsdShade
+
+    frictions = {}
+    for prim in stage.Traverse():
+        if prim.HasAPI(UsdPhysics.CollisionAPI):
+            material = UsdShade.MaterialBindingAPI(prim).ComputeBoundMaterial("physics")[0]
+            surface = UsdPhysics.MaterialAPI(material)
+            frictions[prim.GetPath().pathString.split("/")[2]] = (
+                surface.GetDynamicFrictionAttr().Get(),
+                surface.GetStaticFrictionAttr().Get(),
+            )
+        elif prim.GetTypeName() == "Mesh":
+            assert prim.HasAPI(UsdShade.MaterialBindingAPI)
+            material, relationship = UsdShade.MaterialBindingAPI(prim).ComputeBoundMaterial()
+            assert len(relationship.GetTargets()) == 1
+            assert material.ComputeSurfaceSource()[0].GetShaderId() == "UsdPreviewSurface"
+
+    assert frictions.keys() == {"base", "arm", "wheel", "drawer", "ball"}
+    assert frictions["drawer"] == pytest.approx((0.9, 0.9))
+    assert frictions["arm"] == pytest.approx((0.2, 0.2))
+
+
+@pytest.mark.engines
+def test_couplings_velocities_damping_and_friction_of_joints_are_in_their_units(stage: Any) -> None:
+    def value(joint: str, name: str) -> Any:
+        return stage.GetPrimAtPath(f"/model/joints/{joint}").GetAttribute(name).Get()
+
+    wheel = stage.GetPrimAtPath("/model/joints/wheel")
+    assert "NewtonMimicAPI" in wheel.GetMetadata("apiSchemas").GetAppliedItems()
+    assert [str(path) for path in wheel.GetRelationship("newton:mimicJoint").GetTargets()] == ["/model/joints/arm"]
+    assert value("wheel", "newton:mimicCoef1") == -2.0
+    assert value("wheel", "newton:mimicCoef0") == pytest.approx(math.degrees(0.5))
+    assert value("arm", "newton:velocityLimit") == pytest.approx(math.degrees(1.5))
+    assert value("arm", "physxJoint:maxJointVelocity") == pytest.approx(math.degrees(1.5))
+    assert value("arm", "newton:damping") == pytest.approx(0.4 / 1000 / math.degrees(1.0))  # N·mm·s/rad to N·m·s/°
+    assert value("arm", "newton:friction") == pytest.approx(3.0 / 1000)
+    assert value("drawer", "newton:velocityLimit") == pytest.approx(0.25)
+
+
+@pytest.mark.engines
+def test_every_shape_has_an_extent_and_meshes_have_normals_that_point_out(stage: Any) -> None:
+    from pxr import UsdGeom, UsdPhysics
+
+    shapes = [prim for prim in stage.Traverse() if prim.IsA(UsdGeom.Gprim)]
+    for prim in shapes:
+        boundable = UsdGeom.Boundable(prim)
+        wanted = UsdGeom.Boundable.ComputeExtentFromPlugins(boundable, 0.0)
+        assert np.allclose(boundable.GetExtentAttr().Get(), wanted, atol=1e-7)
+        assert prim.GetParent().GetName() == ("collisions" if prim.HasAPI(UsdPhysics.CollisionAPI) else "visuals")
+        if not prim.IsA(UsdGeom.Mesh):
+            continue
+        primvar = UsdGeom.PrimvarsAPI(prim).GetPrimvar("normals")
+        points, places = np.array(prim.GetAttribute("points").Get()), np.array(prim.GetAttribute("faceVertexIndices").Get())
+        normals = np.array(primvar.ComputeFlattened())
+        corners = points[places].reshape(-1, 3, 3)
+        flat = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        assert primvar.GetInterpolation() == "faceVarying"
+        assert len(normals) == len(places)
+        assert np.allclose(np.linalg.norm(normals, axis=1), 1, atol=1e-3)
+        assert ((normals.reshape(-1, 3, 3) * flat[:, None]).sum(axis=2) > 0).all()
+
+    assert {prim.GetTypeName() for prim in shapes} >= {"Mesh", "Cube"}
 
 
 def matrix_of(position: Any, rotation: Any) -> Any:
