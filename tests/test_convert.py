@@ -36,9 +36,9 @@ def test_each_ending_means_one_format() -> None:
 
 
 def test_an_option_goes_to_the_writer_that_has_it_and_an_unknown_one_is_refused_by_name(tmp_path: Path) -> None:
-    assert "<actuator>" in write(geared_pair(), tmp_path / "a.xml", actuators=True).files["a.xml"].decode()
+    assert "<actuator>" in write(geared_pair(), tmp_path / "a.xml", actuators="position").files["a.xml"].decode()
     with pytest.raises(ExportError, match=r"urdf has no option actuators; it has .*collision"):
-        write(geared_pair(), tmp_path / "a.urdf", actuators=True)
+        write(geared_pair(), tmp_path / "a.urdf", actuators="position")
     assert not (tmp_path / "a.urdf").exists()
 
 

@@ -27,7 +27,12 @@ if TYPE_CHECKING:
         default=None,
         help="what simulators collide with: convex pieces inside the parts, the parts' own meshes, or their hulls (pieces)",
     ),
-    argument("--actuators", action="store_true", help="give every driver of an MJCF a servo"),
+    argument(
+        "--actuators",
+        choices=["position", "motor"],
+        default=None,
+        help="give every driver of an MJCF a position servo, or a motor that takes forces, of the joint's effort",
+    ),
     argument(
         "--keep-frames",
         action="store_true",

@@ -10,10 +10,11 @@ from itertools import combinations
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
 from articad.export.contacts import ContactSearch, poses_in_motion
-from articad.export.convex import Pieces, as_it_is, pieces_of, whole_hull
+from articad.export.convex import Pieces, as_it_is, manifold, pieces_of, whole_hull
 from articad.export.hulls import HullOverlap, Pair
 from articad.export.losses import Feature
 from articad.export.lowering import metres
+from articad.export.meshes import drawn
 from articad.export.once import once
 from articad.geometry.part import Shape
 from articad.kernels.cache import BuildCache
@@ -24,8 +25,9 @@ if TYPE_CHECKING:
 
 Collision = Literal["pieces", "solid", "hull"]
 
-HULL_SHARE = 1e-6  # of a part's volume: rounding in hulls and pieces
-EXACT_MM = 1e-3  # of the surface that pieces may omit and still count as exact
+HULL_SHARE = 1e-6  # of a part's volume: what hulls and pieces may differ by rounding
+TOUCHING_MM = 1.0  # the gap of parts that a joint connects below which they touch by design, with the play of their fit
+EXACT_MM = 1e-3  # of the surface that pieces may leave out and still be called exact
 
 
 class Collisions(NamedTuple):
@@ -152,10 +154,27 @@ def _features(name: str, kind: Collision, found: list[Pieces]) -> list[Feature]:
     return features
 
 
-def shared(assembly: Assembly, pair: Pair) -> str:
-    """Return why two parts that share joints do not collide."""
-    joints = [joint.name for joint in assembly.mechanism.joints if {joint.parent, joint.child} == set(pair)]
-    return f"adjacent: {pair[0]} and {pair[1]} touch by design at joint {', '.join(joints)}"
+def adjacent(assembly: Assembly, pair: Pair) -> str:
+    """Return the claim for which two parts that share joints do not collide: they touch by design there, or nobody has checked them."""
+    joints = ", ".join(joint.name for joint in assembly.mechanism.joints if {joint.parent, joint.child} == set(pair))
+    a, b = pair
+    gap = once(assembly, ("gap", pair), lambda: _gap(assembly, pair))
+    if gap is None:
+        return f"adjacent: joint {joints} connects {a} and {b}, and one of them has no solid"
+    if gap < TOUCHING_MM:
+        return f"adjacent: {a} and {b} touch by design at joint {joints}: the gap at rest is {gap:.2g} mm"
+    return f"not checked: joint {joints} connects {a} and {b}, whose solids are more than {TOUCHING_MM:g} mm apart at rest"
+
+
+def _gap(assembly: Assembly, pair: Pair) -> float | None:
+    """Return the distance of two parts at rest up to `TOUCHING_MM`, as exact as the meshes that are drawn; None without solids."""
+    rest = assembly.mechanism.rest_poses()
+    sides = []
+    for name in pair:
+        meshes = [shape.placed for shape in assembly.parts[name].collisions if shape.mesh.is_closed and shape.mesh.volume > 0]
+        sides.append([manifold(drawn(mesh).mesh).transform(rest[name].matrix[:3]) for mesh in meshes])
+    first, second = sides
+    return min((float(one.min_gap(other, TOUCHING_MM)) for one in first for other in second), default=None)
 
 
 def excuse(contact: HullOverlap) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from lxml import etree
@@ -13,7 +13,7 @@ from lxml import etree
 from articad.connectors.se3 import SE3
 from articad.export.bundle import Bundle
 from articad.export.closing import has_limits, tied_points
-from articad.export.collisions import Collision, collide, contact_feature, excuse, kind_of, shared
+from articad.export.collisions import Collision, adjacent, collide, contact_feature, excuse, kind_of
 from articad.export.features import rigid_with_ground
 from articad.export.hulls import HullOverlap, Pair, mating_pairs, same_group_pairs
 from articad.export.inertia import Inertial
@@ -44,6 +44,8 @@ from articad.kinematics.joints import JointType
 if TYPE_CHECKING:
     from articad.assembly import Assembly
 
+Actuators = Literal["position", "motor"]
+
 RESERVED = ("world",)  # the name of MuJoCo's own root body
 LEAST_RANGE = 1e-9  # rad or m: MuJoCo takes a range without width as no limit at all
 LEAST_VOLUME_MM3 = 1e-3  # MuJoCo reports a smaller mesh as too small to measure
@@ -61,7 +63,7 @@ def write_mjcf(
     *,
     strict: bool = False,
     meshes: MeshKind = "stl",
-    actuators: bool = False,
+    actuators: Actuators | None = None,
     collision: Collision | None = None,
     cache: BuildCache | None = None,
 ) -> Bundle:
@@ -75,11 +77,13 @@ def write_mjcf(
     Args:
         assembly: What to write.
         strict: Refuse what MJCF holds only with a loss of motion, mass or shape.
-        meshes: Format of the mesh files: STL has single precision, OBJ nine digits.
-        actuators: Give every driver a position servo of the joint's effort, and its joint the inertia of a rotor.
-        collision: Collide with convex pieces inside the parts ("pieces"), with the parts' own meshes ("solid"), of which engines use the
-            hulls, or with hulls ("hull"). By default pieces; for a file that articad did not write, its own shapes.
-        cache: Stores convex pieces by shape; the cache of built parts by default.
+        meshes: Format of the mesh files: STL holds single precision, OBJ nine digits.
+        actuators: Give every driver a position servo ("position") or a motor that takes forces ("motor") of the joint's effort, and its
+            joint the inertia of a rotor. A servo reaches its full effort when it is 0.05 rad or 5 mm off, and is critically damped for the
+            inertia that it moves.
+        collision: Collide with convex pieces inside the parts ("pieces"), with the parts' own meshes ("solid"), of which engines take the
+            hulls, or with hulls ("hull"). By default pieces; of a file that somebody else made, its own shapes.
+        cache: Keeps convex pieces by shape; that of built parts by default.
 
     Returns:
         `<name>.xml`, `meshes/…`, and the losses.
@@ -125,6 +129,7 @@ class _Writer:
         self.exact: set[str] = set()
         self.weighed: set[str] = set()
         self.added: list[Feature] = []
+        self.controls: Actuators | None = None
 
     def features(self) -> list[Feature]:
         """Return the features of the model that apply to the document: steps between two joints of a body do not."""
@@ -132,7 +137,7 @@ class _Writer:
         said = [feature for feature in said if not (feature.key == "ball" and feature.where in self.exact)]
         return [*(feature for feature in said if not (feature.key == "mass.missing" and feature.where in self.weighed)), *self.added]
 
-    def document(self, contacts: Sequence[HullOverlap], *, actuators: bool) -> Any:
+    def document(self, contacts: Sequence[HullOverlap], *, actuators: Actuators | None) -> Any:
         root = etree.Element("mujoco", model=self.assembly.name if self.assembly.foreign else self.model.name)
         child(root, "compiler", {"angle": "radian", "autolimits": "true", "inertiafromgeom": "false", "balanceinertia": "false"})
         if not self.again.active:
@@ -145,7 +150,8 @@ class _Writer:
         self._bodies(world)
         self._exclusions(root, contacts)
         self._equalities(root)
-        servos = self._actuators(root, world) if actuators else []
+        self.controls = actuators
+        servos = self._actuators(root, world, actuators) if actuators else []
         if self.again.active:
             self.again.drop_unknown_targets(root)
             self.again.sections(root, same_joints=self._has_the_files_joints(world))
@@ -356,7 +362,7 @@ class _Writer:
             return
         links = {link.part.name: link for link in self.model.links}
         mating = self._joined()
-        reasons = {contact.parts: excuse(contact) for contact in contacts} | {pair: shared(self.assembly, pair) for pair in mating}
+        reasons = {contact.parts: excuse(contact) for contact in contacts} | {pair: adjacent(self.assembly, pair) for pair in mating}
         pairs = dict.fromkeys([*mating, *(contact.parts for contact in contacts)])
         if self.assembly.foreign:
             self.added += [Feature("contact.joined", "parts." + "+".join(pair)) for pair in mating]
@@ -424,8 +430,8 @@ class _Writer:
         site1, site2 = (self._site(body, f"{name}__{side}", T) for side, (body, T) in (("near", near), ("far", far)))
         child(equality, kind, {"name": name, "site1": site1, "site2": site2} | EQUALITY)
 
-    def _actuators(self, root: Any, world: Any) -> list[AxisMotion]:
-        """Add a position servo and a rotor for every driver except balls; return the driven freedoms."""
+    def _actuators(self, root: Any, world: Any, kind: Actuators) -> list[AxisMotion]:
+        """Add an actuator and a rotor for every driver but balls; return the driven freedoms."""
         driven = {driver.name for driver in self.assembly.mechanism.drivers}
         freedoms = [freedom for joint in (*self.model.joints, *self.model.loops) for freedom in joint.freedoms]
         freedoms = [freedom for freedom in freedoms if freedom.column in driven and freedom.name in self.qpos]
@@ -435,7 +441,7 @@ class _Writer:
             for freedom in freedoms:
                 if joints[freedom.name].get("armature") is None:
                     joints[freedom.name].set("armature", number(ROTOR_SHARE * freedom.load.carried))
-                child(actuator, "position", _servo(freedom))
+                child(actuator, kind, _servo(freedom) if kind == "position" else _motor(freedom))
         return freedoms
 
     def _home(self, root: Any, world: Any, servos: list[AxisMotion]) -> None:
@@ -445,7 +451,9 @@ class _Writer:
         if values:
             if self.assembly.foreign:
                 self.added.append(Feature("rest.assumed", "model"))
-            key = {"name": "home", "qpos": numbers(values)} | ({"ctrl": numbers(servo.rest for servo in servos)} if servos else {})
+            key = {"name": "home", "qpos": numbers(values)} | (
+                {"ctrl": numbers(servo.rest if self.controls == "position" else 0.0 for servo in servos)} if servos else {}
+            )
             child(child(root, "keyframe"), "key", key)
 
     def _rests_at_zero(self) -> bool:
@@ -471,15 +479,15 @@ def _placement(T: SE3) -> dict[str, str]:
 
 
 def _inertial(body: Any, inertial: Inertial) -> None:
-    inertial = inertial.inside_bounds()
+    inertial = inertial.inside_bounds().without_dust()
     I = inertial.inertia
     moments = [I[0, 0], I[1, 1], I[2, 2], I[0, 1], I[0, 2], I[1, 2]]
     child(body, "inertial", {"pos": numbers(inertial.com), "mass": number(inertial.mass), "fullinertia": numbers(moments)})
 
 
 def _half_sizes(form: Primitive) -> list[float]:
-    """Return the sizes of a geom [m]: MuJoCo uses half lengths."""
-    sizes = [size * MM_TO_M for size in form.size]
+    """Return the sizes of a geom [m]: MuJoCo halves what has two ends."""
+    sizes = tidy(size * MM_TO_M for size in form.size)
     if form.kind == "box":
         return [size / 2 for size in sizes]
     return [sizes[0], sizes[1] / 2] if form.kind in {"cylinder", "capsule"} else sizes
@@ -526,6 +534,12 @@ def _servo(freedom: AxisMotion) -> dict[str, str]:
     if bounds is not None:
         attributes["ctrlrange"] = bounds
     return attributes | {"forcerange": numbers([-effort, effort])}
+
+
+def _motor(freedom: AxisMotion) -> dict[str, str]:
+    """Return a motor whose control is the torque [N·m] or force [N], up to the joint's effort."""
+    effort = numbers([-freedom.load.effort, freedom.load.effort])
+    return {"name": freedom.name, "joint": freedom.name, "ctrlrange": effort, "forcerange": effort}
 
 
 def _tie(equality: Any, name: str, follower: str, follows: Follows) -> None:

@@ -321,7 +321,7 @@ def _pose(T: SE3) -> str:
 
 
 def _inertial(link: Any, inertial: Inertial) -> None:
-    inertial = inertial.inside_bounds()
+    inertial = inertial.inside_bounds().without_dust()
     element = child(link, "inertial")
     child(element, "pose", text=f"{numbers(inertial.com)} 0 0 0")
     child(element, "mass", text=number(inertial.mass))

@@ -11,8 +11,8 @@ from lxml import etree
 from articad.connectors.se3 import SE3
 from articad.export.bundle import Bundle
 from articad.export.closing import TiedPoint, tied_points
-from articad.export.collisions import Collision, collide, contact_feature, kind_of
-from articad.export.follow import STATES_MIMIC, as_stated, followers, leaders
+from articad.export.collisions import Collision, adjacent, collide, contact_feature, excuse, kind_of
+from articad.export.follow import followers
 from articad.export.hulls import HullOverlap, Pair, mating_pairs, same_group_pairs
 from articad.export.inertia import Inertial
 from articad.export.losses import Feature, assumed_finding, kept_losses, losses_of, refuse
@@ -225,8 +225,8 @@ def _form_features(model: LoweredModel, keeper: _Keeper) -> list[Feature]:
 
 
 def _form(form: Primitive, keeper: _Keeper) -> tuple[str, dict[str, str]] | None:
-    """Return the element of a primitive, None if URDF has none."""
-    metres_ = [size * MM_TO_M for size in form.size]
+    """Return the element of a primitive, None where URDF has none."""
+    metres_ = tidy(size * MM_TO_M for size in form.size)
     if form.kind == "box":
         return "box", {"size": numbers(metres_)}
     if form.kind == "sphere":
@@ -254,19 +254,16 @@ def _tree(root: Any, model: LoweredModel, follows: dict[str, Follows], files: Me
             _joints(root, joint, follows, keeper)
 
 
-def _semantics(assembly: Assembly, model: LoweredModel, keeper: _Keeper, contacts: Iterable[HullOverlap] | None) -> dict[str, bytes]:
-    """Return the SRDF, with the pairs that need no collision check if contacts are given; None if it would be empty."""
-    if contacts is None and not keeper.semantics:
-        return {}
-    pairs = () if contacts is None else _disabled_pairs(assembly, contacts)
-    return {"srdf": write_srdf(model.name, {link.part.name: link.name for link in model.links}, pairs, keeper.semantics)}
-
-
-def _disabled_pairs(assembly: Assembly, contacts: Iterable[HullOverlap]) -> list[tuple[str, Iterable[Pair]]]:
-    """Return the pairs of parts that need no collision check: those that share a joint, never move, or overlap."""
+def _disabled_pairs(assembly: Assembly, model: LoweredModel, contacts: Iterable[HullOverlap]) -> bytes:
+    """Return the SRDF: pairs that share a joint, pairs that never move against each other, pairs that overlap, each with its claim."""
     order, joints = assembly.mechanism.parts, assembly.mechanism.joints
-    never = sorted(same_group_pairs(joints, order))
-    return [("Adjacent", mating_pairs(joints, order)), ("Never", never), ("Default", [overlap.parts for overlap in contacts])]
+    disabled = {pair: ("Adjacent", adjacent(assembly, pair)) for pair in mating_pairs(joints, order)}
+    for a, b in sorted(same_group_pairs(joints, order)):
+        if (b, a) not in disabled:
+            disabled.setdefault((a, b), ("Never", f"never move: fixed joints hold {a} and {b} together"))
+    for contact in contacts:
+        disabled.setdefault(contact.parts, ("Default", excuse(contact)))
+    return disabled_pairs(model, disabled)
 
 
 def _compiler(root: Any) -> None:
@@ -308,7 +305,7 @@ def _link(root: Any, link: Link, inertial: Inertial | None, files: MeshFiles, ke
 
 
 def _inertial(link: Any, inertial: Inertial) -> None:
-    inertial = inertial.inside_bounds()
+    inertial = inertial.inside_bounds().without_dust()
     element = child(link, "inertial")
     child(element, "origin", {"xyz": numbers(inertial.com), "rpy": "0 0 0"})
     child(element, "mass", {"value": number(inertial.mass)})

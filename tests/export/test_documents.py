@@ -81,7 +81,7 @@ def test_couplings_become_equalities_of_joints() -> None:
 def test_coupled_motion_is_coupled_in_mujoco(tmp_path: Path) -> None:
     import mujoco
 
-    bundle = write_mjcf(geared_pair(), actuators=True)
+    bundle = write_mjcf(geared_pair(), actuators="position")
     bundle.write(tmp_path)
     model = mujoco.MjModel.from_xml_path(str(tmp_path / bundle.main))
     data = mujoco.MjData(model)
@@ -97,7 +97,7 @@ def test_coupled_motion_is_coupled_in_mujoco(tmp_path: Path) -> None:
 
 
 def test_every_driver_but_a_ball_gets_a_servo_of_its_effort() -> None:
-    root = root_of(write_mjcf(all_joint_kinds(), actuators=True))
+    root = root_of(write_mjcf(all_joint_kinds(), actuators="position"))
     servos = {servo.get("joint"): servo for servo in root.iterfind("actuator/position")}
     key = root.find("keyframe/key")
 
@@ -110,7 +110,7 @@ def test_every_driver_but_a_ball_gets_a_servo_of_its_effort() -> None:
 
 
 def test_a_driven_joint_gets_a_rotor_of_a_hundredth_of_what_it_moves() -> None:
-    root = root_of(write_mjcf(geared_pair(), actuators=True))
+    root = root_of(write_mjcf(geared_pair(), actuators="position"))
     wheel = geared_pair().parts["wheel_a"].mass
     assert wheel is not None
     joint, follower = (root.find(f".//joint[@name='{name}']") for name in "ab")
@@ -143,7 +143,7 @@ def test_an_assembly_of_one_part_is_one_link() -> None:
     single = Assembly.from_parts("single", parts=[block("only")], joints=[], ground="only")
 
     assert [link.get("name") for link in root_of(write_urdf(single)).iterfind("link")] == ["only"]
-    root = root_of(write_mjcf(single, actuators=True))
+    root = root_of(write_mjcf(single, actuators="position"))
     assert [root.find(tag) for tag in ("contact", "equality", "keyframe", "actuator")] == [None] * 4
 
 
@@ -241,7 +241,7 @@ GOLDENS: dict[str, Callable[[], Assembly]] = {"geared": geared_pair, "lidded_box
 def test_the_bytes_are_those_of_the_golden_bundle(name: str) -> None:
     """Refresh with `UPDATE_GOLDENS=1`, and read the difference before it is committed."""
     assembly = GOLDENS[name]()
-    files = {**write_urdf(assembly).files, **write_mjcf(assembly, actuators=True).files}
+    files = {**write_urdf(assembly).files, **write_mjcf(assembly, actuators="position").files}
     if os.environ.get("UPDATE_GOLDENS"):
         Bundle(files).write(GOLDEN / name)
 
@@ -255,7 +255,7 @@ from articad.export.urdf import write_urdf
 from tests.assemblies import all_joint_kinds, random_tree
 total = hashlib.sha256()
 for assembly in (all_joint_kinds(), random_tree(7, 9)):
-    for bundle in (write_urdf(assembly), write_mjcf(assembly, actuators=True)):
+    for bundle in (write_urdf(assembly), write_mjcf(assembly, actuators="position")):
         for path, content in bundle.files.items():
             total.update(path.encode() + content)
 print(total.hexdigest())

@@ -30,7 +30,7 @@ OF_URDF: list[dict[str, Any]] = [
     {"loops": "mimic"},
     {"srdf": True, "ros2_control": True},
 ]
-OF_MJCF: list[dict[str, Any]] = [{}, {"meshes": "obj", "actuators": True}, {"collision": "hull"}]
+OF_MJCF: list[dict[str, Any]] = [{}, {"meshes": "obj", "actuators": "position"}, {"collision": "hull"}]
 CHECK_URDF = shutil.which("check_urdf") or str(Path(sys.executable).with_name("check_urdf"))  # Pinocchio's wheels bring it
 
 pytestmark = [pytest.mark.engines, pytest.mark.filterwarnings("ignore::DeprecationWarning:yourdfpy")]

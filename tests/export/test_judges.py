@@ -1,0 +1,28 @@
+"""Outside judges have no objection to exports; see `judges.py` for their environment, and for the table of all examples."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from articad.entry import read
+from tests.export import judges
+
+
+@pytest.mark.engines_all
+@pytest.mark.skipif(not judges.PYTHON, reason="ARTICAD_ENGINES names no Python with Newton and validators")
+@pytest.mark.parametrize("name", ["wardrobe", "sewing_things_box"])
+def test_no_judge_objects_to_an_example(name: str, tmp_path: Path) -> None:
+    assembly = read(judges.folder_of(name))
+    said = judges.judged(assembly, judges.exported(assembly, tmp_path))
+
+    assert {judge: one.words for judge, one in said.items() if one.passed is False} == {}
+
+
+def test_the_page_is_what_the_record_says_of_every_example() -> None:
+    record = json.loads(judges.RECORD.read_text())
+
+    assert sorted(record) == judges.example_names()
+    assert judges.PAGE.read_text() == judges.page(record)
