@@ -152,7 +152,7 @@ class _Buffer:
 
 
 def shaded(mesh: TriMesh) -> tuple[FloatArray, FloatArray, NDArray[np.int64]]:
-    """Return vertices, normals and indices: corners whose faces meet smoothly share their vertex, those at creases get their own."""
+    """Return vertices, normals and indices: corners whose faces meet smoothly share a vertex, those at creases get their own."""
     twice = mesh.normals_of_twice_area
     flat = twice / np.maximum(np.linalg.norm(twice, axis=1), np.finfo(float).tiny)[:, None]
     index = mesh.triangles.reshape(-1)

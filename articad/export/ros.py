@@ -63,18 +63,24 @@ def package_files(package: str, robot: str, folders: Iterable[str]) -> dict[str,
     }
 
 
-def srdf(model: LoweredModel, disabled: Mapping[Pair, tuple[str, str]]) -> bytes:
-    """Return the SRDF that disables collision checks between pairs of parts.
+def srdf(name: str, links: Mapping[str, str], pairs: Iterable[tuple[str, Pair, str]] = (), kept: Iterable[Any] = ()) -> bytes:
+    """Return an SRDF.
 
     Args:
-        model: Whose links are named.
-        disabled: For each pair SRDF's word for the reason ("Adjacent", "Never", "Default") and the claim, which becomes a comment.
+        name: Name of the robot.
+        links: Name of the link by part.
+        pairs: SRDF's word for the reason, the pair of parts that needs no collision check, and the claim, which becomes a comment.
+        kept: Elements that come first, unchanged.
     """
-    names = {link.part.name: link.name for link in model.links}
-    root = etree.Element("robot", {"name": model.name})
-    for (a, b), (reason, claim) in disabled.items():
-        root.append(etree.Comment(f" {claim} ".replace("--", "- -")))
-        child(root, "disable_collisions", {"link1": names[a], "link2": names[b], "reason": reason})
+    root = etree.Element("robot", {"name": name})
+    root.extend(kept)
+    known = {frozenset((row.get("link1"), row.get("link2"))) for row in root.iterfind("disable_collisions")}
+    for reason, pair, claim in pairs:
+        a, b = (links[part] for part in pair)
+        if frozenset((a, b)) not in known:
+            known.add(frozenset((a, b)))
+            root.append(etree.Comment(f" {claim} ".replace("--", "- -")))
+            child(root, "disable_collisions", {"link1": a, "link2": b, "reason": reason})
     return document(root)
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any, Literal
 
 from lxml import etree
@@ -254,16 +254,23 @@ def _tree(root: Any, model: LoweredModel, follows: dict[str, Follows], files: Me
             _joints(root, joint, follows, keeper)
 
 
-def _disabled_pairs(assembly: Assembly, model: LoweredModel, contacts: Iterable[HullOverlap]) -> bytes:
-    """Return the SRDF: pairs that share a joint, pairs that never move against each other, pairs that overlap, each with its claim."""
+def _semantics(assembly: Assembly, model: LoweredModel, keeper: _Keeper, contacts: Iterable[HullOverlap] | None) -> dict[str, bytes]:
+    """Return the SRDF, with the pairs that need no collision check if contacts are given; None if it would be empty."""
+    if contacts is None and not keeper.semantics:
+        return {}
+    pairs = () if contacts is None else _disabled_pairs(assembly, contacts)
+    return {"srdf": write_srdf(model.name, {link.part.name: link.name for link in model.links}, pairs, keeper.semantics)}
+
+
+def _disabled_pairs(assembly: Assembly, contacts: Iterable[HullOverlap]) -> Iterator[tuple[str, Pair, str]]:
+    """Yield the pairs of parts that need no collision check, with the claim: they share a joint, never move, or overlap."""
     order, joints = assembly.mechanism.parts, assembly.mechanism.joints
-    disabled = {pair: ("Adjacent", adjacent(assembly, pair)) for pair in mating_pairs(joints, order)}
+    for pair in mating_pairs(joints, order):
+        yield "Adjacent", pair, adjacent(assembly, pair)
     for a, b in sorted(same_group_pairs(joints, order)):
-        if (b, a) not in disabled:
-            disabled.setdefault((a, b), ("Never", f"never move: fixed joints hold {a} and {b} together"))
+        yield "Never", (a, b), f"never move: fixed joints hold {a} and {b} together"
     for contact in contacts:
-        disabled.setdefault(contact.parts, ("Default", excuse(contact)))
-    return disabled_pairs(model, disabled)
+        yield "Default", contact.parts, excuse(contact)
 
 
 def _compiler(root: Any) -> None:

@@ -52,8 +52,8 @@ _DEGREES = ("transX", "transY", "transZ", "rotX", "rotY", "rotZ")
 def write_usd(assembly: Assembly, *, strict: bool = False, collision: Collision | None = None, cache: BuildCache | None = None) -> Bundle:
     """Write an assembly as one `.usda` file in metres, z-up, with meshes inside.
 
-    Bodies keep the parts' own frames and are posed at rest. A joint's two local frames coincide where its values are zero, so limits are
-    ours, in degrees and metres. Cylindrical, planar, universal and screw joints become generic joints with their other degrees locked.
+    Bodies keep the parts' own frames and are posed at rest. A joint's two local frames coincide where its values are zero, so limits
+    equal articad's, in degrees and metres. Cylindrical, planar, universal and screw joints become generic joints with their other degrees locked.
     Couplings of joints of one kind are written as NewtonMimicAPI, velocity limits, damping and friction of joints as NewtonJointAPI (the
     velocity also as PhysxJointAPI), friction of surfaces as PhysicsMaterialAPI.
 
@@ -201,7 +201,7 @@ def _body(
     built = built_meshes([part]) if draws else {}
     looks = {id(one): replace(one, mesh=drawn(built[one.mesh.digest]).mesh) if one.mesh.digest in built else one for one in visuals}
     surfaces = {id(one): one for one in collisions if _form(one, "", None) is None} | looks
-    written = {key: _surface(one.placed) for key, one in surfaces.items()}  # what is drawn may collide too
+    written = {key: _surface(one.placed) for key, one in surfaces.items()}  # a visual shape may also be a collision shape
     drawings = [_mesh(f"visual_{index}", written[id(one)], one.color or part.color, materials) for index, one in enumerate(visuals)]
     shapes = [
         _form(one, f"collision_{index}", surface) or _mesh(f"collision_{index}", written[id(one)], None, materials, surface)
