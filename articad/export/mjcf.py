@@ -77,13 +77,13 @@ def write_mjcf(
     Args:
         assembly: What to write.
         strict: Refuse what MJCF holds only with a loss of motion, mass or shape.
-        meshes: Format of the mesh files: STL holds single precision, OBJ nine digits.
+        meshes: Format of the mesh files: STL has single precision, OBJ nine digits.
         actuators: Give every driver a position servo ("position") or a motor that takes forces ("motor") of the joint's effort, and its
             joint the inertia of a rotor. A servo reaches its full effort when it is 0.05 rad or 5 mm off, and is critically damped for the
             inertia that it moves.
-        collision: Collide with convex pieces inside the parts ("pieces"), with the parts' own meshes ("solid"), of which engines take the
-            hulls, or with hulls ("hull"). By default pieces; of a file that somebody else made, its own shapes.
-        cache: Keeps convex pieces by shape; that of built parts by default.
+        collision: Collide with convex pieces inside the parts ("pieces"), with the parts' own meshes ("solid"), of which engines use the
+            hulls, or with hulls ("hull"). By default pieces; for a file that articad did not write, its own shapes.
+        cache: Stores convex pieces by shape; the cache of built parts by default.
 
     Returns:
         `<name>.xml`, `meshes/…`, and the losses.
@@ -486,7 +486,7 @@ def _inertial(body: Any, inertial: Inertial) -> None:
 
 
 def _half_sizes(form: Primitive) -> list[float]:
-    """Return the sizes of a geom [m]: MuJoCo halves what has two ends."""
+    """Return the sizes of a geom [m]: MuJoCo uses half lengths."""
     sizes = tidy(size * MM_TO_M for size in form.size)
     if form.kind == "box":
         return [size / 2 for size in sizes]

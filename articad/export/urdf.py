@@ -12,7 +12,7 @@ from articad.connectors.se3 import SE3
 from articad.export.bundle import Bundle
 from articad.export.closing import TiedPoint, tied_points
 from articad.export.collisions import Collision, adjacent, collide, contact_feature, excuse, kind_of
-from articad.export.follow import followers
+from articad.export.follow import STATES_MIMIC, as_stated, followers, leaders
 from articad.export.hulls import HullOverlap, Pair, mating_pairs, same_group_pairs
 from articad.export.inertia import Inertial
 from articad.export.losses import Feature, assumed_finding, kept_losses, losses_of, refuse
@@ -225,7 +225,7 @@ def _form_features(model: LoweredModel, keeper: _Keeper) -> list[Feature]:
 
 
 def _form(form: Primitive, keeper: _Keeper) -> tuple[str, dict[str, str]] | None:
-    """Return the element of a primitive, None where URDF has none."""
+    """Return the element of a primitive, None if URDF has none."""
     metres_ = tidy(size * MM_TO_M for size in form.size)
     if form.kind == "box":
         return "box", {"size": numbers(metres_)}
