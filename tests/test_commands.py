@@ -390,7 +390,9 @@ def test_ctrl_c_ends_a_build_at_once_though_a_script_never_ends(chest: Path, tmp
 def test_export_takes_collision_servos_and_a_ros_package(chest: Path, tmp_path: Path, report: Any) -> None:
     run, out = tmp_path / "run", tmp_path / "out"
     assert report("build", chest, "--out", run)[0] == 0
-    code, _ = report("export", run, "--to", "urdf,mjcf", "--out", out, "--collision", "hull", "--actuators", "position", "--ros", "chest_description")
+    code, _ = report(
+        "export", run, "--to", "urdf,mjcf", "--out", out, "--collision", "hull", "--actuators", "position", "--ros", "chest_description"
+    )
 
     assert code == 0
     assert "package://chest_description/meshes/" in (out / "urdf/urdf/chest.urdf").read_text()

@@ -25,9 +25,9 @@ if TYPE_CHECKING:
 
 Collision = Literal["pieces", "solid", "hull"]
 
-HULL_SHARE = 1e-6  # of a part's volume: what hulls and pieces may differ by rounding
-TOUCHING_MM = 1.0  # the gap of parts that a joint connects below which they touch by design, with the play of their fit
-EXACT_MM = 1e-3  # of the surface that pieces may leave out and still be called exact
+HULL_SHARE = 1e-6  # of a part's volume: rounding in hulls and pieces
+TOUCHING_MM = 1.0  # largest gap of two joined parts that touch by design; it includes the play of their fit
+EXACT_MM = 1e-3  # of the surface that pieces may omit and still count as exact
 
 
 class Collisions(NamedTuple):
@@ -155,7 +155,7 @@ def _features(name: str, kind: Collision, found: list[Pieces]) -> list[Feature]:
 
 
 def adjacent(assembly: Assembly, pair: Pair) -> str:
-    """Return the claim for which two parts that share joints do not collide: they touch by design there, or nobody has checked them."""
+    """Return why two parts that share joints do not collide: they touch by design there, or they were not checked."""
     joints = ", ".join(joint.name for joint in assembly.mechanism.joints if {joint.parent, joint.child} == set(pair))
     a, b = pair
     gap = once(assembly, ("gap", pair), lambda: _gap(assembly, pair))
@@ -167,7 +167,7 @@ def adjacent(assembly: Assembly, pair: Pair) -> str:
 
 
 def _gap(assembly: Assembly, pair: Pair) -> float | None:
-    """Return the distance of two parts at rest up to `TOUCHING_MM`, as exact as the meshes that are drawn; None without solids."""
+    """Return the distance of two parts at rest up to `TOUCHING_MM`, measured on the visual meshes; None if one has no solid."""
     rest = assembly.mechanism.rest_poses()
     sides = []
     for name in pair:

@@ -7,6 +7,7 @@ origin; removing it from the moved body is a subtraction of pseudo-inertias, so 
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -20,10 +21,10 @@ CARRIER_MASS_KG = 1e-4  # small compared with any part, but far above the minimu
 CARRIER_INERTIA_KG_M2 = 1e-7  # of a ball of 50 mm radius and the carrier's mass: this keeps mass matrices well conditioned
 CARRIER_SHARE = 0.05  # largest share of the body's pseudo-inertia that carriers take in any direction, so that it stays physical
 MM_PER_M = 1000.0
-LEAST_MOMENT_KG_M2 = 2e-14  # a principal moment of less is none to simulators: MuJoCo refuses 1e-14
-LEAST_SHARE = 1e-12  # of the sum of second moments, that a written body has in each direction: rods and plates have none in theory
-DUST_SHARE = 1e-13  # of the largest moment of inertia: products below are rounding errors
-LEAST_RADIUS_M = 1e-3  # of gyration, that a body gets along a direction in which its inertia gives it less than nothing
+LEAST_MOMENT_KG_M2 = 2e-14  # simulators reject a smaller principal moment: MuJoCo refuses 1e-14
+LEAST_SHARE = 1e-12  # of the sum of second moments, in each direction of a written body: rods and plates have none in theory
+DUST_SHARE = 1e-13  # of the largest moment of inertia: smaller products are rounding noise
+LEAST_RADIUS_M = 1e-3  # radius of gyration of a body along a direction in which its inertia gives a negative second moment
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,13 +78,14 @@ class Inertial:
         return Inertial(self.mass, self.com, (inertia + inertia.T) / 2)
 
     def without_dust(self) -> Inertial:
-        """Return this body without rounding dust: a centre 1e-17 m off is on the axis, a product of 1e-24 kg·m² is none.
+        """Return this body without rounding noise in its centre of mass and its products of inertia; its moments stay.
 
-        Products of inertia below `DUST_SHARE` of the largest moment are rounding errors of their computation.
+        Noise of the centre is proportional to the radius of gyration. Products below `DUST_SHARE` of the largest moment are noise.
         """
         largest = float(np.abs(self.inertia).max())
-        inertia = np.where(np.abs(self.inertia) < DUST_SHARE * largest, 0.0, self.inertia)
-        return Inertial(self.mass, np.array(tidy(self.com)), inertia)
+        noise = (np.abs(self.inertia) < DUST_SHARE * largest) & ~np.eye(3, dtype=bool)
+        com = tidy(self.com, math.sqrt(largest / self.mass) if self.mass > 0 else 0.0)
+        return Inertial(self.mass, np.array(com), np.where(noise, 0.0, self.inertia))
 
     @property
     def pseudo(self) -> FloatArray:

@@ -385,7 +385,7 @@ TABLE: dict[str, dict[Format, LossRow]] = {
 }
 
 
-# What UsdPhysics and its extensions hold for some joints only.
+# Rows that USD and its extensions can express for some joints only.
 TABLE["coupling.mimic"] = TABLE["coupling"] | {
     "usd": LossRow("NewtonMimicAPI", "readers that do not know NewtonMimicAPI let the joints move on their own")
 }

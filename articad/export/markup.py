@@ -25,12 +25,17 @@ def numbers(values: Iterable[float]) -> str:
     return " ".join(map(number, values))
 
 
-def tidy(values: Iterable[float]) -> list[float]:
-    """Return lengths in m, angles and components of unit vectors without rounding noise: 1e-17 is 0, 0.9999999999999998 is 1."""
+def tidy(values: Iterable[float], scale: float = 1.0) -> list[float]:
+    """Return lengths in m, angles and components of unit vectors without rounding noise: 1e-17 is 0, 0.9999999999999998 is 1.
+
+    Args:
+        values: The numbers.
+        scale: The size to which their noise is proportional, in their unit; 0 if it is each number's own.
+    """
     found = []
     for value in map(float, values):
         rounded = round(value, DUST_DIGITS)
-        dusty = abs(value) < DUST or abs(value - rounded) <= 2e-15 * max(1.0, abs(value))
+        dusty = abs(value) < DUST * scale or abs(value - rounded) <= 2e-15 * max(scale, abs(value))
         found.append((rounded if dusty else value) + 0.0)
     return found
 

@@ -431,7 +431,7 @@ class _Writer:
         child(equality, kind, {"name": name, "site1": site1, "site2": site2} | EQUALITY)
 
     def _actuators(self, root: Any, world: Any, kind: Actuators) -> list[AxisMotion]:
-        """Add an actuator and a rotor for every driver but balls; return the driven freedoms."""
+        """Add an actuator and a rotor for every driver except balls; return the driven freedoms."""
         driven = {driver.name for driver in self.assembly.mechanism.drivers}
         freedoms = [freedom for joint in (*self.model.joints, *self.model.loops) for freedom in joint.freedoms]
         freedoms = [freedom for freedom in freedoms if freedom.column in driven and freedom.name in self.qpos]
@@ -487,7 +487,7 @@ def _inertial(body: Any, inertial: Inertial) -> None:
 
 def _half_sizes(form: Primitive) -> list[float]:
     """Return the sizes of a geom [m]: MuJoCo uses half lengths."""
-    sizes = tidy(size * MM_TO_M for size in form.size)
+    sizes = tidy((size * MM_TO_M for size in form.size), scale=0)
     if form.kind == "box":
         return [size / 2 for size in sizes]
     return [sizes[0], sizes[1] / 2] if form.kind in {"cylinder", "capsule"} else sizes

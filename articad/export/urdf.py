@@ -226,7 +226,7 @@ def _form_features(model: LoweredModel, keeper: _Keeper) -> list[Feature]:
 
 def _form(form: Primitive, keeper: _Keeper) -> tuple[str, dict[str, str]] | None:
     """Return the element of a primitive, None if URDF has none."""
-    metres_ = tidy(size * MM_TO_M for size in form.size)
+    metres_ = tidy((size * MM_TO_M for size in form.size), scale=0)
     if form.kind == "box":
         return "box", {"size": numbers(metres_)}
     if form.kind == "sphere":

@@ -53,7 +53,8 @@ def write_usd(assembly: Assembly, *, strict: bool = False, collision: Collision 
     """Write an assembly as one `.usda` file in metres, z-up, with meshes inside.
 
     Bodies keep the parts' own frames and are posed at rest. A joint's two local frames coincide where its values are zero, so limits
-    equal articad's, in degrees and metres. Cylindrical, planar, universal and screw joints become generic joints with their other degrees locked.
+    equal articad's, in degrees and metres. Cylindrical, planar, universal and screw joints become generic joints with their other
+    degrees locked.
     Couplings of joints of one kind are written as NewtonMimicAPI, velocity limits, damping and friction of joints as NewtonJointAPI (the
     velocity also as PhysxJointAPI), friction of surfaces as PhysicsMaterialAPI.
 
@@ -77,6 +78,7 @@ def write_usd(assembly: Assembly, *, strict: bool = False, collision: Collision 
     kind = kind_of(assembly, collision)
     model = shape_model(assembly, replace(lower(assembly), features=()), kind, cache)
     colliding = {link.part.name: tuple(placed.shape for placed in link.collisions) or solid_enough(link.part) for link in model.links}
+    frictions = {link.part.name: link.friction for link in model.links}
     ties = _mimics(assembly)
     features = (
         *_held(assembly, features_of(assembly), ties),
@@ -95,7 +97,7 @@ def write_usd(assembly: Assembly, *, strict: bool = False, collision: Collision 
     lines.append(f'def Xform "{root}"\n{{' if free else f'def Xform "{root}" (\n    prepend apiSchemas = [{_ROOT}]\n)\n{{')
     for name, part in assembly.parts.items():
         schemas = (_ROOT,) if name in free else ()
-        surface = materials.surface(model.link_of(name).friction)
+        surface = materials.surface(frictions[name])
         lines += _indented(_body(part, bodies[name], rest[name], colliding[name], materials, surface, schemas, draws=kind != "solid"))
     lines += _indented(materials.prims())
     lines += _indented(['def Scope "joints"', "{"])
@@ -123,7 +125,7 @@ _HEADER = """#usda 1.0
 
 
 class _Materials:
-    """Materials that are drawn, by colour, and surfaces that rub, by coefficient of friction."""
+    """Visual materials by colour, and physical materials by coefficient of friction."""
 
     def __init__(self, path: str) -> None:
         self._path = path
@@ -136,7 +138,7 @@ class _Materials:
         return f"{self._path}/{name}"
 
     def surface(self, friction: float | None) -> str | None:
-        """Return the path of the material of a coefficient of friction; None where it is not known."""
+        """Return the path of the material of a coefficient of friction; None if it is not known."""
         if friction is None:
             return None
         name = self._frictions.setdefault(friction, valid_name(f"friction_{number(friction)}"))
@@ -184,7 +186,7 @@ def _body(
     *,
     draws: bool,
 ) -> list[str]:
-    """Return a rigid body with what is drawn and what collides in scopes of their own; built parts are drawn with simplified meshes."""
+    """Return a rigid body with its visual and its collision shapes in two scopes; visual meshes of a built part are simplified."""
     listed = ", ".join(['"PhysicsRigidBodyAPI"', '"PhysicsMassAPI"', *schemas])
     mass = part.mass if part.mass is not None and part.mass.mass > 0 else None
     lines = [
@@ -231,7 +233,7 @@ def _mass(mass: MassProperties | None) -> list[str]:
 
 
 def _form(shape: Shape, name: str, surface: str | None) -> list[str] | None:
-    """Return a primitive body that collides, None where USD has none or the shape is a mesh."""
+    """Return a primitive for collision, None if USD has none or the shape is a mesh."""
     form, T = shape.primitive, shape.frame
     if form is None or form.kind not in {"box", "sphere", "cylinder", "capsule"}:
         return None
@@ -298,7 +300,7 @@ def _surface(mesh: TriMesh) -> list[str]:
 
 
 def _mesh(name: str, triangles: list[str], color: str | None, materials: _Materials, surface: str | None = None) -> list[str]:
-    """Return a mesh: drawn in a colour, or collided with as its convex hull."""
+    """Return a mesh: drawn in a colour, or for collision by its convex hull."""
     drawn_ = color is not None
     own = () if drawn_ else ("PhysicsCollisionAPI", "PhysicsMeshCollisionAPI")
     bound = materials.look(color) if color is not None else surface
@@ -320,14 +322,14 @@ def _mesh(name: str, triangles: list[str], color: str | None, materials: _Materi
 
 
 class _Extra(NamedTuple):
-    """What a joint has beyond its frames and limits: a schema, and its fields."""
+    """A schema that a joint has in addition to its frames and limits, with its fields."""
 
     schema: str
     fields: list[str]
 
 
 def _is_single(joint: Joint) -> bool:
-    """True for joints to whose one coordinate, or three alike, a number of NewtonJointAPI belongs."""
+    """True for joints whose coordinates share one number of NewtonJointAPI."""
     return joint.type in {JointType.REVOLUTE, JointType.SLIDER, JointType.BALL}
 
 
@@ -353,7 +355,7 @@ def _dynamics(joint: Joint) -> list[_Extra]:
 
 
 def _mimics(assembly: Assembly) -> dict[str, Coupling]:
-    """Return the couplings that NewtonMimicAPI holds, by the joint that follows: both joints of the tree and of one kind."""
+    """Return the couplings that NewtonMimicAPI can express, by follower: both joints are in the tree and of one kind."""
     single = {joint.name: joint for joint in assembly.joints if joint.type in {JointType.REVOLUTE, JointType.SLIDER}}
     written = {feature.where for feature in features_of(assembly) if feature.key == "coupling"}
     found: dict[str, Coupling] = {}
@@ -378,7 +380,7 @@ def _mimic(joint: Joint, coupling: Coupling | None, names: Mapping[str, str], ro
 
 
 def _held(assembly: Assembly, features: Iterable[Feature], ties: Mapping[str, Coupling]) -> list[Feature]:
-    """Return the features with those named apart that USD holds for some joints only."""
+    """Return the features; those that USD can express for some joints only get a key of their own."""
     tied = {f"couplings.{coupling.name}" for coupling in ties.values()}
     several = {f"joints.{joint.name}" for joint in assembly.joints if not _is_single(joint)}
     found = []
@@ -393,7 +395,7 @@ def _held(assembly: Assembly, features: Iterable[Feature], ties: Mapping[str, Co
 
 
 def _joint(joint: Joint, name: str, ends: tuple[str, str], more: Sequence[_Extra], *, closes: bool) -> list[str]:
-    """Return a joint; its frame on the child is turned over with the mate, so that both coincide at zero."""
+    """Return a joint; its frame on the child includes the mate's flip, so that both coincide at zero."""
     frames = (joint.T_parent_connector, joint.T_child_connector @ flip(joint.mate))
     extra = ["bool physics:excludeFromArticulation = true"] if closes else []
     extra += [line for one in more for line in one.fields]
