@@ -76,10 +76,11 @@ def in_xml(path: Path, _bundle: Bundle) -> Shapes:
 
 
 def in_usd(path: Path, _bundle: Bundle) -> Shapes:
+    """Visual shapes of each body, which are in a scope of their own."""
     usd, geom = pytest.importorskip("pxr.Usd"), pytest.importorskip("pxr.UsdGeom")
     stage = usd.Stage.Open(str(path))
     return {
-        prim.GetName(): sum(below.IsA(geom.Gprim) for below in usd.PrimRange(prim) if below.GetParent() == prim)
+        prim.GetName(): sum(below.IsA(geom.Gprim) for below in usd.PrimRange(prim.GetChild("visuals"))) if prim.GetChild("visuals") else 0
         for prim in stage.Traverse()
         if prim.IsA(geom.Xform)
     }
