@@ -104,8 +104,11 @@ def positive(q: FloatArray) -> FloatArray:
 
 def exp(omega: FloatArray) -> FloatArray:
     """Return the rotation by the vector omega `(*batch, 3)` [rad]."""
-    half = 0.5 * np.sqrt((omega * omega).sum(axis=-1, keepdims=True))
-    return np.concatenate([0.5 * np.sinc(half / np.pi) * omega, np.cos(half)], axis=-1)
+    theta = np.sqrt((omega * omega).sum(axis=-1, keepdims=True))
+    q = np.empty((*omega.shape[:-1], 4))
+    q[..., :3] = np.sin(0.5 * theta) / (theta + 1e-300) * omega  # never 0/0; at θ = 0 the factor does not matter, for omega is zero
+    q[..., 3:] = np.cos(0.5 * theta)
+    return q
 
 
 def log(q: FloatArray) -> FloatArray:

@@ -1,4 +1,4 @@
-"""The only module that imports Pinocchio: trees and loops as a `pinocchio.Model`, for one configuration at a time."""
+"""Trees and loops as a `pinocchio.Model`: poses, residuals of loops and their Jacobian for one configuration at a time."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from articad.arrays import FloatArray, IndexArray
-from articad.connectors import SE3, quaternion
+from articad.connectors import SE3
 from articad.errors import KinematicsError
 from articad.kinematics.crossings import Crossing
 from articad.kinematics.equations import Closures
@@ -26,7 +26,6 @@ if TYPE_CHECKING:
 _DATA_BYTES_PER_CUBE = 64
 _DATA_LIMIT_BYTES = 1 << 30
 MOST_FREEDOMS = 60  # of models that are made unasked: a workspace of 14 MB, which takes as long to make as a hundred evaluations
-_EYE = np.eye(3)
 _ONE = np.ones(())  # an array: making one from a number takes longer than the signs of ten parts
 _CLOSED = 1e-13  # |r| of a loop: the Jacobian changes only by rounding
 
@@ -188,8 +187,7 @@ class LoopModel:
             constraints.append(pin.RigidConstraintModel(pin.ContactType.CONTACT_6D, model, one, P * C, two, S * C, local))
             workspaces.append(constraints[-1].createData())
         self._constraints, self._workspaces, self._data = constraints, workspaces, model.createData()
-        self._lengths = closures.lengths[:, None]
-        rows = np.concatenate([np.repeat(1.0 / self._lengths, 3, axis=1), np.ones((len(self._lengths), 3))], axis=1)
+        rows = np.column_stack([np.repeat(1.0 / closures.lengths[:, None], 3, axis=1), np.ones((len(closures.lengths), 3))])
         # Pinocchio's constraint Jacobian is that of A against B; in the memory order of what it is multiplied with
         in_columns = self._neutral is not None or self._order is not None
         self._weights = np.require(-np.outer(rows, sign * closures.scale), requirements="F" if in_columns else "C")
@@ -220,11 +218,9 @@ class LoopModel:
             D = D.T.take(self._order, axis=0).T
         if r.dot(r) > _CLOSED**2:
             D = np.ascontiguousarray(D)
-            V = D.reshape(-1, 6, D.shape[1])  # (v, ω) of each loop by each freedom, a view
-            t, phi = r.reshape(-1, 2, 3).swapaxes(0, 1)
-            S = _crossed(phi)
-            V[:, :3] -= _crossed(t * self._lengths) @ V[:, 3:]
-            V[:, 3:] = (_EYE - 0.5 * S + quaternion.inverse_coefficient(phi)[..., None] * (S @ S)) @ V[:, 3:]
+            loops = r.reshape(-1, 6).tolist()
+            rates = np.array([_residual_rate(loop, length) for loop, (_, length) in zip(loops, self._mismatches, strict=True)])
+            D = (rates.reshape(-1, 6, 6) @ D.reshape(-1, 6, D.shape[1])).reshape(D.shape)
         return r, D * self._weights
 
     def _evaluated(self, q: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -244,12 +240,32 @@ class LoopModel:
         return np.array(r), D
 
 
-def _crossed(a: FloatArray) -> FloatArray:
-    """Return the matrices `(n, 3, 3)` of a × for rows a `(n, 3)`."""
-    S = np.zeros((len(a), 3, 3))
-    S[:, 2, 1], S[:, 0, 2], S[:, 1, 0] = a.T
-    S[:, 1, 2], S[:, 2, 0], S[:, 0, 1] = -a.T
-    return S
+def _residual_rate(residual: Sequence[float], length: float) -> list[float]:
+    """Return the matrix (6, 6), row by row, that takes (v, ω) of B against A to (dt, dφ); see `LoopModel`.
+
+    In plain Python: one loop takes 3 µs, where arrays of three numbers take 20.
+
+    Args:
+        residual: (t/L, φ) of a loop.
+        length: Its L [mm].
+    """
+    x, y, z = residual[0] * length, residual[1] * length, residual[2] * length
+    a, b, c = residual[3:]
+    square = a * a + b * b + c * c
+    half = 0.5 * math.sqrt(square)
+    if half < 0.125:  # the series of c: see quaternion.inverse_coefficient, which is for arrays
+        k = 1 / 12 + square * (1 / 720 + square * (1 / 30240 + square * (1 / 1209600 + square / 47900160)))
+    else:
+        k = (1.0 - half / math.tan(half)) / square
+    ab, ac, bc = k * a * b, k * a * c, k * b * c
+    return [
+        *(1.0, 0.0, 0.0, 0.0, z, -y),
+        *(0.0, 1.0, 0.0, -z, 0.0, x),
+        *(0.0, 0.0, 1.0, y, -x, 0.0),
+        *(0.0, 0.0, 0.0, 1.0 - k * (b * b + c * c), ab + 0.5 * c, ac - 0.5 * b),
+        *(0.0, 0.0, 0.0, ab - 0.5 * c, 1.0 - k * (a * a + c * c), bc + 0.5 * a),
+        *(0.0, 0.0, 0.0, ac + 0.5 * b, bc - 0.5 * a, 1.0 - k * (a * a + b * b)),
+    ]
 
 
 def require_data_fits(nv: int) -> None:

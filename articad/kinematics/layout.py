@@ -145,8 +145,9 @@ class Layout:
         if not self._ball_columns.size:
             return Q + step
         columns, freedoms = self._plain
-        moved = np.empty((*np.broadcast_shapes(Q.shape[:-1], step.shape[:-1]), self.n_columns))
-        moved[..., columns] = Q[..., columns] + step[..., freedoms]
+        plain = Q[..., columns] + step[..., freedoms]
+        moved = np.empty((*plain.shape[:-1], self.n_columns))
+        moved[..., columns] = plain
         turned = quaternion.multiply(quaternion.exp(step[..., self._ball_freedoms]), Q[..., self._ball_columns])
         moved[..., self._ball_columns] = quaternion.normalized(turned)
         return moved
