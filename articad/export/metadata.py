@@ -140,6 +140,7 @@ def _joint(joint: Joint, name: str) -> Record:
         "rest": list(joint.rest),
         "lead": joint.lead,
         "driver": joint.driver,
+        **({"closing": True} if joint.closing else {}),
         "effort": list(joint.effort),
         "velocity": list(joint.velocity),
         **({"damping": list(joint.damping)} if joint.damping else {}),

@@ -16,20 +16,10 @@ from articad.assembly import Kept
 if TYPE_CHECKING:
     from articad.assembly import Assembly
 
-SECTIONS: Final = (
-    "compiler",
-    "option",
-    "size",
-    "visual",
-    "statistic",
-    "default",
-    "contact",
-    "tendon",
-    "actuator",
-    "sensor",
-    "keyframe",
-    "custom",
-)
+_FIRST: Final = ("compiler", "option", "size", "visual", "statistic", "extension", "default")
+"""Sections that refer to nothing; they are written before the bodies."""
+
+SECTIONS: Final = (*_FIRST, "contact", "tendon", "actuator", "sensor", "keyframe", "custom")
 """Sections in the order in which they are written; equalities are written by the writer of joints."""
 
 _KIND_OF: Final[Mapping[str, str]] = (
@@ -104,7 +94,7 @@ class Again:
             same_joints: Whether its joints are those of the file in their order, so that the values of keys mean the same.
         """
         waiting = [(item, element) for item, element in self._elements("model") if element.tag in (*SECTIONS, "equality")]
-        settings = [pair for pair in waiting if not len(pair[1]) or pair[1].tag in SECTIONS[:6]]
+        settings = [pair for pair in waiting if not len(pair[1]) or pair[1].tag in _FIRST]
         waiting = [pair for pair in waiting if pair not in settings and (pair[1].tag != "keyframe" or same_joints)]
         kept = {item for item, _ in waiting}
         for item, element in settings:
@@ -131,11 +121,11 @@ class Again:
 
     def _add(self, root: Any, item: Kept, element: Any) -> None:
         self.written.add(item)
-        there = root.find(element.tag) if len(element) == 1 and element.tag not in SECTIONS[:6] else None
+        there = root.find(element.tag) if len(element) == 1 and element.tag not in _FIRST else None
         if there is not None:
             there.append(element[0])
-        elif element.tag in SECTIONS[:6]:
-            root.insert(sum(below.tag in SECTIONS[:6] for below in root), element)
+        elif element.tag in _FIRST:
+            root.insert(sum(below.tag in _FIRST for below in root), element)
         else:
             root.append(element)
 
@@ -145,7 +135,7 @@ class Again:
 
 def _known(root: Any) -> set[tuple[str, str]]:
     """Return the names in a document, with their kinds."""
-    return _OF_EVERY_MODEL | _named(root.iterfind("worldbody//*")) | _named(root.iterfind("equality/*")) | _named(root.iterfind("asset/*")) | {
+    return _OF_EVERY_MODEL | _named(root.iterfind("worldbody//*")) | _named(root.iterfind("equality/*")) | _named(root.iterfind("asset/*")) | _named(root.iterfind("extension//instance")) | {
         ("class", default.get("class")) for default in root.iter("default")
     }  # fmt: skip
 

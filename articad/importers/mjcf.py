@@ -124,10 +124,13 @@ class _Reader:
     def _keep_sections(self) -> None:
         """Keep the document's data beyond bodies, section by section, where its elements are those of the compiled model.
 
-        Copies of `<replicate>` and models of `<attach>` add elements that no document has in this form; those are kept by name only.
+        Copies of `<replicate>`, models of `<attach>` and flexible bodies add elements that no document has in this form; the elements of
+        such a section are kept by name only.
         """
         self.raw.kept.append(Kept("mjcf", "model", "", "<mujoco/>"))  # that it came from MJCF, even if it says nothing else
         copied = [section for section in COUNTED if len(section_elements(self.document, section)) != self._count(section)]
+        if "keyframe" in copied and self._count("keyframe") == _stated_keys(self.document):
+            copied.remove("keyframe")  # those without an element are as MuJoCo makes them
         for item in kept_attributes(self.document):
             section = etree.fromstring(item.xml).tag if item.xml else ""
             if section not in {*copied, "equality"}:
@@ -139,7 +142,11 @@ class _Reader:
                     name = self.m.name(kind, index)
                     if not name.startswith(_RECORD_PREFIX):
                         self.raw.kept.append(
-                            Kept("mjcf", "model", f"{word} {name or f'{word}_{index}'!r}, which a copy or an attached model brings")
+                            Kept(
+                                "mjcf",
+                                "model",
+                                f"{word} {name or f'{word}_{index}'!r} (the file makes others by <replicate>, <attach> or <flexcomp>)",
+                            )
                         )
 
     def _count(self, section: str) -> int:
@@ -371,6 +378,12 @@ class _Reader:
         near, far = (SE3.from_quaternion(turn, frame.translation) for turn, frame in zip(turns, (near, far), strict=True))
         self.raw.joints.append(RawJoint(name, JointType.BALL, first, second, near, far, cone=math.pi, closing=True))
         return f"joints.{name}", ""
+
+
+def _stated_keys(document: Any) -> int:
+    """Return how many keys a file has room for (`nkey`)."""
+    stated = [element.get("nkey", "") for element in document.iterfind("size")]
+    return max((int(text) for text in stated if text.isdigit()), default=0)
 
 
 def _number_of(compiled: Compiled, count: str) -> int:

@@ -49,10 +49,23 @@ _GEOM = (
     | CARRIED["geom"]
 )
 
-WHOLE: Final = ("option", "size", "visual", "statistic", "custom", "contact", "equality", "tendon", "actuator", "sensor", "keyframe")
+WHOLE: Final = (
+    "option",
+    "size",
+    "visual",
+    "statistic",
+    "extension",
+    "custom",
+    "contact",
+    "equality",
+    "tendon",
+    "actuator",
+    "sensor",
+    "keyframe",
+)
 """Sections whose elements are kept verbatim."""
 
-SETTINGS: Final = frozenset({"option", "size", "visual", "statistic"})
+SETTINGS: Final = frozenset({"option", "size", "visual", "statistic", "extension"})
 """Those of them that apply to the whole model and have no named elements."""
 
 _OWN_DEFAULTS = frozenset(
@@ -73,7 +86,7 @@ READ: Final[Mapping[str, frozenset[str]]] = {
     "attach": ALL,
     "inertial": ALL,
     "joint": _JOINT,
-    "freejoint": frozenset({"name"}) | CARRIED["freejoint"],
+    "freejoint": frozenset({"name", "align"}) | CARRIED["freejoint"],
     "geom": _GEOM,
     "site": CARRIED["site"] | {"material"},
     "camera": CARRIED["camera"],
@@ -186,13 +199,14 @@ _REFERRING = frozenset(
 
 
 def _compiler(document: Any) -> Iterator[Kept]:
-    """Yield the compiler's settings on which the verbatim elements depend."""
+    """Yield the compiler's settings on which the verbatim elements depend.
+
+    `autolimits` is not among them: without it MuJoCo demands that every range says whether it limits.
+    """
     kept = etree.Element("compiler")
     for compiler in document.iterfind("compiler"):
-        if "autolimits" in compiler.attrib:
-            kept.set("autolimits", compiler.get("autolimits"))
         kept.extend(deepcopy(list(compiler.iterfind("lengthrange"))))
-    if len(kept) or kept.get("autolimits") == "false":
+    if len(kept):
         yield Kept("mjcf", "model", "", _text(kept))
 
 

@@ -244,4 +244,5 @@ def _joint(joint: RawJoint, rest: tuple[float, ...], findings: list[Finding]) ->
         damping=joint.damping
         or ((0.0,) * max(len(ranges), 1) if joint.type not in {JointType.FIXED, JointType.FREE} else ()),  # unstated means none
         friction=joint.friction,
+        closing=joint.closing,
     )

@@ -193,6 +193,7 @@ def _joint(record: Record) -> Joint:
         rest=tuple(float(value) for value in record["rest"]),
         lead=record["lead"],
         driver=record["driver"],
+        closing=record.get("closing", False) is True,
         effort=tuple(record["effort"]),
         velocity=tuple(record["velocity"]),
         damping=tuple(record.get("damping", ())),

@@ -26,6 +26,7 @@ _WEIGHTS = {
     JointType.REVOLUTE: 4,
     JointType.BALL: 5,
 }
+_CLOSING = 1 + max(_WEIGHTS.values())
 _DRIVEN = {joint_type: min(weight, 1) for joint_type, weight in _WEIGHTS.items()}
 _REVERSIBLE = frozenset(joint_type for joint_type in JointType if joint_type.reversible)
 
@@ -108,7 +109,7 @@ class JointGraph:
         """The joints that carry parts, as (joint, near part, far part) by index, and for each part whether they reach it."""
         n, place = len(self.joints), self._place
         parents, children = [place[name] for name in self._parents], [place[name] for name in self._children]
-        weights = [_DRIVEN[joint.type] if joint.driver else _WEIGHTS[joint.type] for joint in self.joints]
+        weights = [_CLOSING if joint.closing else _DRIVEN[joint.type] if joint.driver else _WEIGHTS[joint.type] for joint in self.joints]
         keys = [weight * n + index for index, weight in enumerate(weights)]  # joints are taken in the order of these numbers
         at: list[list[int]] = [[] for _ in self.parts]
         for joint, key, parent, child in zip(self.joints, keys, parents, children, strict=True):

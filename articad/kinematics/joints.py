@@ -304,6 +304,7 @@ class Joint:
         rest: Coordinates in the rest pose.
         lead: Advance per turn of a screw [mm].
         driver: Marked as a driver of a loop.
+        closing: It closes a loop and carries no part, unless nothing else carries that part.
         effort: Largest force [N] or torque [N·mm] per coordinate, None where it is to be computed; empty: compute all.
         velocity: Largest speed [mm/s, rad/s] per coordinate, likewise.
         damping: Resistance per speed [N·s/mm, N·mm·s/rad] per coordinate, likewise.
@@ -323,6 +324,7 @@ class Joint:
     mate: Mate = Mate.ALIGNED
     lead: float = 0.0
     driver: bool = False
+    closing: bool = False
     effort: tuple[float | None, ...] = ()
     velocity: tuple[float | None, ...] = ()
     damping: tuple[float | None, ...] = ()

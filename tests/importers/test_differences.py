@@ -216,6 +216,74 @@ def test_random_urdf_files_are_converted_without_a_silent_difference(seed: int, 
     assert result.get("silent") == [], result
 
 
+def looped_mjcf(random: np.random.Generator) -> str:
+    """Return chains of hinges and slides whose bodies are welded and pinned to others, or to the world, where they stand in the file."""
+    rows, bodies = [], ["world"]
+    for chain in range(random.integers(1, 4)):
+        depth = int(random.integers(1, 4))
+        for _ in range(depth):
+            bodies.append(f"b{len(bodies)}")
+            pos, axis = (" ".join(f"{x:.3f}" for x in random.uniform(-0.3, 0.3, 3)) for _ in range(2))
+            kind = random.choice(["hinge", "slide"])
+            rows.append(
+                f'<body name="{bodies[-1]}" pos="{pos}" euler="10 20 {chain}"><joint name="j{len(bodies)}" type="{kind}" axis="{axis}" range="-1 1"/>'
+                '<geom size="0.05" mass="1"/>'
+            )
+        rows.append("</body>" * depth)
+    ties = []
+    for _ in range(random.integers(1, 4)):
+        one, other = random.choice(bodies, 2, replace=False)
+        ties.append(
+            f'<weld body1="{one}" body2="{other}"/>'
+            if random.random() < 0.7
+            else f'<connect body1="{one}" body2="{other}" anchor="0 0 0"/>'
+        )
+    return f"<mujoco><worldbody>{''.join(rows)}</worldbody><equality>{''.join(ties)}</equality></mujoco>"
+
+
+@pytest.mark.parametrize("target", ["mjcf", "urdf"])
+@pytest.mark.parametrize("seed", range(6))
+def test_the_joints_of_a_file_carry_its_bodies_whatever_is_welded(seed: int, target: str, tmp_path: Path) -> None:
+    (tmp_path / "a.xml").write_text(looped_mjcf(np.random.default_rng(seed)))
+    result = examine(tmp_path / "a.xml", target, tmp_path / "out", tmp_path)
+
+    assert result.get("silent") == [], result
+
+
+@pytest.mark.parametrize("kind", ["hinge", "slide"])
+def test_a_loop_of_a_single_freedom_is_read(kind: str, tmp_path: Path) -> None:
+    (tmp_path / "a.xml").write_text(
+        f'<mujoco><worldbody><body name="a"><joint type="{kind}"/><geom size="0.1"/></body></worldbody><equality><weld body1="a" '
+        f'relpose="0 0 {0.1 if kind == "slide" else 0} 1 0 0 {0.2 if kind == "hinge" else 0}"/></equality></mujoco>'
+    )
+    result = examine(tmp_path / "a.xml", "mjcf", tmp_path / "out", tmp_path)
+
+    assert result.get("silent") == [], result
+
+
+def test_room_for_keys_is_no_loss(tmp_path: Path) -> None:
+    (tmp_path / "a.xml").write_text('<mujoco><size nkey="3"/><worldbody><body><joint/><geom size="0.1"/></body></worldbody></mujoco>')
+    result = examine(tmp_path / "a.xml", "mjcf", tmp_path / "out", tmp_path)
+
+    assert (result.get("silent"), result.get("rows")) == ([], 0), result
+
+
+def test_limits_that_are_said_and_plugins_come_back(tmp_path: Path) -> None:
+    (tmp_path / "a.xml").write_text(
+        '<mujoco><compiler autolimits="false"/><extension><plugin plugin="mujoco.pid"><instance name="i"><config key="kp" value="4"/></instance>'
+        '</plugin><plugin plugin="mujoco.sensor.touch_grid"/></extension><worldbody><body name="a"><joint name="j" range="-30 40" limited="true"/>'
+        '<geom size="0.1"/><site name="s"/><body name="b"><joint name="k" range="-1 1" limited="false"/><geom size="0.1"/></body></body></worldbody>'
+        '<actuator><motor joint="j" ctrlrange="-1 1" ctrllimited="true"/><plugin joint="j" plugin="mujoco.pid" instance="i"/>'
+        '<plugin joint="k" plugin="mujoco.pid"><config key="kp" value="3"/></plugin></actuator>'
+        '<sensor><plugin name="t" plugin="mujoco.sensor.touch_grid" objtype="site" objname="s"><config key="size" value="3 3"/>'
+        '<config key="fov" value="45 45"/><config key="gamma" value="0"/><config key="nchannel" value="1"/></plugin></sensor></mujoco>'
+    )
+    result = examine(tmp_path / "a.xml", "mjcf", tmp_path / "out", tmp_path)
+
+    assert (result.get("silent"), result.get("rows")) == ([], 0), result
+    assert "extension" in str(examine(tmp_path / "a.xml", "urdf", tmp_path / "out", tmp_path)["idle"])
+
+
 def tied_urdf(random: np.random.Generator) -> str:
     """Return a tree with masses that stand still, stars of mimics in any order, limits at any distance and shapes with names."""
 
