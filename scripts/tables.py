@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import ast
 import re
 import sys
 from itertools import groupby
@@ -10,6 +11,7 @@ from pathlib import Path
 from typing import get_args
 
 import articad.commands
+import articad.kernels
 from articad import formats
 from articad.commands.command import COMMANDS
 from articad.export.losses import TABLE, Format
@@ -134,6 +136,38 @@ glTF calls y up: neither counts, because readers of URDF (Pinocchio, and trimesh
 the same in all of them. The nodes of a DAE or glTF are placed. Meshes of MJCF are those that MuJoCo compiles."""
 
 
+ABOUT_FREECAD = """\
+A script of the FreeCAD kernel, `parts/<part>.freecad.py`, defines `build(part)` and returns `(part.body, connectors)`; see
+[Work with FreeCAD](../how-to/freecad.md). These are the members of `part`. A `Value` is a number, or a text over the names of dimensions such as
+`"width / 2 - inset"`, which stays an expression in the document; lengths are in mm, angles in degrees. Each feature becomes the tip of the body.
+
+`part.name`, `part.description`, `part.material`, `part.dimensions` (name -> number) and `part.connectors` (name -> object with `o`, `z`, `x`, `label`, `joints`) are
+those of the plan; `part.document` and `part.body` are FreeCAD's own, with everything that FreeCAD offers.
+
+```text
+def build(part):
+    part.box(("-width / 2", 0, 0), ("width", "depth", "height"), name="Outside")
+    part.cylinder((0, 0, 0), "+Z", "bore_radius", "height", cut=True, name="Bore")
+    part.chamfer("+Z", 1, name="Edge")
+    return part.body, {"hinge": part.connector("hinge", (0, "depth", "height"), (-1, 0, 0), (0, -1, 0))}
+```"""
+AUTHORING = Path(articad.kernels.__file__).parent / "inside_freecad" / "part.py"
+
+
+def freecad_kernel() -> str:
+    """Return the page of what a script of the FreeCAD kernel calls, with signatures and docstrings from the code."""
+    (offered,) = [node for node in ast.parse(AUTHORING.read_text()).body if isinstance(node, ast.ClassDef) and node.name == "Authoring"]
+    lines = ["# The FreeCAD kernel's functions", "", NOTE, ABOUT_FREECAD]
+    for node in offered.body:
+        if not isinstance(node, ast.FunctionDef) or node.name.startswith("_") or node.decorator_list:
+            continue
+        given = re.sub(r"\bself(, )?", "", ast.unparse(node.args), count=1)
+        returned = "" if node.returns is None or ast.unparse(node.returns) == "None" else f" -> {ast.unparse(node.returns)}"
+        lines += ["", f"## part.{node.name}", "", "```text", f"part.{node.name}({given}){returned}", "```", ""]
+        lines += [re.sub(r"^    (\w+): ", r"- `\1`: ", line) for line in (ast.get_docstring(node) or "").splitlines() if line != "Args:"]
+    return "\n".join(lines) + "\n"
+
+
 ABOUT_COMMANDS = """\
 ```console
 articad [--json] [-q] [-v] [--no-color] COMMAND …
@@ -206,7 +240,7 @@ def _cell(text: str) -> str:
     return re.sub(r"<\w+>", r"`\g<0>`", text % {} if "%%" in text else text).replace("|", "\\|")
 
 
-PAGES = {"findings.md": findings, "losses.md": losses, "formats.md": all_formats, "cli.md": commands}
+PAGES = {"findings.md": findings, "losses.md": losses, "formats.md": all_formats, "cli.md": commands, "freecad-kernel.md": freecad_kernel}
 
 
 def main(arguments: list[str]) -> int:

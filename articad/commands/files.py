@@ -168,3 +168,77 @@ def _audit_of(source: Path, root: str | None, terminal: Terminal) -> Report:
     terminal.say(f"Faults of {source.name}: {'none found' if found.ok else ''}")
     terminal.findings(found.findings)
     return found.to_json()
+
+
+@command(
+    "pull",
+    "Take home what was changed in a run's FreeCAD document: a new run with a new version of the plan.",
+    argument("run", metavar="RUN"),
+    argument("document", metavar="DOCUMENT.FCStd"),
+    argument("--out", metavar="DIR", help="the new run; by default a folder below runs/"),
+    argument("--formats", type=formats, default=("urdf", "step"), metavar="FORMATS", help="formats to write (urdf,step)"),
+    SANDBOX,
+)
+def _pull(options: argparse.Namespace, terminal: Terminal) -> Report:
+    from articad.assembly import Assembly
+    from articad.commands import summaries
+    from articad.commands.steps import sandbox_level, stage
+    from articad.export.freecad_content import UNCOMPARED
+    from articad.findings import Findings
+    from articad.kernels.choice import kernel_named
+    from articad.kernels.kernel import BuildCache
+    from articad.plan.schema import AssemblyPlan
+    from articad.runs.pull import compared, pull
+    from articad.runs.record import assembly_of, record_assembly, record_checks, record_export
+    from articad.runs.run import Run, RunRequest, open_or_create, require_place
+
+    with Run.view(options.run) as run:
+        base = assembly_of(run)
+        kernel = str(run.request.options.get("kernel", "build123d"))
+    if base.resolved is None:
+        raise AssertionError("a run has a plan")
+    plan = base.resolved.plan
+    if base.resolved.overrides:
+        from articad.agents.edit_base import with_values
+
+        plan = with_values(plan, base.resolved.overrides)
+    pulled = pull(plan, options.document)
+    scripts = {name: part.script for name, part in base.realised.items() if part.script is not None}
+    request = RunRequest(prompt=plan.name, options={"task": "build", "kernel": kernel, "parameters": {}, "changes": dict(pulled.changes)})
+    require_place(request, options.out)
+    with terminal.progress("Building") as tell:
+        made = Assembly.from_plan(
+            AssemblyPlan.loads(pulled.plan.dumps()),
+            scripts,
+            kernel=kernel_named(kernel, sandbox=sandbox_level(options)),
+            cache=BuildCache(),
+            progress=tell,
+        )
+    different = compared(made, options.document)
+    with open_or_create(request, options.out) as run, terminal.progress("Finishing") as tell:
+        run.save_plan(plan.dumps(), 0)
+        run.save_plan(pulled.plan.dumps(), 1)
+        record_assembly(run, made)
+        with stage(tell, "checks at rest"):
+            checks = made.check(motion=False)
+        record_checks(run, checks)
+        for name in options.formats:
+            with stage(tell, f"export {name}"):
+                record_export(run, made, name)
+        place = run.path
+    findings = Findings([*pulled.findings, *different])
+    terminal.findings(findings)
+    left = sum(finding.code == "W_FREECAD_EDIT" for finding in findings)
+    terminal.say(f"{place}: {len(pulled.changes)} values of the plan changed, {left} edits not taken home.")
+    terminal.say(f"Not compared: {'; '.join(UNCOMPARED)}.")
+    report = checks.to_json()
+    summaries.print_findings(report["findings"], terminal)
+    return {
+        "schema": "articad.pull/1",
+        "ok": bool(report["ok"]) and left == 0,
+        "run": str(place),
+        "changes": dict(pulled.changes),
+        "not_compared": list(UNCOMPARED),
+        "findings": [finding.to_json() for finding in findings],
+        "checks": report,
+    }

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 
 from articad.plan.expressions import ExpressionError, parse
 from articad.plan.resolve import ResolvedPlan
@@ -35,6 +35,23 @@ class Followed:
         except ExpressionError:  # a resolved plan has no such error
             return None
         return f"({text}) * 1 {unit}" if unit else text
+
+    def driving(self, parts: Collection[str]) -> dict[str, set[str]]:
+        """Return the parts that each parameter shapes, directly or through other parameters, of those given."""
+        if self._resolved is None:
+            return {}
+        needs = {parameter.name: _names(parameter.value) for parameter in self._resolved.plan.parameters}
+        found: dict[str, set[str]] = {}
+        for part in parts:
+            numbers = self._resolved.parts[part].spec.dimensions.values() if part in self._resolved.parts else ()
+            waiting, seen = [name for number in numbers for name in _names(number)], set[str]()
+            while waiting:
+                name = waiting.pop()
+                if name not in seen:
+                    seen.add(name)
+                    found.setdefault(name, set()).add(part)
+                    waiting += needs.get(name, ())
+        return found
 
     def follows(self, *numbers: Number) -> bool:
         """Return whether one of these follows a parameter."""
@@ -95,3 +112,11 @@ class Followed:
             return text
         known = {} if self._resolved is None else self._resolved.parameters
         return repr(float(parse(number).evaluate(known) if isinstance(number, str) else number))
+
+
+def _names(number: Number) -> tuple[str, ...]:
+    """Return the parameters that a number of the plan names."""
+    try:
+        return tuple(parse(number).names) if isinstance(number, str) else ()
+    except ExpressionError:  # a plan that was resolved has none such
+        return ()

@@ -17,6 +17,7 @@ from xml.sax.saxutils import quoteattr
 import numpy as np
 from lxml import etree
 
+from articad.export.freecad_content import PROPERTY, content_of, packed_content
 from articad.geometry.mesh import TriMesh
 from articad.kernels.freecad_file import bounded, packed, settle, xml_parser
 
@@ -62,12 +63,20 @@ def normalised(content: bytes, look: Appearance | None = None) -> bytes:
         files = {name: archive.read(name) for name in archive.namelist() if name not in ("GuiDocument.xml", "thumbnails/Thumbnail.png")}
     root = etree.fromstring(files["Document.xml"], xml_parser())
     settle(root)
+    _carry(root)
     types = {item.get("name"): item.get("type") for item in root.iterfind("Objects/Object")}
     if look is not None:
         _show(root, types, look)
         files["GuiDocument.xml"] = _gui(types, look)
     files["Document.xml"] = etree.tostring(root, xml_declaration=True, encoding="utf-8", standalone=False)
     return packed({name: bounded(data) if name.endswith(".brp") else data for name, data in files.items()})
+
+
+def _carry(root: etree._Element) -> None:
+    """Store the content of the document in its assembly, so that the reader can find edits."""
+    content = packed_content(content_of(root))
+    for row in root.iterfind(f"ObjectData/Object/Properties/Property[@name='{PROPERTY}']/String"):
+        row.set("value", content)
 
 
 def _is_shown(name: str, kind: str, look: Appearance) -> bool:
@@ -106,6 +115,7 @@ def _provider(name: str, kind: str, look: Appearance) -> str:
     if name in look.colors:
         red, green, blue = (int(look.colors[name][start : start + 2], 16) for start in (1, 3, 5))
         packed_color = (red << 24 | green << 16 | blue << 8) & 0xFFFFFFFF
+        properties += _link_color(packed_color) if kind == "App::Link" else []
         properties.append(f'<Property name="ShapeColor" type="App::PropertyColor"><PropertyColor value="{packed_color}"/></Property>')
     if name in look.joints or name == look.grounded:
         provider = "ViewProviderGroundedJoint" if name == look.grounded else "ViewProviderJoint"
@@ -117,6 +127,15 @@ def _provider(name: str, kind: str, look: Appearance) -> str:
         f'        <ViewProvider name={quoteattr(name)} expanded="{expanded}">\n'
         f'            <Properties Count="{len(properties)}" TransientCount="0">{inner}\n            </Properties>\n        </ViewProvider>'
     )
+
+
+def _link_color(packed_color: int) -> list[str]:
+    """Return the properties that give a link a colour of its own in place of its object's."""
+    colors = f'ambientColor="1431655680" diffuseColor="{packed_color}" specularColor="2290649088" emissiveColor="0"'
+    return [
+        '<Property name="OverrideMaterial" type="App::PropertyBool"><Bool value="true"/></Property>',
+        f'<Property name="ShapeMaterial" type="App::PropertyMaterial"><PropertyMaterial {colors} shininess="0.9" transparency="0"/></Property>',
+    ]
 
 
 def python_classes(content: bytes) -> set[str]:

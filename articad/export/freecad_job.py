@@ -51,6 +51,8 @@ _TYPES = {
 }
 _COUPLINGS = {"gear": "Gears", "belt": "Belt", "rack": "RackPinion", "screw": "Screw"}
 
+_FROZEN = ("shape", "mesh", "empty")  # kinds of geometry without a feature tree
+
 
 class Job:
     """The content of a document; the files that it needs are written beside it.
@@ -87,26 +89,40 @@ class Job:
         """Return the document's parameters, parts and joints, as JSON."""
         poses = self.assembly.at()
         parts = [self._part(name, part, poses[name]) for name, part in self.assembly.parts.items()]
+        parameters = list(self._parameters({part["name"] for part in parts if part["kind"] in _FROZEN and part["dimensions"]}))
+        live = sum(row["live"] for row in parameters)
+        split = "all fixed" if not live else f"{live} live, {len(parameters) - live} fixed"
         return {
             "schema": "articad.job/1",
             "task": "freecad",
             "name": self.assembly.name,
             "ground": self.assembly.ground,
             "records": [dumps(record) for record in records(self.assembly, self.model, MeshFiles(), ())],
-            "parameters": list(self._parameters()),
+            "parameters": parameters,
+            "parameters_label": "Parameters" if live == len(parameters) else f"Parameters ({split})",
             "parts": parts,
             "joints": [*self._joints(), *self._couplings()],
         }
 
     # ------------------------------------------------------------------ parameters
 
-    def _parameters(self) -> Iterator[Json]:
+    def _parameters(self, frozen: set[str]) -> Iterator[Json]:
+        """Yield the parameters. A parameter that drives a frozen shape is fixed: an edit would move joints but not the shape.
+
+        Args:
+            frozen: Parts whose shape has no feature tree.
+        """
         resolved = self.assembly.resolved
         if resolved is None:
             return
+        held = self.followed.driving(frozen)
         for parameter in resolved.plan.parameters:
             given = resolved.overrides.get(parameter.name, parameter.value)
+            holding = sorted(held.get(parameter.name, ()))
+            why = f"Fixed: it shapes {', '.join(holding[:5])}, which are frozen. Change it in the plan and export again." if holding else ""
             yield {
+                "live": not holding,
+                "why": why,
                 "name": parameter.name,
                 "value": float(resolved.parameters[parameter.name]),
                 "unit": parameter.unit,
@@ -136,9 +152,8 @@ class Job:
             return self._loose(name, part)
         derivation = target.derivation
         if derivation is not None and derivation.S is None:
-            if part.color != self.assembly.parts[derivation.source].color:
-                self._tell("freecad.color", f"parts.{name}", part.color)
-            return {"kind": "link", "source": derivation.source}
+            recolored = part.color != self.assembly.parts[derivation.source].color
+            return {"kind": "link", "source": derivation.source, "recolored": recolored}
         if derivation is not None:
             point, normal = _plane(np.asarray(derivation.S, dtype=np.float64))
             return {
@@ -344,7 +359,7 @@ def _limits(joint: Joint) -> dict[str, float]:
         scale = math.degrees(1.0) if name == "Angle" else 1.0
         for end, bound in (("Min", lowest), ("Max", highest)):
             if math.isfinite(bound):
-                limits[f"{name}{end}"] = bound * scale
+                limits[f"{name}{end}"] = float(f"{bound * scale:.16g}")  # degrees without the dust of radians
     return limits
 
 

@@ -19,6 +19,7 @@ from lxml.etree import _Element as Element
 from articad.aliases import Json
 from articad.connectors.se3 import SE3
 from articad.errors import ExportError
+from articad.export.freecad_content import PROPERTY
 from articad.export.freecad_file import Appearance
 from articad.export.names import Names
 from articad.findings import Finding
@@ -51,6 +52,7 @@ _KINDS = (
 )
 _STAYS = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0]
 _NO_XML = re.compile(r"[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")  # characters that XML cannot contain
+_READ_ONLY = str(1 << 21 | 1 << 2)  # a property of the object itself that the property editor shows but does not change
 _NULL = "bnVsbA=="  # base64 of null: FreeCAD's state of a Python object without one
 
 
@@ -105,7 +107,7 @@ class _Writer:
 
     def write(self) -> None:
         if self.job["parameters"]:
-            self._values("Parameters", "Parameters", "p", "Parameters", self.job["parameters"])
+            self._values("Parameters", self.job["parameters_label"], "p", "Parameters", self.job["parameters"])
         origin = self._origin()
         place = len(self.objects)
         for part in self.job["parts"]:
@@ -126,6 +128,7 @@ class _Writer:
         self.labels.discard(self.job["name"])
         assembly = [
             _text("ArticadRecords", "\n".join(self.job["records"]), "articad", "articad's records, for the way back", attr=4),
+            _text(PROPERTY, "", "articad", "The content of the document when articad wrote it", attr=4),
             _links("Group", [*members, "Joints", *joints]),
             _link("Origin", origin),
             _placement("Placement", _STAYS),
@@ -197,8 +200,11 @@ class _Writer:
         """Add a VarSet of numbers that may follow others."""
         numbers = []
         for row in rows:
-            note = f"{row['description']} [{row['unit']}]".strip() if "unit" in row else ""
-            numbers.append(_number(f"{prefix}_{row['name']}", row["value"], group, note))
+            note = f"{row['description']} [{row['unit']}] {row['why']}".strip() if "unit" in row else ""
+            fixed = not row.get("live", True)
+            numbers.append(
+                _number(f"{prefix}_{row['name']}", row["value"], f"Fixed {group.lower()}" if fixed else group, note, fixed=fixed)
+            )
         followed = {f"{prefix}_{row['name']}": row["expression"] for row in rows if row["expression"]}
         return self._add(name, "App::VarSet", *numbers, label=label, expressions=followed)
 
@@ -215,6 +221,8 @@ class _Writer:
             source = part["source"]
             self.containers[name] = self.containers[source]
             self.shapes[name] = self.shapes[source]
+            if part["recolored"]:
+                self.colors[item] = part["color"]
             for connector in part["connectors"]:
                 self.systems[name, connector["name"]] = self.systems[source, connector["name"]]
             target = [_target("LinkedObject", self.containers[source]), _placement("LinkPlacement", part["placement"])]
@@ -226,7 +234,9 @@ class _Writer:
         members = []
         if part["dimensions"]:
             values = self.names.claim(f"Dimensions_{item}")
-            members.append(self._values(values, f"{name} dimensions", "d", "Dimensions", part["dimensions"]))
+            frozen = part["kind"] not in ("body", "mirror")
+            rows = [row | {"live": not frozen} for row in part["dimensions"]]
+            members.append(self._values(values, f"{name} dimensions{' (frozen shape)' if frozen else ''}", "d", "Dimensions", rows))
         members += self._shape(part)
         members += [self._connector(part, connector) for connector in part["connectors"]]
         grouped = [_links("Group", members), _link("Origin", origin)]
@@ -251,7 +261,7 @@ class _Writer:
             _placement("Placement", _stands(brep)),
         ]
         if kind == "shape":
-            return [self._add(body, "Part::Feature", *shape)]
+            return [self._add(body, "Part::Feature", *shape, label=f"{part['name']} body (frozen)")]
         source = self.names.claim(f"{part['object']}_source")
         self.hidden.append(source)
         self._add(source, "App::Link", _target("LinkedObject", self.shapes[part["source"]]), extension="LinkExtension")
@@ -297,7 +307,7 @@ class _Writer:
             ]
         properties += [_number(name, value, "Joint", "") for name, value in joint["distances"].items()]
         for name, value in joint["limits"].items():
-            properties += [_truth(f"Enable{name}", value=True, group="Limits"), _number(name, value, "Limits", "")]
+            properties += [_truth(f"Enable{name}", value=True, group="Limits"), _limit(name, value, followed=name in joint["expressions"])]
         self._add(joint["object"], "App::FeaturePython", *properties, label=joint["label"], expressions=joint["expressions"])
 
 
@@ -344,8 +354,17 @@ def _text(name: str, value: str, group: str = "", doc: str = "", *, attr: int = 
     return _property(name, "String", _row("String", value=value), group=group, doc=doc, attr=attr)
 
 
-def _number(name: str, value: float, group: str, doc: str) -> Element:
-    return _property(name, "Float", _row("Float", value=repr(float(value))), group=group, doc=doc)
+def _number(name: str, value: float, group: str, doc: str, *, fixed: bool = False) -> Element:
+    row = _property(name, "Float", _row("Float", value=repr(float(value))), group=group, doc=doc)
+    if fixed:
+        row.set("status", _READ_ONLY)
+    return row
+
+
+def _limit(name: str, value: float, *, followed: bool) -> Element:
+    """Return a limit; one with an expression has its unit, because FreeCAD 1.1 drops the expressions of plain numbers."""
+    kind = ("Angle" if name.startswith("Angle") else "Distance") if followed else "Float"
+    return _property(name, kind, _row("Float", value=repr(float(value))), group="Limits")
 
 
 def _truth(name: str, *, value: bool, group: str = "Joint") -> Element:

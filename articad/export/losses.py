@@ -416,7 +416,6 @@ _FREECAD: dict[str, LossRow] = {
     "coupling": LossRow("a suppressed joint of the same kind", "FreeCAD's solver does not enforce it", refused=True),
     "fit": LossRow("a record", "fits: FreeCAD has none"),
     "freecad.coupling": LossRow("a record", "FreeCAD has no such coupling", refused=True),
-    "freecad.color": LossRow("a link to its source", "its colour: it has the colour of its source"),
     "freecad.features": LossRow("its B-rep", "its features: it follows no parameter; write with FreeCAD to keep them"),
     "freecad.brep": LossRow("its B-rep", "editable features: it follows no parameter; build with the FreeCAD kernel to get them"),
     "freecad.mesh": LossRow("a mesh", "coordinates beyond single precision, and an editable solid"),

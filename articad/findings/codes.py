@@ -370,8 +370,8 @@ CODES: dict[str, Code] = {
     "E_FREECAD": Code(
         "export",
         None,
-        "FreeCAD failed on a document, or reports invalid objects in it.",
-        "Open the document and look at the marked objects.",
+        "FreeCAD failed on a document, or found invalid objects in it, or a shape that differs from the part's.",
+        "Do not use the document; export STEP instead.",
     ),
     "W_FREECAD_SOLVER": Code(
         "export",
@@ -385,8 +385,29 @@ CODES: dict[str, Code] = {
         "A FreeCAD document was written without FreeCAD, so its solver did not check it.",
         "Open it in FreeCAD 1.0 or later; install FreeCAD to write feature trees as well.",
     ),
-    "W_FREECAD_JOINT": Code(
-        "import", None, "A joint of a FreeCAD document was left out.", "Use Fixed, Revolute, Slider, Cylindrical or Ball between two parts."
+    "E_FREECAD_JOINT": Code(
+        "import",
+        None,
+        "A joint of a FreeCAD document has a type that articad does not support.",
+        "Use Fixed, Revolute, Slider, Cylindrical, Ball, Gears, Belt, RackPinion or Screw, or suppress the joint.",
+    ),
+    "W_FREECAD_LOOSE": Code(
+        "import", None, "No joint connects a part of a FreeCAD document to the grounded part.", "Connect it with a joint in FreeCAD."
+    ),
+    "W_FREECAD_ELSEWHERE": Code(
+        "import",
+        None,
+        "A part of a FreeCAD document is not where its joints put it.",
+        "Solve the assembly in FreeCAD and save it.",
+    ),
+    "I_FREECAD_EDIT": Code(
+        "import", None, "A FreeCAD document was changed after articad wrote it; the change is taken over.", "Nothing needs to be done."
+    ),
+    "W_FREECAD_EDIT": Code(
+        "import",
+        None,
+        "A FreeCAD document was changed after articad wrote it; the change is not taken over.",
+        "Make the change in the plan or a part script, or keep the document.",
     ),
     "W_FREECAD_SHAPE": Code("import", None, "The shape of a FreeCAD part is not one valid solid.", "Repair it in FreeCAD."),
     # --- interference and fits

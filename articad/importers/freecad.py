@@ -1,8 +1,9 @@
 """Reads a FreeCAD assembly document, written by articad or made by hand; FreeCAD need not be installed.
 
-The file is a zip of XML and B-rep; the B-rep is read in the kernels' confined worker. Frames come from the document as it is now, so
-edits in FreeCAD are kept; what FreeCAD cannot represent (cones, leads, labels, drivers, couplings, fits) comes from articad's records in
-it.
+The file is a zip of XML and B-rep; the B-rep is read in the kernels' confined worker. Parts, shapes, connectors, joints, limits, labels and
+colours come from the document as it is now, so edits in FreeCAD are kept, and masses are computed from the shapes. What FreeCAD cannot
+represent (cones, leads, drivers, linear couplings, fits) comes from articad's records in the document. Each edit is a finding; an edit that
+is not taken over is a warning that names it.
 """
 
 from __future__ import annotations
@@ -10,30 +11,38 @@ from __future__ import annotations
 import math
 import re
 import tempfile
-from collections.abc import Iterator
-from dataclasses import replace
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
+from typing import Any
+
+import numpy as np
 
 from articad.assembly import Assembly
 from articad.connectors.connector import Connector
 from articad.connectors.mate import FLIP, Mate
 from articad.connectors.se3 import SE3
 from articad.errors import ArticadError
-from articad.files import read_file
+from articad.export.freecad_content import PROPERTY, Content, content_of, unpacked_content
 from articad.findings import Finding, Findings
+from articad.geometry.mass import MassProperties
 from articad.geometry.part import DEFAULT_COLOR, Part, Shape, Solid
+from articad.importers.freecad_couplings import COUPLINGS, Stated, coupling_of
+from articad.importers.freecad_document import IDENTITY, FreeCADObject, LinkedDocuments
+from articad.importers.freecad_edits import Edit, edits
 from articad.importers.freecad_mesh import read_mesh_kernel
-from articad.importers.reading import LARGEST_MM, MAX_XML_BYTES, Folder, parse_xml, unreadable
+from articad.importers.reading import Folder, unreadable
 from articad.importers.records import assembly_of, read_records
-from articad.kernels.archive import Archive, BadArchiveError
+from articad.kernels.archive import BadArchiveError
 from articad.kernels.freecad import BrepReader
-from articad.kinematics.joints import Joint, JointLimits, JointType
+from articad.kinematics.joints import Coupling, Joint, JointLimits, JointType
 from articad.kinematics.mechanism import Mechanism
 from articad.processes import scratch
 
-MAX_BYTES, MAX_UNPACKED, MAX_ENTRIES = 256 * 2**20, 384 * 2**20, 20_000
 SAME_MM, SAME_RAD = 1e-9, 1e-12  # a frame this close to its record is replaced by the record
+SAME_SHAPE = 1e-9  # a volume, relative, and a centre, relative to the part's size: below, the recorded mass holds
+STANDS_MM, STANDS_RAD = 1e-4, 1e-5  # by which a part may stand elsewhere than its joints put it, before a finding says so
 _TYPES = {
     "Fixed": JointType.FIXED,
     "Revolute": JointType.REVOLUTE,
@@ -41,14 +50,20 @@ _TYPES = {
     "Cylindrical": JointType.CYLINDRICAL,
     "Ball": JointType.BALL,
 }
-_CONTAINERS = ("App::Part", "App::Link", "Mesh::Feature")
+_WRITTEN = {kind: word for word, kind in _TYPES.items()} | {
+    JointType.SCREW: "Cylindrical",
+    JointType.PLANAR: "Distance",
+    JointType.UNIVERSAL: "Ball",
+}  # how articad writes joints: other words are edits
+_CONTAINING = ("Group", "Origin", "_Body", "OriginFeatures")  # links to members, which need not shape what holds them
+_NAMED = re.compile(r"[A-Za-z_][\w ]*?(?=\.)")  # the objects that an expression names
+_CONTAINERS = ("App::Part", "App::Link", "Mesh::Feature", "Assembly::AssemblyLink", "Assembly::AssemblyObject")
 _LIMITS = {
     JointType.REVOLUTE: ("Angle",),
     JointType.SLIDER: ("Length",),
     JointType.CYLINDRICAL: ("Length", "Angle"),
+    JointType.SCREW: ("Angle",),
 }
-
-IDENTITY = SE3.identity()
 
 
 def read_freecad(path: str | Path, *, root: str | Path | None = None, metadata: bool = True, deflection: float = 0.01) -> Assembly:
@@ -56,23 +71,61 @@ def read_freecad(path: str | Path, *, root: str | Path | None = None, metadata: 
 
     Args:
         path: The file, `.FCStd`.
-        root: Unused: a FreeCAD file holds all of its shapes.
+        root: Folder that linked documents may be read from; the file's own by default.
         metadata: Use the records that articad left in its own files, for what FreeCAD cannot represent.
         deflection: Largest distance of the meshes from the solids [mm].
 
+    Returns:
+        The assembly as it is in the document. If articad wrote the document, its findings name each edit: `I_FREECAD_EDIT` is taken over,
+        `W_FREECAD_EDIT` is not.
+
     Raises:
-        ReadError: If it is not a FreeCAD file, or contains no assembly with a grounded part.
+        ReadError: If it is not a FreeCAD file, contains no assembly with a grounded part, links to a file that is missing or outside the
+            root, or has a joint of a type that articad does not support.
     """
-    del root
     path = Path(path)
-    document = _Document(path)
-    model = _Model(document, deflection)
-    text = document.text(model.assembly, "ArticadRecords") if metadata else ""
-    if text:
-        folder = Folder.of(path, None)
-        recorded = assembly_of(read_records(text.split("\n"), path), folder, path)
+    library = LinkedDocuments(path, None if root is None else Path(root))
+    model = _Model(library, deflection, metadata=metadata)
+    if model.records:
+        recorded = assembly_of(read_records(model.records.split("\n"), path), Folder.of(path, None), path)
         return _updated(model, recorded)
     return model.assemble()
+
+
+@dataclass(frozen=True)
+class EditedDocument:
+    """The content of a document that articad wrote, for callers that put its edits into a plan.
+
+    Attributes:
+        edits: The differences since articad wrote it; None if it does not carry its written content.
+        written: The content as it was written.
+        now: The content as it is now.
+        parts: Name of each part in the plan, by its object in FreeCAD.
+        joints: Name of each joint and coupling in the plan, likewise.
+        colors: "#rrggbb" of each part whose colour was changed in a window of FreeCAD, by its name in the plan.
+    """
+
+    edits: tuple[Edit, ...] | None
+    written: Content
+    now: Content
+    parts: Mapping[str, str]
+    joints: Mapping[str, str]
+    colors: Mapping[str, str]
+
+
+def read_document(path: str | Path) -> EditedDocument:
+    """Return the content of a FreeCAD document, and its edits since articad wrote it.
+
+    Raises:
+        ReadError: If it is not a FreeCAD file with an assembly.
+    """
+    model = _Model(LinkedDocuments(Path(path), None), 0.01, metadata=True)
+    parts = {item.name: given for item in model.members if (given := item.text("ArticadPart"))}
+    joints = {item.name: given for item in model.joint_items() if (given := item.text("ArticadJoint"))}
+    before = {record["name"]: record["color"] for record in _records(model) if record["kind"] == "part"}
+    now = {given: model.color(name) for given, name in model.recorded.items()} if model.records else {}
+    colors = {name: color for name, color in now.items() if color is not None and color != before.get(name)}
+    return EditedDocument(None if model.written is None else model.edits, model.written or {}, model.now, parts, joints, colors)
 
 
 @cache
@@ -81,250 +134,258 @@ def _kept() -> tempfile.TemporaryDirectory[str]:
     return scratch.folder("read")
 
 
-class _Document:
-    """The XML of a FreeCAD file: objects by name, with their properties."""
-
-    def __init__(self, path: Path) -> None:
-        self.path = path
-        try:
-            self.archive = Archive(read_file(path, MAX_BYTES), entries=MAX_ENTRIES, unpacked=MAX_UNPACKED)
-            self.root = parse_xml(self.archive.read("Document.xml", MAX_XML_BYTES), path)
-        except OSError as error:
-            raise unreadable(path, "", f"It cannot be read: {error.strerror}.") from None
-        except BadArchiveError as error:
-            raise unreadable(path, "", f"It is not a FreeCAD file: {error}.") from None
-        self.types = {item.get("name", ""): item.get("type", "") for item in self.root.iterfind("Objects/Object")}
-        self.items = {item.get("name", ""): item for item in self.root.iterfind("ObjectData/Object")}
-        self._properties = {
-            name: {row.get("name"): row for row in item.iterfind("Properties/Property")} for name, item in self.items.items()
-        }
-
-    def value(self, name: str, key: str, tag: str, attribute: str = "value") -> str | None:
-        row = self._properties.get(name, {}).get(key)
-        found = None if row is None else row.find(f".//{tag}")
-        return None if found is None else found.get(attribute)
-
-    def text(self, name: str, key: str) -> str:
-        return self.value(name, key, "String") or ""
-
-    def has(self, name: str, key: str) -> bool:
-        return key in self._properties.get(name, {})
-
-    def truth(self, name: str, key: str, *, default: bool = False) -> bool:
-        value = self.value(name, key, "Bool")
-        return default if value is None else value == "true"
-
-    def number(self, name: str, key: str) -> float:
-        try:
-            number = float(self.value(name, key, "Float") or 0.0)
-        except ValueError:
-            raise unreadable(self.path, f"{name}.{key}", "It is not a number.") from None
-        if not abs(number) <= LARGEST_MM:  # also refuses NaN
-            raise unreadable(self.path, f"{name}.{key}", "It is not a plausible number.")
-        return number
-
-    def choice(self, name: str, key: str) -> str:
-        row = self._properties[name][key]
-        found = row.find(".//Integer")
-        try:
-            index = -1 if found is None else int(found.get("value") or 0)
-        except ValueError:
-            raise unreadable(self.path, f"{name}.{key}", "It is not a whole number.") from None
-        options = [option.get("value") for option in row.iterfind(".//Enum")]
-        return str(options[index]) if 0 <= index < len(options) else ""
-
-    def links(self, name: str, key: str) -> list[str]:
-        row = self._properties.get(name, {}).get(key)
-        if row is None:
-            return []
-        return [found.get("value") or found.get("name") or "" for found in row.iter() if found.tag in ("Link", "XLink")]
-
-    def is_shape(self, name: str) -> bool:
-        """Return whether an object is a body or a solid of the Part workbench, such as a box or a cut."""
-        kind = self.types.get(name, "")
-        return kind == "PartDesign::Body" or (kind.startswith("Part::") and not kind.startswith(("Part::Part2D", "Part::Datum")))
-
-    def results(self, members: list[str]) -> list[str]:
-        """Return the shapes among the members of a group from which no other member is made."""
-        shapes = [name for name in members if self.is_shape(name)]
-        used = {link for name in shapes for key in self._properties[name] if key != "Group" for link in self.links(name, str(key))}
-        return [name for name in shapes if name not in used]
-
-    def placement(self, name: str, key: str = "Placement") -> SE3:
-        row = self._properties.get(name, {}).get(key)
-        found = None if row is None else row.find("PropertyPlacement")
-        if found is None:
-            return IDENTITY
-        try:
-            numbers = [float(found.get(axis)) for axis in ("Px", "Py", "Pz", "Q0", "Q1", "Q2", "Q3")]
-            placed = SE3.from_quaternion(numbers[3:], numbers[:3])
-        except (TypeError, ValueError, ArticadError):
-            raise unreadable(self.path, f"{name}.{key}", "It is not a placement.") from None
-        if max(map(abs, numbers[:3])) > LARGEST_MM:
-            raise unreadable(self.path, f"{name}.{key}", "Its position is not plausible.")
-        return placed
-
-    def reference(self, name: str, key: str) -> list[str]:
-        """Return the objects along a reference, starting at the one that states it."""
-        row = self._properties.get(name, {}).get(key)
-        link = None if row is None else row.find(".//XLink")
-        if link is None:
-            return []
-        sub = link.find("Sub")
-        tail = (sub.get("value") if sub is not None else link.get("sub")) or ""
-        names = [link.get("name") or "", *tail.split(".")[:-1]]
-        return [step for step in names if step in self.items]
-
-
 class _Model:
     """Parts, connectors and joints of a document, as it contains them."""
 
-    def __init__(self, document: _Document, deflection: float) -> None:
-        self.document, self.deflection = document, deflection
-        assemblies = [name for name, kind in document.types.items() if kind == "Assembly::AssemblyObject"]
-        if not assemblies:
-            raise unreadable(document.path, "Document.xml", "It contains no assembly.")
-        self.assembly = assemblies[0]
-        members = document.links(self.assembly, "Group")
-        self.parts = {
-            self._name(item): item
-            for item in members
-            if (document.types.get(item) in _CONTAINERS or document.is_shape(item)) and not document.has(item, "JointType")
-        }
-        self.names = {item: name for name, item in self.parts.items()}
-        grounded = [document.links(item, "ObjectToGround") for item in document.items if document.has(item, "ObjectToGround")]
-        if not grounded or not grounded[0] or grounded[0][0] not in self.names:
-            raise unreadable(document.path, self.assembly, "No part of the assembly is grounded.")
-        self.ground = self.names[grounded[0][0]]
-        self.poses = {name: document.placement(item) for name, item in self.parts.items()}
+    def __init__(self, library: LinkedDocuments, deflection: float, *, metadata: bool) -> None:
+        self.library, self.document, self.deflection = library, library.main, deflection
+        self.path = self.document.path
+        self.assembly = self._top()
+        self.records = self.assembly.text("ArticadRecords") if metadata else ""
+        stored = self.document.text(self.assembly.name, PROPERTY) if self.records else ""
+        self.written = unpacked_content(stored) if stored else None
+        self.now = content_of(self.document.root)
+        self.edits = () if self.written is None else tuple(edits(self.written, self.now))
         self.findings: list[Finding] = []
-        self._solids: dict[str, Solid | None] = {}
+        self.members = [item for item in library.members(self.assembly) if self._is_part(item)]
+        self.parts: dict[str, FreeCADObject] = {}  # by the name that the part has now
+        self.recorded: dict[str, str] = {}  # name in the records -> name now
+        for item in self.members:
+            self._take(item)
+        self.names = {item: name for name, item in self.parts.items()}
+        self.ground = self._grounded()
+        self.poses = {name: item.placement for name, item in self.parts.items()}
+        self.colors = {self.document.path: self.document.colors()}
+        self._solids: dict[FreeCADObject, tuple[Solid | None, tuple[Shape, ...]]] = {}
         self._reader = BrepReader()
 
-    def _name(self, item: str) -> str:
-        return self.document.text(item, "ArticadPart") or _plain(self.document.text(item, "Label") or item)
+    def _top(self) -> FreeCADObject:
+        """Return the assembly that is not a part of another one."""
+        document = self.document
+        assemblies = [name for name, kind in document.types.items() if kind == "Assembly::AssemblyObject"]
+        if not assemblies:
+            raise unreadable(self.path, "Document.xml", "It contains no assembly.")
+        held = {member for name in assemblies for member in document.links(name, "Group")}
+        return FreeCADObject(document, next((name for name in assemblies if name not in held), assemblies[0]))
 
-    def container(self, item: str) -> str:
-        """Return the object that a link shows, or the object itself."""
-        seen: set[str] = set()
-        while self.document.types.get(item) == "App::Link" and item not in seen:
-            seen.add(item)
-            item = next(iter(self.document.links(item, "LinkedObject")), item)
-        return item
+    def _is_part(self, item: FreeCADObject) -> bool:
+        return (item.type in _CONTAINERS or item.is_shape) and not item.document.has(item.name, "JointType")
+
+    def _take(self, item: FreeCADObject) -> None:
+        """Name a part: a part that articad wrote keeps its name unless its label was changed; other parts are named by their labels."""
+        given, label = item.text("ArticadPart") if self.records else "", item.text("Label") or item.name
+        known = given and given not in self.recorded and (self.written is None or item.name in self.written)
+        renamed = known and self.written is not None and self.written[item.name]["label"] != label
+        name = _free(given if known and not renamed else _plain(label), self.parts)
+        self.parts[name] = item
+        if known:
+            self.recorded[given] = name
+
+    def _grounded(self) -> str:
+        joints = [item for item in self.joint_items() if self.document.has(item.name, "ObjectToGround")]
+        grounded = [self.document.links(item.name, "ObjectToGround") for item in joints]
+        for names in grounded:
+            item = FreeCADObject(self.document, names[0]) if names else None
+            if item in self.names:
+                return self.names[item]
+        raise unreadable(self.path, self.assembly.name, "No part of the assembly is grounded.")
+
+    def joint_items(self) -> list[FreeCADObject]:
+        """Return the joints of the assembly, not those of assemblies in it."""
+        members = self.library.members(self.assembly)
+        inside = [joint for item in members if item.type == "Assembly::JointGroup" for joint in self.library.members(item)]
+        return list(dict.fromkeys([*inside, *(item for item in members if self._is_joint(item))]))
+
+    def _is_joint(self, item: FreeCADObject) -> bool:
+        return any(item.document.has(item.name, key) for key in ("JointType", "ObjectToGround"))
+
+    # ------------------------------------------------------------------ parts
 
     def connectors(self, name: str) -> dict[str, SE3]:
         """Return the coordinate systems that articad made in a part."""
-        members = self.document.links(self.container(self.parts[name]), "Group")
-        return {text: self.document.placement(item) for item in members if (text := self.document.text(item, "ArticadConnector"))}
+        members = self.library.members(self.library.container(self.parts[name]))
+        return {text: item.placement for item in members if (text := item.text("ArticadConnector"))}
 
     def solid(self, name: str) -> Solid | None:
-        """Return a part's solid in the part's own frame, measured by the confined worker."""
-        container = self.container(self.parts[name])
-        if container not in self._solids:
-            self._solids[container] = self._measured(container, name)
-        return self._solids[container]
-
-    def _measured(self, container: str, name: str) -> Solid | None:
-        own = self.document.is_shape(container)
-        members = [container] if own else self.document.results(self.document.links(container, "Group"))
-        for item in members:
-            file = self.document.value(item, "Shape", "Part", "file")
-            if not file or file not in self.document.archive.names:
-                continue
-            # B-rep is written in the object's frame; a body that is a part itself is in the assembly's
-            T = self.document.placement(item).inverse() if own else IDENTITY
-            try:
-                folder = Path(tempfile.mkdtemp(dir=_kept().name))
-                return self._reader.read_brep(self.document.archive.read(file), name=name, T=T, deflection=self.deflection, folder=folder)
-            except (ArticadError, BadArchiveError) as error:
-                self._misshapen(name, f"The shape of {item} is not one valid solid: {str(error)[:200]}")
-        return None
+        """Return a part's one solid in the part's own frame, measured by the confined worker; None where it is not one solid."""
+        return self._measured(name)[0]
 
     def meshes(self, name: str) -> tuple[Shape, ...]:
-        """Return the meshes of a part that is not a solid, in the part's own frame."""
-        container = self.container(self.parts[name])
-        own = self.document.types.get(container) == "Mesh::Feature"
-        found = []
-        for item in [container] if own else self.document.links(container, "Group"):
-            file = self.document.value(item, "Mesh", "Mesh", "file")
-            if self.document.types.get(item) == "Mesh::Feature" and file in self.document.archive.names:
-                try:
-                    mesh = read_mesh_kernel(self.document.archive.read(file))
-                except (ArticadError, BadArchiveError) as error:
-                    self._misshapen(name, f"The mesh of {item} is left out: {str(error)[:200]}")
-                    continue
-                found.append(Shape(mesh, IDENTITY if own else self.document.placement(item)))
-        return tuple(found)
+        """Return the meshes of a part that is not one solid, in the part's own frame."""
+        return self._measured(name)[1]
 
-    def _misshapen(self, name: str, message: str) -> None:
-        hint = "Repair it in FreeCAD."
+    def color(self, name: str) -> str | None:
+        """Return the colour that a window of FreeCAD stored of a part, or None."""
+        item = self.parts[name]
+        for shown in (item, *(shape for shape, _ in self.library.shapes(self.library.container(item)))):
+            colors = self.colors.setdefault(shown.document.path, shown.document.colors())
+            if (color := colors.get(shown.name)) is not None:
+                return color
+        return None
+
+    def _measured(self, name: str) -> tuple[Solid | None, tuple[Shape, ...]]:
+        container = self.library.container(self.parts[name])
+        if container not in self._solids:
+            self._solids[container] = self._read(container, name)
+        return self._solids[container]
+
+    def _read(self, container: FreeCADObject, name: str) -> tuple[Solid | None, tuple[Shape, ...]]:
+        solids, shapes, wrong = [], [], len(self.findings)
+        for item, T in self.library.shapes(container):
+            if item.type == "Mesh::Feature":
+                shapes += self._mesh(item, T, name)
+            else:
+                solids += self._brep(item, T, name)
+        if len(solids) == 1 and not shapes:
+            return solids[0], ()
+        if not solids and not shapes and len(self.findings) == wrong and not (self.records and name in self.recorded.values()):
+            self._misshapen(name, f"Part {name!r} has no shape in the document.", "Give it a body or a solid, or delete it.")
+        return None, (*(Shape(solid.mesh, name=f"{name}_{place}") for place, solid in enumerate(solids)), *shapes)
+
+    def _brep(self, item: FreeCADObject, T: SE3, name: str) -> list[Solid]:
+        """Return the solid of one object in a list, or none and a finding."""
+        file = item.document.value(item.name, "Shape", "Part", "file")
+        if item.document.number(item.name, "ElementCount") > 0:
+            self._misshapen(name, f"{item.name} is an array of links, which is not read.", "Make the links one by one.")
+            return []
+        if not file or file not in item.document.archive.names:
+            return []
+        try:
+            folder = Path(tempfile.mkdtemp(dir=_kept().name))
+            content = item.document.archive.read(file)
+            return [self._reader.read_brep(content, name=name, T=T, deflection=self.deflection, folder=folder)]
+        except (ArticadError, BadArchiveError) as error:
+            late = "seconds" in str(error) or "ran out of time" in str(error)
+            why = f"The shape of {item.name} {'could not be measured in time' if late else 'is not one valid solid'}: {str(error)[:200]}"
+            self._misshapen(name, why, "Simplify it, or read the file on a faster machine." if late else "Repair it in FreeCAD.")
+        return []
+
+    def _mesh(self, item: FreeCADObject, T: SE3, name: str) -> list[Shape]:
+        file = item.document.value(item.name, "Mesh", "Mesh", "file")
+        if file not in item.document.archive.names or file is None:
+            return []
+        try:
+            return [Shape(read_mesh_kernel(item.document.archive.read(file)), T)]
+        except (ArticadError, BadArchiveError) as error:
+            self._misshapen(name, f"The mesh of {item.name} is left out: {str(error)[:200]}", "Repair it in FreeCAD.")
+        return []
+
+    def missing(self, name: str, meshes: int) -> None:
+        """Say that a part which was one solid is not one any more."""
+        if not any(finding.parts == (name,) and finding.code == "W_FREECAD_SHAPE" for finding in self.findings):
+            now = f"{meshes} shapes" if meshes else "no shape"
+            self._misshapen(name, f"Part {name!r} was one solid; in the document it has {now}, so it has no mass.", "Give it one solid.")
+
+    def reshaped(self, name: str) -> None:
+        """Say that a part has another shape, unless an edit of what shapes it says so."""
+        if self.written is None:
+            return
+        start = [shape for shape, _ in self.library.shapes(self.library.container(self.parts[name]))]
+        shaping = self.used(start)
+        if not any(edit.object in shaping or edit.kind in ("added", "deleted", "group") for edit in self.edits):
+            self.findings.append(
+                Finding(
+                    code="I_FREECAD_EDIT",
+                    where=f"parts.{name}",
+                    parts=(name,),
+                    message=f"Part {name!r} has another shape than the one that articad wrote.",
+                    hint="It is in the assembly that was read.",
+                )
+            )
+
+    def used(self, start: list[FreeCADObject] | None = None) -> set[str]:
+        """Return the objects of the document on which others depend, by links and expressions, those included.
+
+        Args:
+            start: Where to begin; by default all parts, their shapes and connectors, and all joints.
+        """
+        if start is None:
+            start = [*self.members, *self.joint_items()]
+            for item in self.members:
+                container = self.library.container(item)
+                start += [shape for shape, _ in self.library.shapes(container)]
+                start += [member for member in self.library.members(container) if member.text("ArticadConnector")]
+        document, labels = self.document, {held["label"]: name for name, held in self.now.items()}
+        waiting, found = [item.name for item in start if item.document is document], set[str]()
+        while waiting:
+            name = waiting.pop()
+            if name in found or name not in document.items:
+                continue
+            found.add(name)
+            waiting += [link for key in document.keys(name) if key not in _CONTAINING for link in document.links(name, key)]
+            for text in self.now.get(name, {"expressions": {}})["expressions"].values():
+                waiting += [
+                    label if label in document.items else labels.get(label, "")
+                    for label in _NAMED.findall(text.replace("<<", "").replace(">>", ""))
+                ]
+        return found
+
+    def follows(self, key: str, used: set[str]) -> bool:
+        """Return whether an expression of an object in use names a value of a VarSet."""
+        word = re.compile(rf"\b{re.escape(key)}\b")
+        return any(word.search(text) for name in used for text in self.now.get(name, {"expressions": {}})["expressions"].values())
+
+    def _misshapen(self, name: str, message: str, hint: str) -> None:
         self.findings.append(Finding(code="W_FREECAD_SHAPE", where=f"parts.{name}", parts=(name,), message=message, hint=hint))
 
     # ------------------------------------------------------------------ joints
 
-    def joints(self) -> Iterator[tuple[str, Joint]]:
-        """Yield each active joint whose type articad supports, with its object."""
-        document = self.document
-        for item in document.items:
-            off = not document.truth(item, "Activated", default=True) or document.truth(item, "Suppressed")  # in FreeCAD 1.0, in 1.1
-            if off or not document.has(item, "JointType"):
-                continue
-            kind = document.choice(item, "JointType")
-            sides = [self._side(item, number) for number in (1, 2)]
-            name = document.text(item, "ArticadJoint") or _plain(document.text(item, "Label") or item)
-            if kind not in _TYPES or None in sides:
-                if not document.text(item, "ArticadJoint"):
-                    why = (
-                        "has a type that articad does not support"
-                        if kind not in _TYPES
-                        else "has a side that is not a part of the assembly"
-                    )
-                    self.findings.append(
-                        Finding(
-                            code="W_FREECAD_JOINT",
-                            where=f"joints.{name}",
-                            message=f"Joint {item} ({kind}) {why} and was left out.",
-                            hint="Use Fixed, Revolute, Slider, Cylindrical or Ball between two parts of the assembly.",
-                        )
-                    )
-                continue
-            yield item, self._joint(item, name, _TYPES[kind], *[side for side in sides if side is not None])
+    def joints(self) -> Iterator[tuple[FreeCADObject, str, Joint | None]]:
+        """Yield each active joint between two parts: its object, FreeCAD's type, and the joint where articad has the type.
 
-    def _side(self, item: str, number: int) -> tuple[str, str, SE3] | None:
+        Raises:
+            ReadError: If one has a side that is not a part of the assembly.
+        """
+        for item in self.joint_items():
+            document = item.document
+            if not document.has(item.name, "JointType") or self.is_off(item):
+                continue
+            kind = document.choice(item.name, "JointType")
+            sides = [self.side(item, number) for number in (1, 2)]
+            if None in sides:
+                label = item.text("Label") or item.name
+                message = (
+                    f"Joint {label!r} ({kind}) has a side that is not a part of the assembly. Attach both sides, or suppress it in FreeCAD."
+                )
+                raise unreadable(self.path, item.name, message)
+            parent, child = (side for side in sides if side is not None)
+            yield item, kind, self._joint(item, _TYPES[kind], parent, child) if kind in _TYPES else None
+
+    def is_off(self, item: FreeCADObject) -> bool:
+        """Return whether a joint is switched off: `Activated` in FreeCAD 1.0, `Suppressed` in 1.1."""
+        return not item.document.truth(item.name, "Activated", default=True) or item.document.truth(item.name, "Suppressed")
+
+    def joint_name(self, item: FreeCADObject) -> str:
+        """Return the name of a joint: as it was written, unless its label was changed."""
+        given, label = item.text("ArticadJoint") if self.records else "", item.text("Label") or item.name
+        renamed = self.written is not None and item.name in self.written and self.written[item.name]["label"] != label
+        return given if given and not renamed else _plain(label)
+
+    def side(self, item: FreeCADObject, number: int) -> tuple[str, str, SE3] | None:
         """Return the part, the connector's name and its frame in the part of one side of a joint."""
-        steps = self.document.reference(item, f"Reference{number}")
+        steps = self.library.reference(item, f"Reference{number}")
         places = [place for place, step in enumerate(steps) if step in self.names]
         if not places:
             return None
         frame, part = IDENTITY, steps[places[0]]
         for step in steps[places[0] + 1 :]:
-            frame = frame @ self.document.placement(step)
-        last = steps[-1]
-        connector = self.document.text(last, "ArticadConnector")
-        named = connector or _plain(f"{self.document.text(item, 'Label') or item}_{number}")
-        offset = self.document.placement(item, f"Placement{number}")
-        return self.names[part], named, frame if connector else frame @ offset
+            frame = frame @ step.placement
+        connector = steps[-1].text("ArticadConnector")
+        named = connector or _plain(f"{item.text('Label') or item.name}_{number}")
+        offset = item.document.placement(item.name, f"Placement{number}")
+        if connector and not offset.allclose(IDENTITY, mm=SAME_MM, rad=SAME_RAD) and not (self.records and item.text("ArticadJoint")):
+            named = _plain(f"{item.text('Label') or item.name}_{number}")
+        return self.names[part], named, frame @ offset
 
-    def _joint(self, item: str, name: str, kind: JointType, parent: tuple[str, str, SE3], child: tuple[str, str, SE3]) -> Joint:
+    def _joint(self, item: FreeCADObject, kind: JointType, parent: tuple[str, str, SE3], child: tuple[str, str, SE3]) -> Joint:
         D = (self.poses[parent[0]] @ parent[2]).inverse() @ self.poses[child[0]] @ child[2]
         mate = Mate.ALIGNED if D.rotation[2, 2] >= 0 else Mate.OPPOSED
-        motion = D @ (FLIP if mate is Mate.OPPOSED else IDENTITY)
-        R, along = motion.rotation, float(motion.translation[2])
-        turn = math.atan2(R[1, 0] - R[0, 1], R[0, 0] + R[1, 1])
-        rest: tuple[float, ...] = {
-            JointType.REVOLUTE: (turn,),
-            JointType.SLIDER: (along,),
-            JointType.CYLINDRICAL: (along, turn),
-            JointType.BALL: tuple(float(number) for number in motion.quaternion),
-        }.get(kind, ())
         ends = self._ends(item, kind)
-        rest = (
-            tuple(_wound(value, *end) if axis == "Angle" else value for value, (axis, end) in zip(rest, ends, strict=True))
-            if ends
-            else rest
-        )
+        rest = _coordinates(D @ (FLIP if mate is Mate.OPPOSED else IDENTITY), kind)
+        if ends:
+            rest = tuple(_wound(value, *end) if axis == "Angle" else value for value, (axis, end) in zip(rest, ends, strict=True))
         return Joint(
-            name=name,
+            name=self.joint_name(item),
             type=kind,
             parent=parent[0],
             child=child[0],
@@ -337,95 +398,446 @@ class _Model:
             mate=mate,
         )
 
-    def _ends(self, item: str, kind: JointType) -> list[tuple[str, tuple[float, float]]]:
+    def _ends(self, item: FreeCADObject, kind: JointType) -> list[tuple[str, tuple[float, float]]]:
         """Return the names of FreeCAD's limits of a joint, and their values [mm, rad]."""
         ends = []
         for axis in _LIMITS.get(kind, ()):
             scale = math.radians(1.0) if axis == "Angle" else 1.0
             low, high = (
-                self.document.number(item, f"{axis}{end}") * scale if self.document.truth(item, f"Enable{axis}{end}") else endless
+                item.document.number(item.name, f"{axis}{end}") * scale if item.document.truth(item.name, f"Enable{axis}{end}") else endless
                 for end, endless in (("Min", -math.inf), ("Max", math.inf))
             )
             ends.append((axis, (low, high)))
         return ends
 
+    def ends(self, item: FreeCADObject, kind: JointType) -> JointLimits:
+        """Return a joint's limits as FreeCAD has them [mm, rad]."""
+        pairs = [bounds for _, bounds in self._ends(item, kind)]
+        return JointLimits(tuple(low for low, _ in pairs), tuple(high for _, high in pairs))
+
+    def stated(self, item: FreeCADObject, kind: str) -> Stated:
+        """Return the values of a joint that couples two other joints: gears, a rack, a screw or a belt."""
+        sides = [side for number in (1, 2) if (side := self.side(item, number)) is not None]
+        frames = tuple(self.poses[part] @ frame for part, _, frame in sides)
+        return Stated(
+            self.joint_name(item),
+            kind,
+            (sides[0][0], sides[1][0]),
+            (frames[0], frames[1]),
+            item.document.number(item.name, "Distance"),
+            item.document.number(item.name, "Distance2"),
+        )
+
+    def refused(self, item: FreeCADObject, kind: str, why: str = "has a type that articad does not support") -> ArticadError:
+        """Return the error that names a joint which cannot be read."""
+        label = item.text("Label") or item.name
+        message = (
+            f"Joint {label!r} ({kind}) {why}. Use Fixed, Revolute, Slider, Cylindrical, Ball, Gears, Belt, RackPinion or Screw, "
+            "or suppress the joint in FreeCAD."
+        )
+        return unreadable(self.path, item.name, message, "E_FREECAD_JOINT")
+
+    # ------------------------------------------------------------------ an assembly made by hand
+
     def assemble(self) -> Assembly:
         """Return the assembly of a document that articad did not write."""
-        joints = [joint for _, joint in self.joints()]
-        parts = []
-        for name in self.parts:
-            frames = dict(self.connectors(name))
-            for joint in joints:
-                if joint.parent == name:
-                    frames[joint.parent_connector] = joint.T_parent_connector
-                if joint.child == name:
-                    frames[joint.child_connector] = joint.T_child_connector
-            solid = self.solid(name)
-            shapes = self.meshes(name) if solid is None else ()
-            connectors = {key: Connector(key, frame) for key, frame in frames.items()}
-            parts.append(
-                Part(name, connectors, shapes, shapes)
-                if solid is None
-                else Part.from_solid(name, solid, connectors=connectors, color=DEFAULT_COLOR)
-            )
-        title = self.document.text(self.assembly, "Label") or self.document.path.stem
+        joints: list[Joint] = []
+        stated: list[tuple[FreeCADObject, Stated]] = []
+        for item, kind, joint in self.joints():
+            if joint is not None:
+                joints.append(replace(joint, name=_free(joint.name, {made.name for made in joints})))
+            elif kind in COUPLINGS:
+                stated.append((item, self.stated(item, kind)))
+            else:
+                raise self.refused(item, kind)
+        couplings = [self.coupled(item, told, joints) for item, told in stated]
+        joints += self.loose(joints)
+        parts = [self.part(name, joints) for name in self.parts]
+        title = self.assembly.text("Label") or self.path.stem
         try:
-            made = Assembly.from_parts(_plain(title), parts=parts, joints=joints, ground=self.ground, T_ground=self.poses[self.ground])
+            made = Assembly.from_parts(
+                _plain(title), parts=parts, joints=joints, couplings=couplings, ground=self.ground, T_ground=self.poses[self.ground]
+            )
         except ArticadError as error:
-            raise unreadable(self.document.path, self.assembly, f"It is not a valid mechanism: {error.message}") from error
+            raise unreadable(self.path, self.assembly.name, f"It is not a valid mechanism: {error.message}") from error
         return replace(made, findings=Findings(self.findings), foreign=True)
+
+    def coupled(self, item: FreeCADObject, told: Stated, joints: list[Joint]) -> Coupling:
+        """Return the coupling that a joint of FreeCAD's means, or refuse the joint by its name."""
+        coupling = coupling_of(told, joints, self.poses)
+        if isinstance(coupling, str):
+            raise self.refused(item, told.kind, coupling)
+        return coupling
+
+    def part(self, name: str, joints: list[Joint]) -> Part:
+        """Return a part with the connectors that joints use, as the document has it."""
+        frames = dict(self.connectors(name))
+        for joint in joints:
+            if joint.parent == name:
+                frames[joint.parent_connector] = joint.T_parent_connector
+            if joint.child == name:
+                frames[joint.child_connector] = joint.T_child_connector
+        connectors = {key: Connector(key, frame) for key, frame in frames.items()}
+        solid, color = self.solid(name), self.color(name) or DEFAULT_COLOR
+        if solid is not None:
+            return Part.from_solid(name, solid, connectors=connectors, color=color)
+        shapes = self.meshes(name)
+        return Part(name, connectors, shapes, shapes, color=color)
+
+    def loose(self, joints: list[Joint]) -> list[Joint]:
+        """Return free joints to the ground for parts that no joint connects to it, and say so."""
+        reached, made = _reached(self.ground, joints), []
+        taken = {joint.name for joint in joints}
+        for name in self.parts:
+            if name in reached:
+                continue
+            joint_name = _free(f"{name}_loose", taken)
+            taken.add(joint_name)
+            T = self.poses[self.ground].inverse() @ self.poses[name]
+            ends = (f"{joint_name}_1", f"{joint_name}_2")
+            made.append(
+                Joint(
+                    name=joint_name,
+                    type=JointType.FREE,
+                    parent=self.ground,
+                    child=name,
+                    parent_connector=ends[0],
+                    child_connector=ends[1],
+                    T_parent_connector=IDENTITY,
+                    T_child_connector=IDENTITY,
+                    limits=JointLimits((), ()),
+                    rest=tuple(map(float, T.data)),
+                )
+            )
+            reached |= _reached(name, joints)
+            message = f"No joint connects part {name!r} to the grounded part. It is loose and has a free joint."
+            hint = "Connect it with a joint in FreeCAD, or ground it there."
+            self.findings.append(Finding(code="W_FREECAD_LOOSE", where=f"parts.{name}", parts=(name,), message=message, hint=hint))
+        return made
+
+
+# ---------------------------------------------------------------------- a document that articad wrote, as it is now
 
 
 def _updated(model: _Model, recorded: Assembly) -> Assembly:
-    """Return the assembly of the records, with frames, limits and shapes as the document has them now."""
-    found = {joint.name: joint for _, joint in model.joints()}
-    connectors = {name: model.connectors(name) for name in model.parts}
-    parts = {name: _part_now(part, connectors.get(name, {}), model) for name, part in recorded.parts.items() if name in model.parts}
-    if set(parts) != set(recorded.parts) or model.ground != recorded.ground:
-        return model.assemble()  # parts were removed: the records no longer apply
-    joints = [_joint_now(joint, found.get(joint.name), parts) for joint in recorded.joints]
-    mechanism = Mechanism(
-        tuple(parts),
-        recorded.ground,
-        joints,
-        recorded.mechanism.couplings,
-        T_ground=_near(model.poses[model.ground], recorded.mechanism.T_ground),
-    )
-    return replace(recorded, mechanism=mechanism, parts=parts, findings=Findings(model.findings))
+    """Return the recorded assembly with the content that the document has now."""
+    densities = {record.name: record.density for record in recorded.materials.values()}
+    sizes = _recorded_sizes(model)
+    names = model.recorded
+    primary: dict[str, tuple[FreeCADObject, str, Joint | None]] = {}
+    extra: list[tuple[FreeCADObject, str, Joint | None]] = []
+    ours = {joint.name for joint in recorded.joints} | {coupling.name for coupling in recorded.mechanism.couplings}
+    for row in model.joints():
+        given = row[0].text("ArticadJoint")
+        if given in ours and (model.written is None or row[0].name in model.written):
+            primary.setdefault(given, row)  # the second object of a universal or a screw says nothing more
+        else:
+            extra.append(row)
 
-
-def _part_now(part: Part, frames: dict[str, SE3], model: _Model) -> Part:
-    connectors = {
-        name: replace(connector, frame=_near(frames.get(name, connector.frame), connector.frame))
-        for name, connector in part.connectors.items()
+    joints: list[Joint] = []
+    renamed: dict[str, str] = {}  # joint as recorded -> as it is called now
+    for joint in recorded.joints:
+        now = _joint_now(joint, primary.get(joint.name), model)
+        if now is not None:
+            renamed[joint.name] = now.name
+            joints.append(now)
+    couplings: list[tuple[FreeCADObject, Stated]] = []
+    for item, kind, found in extra:
+        if found is not None:
+            joints.append(replace(found, name=_free(found.name, {joint.name for joint in joints})))
+        elif kind in COUPLINGS:
+            couplings.append((item, model.stated(item, kind)))
+        else:
+            raise model.refused(item, kind)
+    tied = [*_couplings_now(model, recorded, joints, renamed), *(model.coupled(item, told, joints) for item, told in couplings)]
+    joints += model.loose(joints)
+    known = {now: name for name, now in names.items()}
+    order = [*(names[name] for name in recorded.parts if name in names), *(name for name in model.parts if name not in known)]
+    parts = {
+        name: _part_now(recorded.parts[known[name]], name, model, joints, densities, sizes) if name in known else model.part(name, joints)
+        for name in order
     }
-    solid = model.solid(part.name)
-    if solid is None:
-        shapes = model.meshes(part.name)
-        return replace(part, connectors=connectors, visuals=shapes, collisions=shapes)
-    shown = Part.from_solid(part.name, solid, connectors=connectors, color=part.color, material=part.material)
-    return replace(shown, mass=part.mass)
+    T_ground = model.poses[model.ground]
+    if model.ground == names.get(recorded.ground):
+        T_ground = _near(T_ground, recorded.mechanism.T_ground)
+    try:
+        mechanism = Mechanism(order, model.ground, joints, tied, T_ground=T_ground)
+    except ArticadError as error:
+        raise unreadable(model.path, model.assembly.name, f"After the edits it is not a valid mechanism: {error.message}") from error
+    waivers = tuple(
+        replace(waiver, parts=(names[waiver.parts[0]], names[waiver.parts[1]]))
+        for waiver in recorded.waivers
+        if set(waiver.parts) <= set(names)
+    )
+    made = replace(
+        recorded,
+        name=recorded.name,
+        mechanism=mechanism,
+        parts=parts,
+        fits={renamed[joint]: fit for joint, fit in recorded.fits.items() if joint in renamed},
+        waivers=waivers,
+    )
+    return replace(made, findings=Findings([*model.findings, *_edit_findings(model), *_elsewhere(model, made)]))
 
 
-def _joint_now(joint: Joint, found: Joint | None, parts: dict[str, Part]) -> Joint:
+def _joint_now(joint: Joint, row: tuple[FreeCADObject, str, Joint | None] | None, model: _Model) -> Joint | None:
+    """Return a recorded joint as the document has it; None where it was deleted or switched off."""
+    names = model.recorded
+    if joint.type is JointType.FREE:
+        return None if {joint.parent, joint.child} - set(names) else replace(joint, parent=names[joint.parent], child=names[joint.child])
+    if row is None:
+        return None
+    item, kind, found = row
+    if kind != _WRITTEN[joint.type]:
+        if found is None:
+            raise model.refused(item, kind)
+        return found  # its type was changed: what articad knew of the old one does not hold
+    name, sides = model.joint_name(item), [side for number in (1, 2) if (side := model.side(item, number)) is not None]
+    flip = FLIP if joint.mate is Mate.OPPOSED else IDENTITY  # the writer turns the child's frame, so that z axes agree
+    near, far = sides[0][2], sides[1][2] @ flip.inverse()
+    C_p, C_c = _near(near, joint.T_parent_connector), _near(far, joint.T_child_connector)
     now = replace(
         joint,
-        T_parent_connector=parts[joint.parent].connectors[joint.parent_connector].frame,
-        T_child_connector=parts[joint.child].connectors[joint.child_connector].frame,
+        name=name,
+        parent=sides[0][0],
+        child=sides[1][0],
+        parent_connector=sides[0][1],
+        child_connector=sides[1][1],
+        T_parent_connector=C_p,
+        T_child_connector=C_c,
     )
-    if found is None or found.type is not joint.type or joint.type not in _LIMITS:
+    D = (model.poses[now.parent] @ C_p).inverse() @ model.poses[now.child] @ C_c @ flip
+    now = replace(now, rest=_rest_now(now, D))
+    if joint.type not in _LIMITS:
         return now
-    periods = [math.tau if axis == "Angle" else math.inf for axis in _LIMITS[joint.type]]
-    turned = [
-        new + round((old - new) / period) * period if period < math.inf else new
-        for new, old, period in zip(found.rest, joint.rest, periods, strict=True)
-    ]
-    limits = tuple(
+    limits = model.ends(item, joint.type)
+    kept = tuple(
         tuple(old if math.isclose(new, old, rel_tol=1e-12, abs_tol=1e-12) else new for new, old in zip(new_row, old_row, strict=True))
-        for new_row, old_row in ((found.limits.lower, joint.limits.lower), (found.limits.upper, joint.limits.upper))
+        for new_row, old_row in ((limits.lower, joint.limits.lower), (limits.upper, joint.limits.upper))
     )
-    rest = tuple(old if abs(new - old) < SAME_MM else seen for seen, new, old in zip(found.rest, turned, joint.rest, strict=True))
-    return replace(now, limits=JointLimits(limits[0], limits[1]), rest=rest)
+    turned = tuple(
+        _wound(value, low, high) if unit == "rad" and not low <= value <= high else value
+        for value, low, high, unit in zip(now.rest, *kept, joint.type.units, strict=True)
+    )
+    lower = tuple(min(low, value) for low, value in zip(kept[0], turned, strict=True))
+    upper = tuple(max(high, value) for high, value in zip(kept[1], turned, strict=True))
+    return replace(now, rest=turned, limits=replace(joint.limits, lower=lower, upper=upper))
+
+
+def _rest_now(joint: Joint, D: SE3) -> tuple[float, ...]:
+    """Return the coordinates of a joint whose connectors differ by `D`; those of its record where they are the same pose."""
+    found = _coordinates(D, joint.type)
+    if not found:
+        return joint.rest
+    if joint.type is JointType.BALL:
+        return joint.rest if _turned(found, joint.rest) < SAME_MM else found
+    values = []
+    for value, old, unit in zip(found, joint.rest, joint.type.units, strict=True):
+        near = value + round((old - value) / math.tau) * math.tau if unit == "rad" else value
+        values.append(old if abs(near - old) < SAME_MM else near)
+    return tuple(values)
+
+
+def _turned(a: tuple[float, ...], b: tuple[float, ...]) -> float:
+    """Return the angle between two quaternions [rad]."""
+    one, other = (SE3.from_quaternion(quaternion, (0.0, 0.0, 0.0)) for quaternion in (a, b))
+    return float(np.linalg.norm((one.inverse() @ other).log()[3:]))
+
+
+def _coordinates(D: SE3, kind: JointType) -> tuple[float, ...]:
+    """Return the coordinates at which a joint of this kind puts its connectors apart by `D`, as near as it can."""
+    R, along = D.rotation, float(D.translation[2])
+    turn = math.atan2(R[1, 0] - R[0, 1], R[0, 0] + R[1, 1])
+    return {
+        JointType.REVOLUTE: (turn,),
+        JointType.SCREW: (turn,),
+        JointType.SLIDER: (along,),
+        JointType.CYLINDRICAL: (along, turn),
+        JointType.BALL: tuple(float(number) for number in D.quaternion),
+    }.get(kind, ())
+
+
+def _couplings_now(model: _Model, recorded: Assembly, joints: list[Joint], renamed: Mapping[str, str]) -> Iterator[Coupling]:
+    """Yield the recorded couplings whose joints are there, with the ratios that the document has."""
+    types = {joint.name: joint.type for joint in joints}
+    before = {joint.name: joint.type for joint in recorded.joints}
+    items = {item.text("ArticadJoint"): item for item in model.joint_items() if item.text("ArticadJoint")}
+    for coupling in recorded.mechanism.couplings:
+        item = items.get(coupling.name)
+        if item is None and coupling.kind != "linear" and model.written is not None:
+            continue  # deleted: an edit says so
+        ends = [column.partition(".") for column in (coupling.a, coupling.b)]
+        if any(joint not in renamed or types.get(renamed[joint]) is not before[joint] for joint, _, _ in ends):
+            message = f"Coupling {coupling.name!r} is left out: a joint that it couples is gone, or of another type."
+            hint = "Bring the joint back, or take the coupling away."
+            model.findings.append(Finding(code="W_FREECAD_EDIT", where=f"couplings.{coupling.name}", message=message, hint=hint))
+            continue
+        a, b = (f"{renamed[joint]}{dot}{coordinate}" for joint, dot, coordinate in ends)
+        ratio = coupling.ratio * _rescaled(model, item)
+        yield replace(coupling, name=coupling.name if item is None else model.joint_name(item), a=a, b=b, ratio=ratio)
+
+
+def _rescaled(model: _Model, item: FreeCADObject | None) -> float:
+    """Return by which factor the ratio of a coupling was changed in the document: gears and belts have two radii, others one."""
+    held = None if item is None or model.written is None else model.written.get(item.name)
+    if item is None or held is None:
+        return 1.0
+    factor = 1.0
+    for key, power in (("Distance", 1), ("Distance2", -1)):
+        before, now = held["values"].get(key), item.document.number(item.name, key)
+        if (
+            key in held["values"]
+            and before
+            and now
+            and item.document.choice(item.name, "JointType") in ("Gears", "Belt", "RackPinion", "Screw")
+        ):
+            two = item.document.choice(item.name, "JointType") in ("Gears", "Belt")
+            factor *= (now / before) ** power if two or key == "Distance" else 1.0
+    return 1.0 if math.isclose(factor, 1.0, rel_tol=1e-12) else factor
+
+
+def _records(model: _Model) -> list[dict[str, Any]]:
+    """Return articad's records in a document; none of one made by hand."""
+    return read_records(model.records.split("\n"), model.path) if model.records else []
+
+
+def _recorded_sizes(model: _Model) -> dict[str, dict[str, Any]]:
+    """Return volume, centre and inertia of each part as articad recorded them."""
+    return {
+        record["name"]: record["solid"] for record in _records(model) if record["kind"] == "part" and isinstance(record.get("solid"), dict)
+    }
+
+
+def _part_now(
+    part: Part, name: str, model: _Model, joints: list[Joint], densities: Mapping[str, float], sizes: Mapping[str, dict[str, Any]]
+) -> Part:
+    """Return a recorded part with the shape, connectors and colour that the document has, and the mass of that shape."""
+    frames = model.connectors(name)
+    connectors = {
+        key: replace(connector, frame=_near(frames[key], connector.frame)) for key, connector in part.connectors.items() if key in frames
+    }
+    for joint in joints:
+        for side, connector, frame in (
+            (joint.parent, joint.parent_connector, joint.T_parent_connector),
+            (joint.child, joint.child_connector, joint.T_child_connector),
+        ):
+            if side == name and connector not in connectors:
+                connectors[connector] = part.connectors[connector] if connector in part.connectors else Connector(connector, frame)
+    item = model.parts[name]
+    material = item.text("ArticadMaterial") or part.material
+    solid, color = model.solid(name), model.color(name) or part.color
+    size = sizes.get(part.name)
+    if solid is None:
+        shapes = model.meshes(name)
+        mass = part.mass if size is None else None
+        if size is not None:
+            model.missing(name, len(shapes))
+        return replace(part, name=name, connectors=connectors, visuals=shapes, collisions=shapes, color=color, material=material, mass=mass)
+    shown = Part.from_solid(name, solid, connectors=connectors, color=color, material=material)
+    same = size is None or _same_shape(solid, size)
+    if not same:
+        model.reshaped(name)
+    return replace(shown, mass=part.mass if same and material == part.material else _mass_now(part, solid, material, densities, size))
+
+
+def _same_shape(solid: Solid, size: Mapping[str, Any]) -> bool:
+    """Return whether a solid has the recorded volume, centre and inertia."""
+    volume, com = float(size["volume"]), np.asarray(size["com"], dtype=np.float64)
+    diagonal = float(np.linalg.norm(solid.bbox[1] - solid.bbox[0]))
+    inertia = np.asarray(size["inertia"], dtype=np.float64)
+    return (
+        abs(solid.volume - volume) <= SAME_SHAPE * volume
+        and float(np.linalg.norm(solid.com - com)) <= SAME_SHAPE * diagonal
+        and float(np.linalg.norm(solid.inertia_mm5 - inertia)) <= SAME_SHAPE * float(np.linalg.norm(inertia))
+    )
+
+
+def _mass_now(
+    part: Part, solid: Solid, material: str | None, densities: Mapping[str, float], size: Mapping[str, Any] | None
+) -> MassProperties | None:
+    """Return the mass of a solid: with the density of its material, else with the density that the recorded mass and volume give."""
+    mass = part.mass
+    if material is not None and material in densities and (material != part.material or mass is not None):
+        return solid.mass(densities[material])
+    return None if mass is None else solid.mass(mass.mass / ((solid.volume if size is None else float(size["volume"])) * 1e-9))
+
+
+def _edit_findings(model: _Model) -> Iterator[Finding]:
+    """Yield each edit as a finding: taken over, or not."""
+    used = model.used()
+    for edit in model.edits:
+        taken = _taken(edit, model, used)
+        yield Finding(
+            code="I_FREECAD_EDIT" if taken else "W_FREECAD_EDIT",
+            where=f"objects.{edit.object}",
+            message=f"{edit}{'' if taken else ' It is not taken over.'}",
+            hint="It is in the assembly that was read."
+            if taken
+            else _HINTS.get(edit.key, "Nothing in an assembly holds it; keep the document."),
+        )
+
+
+_HINTS = {"ShapeMaterial": "Masses follow the property ArticadMaterial of the part: set it to the name of a material of the plan."}
+
+
+def _taken(edit: Edit, model: _Model, used: set[str]) -> bool:
+    """Return whether an edit is in the assembly that was read.
+
+    Args:
+        edit: The edit.
+        model: The document.
+        used: Objects on which parts and joints of the assembly depend.
+    """
+    if edit.kind in ("joint", "limit", "ground", "connector", "group", "material"):
+        return True
+    if edit.kind == "moved":  # `_elsewhere` names a part that stands elsewhere than its joints allow
+        return True
+    if edit.kind == "label":
+        return edit.type in (*_CONTAINERS, "App::FeaturePython")
+    if edit.kind == "deleted":
+        return True
+    if edit.kind in ("parameter", "dimension", "expression") and edit.type == "App::VarSet":
+        return model.follows(edit.key, used)
+    return edit.kind != "note" and edit.object in used
+
+
+def _elsewhere(model: _Model, made: Assembly) -> Iterator[Finding]:
+    """Yield the parts that stand elsewhere in the document than their joints put them."""
+    for name, T in made.at().items():
+        D = T.inverse() @ model.poses[name]
+        far, turned = float(np.linalg.norm(D.translation)), float(np.linalg.norm(D.log()[3:]))
+        if far > STANDS_MM or turned > STANDS_RAD:
+            yield Finding(
+                code="W_FREECAD_ELSEWHERE",
+                where=f"parts.{name}",
+                parts=(name,),
+                message=f"Part {name!r} stands {far:.4g} mm and {math.degrees(turned):.3g}° from where its joints put it.",
+                hint="Solve the assembly in FreeCAD and save it; the joints were read as they are.",
+                value=far,
+                limit=STANDS_MM,
+                unit="mm",
+            )
+
+
+def _reached(start: str, joints: list[Joint]) -> set[str]:
+    """Return the parts that joints connect to one."""
+    found, waiting = {start}, [start]
+    while waiting:
+        here = waiting.pop()
+        for joint in joints:
+            for one, other in ((joint.parent, joint.child), (joint.child, joint.parent)):
+                if one == here and other not in found:
+                    found.add(other)
+                    waiting.append(other)
+    return found
+
+
+def _free(wanted: str, taken: Any) -> str:
+    """Return a name that is not taken: the wanted one, or with a number."""
+    name, number = wanted, 2
+    while name in taken:
+        name, number = f"{wanted}_{number}", number + 1
+    return name
 
 
 def _wound(angle: float, low: float, high: float) -> float:

@@ -13,11 +13,11 @@ import pytest
 import articad as ac
 from articad.errors import ExportError, KernelUnavailableError, UnrepresentableError
 from articad.export import freecad as export
-from articad.export.freecad import write_freecad
+from articad.export.freecad import write_freecad, write_freecad_alone
 from articad.export.freecad_file import python_classes
 from articad.kernels import freecad_install
 from articad.kernels.freecad_install import FreeCAD
-from tests.freecad import opened
+from tests.freecad import cupboard, opened
 
 pytestmark = [pytest.mark.freecad, opened.needs_freecad]
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
@@ -150,3 +150,26 @@ def test_a_freecad_that_is_named_is_not_replaced_by_another(monkeypatch: pytest.
     monkeypatch.setenv("ARTICAD_FREECAD", str(tmp_path / "mistyped"))
     with pytest.raises(KernelUnavailableError, match="mistyped contains no FreeCAD"):
         freecad_install.find()
+
+
+@pytest.mark.parametrize("native", [False, True], ids=["freecad", "alone"])
+def test_a_parameter_over_a_frozen_shape_is_fixed_and_says_so(native: bool) -> None:
+    made = assembly("wardrobe")
+    bundle = write_freecad_alone(made) if native else write_freecad(made)
+    (look,) = opened.steps(bundle.files[bundle.main], {"do": "look"})
+    groups = {name: (group, editable) for name, (group, _, editable) in look["parameters"].items()}
+    frozen = {name for name, label in look["labels"].items() if label.endswith("(frozen)")}
+    assert frozen
+    assert groups["p_width"] == ("Fixed parameters", False)
+    assert "Fixed: it shapes" in look["parameters"]["p_width"][1]
+    assert groups["p_opening"] == ("Parameters", True)  # it limits a hinge and shapes nothing
+    live = sum(editable for _, editable in groups.values())
+    assert look["labels"]["Parameters"] == f"Parameters ({live} live, {len(groups) - live} fixed)"
+    assert any(label.endswith("dimensions (frozen shape)") for label in look["labels"].values())
+
+
+def test_parameters_over_feature_trees_are_live() -> None:
+    bundle = write_freecad(cupboard.assembly())
+    (look,) = opened.steps(bundle.files[bundle.main], {"do": "look"})
+    assert look["labels"]["Parameters"] == "Parameters"
+    assert {group for group, _, _ in look["parameters"].values()} == {"Parameters"}

@@ -153,3 +153,21 @@ def test_what_is_no_freecad_file_is_refused(content: bytes, tmp_path: Path) -> N
     path.write_bytes(content)
     with pytest.raises(ReadError):
         read_freecad(path)
+
+
+@pytest.mark.freecad
+@opened.needs_freecad
+def test_links_into_another_file_are_followed_and_gears_are_a_coupling(tmp_path: Path) -> None:
+    ended = freecad_install.find().run(Path(__file__).with_name("by_hand_linked.py"), folder=tmp_path)
+    assert (tmp_path / "distance.FCStd").is_file(), ended.said
+    read = read_freecad(tmp_path / "assembled.FCStd")
+    volumes = {name: part.solid.volume for name, part in read.parts.items() if part.solid is not None}
+    assert volumes == pytest.approx({"frame": 20000.0, "wheela": 4500.0, "wheelb": 2000.0})
+    assert [(joint.name, str(joint.type)) for joint in read.joints] == [("axiswheela", "revolute"), ("axiswheelb", "revolute")]
+    (coupling,) = read.mechanism.couplings
+    assert (coupling.kind, coupling.a, coupling.b, coupling.ratio) == ("gear", "axiswheela", "axiswheelb", -1.5)
+    with pytest.raises(ReadError, match=r"'Pair' \(Distance\)"):
+        read_freecad(tmp_path / "distance.FCStd")
+    (tmp_path / "parts.FCStd").rename(tmp_path / "elsewhere.FCStd")
+    with pytest.raises(ReadError, match=r"parts\.FCStd"):
+        read_freecad(tmp_path / "assembled.FCStd")

@@ -54,6 +54,7 @@ class _Writer:
         self.assembly.Type = "Assembly"
         self.assembly.Label = self.job["name"]
         _text(self.assembly, "ArticadRecords", "\n".join(self.job["records"]), "articad's records, for the way back", hidden=True)
+        _text(self.assembly, "ArticadWritten", "", "The content of the document when articad wrote it", hidden=True)
         for part in self.job["parts"]:
             self._part(part)
         self.document.recompute()
@@ -86,9 +87,10 @@ class _Writer:
         if not self.job["parameters"]:
             self.document.removeObject("Parameters")
             return
+        values.Label = self.job["parameters_label"]
         for row in self.job["parameters"]:
-            note = f"{row['description']} [{row['unit']}]".strip()
-            _float(values, f"p_{row['name']}", row["value"], "Parameters", note)
+            note = f"{row['description']} [{row['unit']}] {row['why']}".strip()
+            _float(values, f"p_{row['name']}", row["value"], "Parameters" if row["live"] else "Fixed parameters", note, live=row["live"])
         for row in self.job["parameters"]:
             if row["expression"]:
                 values.setExpression(f"p_{row['name']}", row["expression"])
@@ -99,11 +101,12 @@ class _Writer:
             return
         if values is None:
             values = self.document.addObject("App::VarSet", f"Dimensions_{part['object']}")
-        values.Label = f"{part['name']} dimensions"
+        live = part["kind"] in ("body", "mirror")
+        values.Label = f"{part['name']} dimensions{'' if live else ' (frozen shape)'}"
         for row in part["dimensions"]:
             name = f"d_{row['name']}"
             if name not in values.PropertiesList:
-                _float(values, name, row["value"], "Dimensions", "")
+                _float(values, name, row["value"], "Dimensions" if live else "Fixed dimensions", "", live=live)
             setattr(values, name, row["value"])
             if row["expression"]:
                 values.setExpression(name, row["expression"])
@@ -118,6 +121,8 @@ class _Writer:
             link.LinkedObject = self.containers[part["source"]]
             self.parts[name], self.containers[name] = link, self.containers[part["source"]]
             self.shapes[name] = self.shapes[part["source"]]
+            if part["recolored"]:
+                self.colors[link.Name] = part["color"]
             for connector in part["connectors"]:
                 self.connectors[name, connector["name"]] = self.connectors[part["source"], connector["name"]]
         else:
@@ -162,6 +167,7 @@ class _Writer:
             shape = Part.Shape()
             shape.importBrep(part["file"])
             feature.Shape = shape
+            feature.Label = f"{part['name']} body (frozen)"
         return feature
 
     def _body(self, part: Json, container: Any) -> Any:
@@ -216,6 +222,8 @@ class _Writer:
         item.Offset1, item.Offset2 = placement(joint["offset_1"]), placement(joint["offset_2"])  # before the references: see solve
         for name, value in joint["limits"].items():
             setattr(item, f"Enable{name}", True)
+            if name in joint["expressions"]:
+                _with_unit(item, name)
             setattr(item, name, value)
         for name, value in joint["distances"].items():
             setattr(item, name, value)
@@ -264,9 +272,20 @@ def _switch_off(joint: Any) -> None:
         joint.Activated = False
 
 
-def _float(item: Any, name: str, value: float, group: str, note: str) -> None:
+def _with_unit(joint: Any, name: str) -> None:
+    """Give a limit the unit that it has in FreeCAD 1.1, which replaces plain numbers when it opens the file, and loses their expressions."""
+    if joint.getTypeIdOfProperty(name) == "App::PropertyFloat":
+        joint.removeProperty(name)
+        joint.addProperty(
+            "App::PropertyAngle" if name.startswith("Angle") else "App::PropertyDistance", name, "Limits", "A limit of the joint"
+        )
+
+
+def _float(item: Any, name: str, value: float, group: str, note: str, *, live: bool = True) -> None:
     item.addProperty("App::PropertyFloat", name, group, note)
     setattr(item, name, value)
+    if not live:
+        item.setEditorMode(name, ["ReadOnly"])
 
 
 def _text(item: Any, name: str, value: str, note: str, *, hidden: bool = False) -> None:

@@ -1,0 +1,138 @@
+"""FreeCAD's joints between joints: gears, belts, racks and screws, as couplings.
+
+FreeCAD states two coordinate systems on two parts and one or two lengths. The joints that move these parts, and the sense of the motion, follow from the
+geometry: a gear turns against its partner and the pulleys of a belt turn together, each about the z axis of its coordinate system; a rack
+moves with the rim of its pinion.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from articad.connectors.se3 import SE3
+from articad.kinematics.joints import Coupling, Joint, JointType
+
+COUPLINGS = {"Gears": "gear", "Belt": "belt", "RackPinion": "rack", "Screw": "screw"}
+_PARALLEL = 1e-6  # sine of the angle up to which two axes are parallel
+_NEAR_MM = 1e-3  # distance up to which two axes are one
+
+FloatArray = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Stated:
+    """The data of a coupling in FreeCAD.
+
+    Attributes:
+        name: Name of the joint.
+        kind: FreeCAD's word.
+        parts: The two parts.
+        frames: The two coordinate systems in the assembly.
+        distance: The first radius, the pitch radius, or the lead [mm].
+        distance_2: The second radius [mm].
+    """
+
+    name: str
+    kind: str
+    parts: tuple[str, str]
+    frames: tuple[SE3, SE3]
+    distance: float
+    distance_2: float
+
+
+@dataclass(frozen=True)
+class _PartMotion:
+    """The motion that one coordinate of a joint gives a part.
+
+    Attributes:
+        column: Name of the coordinate.
+        turns: True for a rotation.
+        direction: Unit vector in the assembly; the part moves in its sense as the coordinate grows.
+        point: A point on the axis.
+    """
+
+    column: str
+    turns: bool
+    direction: FloatArray
+    point: FloatArray
+
+
+def coupling_of(stated: Stated, joints: Sequence[Joint], poses: Mapping[str, SE3]) -> Coupling | str:
+    """Return the coupling, or the reason why there is none: the end of a sentence whose subject is the joint.
+
+    Args:
+        stated: The data in FreeCAD.
+        joints: The other joints.
+        poses: Poses of the parts in the assembly.
+    """
+    if not stated.distance > 0 or (stated.kind in ("Gears", "Belt") and not stated.distance_2 > 0):
+        return "has a radius or a lead that is not positive"
+    sides = list(zip(stated.parts, stated.frames, strict=True))
+    turns = [_axis(joints, poses, part, frame, turns=True) for part, frame in sides]
+    if stated.kind in ("Gears", "Belt"):
+        return _wheels(stated, *turns)
+    slides = [_axis(joints, poses, part, frame, turns=False) for part, frame in sides]
+    for one, other in ((0, 1), (1, 0), (0, 0), (1, 1)):
+        turn, slide = turns[one], slides[other]
+        if turn is not None and slide is not None and turn.column.partition(".")[0] != slide.column.partition(".")[0]:
+            return _thread(stated, turn, slide) if stated.kind == "Screw" else _rack(stated, turn, slide, stated.frames[1 - one])
+    return "needs one part that turns and one that slides, each by a joint of its own"
+
+
+def _wheels(stated: Stated, a: _PartMotion | None, b: _PartMotion | None) -> Coupling | str:
+    """Two wheels: r_1 ω_1 = ∓ r_2 ω_2 about one direction, against each other for gears, together for a belt."""
+    if a is None or b is None or a.column == b.column:
+        return "needs two parts that turn, each by a joint of its own"
+    along = [float(np.dot(axis.direction, frame.rotation[:, 2])) for axis, frame in zip((a, b), stated.frames, strict=True)]
+    parallel = float(np.dot(stated.frames[0].rotation[:, 2], stated.frames[1].rotation[:, 2]))
+    sense = math.copysign(1.0, along[0] * along[1] * parallel) * (-1.0 if stated.kind == "Gears" else 1.0)
+    return _made(stated, a, b, sense * stated.distance / stated.distance_2)
+
+
+def _thread(stated: Stated, turn: _PartMotion, slide: _PartMotion) -> Coupling:
+    """A right-handed thread: s = lead · θ / 2π along the axis about which it turns."""
+    return _made(stated, turn, slide, math.copysign(stated.distance / math.tau, float(np.dot(turn.direction, slide.direction))))
+
+
+def _rack(stated: Stated, turn: _PartMotion, slide: _PartMotion, rack: SE3) -> Coupling | str:
+    """A rack that does not slip: at the contact it moves with the rim, v = ω × r."""
+    reach = rack.translation - turn.point
+    for axis in (turn.direction, slide.direction):
+        reach = reach - np.dot(reach, axis) * axis
+    if np.linalg.norm(reach) < _NEAR_MM:
+        return "does not show on which side of the pinion the rack is"
+    rim = np.cross(turn.direction, reach / np.linalg.norm(reach))
+    return _made(stated, turn, slide, math.copysign(stated.distance, float(np.dot(rim, slide.direction))))
+
+
+def _made(stated: Stated, a: _PartMotion, b: _PartMotion, ratio: float) -> Coupling:
+    return Coupling(stated.name, COUPLINGS[stated.kind], a.column, b.column, ratio)
+
+
+def _axis(joints: Sequence[Joint], poses: Mapping[str, SE3], part: str, frame: SE3, *, turns: bool) -> _PartMotion | None:
+    """Return the coordinate that turns or shifts a part; of several turns, the one about the frame's z axis."""
+    found = []
+    for joint in joints:
+        if part not in (joint.parent, joint.child):
+            continue
+        at = poses[joint.parent] @ joint.T_parent_connector
+        sense = 1.0 if joint.child == part else -1.0
+        if joint.type in (JointType.REVOLUTE, JointType.SLIDER, JointType.CYLINDRICAL):
+            columns = [column for column in joint.columns if (column.unit == "rad") is turns]
+            found += [_PartMotion(column.name, turns, sense * at.rotation[:, 2], at.translation) for column in columns]
+    if turns:
+        z = frame.rotation[:, 2]
+        on = [axis for axis in found if _same_line(axis, z, frame.translation)]
+        found = on or found
+    return found[0] if len(found) == 1 else None
+
+
+def _same_line(axis: _PartMotion, z: FloatArray, point: FloatArray) -> bool:
+    across = np.cross(axis.direction, z)
+    away = point - axis.point
+    return bool(np.linalg.norm(across) < _PARALLEL and np.linalg.norm(away - np.dot(away, z) * z) < _NEAR_MM)

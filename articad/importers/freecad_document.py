@@ -1,0 +1,340 @@
+"""The XML of a FreeCAD file, and of the files that it links to: objects by name, with their properties.
+
+Nothing outside the folder that the caller names is read. A link to a missing file is an error that names the file.
+"""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from articad.connectors.se3 import SE3
+from articad.errors import ArticadError
+from articad.files import read_file
+from articad.importers.reading import LARGEST_MM, MAX_XML_BYTES, Folder, color_text, parse_xml, unreadable
+from articad.kernels.archive import Archive, BadArchiveError
+
+MAX_BYTES, MAX_UNPACKED, MAX_ENTRIES = 256 * 2**20, 384 * 2**20, 20_000
+MAX_FILES = 200  # that one document may link to, directly or not
+MAX_DEPTH = 50  # of groups within groups and links to links
+MAX_MEMBERS = 20_000  # of groups of a document, each counted as often as it is shown
+
+IDENTITY = SE3.identity()
+_GROUPS = ("App::Part", "App::DocumentObjectGroup", "Assembly::AssemblyObject", "Assembly::AssemblyLink")
+_LINKS = ("App::Link", "Assembly::AssemblyLink")
+
+
+class FreeCADDocument:
+    """The XML of a FreeCAD file: objects by name, with their properties.
+
+    Attributes:
+        path: The file.
+        types: Type by object.
+        items: XML element by object.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        try:
+            self.archive = Archive(read_file(path, MAX_BYTES), entries=MAX_ENTRIES, unpacked=MAX_UNPACKED)
+            self.root = parse_xml(self.archive.read("Document.xml", MAX_XML_BYTES), path)
+        except OSError as error:
+            raise unreadable(path, "", f"It cannot be read: {error.strerror}.") from None
+        except BadArchiveError as error:
+            raise unreadable(path, "", f"It is not a FreeCAD file: {error}.") from None
+        self.types = {item.get("name", ""): item.get("type", "") for item in self.root.iterfind("Objects/Object")}
+        self.items = {item.get("name", ""): item for item in self.root.iterfind("ObjectData/Object")}
+        self._properties = {
+            name: {row.get("name"): row for row in item.iterfind("Properties/Property")} for name, item in self.items.items()
+        }
+
+    def value(self, name: str, key: str, tag: str, attribute: str = "value") -> str | None:
+        """Return an attribute of the first element of a tag in a property, or None."""
+        row = self._properties.get(name, {}).get(key)
+        found = None if row is None else row.find(f".//{tag}")
+        return None if found is None else found.get(attribute)
+
+    def row(self, name: str, key: str, tag: str) -> Any:
+        """Return the first element of a tag in a property, or None."""
+        row = self._properties.get(name, {}).get(key)
+        return None if row is None else row.find(f".//{tag}")
+
+    def keys(self, name: str) -> list[str]:
+        """Return the names of an object's properties."""
+        return list(self._properties.get(name, {}))
+
+    def text(self, name: str, key: str) -> str:
+        """Return a property of text, or an empty one."""
+        return self.value(name, key, "String") or ""
+
+    def has(self, name: str, key: str) -> bool:
+        """Return whether an object has a property."""
+        return key in self._properties.get(name, {})
+
+    def truth(self, name: str, key: str, *, default: bool = False) -> bool:
+        """Return a property that is true or false."""
+        value = self.value(name, key, "Bool")
+        return default if value is None else value == "true"
+
+    def number(self, name: str, key: str) -> float:
+        """Return a property that is a number, 0 where there is none.
+
+        Raises:
+            ReadError: If it is not a plausible number.
+        """
+        try:
+            number = float(self.value(name, key, "Float") or 0.0)
+        except ValueError:
+            raise unreadable(self.path, f"{name}.{key}", "It is not a number.") from None
+        if not abs(number) <= LARGEST_MM:  # also refuses NaN
+            raise unreadable(self.path, f"{name}.{key}", "It is not a plausible number.")
+        return number
+
+    def choice(self, name: str, key: str) -> str:
+        """Return the chosen word of an enumeration.
+
+        Raises:
+            ReadError: If the choice is not a whole number.
+        """
+        row = self._properties[name][key]
+        found = row.find(".//Integer")
+        try:
+            index = -1 if found is None else int(found.get("value") or 0)
+        except ValueError:
+            raise unreadable(self.path, f"{name}.{key}", "It is not a whole number.") from None
+        options = [option.get("value") for option in row.iterfind(".//Enum")]
+        return str(options[index]) if 0 <= index < len(options) else ""
+
+    def links(self, name: str, key: str) -> list[str]:
+        """Return the objects that a property links to."""
+        row = self._properties.get(name, {}).get(key)
+        if row is None:
+            return []
+        return [found.get("value") or found.get("name") or "" for found in row.iter() if found.tag in ("Link", "XLink")]
+
+    def is_shape(self, name: str) -> bool:
+        """Return whether an object is a body or a solid of the Part workbench, such as a box or a cut."""
+        kind = self.types.get(name, "")
+        return kind == "PartDesign::Body" or (kind.startswith("Part::") and not kind.startswith(("Part::Part2D", "Part::Datum")))
+
+    def results(self, members: list[str]) -> list[str]:
+        """Return the shapes among the members of a group from which no other member is made."""
+        shapes = [name for name in members if self.is_shape(name)]
+        used = {link for name in shapes for key in self._properties[name] if key != "Group" for link in self.links(name, str(key))}
+        held = [name for name in members if (name in shapes or self.types.get(name) in (*_GROUPS, *_LINKS)) and name not in used]
+        shown = [name for name in held if self.truth(name, "Visibility", default=True)]
+        return shown or held
+
+    def placement(self, name: str, key: str = "Placement") -> SE3:
+        """Return a placement, the identity where there is none.
+
+        Raises:
+            ReadError: If it is not a placement, or its position is not plausible.
+        """
+        row = self._properties.get(name, {}).get(key)
+        found = None if row is None else row.find("PropertyPlacement")
+        if found is None:
+            return IDENTITY
+        try:
+            numbers = [float(found.get(axis)) for axis in ("Px", "Py", "Pz", "Q0", "Q1", "Q2", "Q3")]
+            placed = SE3.from_quaternion(numbers[3:], numbers[:3])
+        except (TypeError, ValueError, ArticadError):
+            raise unreadable(self.path, f"{name}.{key}", "It is not a placement.") from None
+        if max(map(abs, numbers[:3])) > LARGEST_MM:
+            raise unreadable(self.path, f"{name}.{key}", "Its position is not plausible.")
+        return placed
+
+    def colors(self) -> dict[str, str]:
+        """Return "#rrggbb" by object, for objects whose colour a window of FreeCAD stored."""
+        if "GuiDocument.xml" not in self.archive.names:
+            return {}
+        try:
+            root = parse_xml(self.archive.read("GuiDocument.xml", MAX_XML_BYTES), self.path)
+        except BadArchiveError:
+            return {}
+        found = {}
+        for provider in root.iterfind("ViewProviderData/ViewProvider"):
+            rows = {row.get("name"): row for row in provider.iterfind("Properties/Property")}
+            kind = self.types.get(provider.get("name", ""), "")
+            color = self._override(rows) if kind == "App::Link" else self._shown(rows)
+            if color is not None:
+                found[provider.get("name", "")] = color
+        return found
+
+    def _override(self, rows: dict[str, Any]) -> str | None:
+        """Return the colour that a link shows in place of its object's."""
+        switch, material = rows.get("OverrideMaterial"), rows.get("ShapeMaterial")
+        if switch is None or material is None or switch.find("Bool") is None or switch.find("Bool").get("value") != "true":
+            return None
+        held = material.find("PropertyMaterial")
+        return None if held is None else _packed_color(held.get("diffuseColor"))
+
+    def _shown(self, rows: dict[str, Any]) -> str | None:
+        """Return the colour of a shape: of FreeCAD 1.0's list of materials, else of the property of older ones."""
+        listed = rows["ShapeAppearance"].find("MaterialList") if "ShapeAppearance" in rows else None
+        file = None if listed is None else listed.get("file")
+        if file and file in self.archive.names:
+            try:
+                content = self.archive.read(file, 2**20)
+                count, _ambient, diffuse = struct.unpack_from("<III", content)
+            except (BadArchiveError, struct.error):
+                return None
+            return _packed_color(str(diffuse)) if count else None
+        color = rows["ShapeColor"].find("PropertyColor") if "ShapeColor" in rows else None
+        return None if color is None else _packed_color(color.get("value"))
+
+
+def _packed_color(text: str | None) -> str | None:
+    """Return "#rrggbb" of a colour in one number, red in the highest byte and alpha in the lowest."""
+    try:
+        number = int(text or "")
+    except ValueError:
+        return None
+    return color_text((number >> shift & 0xFF) / 255 for shift in (24, 16, 8))
+
+
+class FreeCADObject(NamedTuple):
+    """An object of a document."""
+
+    document: FreeCADDocument
+    name: str
+
+    @property
+    def type(self) -> str:
+        """Its FreeCAD type."""
+        return str(self.document.types.get(self.name, ""))
+
+    @property
+    def placement(self) -> SE3:
+        """Its pose in the object that contains it."""
+        return self.document.placement(self.name)
+
+    def text(self, key: str) -> str:
+        """Return a property of text, or an empty one."""
+        return self.document.text(self.name, key)
+
+    @property
+    def is_shape(self) -> bool:
+        """True for a body or a solid of the Part workbench."""
+        return self.document.is_shape(self.name)
+
+
+class LinkedDocuments:
+    """A document and the documents that it links to.
+
+    Args:
+        path: The document.
+        root: No file outside it is read; by default the document's folder.
+
+    Attributes:
+        main: The document.
+    """
+
+    def __init__(self, path: Path, root: Path | None) -> None:
+        self._root = root
+        self.main = FreeCADDocument(path)
+        self._read = {path.resolve(): self.main}
+
+    def linked(self, item: FreeCADObject, key: str) -> FreeCADObject | None:
+        """Return the object that a property links to, or None if it links to none.
+
+        Raises:
+            ReadError: If it is in a file that is missing, or outside the root.
+        """
+        link = item.document.row(item.name, key, "XLink")
+        if link is None:
+            name = next(iter(item.document.links(item.name, key)), "")
+            return FreeCADObject(item.document, name) if name in item.document.items else None
+        document = self._document(item, link.get("file") or "")
+        name = link.get("name") or ""
+        if name not in document.items:
+            if not name and not link.get("file"):
+                return None
+            raise unreadable(
+                document.path, name, f"{item.name} of {item.document.path.name} links to this object, which the file does not have."
+            )
+        return FreeCADObject(document, name)
+
+    def container(self, item: FreeCADObject) -> FreeCADObject:
+        """Return the object that a link shows, through links to links, or the object itself."""
+        for _ in range(MAX_DEPTH):
+            if item.type not in _LINKS:
+                return item
+            target = self.linked(item, "LinkedObject")
+            if target is None:
+                return item
+            item = target
+        raise unreadable(item.document.path, item.name, "Its links lead in a circle.")
+
+    def members(self, item: FreeCADObject) -> list[FreeCADObject]:
+        """Return the members of a group, those of folders in it included."""
+        found, waiting = [], [(name, 0) for name in item.document.links(item.name, "Group")]
+        while waiting:
+            name, depth = waiting.pop(0)
+            if item.document.types.get(name) == "App::DocumentObjectGroup" and depth < MAX_DEPTH:
+                waiting = [(member, depth + 1) for member in item.document.links(name, "Group")] + waiting
+            else:
+                found.append(FreeCADObject(item.document, name))
+            if len(found) > MAX_MEMBERS:
+                raise unreadable(item.document.path, item.name, f"It has more than {MAX_MEMBERS} members.")
+        return found
+
+    def shapes(self, item: FreeCADObject, T: SE3 = IDENTITY, depth: int = 0) -> Iterator[tuple[FreeCADObject, SE3]]:
+        """Yield the bodies, solids and meshes of a part, each with the pose of its stored shape in the part's frame.
+
+        Args:
+            item: The part, or the object that it links to.
+            T: Pose of the frame of `item`.
+            depth: Number of groups around it.
+        """
+        if depth > MAX_DEPTH:
+            raise unreadable(item.document.path, item.name, "Its groups and links are nested too deep.")
+        if item.is_shape or item.type == "Mesh::Feature":
+            yield item, T @ item.placement.inverse() if item.is_shape else T  # B-rep is stored in the frame of the object's group
+            return
+        if item.type in _LINKS:
+            target = self.container(item)
+            if target != item:
+                yield from self.shapes(target, T, depth + 1)
+            return
+        members = [member.name for member in self.members(item)]
+        meshes = [name for name in members if item.document.types.get(name) == "Mesh::Feature"]
+        for name in [*item.document.results(members), *meshes]:
+            member = FreeCADObject(item.document, name)
+            yield from self.shapes(member, T @ member.placement, depth + 1)
+
+    def reference(self, item: FreeCADObject, key: str) -> list[FreeCADObject]:
+        """Return the objects along a reference, starting at the one that states it."""
+        link = item.document.row(item.name, key, "XLink")
+        if link is None:
+            return []
+        sub = link.find("Sub")
+        tail = (sub.get("value") if sub is not None else link.get("sub")) or ""
+        document, steps = self._document(item, link.get("file") or ""), []
+        for name in (link.get("name") or "", *tail.split(".")[:-1]):
+            if name in document.items:
+                steps.append(FreeCADObject(document, name))
+                document = self.container(steps[-1]).document
+        return steps
+
+    def _document(self, item: FreeCADObject, file: str) -> FreeCADDocument:
+        """Return the document of a link: that of the object, or the file that it names."""
+        if not file:
+            return item.document
+        here = item.document.path.resolve().parent
+        folder = Folder((self._root or self.main.path.resolve().parent).resolve(), here)
+        try:
+            path = folder.find(file)
+        except ArticadError as error:
+            if any(finding.code == "E_UNSAFE_PATH" for finding in error.findings):
+                raise
+            raise unreadable(
+                item.document.path, item.name, f"It links to {file!r}, which is not below {folder.root}. Put the file there."
+            ) from None
+        if path not in self._read:
+            if len(self._read) >= MAX_FILES:
+                raise unreadable(item.document.path, item.name, f"The documents link to more than {MAX_FILES} files.")
+            self._read[path] = FreeCADDocument(path)
+        return self._read[path]
