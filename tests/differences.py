@@ -1281,6 +1281,7 @@ _SUBJECTS = (
     (r"; group \S+(?:, transparency alpha \S+)? of (?:a )?geom", "group or transparency of a geom"),
     (r" of (?:a )?geom", "contact parameters of a geom that is only seen"),
     (r"transparency|alpha", "transparency"),
+    (r"colours of mesh", "colours that mesh files state"),
     (r"[Tt]exture|tex(?:repeat|uniform)", "textures"),
     (r"(?:reflectance|shininess|specular|emission|metallic|roughness) of <material>|<specular>", "materials beyond their colour"),
     (r"; Mesh .* is left out", "a mesh that is not in the package"),

@@ -575,6 +575,12 @@ CODES: dict[str, Code] = {
     "W_IMPORT_LIMITS": Code(
         "import", None, "A joint's limits in a foreign file are missing or reversed.", "Give lower and upper in the file."
     ),
+    "W_IMPORT_LOOP": Code(
+        "import",
+        None,
+        "A link of a URDF is the child of several joints, which other readers refuse or read as a tree.",
+        "Keep one of the joints.",
+    ),
     "W_IMPORT_DROPPED": Code(
         "import", None, "Something in a foreign file has no counterpart and is left out.", "Nothing, if it is not needed."
     ),

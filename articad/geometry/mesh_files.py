@@ -69,6 +69,27 @@ def read_mesh(path: str | Path, scale: float = 1.0, root: Path | None = None) ->
     return mesh if scale == 1.0 else mesh.scaled(scale)
 
 
+def states_colors(path: Path, root: Path | None = None) -> bool:
+    """Return whether a mesh file states colours or textures of its own; `read_mesh` reads shapes only.
+
+    Args:
+        path: A file that `read_mesh` reads.
+        root: As for `read_mesh`; an OBJ's materials are looked for there.
+    """
+    content = read_file(path, MAX_FILE_BYTES, root=root)
+    match path.suffix.lower():
+        case ".obj":
+            names = [line.split(maxsplit=1)[1] for line in content.splitlines() if line.startswith(b"mtllib ") and len(line.split()) > 1]
+            return b"usemtl " in content and any((path.parent / name.decode(errors="replace").strip()).is_file() for name in names)
+        case ".dae":
+            return b"<instance_material" in content
+        case ".glb" | ".gltf":
+            return b'"materials"' in content
+        case ".ply":
+            return re.search(rb"^property \w+ (?:diffuse_)?red\s*$", content.partition(b"end_header")[0], re.MULTILINE) is not None
+    return False
+
+
 def write_stl(mesh: TriMesh) -> bytes:
     """Return the mesh as binary STL, float32, in the mesh's unit."""
     corners = mesh.vertices[mesh.triangles]

@@ -12,11 +12,12 @@ from xml.parsers import expat
 
 from lxml import etree
 
+from articad.assembly import Kept
 from articad.errors import ArticadError, ReadError
 from articad.files import read_file
 from articad.findings import Finding
 from articad.geometry.mesh import TriMesh
-from articad.geometry.mesh_files import read_mesh
+from articad.geometry.mesh_files import read_mesh, states_colors
 from articad.importers.packages import environment_folders, find_package
 
 MAX_XML_BYTES = 64 << 20  # a robot of 10,000 links is 20 MB; more is a mistake or an attack
@@ -72,6 +73,18 @@ def parse_xml(content: bytes, path: Path) -> Any:
         raise unreadable(path, "line 1", "It contains no element.")
     if root.getroottree().docinfo.internalDTD is not None and root.getroottree().docinfo.internalDTD.entities():
         raise unreadable(path, "line 1", "It declares entities, which are not expanded.")
+    return _without_default_namespace(root)
+
+
+def _without_default_namespace(root: Any) -> Any:
+    """Return the tree without the default namespace of its root: old files state one, and other readers ignore it."""
+    namespace = root.nsmap.get(None)
+    if namespace is None:
+        return root
+    for element in root.iter(f"{{{namespace}}}*"):
+        if element.prefix is None:
+            element.tag = etree.QName(element).localname
+    etree.cleanup_namespaces(root, keep_ns_prefixes=[prefix for prefix in root.nsmap if prefix])
     return root
 
 
@@ -131,6 +144,7 @@ class Folder:
         root: Nothing above it is read.
         here: Folder of the file; relative names start there.
         findings: Meshes that were left out, and why.
+        kept: What mesh files state and an assembly does not hold.
     """
 
     root: Path
@@ -138,6 +152,8 @@ class Folder:
     findings: list[Finding] = field(default_factory=list)
     _meshes: dict[tuple[Path, float], TriMesh | ArticadError] = field(default_factory=dict)
     _roots: dict[Path, Path] = field(default_factory=dict)
+    kept: list[Kept] = field(default_factory=list)
+    _colored: dict[Path, bool] = field(default_factory=dict)
 
     @classmethod
     def of(cls, path: Path, root: Path | None) -> Folder:
@@ -216,6 +232,14 @@ class Folder:
             stretched = TriMesh(mesh.vertices * scale, mesh.triangles)
             return stretched if scale[0] * scale[1] * scale[2] > 0 else stretched.flipped()
         return mesh
+
+    def keep_colors(self, name: str, where: str) -> None:
+        """Record that the colours of a mesh file are lost, if it states any: an assembly has one colour for a shape."""
+        path = self.find(name)
+        if path not in self._colored:
+            self._colored[path] = states_colors(path, self.root_of(path))
+        if self._colored[path]:
+            self.kept.append(Kept("file", where, f"colours of mesh {name!r}"))
 
     def _read(self, path: Path, scale: float) -> TriMesh | ArticadError:
         """Return a mesh, or why it cannot be read: every user of the mesh gets the reason."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, Final
 
@@ -62,6 +63,7 @@ def read_sdf(path: str | Path, *, root: str | Path | None = None, metadata: bool
         return own
     model = _Reader(folder, path).model(document)
     model.findings += [*edited, *folder.findings]
+    model.kept += folder.kept
     require_links(model, path)
     return assemble(fused(model) if fuse else with_chains_named(model), path)
 
@@ -285,7 +287,14 @@ class _Reader:
             rgba = None if diffuse is None else [float(word) for word in (diffuse.text or "").split() if _is_number(word)]
             if rgba is not None and len(rgba) == 4 and rgba[3] != 1:
                 self.raw.kept.append(Kept("sdf", where, f"transparency: alpha {rgba[3]:g} of {name!r}"))
-            yield Shape(mesh, pose, color_text(rgba) if rgba and len(rgba) >= 3 else None, name, form)
+            color = color_text(rgba) if rgba and len(rgba) >= 3 else None
+            if tag == "visual" and form is None and color is None:
+                self._beside_file(scope).keep_colors((element.findtext("geometry/mesh/uri") or "").strip(), where)
+            yield Shape(mesh, pose, color, name, form)
+
+    def _beside_file(self, scope: Scope) -> Folder:
+        """Return the folder of the scope's file, with what the reader collects."""
+        return replace(self.folder, here=scope.path.resolve().parent)
 
     def _mesh(self, element: Any, scope: Scope, where: str) -> tuple[TriMesh | None, Primitive | None]:
         """Return a shape's mesh, and the primitive that it represents; None and a finding for a shape that an assembly cannot have."""
@@ -302,8 +311,7 @@ class _Reader:
             return _mesh_of(form), form
         if kind == "mesh" and shape.find("submesh") is None:
             x, y, z = size("scale", 3, 1.0)
-            here = Folder(self.folder.root, scope.path.resolve().parent, self.folder.findings, self.folder._meshes)  # noqa: SLF001
-            return here.mesh((shape.findtext("uri") or "").strip(), (x, y, z), where), None
+            return self._beside_file(scope).mesh((shape.findtext("uri") or "").strip(), (x, y, z), where), None
         if kind != "empty":
             what = "mesh with a submesh" if kind == "mesh" else kind
             self._drop(where, f"The {element.tag} {element.get('name')!r} of type {what} is not a shape of the assembly.")

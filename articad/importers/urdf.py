@@ -88,7 +88,7 @@ def _model(document: Any, folder: Folder, path: Path) -> RawModel:
     _quaternions_to_angles(document, path)
     findings = _strip(document, path)
     robot = _parse(document, path)
-    model = RawModel(robot.name or path.stem, _root(robot, path), findings=[*findings], kept=kept)
+    model = RawModel(robot.name or path.stem, _root(robot, path), findings=[*findings, *_several_parents(robot)], kept=kept)
     colors = {material.name: _color(material) for material in robot.materials}
     for link in robot.links:
         if link.name in model.links:
@@ -98,6 +98,7 @@ def _model(document: Any, folder: Folder, path: Path) -> RawModel:
     for joint in robot.joints:
         _add_joint(model, joint, types, path)
     model.findings += folder.findings
+    model.kept += folder.kept
     return model
 
 
@@ -251,9 +252,27 @@ def _root(robot: Any, path: Path) -> str:
     return str(roots[0])
 
 
+def _several_parents(robot: Any) -> list[Finding]:
+    """Return a finding for each link that several joints name as their child: URDF holds trees only, and other readers take one joint."""
+    names: dict[str, list[str]] = {}
+    for joint in robot.joints:
+        names.setdefault(joint.child, []).append(joint.name)
+    hint = "Keep one of these joints in the URDF, and state the loop in MJCF or SDF."
+    return [
+        Finding(
+            code="W_IMPORT_LOOP",
+            where=f"parts.{link}",
+            message=f"Link {link!r} is the child of {len(joints)} joints ({', '.join(map(repr, joints))}); they are read as a loop.",
+            hint=hint,
+        )
+        for link, joints in names.items()
+        if len(joints) > 1
+    ]
+
+
 def _link(link: Any, colors: dict[str, str], folder: Folder) -> RawLink:
     where = f"parts.{link.name}"
-    visuals = _shapes(link.visuals, colors, folder, where)
+    visuals = _shapes(link.visuals, colors, folder, where, seen=True)
     collisions = _shapes(link.collisions, colors, folder, where)
     color = next((shape.color for shape in visuals if shape.color), DEFAULT_COLOR)
     return RawLink(link.name, _mass(link.inertial, where, folder.findings), visuals, collisions, color)
@@ -271,7 +290,7 @@ def _mass(inertial: Any, where: str, findings: list[Finding]) -> MassProperties 
     return MassProperties(inertial.mass, np.zeros(3), (inertia + inertia.T) / 2 * MM_PER_M**2).moved(T)
 
 
-def _shapes(rows: Any, colors: dict[str, str], folder: Folder, where: str) -> tuple[Shape, ...]:
+def _shapes(rows: Any, colors: dict[str, str], folder: Folder, where: str, *, seen: bool = False) -> tuple[Shape, ...]:
     shapes = []
     for row in rows:
         try:
@@ -284,6 +303,8 @@ def _shapes(rows: Any, colors: dict[str, str], folder: Folder, where: str) -> tu
         if mesh is not None:
             material = getattr(row, "material", None)
             color = None if material is None else _color(material) or colors.get(material.name) or None
+            if seen and not color and row.geometry.mesh is not None:
+                folder.keep_colors(row.geometry.mesh.filename, where)
             shapes.append(Shape(mesh, _pose(row.origin), color or None, (row.name or "").removeprefix(_CAPSULE), form))
     return tuple(shapes)
 

@@ -64,9 +64,9 @@ def kept_elements(document: Any) -> list[Kept]:
     """Return the unread data of a URDF document.
 
     Args:
-        document: The original root element.
+        document: The original root element; elements that are there once too often are removed from it.
     """
-    found: list[Kept] = []
+    found: list[Kept] = list(_repeated(document))
     if document.get("version", "") not in _VERSIONS:
         found.append(Kept("urdf", "model", f"version {document.get('version')}", f'<robot version="{document.get("version")}"/>'))
     for name, value in document.attrib.items():
@@ -87,6 +87,29 @@ def kept_elements(document: Any) -> list[Kept]:
         else:
             found.append(_kept(element, "model"))
     return list(dict.fromkeys(found))
+
+
+def _repeated(document: Any) -> Iterator[Kept]:
+    """Remove and yield the elements of which URDF has one and the file has several: every reader takes the first."""
+    for path, kind in (("link", "parts"), ("joint", "joints")):
+        for owner in document.iterfind(path):
+            for element in (
+                owner,
+                *owner.iterfind("inertial"),
+                *owner.iterfind("visual"),
+                *owner.iterfind("collision"),
+                *owner.iter("geometry"),
+            ):
+                seen: set[str] = set()
+                for below in list(element):
+                    name = "shape" if element.tag == "geometry" else str(below.tag)
+                    if name in seen and name in _SINGLE:
+                        yield Kept("urdf", f"{kind}.{owner.get('name')}", f"a second <{below.tag}> of <{element.tag}>")
+                        element.remove(below)
+                    seen.add(name)
+
+
+_SINGLE: Final = frozenset({"inertial", "origin", "mass", "inertia", "geometry", "material", "shape", *("parent", "child"), *_OF_MOTION})
 
 
 def _early_capsules(document: Any) -> Iterator[Kept]:

@@ -544,3 +544,110 @@ def test_a_mesh_with_a_negative_scale_is_mirrored_and_its_mass_is_positive(tmp_p
         start, count = model.mesh_vertadr[model.geom_dataid[geom]], model.mesh_vertnum[model.geom_dataid[geom]]
         placed = model.mesh_vert[start : start + count] @ data.geom_xmat[geom].reshape(3, 3).T + data.geom_xpos[geom]
         assert np.allclose(sorted(map(tuple, placed.round(6))), sorted(map(tuple, expected.vertices)), atol=2e-6)
+
+
+def colored_mesh(suffix: str, colored: bool, folder: Path) -> None:
+    """Write a tetrahedron as `mesh<suffix>`, with a colour of its own or without one."""
+    body = trimesh.creation.tetrahedron() if hasattr(trimesh.creation, "tetrahedron") else trimesh.creation.box()
+    if suffix == ".obj":
+        head = "mtllib skin.mtl\nusemtl red\n" if colored else ""
+        (folder / "skin.mtl").write_text("newmtl red\nKd 1 0 0\n")
+        rows = [*(f"v {x} {y} {z}" for x, y, z in body.vertices), *(f"f {a + 1} {b + 1} {c + 1}" for a, b, c in body.faces)]
+        (folder / "mesh.obj").write_text(head + "\n".join(rows))
+        return
+    body.visual = trimesh.visual.ColorVisuals(body, face_colors=[255, 0, 0, 255]) if colored and suffix == ".ply" else None
+    if suffix == ".glb" and colored:
+        material = trimesh.visual.material.PBRMaterial(baseColorFactor=[255, 0, 0, 255])
+        body.visual = trimesh.visual.TextureVisuals(uv=np.zeros((len(body.vertices), 2)), material=material)
+    if suffix == ".stl" or not colored:
+        body.visual = trimesh.visual.ColorVisuals(body)
+    data = body.export(file_type=suffix[1:])
+    if suffix == ".dae":
+        data = data if colored else re.sub(rb"<instance_material[^>]*/?>(?:.*?</instance_material>)?", b"", data, flags=re.DOTALL)
+    (folder / f"mesh{suffix}").write_bytes(data)
+
+
+FORMS = {
+    ".urdf": '<robot name="r"><link name="a"><visual><geometry><mesh filename="mesh{0}"/></geometry>{1}</visual></link></robot>',
+    ".sdf": '<sdf version="1.9"><model name="r"><link name="a"><visual name="v"><geometry><mesh><uri>mesh{0}</uri></mesh></geometry>{1}</visual>'
+    "</link></model></sdf>",
+}
+OWN = {
+    ".urdf": '<material name="m"><color rgba="0 1 0 1"/></material>',
+    ".sdf": "<material><diffuse>0 1 0 1</diffuse></material>",
+}
+
+
+@pytest.mark.parametrize("form", FORMS)
+@pytest.mark.parametrize("own", [False, True], ids=["", "with a material of the file"])
+@pytest.mark.parametrize("colored", [False, True], ids=["plain", "colored"])
+@pytest.mark.parametrize("suffix", [".stl", ".obj", ".dae", ".glb", ".ply"])
+def test_colours_of_mesh_files_are_a_row_where_they_would_be_seen(suffix: str, colored: bool, own: bool, form: str, tmp_path: Path) -> None:
+    from articad import read
+
+    colored_mesh(suffix, colored, tmp_path)
+    (tmp_path / f"a{form}").write_text(FORMS[form].format(suffix, OWN[form] if own else ""))
+    bundle = NAMED["urdf"].write(read(tmp_path / f"a{form}"))
+
+    rows = [str(loss) for loss in bundle.losses if "colours of mesh" in loss.lost]
+    assert bool(rows) == (colored and not own and suffix != ".stl"), rows
+
+
+@pytest.mark.parametrize("form", [".urdf", ".xml", ".sdf"])
+def test_a_default_namespace_means_nothing(form: str, tmp_path: Path) -> None:
+    from articad import read
+
+    texts = {
+        ".urdf": '<robot{} name="r"><link name="a"/><link name="b"/><joint name="j" type="fixed"><parent link="a"/><child link="b"/></joint></robot>',
+        ".sdf": '<sdf{} version="1.9"><model name="r"><link name="a"/><link name="b"/><joint name="j" type="fixed"><parent>a</parent><child>b</child>'
+        "</joint></model></sdf>",
+        ".xml": '<mujoco{}><worldbody><body name="a"><joint name="j"/><geom size="0.1"/></body></worldbody></mujoco>',
+    }
+    found = []
+    for words in ("", ' xmlns="http://www.ros.org" xmlns:q="http://q"'):
+        (tmp_path / f"a{form}").write_text(texts[form].format(words))
+        found.append([(joint.name, joint.parent, joint.child) for joint in read(tmp_path / f"a{form}").joints])
+
+    assert found[0] == found[1]
+
+
+SINGLES = {
+    "link[@name='arm']/inertial": "parts.arm",
+    "link[@name='arm']/inertial/origin": "parts.arm",
+    "link[@name='arm']/inertial/mass": "parts.arm",
+    "link[@name='arm']/visual/geometry": "parts.arm",
+    "link[@name='arm']/visual/geometry/*": "parts.arm",
+    "link[@name='arm']/collision/origin": "parts.arm",
+    "joint[@name='shoulder']/origin": "joints.shoulder",
+    "joint[@name='shoulder']/axis": "joints.shoulder",
+    "joint[@name='shoulder']/limit": "joints.shoulder",
+    "joint[@name='shoulder']/dynamics": "joints.shoulder",
+    "joint[@name='lift']/mimic": "joints.lift",
+}
+
+
+@pytest.mark.parametrize("path", SINGLES)
+def test_a_second_element_of_a_kind_is_a_row_and_the_first_counts(path: str, tmp_path: Path) -> None:
+    root = etree.fromstring(EVERYTHING)
+    first = root.find(path)
+    second = etree.fromstring(etree.tostring(first))
+    for name in second.attrib:
+        second.set(name, "7 7 7" if len(second.get(name).split()) == 3 else second.get(name))
+    first.addnext(second)
+
+    source, copy, bundle = converted(etree.tostring(root, encoding="unicode"), "urdf", tmp_path)
+
+    assert_same(in_pinocchio(source), in_pinocchio(copy))
+    assert [loss.where for loss in bundle.losses if f"a second <{second.tag}>" in loss.lost] == [SINGLES[path]]
+
+
+def test_a_link_with_two_parents_is_a_loop_and_a_finding(tmp_path: Path) -> None:
+    path = tmp_path / "a.urdf"
+    rows = [("j", "a", "b"), ("k", "a", "c"), ("l", "b", "c")]
+    joints = "".join(f'<joint name="{name}" type="continuous"><parent link="{a}"/><child link="{b}"/></joint>' for name, a, b in rows)
+    path.write_text(f'<robot name="r"><link name="a"/><link name="b"/><link name="c"/>{joints}</robot>')
+    found = read_urdf(path)
+
+    (finding,) = found.findings.of("W_IMPORT_LOOP")
+    assert (finding.where, len(found.mechanism.loop_joints)) == ("parts.c", 1)
+    assert "'k', 'l'" in finding.message
