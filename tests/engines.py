@@ -31,12 +31,11 @@ SUFFIXES = {
     JointType.CYLINDRICAL: ("__t", "__r"),
     JointType.PLANAR: ("__x", "__y", "__r"),
     JointType.UNIVERSAL: ("__rx", "__ry"),
-    JointType.FREE: ("",) * 7,
 }
 
 
 def joint_values(assembly: Assembly, q: FloatArray) -> dict[str, float]:
-    """Values [rad, m] of a chain of one-freedom joints, by name, for a configuration `(nq,)` of the drivers."""
+    """Values [rad, m] of a chain of one-freedom joints, by name, for a configuration `(nq,)` of the drivers; none of free joints."""
     configuration = assembly.mechanism.configuration(q)
     values: dict[str, float] = {}
     for joint in assembly.joints:
@@ -46,7 +45,7 @@ def joint_values(assembly: Assembly, q: FloatArray) -> dict[str, float]:
             values |= {f"{joint.name}__r{axis}": float(angle) for axis, angle in zip("xyz", angles, strict=True)}
         elif joint.type is JointType.SCREW:
             values |= {f"{joint.name}__t": joint.lead * own[0] / (2 * math.pi) / 1000, f"{joint.name}__r": own[0]}
-        else:
+        elif joint.type is not JointType.FREE:
             for suffix, unit, value in zip(SUFFIXES[joint.type], joint.type.units, own, strict=True):
                 values[joint.name + suffix] = value / 1000 if unit == "mm" else value
     return values
@@ -64,6 +63,13 @@ def ball_values(assembly: Assembly, q: FloatArray) -> dict[str, FloatArray]:
     return rotations
 
 
+def free_values(assembly: Assembly, q: FloatArray) -> dict[str, FloatArray]:
+    """Displacements `(4, 4)` [m] of the free joints from their frames, by joint name."""
+    configuration = assembly.mechanism.configuration(q)
+    values = {joint.name: configuration[joint.name] for joint in assembly.joints if joint.type is JointType.FREE}
+    return {name: _matrix(np.asarray(own[:3]) / 1000, Rotation.from_quat(own[3:])) for name, own in values.items()}
+
+
 class PinocchioUrdf:
     """A URDF as Pinocchio reads it."""
 
@@ -75,8 +81,12 @@ class PinocchioUrdf:
         self.data = self.model.createData()
         self.origins = _urdf_origins(path)
 
-    def poses(self, values: Mapping[str, float]) -> dict[str, FloatArray]:
+    def poses(self, values: Mapping[str, float], free: Mapping[str, FloatArray] | None = None) -> dict[str, FloatArray]:
         q = self.pin.neutral(self.model)
+        for name, T in (free or {}).items():
+            joint = self.model.joints[self.model.getJointId(name)]
+            assert joint.shortname() == "JointModelFreeFlyer"
+            q[joint.idx_q : joint.idx_q + 7] = [*T[:3, 3], *Rotation.from_matrix(T[:3, :3]).as_quat()]
         for name, value in values.items():
             if not self.model.existJointName(name):  # it closes a loop, which a URDF cannot hold
                 continue
@@ -114,7 +124,10 @@ class MujocoMjcf:
         self.data = mujoco.MjData(self.model)
         self.origins = _urdf_origins(path) if path.suffix == ".urdf" else _mjcf_origins(path)
 
-    def poses(self, values: Mapping[str, float], balls: Mapping[str, FloatArray] | None = None) -> dict[str, FloatArray]:
+    def poses(
+        self, values: Mapping[str, float], balls: Mapping[str, FloatArray] | None = None, free: Mapping[str, FloatArray] | None = None
+    ) -> dict[str, FloatArray]:
+        """Poses at values of joints, rotations of balls, and poses `(4, 4)` [m] in the world of the bodies of free joints."""
         mujoco = self.mujoco
         self.data.qpos[:] = self.model.qpos0
         for index in range(self.model.njnt):
@@ -124,10 +137,23 @@ class MujocoMjcf:
                 assert balls is not None
                 x, y, z, w = Rotation.from_matrix(balls[name]).as_quat()
                 self.data.qpos[at : at + 4] = w, x, y, z
+            elif self.model.jnt_type[index] == mujoco.mjtJoint.mjJNT_FREE:
+                assert free is not None
+                x, y, z, w = Rotation.from_matrix(free[name][:3, :3]).as_quat()
+                self.data.qpos[at : at + 7] = *free[name][:3, 3], w, x, y, z
             else:
                 self.data.qpos[at] = values[name]
         mujoco.mj_kinematics(self.model, self.data)
         return {name: self._pose(name) @ origin for name, origin in self.origins.items()}
+
+    def free_frames(self) -> dict[str, FloatArray]:
+        """Poses of the bodies of free joints [m] as the model places them, by joint name."""
+        frames = {}
+        for index in np.flatnonzero(self.model.jnt_type == self.mujoco.mjtJoint.mjJNT_FREE):
+            body = self.model.jnt_bodyid[index]
+            w, x, y, z = self.model.body_quat[body]
+            frames[self.model.joint(index).name] = _matrix(self.model.body_pos[body], Rotation.from_quat([x, y, z, w]))
+        return frames
 
     def home(self) -> dict[str, FloatArray]:
         """Poses at the key `home`."""

@@ -92,7 +92,7 @@ class Garden:
 
     def grown(self) -> Specimen:
         """Return the mechanism, its parts and joints declared in random order."""
-        parts, names = (list(self.rng.permutation(list(found))) for found in (self.rest, self.joints))
+        parts, names = (self.rng.permutation(list(found)).tolist() for found in (self.rest, self.joints))
         mechanism = Mechanism(
             parts, "ground", [self.joints[name] for name in names], self.couplings, T_ground=SE3.from_matrix(self.rest["ground"])
         )

@@ -23,11 +23,9 @@ SAMPLES = 3  # of each way
 SPANS = (0.5, 1.5, 4.0, 8.0)  # rad: how far drivers are moved, some beyond a full turn
 
 
-def seeds(some: int = SOME, *, afloat: bool = True) -> list[Any]:
+def seeds(some: int = SOME) -> list[Any]:
     """Seeds of random mechanisms, also of those with free joints; those beyond the first few are marked."""
     fixed = [seed if seed < some else pytest.param(seed, marks=pytest.mark.soak) for seed in range(ALL)]
-    if not afloat:
-        return fixed
     few = min(some, SOME_AFLOAT)
     return [*fixed, *(AFLOAT + k if k < few else pytest.param(AFLOAT + k, marks=pytest.mark.soak) for k in range(ALL_AFLOAT))]
 

@@ -7,6 +7,8 @@ Triangles whose outlines meet none of the other's are in a separate tree: no ran
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
+from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +20,9 @@ from articad.interference.surface import Surface
 
 WEIGHT = 10.0  # of outlines relative to the size of pieces: pieces that outlines can separate are cut by them first
 SLIDING_WEIGHT = np.array([100.0, 100.0, 100.0, 1.0])  # the same for sliding joints: cut lengthwise first, since pieces at all heights meet
+MOST_KEPT = 4  # forests of a surface: a part meets all parts beyond one joint with the same outlines
+
+_kept: WeakKeyDictionary[Surface, list[tuple[tuple[NDArray[Any], ...], Forest]]] = WeakKeyDictionary()
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,7 +57,18 @@ class Forest:
         """Return two surfaces with their outlines; outlines meet if they are within `limit` of each other [mm]."""
         met_a = meeting(of_a, of_b, limit)
         met_b = meeting(of_b, (of_a[0][met_a], of_a[1][met_a]), limit)
-        return cls._of(a, of_a, met_a, weight), cls._of(b, of_b, met_b, weight)
+        return cls._known(a, of_a, met_a, weight), cls._known(b, of_b, met_b, weight)
+
+    @classmethod
+    def _known(cls, surface: Surface, ends: Ends, met: BoolArray, weight: float | FloatArray) -> Forest:
+        """Return the forest of a surface; the last few are cached."""
+        key, kept = (*ends, met, np.asarray(weight)), _kept.setdefault(surface, [])
+        for known, forest in kept:
+            if all(np.array_equal(one, other) for one, other in zip(known, key, strict=True)):
+                return forest
+        kept.append((key, cls._of(surface, ends, met, weight)))
+        del kept[:-MOST_KEPT]
+        return kept[-1][1]
 
     @classmethod
     def _of(cls, surface: Surface, ends: Ends, met: BoolArray, weight: float | FloatArray) -> Forest:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import cached_property
 from typing import Any
 
@@ -61,6 +61,15 @@ class TriMesh:
 
     def __repr__(self) -> str:
         return f"TriMesh({len(self.vertices)} vertices, {len(self.triangles)} triangles)"
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Return the fields: what was derived from them is made again, and need not be picklable."""
+        return {field.name: getattr(self, field.name) for field in fields(self)}
+
+    @cached_property
+    def derived(self) -> dict[str, Any]:
+        """What other modules derive from the mesh and keep as long as it lives, by name; it may refer to the mesh."""
+        return {}
 
     @cached_property
     def bounds(self) -> FloatArray:

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from functools import cached_property
-from typing import Any
-from weakref import WeakKeyDictionary
+from typing import Any, cast
 
 import fcl
 import manifold3d
@@ -21,7 +20,6 @@ _FEW_TRIANGLES = 200  # triangles; smaller meshes are used as they are
 _WORTH_THINNING = 0.75  # share of the triangles that may remain; otherwise the mesh is used as it is
 _AREA_SLACK = 1e-9  # relative: a face moved by the tolerance may tilt
 _ROUNDING = 1e-12  # relative, of a sum over thousands of triangles
-_bodies: WeakKeyDictionary[TriMesh, Body] = WeakKeyDictionary()
 
 
 class Body:
@@ -173,10 +171,10 @@ class Body:
 
 def body_of(mesh: TriMesh) -> Body:
     """Return the body of a mesh; parts that share a mesh share the body, which lives as long as the mesh."""
-    body = _bodies.get(mesh)
+    body = mesh.derived.get("body")
     if body is None:
-        body = _bodies[mesh] = Body(mesh)
-    return body
+        body = mesh.derived["body"] = Body(mesh)
+    return cast("Body", body)
 
 
 def _same_solid(whole: Any, plain: Any) -> bool:

@@ -38,7 +38,7 @@ LEAST_STEP = 1e-5  # of a range
 AROUND, LEAP = 3.5, 6.0  # steps: what is measured that near is part of a model; how far that leads at most
 FURTHER = 3.0  # times the last improvement's way, at which the next pose is tried (a pattern move, Hooke and Jeeves 1961)
 MODELLED = 3  # freedoms of a pair, up to which a quadratic model of its distance is fitted: valleys need not run along a freedom
-JOINED = 9  # poses of two parts that a joint connects: they keep their fit, and distances of mating surfaces cost most
+JOINED, QUICK_JOINED = 9, 5  # poses of two parts that a joint connects: they keep their fit, and distances of mating surfaces cost most
 _KEY_DIGITS = 6  # of mm and rotation entries: relative poses that agree so far are one
 CLOSE_MM, CLOSE_SHARE = 1e-3, 1e-3  # mm, and of the distance: an improvement below both is not looked for
 QUICK_SHARE = 1e-2  # of the distance: the same of a quick search
@@ -282,7 +282,7 @@ class _Search:
         bound = self.scene.boxes_gap(i, j, relative[first])
         order = np.argsort(bound, kind="stable")
         if self.are_joined(i, j):
-            order = order[np.unique(np.linspace(0, len(order) - 1, JOINED).round().astype(np.int64))]
+            order = order[np.unique(np.linspace(0, len(order) - 1, QUICK_JOINED if self.quick else JOINED).round().astype(np.int64))]
         chosen = first[order]
         known = _Known(self._box(i), self._box(j))
         movers = movers or list(range(len(self.ranges)))

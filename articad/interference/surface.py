@@ -8,8 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
-from weakref import WeakKeyDictionary
+from typing import Any, cast
 
 import fcl
 import numpy as np
@@ -17,11 +16,9 @@ from numpy.typing import NDArray
 
 from articad.arrays import FloatArray
 from articad.geometry.mesh import TriMesh
-from articad.interference.body import body_of, make_bvh
+from articad.interference.body import Body, body_of, make_bvh
 
 _SHORTER = 1 - 1e-6  # so that no vertex moves farther than stated, despite rounding
-
-_whole: WeakKeyDictionary[TriMesh, Surface] = WeakKeyDictionary()
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,9 +27,11 @@ class Surface:
 
     Attributes:
         corners: `(T, 3, 3)` [mm].
+        body: The body of which it is the whole surface.
     """
 
     corners: FloatArray
+    body: Body | None = None
 
     @classmethod
     def of(cls, mesh: TriMesh, moved: NDArray[np.float32] | None = None) -> Surface:
@@ -67,16 +66,18 @@ class Surface:
 
     @cached_property
     def _bvh(self) -> Any:
+        if self.body is not None and not self.body.is_thinned:
+            return self.body.bvh
         flat = np.ascontiguousarray(self.corners.reshape(-1, 3))
         return make_bvh(flat, np.arange(len(flat), dtype=np.int64).reshape(-1, 3))
 
 
 def whole_surface(mesh: TriMesh) -> Surface:
     """Return the whole surface of a mesh; cached, since every pair of the part uses it."""
-    surface = _whole.get(mesh)
+    surface = mesh.derived.get("surface")
     if surface is None:
-        surface = _whole[mesh] = Surface(body_of(mesh).corners)
-    return surface
+        surface = mesh.derived["surface"] = Surface(body_of(mesh).corners, body_of(mesh))
+    return cast("Surface", surface)
 
 
 def inwards(mesh: TriMesh, depth: float, near: Core | None = None, within: float = np.inf) -> NDArray[np.float32]:

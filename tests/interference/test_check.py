@@ -2,18 +2,23 @@
 
 from __future__ import annotations
 
+import gc
 import json
 import math
+import pickle
+import weakref
 
 import manifold3d as m3
 import numpy as np
 import pytest
 
+from articad.certificates.certificate import certify
 from articad.connectors import SE3
 from articad.geometry import TriMesh, box, cylinder, merged, sphere
 from articad.interference.body import Body
 from articad.interference.check import Checks, check_pose
 from articad.interference.overlap import overlap
+from articad.kinematics import Mechanism
 from articad.kinematics.joints import Joint
 from tests.interference.mechanisms import (
     IDENTITY,
@@ -393,3 +398,25 @@ def test_two_equal_solids_in_one_place_are_as_deep_as_the_largest_ball_inside(me
         T = SE3.from_axes(tuple(rng.uniform(-50, 50, 3)), tuple(rng.normal(size=3)))
         moved = mesh.transformed(T)
         assert overlap(Body(moved), Body(moved), IDENTITY).depth == pytest.approx(deepest, rel=1e-6)
+
+
+# --- what is kept with a mesh
+
+
+def test_checks_keep_nothing_of_a_mesh_that_is_gone() -> None:
+    meshes = {"a": box(10, 10, 10), "b": cylinder(4, 12)}
+    check_pose(meshes, {"a": IDENTITY, "b": at(5, 0, 0)}, joints=())
+    certify(meshes, Mechanism(["a", "b"], "a", [joint("hinge", "revolute", "a", "b", at_parent=at(30, 0, 0))]))
+    kept = [weakref.ref(mesh) for mesh in meshes.values()]
+    meshes.clear()
+    gc.collect()
+    assert [mesh() for mesh in kept] == [None, None]
+
+
+def test_a_mesh_can_be_pickled_after_a_check() -> None:
+    mesh = box(10, 10, 10)
+    check(mesh, CUBE, at(5, 0, 0))
+    copy = pickle.loads(pickle.dumps(mesh))
+    assert np.array_equal(copy.vertices, mesh.vertices)
+    assert np.array_equal(copy.triangles, mesh.triangles)
+    assert copy.digest == mesh.digest
