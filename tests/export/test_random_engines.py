@@ -71,10 +71,14 @@ def test_pinocchio_places_every_part_where_the_equations_do(seed: int, tmp_path:
     engine = PinocchioUrdf(tmp_path / bundle.main)
     engine.origins = dict.fromkeys(case.mechanism.parts, np.eye(4))
     known = set(engine.model.names)
-    for _ in assert_agree(
-        case,
-        lambda q: engine.poses(*({name: v for name, v in of(assembly, q).items() if name in known} for of in (joint_values, free_values))),
-    ):
+
+    def poses(q: FloatArray) -> Mapping[str, FloatArray]:
+        values, free = joint_values(assembly, q), free_values(assembly, q)
+        return engine.poses(
+            {name: v for name, v in values.items() if name in known}, {name: T for name, T in free.items() if name in known}
+        )
+
+    for _ in assert_agree(case, poses):
         pass
 
 
