@@ -5,12 +5,16 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Iterable, Mapping
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
+
+from articad.files import is_file
 
 if TYPE_CHECKING:
     from articad.commands.terminal import Report, Terminal
     from articad.findings import Findings
 
+PAGE_FILE = "report.html"  # of a run
 _CELL = 60  # characters of a value in a table
 _NEAREST = 3  # pairs, or coordinates that follow, that are shown without -v
 
@@ -25,6 +29,9 @@ def print_run(report: Report, terminal: Terminal) -> None:
     if "verdict" in report:
         print_verdict(report["verdict"], report["checks"], terminal)
     print_exports(report["exports"], terminal)
+    page = Path(report["run"]) / PAGE_FILE
+    if is_file(page, root=page.parent):
+        terminal.say(f"Report: {page} ({page.stat().st_size / 1e6:.2f} MB)")
     terminal.say(f"Run: {report['run']}")
 
 
@@ -166,11 +173,11 @@ def print_review(report: Report, terminal: Terminal) -> None:
 
 
 def print_exports(exports: Mapping[str, Report], terminal: Terminal) -> None:
-    """Print each export's main file, all its losses, and its writer's findings."""
+    """Print each export's main file, its size, all its losses, and its writer's findings."""
     for name, export in exports.items():
         losses = counted_things(len(export["rows"]), "loss", "losses")
         meshes = sum(size for path, size in export["files"].items() if path.endswith((".stl", ".obj")))
-        weight = f", {meshes / 1e6:.2f} MB of meshes" if meshes else ""
+        weight = f", {sum(export['files'].values()) / 1e6:.2f} MB" + (f" with {meshes / 1e6:.2f} MB of meshes" if meshes else "")
         terminal.say(f"{name.upper()}: {export['main']} ({counted_things(len(export['files']), 'file', 'files')}{weight}, {losses})")
         alike: dict[str, list[Report]] = {}
         for row in export["rows"]:

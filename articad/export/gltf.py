@@ -18,6 +18,7 @@ from articad.errors import KinematicsError
 from articad.export.bundle import Bundle
 from articad.export.losses import Feature, kept_losses, losses_of, refuse
 from articad.export.markup import tidy
+from articad.export.meshes import drawn_shapes
 from articad.export.names import Names, valid_name
 from articad.geometry.mesh import TriMesh
 from articad.kinematics.joints import Joint, JointType
@@ -33,14 +34,16 @@ FAR_RAD = math.pi  # an endless angle is animated over one turn
 FAR_MM = 100.0
 CREASE_COSINE = math.cos(math.radians(30.0))  # faces that meet at a larger angle are shaded separately
 Z_UP_TO_Y_UP = [-math.sqrt(0.5), 0.0, 0.0, math.sqrt(0.5)]
-_FLOAT, _UINT = 5126, 5125
+_COMPONENTS = {"float32": 5126, "uint32": 5125, "uint16": 5123}
+_SHORT = 65535  # vertices that indices of two bytes can name; glTF excludes the largest index
 
 
 def write_glb(assembly: Assembly, *, strict: bool = False) -> Bundle:
     """Write an assembly as one GLB file in its rest pose, with an animation for every driving joint.
 
     The root node converts articad's z-up to glTF's y-up. Below it each part is a node of its own name, in metres, in the node of the
-    part that carries it, so that an independent joint animates one node, however much it carries.
+    part that carries it, so that an independent joint animates one node, however much it carries. Meshes of built parts are simplified
+    for drawing, as in the other formats (`articad.export.meshes.drawn`).
 
     Args:
         assembly: What to write.
@@ -64,7 +67,7 @@ def write_glb(assembly: Assembly, *, strict: bool = False) -> Bundle:
     rest = tree.local(assembly.mechanism.at_rest[None])[0]
     for index, (name, part) in enumerate(assembly.parts.items()):
         node: dict[str, Any] = {"name": names.claim(name), **_placement(rest[index])}
-        shapes = part.visuals or part.collisions
+        shapes = drawn_shapes(part)
         if shapes:
             node["mesh"] = buffer.mesh([(shape.placed, shape.color or part.color) for shape in shapes], node["name"])
         nodes.append(node)
@@ -112,7 +115,7 @@ class _Buffer:
         self.data += content + b"\0" * (-len(content) % 4)
         accessor: dict[str, Any] = {
             "bufferView": len(self.views) - 1,
-            "componentType": _FLOAT if array.dtype == np.float32 else _UINT,
+            "componentType": _COMPONENTS[array.dtype.name],
             "count": len(array),
             "type": kind,
         }
@@ -146,7 +149,7 @@ class _Buffer:
                     "POSITION": self.add((positions / MM_PER_M).astype(np.float32), "VEC3", target=34962, bounds=True),
                     "NORMAL": self.add(normals.astype(np.float32), "VEC3", target=34962),
                 },
-                "indices": self.add(indices.astype(np.uint32), "SCALAR", target=34963),
+                "indices": self.add(indices.astype(np.uint32 if len(positions) > _SHORT else np.uint16), "SCALAR", target=34963),
             }
         return dict(self._geometry[mesh.digest])
 

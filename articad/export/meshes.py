@@ -6,6 +6,7 @@ Meshes for proofs are finer than drawings need. Visual meshes are simplified by 
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import replace
 from functools import lru_cache
 from typing import Literal, NamedTuple
 
@@ -16,7 +17,7 @@ from articad.export.convex import manifold
 from articad.export.names import Names
 from articad.geometry.mesh import TriMesh
 from articad.geometry.mesh_files import write_obj, write_stl
-from articad.geometry.part import Part
+from articad.geometry.part import Part, Shape
 
 MeshKind = Literal["stl", "obj"]
 
@@ -57,6 +58,13 @@ def drawn(mesh: TriMesh) -> Drawn:
 def built_meshes(parts: Iterable[Part]) -> dict[str, TriMesh]:
     """Return the meshes that a kernel made from a B-rep, by digest; other meshes were given by users, and stay as they are."""
     return {part.solid.mesh.digest: part.solid.mesh for part in parts if part.solid is not None and part.solid.deflection > 0}
+
+
+def drawn_shapes(part: Part) -> tuple[Shape, ...]:
+    """Return the visual shapes of a part, or its collision shapes if it has none; meshes of a built part are simplified."""
+    built = built_meshes([part])
+    shapes = part.visuals or part.collisions
+    return tuple(replace(one, mesh=drawn(built[one.mesh.digest]).mesh) if one.mesh.digest in built else one for one in shapes)
 
 
 class MeshFiles:

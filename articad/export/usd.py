@@ -22,7 +22,7 @@ from articad.export.inertia import Inertial, is_possible
 from articad.export.losses import Feature, kept_losses, losses_of, refuse
 from articad.export.lowering import lower
 from articad.export.markup import number
-from articad.export.meshes import built_meshes, drawn
+from articad.export.meshes import drawn_shapes
 from articad.export.names import Names, valid_name
 from articad.geometry.mass import MassProperties
 from articad.geometry.mesh import TriMesh
@@ -200,8 +200,7 @@ def _body(
         '    uniform token[] xformOpOrder = ["xformOp:translate", "xformOp:orient"]',
     ]
     visuals = part.visuals or part.collisions
-    built = built_meshes([part]) if draws else {}
-    looks = {id(one): replace(one, mesh=drawn(built[one.mesh.digest]).mesh) if one.mesh.digest in built else one for one in visuals}
+    looks = {id(one): look for one, look in zip(visuals, drawn_shapes(part) if draws else visuals, strict=True)}
     surfaces = {id(one): one for one in collisions if _form(one, "", None) is None} | looks
     written = {key: _surface(one.placed) for key, one in surfaces.items()}  # a visual shape may also be a collision shape
     drawings = [_mesh(f"visual_{index}", written[id(one)], one.color or part.color, materials) for index, one in enumerate(visuals)]

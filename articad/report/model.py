@@ -10,6 +10,7 @@ from articad.aliases import Json
 from articad.assembly import Assembly
 from articad.connectors.mate import Mate
 from articad.errors import ArticadError
+from articad.export.meshes import drawn_shapes
 from articad.geometry.part import Part
 from articad.kinematics.joints import Coordinate, Joint, JointType
 from articad.report.drawing import drawn_mesh
@@ -78,13 +79,13 @@ def viewer_model(assembly: Assembly) -> Json:
 
 
 def _parts(assembly: Assembly) -> tuple[list[Json], list[Json]]:
-    """Return the meshes, each once, and the parts that show them."""
+    """Return the meshes for drawing, each once, and the parts that show them."""
     meshes: list[Json] = []
     known: dict[str, int] = {}
     parts: list[Json] = []
     for name, part in assembly.parts.items():
         shapes = []
-        for shape in part.visuals or part.collisions:
+        for shape in drawn_shapes(part):
             if not len(shape.mesh.triangles):
                 continue
             if shape.mesh.digest not in known:

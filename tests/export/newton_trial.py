@@ -69,17 +69,20 @@ class Trial:
         self.start = q
 
     def _names(self) -> dict[int, str]:
-        """Return the names of hinges and slides by degree of freedom; a body's joints have their names in one label."""
+        """Return the names of hinges and slides of the tree by degree of freedom; a body's joints have their names in one label.
+
+        Newton does not update the coordinates of joints that close loops.
+        """
         model = self.model
         labels, kinds = list(model.joint_label), model.joint_type.numpy()
         starts, places = model.joint_qd_start.numpy(), model.joint_q_start.numpy()
-        dims = model.joint_dof_dim.numpy()
+        dims, articulations = model.joint_dof_dim.numpy(), model.joint_articulation.numpy()
         single = {int(self.newton.JointType.REVOLUTE), int(self.newton.JointType.PRISMATIC), int(self.newton.JointType.D6)}
         found: dict[int, str] = {}
         self.coordinates: dict[int, int] = {}
         self.slides: set[int] = set()
         for joint, label in enumerate(labels):
-            if int(kinds[joint]) not in single:
+            if int(kinds[joint]) not in single or articulations[joint] < 0:
                 continue
             linear, angular = (int(n) for n in dims[joint])
             words = _split(label.rpartition("/")[2], linear + angular)

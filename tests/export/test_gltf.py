@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 import json
 import struct
 from collections.abc import Callable
@@ -16,7 +17,9 @@ from scipy.spatial.transform import Rotation
 from articad.assembly import Assembly
 from articad.errors import UnrepresentableError
 from articad.export.gltf import FRAMES, write_glb
-from articad.geometry.part import Part
+from articad.geometry.part import Part, Solid
+from articad.geometry.shapes import sphere
+from articad.report import viewer_model
 from tests.assemblies import all_joint_kinds, block, four_bar, geared_pair
 from tests.chains import chain
 
@@ -34,7 +37,7 @@ def values(document: dict[str, Any], binary: bytes, accessor: int) -> Any:
     entry = document["accessors"][accessor]
     view = document["bufferViews"][entry["bufferView"]]
     width = {"SCALAR": 1, "VEC3": 3, "VEC4": 4}[entry["type"]]
-    dtype = {5126: "<f4", 5125: "<u4"}[entry["componentType"]]
+    dtype = {5126: "<f4", 5125: "<u4", 5123: "<u2"}[entry["componentType"]]
     return np.frombuffer(binary, dtype, entry["count"] * width, view["byteOffset"]).reshape(-1, width)
 
 
@@ -163,3 +166,21 @@ def test_a_part_without_shape_is_a_bare_node() -> None:
 
     assert document["nodes"][1] == {"name": "a", "translation": [0, 0, 0], "rotation": [0, 0, 0, 1]}
     assert not binary
+
+
+def test_built_parts_are_drawn_with_few_triangles_in_glb_and_in_the_report() -> None:
+    """A ball of 100,000 triangles has at most 5,000, whose corners and middles are within 1 % of its surface."""
+    fine = Solid.from_mesh(sphere(20, 320), deflection=0.001)
+    assembly = Assembly.from_parts("alone", parts=[Part.from_solid("ball", fine, density=1000)], joints=[], ground="ball")
+    document, binary = parts_of(write_glb(assembly).files["alone.glb"])
+    (primitive,) = document["meshes"][0]["primitives"]
+    points = 1000 * values(document, binary, primitive["attributes"]["POSITION"])
+    triangles = values(document, binary, primitive["indices"]).reshape(-1, 3).astype(int)
+    (shown,) = viewer_model(assembly)["meshes"]
+
+    assert len(fine.mesh.triangles) > 90_000
+    assert len(triangles) <= 5000
+    assert document["accessors"][primitive["indices"]]["componentType"] == 5123
+    for found in (points, points[triangles].mean(axis=1)):
+        assert np.allclose(np.linalg.norm(found, axis=1), 20, atol=0.2)
+    assert sum(np.frombuffer(base64.b64decode(shown["faces"]), "<u4")) <= 5000
