@@ -45,7 +45,7 @@ def with_pieces(assembly: Assembly) -> Assembly:
     """Return the assembly whose solids are the unions of their collision shapes; declared fits hold for the solids only."""
     model = shape_model(assembly, replace(lower(assembly), features=()), "pieces")
     pieces = {link.part.name: pieced(link.part, [placed.shape for placed in link.collisions]) for link in model.links}
-    return replace(assembly, parts=assembly.parts | pieces, fits=())
+    return replace(assembly, parts={**assembly.parts, **pieces}, fits={})
 
 
 def pieced(part: Part, shapes: list[Shape]) -> Part:
@@ -67,7 +67,7 @@ def test_the_pieces_of_an_example_are_certified_as_its_solids_are(name: str) -> 
     objections = [str(finding) for finding in certificate.findings if finding.severity != "info"]
 
     if objections:  # only what the solids do, too
-        assert objections == [str(finding) for finding in replace(assembly, fits=()).certify().findings if finding.severity != "info"]
+        assert objections == [str(finding) for finding in replace(assembly, fits={}).certify().findings if finding.severity != "info"]
     assert {pair.parts for pair in certificate.pairs}
 
 
@@ -77,7 +77,7 @@ def test_a_piece_outside_its_solid_is_seen() -> None:
     model = shape_model(assembly, replace(lower(assembly), features=()), "hull")
     hulls = {link.part.name: pieced(link.part, [placed.shape for placed in link.collisions]) for link in model.links}
 
-    assert not replace(assembly, parts=assembly.parts | hulls, fits=()).certify(pairs=False, budget=10).ok
+    assert not replace(assembly, parts={**assembly.parts, **hulls}, fits={}).certify(pairs=False, budget=10).ok
 
 
 @pytest.mark.parametrize(
