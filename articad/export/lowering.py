@@ -296,6 +296,14 @@ def _rounded(axis: FloatArray) -> FloatArray:
     return np.asarray(np.where(np.abs(axis - whole) < ROUND, whole, axis)) + 0.0
 
 
+def ground_is_world(assembly: Assembly) -> bool:
+    """Return whether the ground part is the world itself, which SDFormat and MJCF have without a link: bare, and named `world`."""
+    ground = assembly.parts[assembly.mechanism.ground]
+    bare = not ground.visuals and not ground.collisions and ground.solid is None and ground.mass is None
+    still = assembly.mechanism.T_ground.allclose(SE3.identity(), mm=0.0, rad=0.0)
+    return bare and still and ground.name == "world" and len(assembly.parts) > 1
+
+
 class _ValidNames:
     """Valid names of links and joints; declared names are claimed before those of carriers, in the order of declaration."""
 

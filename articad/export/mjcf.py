@@ -27,6 +27,7 @@ from articad.export.lowering import (
     LoweredModel,
     Placed,
     ball_total_angle,
+    ground_is_world,
     lower,
     metres,
 )
@@ -92,7 +93,7 @@ def write_mjcf(
         UnrepresentableError: If `strict` and there is such a loss.
     """
     again = Again(assembly)
-    model = lower(assembly, () if again.active else RESERVED, as_it_came=assembly.foreign)
+    model = lower(assembly, () if again.active or _starts_at_world(assembly) else RESERVED, as_it_came=assembly.foreign)
     contacts: tuple[HullOverlap, ...] = ()
     if not (again.active and kind_of(assembly, collision) == "solid"):  # the file decides what collides in it
         model, contacts = collide(assembly, model, collision, _skipped(assembly), cache)
@@ -111,6 +112,10 @@ def write_mjcf(
         refuse(losses)
     assumed = [] if assembly.foreign else [row.joint.name for row in model.joints if any(freedom.load.assumed for freedom in row.freedoms)]
     return Bundle({f"{model.name}.xml": document(root), **writer.files.files}, losses, Findings(assumed_finding(assumed, "mjcf")))
+
+
+def _starts_at_world(assembly: Assembly) -> bool:
+    return assembly.foreign and ground_is_world(assembly)
 
 
 class _Writer:
@@ -227,8 +232,8 @@ class _Writer:
         return child(self.bodies[chain[0].parent], "body", {"name": link.name} | _placement(T))
 
     def _is_world(self, link: Link) -> bool:
-        """True for the ground of an MJCF file if it is the world."""
-        return self.again.active and link.name == "world" and link.inertial is None
+        """True for the ground of a file if it is the world."""
+        return link.name == "world" and link.inertial is None and (self.again.active or _starts_at_world(self.assembly))
 
     def _is_between(self, link: Link, chain: tuple[LoweredJoint, ...]) -> bool:
         """True for a link that is only the step from one joint of a body to the next; MuJoCo has no such bodies."""
@@ -363,6 +368,8 @@ class _Writer:
         links = {link.part.name: link for link in self.model.links}
         mating = self._joined()
         reasons = {contact.parts: excuse(contact) for contact in contacts} | {pair: adjacent(self.assembly, pair) for pair in mating}
+        if self.assembly.foreign:  # without shapes there are no contacts to exclude
+            mating = [pair for pair in mating if all(links[part].collisions for part in pair)]
         pairs = dict.fromkeys([*mating, *(contact.parts for contact in contacts)])
         if self.assembly.foreign:
             self.added += [Feature("contact.joined", "parts." + "+".join(pair)) for pair in mating]

@@ -15,7 +15,7 @@ from articad.export.collisions import Collision, kind_of, shape_model
 from articad.export.follow import followers, leaders
 from articad.export.inertia import Inertial
 from articad.export.losses import Feature, assumed_finding, kept_losses, losses_of, refuse
-from articad.export.lowering import AxisMotion, Follows, Link, LoweredJoint, LoweredModel, Placed, lower
+from articad.export.lowering import AxisMotion, Follows, Link, LoweredJoint, LoweredModel, Placed, ground_is_world, lower
 from articad.export.markup import child, document, number, numbers, rgba, rpy, tidy
 from articad.export.meshes import MM_TO_M, MeshFiles, MeshKind
 from articad.export.metadata import dumps, records
@@ -79,7 +79,7 @@ def write_sdf(
         UnrepresentableError: If `strict` and there is such a loss.
     """
     kind = kind_of(assembly, collision)
-    lowered = lower(assembly, () if _has_world(assembly) else RESERVED, part_frames=assembly.foreign)
+    lowered = lower(assembly, () if ground_is_world(assembly) else RESERVED, part_frames=assembly.foreign)
     model = shape_model(assembly, lowered, kind, cache)
     features = [*model.features, *([Feature("loop.rest", "joints")] if model.loops else [])]
     writer = _Writer(assembly, model, MeshFiles(meshes, draws=kind != "solid"))
@@ -143,14 +143,14 @@ class _Writer:
         root = etree.Element(
             "sdf", {"version": MIMIC_VERSION if self.assembly.mechanism.couplings else VERSION}, nsmap={"articad": ARTICAD}
         )
-        first = self.model.links[1 if _has_world(self.assembly) else 0]
+        first = self.model.links[1 if ground_is_world(self.assembly) else 0]
         model = child(root, "model", {"name": self.model.name, "canonical_link": first.name})
         carried = {joint.child: joint for joint in self.model.joints}
         for link in self.model.links:
             joint = carried.get(link.name)
             if joint is None:
                 self.poses[link.name] = SE3.identity()
-                if _has_world(self.assembly):
+                if ground_is_world(self.assembly):
                     continue
                 self._link(model, link, link.inertial)
                 child(child(model, "joint", {"name": self._joint_name("to_world"), "type": "fixed"}), "parent", text="world")
@@ -295,14 +295,6 @@ class _Writer:
             child(mimic, "multiplier", text=number(tie.ratio))
             child(mimic, "offset", text=number(tie.offset))
             child(mimic, "reference", text="0")
-
-
-def _has_world(assembly: Assembly) -> bool:
-    """Return whether the ground part is the world itself, which SDFormat has without a link."""
-    ground = assembly.parts[assembly.mechanism.ground]
-    bare = not ground.visuals and not ground.collisions and ground.solid is None and ground.mass is None
-    still = assembly.mechanism.T_ground.allclose(SE3.identity(), mm=0.0, rad=0.0)
-    return bare and still and ground.name == RESERVED[0] and len(assembly.parts) > 1
 
 
 def _single(freedom: AxisMotion) -> JointType:

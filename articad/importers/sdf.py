@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
+from lxml import etree
 
 from articad.arrays import FloatArray
 from articad.assembly import Assembly, Kept
@@ -161,7 +162,9 @@ class _Reader:
             self.raw.kept += kept_of(inner, "", "model")
             if place is not inner:
                 self.raw.kept += [
-                    Kept("sdf", "model", f"<{below.tag}> of <include {name}>") for below in place if below.tag not in _OF_INCLUDE
+                    Kept("sdf", "model", f"<{etree.QName(below).localname}> of <include {name}>")
+                    for below in place
+                    if below.tag not in _OF_INCLUDE
                 ]
             self.raw.kept += [Kept("sdf", "model", f"<frame {frame.get('name')}>") for frame in inner.iterfind("frame")]
 
@@ -324,7 +327,6 @@ class _Reader:
         where = f"joints.{name}"
         if kind not in _TYPES:
             self._drop(where, f"A joint of type {kind!r} is left out; it is not one of {', '.join(sorted(_TYPES))}.")
-            self.raw.kept.append(Kept("sdf", where, f"the {kind} joint"))
             return
         ends = [(element.findtext(tag) or "").strip() for tag in ("parent", "child")]
         if not all(ends):
@@ -337,24 +339,42 @@ class _Reader:
         near, far = (self._pose_of(link).inverse() @ T for link in (parent, child))
         kept = list(kept_of(element, "joint", where))
         self.raw.kept += kept
-        axes = [axis for tag in ("axis", "axis2") if (axis := element.find(tag)) is not None]
+        self.raw.kept += _without_effect(element, kind, where)
         if kind in {"fixed", "ball"}:
             joint_type, cone = (JointType.BALL, math.pi) if kind == "ball" else (JointType.FIXED, None)
             self.raw.joints.append(RawJoint(name, joint_type, parent, child, near, far, cone=cone))
             return
         need = 2 if kind in {"universal", "revolute2"} else 1
+        axes = [axis for tag in ("axis", "axis2")[:need] if (axis := element.find(tag)) is not None]
         if len(axes) < need:
-            raise scope.fault(element, f"Joint {name!r} of type {kind} has {len(axes)} axes.")
-        vectors = [self._axis(scope, element, axis, T) for axis in axes[:need]]
+            raise scope.fault(element, f"Joint {name!r} of type {kind} has {len(axes)} axes; it needs {need}.")
+        vectors = [self._axis(scope, element, axis, T) for axis in axes]
         if kind == "universal" and abs(float(vectors[0] @ vectors[1])) <= _ACROSS:
             W = SE3.from_axes(np.zeros(3), np.cross(vectors[0], vectors[1]), vectors[0])
-            self.raw.joints.append(
-                RawJoint(name, JointType.UNIVERSAL, parent, child, near @ W, far @ W, **self._loads(axes[:2], scope, where))
-            )
+            self.raw.joints.append(RawJoint(name, JointType.UNIVERSAL, parent, child, near @ W, far @ W, **self._loads(axes, scope, where)))
+            for mimic in element.iterfind("*/mimic"):
+                self._drop(where, f"A <mimic> is left out: an axis of a universal joint cannot follow {mimic.get('joint')!r}.")
             return
-        for place, (axis, vector) in enumerate(zip(axes, vectors, strict=False)):
-            last = place == need - 1
-            one = name if need == 1 else f"{name}__{place + 1}"
+        if need == 2:
+            message = f"the fact that {name!r} of type {kind} is one joint: it is read as {name}__1 and {name}__2 over a bare link"
+            self.raw.kept.append(Kept("sdf", where, message))
+        self._about_axes(name, kind, scope, element, list(zip(axes, vectors, strict=True)), (parent, child), (near, far))
+
+    def _about_axes(
+        self,
+        name: str,
+        kind: str,
+        scope: Scope,
+        element: Any,
+        axes: list[tuple[Any, FloatArray]],
+        ends: tuple[str, str],
+        frames: tuple[SE3, SE3],
+    ) -> None:
+        """Add a joint for each axis, over bare links if there are several."""
+        (parent, child), (near, far) = ends, frames
+        for place, (axis, vector) in enumerate(axes):
+            last = place == len(axes) - 1
+            one = name if len(axes) == 1 else f"{name}__{place + 1}"
             end = child if last else self._bare_link(f"{name}__d1")
             R = aligned(vector)
             joint_type = {"prismatic": JointType.SLIDER, "screw": JointType.SCREW}.get(kind, JointType.REVOLUTE)
@@ -436,7 +456,7 @@ class _Reader:
         if mimic is None:
             return
         leader = scope.prefix + (mimic.get("joint") or "")
-        other = next((element for where, element in self.joints if where is scope and element.get("name") == mimic.get("joint")), None)
+        other = next((element for where, element in self.joints if where.prefix + element.get("name") == leader), None)
         if other is not None and other.get("type") == "revolute2":
             leader = f"{leader}__{2 if mimic.get('axis') == 'axis2' else 1}"
         mine, its = (MM_PER_M if yes else 1.0 for yes in (slides, other is not None and other.get("type") == "prismatic"))
@@ -459,7 +479,8 @@ class _Reader:
             group[of(joint.child)] = of(joint.parent)
         taken = {joint.name for joint in self.raw.joints}
         canonical = {scope.body(MODEL, scope.element) for scope, _ in self.links.values()}
-        for name in sorted(self.links, key=lambda one: (self.links[one][1].get("name") != WORLD, one not in canonical)):
+        carried = {joint.child for joint in self.raw.joints}  # a tree begins at a link that no joint carries
+        for name in sorted(self.links, key=lambda one: (self.links[one][1].get("name") != WORLD, one in carried, one not in canonical)):
             if of(name) == of(self.raw.ground):
                 continue
             scope, _ = self.links[name]
@@ -475,9 +496,10 @@ class _Reader:
             taken.add(joint_name)
             self.raw.joints.append(RawJoint(joint_name, kind, self.raw.ground, name, self._pose_of(name), IDENTITY))
             group[of(name)] = of(self.raw.ground)
-        static = [scope.element.get("name") for scope in {id(scope): scope for scope, _ in self.links.values()}.values() if scope.static]
-        moving = {joint.name for joint in self.raw.joints if joint.type is not JointType.FIXED}
-        if static and moving:
+        static = dict.fromkeys(
+            scope.element.get("name") for scope, element in self.joints if scope.static and element.get("type") != "fixed"
+        )
+        if static:
             self.raw.kept.append(Kept("sdf", "model", f"<static> of {', '.join(map(str, static))}: that its joints do not move"))
 
 
@@ -489,6 +511,24 @@ _FORMS: Final[dict[Any, tuple[tuple[str, int, float], ...]]] = {
     "ellipsoid": (("radii", 3, 1.0),),
 }
 """Elements with the sizes of primitives, how many numbers they have, and SDFormat's default [m]."""
+
+
+def _without_effect(joint: Any, kind: str, where: str) -> Iterator[Kept]:
+    """Yield what a joint states and its type does not use."""
+    read = {"fixed": (), "ball": (), "universal": ("axis", "axis2"), "revolute2": ("axis", "axis2")}.get(kind, ("axis",))
+    said = [below.tag for below in joint if below.tag in {"axis", "axis2"} and below.tag not in read]
+    said += [below.tag for below in joint if below.tag in {"thread_pitch", "screw_thread_pitch"} and kind != "screw"]
+    if kind == "continuous":
+        said += [
+            below.tag for below in joint.iterfind("axis/limit/*") if below.tag in {"lower", "upper"} and abs(_value_of(below)) < NO_BOUND
+        ]
+    if said and kind != "fixed":
+        yield Kept("sdf", where, f"{', '.join(f'<{tag}>' for tag in said)} of a joint of type {kind}")
+
+
+def _value_of(element: Any) -> float:
+    return float(element.text) if _is_number(element.text or "") else math.inf
+
 
 _OF_INCLUDE: Final = frozenset({"uri", "name", "pose", "static", "placement_frame"})
 

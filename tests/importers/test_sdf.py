@@ -16,11 +16,12 @@ from articad.assembly import Assembly
 from articad.errors import ReadError
 from articad.export.sdf import write_sdf
 from articad.export.urdf import write_urdf
-from articad.formats import read
+from articad.formats import NAMED, read
 from articad.geometry.mesh_files import write_stl
 from articad.geometry.shapes import box
 from articad.importers.sdf import read_sdf
 from articad.importers.sdf_kept import READ_SDF
+from articad.importers.urdf import read_urdf
 from tests.assemblies import all_joint_kinds, closed, four_bar, geared_pair
 from tests.engines import our_poses
 
@@ -633,3 +634,113 @@ def test_every_element_of_the_schema_that_is_not_read_comes_back_or_is_a_row(pat
     told = attribute in words if attribute else any(f"<{one.rpartition('/')[2]}" in words for one in above if one not in READ_SDF)
     shape = next((one for one in TOLD_WITH_ITS_SHAPE if one in path.split("/")), "")
     assert there or told or (shape and shape in words) or (path.startswith("include") and "left out" in words), words
+
+
+INERTIAL = "<inertial><mass>1</mass><inertia><ixx>.1</ixx><iyy>.1</iyy><izz>.1</izz></inertia></inertial>"
+SHAPE = '<collision name="c"><geometry><sphere><radius>.1</radius></sphere></geometry></collision>'
+
+
+def link(name: str, at: str = "0 0 0 0 0 0") -> str:
+    return f'<link name="{name}"><pose>{at}</pose>{INERTIAL}{SHAPE}</link>'
+
+
+def joint(kind: str, parent: str, child: str, more: str = "<axis><xyz>0 0 1</xyz></axis>", name: str = "j") -> str:
+    return f'<joint name="{name}" type="{kind}"><parent>{parent}</parent><child>{child}</child>{more}</joint>'
+
+
+def in_a_file(text: str, folder: Path) -> Path:
+    return written(f'<sdf version="1.11">{text}</sdf>', folder)
+
+
+AXES = "<axis><xyz>1 0 0</xyz></axis><axis2><xyz>0 1 0</xyz></axis2>"
+UNUSED = {
+    "ball with an axis": ("ball", "<axis><dynamics><damping>1</damping></dynamics></axis>", "<axis> of a joint of type ball"),
+    "two axes where one is read": ("revolute", AXES, "<axis2> of a joint of type revolute"),
+    "limits of continuous": (
+        "continuous",
+        "<axis><limit><lower>-1</lower><upper>1</upper></limit></axis>",
+        "<lower>, <upper> of a joint of type continuous",
+    ),
+    "no limits of continuous": ("continuous", "<axis><limit><lower>-1e16</lower><upper>inf</upper></limit></axis>", ""),
+    "a pitch without a screw": (
+        "prismatic",
+        "<axis><xyz>0 0 1</xyz></axis><screw_thread_pitch>2</screw_thread_pitch>",
+        "<screw_thread_pitch> of a joint of type prismatic",
+    ),
+    "an oblique universal": ("universal", "<axis><xyz>1 0 0</xyz></axis><axis2><xyz>.6 .8 0</xyz></axis2>", "j__1 and j__2"),
+    "revolute2": ("revolute2", AXES, "j__1 and j__2"),
+    "a universal": ("universal", AXES, ""),
+    "a universal that follows": ("universal", AXES.replace("</xyz></axis>", '</xyz><mimic joint="k"/></axis>'), "cannot follow 'k'"),
+    "a gearbox": ("gearbox", AXES, "type 'gearbox' is left out"),
+    "fixed with an axis": ("fixed", "<axis><xyz>0 0 1</xyz></axis>", ""),
+}
+
+
+@pytest.mark.parametrize("name", UNUSED)
+@pytest.mark.parametrize("target", ["sdf", "urdf", "mjcf"])
+def test_what_a_joint_states_and_its_type_does_not_use_is_one_row(name: str, target: str, tmp_path: Path) -> None:
+    kind, more, expected = UNUSED[name]
+    path = in_a_file(
+        f'<model name="m">{link("a")}{link("b")}{link("c")}{joint("revolute", "a", "c", name="k")}{joint(kind, "a", "b", more)}</model>',
+        tmp_path,
+    )
+    rows = [loss.lost for loss in NAMED[target].write(read_sdf(path)).losses if loss.kept == "nothing" and loss.where == "joints.j"]
+
+    assert len(rows) == bool(expected)
+    assert all(expected in row for row in rows), rows
+
+
+def test_a_mimic_follows_a_slide_of_a_nested_model_in_metres(tmp_path: Path) -> None:
+    inner = f'<model name="n">{link("c")}{link("d")}{joint("prismatic", "c", "d", name="p")}</model>'
+    follower = joint("revolute", "a", "b", '<axis><mimic joint="n::p"><multiplier>4</multiplier><reference>.1</reference></mimic></axis>')
+    path = in_a_file(f'<model name="m">{link("a")}{link("b")}{inner}{joint("fixed", "a", "n::c", "", "f")}{follower}</model>', tmp_path)
+    (coupling,) = read_sdf(path).mechanism.couplings
+
+    assert (coupling.a, coupling.b) == ("n::p", "j")
+    assert coupling.ratio == pytest.approx(4 / 1000)  # rad per mm
+    assert coupling.offset == pytest.approx(-0.4)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_model_hangs_on_the_link_that_no_joint_carries(seed: int, tmp_path: Path) -> None:
+    """Parents stay parents, whatever the order of the links is."""
+    random = np.random.default_rng(seed)
+    count = 6
+    above = {f"l{i}": f"l{random.integers(0, i)}" for i in range(1, count)}
+    links = [link(f"l{i}", " ".join(f"{x:.3f}" for x in random.uniform(-1, 1, 6))) for i in range(count)]
+    joints = [joint("revolute", parent, child, name=f"j_{child}") for child, parent in above.items()]
+    path = in_a_file(f'<model name="m">{"".join(random.permutation(links))}{"".join(random.permutation(joints))}</model>', tmp_path)
+
+    tree = read_sdf(path).mechanism.tree
+
+    assert {edge.part: edge.parent for edge in tree.edges if edge.part != "l0"} == above
+    assert not any(edge.reversed for edge in tree.edges)
+
+
+@pytest.mark.parametrize("moving", [False, True])
+def test_a_static_model_is_a_row_only_if_it_has_joints_that_would_move(moving: bool, tmp_path: Path) -> None:
+    still = f'<model name="s"><static>true</static>{link("a")}{link("b")}{joint("revolute" if moving else "fixed", "a", "b")}</model>'
+    path = in_a_file(
+        f'<world name="w">{still}<model name="t">{link("a")}{link("b")}{joint("revolute", "a", "b")}</model></world>', tmp_path
+    )
+    rows = [item.what for item in read_sdf(path).kept if "<static>" in item.what]
+
+    assert rows == (["<static> of s: that its joints do not move"] if moving else [])
+
+
+@pytest.mark.parametrize("origin", ["sdf", "urdf"])
+def test_the_world_of_a_file_is_that_of_mujoco_and_excludes_nothing(origin: str, tmp_path: Path) -> None:
+    import mujoco
+
+    text = f'<model name="m">{link("a")}{link("b", "1 0 0 0 0 0")}{joint("revolute", "world", "a")}{joint("revolute", "a", "b", name="k")}</model>'
+    path = in_a_file(text, tmp_path)
+    if origin == "urdf":
+        NAMED["urdf"].write(read_sdf(path)).write(tmp_path / "urdf")
+        path = next((tmp_path / "urdf").glob("*.urdf"))
+    bundle = NAMED["mjcf"].write((read_urdf if origin == "urdf" else read_sdf)(path, metadata=False))
+    bundle.write(tmp_path / "out")
+    model = mujoco.MjModel.from_xml_path(str(tmp_path / "out" / bundle.main))
+
+    assert [model.body(index).name for index in range(model.nbody)] == ["world", "a", "b"]
+    assert model.nexclude == 0
+    assert not [loss for loss in bundle.losses if loss.where == "parts.world"]
