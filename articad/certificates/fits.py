@@ -18,8 +18,9 @@ import numpy as np
 
 from articad.certificates.claims import Claim
 from articad.certificates.proof import NO_SHRINK, Prover, Shrink
+from articad.errors import PlanError
 from articad.findings import Finding, Findings
-from articad.interference.gauge import Gauge
+from articad.interference.gauge import STOP_MM, Gauge
 from articad.interference.motion import Freedom, Route, freedoms, scattered, travels
 from articad.interference.overlap import NOTHING
 from articad.interference.ranges import sampled_piece
@@ -31,6 +32,8 @@ from articad.interference.sweep import MotionSampler
 from articad.interference.work import WorkBudget
 from articad.kinematics.joints import Joint, JointType
 from articad.kinematics.mechanism import Mechanism
+from articad.plan.resolve import Fit
+from articad.realisation.bores import Bore, bore_of
 
 __all__ = [
     "CONTACT_MM",
@@ -46,6 +49,8 @@ __all__ = [
 
 STEPS = 24  # poses per coordinate at which the gap is measured in motion
 CONTACT_MM = 0.02  # surfaces this close touch, in addition to the deflection of their meshes
+DIAMETER_MM = 1e-4  # rounding of diameters that scripts compute
+NOMINAL_MM, NOMINAL_SHARE = 0.5, 0.02  # by how much a bore may differ from the nominal diameter of its fit: c11 at 6 mm, a11 at 500 mm
 EPSILON_MM = 1e-4  # a gap that exceeds the value to prove by no more than this counts as contact in the search
 PROOF_SECONDS = 1.2  # nominal, for the proof of each fit
 _FOLLOWED = 61  # poses of each driver's range, or of each of its turns: steps of 6°, its half included
@@ -69,6 +74,7 @@ class FitCheck:
         play: Play at rest, wherever the pin is in its hole [mm]; None if nothing stops the child, or if it was not requested.
         tolerance: Largest deviation of both meshes together from their solids [mm].
         strength: How strong the verdict on the lower bound is over the motion.
+        bore: The diameters of bore and pin, where the play was measured on them: for named fits, and where meshes are too coarse.
     """
 
     joint: str
@@ -81,6 +87,7 @@ class FitCheck:
     play: float | None = None
     tolerance: float = 0.0
     strength: Strength = field(default_factory=partial(Strength.sampled, 1))
+    bore: Bore | None = None
 
     def to_json(self) -> dict[str, Any]:
         """Return a row of the table."""
@@ -88,7 +95,7 @@ class FitCheck:
         return {
             "joint": self.joint,
             "parts": list(self.parts),
-            "declared": {"gap_mm": [fit.gap_min, fit.gap_max], "within_mm": fit.within, "contact": fit.contact},
+            "declared": {"gap_mm": [fit.gap_min, fit.gap_max], "within_mm": fit.within, "contact": fit.contact, **_name_of(fit)},
             "rest_mm": rounded(self.rest),
             "least_mm": rounded(self.least),
             "at": None if self.at is None else {name: rounded(value) for name, value in self.at.items()},
@@ -96,6 +103,7 @@ class FitCheck:
             "tolerance_mm": rounded(self.tolerance),
             "strength": self.strength.to_json(),
             "verdict": self.verdict,
+            **({} if self.bore is None else {"bore_mm": rounded(self.bore.bore), "pin_mm": rounded(self.bore.pin)}),
         }
 
 
@@ -165,8 +173,17 @@ def check_fits(
             rows.append(FitCheck(joint.name, (joint.parent, joint.child), fit, None, None, None, "not_checked", strength=strength))
             findings.append(_unmeasured(joint, reason))
             continue
+        bore = bore_of(scene, joint) if _needs_diameters(scene, joint, fit) else None
+        try:
+            fit = _sized(fit, bore)
+        except PlanError as error:
+            strength = Strength.not_checked(error.message)
+            rows.append(FitCheck(joint.name, (joint.parent, joint.child), fit, None, None, None, "not_checked", strength=strength))
+            findings.append(_unmeasured(joint, error.message, "State nominal_mm beside the name of the fit, or give gap_mm."))
+            continue
+        findings += _misnamed(joint, fit, bore)
         budgets.append(WorkBudget(seconds))
-        held = _Held(scene, joint, fit, budgets[-1])
+        held = _Held(scene, joint, fit, budgets[-1], bore)
         row, finding = held.check(reached, proven or {})
         rows.append(row)
         findings += finding or _unresolved(row)
@@ -207,8 +224,8 @@ def followed(mechanism: Mechanism) -> dict[str, tuple[float, float]]:
 class _Held:
     """One fit, checked against its two parts."""
 
-    def __init__(self, scene: Scene, joint: Joint, fit: FitLike, budget: WorkBudget) -> None:
-        self.scene, self.joint, self.fit, self.budget = scene, joint, fit, budget
+    def __init__(self, scene: Scene, joint: Joint, fit: FitLike, budget: WorkBudget, bore: Bore | None) -> None:
+        self.scene, self.joint, self.fit, self.budget, self.bore = scene, joint, fit, budget, bore
         self.gauge = Gauge(scene, joint, fit)
         self.slack = self.gauge.slack
         self.moving = travels(joint)
@@ -238,7 +255,11 @@ class _Held:
         rest = self.gauge.rest()
         asked = self.fit.gap_max is not None or (self.fit.gap_min is not None and self.may_touch)
         play = self.gauge.play() if asked and rest > -self.touches else None
-        row = FitCheck(self.joint.name, (self.joint.parent, self.joint.child), self.fit, rest, rest, None, "ok", play, self.slack)
+        if self.bore is not None and (play is None or abs(self.bore.play - play) > self.slack + 2 * STOP_MM):
+            self.bore = None  # something else stops the child first, or nothing was to be measured
+        play = play if self.bore is None else self.bore.play
+        parts = (self.joint.parent, self.joint.child)
+        row = FitCheck(self.joint.name, parts, self.fit, rest, rest, None, "ok", play, self.slack, bore=self.bore)
         verdict, value, limit = self._at_rest(rest, play)
         if verdict != "ok":
             return replace(row, verdict=verdict), [self._finding(verdict, value, limit, None, is_play=value == play)]
@@ -266,10 +287,11 @@ class _Held:
         verdict, value, limit = self._in_motion(rest)
         if verdict != "ok":
             return verdict, value, limit
-        if self.may_touch and fit.gap_min is not None and play is not None and play < fit.gap_min - self.slack:
+        slack = self.slack if self.bore is None else self.bore.off + DIAMETER_MM
+        if self.may_touch and fit.gap_min is not None and play is not None and play < fit.gap_min - slack:
             return "tight", play, fit.gap_min
         wide = rest if play is None else play
-        if fit.gap_max is not None and wide > fit.gap_max + self.slack:
+        if fit.gap_max is not None and wide > fit.gap_max + slack:
             return "loose", wide, fit.gap_max
         return "ok", rest, 0.0
 
@@ -435,7 +457,7 @@ def _unproven(row: FitCheck) -> Finding:
 def _unresolved(row: FitCheck) -> list[Finding]:
     """Return a finding if the meshes may deviate by more than half the range of a fit that seems kept: then the verdict is not certain."""
     fit, off = row.declared, row.tolerance
-    if fit.gap_max is None or fit.gap_max - (fit.gap_min or 0.0) >= 2 * off:
+    if fit.gap_max is None or fit.gap_max - (fit.gap_min or 0.0) >= 2 * off or row.bore is not None:
         return []
     measured = row.rest if row.play is None else row.play
     return [
@@ -454,12 +476,58 @@ def _unresolved(row: FitCheck) -> list[Finding]:
     ]
 
 
-def _unmeasured(joint: Joint, reason: str) -> Finding:
+def _needs_diameters(scene: Scene, joint: Joint, fit: FitLike) -> bool:
+    """Return whether a fit is to be measured on cylinders: it is named, or its range is narrower than the meshes can resolve."""
+    if isinstance(fit, Fit) and fit.name is not None:
+        return True
+    return fit.gap_max is not None and fit.gap_max - (fit.gap_min or 0.0) < 2 * scene.deflection_of(joint.parent, joint.child)
+
+
+def _sized(fit: FitLike, bore: Bore | None) -> FitLike:
+    """Return a named fit without a diameter with that of its bore, in tenths of a millimetre.
+
+    Raises:
+        PlanError: If there is no bore, or no such fit at its diameter.
+    """
+    if not isinstance(fit, Fit) or fit.name is None or fit.gap_max is not None:
+        return fit
+    if bore is None:
+        raise PlanError(f"the fit {fit.name} needs a diameter, and no pin in a bore is found about the joint's axis")
+    return fit.sized(round(bore.bore, 1))
+
+
+def _misnamed(joint: Joint, fit: FitLike, bore: Bore | None) -> list[Finding]:
+    """Return a finding if the bore has another diameter than the one for which its fit is stated."""
+    if not isinstance(fit, Fit) or fit.nominal is None or bore is None:
+        return []
+    limit = NOMINAL_MM + NOMINAL_SHARE * fit.nominal
+    if abs(bore.bore - fit.nominal) <= limit:
+        return []
+    return [
+        Finding(
+            code="W_FIT_NOMINAL",
+            where=f"joints.{joint.name}.fit",
+            parts=(joint.parent, joint.child),
+            message=f"Joint {joint.name!r} states {fit.name} for {fit.nominal:g} mm, but its bore measures {bore.bore:.6g} mm.",
+            hint=f"State the fit for {bore.bore:.4g} mm, or change the bore.",
+            value=bore.bore,
+            limit=fit.nominal,
+            unit="mm",
+            stage="fit",
+        )
+    ]
+
+
+def _name_of(fit: FitLike) -> dict[str, Any]:
+    return {"name": fit.name, "nominal_mm": fit.nominal} if isinstance(fit, Fit) and fit.name is not None else {}
+
+
+def _unmeasured(joint: Joint, reason: str, hint: str = "Give the part geometry, or leave the fit out.") -> Finding:
     return Finding(
         code="E_NOT_CHECKED",
         where=f"joints.{joint.name}.fit",
         parts=(joint.parent, joint.child),
         message=f"The fit of joint {joint.name!r} is not measured: {reason}.",
-        hint="Give the part geometry, or leave the fit out.",
+        hint=hint,
         stage="fit",
     )

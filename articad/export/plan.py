@@ -242,7 +242,10 @@ class _Teller:
         if fit is None:
             return {}
         gap = None if fit.gap_min is None or fit.gap_max is None else [fit.gap_min, fit.gap_max]
-        return {"fit": {"gap_mm": gap, "within_mm": fit.within, "contact": fit.contact}}
+        kept = {"within_mm": fit.within, "contact": fit.contact}
+        if fit.name is not None:
+            return {"fit": {**kept, "name": fit.name, "nominal_mm": fit.nominal}}
+        return {"fit": {"gap_mm": gap, **kept}}
 
     def _coupling(self, index: int) -> dict[str, Any]:
         """Return a coupling as a linear relation, in degrees and mm."""

@@ -235,7 +235,12 @@ CODES: dict[str, Code] = {
         "Couplings lock each other, such as three gears in a triangle.",
         "Remove one of them, or correct a ratio: around a closed train, the product of the ratios must be 1.",
     ),
-    "E_FIT": Code("plan", "design", "A fit's range is impossible.", "Give 0 <= min <= max in mm."),
+    "E_FIT": Code(
+        "plan",
+        "design",
+        "A fit's range is impossible, or its name is unknown or unsuitable.",
+        "Give 0 <= min <= max in mm, or a name such as H7/g6 or sliding.",
+    ),
     "E_ALLOW": Code("plan", "design", "A waiver is incomplete.", "Name two different parts, a positive depth in mm and a reason."),
     "E_LOOP_OPEN": Code("plan", "design", "A loop cannot be closed.", "Lengthen a link or move a pivot."),
     "W_LOOP_INEXACT": Code(
@@ -455,6 +460,9 @@ CODES: dict[str, Code] = {
     "E_FIT_LOOSE": Code("fit", "code", "A joint's gap is larger than its fit.", "Narrow the bore or thicken the pin by the named amount."),
     "W_FIT_UNRESOLVED": Code(
         "fit", "design", "The meshes are too coarse to tell whether a fit is kept.", "Mesh the two parts with a smaller deflection."
+    ),
+    "W_FIT_NOMINAL": Code(
+        "fit", "design", "A bore has another diameter than the one for which its fit is named.", "State the fit for the bore's diameter."
     ),
     "E_FIT_CONTACT": Code(
         "fit", "design", "Contact is forbidden but found, or required but absent.", "Move the surfaces by the named amount."

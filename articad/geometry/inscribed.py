@@ -23,12 +23,11 @@ from typing import Final
 import manifold3d
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 from scipy.spatial import ConvexHull, HalfspaceIntersection, QhullError
 
 from articad.arrays import FloatArray
 from articad.connectors.se3 import SE3
+from articad.geometry.faces import smooth_patches
 from articad.geometry.mesh import TriMesh
 from articad.geometry.part import Primitive
 from articad.geometry.shapes import box, cylinder, sphere
@@ -52,7 +51,6 @@ _ROUND = 6  # digits of mm in a piece's corners
 _OWN = 0.3  # a triangle's own plane is used if its distance from the seed is at least this share of the triangle's
 _MUCH = 0.2  # of the uncovered points: a recognised body that covers this share is used at once
 _TRIES = 3  # seeds that are tried for each piece
-_SMOOTH = np.cos(np.radians(25.0))  # facets of one smooth surface turn by less
 _SEGMENTS = 48  # in the meshes of recognised cylinders
 
 
@@ -477,25 +475,11 @@ def _round_bodies(mesh: TriMesh, facets: _Facets, deflection: float) -> list[_Gr
 
 def _smooth_faces(mesh: TriMesh, facets: _Facets) -> list[NDArray[np.intp]]:
     """Return the triangles of each face of the B-rep, or of each smooth patch if the mesh has no faces; without flat ones."""
-    label = _patches(mesh, facets) if mesh.face is None else np.asarray(mesh.face)
+    label = smooth_patches(mesh) if mesh.face is None else np.asarray(mesh.face)
     order = np.argsort(label, kind="stable")
     groups = np.split(order, np.flatnonzero(np.diff(label[order])) + 1)
     groups.sort(key=lambda group: -float(facets.areas[group].sum()))
     return [group for group in groups[:200] if len(group) >= 8 and float((facets.normals[group] @ facets.normals[group[0]]).min()) < 0.99]
-
-
-def _patches(mesh: TriMesh, facets: _Facets) -> NDArray[np.int64]:
-    """Return the number of the patch of each triangle: neighbours across an edge with a small bend have the same one."""
-    start, end = mesh.triangles.astype(np.int64), np.roll(mesh.triangles.astype(np.int64), -1, axis=1)
-    keys = np.minimum(start, end) * len(mesh.vertices) + np.maximum(start, end)
-    owners = np.repeat(np.arange(facets.count), 3)
-    order = np.argsort(keys.ravel(), kind="stable")
-    same = keys.ravel()[order][1:] == keys.ravel()[order][:-1]
-    a, b = owners[order][:-1][same], owners[order][1:][same]
-    smooth = (facets.normals[a] * facets.normals[b]).sum(axis=1) >= _SMOOTH
-    a, b = a[smooth], b[smooth]
-    graph = coo_array((np.ones(len(a)), (a, b)), shape=(facets.count, facets.count))
-    return np.asarray(connected_components(graph, directed=False)[1], dtype=np.int64)
 
 
 def _ball(facets: _Facets, corners: FloatArray, normals: FloatArray, slack: float) -> _Grown | None:

@@ -110,7 +110,10 @@ class Gauge:
             return None
         T = self.place([freedom.rest for freedom in freedoms(self.joint)])
         frame = np.asarray(self.joint.T_parent_connector.matrix[:3, :3])
-        groups = [self._group(name) for name in (self.joint.parent, self.joint.child)]
+        groups = [
+            [(self.scene.meshes[name], T_part) for name, T_part in fixed_with(self.scene, self.joint, part).items()]
+            for part in (self.joint.parent, self.joint.child)
+        ]
         key = b"".join(mesh.digest.encode() + T_part.tobytes() for group in groups for mesh, T_part in group)
         key += np.append(np.concatenate([T, self.joint.T_parent_connector.matrix]), self.fit.within or 0.0).tobytes()
         key += self.joint.type.encode()
@@ -119,21 +122,6 @@ class Gauge:
             a, b = (self._joined(own, group) for own, group in zip(self.surfaces, groups, strict=True))
             known[key] = _Room(a, b, T).play(self._ways() @ frame.T)
         return known[key]
-
-    def _group(self, part: str) -> list[tuple[TriMesh, FloatArray]]:
-        """Return the meshes of a part and of those fixed to it, that part first, and their poses in its frame."""
-        other = self.joint.child if part == self.joint.parent else self.joint.parent
-        places: dict[str, FloatArray] = {part: np.eye(4)}
-        todo = [] if self.scene.relations.rigid.together(part, other) else [part]
-        for name in todo:
-            for joint in self.scene.relations.joints:
-                if joint.type is JointType.FIXED and name in (joint.parent, joint.child):
-                    step = placed(joint, [])
-                    far, step = (joint.child, step) if name == joint.parent else (joint.parent, np.asarray(np.linalg.inv(step)))
-                    if far not in places:
-                        places[far] = places[name] @ step
-                        todo.append(far)
-        return [(self.scene.meshes[name], T) for name, T in places.items() if name in self.scene.meshes]
 
     def _ways(self) -> FloatArray:
         if self.joint.type is JointType.PLANAR:
@@ -188,6 +176,25 @@ def placed(joint: Joint, values: list[float]) -> FloatArray:
     """Return the pose of a joint's child in its parent's frame for values of the joint's freedoms, `(4, 4)`."""
     J = motion_matrix(joint, values) if values or joint.type is JointType.FREE else np.eye(4)
     return np.asarray(joint.T_parent_connector.matrix @ J @ (flip(joint.mate) @ joint.T_child_connector.inverse()).matrix)
+
+
+def fixed_with(scene: Scene, joint: Joint, part: str) -> dict[str, FloatArray]:
+    """Return the poses of a joint's part and of those fixed to it that have geometry, `(4, 4)` in its frame, that part first.
+
+    A part alone where fixed joints connect both sides of the joint.
+    """
+    other = joint.child if part == joint.parent else joint.parent
+    places: dict[str, FloatArray] = {part: np.eye(4)}
+    todo = [] if scene.relations.rigid.together(part, other) else [part]
+    for name in todo:
+        for link in scene.relations.joints:
+            if link.type is JointType.FIXED and name in (link.parent, link.child):
+                step = placed(link, [])
+                far, step = (link.child, step) if name == link.parent else (link.parent, np.asarray(np.linalg.inv(step)))
+                if far not in places:
+                    places[far] = places[name] @ step
+                    todo.append(far)
+    return {name: T for name, T in places.items() if name in scene.meshes}
 
 
 class _Room:

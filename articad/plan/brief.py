@@ -135,7 +135,8 @@ def _joints(resolved: ResolvedPlan, part: str, connector: str) -> list[Json]:
 
 def _fit(fit: Fit) -> Json:
     gap = None if fit.gap_min is None or fit.gap_max is None else [_plain(fit.gap_min), _plain(fit.gap_max)]
-    return {"gap_mm": gap, "within_mm": fit.within, "contact": fit.contact}
+    named = {} if fit.name is None else {"name": fit.name, "nominal_mm": fit.nominal}
+    return {"gap_mm": gap, "within_mm": fit.within, "contact": fit.contact, **named}
 
 
 def _limits(joint: Joint) -> Json:

@@ -18,8 +18,7 @@ from articad.kinematics.tree import KinematicTree
 from articad.plan.couplings import TiedCoordinate, couple
 from articad.plan.derive import DraftPart, expand, trace, trace_joints
 from articad.plan.evaluation import Evaluation
-from articad.plan.joint_forms import Contact
-from articad.plan.motions import JointNumbers, checked_fit, motion
+from articad.plan.motions import FitNumbers, JointNumbers, checked_fit, motion
 from articad.plan.placing import Placing
 from articad.plan.schema import AssemblyPlan, MaterialSpec, PartSpec
 
@@ -56,7 +55,7 @@ class Draft:
         in_order = trace(self.parts, self.evaluation)
         self.lines = trace_joints(plan, self.parts, self.evaluation)
         self.motions: dict[str, JointNumbers] = {}
-        self.fits: dict[str, tuple[float | None, float | None, float | None, Contact | None]] = {}
+        self.fits: dict[str, FitNumbers] = {}
         self.materials: dict[str, tuple[MaterialSpec, float, float]] = {}
         self.dimensions: dict[str, dict[str, float | int]] = {}
         self.envelopes: dict[str, tuple[float, float, float]] = {}
@@ -153,7 +152,7 @@ class Draft:
             if root not in read:
                 read[root] = motion(line.root, self.evaluation)
                 if line.root.fit is not None:
-                    self.fits[root] = (*checked_fit(line.root.fit, f"joints.{root}.fit", self.evaluation), line.root.fit.contact)
+                    self.fits[root] = checked_fit(line.root.fit, f"joints.{root}.fit", self.evaluation, moves=line.root.type != "fixed")
             known = read[root]
             if known is not None:
                 self.motions[line.name] = known.mirrored() if line.mirrored else known

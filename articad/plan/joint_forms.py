@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal
 
-from pydantic import Discriminator, Field, Tag
+from pydantic import BeforeValidator, Discriminator, Field, Tag
 
-from articad.plan.fields import CoordinatePair, Interval, Name, Number, NumberPair, PlanObject, Range, Reference, Truth
+from articad.plan.fields import CoordinatePair, Interval, Name, Number, NumberPair, PlanObject, Range, Reference, Text, Truth
 
 MateName = Literal["aligned", "opposed"]
 Contact = Literal["allowed", "required", "forbidden"]
@@ -20,6 +20,16 @@ class FitSpec(PlanObject):
     )
     within_mm: Number | None = Field(None, description="Only surface closer than this to the joint's axis counts")
     contact: Contact | None = None
+    name: Text | None = Field(None, description="Instead of gap_mm: H7/g6 (ISO 286), or loose, sliding, press for printed parts")
+    nominal_mm: Number | None = Field(None, description="Nominal diameter of a named fit; without it, the bore's")
+
+
+def _fit_form(value: Any) -> Any:
+    """Let a fit be its name alone."""
+    return {"name": value} if isinstance(value, str) else value
+
+
+FitForm = Annotated[FitSpec, BeforeValidator(_fit_form, json_schema_input_type=FitSpec | str)]
 
 
 class JointForm(PlanObject):
@@ -31,7 +41,7 @@ class JointForm(PlanObject):
     child: Reference
     mate: MateName = Field("aligned", description="aligned: the two z axes agree at rest; opposed: they point against each other")
     driver: Truth = Field(default=False, description="Only with loops or couplings: a joint that is moved, the others follow")
-    fit: FitSpec | None = None
+    fit: FitForm | None = None
     effort_n_mm: Number | None = Field(None, description="Largest torque of a turning joint")
     velocity_deg_s: Number | None = Field(None, description="Largest speed of a turning joint")
     effort_n: Number | None = Field(None, description="Largest force of a sliding joint")

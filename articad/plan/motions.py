@@ -7,8 +7,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
+from articad.errors import PlanError
 from articad.kinematics.joints import JointLimits, JointType
 from articad.plan.evaluation import Evaluation
+from articad.plan.fit_names import PRINTED_MM, named_gap, nominal_in
+from articad.plan.joint_forms import Contact
 from articad.plan.schema import BallSpec, FitSpec, JointForm, JointSpec, ScrewSpec
 
 TWO_TURNS = 720.0  # degrees beyond which a limit of a turning joint is hardly intended; screws turn more
@@ -229,10 +232,35 @@ def _capacity(
     return efforts, velocities
 
 
-def checked_fit(form: FitSpec, where: str, evaluation: Evaluation) -> tuple[float | None, float | None, float | None]:
-    """Return gap_min, gap_max and within [mm] of a fit, reporting a range that is impossible."""
-    low = high = within = None
-    if form.gap_mm is not None:
+class FitNumbers(NamedTuple):
+    """A fit with its numbers; see `articad.plan.resolve.Fit`."""
+
+    gap_min: float | None
+    gap_max: float | None
+    within: float | None
+    contact: Contact | None
+    name: str | None
+    nominal: float | None
+
+
+def checked_fit(form: FitSpec, where: str, evaluation: Evaluation, *, moves: bool) -> FitNumbers:
+    """Return the numbers of a fit, reporting a range that is impossible.
+
+    Args:
+        form: The fit as the plan states it.
+        where: Its path.
+        evaluation: Evaluates its numbers.
+        moves: Whether its joint moves, so that an interference fit would lock it.
+    """
+    low = high = within = nominal = None
+    contact = form.contact
+    if form.name is not None:
+        low, high, nominal = _named_gap(form, where, evaluation, moves=moves)
+        contact = contact or "allowed"
+    elif form.nominal_mm is not None:
+        hint = "Add a name such as H7/g6, or leave nominal_mm out."
+        evaluation.report("E_FIT", f"{where}.nominal_mm", "A nominal diameter without the name of a fit has no meaning.", hint)
+    elif form.gap_mm is not None:
         low, high = (evaluation.number(bound, where, f"gap_mm[{i}]") for i, bound in enumerate(form.gap_mm))
         if low > high:
             hint = f"Did you mean [{high:.12g}, {low:.12g}]?"
@@ -255,4 +283,31 @@ def checked_fit(form: FitSpec, where: str, evaluation: Evaluation) -> tuple[floa
         if within <= 0.0:
             hint = "Give the radius about the axis in which surface counts, or leave it out."
             evaluation.report("E_FIT", f"{where}.within_mm", f"within_mm is {within:.6g}.", hint, value=within, limit=0.0, unit="mm")
-    return low, high, within
+    return FitNumbers(low, high, within, contact, form.name, nominal)
+
+
+def _named_gap(form: FitSpec, where: str, evaluation: Evaluation, *, moves: bool) -> tuple[float | None, float | None, float | None]:
+    """Return the play that a fit's name stands for and its nominal diameter [mm]; all None where the bore's diameter is to be measured."""
+    name = form.name or ""
+    if form.gap_mm is not None:
+        hint = "Leave one of them out."
+        evaluation.report("E_FIT", where, f"The fit states both gap_mm and the name {name!r}.", hint)
+    nominal = None if form.nominal_mm is None else evaluation.number(form.nominal_mm, where, "nominal_mm")
+    try:
+        stated = nominal_in(name)
+        if stated is not None and nominal is not None and stated != nominal:
+            hint = f"Leave nominal_mm out, or name the fit {name.split()[-1]!r}."
+            evaluation.report(
+                "E_FIT", f"{where}.nominal_mm", f"{name!r} states another diameter than {nominal:.6g} mm.", hint, value=nominal
+            )
+        nominal = stated if nominal is None else nominal
+        if name not in PRINTED_MM and (nominal is None or math.isnan(nominal)):
+            return None, None, nominal
+        gap = named_gap(name, nominal)
+    except PlanError as error:
+        evaluation.report("E_FIT", where, error.message, "Name another fit, such as H7/g6 at 1 to 500 mm, or give gap_mm.")
+        return None, None, nominal
+    if moves and gap.holds:
+        hint = "Name a clearance fit, such as H7/g6 or sliding."
+        evaluation.report("E_FIT", where, f"The fit {name!r} holds the shaft in its bore, but the joint moves.", hint)
+    return gap.least, gap.largest, nominal

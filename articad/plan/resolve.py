@@ -7,9 +7,9 @@ no fault.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Literal
+from typing import Literal, Self
 
 from articad.arrays import FloatArray
 from articad.connectors import SE3, Connector
@@ -19,6 +19,7 @@ from articad.kinematics.joints import Coupling, Joint
 from articad.kinematics.mechanism import Mechanism
 from articad.plan.derive import Operation
 from articad.plan.draft import Draft
+from articad.plan.fit_names import PRINTED_MM, named_gap, nominal_in
 from articad.plan.joint_forms import Contact
 from articad.plan.schema import AssemblyPlan, KernelName, PartSpec
 
@@ -52,12 +53,50 @@ class Fit:
             checked.
         within: Only surface closer than this to the joint's axis counts [mm]; None: all of it.
         contact: "allowed", "required", "forbidden"; None: not checked.
+        name: Where the gap comes from, such as "H7/g6", "sliding", or None.
+        nominal: Nominal diameter of a named fit [mm]. An ISO 286 fit without one has no gap until the bore is measured (`sized`).
     """
 
     gap_min: float | None = None
     gap_max: float | None = None
     within: float | None = None
     contact: Contact | None = None
+    name: str | None = None
+    nominal: float | None = None
+
+    @classmethod
+    def named(cls, name: str, nominal: float | None = None, *, within: float | None = None, contact: Contact = "allowed") -> Self:
+        """Return a fit by its name.
+
+        Args:
+            name: An ISO 286 fit such as "H7/g6" or "25 H7/g6", or "loose", "sliding" or "press" for printed parts.
+            nominal: Nominal diameter [mm]. Without it, the fit is measured against that of the bore.
+            within: As in the class.
+            contact: As in the class; a pin may touch its bore.
+
+        Raises:
+            PlanError: If there is no such fit, or if name and `nominal` state different diameters.
+
+        Example:
+            >>> Fit.named("H7/g6", 25).gap_min
+            0.0035
+        """
+        stated = nominal_in(name)
+        if stated is not None and nominal is not None and stated != nominal:
+            raise PlanError(f"The fit {name!r} states another diameter than {nominal:.6g} mm.")
+        fit = cls(None, None, within, contact, name, stated if nominal is None else nominal)
+        return fit if fit.nominal is None and name not in PRINTED_MM else fit.sized(fit.nominal)
+
+    def sized(self, nominal: float | None) -> Self:
+        """Return a named fit with the gap that its name stands for at a nominal diameter [mm]; any other fit as it is.
+
+        Raises:
+            PlanError: If ISO 286 has no such fit at this diameter.
+        """
+        if self.name is None:
+            return self
+        gap = named_gap(self.name, nominal)
+        return replace(self, gap_min=gap.least, gap_max=gap.largest, nominal=nominal)
 
 
 @dataclass(frozen=True)
@@ -230,7 +269,7 @@ def resolved_from(draft: Draft, findings: Findings) -> ResolvedPlan:
         parts=parts,
         joints=tuple(draft.joints),
         couplings=tuple(draft.couplings),
-        fits={name: Fit(low, high, within, contact) for name, (low, high, within, contact) in draft.fits.items()},
+        fits={name: Fit(*numbers) for name, numbers in draft.fits.items()},
         waivers=tuple(Waiver(parts, depth, reason) for parts, depth, reason in draft.waivers),
         materials=materials,
         ground=draft.plan.ground,

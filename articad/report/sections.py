@@ -286,7 +286,7 @@ def _fits(assembly: Assembly, checks: Json | None, known: set[str]) -> str:
             [
                 joint.name,
                 f"{joint.parent} – {joint.child}",
-                wanted if wanted != " … " else "not declared",
+                " ".join(filter(None, [fit.name, wanted if wanted != " … " else "" if fit.name else "not declared"])),
                 row.get("least_mm", gaps.get(frozenset({joint.parent, joint.child}))),
                 row.get("play_mm"),
                 fit.contact,

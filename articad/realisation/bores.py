@@ -1,0 +1,79 @@
+"""The pin in the bore of a joint, measured on their cylinders: diameters without the error of a mesh."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from articad.geometry.faces import Face
+from articad.interference.scene import Scene
+from articad.kinematics.joints import Joint, JointType
+from articad.realisation.sides import sides
+
+__all__ = ["TILT", "Bore", "along", "bore_of", "offset"]
+
+TILT = 1e-3  # rad: axes that differ by less are parallel
+_TURNING = (JointType.REVOLUTE, JointType.CYLINDRICAL, JointType.SCREW, JointType.SLIDER)
+
+
+class Bore(NamedTuple):
+    """A cylindrical pin in a cylindrical bore about the axis of a joint.
+
+    Attributes:
+        bore: Diameter of the bore [mm].
+        pin: Diameter of the pin [mm].
+        off: By how much half their difference may be off [mm].
+    """
+
+    bore: float
+    pin: float
+    off: float
+
+    @property
+    def play(self) -> float:
+        """Half the difference of the diameters [mm]."""
+        return (self.bore - self.pin) / 2
+
+
+def bore_of(scene: Scene, joint: Joint) -> Bore | None:
+    """Return the narrowest fit of cylinders about a joint's axis at rest, parts fixed to its parts included; None if there is none.
+
+    Only cylinders of B-reps count: where a mesh is the solid itself, its facets are what meets.
+    """
+    if joint.type not in _TURNING:
+        return None
+    found = []
+    faces = [[one.face for one in side if _is_about_axis(one.face) and scene.deflections[one.part] > 0] for side in sides(scene, joint)]
+    for first, second in ((faces[0], faces[1]), (faces[1], faces[0])):
+        for bore in (face for face in first if face.hollow):
+            for pin in (face for face in second if not face.hollow):
+                apart = offset(bore, pin)
+                (low, high), (start, end) = along(bore), along(pin)
+                if apart <= abs(bore.radius - pin.radius) + bore.off + pin.off and min(high, end) > max(low, start):
+                    found.append(Bore(2 * bore.radius, 2 * pin.radius, bore.off + pin.off))
+    return min(found, key=lambda one: abs(one.play), default=None)
+
+
+def along(face: Face) -> tuple[float, float]:
+    """Return the extent of a face along z [mm]."""
+    heights = face.corners[..., 2]
+    return float(heights.min()), float(heights.max())
+
+
+def offset(a: Face, b: Face) -> float:
+    """Return the distance of the axes of two cylinders about z [mm], in the middle of the second."""
+    height = sum(along(b)) / 2
+    return float(np.linalg.norm(_at(a, height) - _at(b, height)))
+
+
+def _at(face: Face, height: float) -> np.ndarray[tuple[int, ...], np.dtype[np.float64]]:
+    """Return the point of a cylinder's axis at a height above the origin, `(2,)` [mm]."""
+    return np.asarray((face.point + (height - face.point[2]) / face.axis[2] * face.axis)[:2])
+
+
+def _is_about_axis(face: Face) -> bool:
+    """Return whether a face is a cylinder parallel to z that the z axis passes through."""
+    if face.kind != "cylinder" or np.hypot(face.axis[0], face.axis[1]) > TILT:
+        return False
+    return float(np.linalg.norm(_at(face, sum(along(face)) / 2))) < face.radius
