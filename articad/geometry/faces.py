@@ -93,7 +93,7 @@ def _recognised(corners: FloatArray, twice: FloatArray) -> Face:
     weights = np.linalg.norm(twice, axis=1)
     kept = weights > 0
     total = float(weights.sum())
-    other = Face("other", corners.reshape(-1, 3).mean(axis=0), np.zeros(3), 0.0, False, np.inf, corners)
+    other = Face("other", corners.reshape(-1, 3).mean(axis=0), np.zeros(3), 0.0, hollow=False, off=np.inf, corners=corners)
     if total == 0:
         return other
     normals = twice[kept] / weights[kept, None]
@@ -146,7 +146,7 @@ def _cylinder(face: Face, points: FloatArray, normals: FloatArray, axis: FloatAr
         radius += float(change[4])
     flat = (points - centre) - np.outer((points - centre) @ axis, axis)
     off = float(np.abs(np.linalg.norm(flat, axis=1) - radius).max())
-    if not (off <= OFF_MM and 0 < radius) or float(np.abs(normals @ axis).max()) > _LINE_SPREAD * 10:
+    if not (off <= OFF_MM and radius > 0) or float(np.abs(normals @ axis).max()) > _LINE_SPREAD * 10:
         return None
     middles = face.corners.mean(axis=1) - centre
     outward = float(((middles - np.outer(middles @ axis, axis)) * _summed(face.corners)).sum())

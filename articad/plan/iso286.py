@@ -14,7 +14,7 @@ from typing import Final, NamedTuple
 
 from articad.errors import PlanError
 
-__all__ = ["GRADES", "LARGEST_MM", "SMALLEST_MM", "IsoFit", "Limits", "fit_limits", "limits", "parsed_fit", "tolerance"]
+__all__ = ["GRADES", "LARGEST_MM", "SMALLEST_MM", "Deviations", "IsoFit", "fit_limits", "limits", "parsed_fit", "tolerance"]
 
 SMALLEST_MM, LARGEST_MM = 1.0, 500.0
 GRADES: Final = range(5, 13)
@@ -91,7 +91,7 @@ _CLASS: Final = re.compile(r"([A-Z]{1,2}|[a-z]{1,2})(\d{1,2})")
 _FIT: Final = re.compile(r"(?:[⌀Øø]?\s*(\d+(?:\.\d+)?)\s+)?([A-Z]{1,2}\d{1,2})\s*/\s*([a-z]{1,2}\d{1,2})")
 
 
-class Limits(NamedTuple):
+class Deviations(NamedTuple):
     """Deviations of a size from its nominal size [mm]: `ei` and `es` of a shaft, `EI` and `ES` of a hole."""
 
     lower: float
@@ -119,7 +119,7 @@ def tolerance(grade: int, nominal: float) -> float:
     return _grade(grade, _checked(nominal)) / 1000
 
 
-def limits(name: str, nominal: float) -> Limits:
+def limits(name: str, nominal: float) -> Deviations:
     """Return the limit deviations of a tolerance class, such as H7 (a hole) or g6 (a shaft).
 
     Args:
@@ -136,9 +136,9 @@ def limits(name: str, nominal: float) -> Limits:
     letters, grade = found[1], int(found[2])
     width = _grade(grade, nominal)
     if letters in ("js", "JS"):
-        return Limits(-width / 2000, width / 2000)
+        return Deviations(-width / 2000, width / 2000)
     lower = _hole(letters, grade, nominal) if letters.isupper() else _shaft(letters, grade, nominal)
-    return Limits(lower / 1000, (lower + width) / 1000)
+    return Deviations(lower / 1000, (lower + width) / 1000)
 
 
 def parsed_fit(name: str) -> IsoFit | None:
@@ -147,7 +147,7 @@ def parsed_fit(name: str) -> IsoFit | None:
     return None if found is None else IsoFit(found[2], found[3], None if found[1] is None else float(found[1]))
 
 
-def fit_limits(name: str, nominal: float) -> Limits:
+def fit_limits(name: str, nominal: float) -> Deviations:
     """Return the least and largest clearance of a fit, as differences of diameters [mm]; negative is an interference.
 
     Args:
@@ -161,7 +161,7 @@ def fit_limits(name: str, nominal: float) -> Limits:
     if fit is None:
         raise PlanError(f"{name!r} is not a fit; write the class of the hole, a slash and that of the shaft, such as H7/g6.")
     hole, shaft = limits(fit.hole, nominal), limits(fit.shaft, nominal)
-    return Limits(round(hole.lower - shaft.upper, 7), round(hole.upper - shaft.lower, 7))
+    return Deviations(round(hole.lower - shaft.upper, 7), round(hole.upper - shaft.lower, 7))
 
 
 def _checked(nominal: float) -> float:

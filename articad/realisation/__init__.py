@@ -1,5 +1,4 @@
-"""Realisation: which surfaces of the parts make a joint, and which of its freedoms they remove.
+"""Realisation: which surfaces of the parts make a joint.
 
-`sides.py` collects the faces of both sides of a joint, `bores.py` finds a pin in its bore, `contacts.py` pairs faces that face each other,
-`room.py` computes how far these let the child move, `verdicts.py` judges each joint over its range.
+`sides.py` collects the faces of both sides of a joint, `bores.py` finds a pin in its bore and measures their diameters.
 """

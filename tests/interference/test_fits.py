@@ -79,7 +79,7 @@ def test_deflection_is_no_breach() -> None:
 
 
 @pytest.mark.parametrize("segments", [16, 24, 48, 96, 384])
-def test_a_close_fit_on_coarse_meshes_is_measured_to_their_tolerance_and_said_to_be_unresolved(segments: int) -> None:
+def test_a_close_fit_on_coarse_meshes_is_measured_on_diameters_or_said_to_be_unresolved(segments: int) -> None:
     """A true gap of 0.05 mm. Facets of the bore stand into it by r (1 − cos(π/n)), those of the pin fall back by as much."""
     sagitta = 10.05 * (1 - math.cos(math.pi / segments))
     turned = cylinder(10.0, 20, segments, phase=0.4)
@@ -89,7 +89,9 @@ def test_a_close_fit_on_coarse_meshes_is_measured_to_their_tolerance_and_said_to
     if row.play is not None:  # the pin's corners may stand in the bore's facets
         assert abs(row.play - 0.05) <= 2 * sagitta + 1e-3
     assert row.tolerance == pytest.approx(2 * sagitta)
-    assert ("W_FIT_UNRESOLVED" in report.findings.codes) == (row.verdict == "ok" and 2 * sagitta > 0.01)
+    if row.bore is not None:
+        assert row.play == pytest.approx(0.05, abs=1e-6)
+    assert ("W_FIT_UNRESOLVED" in report.findings.codes) == (row.verdict == "ok" and row.bore is None and 2 * sagitta > 0.01)
     if segments == 384:
         assert row.verdict == "ok"
         assert report.findings.codes == ()

@@ -83,9 +83,9 @@ def test_deviations_follow_the_standards_formulas() -> None:
         "g": lambda D: 2.5 * D**0.34,
     }
     below: dict[str, Callable[[float, float], float]] = {
-        "m": lambda D, s: grade(7, s) - grade(6, s),
-        "n": lambda D, s: 5 * D**0.34,
-        "p": lambda D, s: grade(7, s) + 2.5,
+        "m": lambda _, s: grade(7, s) - grade(6, s),
+        "n": lambda D, _: 5 * D**0.34,
+        "p": lambda _, s: grade(7, s) + 2.5,
         "s": lambda D, s: grade(8, s) + 2.5 if D <= 50 else grade(7, s) + 0.4 * D,
         "t": lambda D, s: grade(7, s) + 0.63 * D,
         "u": lambda D, s: grade(7, s) + D,
