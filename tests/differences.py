@@ -1056,6 +1056,8 @@ def rows_of(report: Mapping[str, Any]) -> list[Row]:
 def names_it(difference: Difference, row: Row) -> bool:
     """True when a row speaks of a difference: of its field, and of its element or of what that belongs to."""
     kind, name = difference.kind, difference.field
+    if kind == "key" and name == "exists" and re.fullmatch(r"key_\d+", difference.element) and re.search(r"<size>.*\bnkey\b", row.text):
+        return True  # MuJoCo makes keys without an element where the file states room for them
     words = (
         WORDS.get(f"{kind}.{name}") or WORDS.get(f"{kind}.*") or re.escape(kind if name in {"exists", "it"} else name.rpartition(".")[2])
     )
