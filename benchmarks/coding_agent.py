@@ -63,7 +63,7 @@ async def design(agent: Counting, name: str) -> None:
     plan = json.loads((folder / "plan.json").read_text())
     await agent.call("check_plan", design="mine", plan={**plan, "freedoms": plan["freedoms"] + 1})
     await agent.call("explain", code="E_DOF_MISMATCH")
-    await agent.call("check_plan", design="mine", changes={"freedoms": plan["freedoms"]})
+    await agent.call("edit_plan", design="mine", changes={"freedoms": plan["freedoms"]})
     await agent.call("docs", dialect="build123d", intent="round the vertical edges")
     for part in plan["parts"]:
         if "derive" not in part:

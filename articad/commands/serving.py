@@ -32,17 +32,24 @@ def _mcp(options: argparse.Namespace, _terminal: Terminal) -> Report:
 
 @command(
     "skill",
-    "Install or print the instructions that teach a coding agent to use articad.",
-    argument("action", choices=["install", "print"], help="install into a folder, or print to the terminal"),
-    argument("--dir", metavar="DIR", default=str(_SKILLS), help=f"folder of the skill ({_SKILLS})"),
+    "Print or install the instructions that teach a coding agent to use articad.",
+    argument(
+        "topic",
+        metavar="TOPIC",
+        nargs="?",
+        default="print",
+        help="print (the page), install, or a topic: a page behind it, or a type of the plan",
+    ),
+    argument("--dir", metavar="DIR", default=str(_SKILLS), help=f"for install: folder of the skill ({_SKILLS})"),
 )
 def _skill(options: argparse.Namespace, terminal: Terminal) -> Report:
-    from articad.mcp.skill import skill
+    from articad.mcp.skill import page, skill
     from articad.runs.run import write_atomically
 
-    if options.action == "print":
-        terminal.say(skill())
-        return {"schema": "articad.skill/1", "ok": True, "text": skill(), "findings": []}
+    if options.topic != "install":
+        text = skill() if options.topic == "print" else page(options.topic)
+        terminal.say(text)
+        return {"schema": "articad.skill/1", "ok": True, "text": text, "findings": []}
     file = Path(options.dir) / "SKILL.md"
     write_atomically(file, skill().encode())
     terminal.say(f"Written: {file}")

@@ -342,7 +342,8 @@ class Build123dKernel:
         if inspect is not None and "bbox_mm" in shape:
             found += inspect(connectors, numbers(shape["bbox_mm"], 2, 3))
         if probe is not None and shape.get("solids") == 1 and shape.get("valid") is True:
-            found += probe_findings(brief, self._probed(probe, brief, fingerprint(shape, said["connectors"]), own), ended=True, crashed="")
+            outcomes = self._probed(probe, brief, fingerprint(shape, said["connectors"]), own)
+            found += probe_findings(brief, outcomes, ended=True, crashed="", script=probe)
         findings = Findings(found)
         if not findings.ok:
             error = ContractError("\n".join(map(str, findings.errors)), findings=findings, parts=(part,))

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import ast
 import math
+import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
@@ -204,7 +206,7 @@ def _moved_finding(part: str, name: str, drift: Drift, diagonal: float, *, roll_
     return [_finding("W_CONNECTOR_DRIFT", part, message, hint, at=name, value=worst, limit=1.0, unit="tolerances")]
 
 
-def probe_findings(brief: Json, outcomes: Iterable[Json], *, ended: bool, crashed: str) -> Iterator[Finding]:
+def probe_findings(brief: Json, outcomes: Iterable[Json], *, ended: bool, crashed: str, script: str = "") -> Iterator[Finding]:
     """Yield the findings of the dimension probe.
 
     Args:
@@ -212,6 +214,7 @@ def probe_findings(brief: Json, outcomes: Iterable[Json], *, ended: bool, crashe
         outcomes: The worker's reports, one for each dimension.
         ended: Whether the probe ended regularly, though perhaps without all dimensions.
         crashed: The signal that ended it, or empty.
+        script: The part's script; it tells a dimension that it never names from one that it reads without effect.
     """
     name, reached = brief["name"], set()
     for outcome in outcomes:
@@ -223,8 +226,7 @@ def probe_findings(brief: Json, outcomes: Iterable[Json], *, ended: bool, crashe
         reached.add(dimension)
         step = "1" if dimension.endswith("_count") else "2 %"
         if kind == "unused":
-            message = f"Moving dimension {dimension!r} by {step} changes neither volume, centre, bounding box nor connectors."
-            yield _finding("W_DIMENSION_UNUSED", name, message, "Use it in the geometry instead of a literal number.", dimension=dimension)
+            yield _unused_finding(name, dimension, step, script)
         elif kind == "refused":
             message = f"The script refuses dimension {dimension!r} moved by {step} either way: {_why(outcome)}."
             hint = "Let the script accept what can be built, or derive the dependent dimensions in the plan."
@@ -244,6 +246,30 @@ def probe_findings(brief: Json, outcomes: Iterable[Json], *, ended: bool, crashe
     if missed and (ended or crashed):
         message = f"The probe ended before dimensions {', '.join(missed)} were moved."
         yield _finding("W_BUILD_UNCHECKED", name, message, "Simplify the script, so that it can be run once for each dimension.")
+
+
+def _unused_finding(part: str, dimension: str, step: str, script: str) -> Finding:
+    """Report a dimension without effect, and why: the script does not name it, or what it sizes does not show on the surface."""
+    message = f"Moving dimension {dimension!r} by {step} changes neither volume, centre, bounding box nor connectors."
+    if dimension in _named_in(script):
+        message += " The script names it, but what it sizes does not show: it is inside another body of the part, or cuts only air there."
+        hint = "Let what it sizes reach the surface, or remove it from the plan's dimensions."
+    else:
+        message += " The script does not name it."
+        hint = "Use it in the geometry, perhaps where a literal number stands, or remove it from the plan's dimensions."
+    return _finding("W_DIMENSION_UNUSED", part, message, hint, dimension=dimension)
+
+
+def _named_in(script: str) -> set[str]:
+    """Return the words within the string literals of a script: there a script names dimensions, also in expressions."""
+    try:
+        texts = [node.value for node in ast.walk(ast.parse(script)) if isinstance(node, ast.Constant) and isinstance(node.value, str)]
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        return set()
+    return {word for text in texts for word in _WORD.findall(text)}
+
+
+_WORD = re.compile(r"\w+")
 
 
 def _why(outcome: Json) -> str:

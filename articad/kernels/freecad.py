@@ -127,7 +127,9 @@ class FreeCADKernel(Build123dKernel):
                     raise script_failure(part, source, ran.report, _outcome(ran.ended), _crash(ran.ended), self.limits)
                 # written anew: the next process reads it from its front, this one from its end, and both must see the same
                 (job / DOCUMENT).write_bytes(harmless(read_bytes(job / DOCUMENT, MAX_DOCUMENT_BYTES)))
-                return self._judged_document(job, brief, said, folder or self._new_folder(), deflection, inspect, probe=probe)
+                return self._judged_document(
+                    job, brief, said, folder or self._new_folder(), deflection, inspect, probe=source if probe else None
+                )
             except PoisonedError as poison:
                 raise poisoned(part, source, str(poison)) from poison
 
@@ -160,7 +162,15 @@ class FreeCADKernel(Build123dKernel):
         return _Left(ended, read_lines(job / f"{program}.report"))
 
     def _judged_document(
-        self, job: Path, brief: Mapping[str, Any], said: Json, folder: Path, deflection: float, inspect: Inspect | None, *, probe: bool
+        self,
+        job: Path,
+        brief: Mapping[str, Any],
+        said: Json,
+        folder: Path,
+        deflection: float,
+        inspect: Inspect | None,
+        *,
+        probe: str | None,
     ) -> BuiltPart:
         """Open the document in a second process, measure its solid, and check both against the contract.
 
@@ -170,7 +180,7 @@ class FreeCADKernel(Build123dKernel):
         part, entries = str(brief["name"]), said.get("connectors")
         if not isinstance(entries, dict):
             raise PoisonedError("connectors are missing")
-        seconds = self.limits.probe_seconds if probe else 0.0
+        seconds = self.limits.probe_seconds if probe is not None else 0.0
         told = {"connectors": entries, "dimensions": brief["dimensions"], "seconds": seconds}
         looked = self._inside("probe", job, told, (DOCUMENT,), ("shape.bin",), seconds + self.limits.seconds)
         tree = looked.report[0] if looked.report else {}
@@ -185,10 +195,10 @@ class FreeCADKernel(Build123dKernel):
         found += solid_findings(brief, shape)
         if inspect is not None and "bbox_mm" in shape:
             found += inspect(connectors, numbers(shape["bbox_mm"], 2, 3))
-        if probe and not found:
+        if probe is not None and not found:
             outcomes = [line["probe"] for line in looked.report[1:] if isinstance(line.get("probe"), dict)]
             ended = any("probed" in line for line in looked.report)
-            found += probe_findings(brief, outcomes, ended=ended, crashed="" if ended else "SIGSEGV")
+            found += probe_findings(brief, outcomes, ended=ended, crashed="" if ended else "SIGSEGV", script=probe)
         findings = Findings(found)
         if not findings.ok:
             raise _breach(list(findings.errors), part)

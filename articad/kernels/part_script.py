@@ -131,7 +131,9 @@ def _plain_connectors(value: Any, problems: list[str]) -> dict[str, Json]:
         problems.append(f"The connectors are {_kind(value)}, not a dict of name to {{'o', 'z', 'x'}}")
         return {}
     connectors: dict[str, Json] = {}
-    for name, entry in value.items():
+    for name, returned in value.items():
+        planned = isinstance(returned, SimpleNamespace) and hasattr(returned, "o") and hasattr(returned, "z")
+        entry = {axis: getattr(returned, axis, None) for axis in ("o", "z", "x")} if planned else returned  # an entry of part.connectors
         if not isinstance(entry, Mapping) or not {"o", "z"} <= set(entry) <= {"o", "z", "x"}:
             found = f"a dict with {', '.join(map(repr, entry)) or 'nothing'}"[:200] if isinstance(entry, Mapping) else _kind(entry)
             problems.append(f"Connector {str(name)[:60]!r} is {found}; it must be a dict with 'o', 'z' and perhaps 'x'")

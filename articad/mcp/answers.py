@@ -8,14 +8,62 @@ from collections.abc import Sequence
 from typing import Any, Final
 
 from articad.aliases import Json
+from articad.mcp.workbench import condensed, gathered
 
 _DIGITS: Final = 6  # of a measured number
 _SHOWN: Final = 3  # places that are listed for a loss
+_NOTES: Final = 300  # characters of the notes on a plan
 
 
 def compact(answer: Any) -> str:
     """Return JSON without spaces, with numbers of 6 digits and without null values."""
     return json.dumps(_spare(answer), ensure_ascii=False, separators=(",", ":"))
+
+
+def verdict(report: Json) -> Json:
+    """Return the verdict on a plan: errors and warnings in full, notes as one line each, in at most 300 characters together."""
+    found = gathered(report)
+    grave = [finding for finding in found if finding.get("severity") != "info"]
+    answer = condensed(report | {"findings": grave}, detail=False)
+    for finding in answer["findings"]:
+        finding.pop("route", None)  # it is always the plan's
+    if not answer["findings"]:
+        del answer["findings"]
+    notes = [f"{finding['code']} {finding['where']}" for finding in found if finding.get("severity") == "info"]
+    while sum(len(note) + 3 for note in notes) > _NOTES and len(notes) > 1:
+        notes = [*notes[:-2], "… (detail: all)"] if notes[-1].startswith("…") else [*notes[:-1], "… (detail: all)"]
+    return answer | ({"notes": notes} if notes else {})
+
+
+def changed(before: Sequence[Json], report: Json) -> Json:
+    """Return the verdict on a plan after a change: findings that were not there before, and how many are gone and remain."""
+    known = {_key(finding) for finding in before}
+    after = gathered(report)
+    new = [finding for finding in after if _key(finding) not in known]
+    old = [finding for finding in after if _key(finding) in known]
+    remaining = [f"{finding['code']} {finding['where']}" for finding in old if finding.get("severity") != "info"]
+    answer = verdict(report | {"findings": new})
+    gone = len(known - {_key(finding) for finding in after})
+    return answer | {"gone": gone} | ({"remaining": remaining} if remaining else {})
+
+
+def _key(finding: Json) -> str:
+    return json.dumps([finding.get(key) for key in ("code", "where", "message")])
+
+
+def solids(report: Json) -> Json:
+    """Return a line for each part that was built: its mass and the size of its bounding box."""
+    rows = report.get("parts") or ({report["part"]: report} if "part" in report else {})
+    return {name: _solid(row) for name, row in rows.items()}
+
+
+def _solid(row: Json) -> str:
+    if "bbox_mm" not in row:
+        return "failed"
+    lower, upper = row["bbox_mm"]
+    size = " x ".join(f"{high - low:.5g}" for low, high in zip(lower, upper, strict=True))
+    mass = "" if row.get("mass_kg") is None else f", {row['mass_kg']:.4g} kg"
+    return f"{size} mm{mass}"
 
 
 def drivers(rows: Sequence[Json]) -> list[Json]:

@@ -1,11 +1,11 @@
-"""The server: fourteen tools over one folder of designs. Agents read the docstring of each tool, so it is short."""
+"""The server: tools over one folder of designs. Agents read the docstring of each tool, so it is short."""
 
 from __future__ import annotations
 
 import inspect
 import json
 import shutil
-from collections.abc import Awaitable, Callable, Mapping, Sequence
+from collections.abc import Awaitable, Callable, Sequence
 from functools import wraps
 from pathlib import Path
 from typing import Annotated, Any, Final, Literal
@@ -19,8 +19,8 @@ from articad.aliases import Json
 from articad.errors import ArticadError, ReadError, did_you_mean
 from articad.findings.codes import CODES
 from articad.mcp import answers
-from articad.mcp.skill import section
-from articad.mcp.workbench import BRIEF_BYTES, Tell, Workbench, condensed
+from articad.mcp.skill import page, section
+from articad.mcp.workbench import BRIEF_BYTES, Tell, Workbench, condensed, gathered
 from articad.processes import scratch
 from articad.runs.run import write_atomically
 
@@ -28,14 +28,13 @@ Tool = Callable[..., Awaitable[Any]]
 Dialect = Literal["build123d", "freecad"]
 Format = Literal["urdf", "mjcf", "freecad", "step", "glb", "3mf", "sdf", "usd"]
 
-_PROMPTS: Final = Path(__file__).parents[1] / "agents" / "prompts"
 _BUILD_S: Final = 600.0
 _PART_S: Final = 180.0
+_MORE_PARTS_S: Final = 30.0  # for each part beside the first
 _LOOK_S: Final = 300.0
 _GRACE_S: Final = 60.0  # beyond a certificate's own budget: for reading, and for the claim in progress
-_INLINED: Final = 2  # levels of nested types that a schema shows at once
 _PICTURES: Final = 4  # of one answer
-_PIXELS: Final = 512
+_PIXELS: Final = 320  # a host charges for the area: a third of 512 x 512, and joints can still be told apart
 
 Design = Annotated[str, Field(description="name of a design: a folder under the root")]
 Detail = Annotated[bool, Field(description="the whole report, up to 60 kB")]
@@ -50,39 +49,49 @@ class Tools:
 
     def __init__(self, root: str | Path) -> None:
         self.bench = Workbench(root)
+        self._known: dict[str, list[Json]] = {}  # design -> findings of its plan when it was checked last
+        self._plans: dict[str, bytes] = {}  # design -> the plan that was checked then
 
     async def schema(
         self,
         topic: Annotated[
-            str, Field(description='"plan", "part_script", "part_script_freecad", "room", "findings", or a type such as "joint"')
+            str,
+            Field(
+                description='a type: "plan", "part", "connector", "joint", "revolute", "coupling", "derive", "fit", ...; or a page: "script", "copies", "rest"'
+            ),
         ],
     ) -> str:
-        """How to write a plan or a part script, or the JSON schema of one of the plan's types."""
-        pages = {
-            "plan": lambda: section("The plan in one page"),
-            "part_script": lambda: section("Part scripts") + (_PROMPTS / "part_build123d.md").read_text(encoding="utf-8").split("{{")[0],
-            "part_script_freecad": lambda: (_PROMPTS / "part_freecad.md").read_text(encoding="utf-8").split("# Example")[0],
-            "room": lambda: section("Room"),
-            "findings": lambda: section("Findings"),
-        }
-        return pages[topic]() if topic in pages else _json_schema(topic)
+        """Fields of the plan's types, or a page on part scripts, copies, couplings, rest poses, room or findings."""
+        return page(
+            "script_freecad" if topic == "part_script_freecad" else topic.removeprefix("part_") if topic == "part_script" else topic
+        )
 
     async def check_plan(
         self,
         design: Design,
-        plan: Annotated[dict[str, Any] | None, Field(description="the whole plan; without it the kept one is checked")] = None,
-        changes: Annotated[
-            dict[str, Any] | None,
-            Field(description='instead of a plan: new values by address, {"joints.lid.angle_deg": [0, 90]}; null removes, a new name adds'),
-        ] = None,
+        plan: Annotated[dict[str, Any] | None, Field(description="the whole plan; without it, the plan.json that is there")] = None,
+        detail: Detail = False,
     ) -> Json:
         """Keep a plan and say everything that is wrong with it, before any geometry exists."""
         if plan is not None:
             self.bench.write_plan(design, plan)
-        if changes:
-            self.bench.amend_plan(design, changes)
-        folder = self.bench.design(design)
-        return condensed(await self.bench.run("check", str(folder / "plan.json"), seconds=_PART_S), detail=True)
+        report = await self._checked(design)
+        return condensed(report, detail=True) if detail else answers.verdict(report)
+
+    async def edit_plan(
+        self,
+        design: Design,
+        changes: Annotated[
+            dict[str, Any],
+            Field(description='new values by address, {"joints.lid.angle_deg": [0, 90]}; null removes, a new name adds'),
+        ],
+    ) -> Json:
+        """Change a plan at the addresses that findings name, check it, and return only findings that are new."""
+        before = self._known.get(design) if self._current(design) else None
+        if before is None:
+            before = gathered(await self._checked(design))
+        self.bench.amend_plan(design, changes)
+        return answers.changed(before, await self._checked(design))
 
     async def build_part(
         self, context: Context, design: Design, part: str, script: str | None = None, kernel: Dialect = "build123d", detail: Detail = False
@@ -94,6 +103,31 @@ class Tools:
         report = await self.bench.run("part", str(folder), part, "--kernel", kernel, seconds=_PART_S, tell=_teller(context))
         return condensed(report, detail=detail, keep=("volume_mm3", "mass_kg", "bbox_mm"))
 
+    async def build_parts(
+        self,
+        context: Context,
+        design: Design,
+        files: Annotated[
+            dict[str, str] | None,
+            Field(
+                description='scripts in files under the root, by part: {"crank,rocker": "bar.py"}; without it, all scripts of the design'
+            ),
+        ] = None,
+        kernel: Dialect = "build123d",
+        detail: Detail = False,
+    ) -> Json:
+        """Build several parts, or all, side by side, and hold them to their contracts."""
+        folder = self.bench.design(design)
+        names: list[str] = []
+        for parts, file in (files or {}).items():
+            script = self.bench.read(file).decode(errors="replace")
+            for name in (part.strip() for part in parts.split(",")):
+                self.bench.write_script(design, name, script, kernel)
+                names.append(name)
+        seconds = _PART_S + _MORE_PARTS_S * len(names or self.bench.parts(design))
+        report = await self.bench.run("part", str(folder), *names, "--kernel", kernel, seconds=seconds, tell=_teller(context))
+        return condensed(report if detail else report | {"parts": answers.solids(report)}, detail=detail, keep=("parts",))
+
     async def build(self, context: Context, design: Design, kernel: Dialect = "build123d", detail: Detail = False) -> Json:
         """Build all parts, assemble them, check interference at rest, write URDF and MJCF."""
         folder = self.bench.design(design)
@@ -103,9 +137,10 @@ class Tools:
             keep=("freedoms", "mass_kg", "drivers", "deepest_overlap_mm", "files"),
         )
 
-    async def check(self, design: Design, detail: Detail = False) -> Json:
+    async def check(self, context: Context, design: Design, detail: Detail = False) -> Json:
         """Check interference at rest again, pair by pair."""
-        return condensed(await self.bench.run("check", str(self.bench.target(design)), seconds=_BUILD_S), detail=detail)
+        report = await self.bench.run("check", str(self.bench.target(design)), seconds=_BUILD_S, tell=_teller(context))
+        return condensed(report, detail=detail)
 
     async def certify(
         self,
@@ -123,55 +158,89 @@ class Tools:
         report = await self.bench.run("certify", run, *words, seconds=budget_s + _GRACE_S, tell=_teller(context))
         return condensed(report if detail else report | {"proven": answers.proof(report)}, detail=detail, keep=("proven",))
 
+    async def verify_certificate(self, context: Context, design: Design, detail: Detail = False) -> Json:
+        """Have an independent checker read the certificate of a design, and say what it covers and what it leaves out."""
+        run = self.bench.target(design)
+        report = await self.bench.run("verify-certificate", str(run), seconds=_BUILD_S, tell=_teller(context))
+        return condensed(report, detail=detail, keep=("faults", "stated"))
+
+    async def adopt(
+        self,
+        context: Context,
+        source: Annotated[str, Field(description="a URDF, MJCF, SDF, FCStd or STEP file under the root")],
+        design: Annotated[str, Field(description="name of the new design")],
+        detail: Detail = False,
+    ) -> Json:
+        """Turn a file into a new design: a plan, part scripts and meshes, which build at once."""
+        folder = self.bench.design(design, new=True)
+        report = await self.bench.run(
+            "adopt", str(self.bench.target(source)), "--out", str(folder), seconds=_BUILD_S, tell=_teller(context)
+        )
+        return condensed(report, detail=detail, keep=("parts", "joints", "freedoms"))
+
     async def audit(
-        self, design: Annotated[str, Field(description="a design, or a URDF, MJCF or FCStd file under the root")], detail: Detail = False
+        self,
+        context: Context,
+        design: Annotated[str, Field(description="a design, or a URDF, MJCF or FCStd file under the root")],
+        detail: Detail = False,
     ) -> Json:
         """Say what is wrong with a file, whoever made it: structure, units, inertias, collision, overlap, motion, engines."""
-        report = await self.bench.run("audit", str(self.bench.target(design)), seconds=_BUILD_S)
+        report = await self.bench.run("audit", str(self.bench.target(design)), seconds=_BUILD_S, tell=_teller(context))
         return condensed(
             report if detail else report | {"engines": answers.engines(report)}, detail=detail, keep=("engines", "links", "joints")
         )
 
-    async def sim(self, design: Annotated[str, Field(description="a design, or a file under the root")], detail: Detail = False) -> Json:
+    async def sim(
+        self, context: Context, design: Annotated[str, Field(description="a design, or a file under the root")], detail: Detail = False
+    ) -> Json:
         """Run it in simulators: does it load, settle, reach the ends of its joints, and keep its energy?"""
-        report = await self.bench.run("sim", str(self.bench.target(design)), seconds=_BUILD_S)
+        report = await self.bench.run("sim", str(self.bench.target(design)), seconds=_BUILD_S, tell=_teller(context))
         return condensed(report if detail else report | {"engines": answers.trials(report)}, detail=detail, keep=("engines",))
 
     async def render(
         self,
+        context: Context,
         design: Annotated[str, Field(description="a design, or a file under the root")],
         views: Sequence[str] = ("iso",),
         motion: Annotated[str | None, Field(description="a joint: its motion as a filmstrip instead of views")] = None,
         parts: Annotated[Sequence[str], Field(description="shown in full; the others are faded")] = (),
         explode: float = 0.0,
         overlaps: bool = False,
+        pixels: Annotated[int, Field(ge=64, le=1024, description="width and height of a picture")] = _PIXELS,
     ) -> list[Any]:
         """Pictures: views (iso, iso_left, iso_back, iso_below, front, back, left, right, top, bottom), or a joint's motion."""
         with scratch.folder("pictures") as folder:
             words = ["--motion", motion] if motion else ["--views", ",".join(views[:_PICTURES]), "--explode", repr(explode)]
             words += [*(["--parts", ",".join(parts)] if parts and not motion else []), *(["--overlaps"] if overlaps and not motion else [])]
             place = self.bench.target(design)
-            report = await self.bench.run("render", str(place), *words, "--size", str(_PIXELS), "--out", folder, seconds=_LOOK_S)
+            words += ["--size", str(pixels), "--out", folder]
+            report = await self.bench.run("render", str(place), *words, seconds=_LOOK_S, tell=_teller(context))
             files = [Path(file) for file in report.get("files", ()) if file.endswith(".png")][:_PICTURES]
             pictures = [Image(data=file.read_bytes(), format="png") for file in files]
         return pictures or [json.dumps(condensed(report, detail=False))]
 
     async def export(
-        self, design: Design, formats: Sequence[Format] = ("urdf", "mjcf", "step"), strict: bool = False, detail: Detail = False
+        self,
+        context: Context,
+        design: Design,
+        formats: Sequence[Format] = ("urdf", "mjcf", "step"),
+        strict: bool = False,
+        detail: Detail = False,
     ) -> Json:
         """Write a built design in other formats; says what each cannot hold."""
         words = ["--to", ",".join(formats), *(["--strict"] if strict else [])]
-        report = await self.bench.run("export", str(self.bench.target(design)), *words, seconds=_BUILD_S)
+        report = await self.bench.run("export", str(self.bench.target(design)), *words, seconds=_BUILD_S, tell=_teller(context))
         exports = {
             name: {"file": self._shown(entry.get("main", "")), "lost": answers.losses(entry.get("rows", ()))}
             for name, entry in report.get("exports", {}).items()
         }
         return condensed(report if detail else report | {"exports": exports}, detail=detail, keep=("exports",))
 
-    async def convert(self, source: str, target: str, strict: bool = False, detail: Detail = False) -> Json:
+    async def convert(self, context: Context, source: str, target: str, strict: bool = False, detail: Detail = False) -> Json:
         """Convert a URDF, MJCF or FCStd file under the root into another format; the ending says which."""
         words = [str(self.bench.target(source)), str(self.bench.path(target)), *(["--strict"] if strict else [])]
-        return condensed(await self.bench.run("convert", *words, seconds=_BUILD_S), detail=detail, keep=("main", "rows"))
+        report = await self.bench.run("convert", *words, seconds=_BUILD_S, tell=_teller(context))
+        return condensed(report, detail=detail, keep=("main", "rows"))
 
     async def edit_parameters(self, context: Context, design: Design, values: dict[str, float], kernel: Dialect = "build123d") -> Json:
         """Change parameters of the plan, build again, and say which parts changed and which are provably the same."""
@@ -217,6 +286,19 @@ class Tools:
         found = [str(entry) for entry in entries]
         found += [f"{snippet.title}\n{snippet.script}" for snippet in store.examples(intent) if example]
         return "\n".join(found)[:BRIEF_BYTES]
+
+    async def _checked(self, design: str) -> Json:
+        """Check the plan of a design, and remember what was found."""
+        folder = self.bench.design(design)
+        content = self.bench.read(f"{design}/plan.json")
+        report = await self.bench.run("check", str(folder / "plan.json"), seconds=_PART_S)
+        self._known[design], self._plans[design] = gathered(report), content
+        return report
+
+    def _current(self, design: str) -> bool:
+        """Return whether the plan of a design is the one that was checked last."""
+        self.bench.design(design)
+        return self._plans.get(design) == self.bench.read(f"{design}/plan.json")
 
     async def _built(self, context: Context, folder: Path, kernel: str) -> Json:
         out = folder / "run"
@@ -287,26 +369,3 @@ def _teller(context: Context) -> Tell:
         await context.report_progress(seconds, None, message)
 
     return tell
-
-
-def _json_schema(topic: str) -> str:
-    from articad.plan.json_schema import json_schema  # noqa: PLC0415 - pydantic's models, for this alone
-
-    whole = json_schema()
-    definitions: Mapping[str, Any] = whole.get("$defs", {})
-    matching = {name: form for name, form in definitions.items() if topic.lower().replace("_", "") in name.lower()}
-    if not matching:
-        raise ToolError(f"There is no type like {topic!r}; there are {', '.join(sorted(definitions))}, and the page 'plan'.")
-    return json.dumps(_inlined(matching, definitions, _INLINED), separators=(",", ":"))[:BRIEF_BYTES]
-
-
-def _inlined(form: Any, definitions: Mapping[str, Any], depth: int) -> Any:
-    """Replace references to types by the types themselves, down to a number of levels."""
-    if isinstance(form, list):
-        return [_inlined(entry, definitions, depth) for entry in form]
-    if not isinstance(form, dict):
-        return form
-    name = str(form.get("$ref", "")).rpartition("/")[2]
-    if name in definitions and depth:
-        return _inlined(definitions[name], definitions, depth - 1)
-    return {key: _inlined(value, definitions, depth) for key, value in form.items() if key not in {"title", "discriminator"}}

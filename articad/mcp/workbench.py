@@ -129,6 +129,14 @@ class Workbench:
         write_atomically(file, content)
         return file
 
+    def parts(self, design: str) -> list[str]:
+        """Return the names of a design's parts that need a script, as far as the plan can be read."""
+        try:
+            plan = json.loads(self.read(f"{design}/plan.json"))
+            return [str(part["name"]) for part in plan["parts"] if "derive" not in part]
+        except (ValueError, TypeError, KeyError):
+            return []
+
     def target(self, name: str) -> Path:
         """Return the path for a name: the run of a design if it was built, else the design, else a file under the root."""
         path = self.path(name)
@@ -174,6 +182,8 @@ class Workbench:
         """Wait in a thread for the end of a command, and report from time to time that it is running."""
         work = asyncio.ensure_future(asyncio.to_thread(child.finish))
         waited = 0.0
+        if tell is not None:
+            await tell(waited, f"{command}: started")
         while True:
             done, _ = await asyncio.wait([work], timeout=_TOLD_EVERY_S)
             if done:

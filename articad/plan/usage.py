@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import re
 from collections import defaultdict
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -18,13 +19,12 @@ from articad.plan.schema import DerivedJoint
 
 SMALLEST_MM = 0.5  # a smaller assembly is in metres or inches
 LARGEST_MM = 1e6  # a kilometre
-_SUITABLE = {  # a type that is not listed accepts any kind
+_SUITABLE = {  # a type that is not listed accepts any kind: a pin, a hub or a bracket is fixed on an axis as well as on a face
     JointType.REVOLUTE: ("hinge_axis", "shaft_axis", "bore_axis", "gear_axis"),
     JointType.SLIDER: ("slide_axis", "shaft_axis", "bore_axis"),
     JointType.CYLINDRICAL: ("shaft_axis", "bore_axis", "slide_axis"),
     JointType.SCREW: ("thread_axis", "shaft_axis", "bore_axis"),
     JointType.BALL: ("ball_centre",),
-    JointType.FIXED: ("mount_face",),
 }
 _AXLE_KIND = "shaft_axis"  # an axle carries several parts on one axis
 _CHIRAL = re.compile(
@@ -87,12 +87,20 @@ def _shared(draft: Draft, ends: Ends) -> list[Finding]:
         if spec is None or len(joints) == 1 or spec.kind == _AXLE_KIND:
             continue
         message = f"Joints {' and '.join(joints)} share connector {name}.{connector}."
-        hint = f"This is right for parts on one axle (kind '{_AXLE_KIND}' says so); otherwise declare a connector for each joint."
+        on_axle = all(_AXLE_KIND in _SUITABLE.get(type_, (_AXLE_KIND,)) for type_ in _types(draft, joints))
+        hint = "Declare a connector for each joint."
+        if on_axle:
+            hint = f"Set its kind to '{_AXLE_KIND}' if these parts are on one axle; otherwise declare a connector for each joint."
         where = f"parts.{name}.connectors.{connector}"
         found.append(
             Finding(code="W_DUP_CONNECTOR_USE", where=where, message=message, hint=hint, parts=(name,), value=len(joints), limit=1)
         )
     return found
+
+
+def _types(draft: Draft, joints: Sequence[str]) -> set[JointType]:
+    """Return the types of the named joints, as far as they are known."""
+    return {JointType(line.root.type) for line in draft.lines if line.name in joints}
 
 
 def _kinds(draft: Draft) -> list[Finding]:
@@ -119,16 +127,19 @@ def _an(noun: str) -> str:
 
 
 def _placed_by_joint(draft: Draft) -> list[Finding]:
-    return [
-        Finding(
-            code="I_REST_AUTO",
-            where=f"joints.{joint}",
-            message=f"{part} is placed by joint {joint!r}, so that joint's rest check is empty.",
-            hint=f"Give {part} a rest_pose with numbers if the check is wanted.",
-            parts=(part,),
-        )
-        for joint, part in draft.auto_joints.items()
-    ]
+    """Return one note for all parts that joints place."""
+    joints, parts = list(draft.auto_joints), tuple(draft.auto_joints.values())
+    if not joints:
+        return []
+    where = f"joints.{joints[0]}"
+    message = f"{parts[0]} is placed by joint {joints[0]!r}, so that joint's rest check is empty."
+    hint = f"Give {parts[0]} a rest_pose with numbers if the check is wanted."
+    if len(joints) > 1:
+        where = "joints"
+        placed = ", ".join(f"{part} ({joint})" for joint, part in draft.auto_joints.items())
+        message = f"{len(parts)} parts are placed by their joints, so the rest checks of these joints are empty: {placed}."
+        hint = "Give a part a rest_pose with numbers if the check is wanted."
+    return [Finding(code="I_REST_AUTO", where=where, message=message, hint=hint, parts=parts)]
 
 
 def _chiral(draft: Draft) -> list[Finding]:

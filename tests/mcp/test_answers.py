@@ -6,8 +6,8 @@ import json
 import math
 from typing import Any
 
-from articad.mcp.answers import compact, drivers, engines, losses, proof, trials
-from articad.mcp.server import _json_schema
+from articad.mcp.answers import changed, compact, drivers, engines, losses, proof, trials, verdict
+from articad.mcp.skill import page
 
 
 def test_answers_have_no_spaces_no_nulls_and_six_digits() -> None:
@@ -65,8 +65,36 @@ def test_a_loss_is_told_once_with_how_often_and_where() -> None:
     assert losses(rows) == ["mass and inertia (5: parts.p0, parts.p1, parts.p2 …)", "limits (1: joints.a)"]
 
 
-def test_a_schema_holds_the_types_that_it_refers_to() -> None:
-    told = _json_schema("derived_part")
-    assert '"count"' in told
-    assert '"normal"' in told
-    assert len(told) <= 6000
+def test_the_fields_of_a_derivation_come_with_those_that_it_contains() -> None:
+    told = page("derive")
+    assert "`count`" in told
+    assert "`normal`" in told
+
+
+def _finding(code: str, where: str, severity: str) -> dict[str, Any]:
+    return {"code": code, "where": where, "severity": severity, "message": f"{code} at {where}.", "hint": "Mend it.", "route": "design"}
+
+
+def test_the_answer_on_a_clean_plan_is_short_however_many_notes_it_has() -> None:
+    for count in (0, 1, 3, 50):
+        report = {"ok": True, "findings": [_finding("I_REDUNDANT", f"joints.closing_joint_{n}", "info") for n in range(count)]}
+        answer = verdict(report)
+        assert len(compact(answer)) <= 400
+        assert answer["ok"]
+        assert len(answer.get("notes", [])) >= min(count, 3)
+
+
+def test_errors_and_warnings_are_never_shortened_to_notes() -> None:
+    report = {
+        "ok": False,
+        "findings": [_finding("E_COUNT", "a", "error"), _finding("W_DRIVER", "b", "warning"), _finding("I_X", "c", "info")],
+    }
+    answer = verdict(report)
+    assert [(finding["code"], finding["hint"]) for finding in answer["findings"]] == [("E_COUNT", "Mend it."), ("W_DRIVER", "Mend it.")]
+    assert answer["notes"] == ["I_X c"]
+
+
+def test_a_change_returns_what_is_new_and_names_what_remains() -> None:
+    old, kept, new = _finding("E_COUNT", "a", "error"), _finding("W_DRIVER", "b", "warning"), _finding("E_FIT", "c", "error")
+    answer = changed([old, kept], {"ok": False, "findings": [kept, new]})
+    assert ([finding["code"] for finding in answer["findings"]], answer["gone"], answer["remaining"]) == (["E_FIT"], 1, ["W_DRIVER b"])
