@@ -298,9 +298,21 @@ def _range_findings(c: Coordinate, lower: float, upper: float, lower_reason: str
         why = whys.get(code, f"the {reason}")
         how = "was followed over" if code == "E_NOT_FOLLOWED" else "reaches"
         message = f"driver {c.name!r} declared {declared} but the loop {how} only {reached}: {why} at {shown(value, c.unit)}."
-        hint = f"Set these limits: {reached}." if math.isfinite(lower) and math.isfinite(upper) else _one_limit(lower, upper, c.unit)
+        finite = math.isfinite(lower) and math.isfinite(upper)
+        widen = f", or widen those of {reason.removeprefix('limit of ')}" if code == "E_LOOP_LIMIT" else ""
+        hint = f"Set its limits to {_inside(lower, upper, c.unit)}{widen}." if finite else _one_limit(lower, upper, c.unit)
         found.append(Finding(code=code, where=f"joints.{c.joint}", message=message, hint=hint, value=value, unit=c.unit))
     return found
+
+
+def _inside(lower: float, upper: float, unit: str) -> str:
+    """Return a range in degrees or mm, rounded inwards to 3 decimals: a driver that is given it stays within its reach."""
+    scale, name = (math.degrees(1.0), "deg") if unit == "rad" else (1.0, unit)
+    low, high = math.ceil(1e3 * scale * lower - _ROUNDING) / 1e3, math.floor(1e3 * scale * upper + _ROUNDING) / 1e3
+    return f"[{low + 0.0:.15g}, {high + 0.0:.15g}] {name}"
+
+
+_ROUNDING = 1e-6  # of a thousandth: the noise of the last bits moves no limit
 
 
 def _one_limit(lower: float, upper: float, unit: str) -> str:

@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 import copy
+import re
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, Final
 
 from articad.aliases import Json
 from articad.errors import ReadError, did_you_mean
+
+_INDEX: Final = re.compile(r"\[(\d+)\]")
+_OPTIONAL: Final = ("rest_pose", "fit", "dimensions")  # objects that a plan may leave out
 
 
 def amended(plan: Json, changes: Mapping[str, Any]) -> Json:
@@ -16,14 +20,15 @@ def amended(plan: Json, changes: Mapping[str, Any]) -> Json:
     Args:
         plan: As in `plan.json`; it is not modified.
         changes: New values by address: `{"joints.lid.angle_deg": [0, 90]}`. Entries of lists are addressed by their names, or
-            by number where they have none. A value of None removes; a name that a list does not have adds an entry.
+            by number where they have none, as `o.2` or `o[2]`. A value of None removes; a name that a list does not have adds an entry. An
+            optional object that is left out, such as `rest_pose`, is begun.
 
     Raises:
         ReadError: If there is nothing at an address.
     """
     plan = copy.deepcopy(plan)
     for address, value in changes.items():
-        steps = address.split(".")
+        steps = _INDEX.sub(r".\1", address).split(".")
         holder: Any = plan
         for depth, step in enumerate(steps[:-1]):
             holder = _entered(holder, step, ".".join(steps[: depth + 1]))
@@ -34,8 +39,8 @@ def amended(plan: Json, changes: Mapping[str, Any]) -> Json:
 def _entered(holder: Any, step: str, address: str) -> Any:
     if isinstance(holder, list):
         return holder[_index(holder, step, address)]
-    if isinstance(holder, dict) and step in holder:
-        return holder[step]
+    if isinstance(holder, dict) and (step in holder or step in _OPTIONAL):
+        return holder.setdefault(step, {})
     raise _lost(address, step, list(holder) if isinstance(holder, dict) else [])
 
 
@@ -49,6 +54,8 @@ def _put(holder: Any, step: str, value: Any, address: str) -> None:
         holder.append({"name": step} | value)
     elif isinstance(holder, list):
         index = _index(holder, step, address)
+        if isinstance(value, dict) and step in _names(holder):
+            value = {"name": step} | value
         holder[index : index + 1] = [] if value is None else [value]
     else:
         raise _lost(address, step, [])

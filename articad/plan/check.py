@@ -165,7 +165,7 @@ def _range_findings(draft: Draft, found: list[Finding]) -> list[Finding]:
                         code="W_PARAMETER_RANGE",
                         where=f"parameters.{parameter.name}.{name}",
                         message=f"At {parameter.name} = {bound:.6g}, its {name}, the plan breaks{more}: {finding.code} {finding.where}: {finding.message}",
-                        hint=f"Narrow the {name} of {parameter.name}, or correct the numbers so that they follow it. There: {finding.hint}",
+                        hint=f"Narrow the {name} of {parameter.name}, or replace numbers by expressions that follow it. At this value alone: {finding.hint}",
                         parts=finding.parts,
                         value=bound,
                         limit=value,

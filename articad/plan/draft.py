@@ -220,7 +220,9 @@ class Draft:
                     continue
                 known = [spec.name for spec in part.connector_specs]
                 if connector not in known:
-                    hint = f"{did_you_mean(connector, known).strip()} Connectors of {part_name}: {', '.join(known) or 'none'}.".strip()
+                    hint = f"{did_you_mean(connector, known).strip()} Connectors of {part_name}: {', '.join(known)}.".strip()
+                    if not known:
+                        hint = f"Declare connector {connector!r} on {part_name}, which has none."
                     message = f"Joint {form.name!r} names connector {connector!r} which part {part_name!r} does not have."
                     self.evaluation.report("E_CONNECTOR_UNKNOWN", f"joints.{form.name}.{side}", message, hint, parts=(part_name,))
 

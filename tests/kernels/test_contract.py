@@ -160,6 +160,23 @@ def test_a_dimension_that_changes_nothing_is_told(build: Build) -> None:
 
     assert found.codes == ("W_DIMENSION_UNUSED", "W_DIMENSION_UNUSED")
     assert [finding.where for finding in found] == ["parts.lug.dimensions.dead", "parts.lug.dimensions.dead_count"]
+    assert all("does not name it" in finding.message for finding in found)
+
+
+def test_a_dimension_that_another_body_swallows_is_not_called_a_literal_number(build: Build) -> None:
+    body = "return Box(d['w'], 10, 10) + Cylinder(1, d['inner']), {}"
+    (finding,) = build(body, dimensions={"w": 10.0, "inner": 3.0}, probe=True).findings
+    assert (finding.code, finding.where) == ("W_DIMENSION_UNUSED", "parts.lug.dimensions.inner")
+    assert "The script names it" in finding.message
+    assert "literal" not in f"{finding.message} {finding.hint}"
+    assert build(
+        "return Box(d['w'], 10, 10) + Cylinder(1, 30 * d['inner']), {}", dimensions={"w": 10.0, "inner": 3.0}, probe=True
+    ).findings.ok
+
+
+def test_a_script_may_return_the_planned_connectors(build: Build) -> None:
+    part = build("return Box(10, 10, 10), part.connectors", connectors={"a": frame((1, 2, 3))})
+    assert part.connectors["a"].frame.translation.tolist() == [1, 2, 3]
 
 
 @pytest.mark.parametrize(

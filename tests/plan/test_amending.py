@@ -40,6 +40,16 @@ def test_entries_are_added_replaced_and_removed_by_name_or_number(plan: dict[str
     assert amended(more, {"materials.lead": None})["materials"] == plan["materials"]
 
 
+def test_addresses_are_taken_as_findings_write_them_and_optional_objects_are_begun(plan: dict[str, Any]) -> None:
+    more = amended(
+        plan, {"parts.cabinet.connectors.0.o[2]": 7, "parts.cabinet.rest_pose.at": [1, 2, 3], "materials.lacquer": {"density_kg_m3": 1}}
+    )
+
+    assert more["parts"][0]["connectors"][0]["o"][2] == 7
+    assert next(part for part in more["parts"] if part["name"] == "cabinet")["rest_pose"] == {"at": [1, 2, 3]}
+    assert {"name": "lacquer", "density_kg_m3": 1} in more["materials"]
+
+
 @pytest.mark.parametrize(
     ("address", "words"),
     [("joints.hinge_lefd.angle_deg", "hinge_left"), ("partz.cabinet.name", "parts"), ("name.x", "nothing"), ("joints.99.name", "nothing")],
