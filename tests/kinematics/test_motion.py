@@ -238,7 +238,7 @@ def test_dead_points_end_a_range_to_the_last_digit_and_give_the_limits_to_set() 
     found = reached.findings[0]
     assert found.code == "E_DEAD_POINT"
     assert "declared [-90.000°, 90.000°] but the loop reaches only [-72.542°, 72.542°]" in found.message
-    assert "[-72.542°, 72.542°]" in found.hint
+    assert "[-72.542, 72.542] deg" in found.hint
 
 
 def test_an_endless_crank_with_dead_points_just_follows_the_loop() -> None:

@@ -410,7 +410,7 @@ def test_the_advice_on_a_shared_connector_suits_both_of_its_joints(kind: str, fi
     plan["parts"].append({**plan["parts"][1], "name": "e"})
     plan["joints"].append({"name": "k", "type": second, "parent": "a.c", "child": "e.c", **FORMS[second]})
     (finding,) = check(plan).of("W_DUP_CONNECTOR_USE")
-    before = said(check(plan).of("W_CONNECTOR_KIND"))
+    before = said(list(check(plan).of("W_CONNECTOR_KIND")))
     for after in followed(finding, plan):
         found = check(after)
         assert not found.of("W_DUP_CONNECTOR_USE")
