@@ -66,7 +66,7 @@ def _joints(schema: Json, name: str) -> list[str]:
     lines = [f"joint, all types: `type`, {_fields(shared, first['required'], schema)}", "By type:"]
     lines += [_own(each, forms[each], _COMMON, schema) for each in types]
     if name == "joint":
-        lines += [_object("derived joint", schema["$defs"]["DerivedJoint"], schema), _object("fit", schema["$defs"]["Fit"], schema)]
+        lines.append(_object("derived joint", schema["$defs"]["DerivedJoint"], schema))
     return lines
 
 
