@@ -131,17 +131,18 @@ def test_a_run_that_was_forced_to_build_anew_holds_the_kernels_files_too(chest: 
         assert {"part.brep", "part.step", "part.npz"} <= {file.name for file in (tmp_path / "run" / "parts" / name).iterdir()}
 
 
-def test_build_prints_parts_verdict_deepest_overlap_and_place(chest: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_build_prints_parts_what_is_proven_and_what_to_open(chest: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert cli.main(["build", str(chest), "--out", str(tmp_path / "out")]) == 0
     told = capsys.readouterr().out
     for words in (
         "box",
         "48000.0",
         "chest: 2 parts, 1 joint, 1 freedom",
-        "Interference: ok",
-        "Largest overlap depth: 0 mm",
+        "No interference at rest (1 nearby pair: ",
+        "Motion not proven: articad certify",
         "chest.urdf",
         "Run: ",
+        "Open: articad show",
     ):
         assert words in told
 

@@ -16,8 +16,8 @@ if TYPE_CHECKING:
 
 @command("build", "Build a plan's parts, assemble, check and export them.", argument("plan", metavar="PLAN_DIR"), *BUILD_ARGUMENTS)
 def _build(options: argparse.Namespace, terminal: Terminal) -> Report:
-    from articad.commands.steps import plan_in
-    from articad.runs.record import record_assembly, record_certificate, record_checks, record_export, record_page, record_pictures
+    from articad.commands.steps import build_cache, draw, plan_in
+    from articad.runs.record import record_assembly, record_certificate, record_checks, record_export, record_page
     from articad.runs.run import RunRequest, open_or_create, require_place
 
     plan = plan_in(options.plan)
@@ -26,25 +26,29 @@ def _build(options: argparse.Namespace, terminal: Terminal) -> Report:
     choices = {"task": "build", "kernel": options.kernel or plan.kernel, "parameters": dict(options.parameters)}
     request = RunRequest(prompt=plan.name, options=choices)
     require_place(request, options.out)
-    assembly = assembled(plan, scripts, options, terminal)
-    with open_or_create(request, options.out) as run, terminal.progress("Finishing") as tell:
-        run.save_plan(plan.dumps(), 0)
-        record_assembly(run, assembly)
-        with stage(tell, "checks of rest and motion" if options.verify == "sampled" else "checks at rest"):
-            checks = assembly.check(motion=options.verify == "sampled")
-        record_checks(run, checks)
-        if options.verify == "certified":
-            with stage(tell, "proof of motion"):
-                record_certificate(run, assembly.certify())
-        for name in options.formats:
-            with stage(tell, f"export {name}"):
-                record_export(run, assembly, name)
+    cache = build_cache(options)
+    assembly = assembled(plan, scripts, options, terminal, cache=cache)
+    with open_or_create(request, options.out) as run:
+        with terminal.progress("Finishing") as tell:
+            run.save_plan(plan.dumps(), 0)
+            record_assembly(run, assembly)
+            with stage(tell, "checks of rest and motion" if options.verify == "sampled" else "checks at rest"):
+                checks = assembly.check(motion=options.verify == "sampled")
+            record_checks(run, checks)
+            if options.verify == "certified":
+                with stage(tell, "proof of motion"):
+                    record_certificate(run, assembly.certify())
+            for name in options.formats:
+                with stage(tell, f"export {name}"):
+                    record_export(run, assembly, name)
+            if options.pictures:
+                with stage(tell, "page"):
+                    record_page(run, assembly)
+        report = reported(run, terminal)
         if options.pictures:
-            with stage(tell, "pictures"):
-                record_pictures(run, assembly)
-            with stage(tell, "page"):
-                record_page(run, assembly)
-    return reported(run, terminal)
+            terminal.out.flush()  # the results can be read while pictures are drawn
+            draw(run, assembly, options, terminal, cache)
+    return report
 
 
 @command(
@@ -80,5 +84,5 @@ def _check(options: argparse.Namespace, terminal: Terminal) -> Report:
         checks = assembly.check(motion=options.motion)
     report = checks.to_json()
     summaries.print_findings(report["findings"], terminal)
-    summaries.print_checks(report, terminal)
+    summaries.print_statements(report, None, terminal, moves=bool(assembly.drivers), certify=f"articad certify {options.target}")
     return report

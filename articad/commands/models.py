@@ -192,7 +192,7 @@ def _told(run: Run, options: argparse.Namespace, terminal: Terminal, budget: Bud
     except BudgetError as error:  # the run is finished; only the vectors of a provider are missing
         terminal.say(f"Not remembered: {error.spent}")
     if options.pictures:
-        draw(run, terminal)
+        _draw(run, options, terminal)
     report = reported(run, terminal)
     if "edit" in report:
         print_edit(report["edit"], terminal)
@@ -202,6 +202,19 @@ def _told(run: Run, options: argparse.Namespace, terminal: Terminal, budget: Bud
         return report
     terminal.say(f"Model: {_spent(budget)}.")
     return report | {"model": {"calls": budget.calls, "tokens": budget.tokens, "cost_usd": None if budget.cost_unknown_of else budget.cost}}
+
+
+def _draw(run: Run, options: argparse.Namespace, terminal: Terminal) -> None:
+    """Write the page and the pictures of a finished run; its parts come from the cache."""
+    from articad.kernels.kernel import BuildCache
+    from articad.runs.record import assembly_of, record_page
+    from articad.runs.run import Run
+
+    cache = BuildCache()
+    with Run.open(run.path) as opened:
+        assembly = assembly_of(opened, cache=cache, sandbox=sandbox_level(options))
+        record_page(opened, assembly)
+        draw(opened, assembly, options, terminal, cache)
 
 
 def _spent(budget: Budget) -> str:

@@ -10,6 +10,7 @@ from articad.commands.command import argument, closest
 # The names of `articad.formats.FORMATS`, which --help must not load.
 FORMATS: Final = ("urdf", "mjcf", "freecad", "step", "glb", "3mf", "sdf", "usd", "plan")
 USUAL: Final = ("urdf", "mjcf")
+_SMALLEST_PICTURE, _LARGEST_PICTURE = 16, 8192  # pixels of a side
 
 
 def formats(text: str) -> tuple[str, ...]:
@@ -59,6 +60,17 @@ def positive(text: str) -> int:
     if not (text.isdecimal() and int(text) >= 1):
         raise argparse.ArgumentTypeError(f"{text!r} is not a whole number of at least 1")
     return int(text)
+
+
+def extent(text: str) -> tuple[int, int]:
+    """Read `512` or `1280x720`: a width and a height of at least 16."""
+    sides = text.lower().split("x")
+    found = (int(sides[0]), int(sides[-1])) if len(sides) <= len("wh") and all(map(str.isdecimal, sides)) else (0, 0)
+    if not all(_SMALLEST_PICTURE <= side <= _LARGEST_PICTURE for side in found):
+        raise argparse.ArgumentTypeError(
+            f"{text!r} is not a size such as 512 or 1280x720, each side from {_SMALLEST_PICTURE} to {_LARGEST_PICTURE} pixels"
+        )
+    return found
 
 
 OUT = argument("--out", metavar="DIR", help="where to write; by default a new folder under runs/")

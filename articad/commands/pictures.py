@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from articad.commands.command import argument, command
-from articad.commands.options import SANDBOX, positive
+from articad.commands.options import SANDBOX, extent
 from articad.commands.steps import loaded
 
 if TYPE_CHECKING:
@@ -26,18 +26,30 @@ if TYPE_CHECKING:
         "--explode", metavar="SHARE", type=float, default=0.0, help="move parts apart by this share of their distance from the middle"
     ),
     argument("--overlaps", action="store_true", help="draw overlaps of parts in red, on top of everything"),
-    argument("--size", metavar="PIXELS", type=positive, default=512, help="width and height of a picture (512)"),
+    argument(
+        "--size", metavar="PIXELS|WxH", type=extent, default=(512, 512), help="width and height of a picture, such as 512 or 1280x720 (512)"
+    ),
+    argument("--clean", action="store_true", help="a product picture: materials, soft light and shadow, no labels"),
+    argument("--transparent", action="store_true", help="a clean picture without background; its shadow stays"),
     argument("--renderer", choices=["embree", "pyvista"], default="embree", help="pyvista is smoother but needs OpenGL"),
     argument("--out", metavar="DIR", default="pictures", help="where to write (pictures)"),
     SANDBOX,
 )
 def _render(options: argparse.Namespace, terminal: Terminal) -> Report:
+    from articad.errors import ArticadError
     from articad.render.files import write_motion, write_views
 
+    clean = options.clean or options.transparent
+    if clean and options.renderer != "embree":
+        raise ArticadError("--clean and --transparent draw with --renderer embree only.", stage="render")
+    if not clean and options.size[0] != options.size[1]:
+        raise ArticadError("A picture with labels is square: give --size one number, or add --clean.", stage="render")
+    if options.transparent and options.motion:
+        raise ArticadError("An animation has a background: leave out --transparent, or draw --views.", stage="render")
     assembly = loaded(options.target, options, terminal)
     out = Path(options.out)
     if options.motion:
-        files = write_motion(assembly, options.motion, out, size=options.size)
+        files = write_motion(assembly, options.motion, out, size=options.size, clean=clean)
     else:
         only = options.parts.split(",") if options.parts else None
         files = write_views(
@@ -50,6 +62,8 @@ def _render(options: argparse.Namespace, terminal: Terminal) -> Report:
             explode=options.explode,
             renderer=options.renderer,
             show_overlaps=options.overlaps,
+            clean=clean,
+            transparent=options.transparent,
         )
     for file in files:
         terminal.say(str(file))

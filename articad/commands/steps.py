@@ -20,8 +20,10 @@ if TYPE_CHECKING:
     from articad.runs.run import Run
 
 
-def assembled(plan: AssemblyPlan, scripts: Path, options: argparse.Namespace, terminal: Terminal) -> Assembly:
-    """Build the parts with progress, and assemble them."""
+def assembled(
+    plan: AssemblyPlan, scripts: Path, options: argparse.Namespace, terminal: Terminal, *, cache: BuildCache | None = None
+) -> Assembly:
+    """Build the parts with progress, and assemble them; `cache` instead of `build_cache(options)`."""
     from articad.assembly import Assembly
     from articad.kernels.choice import kernel_named
 
@@ -31,7 +33,7 @@ def assembled(plan: AssemblyPlan, scripts: Path, options: argparse.Namespace, te
             scripts,
             kernel=kernel_named(options.kernel or plan.kernel, sandbox=sandbox_level(options)),
             jobs=options.jobs,
-            cache=build_cache(options),
+            cache=cache or build_cache(options),
             progress=tell,
             parameters=dict(options.parameters),
         )
@@ -102,17 +104,14 @@ def loaded(target: str, options: argparse.Namespace, terminal: Terminal) -> Asse
         return read(target, sandbox=sandbox_level(options), progress=tell)
 
 
-def draw(run: Run, terminal: Terminal) -> None:
-    """Draw the result of a finished run; its parts come from the cache."""
-    from articad.runs.record import assembly_of, record_page, record_pictures
-    from articad.runs.run import Run
+def draw(run: Run, assembly: Assembly, options: argparse.Namespace, terminal: Terminal, cache: BuildCache) -> None:
+    """Draw the pictures of a run whose results are on disk, with progress; pictures that cannot be drawn fail nothing."""
+    from articad.runs.drawing import record_pictures
 
-    with Run.open(run.path) as opened, terminal.progress("Finishing") as tell:
-        assembly = assembly_of(opened)
-        with stage(tell, "pictures"):
-            record_pictures(opened, assembly)
-        with stage(tell, "page"):
-            record_page(opened, assembly)
+    with terminal.progress("Drawing") as tell, stage(tell, "pictures"):
+        missing = record_pictures(run, assembly, cache=cache, sandbox=sandbox_level(options))
+    if missing is not None:
+        terminal.say(f"Pictures: not all were drawn ({missing}); everything else is complete.")
 
 
 def sandbox_level(options: argparse.Namespace) -> Literal["strict", "weak"]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import shlex
 from collections import Counter
 from collections.abc import Iterable, Mapping
 from pathlib import Path
@@ -20,19 +21,37 @@ _NEAREST = 3  # pairs, or coordinates that follow, that are shown without -v
 
 
 def print_run(report: Report, terminal: Terminal) -> None:
-    """Print the result of a finished run, its verdicts, and its folder."""
+    """Print a finished run: what was made, what is proven, its findings, its files, and what to open."""
     print_assembly(report["assembly"], terminal)
-    print_checks(report["checks"], terminal)
+    run, moves = report["run"], bool(report["assembly"]["drivers"])
+    print_statements(report["checks"], report.get("certificate"), terminal, moves=moves, certify=f"articad certify {shlex.quote(run)}")
+    if "certificate" in report:
+        print_proof(report["certificate"], terminal)
     print_findings([*report["assembly"]["findings"], *report["checks"]["findings"], *report["findings"]], terminal)
     if "certificate" in report:
-        print_certificate(report["certificate"], terminal)
+        print_findings(report["certificate"]["findings"], terminal)
     if "verdict" in report:
         print_verdict(report["verdict"], report["checks"], terminal)
     print_exports(report["exports"], terminal)
-    page = Path(report["run"]) / PAGE_FILE
+    terminal.say(f"Run: {run}")
+    page = Path(run) / PAGE_FILE
     if is_file(page, root=page.parent):
-        terminal.say(f"Report: {page} ({page.stat().st_size / 1e6:.2f} MB)")
-    terminal.say(f"Run: {report['run']}")
+        terminal.say(f"Open: articad show {shlex.quote(run)} ({page}, {page.stat().st_size / 1e6:.2f} MB)")
+    else:
+        terminal.say(f"Open: articad show {shlex.quote(run)}")
+
+
+def print_statements(
+    checks: Report | None, certificate: Report | None, terminal: Terminal, *, moves: bool = True, certify: str = "articad certify RUN"
+) -> None:
+    """Print what is clear, proven, sampled or not checked."""
+    from articad.interference.statements import statements
+
+    said = statements(checks, certificate, moves=moves, certify=certify)
+    together = 1 if checks is None else 2  # rest and motion are one line
+    terminal.say(" ".join(each.sentence for each in said[:together]))
+    for each in said[together:]:
+        terminal.say(each.sentence)
 
 
 def print_assembly(report: Report, terminal: Terminal) -> None:
@@ -52,53 +71,22 @@ def print_assembly(report: Report, terminal: Terminal) -> None:
     )
 
 
-def print_checks(report: Report, terminal: Terminal) -> None:
-    """Print the verdicts on the pairs of parts, their strengths, and the deepest overlap."""
-    pairs = report["pairs"]
-    told = _counts(pair["verdict"] for pair in pairs)
-    known = _counts(pair["strength"]["kind"].replace("_", " ") for pair in pairs)
-    near = (
-        f"{counted_things(len(pairs), 'pair', 'pairs')} of adjacent parts ({told}; {known})"
-        if pairs
-        else "no two parts are close to each other"
-    )
-    terminal.say(f"Interference: {'ok' if report['ok'] else 'NOT ok'}; {near}.")
-    deepest = max(pairs, key=lambda pair: pair["depth_mm"], default=None)
-    if deepest is not None and deepest["depth_mm"] > 0:
-        terminal.say(
-            f"Largest overlap depth: {deepest['depth_mm']:.6g} mm ({' and '.join(deepest['parts'])}; {deepest['allowed_mm']:.6g} mm allowed)."
-        )
-    else:
-        terminal.say("Largest overlap depth: 0 mm.")
-    print_fits(report, terminal)
-
-
-def print_fits(report: Report, terminal: Terminal) -> None:
-    """Print the verdicts on the declared fits, and their strength over the motion."""
-    rows = report.get("fits", [])
-    if rows:
-        verdicts, known = (
-            _counts(row["verdict"].replace("_", " ") for row in rows),
-            _counts(row["strength"]["kind"].replace("_", " ") for row in rows),
-        )
-        terminal.say(f"Fits: {counted_things(len(rows), 'fit', 'fits')} ({verdicts}; over the motion {known}).")
-
-
 def print_certificate(report: Report, terminal: Terminal) -> None:
     """Print what is proven, what is not, and the free range of each joint."""
-    known = _counts(pair["strength"]["kind"].replace("_", " ") for pair in report["pairs"])
-    verdict = "ok" if report["ok"] else "NOT ok"
-    terminal.say(f"Motion: {verdict}; {report['covers']}")
-    terminal.say(f"{counted_things(len(report['pairs']), 'case', 'cases').capitalize()} ({known or 'nothing moves'}).")
+    print_statements(None, report, terminal)
+    print_proof(report, terminal)
+    print_findings(report["findings"], terminal)
+
+
+def print_proof(report: Report, terminal: Terminal) -> None:
+    """Print the numbers of a certificate: free ranges, least clearances, and how followers move."""
     for free in report["ranges"]:
         if free["free"] != free["declared"]:
             terminal.say(
                 f"  {free['joint']}: free in [{free['free'][0]:.6g}, {free['free'][1]:.6g}], declared {free['declared']} (rad, mm)"
             )
-    print_fits(report, terminal)
     print_clearances(report.get("clearances", []), terminal)
     print_follows(report.get("follows", []), terminal)
-    print_findings(report["findings"], terminal)
 
 
 def print_clearances(rows: list[Report], terminal: Terminal) -> None:
@@ -173,18 +161,21 @@ def print_review(report: Report, terminal: Terminal) -> None:
 
 
 def print_exports(exports: Mapping[str, Report], terminal: Terminal) -> None:
-    """Print each export's main file, its size, all its losses, and its writer's findings."""
+    """Print each export's main file, its size, one line for each kind of loss (all rows with -v), and its writer's findings."""
     for name, export in exports.items():
-        losses = counted_things(len(export["rows"]), "loss", "losses")
         meshes = sum(size for path, size in export["files"].items() if path.endswith((".stl", ".obj")))
         weight = f", {sum(export['files'].values()) / 1e6:.2f} MB" + (f" with {meshes / 1e6:.2f} MB of meshes" if meshes else "")
-        terminal.say(f"{name.upper()}: {export['main']} ({counted_things(len(export['files']), 'file', 'files')}{weight}, {losses})")
+        terminal.say(f"{name.upper()}: {export['main']} ({counted_things(len(export['files']), 'file', 'files')}{weight})")
         alike: dict[str, list[Report]] = {}
         for row in export["rows"]:
             alike.setdefault(row["lost"], []).append(row)
         for lost, rows in alike.items():
-            others = f" and {len(rows) - 1} more" if len(rows) > 1 else ""
-            terminal.say(f"  {rows[0]['where']}{others}: written as {rows[0]['kept']}; lost: {lost}")
+            if terminal.verbose:
+                for row in rows:
+                    terminal.say(f"  {row['where']}: written as {row['kept']}; lost: {lost}")
+                continue
+            others = f" and {len(rows) - 1} more, -v lists them" if len(rows) > 1 else ""
+            terminal.say(f"  lost: {lost} ({rows[0]['where']}{others})")
         print_findings(export.get("findings", []), terminal)
 
 

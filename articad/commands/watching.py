@@ -136,6 +136,7 @@ def _rebuild(folder: Path, options: argparse.Namespace, terminal: Terminal, serv
     """Rebuild what has changed; errors are printed here and shown on the page, which otherwise stays as it was."""
     from articad.commands.steps import assembled
     from articad.errors import ArticadError
+    from articad.interference.statements import about_rest
     from articad.plan.schema import AssemblyPlan
     from articad.report import Documents, report_page
 
@@ -152,5 +153,5 @@ def _rebuild(folder: Path, options: argparse.Namespace, terminal: Terminal, serv
         return
     server.version, server.message = version, ""
     terminal.findings(checks.findings)
-    terminal.say(f"{plan.name}: built in {time.monotonic() - started:.1f} s, interference {'ok' if checks.ok else 'NOT ok'}.")
+    terminal.say(f"{plan.name}: built in {time.monotonic() - started:.1f} s. {about_rest(checks.to_json()).sentence}")
     terminal.out.flush()

@@ -91,9 +91,17 @@ class Camera:
         rows = -(offset @ self.up) / self.mm_per_pixel + self.height / 2
         return np.stack([columns, rows], axis=-1)
 
-    def plane_points(self) -> FloatArray:
-        """Return the points where the pixels' rays pass the picture plane through `centre`, relative to `centre`, `(height * width, 3)`."""
-        x = (np.arange(self.width) + 0.5 - self.width / 2) * self.mm_per_pixel
-        y = -(np.arange(self.height) + 0.5 - self.height / 2) * self.mm_per_pixel
+    def plane_points(self, rows: slice = slice(None), columns: slice = slice(None)) -> FloatArray:
+        """Return the points where the pixels' rays pass the picture plane through `centre`, relative to `centre`.
+
+        Args:
+            rows: Rows of the picture; all by default.
+            columns: Columns of the picture; all by default.
+
+        Returns:
+            Row by row, `(rows * columns, 3)` [mm].
+        """
+        x = ((np.arange(self.width) + 0.5 - self.width / 2) * self.mm_per_pixel)[columns]
+        y = (-(np.arange(self.height) + 0.5 - self.height / 2) * self.mm_per_pixel)[rows]
         grid = x[None, :, None] * self.right + y[:, None, None] * self.up
         return grid.reshape(-1, 3)

@@ -24,6 +24,7 @@ from articad.render.overlaps import overlap_meshes
 from articad.render.raycast import cast
 from articad.render.scene import DrawnScene, Section, scene_of
 from articad.render.shade import overlaid, reduced, shade
+from articad.render.studio import framed, studio
 
 if TYPE_CHECKING:
     from articad.assembly import Assembly
@@ -45,6 +46,7 @@ _CONTEXT = 1.5  # …with this share of their own size around them
 _BETWEEN = (226, 228, 231)
 _GAP = 6  # pixels between the pictures of a sheet
 _GIF_MILLISECONDS = 60
+_FINE = 0.1  # pixels: deviation of the meshes of clean pictures
 
 
 def picture(
@@ -115,13 +117,7 @@ def render_views(
         axes: Draw the joints' axes.
         renderer: As in `picture`.
     """
-    poses = _poses(assembly, assembly.mechanism.rest if q is None else q)
-    marks = [*highlights, *(overlap_meshes(assembly.parts, poses) if show_overlaps else ())]
-    scene = scene_of(assembly.parts, poses, joints=assembly.joints, only=only, highlights=marks)
-    if explode:
-        scene = scene.exploded(explode)
-    cut = Section.parse(section, scene.bounds) if isinstance(section, str) else section
-    scene = DrawnScene(scene.items, scene.axes, cut)
+    scene = _prepared(assembly, q=q, only=only, section=section, explode=explode, highlights=highlights, show_overlaps=show_overlaps)
     beside = room_beside(scene) if labels == "aside" else 0
     return {
         view: picture(
@@ -137,11 +133,97 @@ def render_views(
     }
 
 
-def render_part(
-    part: Part, views: Sequence[str] = DEFAULT_VIEWS, *, size: int = DEFAULT_SIZE, supersample: int = 2
+def render_clean(
+    assembly: Assembly,
+    views: Sequence[str] = DEFAULT_VIEWS,
+    *,
+    q: FloatArray | None = None,
+    size: tuple[int, int] = (DEFAULT_SIZE, DEFAULT_SIZE),
+    only: Sequence[str] | None = None,
+    section: str | Section | None = None,
+    explode: float = 0.0,
+    show_overlaps: bool = False,
+    transparent: bool = False,
 ) -> dict[str, Image.Image]:
-    """Draw one part in its own frame from several sides."""
+    """Draw product pictures: declared materials under soft light, on the ground, without labels.
+
+    Args:
+        assembly: What to draw.
+        views: Keys of `articad.render.VIEWS`; each is framed by itself.
+        q: Configuration; the rest pose by default.
+        size: Width and height of each picture [pixels].
+        only: Parts shown in full; the others are faded.
+        section: As in `render_views`.
+        explode: As in `render_views`.
+        show_overlaps: Draw common volumes of parts in red, over everything.
+        transparent: Leave out the background; the shadow stays, as a translucent dark.
+
+    Returns:
+        RGB pictures by view, RGBA if they are transparent.
+    """
+    scene = _prepared(assembly, q=q, only=only, section=section, explode=explode, show_overlaps=show_overlaps)
+    pictures = {}
+    for view in views:
+        camera = framed(scene, Camera.fit(view, scene.bounds, width=size[0], height=size[1]))
+        pictures[view] = studio(scene.simplified(_FINE * camera.mm_per_pixel), camera, transparent=transparent)
+    return pictures
+
+
+def clean_motion(
+    assembly: Assembly, joint: str, *, view: str = "iso", frames: int = FRAMES, size: tuple[int, int] = (DEFAULT_SIZE, DEFAULT_SIZE)
+) -> list[Image.Image]:
+    """Draw the frames of `motion_frames` as product pictures, with one camera and one ground for all of them."""
+    _, q = motion_frames(assembly, joint, frames)
+    return clean_frames(assembly, q, view=view, size=size)
+
+
+def clean_frames(
+    assembly: Assembly, q: FloatArray, *, view: str = "iso", size: tuple[int, int] = (DEFAULT_SIZE, DEFAULT_SIZE), margin: float = 1.1
+) -> list[Image.Image]:
+    """Draw configurations as product pictures, with one camera and one ground for all of them.
+
+    Args:
+        assembly: What to draw.
+        q: Configurations, `(n, nq)`.
+        view: A key of `articad.render.VIEWS`.
+        size: Width and height of each picture [pixels].
+        margin: Size of the picture relative to everything that is shown in it.
+    """
+    scenes = [scene_of(assembly.parts, _poses(assembly, row)) for row in q]
+    bounds = _envelope(scenes)
+    everything = np.concatenate([item.vertices for scene in scenes for item in scene.items if len(item.mesh.vertices)])
+    camera = framed(scenes[0], Camera.fit(view, bounds, width=size[0], height=size[1]), margin=margin, also=everything)
+    light = [scene.simplified(_FINE * camera.mm_per_pixel) for scene in scenes]
+    return [studio(scene, camera, floor=float(bounds[0][2])) for scene in light]
+
+
+def _prepared(
+    assembly: Assembly,
+    *,
+    q: FloatArray | None,
+    only: Sequence[str] | None,
+    section: str | Section | None,
+    explode: float,
+    highlights: Sequence[TriMesh] = (),
+    show_overlaps: bool = False,
+) -> DrawnScene:
+    """Return the scene of one pose, exploded and cut."""
+    poses = _poses(assembly, assembly.mechanism.rest if q is None else q)
+    marks = [*highlights, *(overlap_meshes(assembly.parts, poses) if show_overlaps else ())]
+    scene = scene_of(assembly.parts, poses, joints=assembly.joints, only=only, highlights=marks)
+    if explode:
+        scene = scene.exploded(explode)
+    cut = Section.parse(section, scene.bounds) if isinstance(section, str) else section
+    return DrawnScene(scene.items, scene.axes, cut)
+
+
+def render_part(
+    part: Part, views: Sequence[str] = DEFAULT_VIEWS, *, size: int = DEFAULT_SIZE, supersample: int = 2, coarse: float = 0.0
+) -> dict[str, Image.Image]:
+    """Draw one part in its own frame from several sides; `coarse` as in `render_motion`."""
     scene = scene_of({part.name: part}, {part.name: SE3.identity()})
+    if coarse:
+        scene = scene.simplified(coarse * _pixel(scene.bounds, size))
     return {
         view: picture(
             scene,
@@ -200,6 +282,7 @@ def render_motion(
     size: int = 320,
     supersample: int = 2,
     axes: bool = True,
+    coarse: float = 0.0,
 ) -> list[Image.Image]:
     """Draw the frames of `motion_frames`, all with one camera that shows the whole motion.
 
@@ -211,10 +294,17 @@ def render_motion(
         size: Width and height of each picture [pixels].
         supersample: Rays per pixel in each direction.
         axes: Draw the joint's axis.
+        coarse: Draw simplified meshes with smooth normals, at most this many pixels away from the real ones; 0 draws the meshes themselves.
     """
     captions, q = motion_frames(assembly, joint, frames)
     scenes = _motion_scenes(assembly, joint, q)
-    camera = Camera.fit(view or best_view(scenes), _shown(scenes), width=size, height=size)
+    if coarse:
+        whole = _pixel(scenes[0].bounds, size)
+        rough = [scene.simplified(coarse * whole) for scene in scenes]
+        near = _pixel(_shown(rough), size)
+        scenes = rough if near >= whole else [scene.simplified(coarse * near) for scene in scenes]
+    shown = _shown(scenes)
+    camera = Camera.fit(view or best_view(scenes), shown, width=size, height=size)
     return [
         picture(scene, camera, supersample=supersample, labels=False, axes=axes, title=caption)
         for scene, caption in zip(scenes, captions, strict=True)
@@ -310,6 +400,11 @@ def png(image: Image.Image) -> bytes:
     stream = io.BytesIO()
     image.save(stream, format="PNG", optimize=False)
     return stream.getvalue()
+
+
+def _pixel(bounds: FloatArray, size: int) -> float:
+    """Return a width that no pixel of a picture of this box falls short of by much [mm]."""
+    return float(np.ptp(bounds, axis=0).max()) / size
 
 
 def _range(assembly: Assembly, driver: Coordinate) -> tuple[float, float]:

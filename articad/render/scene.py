@@ -14,6 +14,7 @@ from articad.connectors.se3 import SE3
 from articad.geometry.mesh import TriMesh
 from articad.geometry.part import Part
 from articad.kinematics.joints import Joint
+from articad.render.simplify import simplified
 
 Manner = Literal["solid", "faded", "highlight"]
 
@@ -28,6 +29,8 @@ class DrawnMesh:
         T_ground: Pose of that frame.
         color: "#rrggbb".
         manner: solid; faded for context; highlight is drawn over everything in front of it.
+        smooth: Whether normals are interpolated over smooth surfaces; otherwise each triangle is drawn flat.
+        material: The declared material, for its look.
     """
 
     name: str
@@ -35,6 +38,8 @@ class DrawnMesh:
     T_ground: SE3
     color: str
     manner: Manner = "solid"
+    smooth: bool = False
+    material: str = ""
 
     @cached_property
     def vertices(self) -> FloatArray:
@@ -106,6 +111,10 @@ class DrawnScene:
             return np.array([[-0.5] * 3, [0.5] * 3])
         return np.array([np.min([c.min(axis=0) for c in corners], axis=0), np.max([c.max(axis=0) for c in corners], axis=0)])
 
+    def simplified(self, tolerance: float) -> DrawnScene:
+        """Return the scene with lighter meshes within `tolerance` [mm] of its own, drawn with smooth normals."""
+        return replace(self, items=tuple(replace(item, mesh=simplified(item.mesh, tolerance), smooth=True) for item in self.items))
+
     def exploded(self, factor: float) -> DrawnScene:
         """Return the scene with every item moved away from the middle by `factor` times its own distance from it."""
         middle = self.bounds.mean(axis=0)
@@ -138,7 +147,7 @@ def scene_of(
         return "solid" if only is None or name in only else "faded"
 
     items = [
-        DrawnMesh(name, shape.mesh, poses[name] @ shape.frame, shape.color or part.color, manner(name))
+        DrawnMesh(name, shape.mesh, poses[name] @ shape.frame, shape.color or part.color, manner(name), material=part.material or "")
         for name, part in parts.items()
         for shape in part.visuals or part.collisions
     ]

@@ -90,7 +90,7 @@ def _header(assembly: Assembly, documents: Documents) -> str:
     counts = {"part": len(assembly.parts), "joint": len(assembly.joints), "freedom": assembly.mechanism.mobility}
     told = ", ".join(f"{count} {thing}{'' if count == 1 else 's'}" for thing, count in counts.items()) + f", {total_mass(assembly)}"
     return (
-        f'<header><h1>{escape(assembly.name)}</h1><span class="quiet">{escape(told)}</span>{badges(documents)}'
+        f'<header><h1>{escape(assembly.name)}</h1><span class="quiet">{escape(told)}</span>{badges(documents, moves=bool(assembly.drivers))}'
         '<button type="button" id="theme" aria-label="light or dark">◐</button></header>\n'
     )
 

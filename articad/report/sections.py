@@ -13,6 +13,7 @@ from urllib.parse import quote
 from articad.aliases import Json
 from articad.assembly import Assembly
 from articad.findings import measured_against
+from articad.interference.statements import statements
 from articad.report.tables import Cell, Html, html_table
 
 _LONGEST_TEXT = 20_000  # characters of one message: a page is read, and the run keeps the rest
@@ -76,18 +77,21 @@ def all_sections(assembly: Assembly, documents: Documents) -> str:
     )
 
 
-def badges(documents: Documents) -> str:
-    """Return the verdicts in a few words."""
-    found = []
+def badges(documents: Documents, *, moves: bool = True) -> str:
+    """Return what is proven, sampled or not checked, in a few words each; `moves`: whether any joint can move."""
+    told = [(each.badge, each.state, each.sentence) for each in statements(documents.checks, documents.certificate, moves=moves)]
     for report, good, bad in (
-        (documents.checks, "no interference", "interference"),
-        (documents.certificate, "motion proven", "motion not proven"),
         (documents.verdict, "accepted", "not accepted"),
         (documents.audit, "audit passed", "audit failed"),
     ):
         if report is not None:
-            found.append(f'<span class="badge {"good" if report["ok"] else "bad"}">{good if report["ok"] else bad}</span>')
-    return "".join(found)
+            told.append((good, "good", "") if report["ok"] else (bad, "bad", ""))
+    errors = sum(finding["severity"] == "error" for finding in documents.findings)
+    if errors:
+        told.append((f"{errors} error{'' if errors == 1 else 's'}", "bad", "See the findings."))
+    return "".join(
+        f'<span class="badge {state}" title="{escape(sentence or badge)}">{escape(badge)}</span>' for badge, state, sentence in told
+    )
 
 
 def _section(title: str, content: str, *, opened: bool = False) -> str:

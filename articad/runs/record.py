@@ -25,7 +25,6 @@ from articad.runs.run import Run
 
 Report = dict[str, Any]
 
-_PICTURE_PIXELS: Final = 256  # of a picture kept in a run: enough to recognise, quick to draw
 HURRIED: Final = {"W_BUILD_UNCHECKED"}  # findings of a machine that was too slow: only in the trace, or no replay would be equal
 _KERNEL_FILES: Final = ("part.npz", "part.brep", "part.step", "part.FCStd", "seat.json")
 
@@ -77,18 +76,6 @@ def record_checks(run: Run, checks: Checks) -> None:
     run.save_checks(checks.to_json())
     for finding in checks.findings:
         run.trace_finding(finding)
-
-
-def record_pictures(run: Run, assembly: Assembly) -> None:
-    """Save views of every part that has a script, and the motion of every driving joint; these pictures are not results."""
-    from articad.render import filmstrip, motion_gif, png, render_motion, render_part  # noqa: PLC0415 - only where pictures are drawn
-
-    for name, realised in assembly.realised.items():
-        if realised.derived_from is None:
-            run.save_views(name, {view: png(image) for view, image in render_part(assembly.parts[name], size=_PICTURE_PIXELS).items()})
-    for joint in assembly.mechanism.driving_joints:
-        frames = render_motion(assembly, joint, size=_PICTURE_PIXELS, supersample=1)
-        run.save_motion(joint, png(filmstrip(frames)), motion_gif(frames))
 
 
 def documents_of(run: Run) -> Documents:

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from PIL import Image
 
 from articad import cli, examples
 from articad.assembly import Assembly
@@ -98,6 +99,22 @@ def test_foreign_files_are_shown_and_drawn(tmp_path: Path, name: str, text: str)
     assert cli.main(["render", str(tmp_path / name), "--views", "iso", "--size", "64", "--out", str(tmp_path / "views"), "-q"]) == 0
     assert cli.main(["render", str(tmp_path / name), "--motion", "turn", "--size", "48", "--out", str(tmp_path / "views"), "-q"]) == 0
     assert {file.name for file in (tmp_path / "views").iterdir()} == {"iso.png", "turn.png", "turn.gif"}
+
+
+def test_a_clean_picture_has_its_own_size_and_no_background(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "arm.urdf").write_text(URDF)
+    words = ["render", str(tmp_path / "arm.urdf"), "--views", "iso", "--size", "64x48", "--out", str(tmp_path / "views"), "-q"]
+
+    assert cli.main([*words, "--transparent"]) == 0
+    with Image.open(tmp_path / "views" / "iso.png") as picture:
+        assert (picture.size, picture.mode) == ((64, 48), "RGBA")
+    assert cli.main([*words, "--clean", "--motion", "turn"]) == 0
+    with Image.open(tmp_path / "views" / "turn.gif") as picture:
+        assert picture.size == (64, 48)
+    assert cli.main(words) == 3
+    assert "add --clean" in capsys.readouterr().err
+    assert cli.main([*words, "--transparent", "--motion", "turn"]) == 3
+    assert "An animation has a background" in capsys.readouterr().err
 
 
 def test_a_run_keeps_its_page_which_show_makes_again(starter: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
