@@ -138,7 +138,7 @@ def test_build_prints_parts_what_is_proven_and_what_to_open(chest: Path, tmp_pat
         "box",
         "48000.0",
         "chest: 2 parts, 1 joint, 1 freedom",
-        "No interference at rest (1 nearby pair: ",
+        "No interference at rest (",
         "Motion not proven: articad certify",
         "chest.urdf",
         "Run: ",

@@ -14,8 +14,8 @@ if TYPE_CHECKING:
     from articad.assembly import Assembly
 
 
-class Options(TypedDict):
-    """Options that labelled and clean pictures share."""
+class PictureOptions(TypedDict):
+    """PictureOptions that labelled and clean pictures share."""
 
     only: Sequence[str] | None
     section: str | None
@@ -50,7 +50,7 @@ def write_views(
     _require_known("part", only or (), assembly.parts)
     try:
         width, height = (size, size) if isinstance(size, int) else size
-        options: Options = {"only": only, "section": section, "explode": explode, "show_overlaps": show_overlaps}
+        options: PictureOptions = {"only": only, "section": section, "explode": explode, "show_overlaps": show_overlaps}
         if clean:
             pictures = render_clean(assembly, views, size=(width, height), transparent=transparent, **options)
         else:

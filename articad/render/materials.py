@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 
 @dataclass(frozen=True)
-class Look:
+class Finish:
     """How a material answers light; the colour is the part's own.
 
     Attributes:
@@ -24,14 +24,17 @@ class Look:
 
 
 # The first row with a word of the material's name counts: "painted_steel" is paint, "cast_iron" is rougher than steel.
-_LOOKS: tuple[tuple[frozenset[str], Look], ...] = (
-    (frozenset({"glass", "acrylic", "plexiglass", "polycarbonate", "clear", "transparent", "crystal"}), Look(0.0, 0.06, 0.42, 1.6)),
+_LOOKS: tuple[tuple[frozenset[str], Finish], ...] = (
+    (frozenset({"glass", "acrylic", "plexiglass", "polycarbonate", "clear", "transparent", "crystal"}), Finish(0.0, 0.06, 0.42, 1.6)),
     (
         frozenset({"painted", "paint", "enamel", "enamelled", "lacquer", "lacquered", "powder", "coated", "glazed"}),
-        Look(0.0, 0.28, 1.0, 1.2),
+        Finish(0.0, 0.28, 1.0, 1.2),
     ),
-    (frozenset({"rubber", "neoprene", "silicone", "tyre", "tire", "epdm"}), Look(0.0, 0.8, 1.0, 0.6)),
-    (frozenset({"felt", "baize", "cloth", "fabric", "leather", "foam", "cork", "paper", "cardboard", "velvet"}), Look(0.0, 1.0, 1.0, 0.15)),
+    (frozenset({"rubber", "neoprene", "silicone", "tyre", "tire", "epdm"}), Finish(0.0, 0.8, 1.0, 0.6)),
+    (
+        frozenset({"felt", "baize", "cloth", "fabric", "leather", "foam", "cork", "paper", "cardboard", "velvet"}),
+        Finish(0.0, 1.0, 1.0, 0.15),
+    ),
     (
         frozenset(
             [
@@ -55,11 +58,11 @@ _LOOKS: tuple[tuple[frozenset[str], Look], ...] = (
                 "softwood",
             ]
         ),
-        Look(0.0, 0.6, 1.0, 0.6),
+        Finish(0.0, 0.6, 1.0, 0.6),
     ),
-    (frozenset({"anodised", "anodized"}), Look(0.55, 0.42)),
-    (frozenset({"chrome", "chromed", "chromium", "mirror", "polished", "silver", "gold", "nickel"}), Look(0.9, 0.12)),
-    (frozenset({"cast", "iron", "dark", "forged", "lead", "graphite"}), Look(0.6, 0.6)),
+    (frozenset({"anodised", "anodized"}), Finish(0.55, 0.42)),
+    (frozenset({"chrome", "chromed", "chromium", "mirror", "polished", "silver", "gold", "nickel"}), Finish(0.9, 0.12)),
+    (frozenset({"cast", "iron", "dark", "forged", "lead", "graphite"}), Finish(0.6, 0.6)),
     (
         frozenset(
             [
@@ -79,9 +82,9 @@ _LOOKS: tuple[tuple[frozenset[str], Look], ...] = (
                 "galvanised",
             ]
         ),
-        Look(0.85, 0.3),
+        Finish(0.85, 0.3),
     ),
-    (frozenset({"ceramic", "porcelain", "bone", "ivory", "marble", "stone", "granite"}), Look(0.0, 0.25, 1.0, 1.1)),
+    (frozenset({"ceramic", "porcelain", "bone", "ivory", "marble", "stone", "granite"}), Finish(0.0, 0.25, 1.0, 1.1)),
     (
         frozenset(
             [
@@ -104,12 +107,12 @@ _LOOKS: tuple[tuple[frozenset[str], Look], ...] = (
                 "bakelite",
             ]
         ),
-        Look(0.0, 0.4),
+        Finish(0.0, 0.4),
     ),
 )
 
 
-def look_of(material: str) -> Look:
+def finish_of(material: str) -> Finish:
     """Return the look of a material by the words of its name; an unknown one looks like matt plastic."""
     words = set(re.split(r"[^a-z0-9]+", material.lower()))
-    return next((look for names, look in _LOOKS if words & names), Look())
+    return next((look for names, look in _LOOKS if words & names), Finish())

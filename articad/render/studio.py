@@ -20,7 +20,7 @@ from scipy.ndimage import gaussian_filter
 
 from articad.arrays import FloatArray
 from articad.render.camera import Camera
-from articad.render.materials import look_of
+from articad.render.materials import finish_of
 from articad.render.raycast import BACKGROUND, Buffers, cast, occlusion
 from articad.render.scene import DrawnScene
 from articad.render.shade import edges
@@ -39,7 +39,7 @@ _RED = np.array([0.75, 0.03, 0.05])  # overlaps, linear
 
 
 @dataclass(frozen=True, eq=False)
-class _Looks:
+class _Surfaces:
     """Materials of the items as arrays, one row for each item."""
 
     color: FloatArray
@@ -104,10 +104,10 @@ def _without(item: Any) -> Any:
     return replace(item, mesh=mesh)
 
 
-def _looks(scene: DrawnScene) -> _Looks:
-    looks = [look_of(item.material) for item in scene.items]
+def _looks(scene: DrawnScene) -> _Surfaces:
+    looks = [finish_of(item.material) for item in scene.items]
     srgb = np.array([[int(item.color[start : start + 2], 16) / 255 for start in (1, 3, 5)] for item in scene.items] or [[0.0] * 3])
-    return _Looks(
+    return _Surfaces(
         color=np.clip(_linear(srgb), 0.012, 0.86),  # the darkest paint and the brightest that exist
         metal=np.array([look.metal for look in looks] or [0.0]),
         rough=np.array([look.roughness for look in looks] or [0.5]),
@@ -117,7 +117,7 @@ def _looks(scene: DrawnScene) -> _Looks:
     )
 
 
-def _pass(scene: DrawnScene, camera: Camera, looks: _Looks, rng: np.random.Generator) -> tuple[FloatArray, FloatArray]:
+def _pass(scene: DrawnScene, camera: Camera, looks: _Surfaces, rng: np.random.Generator) -> tuple[FloatArray, FloatArray]:
     """Return linear colours `(h, w, 3)` and coverage `(h, w)` of what the rays meet first."""
     buffers = cast(scene, camera)
     seen = buffers.item != BACKGROUND
@@ -199,7 +199,7 @@ def _lamps(camera: Camera) -> tuple[FloatArray, FloatArray, FloatArray]:
     return first, second, third
 
 
-def _light(camera: Camera, normal: FloatArray, open_sky: FloatArray, looks: _Looks, index: NDArray[Any]) -> FloatArray:
+def _light(camera: Camera, normal: FloatArray, open_sky: FloatArray, looks: _Surfaces, index: NDArray[Any]) -> FloatArray:
     """Return the linear colour of each visible point, `(n, 3)`."""
     base, metal, rough, gloss = looks.color[index], looks.metal[index][:, None], looks.rough[index], looks.gloss[index]
     key, fill, rim = _lamps(camera)
@@ -225,7 +225,7 @@ def _light(camera: Camera, normal: FloatArray, open_sky: FloatArray, looks: _Loo
 
 
 def _behind_glass(
-    scene: DrawnScene, camera: Camera, looks: _Looks, rng: np.random.Generator, color: FloatArray, alpha: FloatArray, clear: set[int]
+    scene: DrawnScene, camera: Camera, looks: _Surfaces, rng: np.random.Generator, color: FloatArray, alpha: FloatArray, clear: set[int]
 ) -> tuple[FloatArray, FloatArray]:
     """Return colours and coverage with translucent items over what is behind them; more opaque where they are seen at a grazing angle."""
     buffers = cast(scene, camera)

@@ -15,7 +15,7 @@ from articad.geometry.part import Part
 from articad.geometry.shapes import box, sphere
 from articad.kinematics import declare
 from articad.render import Camera, DrawnMesh, DrawnScene, cast, clean_motion, png, render_clean
-from articad.render.materials import look_of
+from articad.render.materials import finish_of
 from articad.render.raycast import BACKGROUND
 from articad.render.studio import framed, studio
 
@@ -57,11 +57,11 @@ def test_the_hue_of_a_part_is_kept() -> None:
 
 
 def test_a_material_is_found_by_the_words_of_its_name() -> None:
-    assert look_of("zinc_plated_steel").metal > 0.5
-    assert look_of("painted_steel").metal == 0
-    assert look_of("Cast Iron").roughness > look_of("stainless steel").roughness
-    assert look_of("borosilicate-glass").opacity < 1
-    assert look_of("unobtainium") == look_of("")
+    assert finish_of("zinc_plated_steel").metal > 0.5
+    assert finish_of("painted_steel").metal == 0
+    assert finish_of("Cast Iron").roughness > finish_of("stainless steel").roughness
+    assert finish_of("borosilicate-glass").opacity < 1
+    assert finish_of("unobtainium") == finish_of("")
 
 
 def test_what_is_inside_glass_is_seen_through_it() -> None:
