@@ -21,6 +21,7 @@ from articad.export.threemf import write_3mf
 from articad.export.urdf import write_urdf
 from articad.export.usd import write_usd
 from articad.findings import Finding
+from articad.geometry.mesh_files import MADE_BY_ARTICAD
 from articad.importers.freecad import read_freecad
 from articad.importers.mjcf import read_mjcf
 from articad.importers.sdf import read_sdf
@@ -163,7 +164,8 @@ def write(assembly: Assembly, path: str | Path, *, strict: bool = False, **optio
         What was written, with the losses.
 
     Raises:
-        ExportError: If the format cannot be written, an option is unknown to its writer, or `strict` refuses a loss.
+        ExportError: If the format cannot be written, an option is unknown to its writer, `strict` refuses a loss, or a file that belongs
+            to something else would be replaced (E_REPLACES).
     """
     path, found = Path(path), _written_as(path)
     if unknown := set(options) - set(_known(found.writer, options)):
@@ -172,8 +174,43 @@ def write(assembly: Assembly, path: str | Path, *, strict: bool = False, **optio
         )
     bundle = found.write(assembly, strict=strict, **options)
     bundle = replace(bundle, files={path.name if name == bundle.main else name: content for name, content in bundle.files.items()})
+    _require_free(bundle, path)
     bundle.write(path.parent)
     return bundle
+
+
+_NAMING: Final = frozenset({".urdf", ".xacro", ".xml", ".mjcf", ".sdf", ".world"})
+"""Endings of files that name meshes."""
+
+
+def _require_free(bundle: Bundle, path: Path) -> None:
+    """Refuse to replace a folder, a mesh of somebody else, or a mesh that another file beside the target names.
+
+    Raises:
+        ExportError: E_REPLACES; nothing is written then.
+    """
+    elsewhere = path.parent / path.stem / path.name
+    hint = f"Write {elsewhere.as_posix()}, or another file in a folder of its own."
+    if path.is_dir():
+        raise _replaces(path, f"{path} is a folder.", f"Name a file in it, such as {(path / path.name).as_posix()}.")
+    changed = [
+        name
+        for name, content in bundle.files.items()
+        if name != bundle.main and (path.parent / name).is_file() and (path.parent / name).read_bytes() != content
+    ]
+    beside = [other for other in path.parent.iterdir() if other.suffix.lower() in _NAMING and other.name != path.name] if changed else []
+    texts = {other: other.read_bytes() for other in beside if other.is_file()}
+    for name in changed:
+        there = path.parent / name
+        if not there.read_bytes().startswith(MADE_BY_ARTICAD):
+            raise _replaces(there, f"{there} is another mesh, which articad did not write.", hint)
+        if user := next((other for other, text in texts.items() if name.encode() in text), None):
+            raise _replaces(there, f"{there} is another mesh, which {user.name} names.", hint)
+
+
+def _replaces(path: Path, message: str, hint: str) -> ExportError:
+    finding = Finding(code="E_REPLACES", where=str(path), message=message, hint=hint, stage="export")
+    return ExportError(f"{message} {hint}", findings=[finding])
 
 
 def convert(
@@ -205,6 +242,8 @@ def convert(
         ExportError: As for `write`; the source is not read if the target's format is unknown.
     """
     _written_as(target)
+    if any(one.is_file() and Path(target).exists() and one.samefile(target) for one in (Path(source), Path(source) / "plan.json")):
+        raise _replaces(Path(target), f"{target} is the file to convert.", "Name another file.")
     assembly = read(source, root=root, fuse=fuse, srdf=srdf)
     return assembly, write(assembly, target, strict=strict, **options)
 

@@ -89,7 +89,7 @@ def audit_file(path: str | Path, choices: AuditOptions | None = None) -> Audit:
     if kind is None:
         raise ReadError(f"{path}: {path.suffix or 'no'} extension is not one of {', '.join(AUDITED)}.", path=str(path))
     if not path.is_file():
-        raise ReadError(f"{path} does not exist.", path=str(path))
+        raise ReadError(f"{path} is not a file." if path.exists() else f"{path} does not exist.", path=str(path))
     start, found = time.monotonic(), _Found()
     try:
         _AUDITORS[kind](path, choices, found)

@@ -85,7 +85,7 @@ def mend(path: str | Path, out: str | Path, *, density: float | None = None, cho
     beside = (out / path.name).resolve() == path.resolve()  # the original is not modified
     mended = Mended(out / (f"{path.stem}_mended{path.suffix}" if beside else path.name))
     _Mender(root, declared, references, density, mended).run()
-    files = _meshes(root, references, mended)
+    files = _meshes(root, references, mended, out if beside else None)
     out.mkdir(parents=True, exist_ok=True)
     (out / "meshes").mkdir(exist_ok=True)
     for name, content in files.items():
@@ -266,26 +266,37 @@ def _bodies(mesh: TriMesh) -> tuple[TriMesh, ...]:
     return pieces if all(piece.is_closed and piece.volume > 0 for piece in pieces) else (mesh,)
 
 
-def _meshes(root: Any, references: MeshReferences, mended: Mended) -> dict[str, bytes]:
-    """Return the mesh files that the document names, in a format that every simulator reads, and update their names."""
+def _meshes(root: Any, references: MeshReferences, mended: Mended, kept: Path | None) -> dict[str, bytes]:
+    """Return the mesh files that the document names, in a format that every simulator reads, and update their names.
+
+    Args:
+        root: The document.
+        references: Its meshes.
+        mended: Receives what was done.
+        kept: A folder of which no file may be replaced by another.
+    """
     files: dict[str, bytes] = {}
     taken: dict[Path, str] = {}
     names, converted = Names(), []
     for element in root.iter("mesh"):
-        name = element.get("filename") or ""
-        path = references.paths.get(name)
+        stated = element.get("filename") or ""
+        path = references.paths.get(stated)
         if path is None:
             continue
         if path not in taken:
-            raw = references.raw(name)
-            kept = path.suffix.lower() in {".stl", ".obj"} or raw is None
-            suffix = path.suffix.lower() if kept else ".stl" if len(raw.triangles) <= STL_TRIANGLES else ".obj"  # type: ignore[union-attr]
-            taken[path] = f"meshes/{names.claim(path.stem)}{suffix}"
-            if raw is None or kept:
-                files[taken[path]] = path.read_bytes()
+            raw = references.raw(stated)
+            as_it_is = path.suffix.lower() in {".stl", ".obj"} or raw is None
+            suffix = path.suffix.lower() if as_it_is else ".stl" if len(raw.triangles) <= STL_TRIANGLES else ".obj"  # type: ignore[union-attr]
+            if raw is None or as_it_is:
+                content = path.read_bytes()
             else:
-                files[taken[path]] = write_stl(raw) if suffix == ".stl" else write_obj(raw)
+                content = write_stl(raw) if suffix == ".stl" else write_obj(raw)
                 converted.append(path.name)
+            name = f"meshes/{names.claim(path.stem)}{suffix}"
+            while kept is not None and (kept / name).is_file() and (kept / name).read_bytes() != content:
+                name = f"meshes/{names.claim(path.stem)}{suffix}"
+            taken[path] = name
+            files[taken[path]] = content
         element.set("filename", taken[path])
     if converted:
         mended.done.append(

@@ -573,6 +573,9 @@ CODES: dict[str, Code] = {
         "Effort, velocity or damping of a joint are computed, because the input does not state them.",
         "State them if the drives are known.",
     ),
+    "E_REPLACES": Code(
+        "export", None, "A file to be written would replace one that belongs to something else.", "Write into another folder."
+    ),
     "E_READ": Code("import", None, "A file cannot be read.", "Check the file at the named place."),
     "W_IMPORT_STALE": Code(
         "import", None, "A file was edited after articad wrote it, so its records are not used.", "Edit the plan and export again."

@@ -28,6 +28,8 @@ from articad.geometry.mesh import TriMesh, merged
 
 MAX_FILE_BYTES = 1 << 30  # a mesh of 20 million triangles; more is a mistake or an attack
 STL_HEADER = b"articad binary STL, mm".ljust(80, b" ")  # must not begin with "solid", or readers take it for text
+_OBJ_HEADER = b"# articad, mm\n"
+MADE_BY_ARTICAD = (STL_HEADER, _OBJ_HEADER)  # beginnings of the meshes that articad writes
 _STL_RECORD = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 _STL_KEYWORDS = {
     0: b"facet",
@@ -108,7 +110,7 @@ def write_stl(mesh: TriMesh) -> bytes:
 def write_obj(mesh: TriMesh) -> bytes:
     """Return the mesh as OBJ text with nine significant digits: a micrometre at a kilometre."""
     vertices = ("v %.9g %.9g %.9g\n" * len(mesh.vertices)) % tuple((mesh.vertices + 0.0).ravel().tolist())
-    return b"".join((b"# articad, mm\n", vertices.encode("ascii"), _obj_triangles(mesh)))
+    return b"".join((_OBJ_HEADER, vertices.encode("ascii"), _obj_triangles(mesh)))
 
 
 def _obj_triangles(mesh: TriMesh) -> bytes:

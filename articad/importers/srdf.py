@@ -50,6 +50,8 @@ def kept_semantics(path: Path, *, own: bool = False) -> list[Kept]:
     document = read_xml(path)
     if document.tag != "robot":
         raise unreadable(path, f"line {document.sourceline}", f"The root element is <{document.tag}>, not <robot>: this is not SRDF.")
+    if document.find("joint/parent") is not None or document.find("link/*") is not None:
+        raise unreadable(path, f"line {document.sourceline}", "It has links or joints: this is a URDF, not its SRDF.")
     return [
         Kept("srdf", "model", _words(element), etree.tostring(element, encoding="unicode", with_tail=False))
         for element in document

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import trimesh
 from lxml import etree
 
 from articad.auditing.examine import AuditOptions, audit_file
@@ -192,3 +193,23 @@ def test_bodies_of_one_mesh_that_overlap_are_weighed_once(tmp_path: Path) -> Non
     result = mend(path, tmp_path / "out", density=1000.0, choices=QUICK)
 
     assert result.masses["a"] == pytest.approx(0.028, rel=1e-6)
+
+
+def test_meshes_beside_a_file_are_not_replaced_by_those_of_its_mended_copy(tmp_path: Path) -> None:
+    """The drawing is a DAE, which becomes an STL of the same name; the mesh to collide with has that name already."""
+    (tmp_path / "meshes").mkdir()
+    trimesh.creation.icosphere().export(tmp_path / "meshes" / "a.dae")
+    trimesh.creation.box().export(tmp_path / "meshes" / "a.stl")
+    shapes = "".join(
+        f'<{tag}><geometry><mesh filename="meshes/a.{ending}"/></geometry></{tag}>'
+        for tag, ending in (("visual", "dae"), ("collision", "stl"))
+    )
+    path = tmp_path / "r.urdf"
+    path.write_text(f'<robot name="r"><link name="a">{shapes}</link></robot>')
+    before = {file: file.read_bytes() for file in tmp_path.rglob("*") if file.is_file()}
+
+    copy = mend(path, tmp_path, choices=QUICK).file
+
+    assert {file: file.read_bytes() for file in before} == before
+    sizes = [trimesh.load(tmp_path / element.get("filename")).volume for element in etree.parse(copy).getroot().iter("mesh")]
+    assert sizes == pytest.approx([trimesh.creation.icosphere().volume, 1.0], rel=1e-5)
