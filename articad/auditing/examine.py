@@ -10,10 +10,11 @@ from typing import Any, Final
 
 from articad.assembly import Assembly
 from articad.auditing import limits, masses, names, shapes, structure
-from articad.auditing.contact import contacts
+from articad.auditing.contact import FOREIGN, contacts
 from articad.auditing.contact_case import Contacts
 from articad.auditing.declared import Declared, from_assembly
 from articad.auditing.engines import refusals
+from articad.auditing.jams import hull_jams
 from articad.auditing.mesh_references import MeshReferences
 from articad.auditing.report import Audit
 from articad.auditing.step_parts import audit_step
@@ -235,6 +236,10 @@ def _look(found: _Found, assembly: Assembly, choices: AuditOptions) -> None:
     )
     found.findings += outcome.findings
     found.undone += outcome.undone
+    if assembly.foreign and found.declared.format in FOREIGN:
+        jams, undone = hull_jams(assembly, excluded)
+        found.findings += jams
+        found.undone += undone
     found.certificate = outcome.certificate
     found.motion = outcome.strength if assembly.drivers else "none"
 

@@ -1,7 +1,8 @@
 """Repairs what can be repaired without guessing, reports what was done, and lists the rest.
 
-Inertias come from closed meshes and a stated density, collision shapes from visual ones, endless axes from their span, names from their
-own letters, the base's position from the lowest point. Masses of links without shape, limits, efforts and open meshes are not changed.
+Inertias come from closed meshes and a stated density, collision shapes from visual ones, convex pieces from collision meshes on request,
+endless axes from their span, names from their own letters, the base's position from the lowest point. Masses of links without shape,
+limits, efforts and open meshes are not changed.
 """
 
 from __future__ import annotations
@@ -9,7 +10,7 @@ from __future__ import annotations
 import copy
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, Final, Literal
 
 from lxml import etree
 
@@ -24,16 +25,21 @@ from articad.auditing.report import Audit
 from articad.auditing.urdf_text import UrdfText
 from articad.auditing.wording import counted, listed
 from articad.errors import ReadError
-from articad.export.markup import child, document, number, numbers
+from articad.export.convex import hull_mesh, pieces_of
+from articad.export.markup import child, document, number, numbers, rpy, tidy
 from articad.export.mjcf import STL_TRIANGLES
 from articad.export.names import Names
 from articad.export.urdf import write_urdf
+from articad.geometry.inscribed import Piece
 from articad.geometry.mass import MassProperties
 from articad.geometry.mesh import TriMesh
 from articad.geometry.mesh_files import write_obj, write_stl
 from articad.importers.reading import MM_PER_M, Folder, read_xml
 from articad.importers.referenced_files import package_of
+from articad.kernels.cache import BuildCache
 
+PIECE_FILE: Final = "pieces/{}.stl"
+CONVEX_SHARE: Final = 1e-6  # of its volume: by which a convex mesh may be smaller than its hull
 BAD_INERTIA = ("E_AUDIT_INERTIA", "E_AUDIT_INERTIA_TRIANGLE", "W_AUDIT_INERTIA_SHAPE", "W_AUDIT_COM")
 
 
@@ -63,13 +69,21 @@ class Mended:
         }
 
 
-def mend(path: str | Path, out: str | Path, *, density: float | None = None, choices: AuditOptions | None = None) -> Mended:
+def mend(
+    path: str | Path,
+    out: str | Path,
+    *,
+    density: float | None = None,
+    collision: Literal["pieces"] | None = None,
+    choices: AuditOptions | None = None,
+) -> Mended:
     """Write a repaired copy of a URDF file and the meshes that it needs.
 
     Args:
         path: The file; it is not modified.
         out: Folder to write to.
         density: Density of everything without mass [kg/m³]; without it no mass is computed.
+        collision: "pieces" replaces closed collision meshes that are not convex by convex pieces inside them.
         choices: Options for the audit of the result.
 
     Raises:
@@ -84,19 +98,29 @@ def mend(path: str | Path, out: str | Path, *, density: float | None = None, cho
     declared = replace(declared, states_frames=any(True for _ in root.iterfind("articad")))  # as for the audit of articad's own files
     beside = (out / path.name).resolve() == path.resolve()  # the original is not modified
     mended = Mended(out / (f"{path.stem}_mended{path.suffix}" if beside else path.name))
-    _Mender(root, declared, references, density, mended).run()
-    files = _meshes(root, references, mended, out if beside else None)
+    mender = _Mender(root, declared, references, density, mended)
+    mender.run()
+    if collision == "pieces":
+        mender.divide(out if beside else None)
+    files = _meshes(root, references, mended, out if beside else None) | mender.pieces
     out.mkdir(parents=True, exist_ok=True)
-    (out / "meshes").mkdir(exist_ok=True)
     for name, content in files.items():
+        (out / name).parent.mkdir(exist_ok=True)
         (out / name).write_bytes(content)
     mended.file.write_bytes(document(root))
     mended.rest = audit_file(mended.file, replace(choices, root=out))
     return mended
 
 
-def mend_assembly(assembly: Assembly, out: str | Path, *, density: float | None = None, choices: AuditOptions | None = None) -> Mended:
-    """Write an assembly as URDF, with masses from its solids where it has none."""
+def mend_assembly(
+    assembly: Assembly,
+    out: str | Path,
+    *,
+    density: float | None = None,
+    collision: Literal["pieces"] | None = None,
+    choices: AuditOptions | None = None,
+) -> Mended:
+    """Write an assembly as URDF, with masses from its solids where it has none; with convex pieces on request."""
     out, choices = Path(out), choices or AuditOptions()
     weighed: dict[str, float] = {}
     parts = dict(assembly.parts)
@@ -104,7 +128,7 @@ def mend_assembly(assembly: Assembly, out: str | Path, *, density: float | None 
         if part.mass is None and part.solid is not None and density is not None:
             parts[name] = replace(part, mass=part.solid.mass(density))
             weighed[name] = part.solid.mass(density).mass
-    bundle = write_urdf(replace(assembly, parts=parts))
+    bundle = write_urdf(replace(assembly, parts=parts), collision=collision)
     bundle.write(out)
     done = [f"computed the mass of {counted(len(weighed), 'part')} at {density:g} kg/m³: {listed(list(weighed))}"] if weighed else []
     done.append("written as URDF")
@@ -119,6 +143,7 @@ class _Mender:
     def __init__(self, root: Any, declared: Declared, references: MeshReferences, density: float | None, mended: Mended) -> None:
         self.root, self.declared, self.references, self.density, self.mended = root, declared, references, density, mended
         self.links = {element.get("name"): element for element in root.iterfind("link")}
+        self.pieces: dict[str, bytes] = {}
 
     def run(self) -> None:
         """Do all that can be done; names last, because everything else finds links by them."""
@@ -207,6 +232,63 @@ class _Mender:
                 added.append(name)
         if added:
             self.mended.done.append(f"gave {counted(len(added), 'link')} its visual shape for collision: {listed(added)}")
+
+    def divide(self, kept: Path | None = None) -> None:
+        """Replace collision meshes that are not convex by convex pieces inside them; `pieces` gets the files of their meshes.
+
+        Args:
+            kept: A folder of which no file may be replaced by another.
+        """
+        cache, names = BuildCache(), Names()
+        divided, left = [], []
+        for link in UrdfText(self.references).declared(self.root, self.mended.file).links:
+            places = [element for element in self.root.iterfind("link") if element.get("name") == link.name]
+            elements = [element for place in places for element in place.findall("collision")]
+            shapes_ = link.of("collision")
+            if len(elements) != len(shapes_):
+                continue
+            for element, shape in zip(elements, shapes_, strict=True):
+                mesh = shape.mesh
+                if shape.kind != "mesh" or mesh is None or not len(mesh.triangles):
+                    continue
+                if mesh.is_closed and mesh.volume > 0 and hull_mesh(mesh.vertices).volume <= mesh.volume * (1 + CONVEX_SHARE):
+                    continue
+                found = pieces_of(mesh, cache)
+                if not found.inside:
+                    left.append(link.name)
+                    continue
+                for index, piece in enumerate(found.pieces):
+                    name = names.claim(f"{link.name}_{index}")
+                    while kept is not None and (kept / PIECE_FILE.format(name)).exists():
+                        name = names.claim(f"{link.name}_{index}")
+                    element.addprevious(self._piece(element, piece, name))
+                element.getparent().remove(element)
+                divided.append(f"{link.name} ({len(found.pieces)}, {found.missing:.2g} mm left out)")
+        if divided:
+            self.mended.done.append(
+                f"divided {counted(len(divided), 'collision mesh', 'collision meshes')} into convex pieces: {listed(divided)}"
+            )
+        if left:
+            self.mended.done.append(f"left {counted(len(left), 'collision mesh', 'collision meshes')} that enclose nothing: {listed(left)}")
+
+    def _piece(self, old: Any, piece: Piece, name: str) -> Any:
+        """Return the collision element of a piece; pieces are in the link's frame."""
+        element = etree.Element("collision", {"name": name} if old.get("name") else {})
+        xyz = numbers(tidy(piece.frame.translation / MM_PER_M))
+        child(element, "origin", {"xyz": xyz, "rpy": numbers(tidy(rpy(piece.frame)))})
+        geometry, form = child(element, "geometry"), piece.primitive
+        if form is None:
+            self.pieces[PIECE_FILE.format(name)] = write_stl(piece.mesh)
+            child(geometry, "mesh", {"filename": PIECE_FILE.format(name), "scale": "0.001 0.001 0.001"})
+            return element
+        sizes = tidy((size / MM_PER_M for size in form.size), scale=0)
+        if form.kind == "box":
+            child(geometry, "box", {"size": numbers(sizes)})
+        elif form.kind == "sphere":
+            child(geometry, "sphere", {"radius": number(sizes[0])})
+        else:
+            child(geometry, "cylinder", {"radius": number(sizes[0]), "length": number(sizes[1])})
+        return element
 
     def _raise(self) -> None:
         """Put a base link at the lowest point, and the robot on it."""

@@ -43,6 +43,12 @@ if TYPE_CHECKING:
     argument("--no-engines", dest="engines", action="store_false", help="do not ask simulators to load the file"),
     argument("--fix", metavar="OUT", help="write a copy that repairs every fault with a certain repair (URDF)"),
     argument("--density", metavar="KG_M3", type=amount, default=None, help="with --fix: density of bodies without mass"),
+    argument(
+        "--collision",
+        choices=["pieces"],
+        default=None,
+        help="with --fix: divide collision meshes into convex pieces inside them, where simulators would take the hull",
+    ),
     argument("--report", metavar="PAGE.html", help="write the report as a page"),
     SANDBOX,
 )
@@ -155,8 +161,9 @@ def _mend(options: argparse.Namespace, terminal: Terminal, choices: AuditOptions
     from articad.auditing.mend import mend, mend_assembly
 
     if Path(options.target).suffix.lower() == ".urdf":
-        return mend(options.target, options.fix, density=options.density, choices=choices)
-    return mend_assembly(loaded(options.target, options, terminal), options.fix, density=options.density, choices=choices)
+        return mend(options.target, options.fix, density=options.density, collision=options.collision, choices=choices)
+    assembly = loaded(options.target, options, terminal)
+    return mend_assembly(assembly, options.fix, density=options.density, collision=options.collision, choices=choices)
 
 
 def _print_audit(audit: Audit, terminal: Terminal, *, findings: bool) -> None:

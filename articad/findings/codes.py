@@ -679,6 +679,12 @@ CODES: dict[str, Code] = {
     "W_AUDIT_NO_COLLISION": Code(
         "audit", None, "A link has visual shapes but no collision shapes.", "Use the same mesh or a simpler one for collision."
     ),
+    "W_AUDIT_HULL_JAM": Code(
+        "audit",
+        None,
+        "Convex hulls, which simulators collide with, meet where the meshes are apart.",
+        "Collide with convex pieces: `audit --fix OUT --collision pieces`.",
+    ),
     "W_AUDIT_MESH_OPEN": Code("audit", None, "A mesh has edges with only one triangle, or is not a solid for another reason.", "Close it."),
     "W_AUDIT_MESH_FLAT": Code("audit", None, "A mesh encloses nothing.", "Give it a thickness."),
     "W_AUDIT_MESH_INSIDE_OUT": Code("audit", None, "The triangles of a mesh face inwards.", "Reverse them."),

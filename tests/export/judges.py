@@ -124,9 +124,12 @@ def newton(assembly: Assembly, path: Path) -> EngineOutcome:
     for loop in assembly.mechanism.loop_joints:
         loops |= {joint.name for joint in assembly.mechanism.tree.joints_between(loop.parent, loop.child)}
     following = {freedom.name for joint in joints if joint.joint.name in loops for freedom in joint.freedoms}
-    coupled = {freedom.name for freedom in freedoms if freedom.follows is not None}
-    for _, name, follows in model.couplings:
-        coupled |= {name, follows.leader}
+    kinds = {freedom.name: freedom.kind for freedom in freedoms}
+    ties = [(freedom.name, freedom.follows.leader, False) for freedom in freedoms if freedom.follows is not None]
+    ties += [(name, follows.leader, True) for _, name, follows in model.couplings]
+    if path.suffix == ".usda":  # NewtonMimicAPI couples joints of one kind only, which the export states as a loss
+        ties = [tie for tie in ties if kinds[tie[0]] == kinds[tie[1]]]
+    coupled = {name for name, _, _ in ties} | {leader for _, leader, looped in ties if looped}
     drivers = driving(assembly)
     opened: set[str] = set()
     if path.suffix == ".urdf" and loops:  # a URDF leaves loops open, and what is coupled with their joints
