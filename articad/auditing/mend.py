@@ -242,26 +242,19 @@ class _Mender:
         cache, names = BuildCache(), Names()
         divided, left = [], []
         for link in UrdfText(self.references).declared(self.root, self.mended.file).links:
-            places = [element for element in self.root.iterfind("link") if element.get("name") == link.name]
-            elements = [element for place in places for element in place.findall("collision")]
-            shapes_ = link.of("collision")
-            if len(elements) != len(shapes_):
-                continue
-            for element, shape in zip(elements, shapes_, strict=True):
-                mesh = shape.mesh
-                if shape.kind != "mesh" or mesh is None or not len(mesh.triangles):
+            elements = [one for place in self.root.iterfind("link") if place.get("name") == link.name for one in place.findall("collision")]
+            elements = [
+                one for one in elements if (geometry := one.find("geometry")) is not None and len(geometry)
+            ]  # the others are no shapes
+            for element, shape in zip(elements, link.of("collision"), strict=True):
+                if shape.kind != "mesh" or shape.mesh is None or _is_convex(shape.mesh):
                     continue
-                if mesh.is_closed and mesh.volume > 0 and hull_mesh(mesh.vertices).volume <= mesh.volume * (1 + CONVEX_SHARE):
-                    continue
-                found = pieces_of(mesh, cache)
+                found = pieces_of(shape.mesh, cache)
                 if not found.inside:
                     left.append(link.name)
                     continue
                 for index, piece in enumerate(found.pieces):
-                    name = names.claim(f"{link.name}_{index}")
-                    while kept is not None and (kept / PIECE_FILE.format(name)).exists():
-                        name = names.claim(f"{link.name}_{index}")
-                    element.addprevious(self._piece(element, piece, name))
+                    element.addprevious(self._piece(element, piece, _free_name(names, f"{link.name}_{index}", kept)))
                 element.getparent().remove(element)
                 divided.append(f"{link.name} ({len(found.pieces)}, {found.missing:.2g} mm left out)")
         if divided:
@@ -329,6 +322,21 @@ class _Mender:
         if changes:
             shown = [f"{before!r} → {after!r}" for before, after in changes.items()]
             self.mended.done.append(f"renamed {len(changes)}: {listed(shown)}")
+
+
+def _is_convex(mesh: TriMesh) -> bool:
+    """True for a body that its hull replaces exactly, and for a mesh without triangles."""
+    if not len(mesh.triangles):
+        return True
+    return mesh.is_closed and mesh.volume > 0 and hull_mesh(mesh.vertices).volume <= mesh.volume * (1 + CONVEX_SHARE)
+
+
+def _free_name(names: Names, wanted: str, kept: Path | None) -> str:
+    """Return a name for a piece whose file does not exist in the folder yet."""
+    name = names.claim(wanted)
+    while kept is not None and (kept / PIECE_FILE.format(name)).exists():
+        name = names.claim(wanted)
+    return name
 
 
 def _body(link: DeclaredLink) -> TriMesh | None:
