@@ -29,12 +29,12 @@ from articad.interference.report import Checks, Strength, rounded
 from articad.interference.scene import relatives
 from articad.interference.sweep import MotionSampler
 
-LINE, SIDE, SCATTERED = 17, 6, 96  # poses along one driver, on a side of a grid of two, and over all
+LINE, SIDE, SCATTERED = 17, 6, 96  # poses along one driver (or each of its turns), on a side of a grid of two, and over all
 MOST_GRIDS = 60  # of two drivers
 NEAREST, QUICK_NEAREST = 60, 20  # pairs that are searched further, the nearest first
 ROUNDS = 60  # of that search
-FIRST_STEP = 1 / (LINE - 1)  # of a range
-LEAST_STEP = 1e-5  # of a range
+FIRST_STEP = 1 / (LINE - 1)  # of a range, or of a turn if it has several
+LEAST_STEP = 1e-5  # likewise
 AROUND, LEAP = 3.5, 6.0  # steps: what is measured that near is part of a model; how far that leads at most
 FURTHER = 3.0  # times the last improvement's way, at which the next pose is tried (a pattern move, Hooke and Jeeves 1961)
 MODELLED = 3  # freedoms of a pair, up to which a quadratic model of its distance is fitted: valleys need not run along a freedom
@@ -134,8 +134,9 @@ def _points(motion: MotionSampler, ranges: Sequence[Freedom], *, together: bool)
     rest = np.array([freedom.rest for freedom in ranges])
     rows = [rest[None]]
     for at, freedom in enumerate(ranges):
-        line = np.tile(rest, (LINE, 1))
-        line[:, at] = np.linspace(freedom.lower, freedom.upper, LINE)
+        values = motion.values(freedom, LINE)
+        line = np.tile(rest, (len(values), 1))
+        line[:, at] = values
         rows.append(line)
     for pair in itertools.islice(itertools.combinations(range(len(ranges)), 2), MOST_GRIDS if together else 0):
         grid = np.meshgrid(*(np.linspace(ranges[at].lower, ranges[at].upper, SIDE) for at in pair), indexing="ij")
@@ -219,7 +220,7 @@ class _Pair:
         poses: How many relative poses were looked at.
         gap: Smallest distance [mm]; negative where they overlap.
         at: Values there `(freedoms,)`.
-        step: Of the search, as a share of the ranges.
+        step: Of the search, as a share of the ranges, or of a turn where they have several.
         measured: Values and distances beside the nearest pose.
         guess: Values at which a model of the distance is lowest, to be tried next.
         further: Values further on in the direction of the last improvement, to be tried next.
@@ -254,6 +255,7 @@ class _Search:
         self.names = list(self.scene.bodies)
         self.bodies = list(self.scene.bodies.values())
         self.low, self.high = (np.array([getattr(freedom, end) for freedom in ranges]) for end in ("lower", "upper"))
+        self.size = (self.high - self.low) / np.array([motion.turns(freedom) for freedom in ranges])
 
     def pairs(self) -> list[tuple[int, int]]:
         """Return the pairs of solid bodies that joints let move relative to each other."""
@@ -360,7 +362,7 @@ class _Search:
             if gap < pair.gap:
                 pair.gap, pair.at = gap, points[k]
         is_flat = len(seen) == len(points) and all(abs(gap - before) <= self._close(before) for gap in seen)
-        low, high, size = self.low[pair.movers], self.high[pair.movers], pair.step * (self.high - self.low)[pair.movers]
+        low, high, size = self.low[pair.movers], self.high[pair.movers], pair.step * self.size[pair.movers]
         pair.guess, fall = None, math.inf
         if is_modelled and pair.measured:
             offsets = (np.array([point for point, _ in pair.measured]) - pair.at)[:, pair.movers] / size
@@ -383,7 +385,7 @@ class _Search:
         for some, sign in [*itertools.product(ways, (-1.0, 1.0)), *((two, 1.0) for two in both)]:
             row = pair.at.copy()
             for k in some:
-                row[k] = np.clip(row[k] + sign * pair.step * (self.high[k] - self.low[k]), self.low[k], self.high[k])
+                row[k] = np.clip(row[k] + sign * pair.step * self.size[k], self.low[k], self.high[k])
             if (row != pair.at).any():
                 yield row
         if together:

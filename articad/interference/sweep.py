@@ -23,7 +23,7 @@ from articad.interference.boxes import meeting_boxes
 from articad.interference.check import broken_finding, unknown_pairs
 from articad.interference.motion import Freedom, driver_values, freedoms, scattered
 from articad.interference.overlap import VOLUME_NOISE_MM3, Overlap, common, may_overlap, overlap_of
-from articad.interference.ranges import MOST_TURNS, driving_joints, sampled_ranges
+from articad.interference.ranges import MOST_TURNS, driving_joints, endless_beyond, sampled_ranges
 from articad.interference.relations import FitLike, WaiverLike
 from articad.interference.report import Checks, PairCheck, Strength
 from articad.interference.scene import Scene, relatives
@@ -110,7 +110,7 @@ class MotionSampler:
         over = tuple(freedom.name for freedom in ranges)
         broken = Findings(broken_finding(name, reason) for name, reason in self.scene.broken.items())
         report = Checks(
-            broken + self._left_out(),
+            broken + self._left_out(ranges),
             tuple(unknown_pairs(self.scene, over).values()),
             self.scene.deflection,
             over,
@@ -146,8 +146,11 @@ class MotionSampler:
 
     def values(self, freedom: Freedom, steps: int) -> FloatArray:
         """Return the sampled values `(n,)` of a range: `steps` of it, or of each of its turns if it has several."""
-        turns = (freedom.upper - freedom.lower) / (2 * math.pi) if self._is_angle(freedom.name) else 1.0
-        return np.linspace(freedom.lower, freedom.upper, max(math.ceil(steps * min(max(turns, 1.0), MOST_TURNS)), 2))
+        return np.linspace(freedom.lower, freedom.upper, max(math.ceil(steps * min(self.turns(freedom), MOST_TURNS)), 2))
+
+    def turns(self, freedom: Freedom) -> float:
+        """Return how many turns a range has, at least 1; 1 for a length."""
+        return max((freedom.upper - freedom.lower) / (2 * math.pi), 1.0) if self._is_angle(freedom.name) else 1.0
 
     def _is_angle(self, name: str) -> bool:
         return any(driver.name == name and driver.unit == "rad" for driver in self.mechanism.drivers)
@@ -298,22 +301,29 @@ class MotionSampler:
         check, findings = judge(self.scene, parts, worst, over=over, strength=strength, pose=where, baseline=baseline)
         return check, findings
 
-    def _left_out(self) -> Findings:
-        """Name what can move and is not sampled: free joints, and parts that loops let move while all drivers stand."""
-        found: list[tuple[str, tuple[str, ...], str]] = [
-            (f"joints.{joint.name}", (joint.child,), f"{joint.name} moves freely; it stands at rest in all samples.")
+    def _left_out(self, ranges: Sequence[Freedom]) -> Findings:
+        """Name what can move and is not sampled: free joints, drivers beyond their range, and parts that loops let move while all drivers stand."""
+        still = "Nothing, where nothing is in its way; `certify` covers the turn of a rod between two balls."
+        further = "Set limits where the motion ends; `certify` covers endless turns, unless the followers' ratio never brings them back."
+        found: list[tuple[str, tuple[str, ...], str, str]] = [
+            (f"joints.{joint.name}", (joint.child,), f"{joint.name} moves freely; it stands at rest in all samples.", still)
             for joint in self.driving
             if joint.type is JointType.FREE
         ]
+        endless = endless_beyond(self.mechanism)
+        for freedom in (freedom for freedom in ranges if freedom.name in endless):
+            message = f"{freedom.name} is sampled at {freedom.lower:.6g} to {freedom.upper:.6g} only: {endless[freedom.name]}."
+            found.append((f"joints.{freedom.name.split('.')[0]}", (), message, further))
         try:
             groups = () if self.mechanism.is_tree else self.mechanism.branch.groups
         except LoopError:  # whatever is sampled says so
             groups = ()
         for parts in (parts for group in groups for parts in group.idle):
             message = f"{' and '.join(parts)} can move while all drivers stand, as a rod turns about itself. No sample moves it by itself."
-            found.append((f"parts.{parts[0]}", parts, message))
-        hint = "Nothing, where nothing is in its way; `certify` covers the turn of a rod between two balls."
-        return Findings(Finding(code="I_NOT_SAMPLED", where=where, message=said, parts=parts, hint=hint) for where, parts, said in found)
+            found.append((f"parts.{parts[0]}", parts, message, still))
+        return Findings(
+            Finding(code="I_NOT_SAMPLED", where=where, message=said, parts=parts, hint=hint) for where, parts, said, hint in found
+        )
 
     def _cut_short(
         self, points: Sequence[Mapping[str, float]], kept: NDArray[np.int64], solution: Solution, over: tuple[str, ...]

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from articad.geometry import box, cylinder
+from articad.interference.clearance import least_clearances
 from articad.interference.motion import freedoms, scattered
 from articad.interference.scene import Scene
 from articad.interference.sweep import MotionSampler, sweep
@@ -160,3 +161,45 @@ def test_a_sweep_names_the_joints_that_move_freely_and_stand() -> None:
     report = sweep({"mast": box(2, 2, 2), "frame": box(1, 1, 1).transformed(at(0, 0, 99))}, mechanism, steps=8)
     (said,) = report.findings.of("I_NOT_SAMPLED")
     assert said.where == "joints.afloat"
+
+
+def coupled(ratio: float, kind: str = "revolute") -> Mechanism:
+    """Return a crank that drives an arm (or what the kind says) at a ratio, both without limits, and a post that is fixed to the frame."""
+    joints = [
+        joint("fast", "revolute", "frame", "crank", lower=(-math.inf,), upper=(math.inf,)),
+        joint("slow", kind, "frame", "arm", at_parent=at(200), lower=(-math.inf,), upper=(math.inf,)),
+        fixed("foot", "frame", "post"),
+    ]
+    return Mechanism(("frame", "crank", "arm", "post"), "frame", joints, [Coupling("gear", "linear", "fast", "slow", ratio, 0.0)])
+
+
+@pytest.mark.parametrize(
+    ("ratio", "kind", "reason"),
+    [
+        (-0.25, "revolute", None),
+        (math.sqrt(2), "revolute", "what follows it does not return within 16 turns"),
+        (1 / 17, "revolute", "what follows it does not return within 16 turns"),
+        (3.0, "slider", "what follows it slides without limits"),
+    ],
+)
+def test_a_sweep_says_which_part_of_an_endless_motion_it_samples(ratio: float, kind: str, reason: str | None) -> None:
+    report = sweep({"arm": box(2, 2, 2), "crank": box(1, 1, 1)}, coupled(ratio, kind), steps=8)
+    found = [finding.message for finding in report.findings.of("I_NOT_SAMPLED")]
+    assert [said.rpartition("only: ")[2] for said in found] == ([] if reason is None else [f"{reason}."])
+
+
+def test_a_sweep_says_that_a_slide_without_limits_goes_on() -> None:
+    mechanism = Mechanism(("frame", "car"), "frame", [joint("way", "slider", "frame", "car", lower=(-math.inf,), upper=(math.inf,))])
+    report = sweep({"car": box(2, 2, 2), "frame": box(2, 2, 2).transformed(at(0, 0, 500))}, mechanism, steps=8)
+    (said,) = report.findings.of("I_NOT_SAMPLED")
+    assert "it slides without limits" in said.message
+    assert said.where == "joints.way"
+
+
+def test_least_clearances_look_into_every_turn_of_a_driver() -> None:
+    """A crank returns to the same place after each of sixteen turns, and passes a post between them."""
+    meshes = {"crank": box(40, 4, 4).transformed(at(20)), "post": box(4, 4, 4).transformed(at(-45))}
+    motion = MotionSampler(Scene.of(meshes, (mechanism := coupled(1 / 16)).joints), mechanism)
+    for quick in (False, True):
+        (row,) = least_clearances(motion, quick=quick)
+        assert row.gap == pytest.approx(43 - math.hypot(40, 2), abs=0.03 if quick else 1e-3)  # the crank is 4 mm wide
