@@ -39,7 +39,7 @@ from articad.kinematics.motion import DrivenMotion, FeasibleRange
 from articad.kinematics.reach import Reach
 from articad.kinematics.solution import Solution
 from articad.plan.check import admitted
-from articad.plan.resolve import Fit, Material, ResolvedPlan, Waiver
+from articad.plan.resolve import Fit, Material, ResolvedPart, ResolvedPlan, Waiver
 from articad.plan.schema import AssemblyPlan
 
 if TYPE_CHECKING:
@@ -208,7 +208,7 @@ class Assembly:
         return cls(
             name=resolved.plan.name,
             mechanism=mechanism,
-            parts={name: realised[name].part for name in mechanism.parts},
+            parts={name: _weighed(realised[name].part, resolved.parts[name]) for name in mechanism.parts},
             materials=resolved.materials,
             fits=resolved.fits,
             waivers=resolved.waivers,
@@ -269,6 +269,27 @@ class Assembly:
         parameters = {**self.resolved.overrides, **values}
         return Assembly.from_plan(
             self.resolved.plan, scripts, kernel=self._kernel, cache=self._cache, deflection=self.deflection, parameters=parameters
+        )
+
+    @property
+    def environment(self) -> frozenset[str]:
+        """Names of the parts that are checked against but belong to no product: a floor, a wall, room for a hand."""
+        return frozenset() if self.resolved is None else frozenset(name for name, part in self.resolved.parts.items() if part.environment)
+
+    def product(self) -> Assembly:
+        """Return the assembly without its environment, as every export writes it; the assembly itself if it has none."""
+        if self.resolved is None or not self.environment:
+            return self
+        resolved = self.resolved.product()
+        mechanism = resolved.mechanism
+        return replace(
+            self,
+            mechanism=mechanism,
+            parts={name: self.parts[name] for name in mechanism.parts},
+            fits=resolved.fits,
+            waivers=resolved.waivers,
+            resolved=resolved,
+            realised={name: part for name, part in self.realised.items() if name in resolved.parts},
         )
 
     # ------------------------------------------------------------------ structure
@@ -611,7 +632,9 @@ class Assembly:
 
     def scene(self) -> Scene:
         """Return bodies, relations and fits, for measurements of interference beyond `check`, `check_motion` and `certify`."""
-        return Scene.of(self._meshes(), self.joints, waivers=self.waivers, deflection=self._deflections(), fits=self.fits)
+        return Scene.of(
+            self._meshes(), self.joints, waivers=self.waivers, deflection=self._deflections(), fits=self.fits, environment=self.environment
+        )
 
     def _with_fits(self, checks: Checks, joints: Sequence[str] | None = None) -> Checks:
         if not self.fits:
@@ -677,6 +700,11 @@ class Assembly:
                 continue
             if not driver.lower - _LIMIT_SLACK <= value <= driver.upper + _LIMIT_SLACK:
                 raise LimitError(driver.name, float(value), driver.lower, driver.upper, driver.unit)
+
+
+def _weighed(part: Part, planned: ResolvedPart) -> Part:
+    """Return the part as it counts in an assembly: the environment has no mass."""
+    return replace(part, mass=None) if planned.environment else part
 
 
 def _restored(kind: type[Assembly], given: dict[str, Any]) -> Assembly:

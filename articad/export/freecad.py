@@ -20,6 +20,7 @@ from articad.export.freecad_job import Job
 from articad.export.freecad_look import verify
 from articad.export.freecad_native import document
 from articad.export.losses import refuse
+from articad.export.product import of_the_product
 from articad.findings import Finding, Findings
 from articad.kernels import freecad_install
 from articad.kernels.freecad_install import FreeCAD, FreeCADLimits
@@ -33,6 +34,7 @@ _SECONDS, _SECONDS_A_PART = 120.0, 5.0
 _PROGRESS = re.compile(r"\(\d+ %\)|^MbD:|^Time = |^Recompute\.")  # lines that FreeCAD always writes
 
 
+@of_the_product
 def write_freecad(assembly: Assembly, *, strict: bool = False, freecad: FreeCAD | None = None) -> Bundle:
     """Write an assembly as a FreeCAD 1.0 document; FreeCAD 1.1 opens it as well.
 
@@ -71,6 +73,7 @@ def write_freecad(assembly: Assembly, *, strict: bool = False, freecad: FreeCAD 
     return Bundle({f"{job.name}.FCStd": written}, job.losses, verify(written, assembly, freecad))
 
 
+@of_the_product
 def write_freecad_alone(assembly: Assembly, *, strict: bool = False) -> Bundle:
     """Write an assembly as a FreeCAD 1.0 document without FreeCAD: every shape as B-rep, the rest as `write_freecad` does.
 

@@ -20,6 +20,7 @@ from articad.export.losses import Feature, kept_losses, losses_of, refuse
 from articad.export.markup import tidy
 from articad.export.meshes import drawn_shapes
 from articad.export.names import Names, valid_name
+from articad.export.product import of_the_product
 from articad.geometry.mesh import TriMesh
 from articad.kinematics.joints import Joint, JointType
 
@@ -38,6 +39,7 @@ _COMPONENTS = {"float32": 5126, "uint32": 5125, "uint16": 5123}
 _SHORT = 65535  # vertices that indices of two bytes can name; glTF excludes the largest index
 
 
+@of_the_product
 def write_glb(assembly: Assembly, *, strict: bool = False) -> Bundle:
     """Write an assembly as one GLB file in its rest pose, with an animation for every driving joint.
 

@@ -36,6 +36,7 @@ from articad.export.meshes import MM_TO_M, MeshFiles, MeshKind
 from articad.export.metadata import dumps, records
 from articad.export.mjcf_again import Again
 from articad.export.names import Names
+from articad.export.product import of_the_product
 from articad.findings import Findings
 from articad.geometry.mesh import TriMesh
 from articad.geometry.part import Primitive
@@ -59,6 +60,7 @@ ROTOR_SHARE = 0.01  # of the moved inertia: the inertia of a motor's rotor as se
 FRICTION_SPIN, FRICTION_ROLL = 0.005, 0.0001  # MuJoCo's defaults for the other two friction coefficients [m]
 
 
+@of_the_product
 def write_mjcf(
     assembly: Assembly,
     *,

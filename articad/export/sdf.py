@@ -19,6 +19,7 @@ from articad.export.lowering import AxisMotion, Follows, Link, LoweredJoint, Low
 from articad.export.markup import child, document, number, numbers, rgba, rpy, tidy
 from articad.export.meshes import MM_TO_M, MeshFiles, MeshKind
 from articad.export.metadata import dumps, records
+from articad.export.product import of_the_product
 from articad.findings import Findings
 from articad.kernels.cache import BuildCache
 from articad.kinematics.joints import JointType
@@ -50,6 +51,7 @@ _FORMS: dict[str, Callable[[tuple[float, ...]], dict[str, str]]] = {
 """The SDFormat element of a primitive with these sizes [m]."""
 
 
+@of_the_product
 def write_sdf(
     assembly: Assembly,
     *,

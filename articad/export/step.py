@@ -26,6 +26,7 @@ from articad.export.features import body_mesh
 from articad.export.hulls import rigid_groups
 from articad.export.losses import Feature, kept_losses, losses_of, refuse
 from articad.export.names import Names, valid_name
+from articad.export.product import of_the_product
 from articad.geometry.mesh import TriMesh
 from articad.geometry.part import Part
 from articad.kinematics.joints import JointType
@@ -54,6 +55,7 @@ class _Component:
     origin: int
 
 
+@of_the_product
 def write_step(assembly: Assembly, *, strict: bool = False) -> Bundle:
     """Write all parts that have a shape as one STEP assembly (AP242) in the rest pose, in mm.
 

@@ -17,6 +17,7 @@ from articad.export.features import body_mesh
 from articad.export.losses import Feature, kept_losses, losses_of, refuse
 from articad.export.markup import child, document, number
 from articad.export.names import Names
+from articad.export.product import of_the_product
 from articad.findings import Finding, Findings
 from articad.geometry.mesh import TriMesh
 from articad.kinematics.joints import JointType
@@ -45,6 +46,7 @@ _RELATIONS = (
 )
 
 
+@of_the_product
 def write_3mf(assembly: Assembly, *, strict: bool = False, process: Process = "fdm") -> Bundle:
     """Write one 3MF file per part, in mm, rotated so that it stands on the largest flat face that it can stand on.
 

@@ -22,6 +22,7 @@ from articad.export.meshes import MM_TO_M, MeshFiles, MeshKind
 from articad.export.metadata import dumps, records
 from articad.export.mimic import linear_followers
 from articad.export.names import called
+from articad.export.product import of_the_product
 from articad.export.ros import add_control, package_files, require_package_name, srdf_names
 from articad.export.ros import srdf as write_srdf
 from articad.findings import Findings
@@ -36,6 +37,7 @@ Loops = Literal["none", "isaac", "drake", "mimic"]
 DRAKE = "http://drake.mit.edu"  # the namespace of Drake's own elements
 
 
+@of_the_product
 def write_urdf(
     assembly: Assembly,
     *,

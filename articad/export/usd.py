@@ -24,6 +24,7 @@ from articad.export.lowering import lower
 from articad.export.markup import number
 from articad.export.meshes import drawn_shapes
 from articad.export.names import Names, valid_name
+from articad.export.product import of_the_product
 from articad.geometry.mass import MassProperties
 from articad.geometry.mesh import TriMesh
 from articad.geometry.part import Part, Shape
@@ -49,6 +50,7 @@ _ROOT = '"PhysicsArticulationRootAPI"'
 _DEGREES = ("transX", "transY", "transZ", "rotX", "rotY", "rotZ")
 
 
+@of_the_product
 def write_usd(assembly: Assembly, *, strict: bool = False, collision: Collision | None = None, cache: BuildCache | None = None) -> Bundle:
     """Write an assembly as one `.usda` file in metres, z-up, with meshes inside.
 

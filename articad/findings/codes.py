@@ -109,6 +109,12 @@ CODES: dict[str, Code] = {
     # --- plan: joints and graph
     "E_PART_UNKNOWN": Code("plan", "design", "A name refers to a part that is not declared.", "Declare it, or use one of those listed."),
     "E_JOINT_UNKNOWN": Code("plan", "design", "A name refers to a joint that is not declared.", "Declare it, or use one of those listed."),
+    "E_ENVIRONMENT": Code(
+        "plan",
+        "design",
+        "A part of the environment is the ground, moves, or carries another part.",
+        "Fix it, as the child of one fixed joint, to the part that it stands still with.",
+    ),
     "E_JOINT_SELF": Code("plan", "design", "A joint connects a part with itself.", "Name two different parts."),
     "E_JOINT_DUP": Code("plan", "design", "Two joints connect the same two connectors.", "Remove one."),
     "E_NO_GROUND": Code("plan", "design", "The ground is not one of the parts.", "Name a declared part as ground."),

@@ -35,6 +35,7 @@ class Holding:
         scene = self.scene
         fixed = [joint for joint in scene.relations.joints if joint.type is JointType.FIXED]
         fixed = [joint for joint in fixed if joint.parent in scene.bodies and joint.child in scene.bodies]
+        fixed = [joint for joint in fixed if not {joint.parent, joint.child} & scene.environment]
         touching = Groups(scene.bodies)
         for (a, b), pair in self.pairs.items():
             if pair.volume > 0 and scene.relations.rigid.together(a, b):
@@ -54,7 +55,7 @@ class Holding:
 
     def _join_touching_neighbours(self, touching: Groups) -> None:
         """Add contacts between the other pairs of rigid groups, which now matter."""
-        for a, b in self.placed.candidates(TOUCH_MM):
+        for a, b in self._candidates(TOUCH_MM):
             apart = self.scene.relations.rigid.together(a, b) and not touching.together(a, b)
             if apart and self._gap(a, b) <= TOUCH_MM + self.scene.deflection_of(a, b):
                 touching.join(a, b)
@@ -62,12 +63,14 @@ class Holding:
     def floating(self, ground: str, bare: Sequence[str]) -> list[Finding]:
         """Find groups of parts that are near each other but not connected to the ground."""
         scene = self.scene
-        near = Groups([*scene.bodies, *bare])
+        near = Groups([*(name for name in scene.bodies if name not in scene.environment), *bare])
         # a part without geometry may hold anything joined to it; fixed parts are checked separately, and nothing holds free ones
         for joint in scene.relations.joints:
+            if {joint.parent, joint.child} & scene.environment:
+                continue
             if joint.parent in bare or joint.child in bare or joint.type in {JointType.FIXED, JointType.FREE}:
                 near.join(joint.parent, joint.child)
-        candidates = self.placed.candidates(max([NEAR_MM, *(fit.gap_max or 0.0 for fit in scene.fits.values())]))
+        candidates = self._candidates(max([NEAR_MM, *(fit.gap_max or 0.0 for fit in scene.fits.values())]))
         candidates.sort(key=lambda pair: not scene.relations.between(*pair))  # parts that a joint connects are mostly near
         for a, b in candidates:
             if not near.together(a, b) and self._is_near(a, b):
@@ -76,6 +79,10 @@ class Holding:
         if len(groups) < 2:
             return []
         return [self._floating_finding(group) for group in groups if ground not in group]
+
+    def _candidates(self, within: float) -> list[tuple[str, str]]:
+        """Return the pairs of parts of the product whose boxes are within a distance [mm]."""
+        return [pair for pair in self.placed.candidates(within) if self.scene.environment.isdisjoint(pair)]
 
     def _is_near(self, a: str, b: str) -> bool:
         pair = self.pairs.get((a, b))
@@ -130,7 +137,7 @@ class Holding:
 
     def _floating_finding(self, group: tuple[str, ...]) -> Finding:
         inside = set(group)
-        outside = [name for name in self.scene.bodies if name not in inside]
+        outside = [name for name in self.scene.bodies if name not in inside | self.scene.environment]
         gaps = [
             (distance(self.scene.bodies[a], self.scene.bodies[b], self._relative(a, b)), a, b)
             for a in group

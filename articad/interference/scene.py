@@ -30,12 +30,14 @@ class Scene:
         relations: Relations of the parts.
         deflections: By part [mm].
         fits: By joint name.
+        environment: Parts that hold nothing and need not be held: they are only kept clear of.
     """
 
     meshes: Mapping[str, TriMesh]
     relations: Relations
     deflections: Mapping[str, float]
     fits: Mapping[str, FitLike] = field(default_factory=dict)
+    environment: frozenset[str] = frozenset()
 
     @classmethod
     def of(
@@ -46,10 +48,11 @@ class Scene:
         waivers: Sequence[WaiverLike] = (),
         deflection: Mapping[str, float] | float = 0.0,
         fits: Mapping[str, FitLike] | None = None,
+        environment: frozenset[str] = frozenset(),
     ) -> Scene:
         """Return the scene; `deflection` by part or the same for all [mm]."""
         deflections = {name: float(deflection if isinstance(deflection, int | float) else deflection.get(name, 0.0)) for name in meshes}
-        return cls(dict(meshes), Relations(joints, waivers), deflections, dict(fits or {}))
+        return cls(dict(meshes), Relations(joints, waivers), deflections, dict(fits or {}), environment)
 
     @cached_property
     def bodies(self) -> dict[str, Body]:

@@ -165,6 +165,11 @@ class ResolvedPart:
     parent_joint: str | None
     spec: PartSpec
 
+    @property
+    def environment(self) -> bool:
+        """Whether it is of the environment: checked against, but no part of the product."""
+        return self.spec.environment
+
 
 @dataclass(frozen=True, eq=False)
 class ResolvedPlan:
@@ -195,6 +200,31 @@ class ResolvedPlan:
     materials: Mapping[str, Material]
     ground: str
     findings: Findings = field(default_factory=Findings)
+
+    def product(self) -> ResolvedPlan:
+        """Return the plan without the parts of the environment and the joints that fix them."""
+        inside = {name: part for name, part in self.parts.items() if not part.environment}
+        if len(inside) == len(self.parts):
+            return self
+        joints = tuple(joint for joint in self.joints if joint.child in inside)
+        held = {joint.name for joint in joints}
+        sources = {each.name: getattr(each, "derive", None) for each in self.plan.parts}
+        outside = {part.spec.name for part in self.parts.values() if part.environment}
+
+        def is_outside(name: str) -> bool:
+            derived = sources.get(name)
+            return name in outside or (derived is not None and is_outside(derived.source))
+
+        plan = self.plan.model_copy(
+            update={
+                "parts": tuple(each for each in self.plan.parts if not is_outside(each.name)),
+                "joints": tuple(each for each in self.plan.joints if each.name in held),
+                "allow": tuple(each for each in self.plan.allow if set(each.parts) <= inside.keys()),
+            }
+        )
+        waivers = tuple(waiver for waiver in self.waivers if set(waiver.parts) <= inside.keys())
+        fits = {name: fit for name, fit in self.fits.items() if name in held}
+        return replace(self, plan=plan, parts=inside, joints=joints, fits=fits, waivers=waivers)
 
     @cached_property
     def joints_at(self) -> Mapping[tuple[str, str], tuple[tuple[Joint, Side], ...]]:

@@ -108,6 +108,9 @@ class PartSpec(PlanObject):
     envelope_mm: Vector | None = Field(None, description="Expected bounding box, within 2 %")
     rest_pose: RestPose = Field(Pose(), description="Places the part's frame in the assembly at rest; auto: by its joint")
     connectors: tuple[ConnectorSpec, ...] = ()
+    environment: Truth = Field(
+        default=False, description="true: a floor, a wall, room for a hand: checked against, not exported, without mass"
+    )
     color: Color | None = None
     kernel: KernelName | None = None
 

@@ -5,13 +5,14 @@ from __future__ import annotations
 import math
 import re
 from collections import defaultdict
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 
 import numpy as np
 
 from articad.connectors import SE3
 from articad.findings import Finding
 from articad.kinematics.joints import Joint, JointLimits, JointType
+from articad.plan.derive import JointLine
 from articad.plan.draft import Draft
 from articad.plan.motions import AXES
 from articad.plan.rest import OFFSET_MM
@@ -40,6 +41,7 @@ def usage_findings(draft: Draft) -> list[Finding]:
     """Return warnings about connectors, mirrored parts and the size of the assembly."""
     ends = _joints_at(draft)
     return [
+        *_environment(draft),
         *_unused(draft, ends),
         *_shared(draft, ends),
         *_kinds(draft),
@@ -59,6 +61,34 @@ def _joints_at(draft: Draft) -> Ends:
             part, connector = reference.split(".")
             ends[part, connector].append(form.name)
     return ends
+
+
+def _environment(draft: Draft) -> list[Finding]:
+    """Find parts of the environment that are more than bodies fixed to a part of the product: exports leave them out."""
+    outside = {name for name, part in draft.parts.items() if part.spec is not None and part.spec.environment}
+    found = []
+    for name in (name for name in draft.parts if name in outside):
+        holding = [line for line in draft.lines if any(part == name for part, _ in line.ends)]
+        fault = _fault_outside(name, holding, draft, outside)
+        if fault:
+            hint = f"Make {name} the child of one fixed joint to a part of the product, or remove 'environment'."
+            found.append(Finding(code="E_ENVIRONMENT", where=f"parts.{name}.environment", message=fault, hint=hint, parts=(name,)))
+    return found
+
+
+def _fault_outside(name: str, holding: Sequence[JointLine], draft: Draft, outside: Collection[str]) -> str:
+    """Return why a part cannot be of the environment; empty if it can."""
+    if draft.plan.ground == name:
+        return f"{name} is of the environment, which is not exported, but it is the ground."
+    for line in holding:
+        (parent, _), (child, _) = line.ends
+        if child != name:
+            return f"{name} is of the environment, which is not exported, but it carries {child} by joint {line.name!r}."
+        if parent in outside:
+            return f"{name} is of the environment, which is not exported, but {parent}, which holds it, is so, too."
+        if line.root.type != "fixed":
+            return f"{name} is of the environment, which stands still, but joint {line.name!r} moves it."
+    return f"{name} is of the environment, but {len(holding)} joints hold it." if len(holding) > 1 else ""
 
 
 def _unused(draft: Draft, ends: Ends) -> list[Finding]:

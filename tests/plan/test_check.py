@@ -229,6 +229,13 @@ CASES = [
         "2 connectors are called 'hinge'. Rename all but one.",
         2,
     ),
+    Case(
+        "E_ENVIRONMENT",
+        chest_with(lambda p: part(p, "lid").update(environment=True)),
+        "parts.lid.environment",
+        "stands still, but joint 'hinge' moves it",
+    ),
+    Case("E_ENVIRONMENT", chest_with(lambda p: part(p, "box").update(environment=True)), "parts.box.environment", "but it is the ground"),
     # joints and graph
     Case("E_PART_UNKNOWN", chest_with(lambda p: joint(p, "hinge").update(child="lidd.hinge")), "joints.hinge", "Did you mean 'lid'?"),
     Case(
