@@ -165,6 +165,26 @@ def test_any_mistakes_together_are_each_named(seed: int, work: Path, say: Say) -
     assert set(chosen) - structural <= set(named)
 
 
+def test_every_key_that_is_there_twice_is_named_with_all_else(work: Path, say: Say) -> None:
+    file = work / "chest" / "plan.json"
+    plan = file.read_text()
+    misspelt_plan = plan.replace('"angle_deg"', '"angle_dg"', 1)
+    file.write_text(misspelt_plan.replace("{", '{"name": "other", "ground": "box", ', 1))
+    code, said = say("check", "chest")
+
+    assert code == FINDINGS
+    assert all(words in said for words in ("'name' occurs twice", "'ground' occurs twice", "angle_dg"))
+
+
+def test_a_plan_without_parts_is_told_to_declare_one(work: Path, say: Say) -> None:
+    edited(work / "chest", lambda plan: plan.update(parts=[], joints=[]))
+    code, said = say("check", "chest")
+
+    assert code == FINDINGS
+    assert "there are no parts" in said
+    assert "[]" not in said
+
+
 def test_radians_are_suspected_and_the_degrees_offered_are_right(work: Path, say: Say) -> None:
     edited(work / "chest", lambda plan: plan["joints"][0].update(angle_deg=[-1.745, 0]))
     code, said = say("check", "chest")

@@ -15,7 +15,7 @@ from lxml import etree
 from articad.arrays import FloatArray
 from articad.assembly import Assembly
 from articad.connectors.se3 import SE3
-from articad.errors import InvalidSolidError
+from articad.errors import InvalidSolidError, ReadError
 from articad.findings import Finding
 from articad.geometry.mass import MassProperties
 from articad.geometry.mesh import TriMesh
@@ -115,9 +115,46 @@ def _parse(document: Any, path: Path) -> Any:
             io.BytesIO(content), build_scene_graph=False, build_collision_scene_graph=False, load_meshes=False, load_collision_meshes=False
         ).robot
     except Exception as error:
-        raise unreadable(path, "", f"It is not URDF: {type(error).__name__} {error}.") from error
+        if not (lacking := _lacking(document)):
+            raise unreadable(path, "", f"It is not URDF: {type(error).__name__} {error}.") from error
+        findings = [finding for line, reason in lacking for finding in unreadable(path, f"line {line}", reason).findings]
+        line, reason = lacking[0]
+        raise ReadError(f"{path}: line {line}: {reason}", path=str(path), where=f"line {line}", findings=findings) from None
     finally:
         logger.setLevel(level)
+
+
+_NEEDED = {
+    "robot/link": ("name",),
+    "robot/joint": ("name", "type"),
+    "robot/material": ("name",),
+    "joint/parent": ("link",),
+    "joint/child": ("link",),
+    "joint/mimic": ("joint",),
+    "inertial/mass": ("value",),
+    "geometry/box": ("size",),
+    "geometry/sphere": ("radius",),
+    "geometry/cylinder": ("radius", "length"),
+    "geometry/mesh": ("filename",),
+    "inertial/inertia": ("ixx", "ixy", "ixz", "iyy", "iyz", "izz"),
+}
+"""Attributes that an element must have, by parent and tag."""
+
+
+def _lacking(document: Any) -> list[tuple[int, str]]:
+    """Return the line and the reason for each element without an attribute or element that URDF demands."""
+    found = []
+    for element in document.iter():
+        parent = element.getparent()
+        for name in _NEEDED.get(f"{'' if parent is None else parent.tag}/{element.tag}", ()):
+            if element.get(name) is None:
+                said = f" {element.get('name')!r}" if element.get("name") else ""
+                found.append((element.sourceline, f"<{element.tag}>{said} lacks {name!r}."))
+    for joint in document.iterfind("joint"):
+        found += [
+            (joint.sourceline, f"Joint {joint.get('name')!r} lacks its <{tag}>.") for tag in ("parent", "child") if joint.find(tag) is None
+        ]
+    return sorted(found)
 
 
 def _strip(document: Any, path: Path) -> list[Finding]:

@@ -144,7 +144,11 @@ class JointGraph:
     def _findings(self) -> Findings:
         found = [*self._name_findings(), *self._joint_findings()]
         if self.ground not in self._place:
-            hint = f"Choose one of {_listed(self.parts)}.{did_you_mean(self.ground, self.parts)}"
+            hint = (
+                f"Choose one of {_listed(self.parts)}.{did_you_mean(self.ground, self.parts)}"
+                if self.parts
+                else "Declare it: there are no parts."
+            )
             message = f"Ground {self.ground!r} is not a declared part."
             found.append(Finding(code="E_NO_GROUND", where="ground", message=message, hint=hint))
         elif not any(finding.code == "E_PART_UNKNOWN" for finding in found):  # a misspelt part would be reported twice

@@ -63,12 +63,9 @@ def loads(form: type[F], text: str | bytes) -> F:
     Raises:
         PlanError: With all findings.
     """
+    repeated: dict[str, None] = {}
     try:
-        document = json.loads(text, object_pairs_hook=_unique_keys)
-    except _RepeatedKeyError as error:
-        raise _refused(
-            [_finding("E_SCHEMA", "plan", f"The key {error.key!r} occurs twice in one object.", "Remove one of them.")]
-        ) from None
+        document = json.loads(text, object_pairs_hook=lambda pairs: _unique_keys(pairs, repeated))
     except json.JSONDecodeError as error:
         where = f"line {error.lineno} column {error.colno}"
         line = "".join(error.doc.split("\n")[error.lineno - 1 :][:1]).strip()[:_SHOWN]
@@ -80,7 +77,14 @@ def loads(form: type[F], text: str | bytes) -> F:
     if is_nested_deeper(document, MOST_LEVELS):
         problem = f"This plan is nested deeper than {MOST_LEVELS} levels."
         raise _refused([_finding("E_SCHEMA", "plan", problem, "Give one JSON object in UTF-8.")])
-    return from_json(form, document)
+    if not repeated:
+        return from_json(form, document)
+    twice = [_finding("E_SCHEMA", "plan", f"The key {key!r} occurs twice in one object.", "Remove one of them.") for key in repeated]
+    try:
+        from_json(form, document)
+    except PlanError as error:
+        twice += error.findings
+    raise _refused(twice)
 
 
 def is_nested_deeper(value: Any, most: int) -> bool:
@@ -110,19 +114,14 @@ def from_json(form: type[F], document: Any) -> F:
     raise _refused([_translated(form, document, detail) for detail in details]) from None
 
 
-class _RepeatedKeyError(Exception):
-    def __init__(self, key: str) -> None:
-        self.key = key
-        super().__init__(key)
-
-
-def _unique_keys(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    """Build an object; refuse a repeated key, of which Python would silently keep the last."""
+def _unique_keys(pairs: list[tuple[str, Any]], repeated: dict[str, None]) -> dict[str, Any]:
+    """Build an object of the first value of each key; add the repeated keys, of which Python would silently keep the last."""
     unique: dict[str, Any] = {}
     for key, value in pairs:
         if key in unique:
-            raise _RepeatedKeyError(key)
-        unique[key] = value
+            repeated[key] = None
+        else:
+            unique[key] = value
     return unique
 
 

@@ -199,3 +199,31 @@ def test_a_changed_record_is_refused_by_the_mechanism(tmp_path: Path) -> None:
 
     with pytest.raises(ReadError, match="do not form an assembly"):
         read_urdf(tmp_path / "a.urdf")
+
+
+LACKING = {
+    "a joint's child": ('<child link="b"/>', "", "Joint 'j' lacks its <child>"),
+    "a joint's name": ('<joint name="k" ', "<joint ", "<joint> lacks 'name'"),
+    "a link's name": ('<link name="b">', "<link>", "<link> lacks 'name'"),
+    "a size": ('size="1 1 1"', "", "<box> lacks 'size'"),
+}
+
+
+@pytest.mark.parametrize("first", LACKING)
+@pytest.mark.parametrize("second", LACKING)
+def test_what_a_urdf_lacks_is_named_with_its_line_all_at_once(first: str, second: str, tmp_path: Path) -> None:
+    text = (
+        '<robot name="r">\n<link name="a"/>\n<link name="b"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/>'
+        '</inertial><visual><geometry><box size="1 1 1"/></geometry></visual></link>\n<link name="c"/>'
+        '<joint name="j" type="fixed"><parent link="a"/><child link="b"/></joint><joint name="k" type="fixed"><parent link="a"/><child link="c"/></joint></robot>'
+    )
+    for name in {first, second}:
+        text = text.replace(*LACKING[name][:2])
+    (tmp_path / "a.urdf").write_text(text)
+
+    with pytest.raises(ReadError) as refused:
+        read_urdf(tmp_path / "a.urdf")
+    messages = [finding.message for finding in refused.value.findings]
+    assert len(messages) == len({first, second})
+    assert all(any(LACKING[name][2] in message for message in messages) for name in (first, second)), messages
+    assert all("line " in finding.where for finding in refused.value.findings)
