@@ -178,7 +178,13 @@ def clean_motion(
 
 
 def clean_frames(
-    assembly: Assembly, q: FloatArray, *, view: str = "iso", size: tuple[int, int] = (DEFAULT_SIZE, DEFAULT_SIZE), margin: float = 1.1
+    assembly: Assembly,
+    q: FloatArray,
+    *,
+    view: str = "iso",
+    size: tuple[int, int] = (DEFAULT_SIZE, DEFAULT_SIZE),
+    margin: float = 1.1,
+    transparent: bool = False,
 ) -> list[Image.Image]:
     """Draw configurations as product pictures, with one camera and one ground for all of them.
 
@@ -188,13 +194,15 @@ def clean_frames(
         view: A key of `articad.render.VIEWS`.
         size: Width and height of each picture [pixels].
         margin: Size of the picture relative to everything that is shown in it.
+        transparent: As in `render_clean`.
     """
     scenes = [scene_of(assembly.parts, _poses(assembly, row)) for row in q]
     bounds = _envelope(scenes)
-    everything = np.concatenate([item.vertices for scene in scenes for item in scene.items if len(item.mesh.vertices)])
-    camera = framed(scenes[0], Camera.fit(view, bounds, width=size[0], height=size[1]), margin=margin, also=everything)
+    rough = [scene.simplified(_FINE * float(np.ptp(bounds, axis=0).max()) / max(size)) for scene in scenes]
+    everything = np.concatenate([item.vertices for scene in rough for item in scene.items if len(item.mesh.vertices)])
+    camera = framed(rough[0], Camera.fit(view, bounds, width=size[0], height=size[1]), margin=margin, also=everything)
     light = [scene.simplified(_FINE * camera.mm_per_pixel) for scene in scenes]
-    return [studio(scene, camera, floor=float(bounds[0][2])) for scene in light]
+    return [studio(scene, camera, transparent=transparent, floor=float(bounds[0][2])) for scene in light]
 
 
 def _prepared(

@@ -30,6 +30,9 @@ _SKY, _GROUND = 0.54, 0.26  # diffuse light from straight above and from below
 _KEY, _FILL = 0.74, 0.14  # strength of the lamps on a surface that faces them
 _NEAR = 0.28  # of the scene's size: surfaces within this distance shade each other
 _RAYS = 7  # per fine pixel, for the light that reaches a point
+_GROUND_RAYS = 12  # per fine pixel of the ground, whose shadow is large and smooth
+_REACH = 0.32  # of the scene's size: how far the shadow on the ground extends
+_TILE = 61  # pixels after which the pattern of random rays repeats
 _SHADOW = 0.95  # darkness of the ground where nothing of the sky is seen
 _FADE = 0.8  # how far parts that are only context fade into the background
 _EDGE = 0.42  # strength of the lines along edges
@@ -86,12 +89,11 @@ def studio(scene: DrawnScene, camera: Camera, *, transparent: bool = False, floo
     clear = [index for index, item in enumerate(items) if looks.opacity[index] < 1 and item.manner == "solid"]
     # Hidden items keep their index, so that one table of looks serves both passes.
     solid = replace(scene, items=tuple(_without(item) if index in clear else item for index, item in enumerate(items))) if clear else scene
-    rng = np.random.default_rng(7)
-    color, alpha = _pass(solid, fine, looks, rng)
-    shadow = _ground(solid, scene, fine, floor, rng, hidden=alpha >= 1)
+    color, alpha = _pass(solid, fine, looks)
+    shadow = _ground(solid, scene, fine, floor, hidden=alpha >= 1)
     over = np.zeros(alpha.shape, dtype=bool)
     if clear:
-        color, alpha = _behind_glass(scene, fine, looks, rng, color, alpha, set(clear))
+        color, alpha = _behind_glass(scene, fine, looks, color, alpha, set(clear))
     buffers = cast(scene, fine) if any(item.manner == "highlight" for item in items) else None
     if buffers is not None:
         over = buffers.over != BACKGROUND
@@ -117,7 +119,7 @@ def _looks(scene: DrawnScene) -> _Surfaces:
     )
 
 
-def _pass(scene: DrawnScene, camera: Camera, looks: _Surfaces, rng: np.random.Generator) -> tuple[FloatArray, FloatArray]:
+def _pass(scene: DrawnScene, camera: Camera, looks: _Surfaces) -> tuple[FloatArray, FloatArray]:
     """Return linear colours `(h, w, 3)` and coverage `(h, w)` of what the rays meet first."""
     buffers = cast(scene, camera)
     seen = buffers.item != BACKGROUND
@@ -127,7 +129,7 @@ def _pass(scene: DrawnScene, camera: Camera, looks: _Surfaces, rng: np.random.Ge
     index, normal = buffers.item[seen], buffers.normal[seen].astype(np.float64)
     points = _points(camera, buffers, seen)
     size = float(np.linalg.norm(np.ptp(scene.bounds, axis=0)))
-    open_sky = _smoothed(_openness(scene, camera, points, normal, size, rng), buffers, seen)
+    open_sky = _smoothed(_openness(scene, camera, points, normal, size, seen), buffers, seen)
     lit = _light(camera, normal, open_sky, looks, index)
     cut = buffers.cut[seen]
     if cut.any():
@@ -150,7 +152,7 @@ def _points(camera: Camera, buffers: Buffers, seen: NDArray[np.bool_]) -> FloatA
 
 
 def _openness(
-    scene: DrawnScene, camera: Camera, points: FloatArray, normal: FloatArray, size: float, rng: np.random.Generator
+    scene: DrawnScene, camera: Camera, points: FloatArray, normal: FloatArray, size: float, seen: NDArray[np.bool_]
 ) -> FloatArray:
     """Return the share of the hemisphere over each point that nothing near covers, by rays distributed as the cosine to the normal.
 
@@ -159,17 +161,24 @@ def _openness(
     total = np.zeros(len(points))
     reach = _NEAR * size
     start = points + normal * 2e-4 * size
-    for _ in range(_RAYS):
-        direction = normal + _on_sphere(rng, len(points)) * 0.999
+    for number in range(_RAYS):
+        direction = normal + _directions(seen, number) * 0.999
         direction /= np.linalg.norm(direction, axis=1, keepdims=True)
         total += 1 - occlusion(scene, camera, start, direction, reach)
     return total / _RAYS
 
 
-def _on_sphere(rng: np.random.Generator, count: int) -> FloatArray:
-    height, turn = rng.uniform(-1, 1, count), rng.uniform(0, 2 * math.pi, count)
-    around = np.sqrt(1 - height**2)
-    return np.stack([around * np.cos(turn), around * np.sin(turn), height], axis=1)
+def _directions(pixels: NDArray[np.bool_], number: int) -> FloatArray:
+    """Return a random point of the unit sphere for each pixel that is set, `(n, 3)`.
+
+    The same pixel always gets the same point, so that the frames of an animation do not flicker.
+    """
+    rng = np.random.default_rng(number)
+    height, turn = rng.uniform(-1, 1, (_TILE, _TILE)), rng.uniform(0, 2 * math.pi, (_TILE, _TILE))
+    rows, columns = np.nonzero(pixels)
+    place = (rows % _TILE, columns % _TILE)
+    around = np.sqrt(1 - height[place] ** 2)
+    return np.stack([around * np.cos(turn[place]), around * np.sin(turn[place]), height[place]], axis=1)
 
 
 def _smoothed(values: FloatArray, buffers: Buffers, seen: NDArray[np.bool_], reach: int = 3) -> FloatArray:
@@ -225,14 +234,14 @@ def _light(camera: Camera, normal: FloatArray, open_sky: FloatArray, looks: _Sur
 
 
 def _behind_glass(
-    scene: DrawnScene, camera: Camera, looks: _Surfaces, rng: np.random.Generator, color: FloatArray, alpha: FloatArray, clear: set[int]
+    scene: DrawnScene, camera: Camera, looks: _Surfaces, color: FloatArray, alpha: FloatArray, clear: set[int]
 ) -> tuple[FloatArray, FloatArray]:
     """Return colours and coverage with translucent items over what is behind them; more opaque where they are seen at a grazing angle."""
     buffers = cast(scene, camera)
     front = np.isin(buffers.item, list(clear))
     if not front.any():
         return color, alpha
-    glass, _ = _pass(scene, camera, looks, rng)
+    glass, _ = _pass(scene, camera, looks)
     facing = np.clip(buffers.normal[front].astype(np.float64) @ camera.eye, 0, 1)
     own = looks.opacity[buffers.item[front]]
     share = own + (1 - own) * 0.85 * (1 - facing) ** 2.5
@@ -243,9 +252,7 @@ def _behind_glass(
     return color, alpha
 
 
-def _ground(
-    scene: DrawnScene, whole: DrawnScene, camera: Camera, floor: float | None, rng: np.random.Generator, *, hidden: NDArray[np.bool_]
-) -> FloatArray:
+def _ground(scene: DrawnScene, whole: DrawnScene, camera: Camera, floor: float | None, *, hidden: NDArray[np.bool_]) -> FloatArray:
     """Return how dark the ground is at each pixel, 0 to 1: the share of the sky that the scene covers there."""
     shape = (camera.height, camera.width)
     shadow = np.zeros(shape)
@@ -257,20 +264,23 @@ def _ground(
     plane = camera.plane_points()
     points = plane - camera.eye * ((plane[:, 2] - (level - camera.centre[2])) / camera.eye[2])[:, None]
     place = points + camera.centre
-    reach = 0.5 * float(upper[2] - level) + 0.05 * size
-    near = ((place[:, :2] > lower[:2] - reach) & (place[:, :2] < upper[:2] + reach)).all(axis=1) & ~hidden.ravel()
-    if not near.any():
+    reach = _REACH * size
+    beyond = np.maximum(np.maximum(lower[:2] - place[:, :2], place[:, :2] - upper[:2]), 0)
+    distance = np.linalg.norm(beyond, axis=1) / reach  # 0 below the scene, 1 where the shadow ends
+    ground = (distance < 1) & ~hidden.ravel()
+    if not ground.any():
         return shadow
-    up = np.broadcast_to([0.0, 0.0, 1.0], (int(near.sum()), 3))
-    covered = np.zeros(len(up))
-    for _ in range(_RAYS):
-        direction = up + _on_sphere(rng, len(up)) * 0.999
+    pixels = ground.reshape(shape)
+    covered = np.zeros(int(ground.sum()))
+    for number in range(_GROUND_RAYS):
+        direction = np.array([0.0, 0.0, 1.0]) + _directions(pixels, _RAYS + number) * 0.999
         direction /= np.linalg.norm(direction, axis=1, keepdims=True)
-        covered += occlusion(scene, camera, points[near], direction, 0.6 * size)
-    shadow.ravel()[near] = covered / _RAYS
+        covered += occlusion(scene, camera, points[ground], direction, 2 * reach)
+    fading = (1 - distance[ground]) ** 2 * (1 + 2 * distance[ground])  # level at both ends
+    shadow[pixels] = covered / _GROUND_RAYS * fading
     # Blurred over visible ground only, so that the shadow does not fade towards the parts that cast it.
     known = (~hidden).astype(np.float64)
-    width = max(camera.width / 260, 1.5)
+    width = max(min(shape) / 110, 2.0)
     blurred: FloatArray = gaussian_filter(shadow * known, width) / np.maximum(gaussian_filter(known, width), 1e-6)
     return np.clip(blurred, 0, 1) ** 1.1 * _SHADOW
 

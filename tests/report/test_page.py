@@ -405,3 +405,104 @@ def test_least_clearances_and_followers_stand_in_degrees_and_mm(open_page: Open)
     opened.page.locator("details.section", has_text="Least clearances").locator("button[data-show]").first.click()
     assert configuration(opened, assembly)[0] == pytest.approx(math.pi / 6)
     assert_silent(opened)
+
+
+def on_screen(opened: Opened, part: str, local: list[float]) -> tuple[float, float]:
+    """Return where a point of a part is drawn, in pixels of the page, from the matrices of the picture."""
+    x, y = opened(
+        """([part, local]) => {
+          const { view } = articad, group = view.groups.find((entry) => entry.name === part);
+          group.updateMatrixWorld(true);
+          const e = group.matrixWorld.elements, p = [0, 1, 2].map((row) => e[row] * local[0] + e[row + 4] * local[1] + e[row + 8] * local[2] + e[row + 12]);
+          const clip = view.camera.position.clone().set(...p).project(view.camera), box = view.canvas.getBoundingClientRect();
+          return [box.left + (clip.x + 1) / 2 * box.width, box.top + (1 - clip.y) / 2 * box.height];
+        }""",
+        [part, local],
+    )
+    return float(x), float(y)
+
+
+def pulled(opened: Opened, start: tuple[float, float], end: tuple[float, float]) -> None:
+    opened.page.mouse.move(*start)
+    opened.page.mouse.down()
+    opened.page.mouse.move(*end, steps=5)
+    opened.page.mouse.up()
+
+
+def test_a_part_that_is_dragged_moves_its_joint_to_the_pointer_and_feels_the_limit(open_page: Open) -> None:
+    assembly = hinged()
+    opened = open_page(report_page(assembly))
+    corner = [20.0, -36.0, 4.0]  # on top of the lid, near its front edge
+    start = on_screen(opened, "lid", corner)
+    opened("articad.set({ hinge: 0.9 })")
+    end = on_screen(opened, "lid", corner)
+    opened("articad.set({ hinge: 0 })")
+    camera = opened("articad.view.camera.position.toArray()")
+
+    pulled(opened, start, end)
+
+    q = opened("articad.q()")
+    assert q["hinge"] == pytest.approx(0.9, abs=0.02)
+    assert q["rail"] == 0
+    assert math.dist(on_screen(opened, "lid", corner), end) < 2
+    assert error_of(opened, assembly, configuration(opened, assembly)) < SAME
+    assert opened("articad.view.camera.position.toArray()") == camera, "the camera stays"
+    pulled(opened, on_screen(opened, "lid", corner), (end[0] + 300, end[1] - 350))
+    pulled(opened, on_screen(opened, "lid", corner), (end[0] + 300, end[1] - 350))
+    assert 0.9 < opened("articad.q()")["hinge"] <= 1.8
+    assert_silent(opened)
+
+
+# The visible point of a part that a driver moves farthest, in the part's frame.
+FARTHEST = """([part, driver]) => {
+  const { view, model } = articad, index = model.parts.findIndex((entry) => entry.name === part), box = view.canvas.getBoundingClientRect();
+  const hits = [];
+  for (let x = 4; x < box.width; x += 8) for (let y = 4; y < box.height; y += 8) {
+    const hit = document.elementFromPoint(box.left + x, box.top + y) === view.canvas && view.pick(box.left + x, box.top + y, { exact: true });
+    if (hit?.part === index) hits.push([hit.local, view.screen(view.worldOf(hit))]);
+  }
+  const value = articad.q()[driver];
+  articad.set({ [driver]: value + 0.2 });
+  const moved = ([local, [x, y]]) => { const [u, v] = view.screen(view.worldOf({ part: index, local })); return Math.hypot(u - x, v - y); };
+  const best = hits.map((hit) => [moved(hit), hit]).sort((a, b) => b[0] - a[0])[0];
+  articad.reset();
+  return best[1][0].toArray();
+}"""
+
+
+def test_a_dragged_crank_takes_its_loop_with_it(open_page: Open) -> None:
+    assembly = four_bar()
+    opened = open_page(report_page(assembly))
+    name, driver = assembly.mechanism.driving_joints[0], assembly.drivers[0]
+    joint = next(entry for entry in assembly.joints if entry.name == name)
+    axis = np.abs(np.asarray(joint.T_parent_connector.z_axis)).argmax()
+    opened(
+        "(view) => { articad.view.look(view); articad.view.draw(); articad.view.scene.updateMatrixWorld(true) }",
+        ("right", "front", "top")[axis],
+    )
+    point = opened(FARTHEST, [joint.child, driver.name])
+    start = on_screen(opened, joint.child, point)
+    opened("([name, value]) => articad.set({ [name]: value })", [driver.name, driver.rest + 0.3])
+    end = on_screen(opened, joint.child, point)
+    opened("articad.reset()")
+
+    pulled(opened, start, end)
+
+    assert opened("articad.q()")[driver.name] == pytest.approx(driver.rest + 0.3, abs=0.1)
+    assert error_of(opened, assembly, configuration(opened, assembly)) < SAME
+
+
+def test_a_part_lights_up_under_the_pointer_and_a_click_selects_it_in_the_table(open_page: Open) -> None:
+    opened = open_page(report_page(hinged()))
+    at = on_screen(opened, "base", [0.0, -20.0, 0.0])
+
+    opened.page.mouse.move(*at)
+    opened("new Promise((done) => requestAnimationFrame(() => done()))")
+    assert opened("articad.view.groups.map(g => g.userData.materials[0].emissive.getHex() > 0)") == [True, False, False]
+    opened.page.mouse.click(*at)
+
+    assert "base, oak, joints: hinge (revolute), rail (slider)" in opened("document.getElementById('status').textContent")
+    assert opened("[...document.querySelectorAll('tr.selected')].map(row => row.querySelector('[data-part]').textContent)") == ["base"]
+    opened.page.mouse.click(*at)
+    assert opened("document.querySelectorAll('tr.selected').length") == 0
+    assert opened("[...document.querySelectorAll('.limits')].map(each => each.textContent)") == ["0.0° … 103.1°", "-20.0 mm … 20.0 mm"]

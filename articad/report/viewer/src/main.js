@@ -79,6 +79,9 @@ function slider({ label, unit, lower, upper, endless, read, write, driver }) {
   number.addEventListener("change", () => Number.isFinite(number.valueAsNumber) && move(number.valueAsNumber / factor));
   play.addEventListener("click", () => toggle(play, { lower, upper, read, move, endless }));
   for (const target of [range, number]) target.addEventListener("focus", () => emphasise(driver));
+  const limits = endless ? "no limits" : `${shown(lower, unit)} … ${shown(upper, unit)}`;
+  name.append(element("small", { className: "limits", textContent: limits }));
+  range.title = limits;
   const row = element("div", { className: "driver" }, name, range, number, element("span", { className: "unit", textContent: unit === "rad" ? "°" : "mm" }), play);
   const control = {
     refresh() {
@@ -293,17 +296,126 @@ function refreshMeasure() {
   $("measured").hidden = !measuring.on;
 }
 
+// A part lights up under the pointer, a click selects it here and in the table, and a drag moves the joint that carries it.
 function buildPointer() {
-  let down = null;
-  view.canvas.addEventListener("pointerdown", (event) => (down = [event.clientX, event.clientY]));
-  view.canvas.addEventListener("pointerup", (event) => {
-    if (!down || Math.hypot(event.clientX - down[0], event.clientY - down[1]) > 4) return;
+  const { canvas } = view;
+  const stage = $("stage");
+  let down = null, drag = null;
+  // In the capture phase: a part that is grabbed does not turn the camera as well.
+  stage.addEventListener("pointerdown", (event) => {
+    if (event.target !== canvas || event.button !== 0 || !event.isPrimary) return;
+    down = [event.clientX, event.clientY];
+    const hit = measuring.on ? null : view.pick(event.clientX, event.clientY, { exact: true });
+    const driver = hit && grabbed(hit);
+    if (!driver) return;
+    event.stopPropagation();
+    canvas.setPointerCapture(event.pointerId);
+    canvas.focus();
+    stop();
+    drag = { hit, driver };
+    emphasise(driver.name);
+    canvas.classList.add("dragging");
+  }, { capture: true });
+  canvas.addEventListener("pointermove", (event) => {
+    if (drag && Math.hypot(event.clientX - down[0], event.clientY - down[1]) > 4) drag.moved = true;
+    if (drag?.moved) follow(drag, event.clientX, event.clientY);
+    else if (!event.buttons && event.pointerType === "mouse") {
+      const hit = measuring.on ? null : view.pick(event.clientX, event.clientY, { exact: true });
+      view.hover(hit ? hit.part : -1);
+      canvas.classList.toggle("grabbable", Boolean(hit && carriers(hit.part).length));
+    }
+  });
+  canvas.addEventListener("pointerleave", () => view.hover(-1));
+  const released = (event) => {
+    const moved = !down || Math.hypot(event.clientX - down[0], event.clientY - down[1]) > 4;
+    drag = down = null;
+    canvas.classList.remove("dragging");
+    if (moved || event.type === "pointercancel") return;
     const hit = view.pick(event.clientX, event.clientY);
     if (measuring.on) {
       if (hit) measuring.points = [...(measuring.points.length === 2 ? [] : measuring.points), hit];
       refreshMeasure();
-    } else if (hit) say(`${mechanism.parts[hit.part]}${model.parts[hit.part].material ? `, ${model.parts[hit.part].material}` : ""}`);
+    } else select(hit ? hit.part : -1);
+  };
+  canvas.addEventListener("pointerup", released);
+  canvas.addEventListener("pointercancel", released);
+}
+
+let selected = -1;
+function select(part) {
+  selected = part === selected ? -1 : part;
+  view.mark_part(selected);
+  for (const button of document.querySelectorAll("[data-part]")) {
+    const row = button.closest("tr"), own = Number(button.dataset.part) === selected;
+    row.classList.toggle("selected", own);
+    if (own) row.scrollIntoView({ block: "nearest" });
+  }
+  if (selected < 0) return say("");
+  const { name, material } = model.parts[selected];
+  const joints = mechanism.joints.filter((joint) => joint.parent === selected || joint.child === selected).map((joint) => `${joint.name} (${joint.type})`);
+  say([name, material, joints.length ? `joints: ${joints.join(", ")}` : ""].filter(Boolean).join(", "));
+}
+
+// The drivers on the way from a part to the ground, the nearest first; with loops, all others after them.
+function carriers(part) {
+  const plain = model.drivers.filter((driver) => driver.kind === "plain");
+  const ofJoint = (index) => plain.filter((driver) => {
+    const joint = mechanism.joints[index];
+    return driver.column >= joint.column && driver.column < joint.column + joint.coordinates;
   });
+  const found = [];
+  for (let at = part, edge; (edge = model.tree.find((entry) => entry.to === at)); at = edge.from) found.push(...ofJoint(edge.joint));
+  return solver.needed ? [...found, ...plain.filter((driver) => !found.includes(driver))] : found;
+}
+
+const NUDGE = 1e-3; // rad; for mm the same share of the model's size
+const nudge = (driver) => (driver.unit === "rad" ? NUDGE : NUDGE * view.size);
+
+// Where a grabbed point is seen, in pixels, when a driver has a value.
+function seenAt(hit, Q_there) {
+  const point = new Vector3(...hit.local.toArray()).applyMatrix4(view.placed(hit.part, mechanism.poses(Q_there)));
+  return view.screen(point);
+}
+
+function moved(driver, value) {
+  const wanted = Q.slice();
+  wanted[driver.column] = value;
+  return solver.follow(Q, wanted).Q;
+}
+
+// Pixels by which the grabbed point moves for one unit of a driver.
+function sensitivity(hit, driver) {
+  const step = nudge(driver), value = Q[driver.column];
+  const way = driver.endless || value + step <= driver.upper ? step : -step;
+  const [x0, y0] = seenAt(hit, Q), [x1, y1] = seenAt(hit, moved(driver, value + way));
+  return [(x1 - x0) / way, (y1 - y0) / way];
+}
+
+// The first driver, from the part to the ground, that visibly moves the grabbed point.
+function grabbed(hit) {
+  const strength = (driver) => Math.hypot(...sensitivity(hit, driver)) * (driver.unit === "rad" ? 1 : view.size);
+  const candidates = carriers(hit.part).map((driver) => [driver, strength(driver)]);
+  const most = Math.max(0, ...candidates.map(([, pixels]) => pixels));
+  return candidates.find(([, pixels]) => pixels > 8 && pixels > 0.1 * most)?.[0];
+}
+
+// Move the driver until the grabbed point is as near to the pointer as its path allows: Gauss-Newton in one unknown.
+function follow({ hit, driver }, clientX, clientY) {
+  const bounds = view.canvas.getBoundingClientRect();
+  const goal = [clientX - bounds.left, clientY - bounds.top];
+  for (let round = 0; round < 6; round++) {
+    const [x, y] = seenAt(hit, Q), [jx, jy] = sensitivity(hit, driver);
+    const square = jx * jx + jy * jy;
+    if (!square) return;
+    const largest = driver.unit === "rad" ? 0.4 : 0.2 * view.size;
+    const wanted = Math.min(Math.max(((goal[0] - x) * jx + (goal[1] - y) * jy) / square, -largest), largest);
+    const value = Q[driver.column] + wanted;
+    const next = driver.endless ? value : Math.min(Math.max(value, driver.lower), driver.upper);
+    if (Math.abs(next - Q[driver.column]) < 1e-6 * (driver.unit === "rad" ? 1 : view.size)) break;
+    if (!set({ [driver.name]: next })) return;
+  }
+  const value = Q[driver.column], at = !driver.endless && (value <= driver.lower || value >= driver.upper);
+  say(`${driver.name} ${shown(value, driver.unit)}${at ? ", at its limit" : ""}`);
 }
 
 const KEYS = {

@@ -78,6 +78,7 @@ export class View {
     this.cutting = false;
     this.explosion = 0;
     this.focused = null;
+    this.hovered = this.selected = -1;
     this.frames = 0;
     this.#buildParts();
     this.#buildJoints();
@@ -280,8 +281,37 @@ export class View {
     this.ask();
   }
 
+  // Light up the part under the pointer, and the selected one more; -1 for none.
+  hover(part) {
+    if (part === this.hovered) return;
+    this.hovered = part;
+    this.#glow();
+  }
+
+  mark_part(part) {
+    this.selected = part;
+    this.#glow();
+  }
+
+  #glow() {
+    this.groups.forEach((group, index) => {
+      const strength = index === this.selected ? 0.4 : index === this.hovered ? 0.18 : 0;
+      for (const material of group.userData.materials) material.emissive.setHex(JOINT).multiplyScalar(strength);
+    });
+    this.ask();
+  }
+
+  // The matrix of a part in given poses, exploded as it is drawn.
+  placed(index, poses) {
+    const matrix = matrixOf(poses[index]);
+    if (this.explosion && this.outward) {
+      for (let k = 0; k < 3; k++) matrix.elements[12 + k] += this.explosion * (this.outward[index][k] - this.middle.getComponent(k));
+    }
+    return matrix;
+  }
+
   // The point of a part under the pointer, at a corner where one is near.
-  pick(clientX, clientY) {
+  pick(clientX, clientY, { exact = false } = {}) {
     const bounds = this.canvas.getBoundingClientRect();
     const at = new Vector2(((clientX - bounds.left) / bounds.width) * 2 - 1, 1 - ((clientY - bounds.top) / bounds.height) * 2);
     const ray = new Raycaster();
@@ -289,6 +319,8 @@ export class View {
     const surfaces = this.groups.filter((group) => group.visible).flatMap((group) => group.children.filter((o) => o.userData.part !== undefined));
     const hit = ray.intersectObjects(surfaces, false).find(({ point }) => !this.cutting || this.plane.distanceToPoint(point) >= 0);
     if (!hit) return null;
+    const own = this.groups[hit.object.userData.part];
+    if (exact) return { part: hit.object.userData.part, local: own.worldToLocal(hit.point.clone()) };
     const corners = [hit.face.a, hit.face.b, hit.face.c].map((corner) =>
       new Vector3().fromBufferAttribute(hit.object.geometry.attributes.position, corner).applyMatrix4(hit.object.matrixWorld));
     const pixels = (point) => {
