@@ -5,7 +5,9 @@ from __future__ import annotations
 import importlib.util
 from pathlib import Path
 
+import numpy as np
 import pytest
+from PIL import Image
 
 ROOT = Path(__file__).resolve().parents[2]
 NAMES = sorted(path.parent.name for path in (ROOT / "examples").glob("*/plan.json"))
@@ -17,6 +19,21 @@ def test_an_example_has_its_sheet_and_its_moving_page(name: str) -> None:
     assert f"(images/gallery/{name}.png)" in text
     assert f"(live/{name}.html)" in text
     assert (ROOT / "docs" / "images" / "gallery" / f"{name}.png").is_file()
+
+
+def test_readme_and_home_open_with_a_picture_that_moves_and_loads_at_once() -> None:
+    file = ROOT / "docs" / "images" / "moving.gif"
+
+    assert f"({file.relative_to(ROOT).as_posix()})" in (ROOT / "README.md").read_text()[:300]
+    assert "live/desk_lamp.html" in (ROOT / "docs" / "index.md").read_text()[:600]
+    assert file.stat().st_size <= 3_000_000
+    with Image.open(file) as picture:
+        assert getattr(picture, "n_frames", 1) >= 12
+        first = np.asarray(picture.convert("RGB")).astype(int)
+        picture.seek(getattr(picture, "n_frames", 1) // 3)
+        later = np.asarray(picture.convert("RGB")).astype(int)
+    moved = np.abs(first - later).max(axis=2) > 60
+    assert all(panel.mean() > 0.005 for panel in np.array_split(moved, 3, axis=1)), "each of the three products moves"
 
 
 def test_the_sites_hook_makes_a_page_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
