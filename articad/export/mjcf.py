@@ -427,6 +427,8 @@ class _Writer:
                 self._tie_sites(equality, "connect", f"{loop.name}{point.suffix}", (near, point.near), (far, point.far))
         else:
             ghost = child(near, "body", {"name": loop.carriers[-1]} | _placement(loop.T_parent_joint))
+            why = f"Closes a loop by joint {loop.joint.name}: half of the mass of {loop.joint.child} is here, welded to the half on its other joint."
+            ghost.append(etree.Comment(f" {why} ".replace("--", "- -")))
             _inertial(ghost, self.ghosts[loop.name])
             for freedom in loop.freedoms:
                 child(ghost, "joint", _joint(freedom, foreign=self.assembly.foreign))

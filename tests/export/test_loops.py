@@ -115,6 +115,21 @@ def test_ghosts_take_their_mass_from_the_part_they_stand_for(tmp_path: Path) -> 
     assert model.body_mass.sum() == pytest.approx(sum(part.mass.mass for part in assembly.parts.values() if part.mass), rel=1e-12)
 
 
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_comment_says_why_a_body_of_half_the_mass_stands_there(kind: str) -> None:
+    assembly = closed(KINDS[kind][0])
+    bundle = write_mjcf(assembly)
+    root = etree.fromstring(bundle.files[bundle.main])
+    parts = {body.get("name") for body in root.iter("body")} & set(assembly.parts)
+    ghosts = [body for body in root.iter("body") if body.get("name") not in parts and body.find("geom") is None]
+    comments = [node.text for node in root.iter() if node.tag is etree.Comment and "Closes a loop by joint d" in (node.text or "")]
+    assert (
+        len(comments)
+        == bundle.files[bundle.main].count(b"Closes a loop")
+        == len([body for body in ghosts if body.find("joint") is not None])
+    )
+
+
 def test_urdf_leaves_the_closing_joint_out_and_says_so() -> None:
     bundle = write_urdf(closed(KINDS["revolute"][0]))
 
