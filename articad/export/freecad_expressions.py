@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 
 from articad.plan.expressions import ExpressionError, parse
 from articad.plan.resolve import ResolvedPlan
@@ -38,13 +38,34 @@ class Followed:
 
     def driving(self, parts: Collection[str]) -> dict[str, set[str]]:
         """Return the parts that each parameter shapes, directly or through other parameters, of those given."""
+        held = {} if self._resolved is None else self._resolved.parts
+        return self.needed({part: list(held[part].spec.dimensions.values()) for part in parts if part in held})
+
+    def placing(self, parts: Collection[str]) -> dict[str, set[str]]:
+        """Return the parts that each parameter places at rest, directly or through other parameters, of those given."""
         if self._resolved is None:
             return {}
-        needs = {parameter.name: _names(parameter.value) for parameter in self._resolved.plan.parameters}
-        found: dict[str, set[str]] = {}
+        rests = {
+            form.name: [value for key in ("rest_mm", "rest_deg") if (value := getattr(form, key, None)) is not None]
+            for form in self._resolved.plan.joints
+        }
+        numbers: dict[str, list[Number]] = {}
         for part in parts:
-            numbers = self._resolved.parts[part].spec.dimensions.values() if part in self._resolved.parts else ()
-            waiting, seen = [name for number in numbers for name in _names(number)], set[str]()
+            poses = self._poses(part)
+            joint = self._resolved.parts[part].parent_joint
+            numbers[part] = (
+                list(rests.get(str(joint), []))
+                if poses is None
+                else [n for pose in poses for n in (*pose.at, *pose.axis, pose.angle_deg, *pose.about)]
+            )
+        return self.needed(numbers)
+
+    def needed(self, numbers: Mapping[str, Sequence[Number]]) -> dict[str, set[str]]:
+        """Return the parts for whose numbers each parameter is needed, directly or through other parameters."""
+        needs = {} if self._resolved is None else {parameter.name: _names(parameter.value) for parameter in self._resolved.plan.parameters}
+        found: dict[str, set[str]] = {}
+        for part, held in numbers.items():
+            waiting, seen = [name for number in held for name in _names(number)], set[str]()
             while waiting:
                 name = waiting.pop()
                 if name not in seen:
@@ -59,7 +80,7 @@ class Followed:
 
     def vector(self, numbers: Sequence[Number]) -> str:
         """Return the expression of a point or direction."""
-        return f"vector({'; '.join(map(self._always, numbers))})"
+        return f"vector({'; '.join(map(self.always, numbers))})"
 
     def frame(self, o: Sequence[Number], z: Sequence[Number], x: Sequence[Number]) -> str:
         """Return the expression of a connector's frame."""
@@ -84,6 +105,26 @@ class Followed:
             found["Normal"] = f"{self.local(part, self.vector(plane.normal))} - {self.local(part, 'vector(0; 0; 0)')}"
         return found
 
+    def motions(self, part: str) -> tuple[list[str], str | None]:
+        """Return the motions that place a part at rest as expressions, the last one first, and the part that a joint places before them.
+
+        The second value is None if a pose of the plan places the part, and the part itself or its source if a joint does.
+        """
+        poses = self._poses(part)
+        if poses is not None:
+            return list(map(self._pose, poses)), None
+        form, step = self._forms.get(part), 0
+        if form is None:
+            source, _, number = part.rpartition("_")
+            form, step = self._forms.get(source), int(number)
+        if not isinstance(form, DerivedPart):
+            return [], part
+        before, root = self.motions(form.derive.source)
+        if isinstance(form.derive, MirrorDerivation):
+            return before, root
+        moves = [form.derive.move] if isinstance(form.derive, RigidDerivation) else [form.derive.step] * step
+        return [*map(self._pose, moves), *before], root
+
     def _poses(self, part: str) -> list[Pose] | None:
         """Return the motions that place a part at rest, the last one first."""
         form, step = self._forms.get(part), 0
@@ -103,10 +144,11 @@ class Followed:
         return [*[form.derive.step] * step, *before]
 
     def _pose(self, pose: Pose) -> str:
-        turn = f"create(<<rotation>>; {self.vector(pose.axis)}; {self._always(pose.angle_deg)})"
+        turn = f"create(<<rotation>>; {self.vector(pose.axis)}; {self.always(pose.angle_deg)})"
         return f"create(<<placement>>; {self.vector(pose.at)}; {turn}; {self.vector(pose.about)})"
 
-    def _always(self, number: Number) -> str:
+    def always(self, number: Number) -> str:
+        """Return the expression of a number of the plan, or the plain number."""
         text = self.number(number)
         if text is not None:
             return text

@@ -18,9 +18,10 @@ import numpy as np
 from articad.aliases import Json
 from articad.connectors.mate import FLIP, Mate
 from articad.connectors.se3 import SE3
+from articad.errors import PlanError
 from articad.export.bundle import Loss
 from articad.export.features import joint_features
-from articad.export.freecad_expressions import Followed
+from articad.export.freecad_expressions import Followed, Number
 from articad.export.freecad_file import mesh_kernel
 from articad.export.losses import Feature, kept_losses, losses_of
 from articad.export.lowering import lower
@@ -30,7 +31,7 @@ from articad.export.names import Names
 from articad.geometry.part import Part
 from articad.kernels.freecad_file import bounded
 from articad.kinematics.joints import Coupling, Joint, JointType
-from articad.plan.resolve import ResolvedPart
+from articad.plan.resolve import ResolvedPart, ResolvedPlan, resolve
 
 if TYPE_CHECKING:
     from articad.assembly import Assembly
@@ -51,6 +52,8 @@ _TYPES = {
 }
 _COUPLINGS = {"gear": "Gears", "belt": "Belt", "rack": "RackPinion", "screw": "Screw"}
 
+_STEP = 1e-3  # relative change of a parameter, to see what it turns
+PLACED_MM, PLACED_RAD = 1e-7, 1e-10  # by which a placement may differ from its expression
 _FROZEN = ("shape", "mesh", "empty")  # kinds of geometry without a feature tree
 
 
@@ -84,6 +87,9 @@ class Job:
             for connector in part.connectors
         }
         self.followed = Followed(assembly.resolved)
+        self._unplaced: set[str] = set()
+        self._turned: set[tuple[str, str]] = set()  # connectors with an expression of their whole frame
+        self._stiff: dict[str, list[Number]] = {}  # numbers of connectors that FreeCAD does not follow
 
     def to_json(self) -> Json:
         """Return the document's parameters, parts and joints, as JSON."""
@@ -107,7 +113,7 @@ class Job:
     # ------------------------------------------------------------------ parameters
 
     def _parameters(self, frozen: set[str]) -> Iterator[Json]:
-        """Yield the parameters. A parameter that drives a frozen shape is fixed: an edit would move joints but not the shape.
+        """Yield the parameters. A parameter is fixed if something that it drives cannot follow it in FreeCAD.
 
         Args:
             frozen: Parts whose shape has no feature tree.
@@ -115,13 +121,17 @@ class Job:
         resolved = self.assembly.resolved
         if resolved is None:
             return
-        held = self.followed.driving(frozen)
+        frozen_things = (
+            ("it shapes {}, which cannot follow", self.followed.driving(frozen)),
+            ("it places {} at rest, which cannot follow", self.followed.placing(self._unplaced)),
+            ("it turns the connector {}, which cannot follow", self._turning(resolved)),
+        )
         for parameter in resolved.plan.parameters:
             given = resolved.overrides.get(parameter.name, parameter.value)
-            holding = sorted(held.get(parameter.name, ()))
-            why = f"Fixed: it shapes {', '.join(holding[:5])}, which are frozen. Change it in the plan and export again." if holding else ""
+            reasons = [text.format(", ".join(sorted(held[parameter.name])[:5])) for text, held in frozen_things if parameter.name in held]
+            why = f"Fixed: {'; '.join(reasons)}. Change it in the plan and export again." if reasons else ""
             yield {
-                "live": not holding,
+                "live": not reasons,
                 "why": why,
                 "name": parameter.name,
                 "value": float(resolved.parameters[parameter.name]),
@@ -129,6 +139,33 @@ class Job:
                 "description": parameter.description,
                 "expression": self.followed.number(given),
             }
+
+    def _turning(self, resolved: ResolvedPlan) -> dict[str, set[str]]:
+        """Return the connectors that each parameter turns although no expression turns them in FreeCAD.
+
+        Some are known by their numbers. An x axis that the plan leaves out is chosen by rule from the connectors that meet there, so
+        the plan is resolved with each parameter changed by a thousandth.
+        """
+        found = self.followed.needed(self._stiff)
+        for parameter in resolved.plan.parameters:
+            value = float(resolved.parameters[parameter.name])
+            if self.followed.number(resolved.overrides.get(parameter.name, parameter.value)) is not None:
+                continue  # it follows others
+            for step in (_STEP * max(abs(value), 1.0), -_STEP * max(abs(value), 1.0)):
+                try:
+                    other = resolve(resolved.plan, **{**resolved.overrides, parameter.name: value + step})
+                except PlanError:
+                    continue  # beyond its bounds
+                turned = {
+                    f"{name}.{key}"
+                    for name, part in resolved.parts.items()
+                    for key, connector in part.connectors.items()
+                    if (name, key) not in self._turned and not _same_rotation(connector.frame, other.parts[name].connectors[key].frame)
+                }
+                if turned:
+                    found.setdefault(parameter.name, set()).update(turned)
+                break
+        return found
 
     # ------------------------------------------------------------------ parts
 
@@ -140,7 +177,9 @@ class Job:
             "object": self.objects[name],
             "color": part.color,
             "material": part.material,
+            "description": "" if target is None else target.description,
             "placement": _seven(T),
+            "placed": self._placed(name, T),
             "dimensions": [] if target is None else list(self._dimensions(target)),
             "connectors": [self._connector(name, connector, target) for connector in part.connectors],
         }
@@ -197,6 +236,13 @@ class Job:
         expressions: dict[str, str] = {}
         if target is not None and target.derivation is None:
             expressions = self._follows(target, connector)
+            if "Placement" in expressions:
+                self._turned.add((part, connector))
+        elif target is not None and target.derivation is not None and target.derivation.S is not None:
+            (form,) = [spec for spec in target.spec.connectors if spec.name == connector]
+            if self.followed.follows(*form.z, *(form.x or ())):  # the image follows only the origin of its source's connector
+                self._tell("freecad.direction", f"parts.{part}.connectors.{connector}")
+                self._stiff[f"{part}.{connector}"] = [*form.z, *(form.x or ())]
         return {
             "name": connector,
             "object": self.systems[part, connector],
@@ -216,13 +262,73 @@ class Job:
                 return {"Placement": text}
             if turns or self.followed.follows(*form.o):
                 self._tell("freecad.frame", where)
+                self._stiff[f"{target.name}.{connector}"] = [*form.o, *form.z, *(form.x or ())]
             return {}
         if turns and form.x is not None:
             return {"Placement": self.followed.frame(form.o, form.z, form.x)}
         if turns:
             self._tell("freecad.direction", where)
+            self._stiff[f"{target.name}.{connector}"] = list(form.z)
         found = {f"Placement.Base.{axis}": self.followed.number(number, "mm") for axis, number in zip("xyz", form.o, strict=True)}
         return {name: text for name, text in found.items() if text is not None}
+
+    def _placed(self, name: str, T: SE3) -> str:
+        """Return the expression of a part's placement at rest, or an empty text if nothing moves it or no expression gives it.
+
+        A part with a `rest_pose` has that pose. A part that a joint places has T_p C_p J(q_rest) F C_c⁻¹ of live objects.
+        """
+        resolved = self.assembly.resolved
+        if resolved is None or name not in resolved.parts or not resolved.parameters:
+            return ""
+        if not resolved.parts[name].T_rest.allclose(T, mm=PLACED_MM, rad=PLACED_RAD):
+            self._tell("freecad.placement", f"parts.{name}")  # closing a loop has moved it
+            self._unplaced.add(name)
+            return ""
+        moves, root = self.followed.motions(name)
+        if root is None:
+            text = " * ".join(moves)
+            return text if "Parameters." in text else ""
+        if root != name:
+            return " * ".join([*moves, f"{self.objects[root]}.Placement"])
+        text = self._placed_by_joint(resolved.parts[name].parent_joint, name)
+        if not text:
+            self._tell("freecad.placement", f"parts.{name}")
+            self._unplaced.add(name)
+        return text
+
+    def _placed_by_joint(self, joint_name: str | None, name: str) -> str:
+        """Return the placement that a joint gives a part, as an expression of its other part and its connectors."""
+        joint = next((joint for joint in self.assembly.joints if joint.name == joint_name), None)
+        motion = None if joint is None else self._motion(joint)
+        if joint is None or motion is None:
+            return ""
+        near, far = ((joint.parent, joint.parent_connector), (joint.child, joint.child_connector))
+        turned = [motion, *([_placement(FLIP)] if joint.mate is Mate.OPPOSED else [])]
+        if joint.child != name:
+            near, far = far, near
+            turned = [f"minvert({text})" for text in reversed(turned)]
+        frames = [f"{self._system(*side)}.Placement" for side in (near, far)]
+        return " * ".join([f"{self.objects[near[0]]}.Placement", frames[0], *turned, f"minvert({frames[1]})"])
+
+    def _system(self, part: str, connector: str) -> str:
+        """Return the object of a connector: a link shows those of its source."""
+        realised = self.assembly.resolved.parts[part].derivation if self.assembly.resolved is not None else None
+        while realised is not None and realised.S is None:
+            part = realised.source
+            realised = self.assembly.resolved.parts[part].derivation if self.assembly.resolved is not None else None
+        return self.systems[part, connector]
+
+    def _motion(self, joint: Joint) -> str | None:
+        """Return the motion J(q_rest) of a joint as an expression, or None if none gives it."""
+        resolved = self.assembly.resolved
+        form = next((row for row in resolved.plan.joints if row.name == joint.name), None) if resolved is not None else None
+        slide, turn = (getattr(form, field, None) for field in ("rest_mm", "rest_deg"))
+        if not self.followed.follows(*(number for number in (slide, turn) if number is not None)):
+            return _placement(joint.motion(joint.rest))
+        if joint.type not in (JointType.REVOLUTE, JointType.SLIDER, JointType.CYLINDRICAL):
+            return None
+        along, about = (self.followed.always(number or 0.0) for number in (slide, turn))
+        return f"create(<<placement>>; vector(0; 0; {along}); create(<<rotation>>; vector(0; 0; 1); {about}))"
 
     # ------------------------------------------------------------------ joints and couplings
 
@@ -376,6 +482,21 @@ def _plane(S: np.ndarray[Any, np.dtype[np.float64]]) -> tuple[list[float], list[
 def _offset(given: SE3, used: SE3) -> SE3:
     """Return the pose of a frame in another one; exactly the identity if they are equal up to rounding."""
     return SE3.identity() if given.allclose(used, mm=1e-9, rad=1e-12) else given.inverse() @ used
+
+
+def _same_rotation(one: SE3, other: SE3) -> bool:
+    return bool(np.linalg.norm((one.inverse() @ other).log()[3:]) < PLACED_RAD)
+
+
+def _placement(T: SE3) -> str:
+    """Return a constant placement as an expression."""
+    x, y, z = (repr(float(number)) for number in T.translation)
+    turn = T.log()[3:]
+    angle = float(np.linalg.norm(turn))
+    axis = turn / angle if angle else np.array([0.0, 0.0, 1.0])
+    about = "; ".join(repr(float(number)) for number in axis)
+    turned = f"create(<<rotation>>; vector({about}); {math.degrees(angle)!r})"
+    return f"create(<<placement>>; vector({x}; {y}; {z}); {turned})"
 
 
 def _seven(T: SE3) -> list[float]:

@@ -212,7 +212,9 @@ class _Writer:
 
     def _part(self, part: Json) -> None:
         name, item = part["name"], part["object"]
+        placed = {"Placement": part["placed"]} if part["placed"] else {}
         told = [
+            _text("Label2", part["description"]),
             _text("ArticadPart", name, "articad", "Name of the part"),
             _text("ArticadMaterial", part["material"] or "", "articad", "Name of its material"),
             _placement("Placement", part["placement"]),
@@ -226,7 +228,7 @@ class _Writer:
             for connector in part["connectors"]:
                 self.systems[name, connector["name"]] = self.systems[source, connector["name"]]
             target = [_target("LinkedObject", self.containers[source]), _placement("LinkPlacement", part["placement"])]
-            self._add(item, "App::Link", *target, *told, label=name, extension="LinkExtension")
+            self._add(item, "App::Link", *target, *told, label=name, extension="LinkExtension", expressions=placed)
             return
         origin = self._origin()
         place = len(self.objects)
@@ -240,7 +242,7 @@ class _Writer:
         members += self._shape(part)
         members += [self._connector(part, connector) for connector in part["connectors"]]
         grouped = [_links("Group", members), _link("Origin", origin)]
-        self._add(item, "App::Part", *grouped, *told, label=name, extension="OriginGroupExtension", at=place)
+        self._add(item, "App::Part", *grouped, *told, label=name, extension="OriginGroupExtension", expressions=placed, at=place)
 
     def _shape(self, part: Json) -> list[str]:
         """Add the object that shows the part, and return it with its constituents."""

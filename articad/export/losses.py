@@ -418,9 +418,12 @@ _FREECAD: dict[str, LossRow] = {
     "freecad.coupling": LossRow("a record", "FreeCAD has no such coupling", refused=True),
     "freecad.features": LossRow("its B-rep", "its features: it follows no parameter; write with FreeCAD to keep them"),
     "freecad.brep": LossRow("its B-rep", "editable features: it follows no parameter; build with the FreeCAD kernel to get them"),
+    "freecad.placement": LossRow("a fixed placement", "the link of its placement to parameters: FreeCAD's solver places it after an edit"),
     "freecad.mesh": LossRow("a mesh", "coordinates beyond single precision, and an editable solid"),
     "freecad.frame": LossRow("a fixed frame", "the link to parameters"),
-    "freecad.direction": LossRow("a fixed direction", "the link of its direction to parameters: its x is chosen by rule"),
+    "freecad.direction": LossRow(
+        "a fixed direction", "the link of its direction to parameters: its x is chosen by rule, or it is a mirror image"
+    ),
 }
 """How a FreeCAD document represents each feature for FreeCAD itself; its records hold the rest."""
 

@@ -1,7 +1,7 @@
 """Find FreeCAD 1.0 or later, and run programs inside it: each in a process of its own, confined if bubblewrap works.
 
-FreeCAD may be the system's own, an extracted AppImage, a conda environment, or a whole Debian tree, as `scripts/install-freecad` makes
-if the distribution's FreeCAD is older. Programs inside it never import articad; results come back through files, because FreeCAD writes
+FreeCAD may be the system's own, an extracted AppImage, a conda environment, or a whole Debian tree, as `articad install freecad`
+makes if the distribution's FreeCAD is older. Programs inside it never import articad; results come back through files, because FreeCAD writes
 to its standard output as it likes.
 """
 
@@ -22,7 +22,8 @@ from articad.kernels import landlock, sandbox, seccomp
 from articad.processes import launcher
 
 OLDEST = (1, 0)  # the first FreeCAD with an assembly workbench
-HOW_TO_GET = "Run scripts/install-freecad as root (2.3 GB, about 3 minutes), or set ARTICAD_FREECAD to FreeCAD 1.0 or later"
+HOW_TO_GET = "Run articad install freecad as root (2.3 GB, about 3 minutes), or set ARTICAD_FREECAD to FreeCAD 1.0 or later"
+INSTALLER = Path(__file__).with_name("install_freecad.sh")
 _NAMES = ("freecadcmd", "FreeCADCmd", "freecad.cmd")
 _INSIDE = ("usr/bin", "bin", ".")  # where a tree, an AppImage and a conda environment have the program
 _SECONDS = 60.0  # for its version; a cold disk needs 5 s
@@ -232,7 +233,7 @@ class FreeCAD:
 
 
 def find() -> FreeCAD:
-    """Return the FreeCAD to use: `$ARTICAD_FREECAD`, the PATH, the tree that scripts/install-freecad makes, conda, an AppImage.
+    """Return the FreeCAD to use: `$ARTICAD_FREECAD`, the PATH, the tree that `articad install freecad` makes, conda, an AppImage.
 
     Raises:
         KernelUnavailableError: If there is none of version 1.0 or later; says where it was looked for and how to install it.
@@ -241,7 +242,7 @@ def find() -> FreeCAD:
 
 
 def installed() -> tuple[FreeCAD, ...]:
-    """Return the FreeCAD to use, and the newer one that `scripts/install-freecad --next` leaves beside it, where they are."""
+    """Return the FreeCAD to use, and the newer one that `articad install freecad --next` leaves beside it, where they are."""
     found: list[FreeCAD] = []
     with contextlib.suppress(KernelUnavailableError):
         found.append(find())
@@ -252,7 +253,7 @@ def installed() -> tuple[FreeCAD, ...]:
 
 
 def tree() -> Path:
-    """Return the folder that scripts/install-freecad fills."""
+    """Return the folder that `articad install freecad` fills."""
     return Path(os.environ.get("XDG_DATA_HOME") or Path.home() / ".local" / "share") / "articad" / "freecad"
 
 

@@ -32,6 +32,7 @@ from articad.processes import scratch
 
 PIPE: Final = subprocess.PIPE
 NOWHERE: Final = subprocess.DEVNULL
+TO_STDOUT: Final = subprocess.STDOUT
 OUTPUT: Final = 64 * 2**20  # bytes of a child's output that are kept, the last ones
 OWN: Final = ("HOME", "XDG_CACHE_HOME", "XDG_DATA_HOME", "CONDA_PREFIX", "ARTICAD_")
 """Variables that articad's own commands need to find caches, memories and FreeCAD."""

@@ -42,7 +42,7 @@ needs_freecad = pytest.mark.skipif(bool(WHY_NOT) and os.environ.get("CI") != "tr
 
 
 def newer() -> FreeCAD:
-    """Return the FreeCAD of the next series, which `scripts/install-freecad --next` leaves beside the other."""
+    """Return the FreeCAD of the next series, which `articad install freecad --next` leaves beside the other."""
     return FreeCAD("/usr/bin/freecadcmd", root=freecad_install.tree().with_name("freecad-next"))
 
 

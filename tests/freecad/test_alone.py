@@ -130,7 +130,7 @@ def test_without_freecad_documents_are_written_and_what_is_lost_is_told(monkeypa
         monkeypatch.setenv(variable, str(tmp_path))
     bundle = write_freecad(assembly("wardrobe"))
     assert bundle.findings.ok
-    assert "scripts/install-freecad" in next(iter(bundle.findings)).hint
+    assert "articad install freecad" in next(iter(bundle.findings)).hint
     assert bundle.files[bundle.main] == content("wardrobe")  # each time the same bytes
     assert [loss.lost for loss in bundle.losses if loss.where == "parts.leg"]
     with pytest.raises(UnrepresentableError):
@@ -147,7 +147,7 @@ def test_without_freecad_the_commands_that_need_it_say_so_in_a_sentence(
     assert cli.main(["build", str(plan), "--kernel", "freecad", "--out", str(tmp_path / "run")]) == 3
     refused = capsys.readouterr().err
     assert "FreeCAD 1.0 or later was not found" in refused
-    assert "Run scripts/install-freecad as root" in refused
+    assert "Run articad install freecad as root" in refused
     assert cli.main(["convert", str(plan / "plan.json"), str(tmp_path / "metronome.FCStd")]) == 0
     assert "I_FREECAD_UNSEEN" in capsys.readouterr().out
     assert len(read_freecad(tmp_path / "metronome.FCStd").parts) == len(assembly("metronome").parts)

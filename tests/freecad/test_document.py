@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import zipfile
+from collections.abc import Callable
 from functools import cache
 from pathlib import Path
 
@@ -11,12 +12,15 @@ import numpy as np
 import pytest
 
 import articad as ac
+from articad.connectors.se3 import SE3
 from articad.errors import ExportError, KernelUnavailableError, UnrepresentableError
 from articad.export import freecad as export
 from articad.export.freecad import write_freecad, write_freecad_alone
 from articad.export.freecad_file import python_classes
+from articad.export.freecad_job import Job
 from articad.kernels import freecad_install
 from articad.kernels.freecad_install import FreeCAD
+from articad.plan.resolve import resolve
 from tests.freecad import cupboard, opened
 
 pytestmark = [pytest.mark.freecad, opened.needs_freecad]
@@ -141,7 +145,7 @@ def test_without_freecad_the_remedy_is_one_sentence(monkeypatch: pytest.MonkeyPa
     monkeypatch.setenv("ARTICAD_FREECAD", str(tmp_path))
     monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path))
     monkeypatch.setenv("PATH", str(tmp_path))
-    with pytest.raises(KernelUnavailableError, match="scripts/install-freecad") as raised:
+    with pytest.raises(KernelUnavailableError, match="articad install freecad") as raised:
         freecad_install.find()
     assert raised.value.looked_in
 
@@ -173,3 +177,32 @@ def test_parameters_over_feature_trees_are_live() -> None:
     (look,) = opened.steps(bundle.files[bundle.main], {"do": "look"})
     assert look["labels"]["Parameters"] == "Parameters"
     assert {group for group, _, _ in look["parameters"].values()} == {"Parameters"}
+
+
+@pytest.mark.parametrize("freecad", [freecad_install.find, pytest.param(opened.newer, marks=pytest.mark.freecad_next)], ids=["1.0", "next"])
+def test_every_parameter_moved_and_moved_back_puts_each_part_where_the_plan_does(freecad: Callable[[], FreeCAD]) -> None:
+    plan, bundle = cupboard.plan(), write_freecad(cupboard.assembly())
+    values = {row.name: float(row.value) for row in plan.parameters if not isinstance(row.value, str)}
+    moves = [{name: share * value} for name, value in values.items() for share in (0.95, 1.05, 1.0)]
+    wanted = [(move, {name: part.T_rest for name, part in resolve(plan, **(values | move)).parts.items()}) for move in moves]
+    looks = opened.steps(bundle.files[bundle.main], *({"do": "set", "values": move} for move in moves), freecad=freecad())
+    for look, (move, rest) in zip(looks, wanted, strict=True):
+        assert (look["code"], look["invalid"]) == (0, []), move
+        assert opened.small(opened.moved(rest, opened.frames(look["parts"])), 1e-6, 1e-8), move
+
+
+def test_a_part_that_is_turned_in_freecad_stays_turned_when_nothing_changes() -> None:
+    bundle = write_freecad(cupboard.assembly())
+    turned = {"do": "turn", "part": "flap", "by": [0.0, 0.0, 0.0, *SE3.rot_x(0.2).quaternion]}
+    (look,) = opened.steps(bundle.files[bundle.main], turned)
+    rest = cupboard.assembly().at()["flap"]
+    D = rest.inverse() @ opened.frames(look["parts"])["flap"]
+    assert D.translation == pytest.approx([0.0, 0.0, 0.0], abs=1e-6)
+    assert np.linalg.norm(D.log()[3:]) == pytest.approx(0.2, abs=1e-6)
+
+
+@pytest.mark.parametrize(("name", "live"), [("four_bar", False), ("slider_crank", True)])
+def test_a_parameter_that_turns_a_connector_by_rule_is_fixed(name: str, live: bool, tmp_path: Path) -> None:
+    (row,) = [row for row in Job(assembly(name), tmp_path).to_json()["parameters"] if row["name"] == "crank_rest"]
+    assert row["live"] is live
+    assert live or "it turns the connector" in row["why"]

@@ -57,6 +57,9 @@ class _Writer:
         _text(self.assembly, "ArticadWritten", "", "The content of the document when articad wrote it", hidden=True)
         for part in self.job["parts"]:
             self._part(part)
+        for part in self.job["parts"]:
+            if part["placed"]:
+                self.parts[part["name"]].setExpression("Placement", part["placed"])
         self.document.recompute()
         self._place()
         group = self.assembly.newObject("Assembly::JointGroup", "Joints")
@@ -137,6 +140,7 @@ class _Writer:
         item = self.parts[name]
         item.Label = name
         item.Placement = placement(part["placement"])
+        item.Label2 = part["description"]
         _text(item, "ArticadPart", name, "Name of the part")
         _text(item, "ArticadMaterial", part["material"] or "", "Name of its material")
 
@@ -186,11 +190,20 @@ class _Writer:
         for item in copied:  # sheets and the like that a script made beside its body
             if item not in values and item is not body and item.Name not in grouped and item.TypeId == "Spreadsheet::Sheet":
                 container.addObject(item)
+        copied = [item for item in copied if not self._is_spare(item, body)]
         self.hidden += [item.Name for item in copied if item.TypeId == "PartDesign::CoordinateSystem"]
         self._dimensions(part, container, values[0] if values else None)
         for item in copied:  # unchanged: a sketch that is solved again may differ in its last bits
             item.purgeTouched()
         return body
+
+    def _is_spare(self, item: Any, body: Any) -> bool:
+        """Remove a connector of the script from its body, if nothing else needs it: the part has its own; return whether it was one."""
+        if item.TypeId != "PartDesign::CoordinateSystem" or any(other is not body for other in item.InList):
+            return False
+        body.removeObject(item)
+        self.document.removeObject(item.Name)
+        return True
 
     def _connector(self, part: Json, container: Any, connector: Json) -> None:
         system = container.newObject("PartDesign::CoordinateSystem", connector["object"])

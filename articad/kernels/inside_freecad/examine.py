@@ -1,7 +1,7 @@
 """Open a FreeCAD document in a new process and report its content: `job.json` in, `report.json` out, in the working folder.
 
 The job names a file and steps, done in order: `solve`; `perturb`, which moves one part, solves, reports and puts
-everything back; `set`, which changes a parameter and recomputes; `look`, which reports; `save`; `verify`, which recomputes,
+everything back; `turn`, which moves one part, solves and recomputes; `set`, which changes a parameter and recomputes; `look`, which reports; `save`; `verify`, which recomputes,
 solves, saves, opens the file again and reports before and after. Nothing here imports articad: what is reported is judged
 outside.
 """
@@ -132,13 +132,23 @@ def _perturb(document: Any, step: Json) -> Json:
     return report
 
 
+def _turn(document: Any, step: Json) -> Json:
+    """Move one part by `by`, solve, recompute, and report."""
+    part = _parts(document)[step["part"]]
+    part.Placement = part.Placement * App.Placement(App.Vector(*step["by"][:3]), App.Rotation(*step["by"][3:]))
+    code = _assembly(document).solve()
+    document.recompute()
+    return _look(document, step) | {"code": code}
+
+
 def _set(document: Any, step: Json) -> Json:
     """Change parameters of the VarSet, recompute, and report."""
     for name, value in step["values"].items():
         setattr(document.getObject("Parameters"), f"p_{name}", value)
     document.recompute()
     document.recompute()
-    return _look(document, step) | {"code": _assembly(document).solve()}
+    code = _assembly(document).solve()
+    return _look(document, step) | {"code": code}
 
 
 def _save(document: Any, step: Json) -> Json:
@@ -189,6 +199,6 @@ def _seven(placement: Any) -> list[float]:
     return [*placement.Base, *placement.Rotation.Q]
 
 
-_STEPS = {"look": _look, "solve": _solve, "perturb": _perturb, "set": _set, "save": _save, "verify": _verify}
+_STEPS = {"look": _look, "solve": _solve, "perturb": _perturb, "turn": _turn, "set": _set, "save": _save, "verify": _verify}
 
 main()

@@ -155,7 +155,7 @@ class Authoring:
         for number in range(count):
             sketch.addConstraint(Sketcher.Constraint("Coincident", first + number, 2, first + (number + 1) % count, 1))
         for number, (x, y) in enumerate(points):
-            self._fix(sketch, first + number, 1, x, y)
+            self._fix(sketch, first + number, 1, x, y, f"corner{number + 1}")
 
     def rectangle(self, sketch: Any, x: Value, y: Value, width: Value, height: Value) -> None:
         """Draw a rectangle from its lower left corner."""
@@ -166,8 +166,8 @@ class Authoring:
         """Draw a circle."""
         center = App.Vector(self.number(x), self.number(y), 0)
         index = sketch.addGeometry(Part.Circle(center, App.Vector(0, 0, 1), self.number(radius)))
-        self._fix(sketch, index, 3, x, y)
-        self._dimension(sketch, Sketcher.Constraint("Radius", index, self.number(radius)), radius)
+        self._fix(sketch, index, 3, x, y, "center")
+        self._dimension(sketch, Sketcher.Constraint("Radius", index, self.number(radius)), radius, "radius")
 
     def slot(self, sketch: Any, start: tuple[Value, Value], end: tuple[Value, Value], radius: Value) -> None:
         """Draw a slot along x or y from the centre of one round end to that of the other."""
@@ -183,29 +183,34 @@ class Authoring:
         for first, end_1, second, end_2 in ((one, 2, low, 1), (low, 2, other, 1), (other, 2, high, 1), (high, 2, one, 1)):
             sketch.addConstraint(Sketcher.Constraint("Tangent", first, end_1, second, end_2))
         sketch.addConstraint(Sketcher.Constraint("Equal", one, other))  # else the other end keeps a radius of its own
-        self._fix(sketch, one, 3, *start)
-        self._fix(sketch, other, 3, *end)
-        self._dimension(sketch, Sketcher.Constraint("Radius", one, r), radius)
+        self._fix(sketch, one, 3, *start, "start")
+        self._fix(sketch, other, 3, *end, "end")
+        self._dimension(sketch, Sketcher.Constraint("Radius", one, r), radius, "radius")
 
     def axis(self, sketch: Any, start: tuple[Value, Value], end: tuple[Value, Value]) -> str:
         """Draw a line that is no outline; return the name by which a revolution turns about it."""
         a, b = (App.Vector(self.number(x), self.number(y), 0) for x, y in (start, end))
         count = sum(sketch.getConstruction(number) for number in range(sketch.GeometryCount))
         line = sketch.addGeometry(Part.LineSegment(a, b), True)
-        self._fix(sketch, line, 1, *start)
-        self._fix(sketch, line, 2, *end)
+        self._fix(sketch, line, 1, *start, "axis_start")
+        self._fix(sketch, line, 2, *end, "axis_end")
         return f"Axis{count}"
 
-    def _fix(self, sketch: Any, index: int, position: int, x: Value, y: Value) -> None:
+    def _fix(self, sketch: Any, index: int, position: int, x: Value, y: Value, name: str) -> None:
         """Hold a point at a place measured from the sketch's origin."""
         for kind, value in (("DistanceX", x), ("DistanceY", y)):
-            self._dimension(sketch, Sketcher.Constraint(kind, -1, 1, index, position, self.number(value)), value)
+            constraint = Sketcher.Constraint(kind, -1, 1, index, position, self.number(value))
+            self._dimension(sketch, constraint, value, f"{name}_{kind[-1].lower()}")
 
-    def _dimension(self, sketch: Any, constraint: Any, value: Value) -> None:
+    def _dimension(self, sketch: Any, constraint: Any, value: Value, wanted: str) -> None:
+        """Add a constraint with a value, named after what it measures: `corner2_x`, and `corner2_x_2` for the next outline's."""
+        taken, name, count = {row.Name for row in sketch.Constraints}, wanted, 2
+        while name in taken:
+            name, count = f"{wanted}_{count}", count + 1
         number = sketch.addConstraint(constraint)
-        sketch.renameConstraint(number, f"tie{number}")
+        sketch.renameConstraint(number, name)
         if isinstance(value, str):
-            sketch.setExpression(f"Constraints.tie{number}", self.length(value))
+            sketch.setExpression(f"Constraints.{name}", self.length(value))
 
     # ------------------------------------------------------------------ features; each becomes the tip
 
