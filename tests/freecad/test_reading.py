@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import zipfile
 from functools import cache
 from pathlib import Path
@@ -171,3 +172,36 @@ def test_links_into_another_file_are_followed_and_gears_are_a_coupling(tmp_path:
     (tmp_path / "parts.FCStd").rename(tmp_path / "elsewhere.FCStd")
     with pytest.raises(ReadError, match=r"parts\.FCStd"):
         read_freecad(tmp_path / "assembled.FCStd")
+
+
+@pytest.mark.freecad
+@opened.needs_freecad
+def test_freecads_own_example_is_read_as_freecad_has_it(tmp_path: Path) -> None:
+    ended = freecad_install.find().run(Path(__file__).with_name("assembly_example.py"), folder=tmp_path)
+    assert (tmp_path / "told.json").is_file(), ended.said
+    told = json.loads((tmp_path / "told.json").read_text())
+    read = read_freecad(tmp_path / "example.FCStd")
+    assert not read.findings, read.findings
+    assert len(read.parts) == len(told["parts"]) > 10
+    assert read.ground == named(told["ground"])
+    for label, (frame, volume) in told["parts"].items():
+        solid = read.parts[named(label)].solid
+        assert solid is not None
+        assert solid.volume == pytest.approx(volume, rel=1e-6), label
+        (T,) = opened.frames({label: frame}).values()
+        assert read.at()[named(label)].allclose(T, mm=1e-4, rad=1e-5), label  # FreeCAD's solver left its loops open by this much
+    assert {joint.name: str(joint.type) for joint in read.joints} == {
+        named(label): kind.lower() for label, (kind, _) in told["joints"].items()
+    }
+    stored = opened.frames({label: frame for label, (frame, _) in told["parts"].items()})
+    stands = {named(label): T for label, T in stored.items()}
+    frames = {named(label): list(opened.frames(dict(enumerate(sides))).values()) for label, (_, sides) in told["joints"].items()}  # type: ignore[arg-type]
+    for joint in read.joints:
+        near, far = frames[joint.name]
+        assert (stands[joint.parent] @ joint.T_parent_connector).allclose(near, mm=1e-9, rad=1e-9), joint.name
+        assert (stands[joint.child] @ joint.T_child_connector).allclose(far, mm=1e-9, rad=1e-9), joint.name
+
+
+def named(label: str) -> str:
+    """Return a label of letters and digits as a name of articad's."""
+    return re.sub(r"[^a-z0-9]+", "_", label.lower()).strip("_")
