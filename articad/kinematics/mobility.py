@@ -46,9 +46,11 @@ _BESIDE = 0.05  # rad, or lengths L: their distance
 _NEARER, _FARTHER = 0.005, 0.3  # for linkages that move by thousandths only; for obstructions of high order
 _FAINT = 1e-8  # |r| of an obstruction at rest so small that it is of order four or more
 _STUCK = 0.1  # share of the way to a neighbour: what closes nearer to rest has not moved
+_AWAY = 0.3  # of the median of these ways: nearer to rest, sets that cross there are too close to tell apart; beyond its inverse lies another branch
+_WITHIN = 0.2  # of that way: steps about a neighbour, short enough to stay on its set where others cross it at rest
 _MULTIPLE = 1e-4  # σ/σ₁ at a neighbour; at a double root the solver stops 1e-6 away from it
 _KEPT, _PATIENCE = 1e-9, 60  # σ/σ₁ that is corrected there, and steps
-_SURVIVES = 0.3  # share of a displacement that remains after closing, for a true motion
+_SURVIVES, _ALL_SURVIVE = 0.3, 0.5  # share of a displacement that remains after closing, for a true motion; and where none is obstructed
 _INDEPENDENT = 1e-5  # share of a driver's freedom that other drivers do not already give
 _STILL = 1e-7  # rad, or lengths L per unit of motion: a part that moves less stands still
 
@@ -199,7 +201,7 @@ def _near(system: ClosureSystem, Q: FloatArray, N: FloatArray, obstruction: floa
 
 def _neighbours(system: ClosureSystem, Q: FloatArray, N: FloatArray, scale: float, rng: np.random.Generator) -> list[_Neighbour]:
     """Return closed neighbours at a distance from rest: first in random directions, then perpendicular to the secants found so far."""
-    found, secants = list[_Neighbour](), list[FloatArray]()
+    reached, secants = list[FloatArray](), list[FloatArray]()
     basis, n = np.eye(N.shape[1]), _NEIGHBOURS
     while n and basis.size:
         for _ in range(n):
@@ -207,13 +209,15 @@ def _neighbours(system: ClosureSystem, Q: FloatArray, N: FloatArray, scale: floa
             closed = _closed_beside(system, system.move(Q, scale * (N @ (c / np.linalg.norm(c)))))
             secant = system.step_between(Q, closed.Q)
             if closed.residual <= CLOSED and np.linalg.norm(secant) > _STUCK * scale:
-                found.append(_tangent_space(system, closed.Q, 0.2 * scale, rng))
-                secants.append(secant @ N / float(np.linalg.norm(secant)))
+                reached.append(closed.Q)
+                secants.append(secant @ N)
         n = _ACROSS if secants and n == _NEIGHBOURS else 0
         if n:
-            _, s, Vt = svd(np.array(secants), full=True)
+            _, s, Vt = svd(np.array([secant / np.linalg.norm(secant) for secant in secants]), full=True)
             basis = Vt[int((s > _SPANNED * s[0]).sum()) :].T
-    return found
+    ways = np.array([np.linalg.norm(system.step_between(Q, there)) for there in reached])
+    far = [(there, way) for there, way in zip(reached, ways, strict=True) if _AWAY < way / np.median(ways) < 1 / _AWAY]
+    return [_tangent_space(system, there, _WITHIN * float(way), rng) for there, way in far]
 
 
 def _largest(system: ClosureSystem, found: Sequence[_Neighbour], rng: np.random.Generator) -> _Neighbour | None:
@@ -260,8 +264,19 @@ def _tangent_space(system: ClosureSystem, Q: FloatArray, scale: float, rng: np.r
         np.array(tried), np.array(left), RANK_TOLERANCE
     )  # maps c to what remains of it: 1 on the tangent space, else 0
     _, s, Vt = svd(projection, full=True)
-    dimension = int((s > _SURVIVES).sum())
+    dimension = _surviving(s)
     return _Neighbour(Q, N @ Vt[:dimension].T, k - dimension, scale)
+
+
+def _surviving(s: FloatArray) -> int:
+    """Return how many of the displacements with these shares `(k,)`, the largest first, are motions.
+
+    Closing at a multiple root takes back an obstructed displacement to a hundredth or less, and may also shorten a true one. So the widest
+    gap between the shares decides. All are motions only if all remain: the first of them met an obstruction.
+    """
+    if s[-1] > _ALL_SURVIVE or s[0] <= _SURVIVES:
+        return len(s) if s[-1] > _ALL_SURVIVE else 0
+    return 1 + int(np.argmax(s[:-1] / np.maximum(s[1:], 1e-300))) if len(s) > 1 else 1
 
 
 def motions(system: ClosureSystem, Q: FloatArray, tolerance: float = RANK_TOLERANCE) -> tuple[FloatArray, FloatArray]:

@@ -187,14 +187,18 @@ def rods(points: np.ndarray, tops: np.ndarray, foot: str = "universal") -> Mecha
     return Mechanism(("base", "top", *(f"rod{i}" for i in range(len(points)))), "base", joints)
 
 
-def parallel_rods(n: int, foot: str = "universal", *, circle: bool = False) -> Mechanism:
-    """Equal parallel rods at random places, or at random places of one circle."""
+def parallel_rods(n: int, foot: str = "universal") -> Mechanism:
+    """Equal parallel rods at random places."""
     rng = np.random.default_rng(n)
     points = np.column_stack([rng.uniform(-100, 100, (n, 2)), np.zeros(n)])
-    if circle:
-        turn = np.sort(rng.uniform(0, 2 * math.pi, n))
-        points = np.column_stack([90 * np.cos(turn), 90 * np.sin(turn), np.zeros(n)])
     return rods(points, points + np.array([0, 0, 120]), foot)
+
+
+def rods_round_a_circle(n: int, radius: float = 90.0, length: float = 120.0, seed: int = 0) -> Mechanism:
+    """Equal parallel rods at random places of one circle."""
+    turn = np.sort(np.random.default_rng(seed).uniform(0, 2 * math.pi, n))
+    points = np.column_stack([radius * np.cos(turn), radius * np.sin(turn), np.zeros(n)])
+    return rods(points, points + np.array([0, 0, length]), "universal")
 
 
 def similar_hexagons(twist: float = 0.3) -> Mechanism:

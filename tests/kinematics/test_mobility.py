@@ -19,6 +19,7 @@ from tests.kinematics.overconstrained import (
     gear_triangle,
     kaleidocycle,
     parallel_rods,
+    rods_round_a_circle,
     similar_hexagons,
     slack_bars,
     tetrahedra,
@@ -123,12 +124,23 @@ def test_a_platform_on_parallel_rods_translates_and_turns_only_on_three(n: int, 
 @pytest.mark.parametrize("n", [5, 6, pytest.param(7, marks=pytest.mark.soak), pytest.param(8, marks=pytest.mark.soak)])
 def test_a_platform_on_rods_round_a_circle_translates_or_screws(n: int) -> None:
     """|(R − 1)p + t| is the same for all p of a circle where R = 1, or where R turns about the axis and t lies along it."""
-    mechanism = parallel_rods(n, circle=True)
+    mechanism = rods_round_a_circle(n, seed=n)
     assert (mechanism.branch.analysis.first_order, mechanism.mobility) == (3, 2)
     points = np.array([joint.T_parent_connector.translation for joint in mechanism.joints if joint.name.startswith("foot")])
     assert rods_close(points, {0: 0.3, 1: 0.2}, n) < 1e-9  # two translations
     assert rods_close(points, {0: 0.0, 1: 0.0, 5: 0.3}, n) < 1e-9  # a screw
     assert rods_close(points, {0: 0.3, 1: 0.2, 5: 0.3}, n) > 1e-4  # not both
+
+
+CIRCLES = [(n, *size, seed) for n in (5, 6, 8) for size in ((40.0, 80.0), (40.0, 200.0), (80.0, 40.0)) for seed in range(8)]
+SOME_CIRCLES = [(5, 40.0, 80.0, 0), (5, 40.0, 200.0, 2), (5, 40.0, 200.0, 4), (6, 40.0, 200.0, 2)]
+
+
+@pytest.mark.parametrize("circle", [one if one in SOME_CIRCLES else pytest.param(one, marks=pytest.mark.soak) for one in CIRCLES])
+def test_sets_that_cross_at_rest_are_told_apart_wherever_the_rods_stand(circle: tuple[int, float, float, int]) -> None:
+    """Near rest the translations and the screw are close to each other; a step about a point of one must not end on the other."""
+    analysis = rods_round_a_circle(*circle).branch.analysis
+    assert (analysis.first_order, analysis.mobility) == (3, 2)
 
 
 @pytest.mark.parametrize("n", [4, pytest.param(5, marks=pytest.mark.soak)])
