@@ -41,6 +41,7 @@ from articad.kinematics.solution import Solution
 from articad.plan.check import admitted
 from articad.plan.resolve import Fit, Material, ResolvedPart, ResolvedPlan, Waiver
 from articad.plan.schema import AssemblyPlan
+from articad.realisation.verdicts import Realisation, check_joints
 
 if TYPE_CHECKING:
     from PIL import Image
@@ -534,6 +535,17 @@ class Assembly:
             rows: Values of each driver, evenly over its range, in addition to the rest value.
         """
         return what_follows(self._moved(), joints, rows=rows)
+
+    def check_joints(self, joints: Sequence[str] | None = None) -> Realisation:
+        """Judge how each joint is made: which surfaces of its parts make it, and which freedoms they leave that it should remove.
+
+        Joints are examined at rest and at the ends of their ranges, to first order; nothing is proven between. All findings are warnings.
+
+        Args:
+            joints: Names of the joints to judge; all by default.
+        """
+        poses = Poses(self.mechanism.parts, self.mechanism.at_rest)
+        return check_joints(self.scene(), poses, reached=followed(self.mechanism), joints=joints)
 
     def certify(
         self,

@@ -58,6 +58,11 @@ def _build(options: argparse.Namespace, terminal: Terminal) -> Report:
     argument(
         "--motion", action="store_true", help="also sample the motion: drivers alone, two at a time, all at once (builds a plan's parts)"
     ),
+    argument(
+        "--joints",
+        action="store_true",
+        help="also judge by which surfaces each joint is made, and what they leave free (builds a plan's parts)",
+    ),
     SANDBOX,
 )
 def _check(options: argparse.Namespace, terminal: Terminal) -> Report:
@@ -76,7 +81,7 @@ def _check(options: argparse.Namespace, terminal: Terminal) -> Report:
         name, findings = plan.name, check_plan(plan)
     terminal.findings(findings)
     terminal.say(f"{name}: {summaries.counted(findings)}.")
-    if not findings.ok or not (options.motion or (Path(options.target) / "request.json").is_file()):
+    if not findings.ok or not (options.motion or options.joints or (Path(options.target) / "request.json").is_file()):
         return findings.to_json()
 
     assembly = loaded(options.target, options, terminal)
@@ -85,4 +90,9 @@ def _check(options: argparse.Namespace, terminal: Terminal) -> Report:
     report = checks.to_json()
     summaries.print_findings(report["findings"], terminal)
     summaries.print_statements(report, None, terminal, moves=bool(assembly.drivers), certify=f"articad certify {options.target}")
+    if options.joints:
+        with terminal.progress("Judging joints"):
+            report["joints"] = assembly.check_joints().to_json()
+        summaries.print_findings(report["joints"]["findings"], terminal)
+        summaries.print_joints(report["joints"]["rows"], terminal)
     return report

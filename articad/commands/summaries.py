@@ -71,6 +71,21 @@ def print_assembly(report: Report, terminal: Terminal) -> None:
     )
 
 
+def print_joints(rows: list[Report], terminal: Terminal) -> None:
+    """Print for each joint its verdict, the surfaces that make it, and what they leave free."""
+    terminal.say(f"Joints: {_counts(row['verdict'] for row in rows)}; examined at rest and at the ends of their ranges.")
+    for row in rows:
+        made = [f"{pair['kind']} ({' and '.join(pair['parts'])}, {pair['play_mm']:.3g} mm)" for pair in row["made_by"]]
+        told = [", ".join(made) or "no surfaces found", *([row["reason"]] if row["reason"] else [])]
+        if row["free"]:
+            told.append("free: " + ", ".join(way["way"] + (" (against its weight)" if way["by_weight"] else "") for way in row["free"]))
+        if row["held_by"]:
+            told.append(f"with {', '.join(row['held_by'])}")
+        if row["engaged_share"] is not None:
+            told.append(f"{100 * row['engaged_share']:.0f} % of the guide engaged at the ends")
+        terminal.say(f"  {row['joint']}: {row['type']}, {row['verdict']}; {'; '.join(told)}")
+
+
 def print_certificate(report: Report, terminal: Terminal) -> None:
     """Print what is proven, what is not, and the free range of each joint."""
     print_statements(None, report, terminal)

@@ -473,6 +473,21 @@ CODES: dict[str, Code] = {
     "E_FIT_CONTACT": Code(
         "fit", "design", "Contact is forbidden but found, or required but absent.", "Move the surfaces by the named amount."
     ),
+    "W_JOINT_NOT_MADE": Code(
+        "fit", "design", "No surfaces of two parts make the joint between them.", "Give one part a pin and the other its bore, or a guide."
+    ),
+    "W_JOINT_PARTLY_MADE": Code(
+        "fit", "design", "The surfaces of a joint leave motions free that it should remove.", "Add surfaces that stop the named motions."
+    ),
+    "W_JOINT_LEAVES": Code(
+        "fit",
+        "design",
+        "A joint that is made at rest loses its surfaces in motion.",
+        "Lengthen the guide or the pin, or shorten the range.",
+    ),
+    "W_JOINT_SHORT": Code(
+        "fit", "design", "A slide keeps too little of its guide at an end of its range.", "Lengthen the guide, or shorten the travel."
+    ),
     # --- model
     "E_REPLY_SCHEMA": Code(
         "model",

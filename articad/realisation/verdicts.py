@@ -1,0 +1,407 @@
+"""Judge each joint: which surfaces make it, which freedoms they leave that it should remove, and where they lose it.
+
+A joint is examined at rest and at both ends of each of its freedoms. Nothing is known between these poses.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, Final, Literal, NamedTuple
+
+import numpy as np
+
+from articad.arrays import FloatArray
+from articad.connectors.se3 import SE3
+from articad.findings import Finding, Findings
+from articad.geometry.faces import faces_of
+from articad.interference.motion import Freedom, freedoms
+from articad.interference.ranges import sampled_piece
+from articad.interference.report import rounded
+from articad.interference.scene import Scene
+from articad.kinematics.joints import Joint, JointType
+from articad.realisation.contacts import FaceReach, Pair, pairs
+from articad.realisation.room import FAR_RAD, GROUND, Touch, far_mm, room
+from articad.realisation.sides import PartFace, Sides, sides
+
+__all__ = ["LEAST_SHARE", "FreeWay", "JointCheck", "JointVerdict", "Realisation", "check_joints"]
+
+LEAST_SHARE: Final = 0.25  # of a guide that a slide keeps engaged at the ends of its range
+_ROUNDING = 1e-6  # of a share
+TILT_RAD: Final = 0.15  # a body that may tilt by less is held
+TOUCH_MM: Final = 0.05  # surfaces of a fixed joint this close are one
+_FLAT_MM, _FLAT_SHARE, _FLAT_MOST = 1.0, 0.01, 5.0  # reach of planes: the larger of the two; the share is of the child's diagonal
+_ROUND_MM, _ROUND_SHARE = 0.5, 0.1  # reach of cylinders and spheres; the share is of the radius
+_UP = 0.9  # cosine: a direction in which the weight holds a part
+_SHORT_MM = 1.0  # guides shorter than this have no share
+_NAMES: Final = ("x", "y", "z", "about x", "about y", "about z")
+
+JointVerdict = Literal["made", "partly", "not made", "held by others", "not assessed"]
+
+# components x, y, z, about x, y, z in the joint's frame that the joint itself moves along
+_OWN: Final = {
+    JointType.FIXED: (0, 0, 0, 0, 0, 0),
+    JointType.REVOLUTE: (0, 0, 0, 0, 0, 1),
+    JointType.SLIDER: (0, 0, 1, 0, 0, 0),
+    JointType.CYLINDRICAL: (0, 0, 1, 0, 0, 1),
+    JointType.SCREW: (0, 0, 1, 0, 0, 1),  # the thread is not assessed
+    JointType.BALL: (0, 0, 0, 1, 1, 1),
+    JointType.PLANAR: (1, 1, 0, 0, 0, 1),
+    JointType.UNIVERSAL: (0, 0, 0, 1, 1, 0),
+}
+_ROUND_AXIS = (JointType.REVOLUTE, JointType.CYLINDRICAL, JointType.SCREW)
+
+
+class FreeWay(NamedTuple):
+    """A freedom that a joint should remove and that no surface removes.
+
+    Attributes:
+        way: Such as "+z" or "about x", in the joint's frame on the parent.
+        room: How far the child may move [mm or rad]; infinity if nothing was found that stops it.
+        by_weight: Whether only the weight of the child acts against it.
+    """
+
+    way: str
+    room: float
+    by_weight: bool
+
+
+@dataclass(frozen=True)
+class JointCheck:
+    """One row: how a joint is made.
+
+    Attributes:
+        joint: Its name.
+        type: Its type.
+        parts: Its two parts.
+        verdict: "made": all other freedoms are removed at all poses that were examined; "partly": some are not; "not made": no surfaces
+            of the two sides make it; "held by others": only with other parts; "not assessed".
+        pairs: The surfaces at rest: kind, parts, play [mm] and number of pairs of that kind.
+        losses: Freedoms that stay, at the worst pose.
+        at: That pose [rad, mm]; None at rest.
+        by: The other parts that hold it.
+        share: Least share of the guide that is engaged at an end of the range; None for joints that do not slide.
+        poses: Number of poses examined.
+        reason: What is not assessed.
+    """
+
+    joint: str
+    type: str
+    parts: tuple[str, str]
+    verdict: JointVerdict
+    pairs: tuple[tuple[str, tuple[str, str], float, int], ...] = ()
+    losses: tuple[FreeWay, ...] = ()
+    at: Mapping[str, float] | None = None
+    by: tuple[str, ...] = ()
+    share: float | None = None
+    poses: int = 0
+    reason: str = ""
+
+    def to_json(self) -> dict[str, Any]:
+        """Return a row of the table."""
+        return {
+            "joint": self.joint,
+            "type": self.type,
+            "parts": list(self.parts),
+            "verdict": self.verdict,
+            "made_by": [
+                {"kind": kind, "parts": list(parts), "play_mm": rounded(play), "count": count} for kind, parts, play, count in self.pairs
+            ],
+            "free": [
+                {"way": loss.way, "room": None if math.isinf(loss.room) else rounded(loss.room), "by_weight": loss.by_weight}
+                for loss in self.losses
+            ],
+            "at": None if self.at is None else {name: rounded(value) for name, value in self.at.items()},
+            "held_by": list(self.by),
+            "engaged_share": rounded(self.share),
+            "poses": self.poses,
+            "reason": self.reason,
+        }
+
+
+@dataclass(frozen=True)
+class Realisation:
+    """How the joints of an assembly are made.
+
+    Attributes:
+        findings: One for each joint that is not made, or lost in motion; all are warnings.
+        rows: One for each joint, in order.
+    """
+
+    findings: Findings
+    rows: tuple[JointCheck, ...]
+
+    def to_json(self) -> dict[str, Any]:
+        """Return the table with its findings, `articad.realisation/1`."""
+        return {
+            "schema": "articad.realisation/1",
+            "ok": self.findings.ok,
+            "findings": [finding.to_json() for finding in self.findings],
+            "rows": [row.to_json() for row in self.rows],
+        }
+
+
+def check_joints(
+    scene: Scene,
+    poses: Mapping[str, SE3],
+    *,
+    reached: Mapping[str, tuple[float, float]] | None = None,
+    joints: Sequence[str] | None = None,
+) -> Realisation:
+    """Judge how each joint is made.
+
+    Args:
+        scene: Bodies, relations and fits.
+        poses: Poses of the parts at rest, with z up: to find other parts that hold a joint, and what the weight holds.
+        reached: Ranges of coordinates that follow others [rad, mm]; a joint of a linkage need not reach its own limits.
+        joints: Names of the joints to judge; all by default.
+    """
+    rows = [_Examined(scene, poses, joint).row(reached or {}) for joint in scene.relations.joints if joints is None or joint.name in joints]
+    return Realisation(Findings(finding for row in rows for finding in _findings(row)), tuple(rows))
+
+
+class _Examined:
+    """One joint and the faces of its two sides."""
+
+    def __init__(self, scene: Scene, poses: Mapping[str, SE3], joint: Joint) -> None:
+        self.scene, self.poses, self.joint = scene, poses, joint
+        fit = scene.fits.get(joint.name)
+        widest = (fit.gap_max or 0.0) if fit is not None else 0.0
+        slack = scene.deflections.get(joint.parent, 0.0) + scene.deflections.get(joint.child, 0.0)
+        size = 0.0
+        if joint.child in scene.meshes:
+            size = float(np.linalg.norm(np.ptp(scene.meshes[joint.child].bounds, axis=0)))
+        flat = min(max(_FLAT_MM, _FLAT_SHARE * size), _FLAT_MOST)
+        self.reach = FaceReach(max(flat, widest + slack), max(_ROUND_MM, widest + slack), _ROUND_SHARE)
+        if joint.type is JointType.FIXED:
+            self.reach = FaceReach(TOUCH_MM + slack, TOUCH_MM + slack, 0.0)
+        self.up = np.asarray((poses[joint.parent] @ joint.T_parent_connector).rotation)[2]  # the world's z in the joint's frame
+
+    def row(self, reached: Mapping[str, tuple[float, float]]) -> JointCheck:
+        """Return the joint's row."""
+        joint = self.joint
+        row = JointCheck(joint.name, str(joint.type), (joint.parent, joint.child), "not assessed")
+        missing = [name for name in row.parts if name not in self.scene.meshes]
+        if joint.type not in _OWN or missing:
+            return replace(row, reason=f"{' and '.join(missing)} without geometry" if missing else f"a {joint.type} joint has no surfaces")
+        rest = sides(self.scene, joint)
+        found = pairs(rest, self.reach)
+        row = replace(row, pairs=_summary(found), poses=1)
+        if joint.type is JointType.FIXED:
+            verdict: JointVerdict = "made" if found else "not assessed"
+            reason = "what holds the faces together is not assessed" if found else "no flat or round surfaces touch"
+            return replace(row, verdict=verdict, reason=reason)
+        if joint.type is JointType.SCREW:
+            row = replace(row, reason="the thread is not assessed")
+        losses = self._losses(found)
+        if losses:
+            return self._otherwise(replace(row, losses=losses), rest, found)
+        return self._over(replace(row, verdict="made"), found, reached)
+
+    def _losses(self, found: Sequence[Pair], more: Sequence[Touch] = ()) -> tuple[FreeWay, ...]:
+        """Return the freedoms that contacts leave and the joint should remove.
+
+        Args:
+            found: Pairs of faces of the joint's two sides.
+            more: Contacts of both with other bodies, and of those with each other.
+        """
+        held, centre = np.array(_OWN[self.joint.type], dtype=bool), self._centre([pair.points for pair in found])
+        touches = [*(Touch(GROUND, 0, pair.points, pair.normals, pair.gaps, pair.grazing) for pair in found), *more]
+        free = room(touches, held, centre)
+        far = far_mm(touches)
+        losses = []
+        for column in np.flatnonzero(~held):
+            limit = far if column < 3 else TILT_RAD
+            end = far if column < 3 else FAR_RAD
+            open_ways = [sign for sign, value in zip("+-", free[:, column], strict=True) if value >= limit * (1 - 1e-9)]
+            if column >= 3:
+                if open_ways:
+                    value = float(free[:, column].max())
+                    losses.append(FreeWay(_NAMES[column], math.inf if value >= end * (1 - 1e-9) else value, by_weight=False))
+                continue
+            for sign in open_ways:
+                lifts = (1.0 if sign == "+" else -1.0) * float(self.up[column]) >= _UP
+                losses.append(FreeWay(sign + _NAMES[column], math.inf, by_weight=lifts))
+        return tuple(losses)
+
+    def _centre(self, points: Sequence[FloatArray]) -> FloatArray:
+        """Return the point whose translation is examined: that of a ball or universal joint, else the middle of the contacts."""
+        if not points or self.joint.type in (JointType.BALL, JointType.UNIVERSAL):
+            return np.zeros(3)
+        every = np.concatenate(points)
+        return np.asarray((every.min(axis=0) + every.max(axis=0)) / 2)
+
+    def _otherwise(self, row: JointCheck, rest: Sides, found: Sequence[Pair]) -> JointCheck:
+        """Return the row of a joint that its own two sides do not make: perhaps with other parts, or with surfaces that are not known."""
+        more, by = self._around(rest)
+        if by:
+            losses = self._losses(found, more)
+            if len(losses) < len(row.losses):
+                verdict: JointVerdict = "partly" if _unsupported(losses) else "held by others"
+                return replace(row, verdict=verdict, losses=losses, by=by)
+        if not _unsupported(row.losses):
+            return replace(row, verdict="partly")
+        if self._unknown_near(rest):
+            return replace(row, verdict="not assessed", reason="surfaces that are not plane, cylindrical or spherical meet there")
+        return replace(row, verdict="partly" if self._is_begun(found) else "not made")
+
+    def _is_begun(self, found: Sequence[Pair]) -> bool:
+        """Return whether surfaces of the kind that the joint needs were found."""
+        kinds = {pair.kind for pair in found}
+        if self.joint.type in _ROUND_AXIS:
+            return bool({"pin in bore", "pin on flat"} & kinds)
+        return bool(kinds)
+
+    def _around(self, rest: Sides) -> tuple[list[Touch], tuple[str, ...]]:
+        """Return the contacts of all other bodies at rest, and the parts of those that touch the joint's child."""
+        own = {one.part for side in rest for one in side}
+        to_joint = (self.poses[self.joint.parent] @ self.joint.T_parent_connector).inverse()
+        bodies: dict[str, list[PartFace]] = {}
+        for name, mesh in self.scene.meshes.items():
+            if name not in own:
+                T = np.asarray((to_joint @ self.poses[name]).matrix)
+                leader = self.scene.relations.rigid.leader(name)
+                bodies.setdefault(leader, []).extend(PartFace(name, face.moved(T)) for face in faces_of(mesh))
+        numbered = [(GROUND, rest.parent), (0, rest.child), *((k + 1, tuple(faces)) for k, faces in enumerate(bodies.values()))]
+        touches, by = [], set()
+        for (i, first), (j, second) in itertools.combinations(numbered, 2):
+            for pair in pairs(Sides(first, second), self.reach) if j > 0 else ():
+                touches.append(Touch(i, j, pair.points, pair.normals, pair.gaps, pair.grazing))
+                by |= {pair.parts[1]} if i == 0 else set()
+        return touches, tuple(sorted(by))
+
+    def _unknown_near(self, rest: Sides) -> bool:
+        """Return whether a face of one side that is not recognised is close to any face of the other side."""
+        for first, second in ((rest.parent, rest.child), (rest.child, rest.parent)):
+            for one in first:
+                if one.face.kind != "other":
+                    continue
+                low, high = one.face.corners.min(axis=(0, 1)) - self.reach.flat, one.face.corners.max(axis=(0, 1)) + self.reach.flat
+                for other in second:
+                    corners = other.face.corners
+                    if (corners.max(axis=(0, 1)) >= low).all() and (corners.min(axis=(0, 1)) <= high).all():
+                        return True
+        return False
+
+    def _over(self, row: JointCheck, found: Sequence[Pair], reached: Mapping[str, tuple[float, float]]) -> JointCheck:
+        """Return the row of a joint that is made at rest, examined at the ends of its range."""
+        length = _guide(found)
+        least: float | None = None
+        for at, values in self._ends(reached):
+            there = pairs(sides(self.scene, self.joint, values), self.reach)
+            row = replace(row, poses=row.poses + 1)
+            losses = self._losses(there)
+            if _unsupported(losses):
+                return replace(row, verdict="partly", losses=losses, at=at, share=_share(there, length) if self._slides() else None)
+            if self._slides() and length > _SHORT_MM:
+                share = _share(there, length)
+                if least is None or share < least:
+                    least = share
+                    row = replace(row, share=share, at=at if _is_short(share) else row.at)
+        return row
+
+    def _slides(self) -> bool:
+        return self.joint.type in (JointType.SLIDER, JointType.CYLINDRICAL)
+
+    def _ends(self, reached: Mapping[str, tuple[float, float]]) -> Iterator[tuple[dict[str, float], list[float]]]:
+        """Yield the poses at the ends of each freedom, the others at rest."""
+        if self.joint.type in (JointType.BALL, JointType.UNIVERSAL):
+            ends = [freedom for freedom in freedoms(self.joint) if not freedom.name.endswith("twist")]
+            ends = ends if self.joint.type is JointType.BALL else []
+        else:
+            ends = list(freedoms(self.joint))
+        every = freedoms(self.joint)
+        for freedom in ends:
+            place = [one.name for one in every].index(freedom.name)
+            for value in self._values(freedom, reached):
+                yield {freedom.name: value}, [value if k == place else one.rest for k, one in enumerate(every)]
+
+    def _values(self, freedom: Freedom, reached: Mapping[str, tuple[float, float]]) -> list[float]:
+        lower, upper = freedom.lower, freedom.upper
+        if freedom.name in reached:
+            lower, upper = max(lower, reached[freedom.name][0]), min(upper, reached[freedom.name][1])
+        piece = sampled_piece(self.joint, freedom)
+        if piece != freedom:  # a slide without limits ends nowhere
+            return []
+        return [value for value in (lower, upper) if abs(value - freedom.rest) > 1e-9]
+
+
+def _unsupported(losses: Sequence[FreeWay]) -> bool:
+    return any(not loss.by_weight for loss in losses)
+
+
+def _summary(found: Sequence[Pair]) -> tuple[tuple[str, tuple[str, str], float, int], ...]:
+    """Return the pairs by kind and parts: the least play, and how many there are."""
+    table: dict[tuple[str, tuple[str, str]], list[float]] = {}
+    for pair in found:
+        table.setdefault((pair.kind, pair.parts), []).append(pair.play)
+    return tuple((kind, parts, min(plays), len(plays)) for (kind, parts), plays in table.items())
+
+
+def _guide(found: Sequence[Pair]) -> float:
+    """Return how much of a guide could be engaged at most: the length along z of the shorter side of its longest pair [mm]."""
+    return max((min(float(np.ptp(face.corners[..., 2])) for face in pair.faces) for pair in found), default=0.0)
+
+
+def _share(found: Sequence[Pair], length: float) -> float:
+    """Return the share of a guide that is engaged."""
+    if not found:
+        return 0.0
+    ends = [[(float(face.corners[..., 2].min()), float(face.corners[..., 2].max())) for face in pair.faces] for pair in found]
+    engaged = max(min(top_a, top_b) - max(low_a, low_b) for (low_a, top_a), (low_b, top_b) in ends)
+    return min(1.0, max(0.0, engaged / length)) if length > 0 else 0.0
+
+
+def _is_short(share: float) -> bool:
+    return share < LEAST_SHARE - _ROUNDING
+
+
+def _findings(row: JointCheck) -> Iterator[Finding]:
+    where, a, b = f"joints.{row.joint}", *row.parts
+    at = "" if not row.at else " at " + ", ".join(f"{name} = {value:.4g}" for name, value in row.at.items())
+    ways = ", ".join(loss.way for loss in row.losses if not loss.by_weight)
+    pose = None if row.at is None else dict(row.at)
+    if row.verdict == "not made":
+        yield Finding(
+            code="W_JOINT_NOT_MADE",
+            where=where,
+            parts=row.parts,
+            message=f"No surfaces of {a} and {b} make the {row.type} joint {row.joint!r}: the child is free along {ways}.",
+            hint=_remedy(row.type),
+            stage="fit",
+        )
+    elif row.verdict == "partly" and ways:
+        code = "W_JOINT_PARTLY_MADE" if row.at is None else "W_JOINT_LEAVES"
+        yield Finding(
+            code=code,
+            where=where,
+            parts=row.parts,
+            message=f"The {row.type} joint {row.joint!r} of {a} and {b} leaves the child free along {ways}{at}.",
+            hint="Lengthen the guide or the pin, or shorten the range."
+            if row.at
+            else "Add surfaces that stop these motions, or a part that does.",
+            pose=pose,
+            stage="fit",
+        )
+    if row.share is not None and _is_short(row.share) and row.verdict == "made":
+        yield Finding(
+            code="W_JOINT_SHORT",
+            where=where,
+            parts=row.parts,
+            message=f"Joint {row.joint!r} keeps {100 * row.share:.0f} % of its guide{at}; a quarter is the least.",
+            hint="Lengthen the guide, or shorten the travel.",
+            value=row.share,
+            limit=LEAST_SHARE,
+            pose=pose,
+            stage="fit",
+        )
+
+
+def _remedy(kind: str) -> str:
+    if kind == "ball":
+        return "Give one part a ball and the other a socket about the joint's centre that holds more than half of it."
+    if kind in ("slider", "planar"):
+        return "Give one part a guide that encloses the other, such as a groove, a rail or two rods in bores."
+    return "Give one part a pin about the joint's axis and the other a bore for it."
