@@ -256,6 +256,12 @@ def test_check_of_a_run_holds_its_geometry_too(chest: Path, tmp_path: Path, repo
     assert (code, checked["schema"], checked["ok"]) == (0, "articad.checks/1", True)
 
 
+def test_check_of_joints_names_the_surfaces_that_make_them(chest: Path, report: Any) -> None:
+    code, checked = report("check", chest, "--joints")
+    assert (code, checked["ok"], checked["joints"]["schema"]) == (0, True, "articad.realisation/1")
+    assert [row["joint"] for row in checked["joints"]["rows"]] == [joint["name"] for joint in PLAN["joints"]]
+
+
 def test_check_of_the_motion_names_pair_pose_and_depth_whatever_it_is_given(chest: Path, tmp_path: Path, report: Any) -> None:
     """The lid is let too far back: it meets the box behind the hinge."""
     code, checked = report("check", chest, "--motion")
