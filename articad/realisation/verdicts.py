@@ -260,7 +260,7 @@ class _Examined:
         to_joint = (self.poses[self.joint.parent] @ self.joint.T_parent_connector).inverse()
         bodies: dict[str, list[PartFace]] = {}
         for name, mesh in self.scene.meshes.items():
-            if name not in own:
+            if name not in own and name in self.poses:
                 T = np.asarray((to_joint @ self.poses[name]).matrix)
                 leader = self.scene.relations.rigid.leader(name)
                 bodies.setdefault(leader, []).extend(PartFace(name, face.moved(T)) for face in faces_of(mesh))
