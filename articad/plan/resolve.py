@@ -71,8 +71,8 @@ class Fit:
         Args:
             name: An ISO 286 fit such as "H7/g6" or "25 H7/g6", or "loose", "sliding" or "press" for printed parts.
             nominal: Nominal diameter [mm]. Without it, the fit is measured against that of the bore.
-            within: As in the class.
-            contact: As in the class; a pin may touch its bore.
+            within: Only surface closer than this to the joint's axis counts [mm]; None: all of it.
+            contact: "allowed" (a pin may touch its bore), "required" or "forbidden"; None: not checked.
 
         Raises:
             PlanError: If there is no such fit, or if name and `nominal` state different diameters.
