@@ -183,3 +183,19 @@ def test_pieces_come_out_the_same_twice() -> None:
     assert first is not None
     assert again is not None
     assert [piece.mesh.digest for piece in first.pieces] == [piece.mesh.digest for piece in again.pieces]
+
+
+def test_a_capsule_is_a_cylinder_and_two_balls_and_a_prism_is_one_piece() -> None:
+    """Neither needs a primitive of its own: URDF and SDF have no prisms, and URDF has no capsules."""
+    round_ = capsule(5, 20, 48)
+    heights = round_.vertices[round_.triangles].mean(axis=1)[:, 2]
+    face = np.where(heights < -10, 0, np.where(heights > 10, 2, 1)).astype(np.int32)  # as a B-rep has them
+    found = inscribed(TriMesh(round_.vertices, round_.triangles, face), deflection=0.05)
+    prism = inscribed(cylinder(10, 30, 6))
+
+    assert found is not None
+    assert sorted(piece.primitive.kind for piece in found.pieces if piece.primitive) == ["cylinder", "sphere", "sphere"]
+    assert found.missing < 0.05
+    assert prism is not None
+    assert len(prism.pieces) == 1
+    assert prism.less < 1e-6
