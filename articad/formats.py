@@ -299,6 +299,8 @@ ADVICE: Final = {
         ".catpart",
         ".x_t",
     ): "Export STEP from the CAD program.",
-    (".srdf",): "An SRDF belongs to a URDF: read that, which takes the SRDF of its name beside it, or the one that --srdf names.",
+    (
+        ".srdf",
+    ): "An SRDF belongs to a URDF: read the URDF. The SRDF of the same name beside it, or the one that --srdf names, is read with it.",
 }
 """What to do with files in formats that are not read, by their endings."""

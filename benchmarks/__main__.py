@@ -1,4 +1,4 @@
-"""All measurements beside the peers, one after another; what became slower than the stored baseline is named.
+"""All measurements beside the peers, one after another; reports what has become slower than the stored baseline.
 
     python -m benchmarks [--only kinematics,loops] [--out FILE] [--keep] [--baseline FILE]
 
@@ -75,7 +75,7 @@ def known(baseline: Path) -> dict[str, float]:
 
 
 def upright(goal: dict, which: str) -> float:
-    """Return a goal's ratio as the method's time over the peer's, whichever way it was asked for."""
+    """Return a goal's ratio as the method's time over the peer's, whichever way the goal is stated."""
     return goal[which] if goal["at_least"] is None else 1 / goal[which]
 
 

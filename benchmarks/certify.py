@@ -1,4 +1,4 @@
-"""What certified motion costs: distance queries and seconds on the scenes of the design, beside the least that could be.
+"""What certified motion costs: distance queries and seconds on the scenes of the design, beside the theoretical minimum.
 
     python benchmarks/certify.py
 

@@ -35,7 +35,7 @@ TOLERANCE = 1e-10
 
 
 def closed_angles(crank: float) -> tuple[float, float]:
-    """Return the absolute angles of coupler and rocker by the intersection of two circles: what every method must meet."""
+    """Return the absolute angles of coupler and rocker by the intersection of two circles: the reference for every method."""
     bx, by = CRANK * math.cos(crank), CRANK * math.sin(crank)
     dx, dy = GROUND - bx, -by
     d2 = dx * dx + dy * dy
@@ -86,7 +86,7 @@ class Articad:
         return mechanism.configuration(self.q).columns
 
     def tracked(self) -> np.ndarray:
-        """The same once the way is known, as for the second question about one mechanism."""
+        """The same once the path is known, as for the second call on one mechanism."""
         return self.mechanism.configuration(self.q).columns
 
 

@@ -20,7 +20,7 @@ ROUND_SECONDS = 0.05  # each method runs at least this long in a round
 
 @dataclass(frozen=True)
 class Goal:
-    """What a method's median is held against: at most (or at least) so many times another's."""
+    """A bound for a method's median: at most, or at least, a multiple of another's."""
 
     method: str
     beside: str
@@ -32,7 +32,7 @@ class Times(dict[str, float]):
     """Median time of one call of each method [s].
 
     Attributes:
-        least: Smallest time of each: what is left where other work on the machine is not in the way.
+        least: Smallest time of each: least affected by other work on the machine.
     """
 
     def __init__(self, rounds: Mapping[str, list[float]]) -> None:
@@ -46,13 +46,13 @@ class Times(dict[str, float]):
 
 @dataclass(frozen=True)
 class Table:
-    """Medians of one measurement, and what was asked of them.
+    """Medians of one measurement, and its goals.
 
     Attributes:
         title: What was measured.
         seconds: Median of one call by method.
         goals: Ratios asked for.
-        notes: What else is worth knowing, one line each.
+        notes: Further remarks, one line each.
     """
 
     title: str
@@ -114,7 +114,7 @@ def _ratio(seconds: Mapping[str, float], goal: Goal) -> float:
 def measure(methods: Mapping[str, Callable[[], object]], *, rounds: int = ROUNDS, clock: Callable[[], float] = time.perf_counter) -> Times:
     """Return the times of one call of each method, all measured in interleaved rounds.
 
-    Methods that use one thread of this process may be measured by its own time (`clock=time.process_time`), which others
+    Methods that use one thread of this process may be measured by its own time (`clock=time.process_time`), which other programs
     on the machine spoil less.
     """
     repeats = {}
@@ -153,7 +153,7 @@ def report(tables: list[Table], out: str | None = None) -> int:
 
 
 def machine() -> str:
-    """Return what was measured on: processor, Python, and the packages that matter."""
+    """Return what the measurement ran on: processor, Python and the relevant packages."""
     packages = []
     for name in ("numpy", "pin", "mujoco", "numba", "yourdfpy", "python-fcl", "manifold3d", "trimesh", "embreex"):
         try:

@@ -15,7 +15,7 @@ from articad.render import png, product_sheet
 ROOT = Path(__file__).resolve().parents[1]
 IMAGES = ROOT / "docs" / "images" / "gallery"
 PAGE = ROOT / "docs" / "gallery.md"
-COLOURS = 128  # of a sheet's palette: half the bytes, and no eye sees it
+COLOURS = 128  # colours of a sheet's palette: half the bytes, with no visible difference
 
 
 def main(names: list[str]) -> int:
@@ -36,7 +36,7 @@ def _page(folders: list[Path]) -> str:
         "# Gallery",
         "",
         "Every example of the repository, drawn by `scripts/gallery.py` from the plan and the part scripts, with no display or GPU:",
-        "two views, then for each driver the two ends of its motion, or the first quarter of more than half a turn. What stands still is faded.",
+        "two views, then for each driver the two ends of its motion, or the first quarter of more than half a turn. Parts that do not move are faded.",
         "Axes point along +z of the parent connector, arrows turn by the right hand; a dot is an axis towards you, a cross one away from you.",
         "*Move it* opens the example with a slider for each driver, made when this site was.",
         "",

@@ -59,8 +59,8 @@ KEPT_URDF = (
     "and so are textures, transparency and attributes of shapes, which cannot be written back into a URDF."
 )
 KEPT_SDF = (
-    "Paths begin below `<model>`. Everything else is kept. An SDF that is written has the elements of links, joints, shapes and models again, unless they name "
-    "frames or stand in what is written anew (masses, geometries); any other format reports them as losses. Files of the versions 1.4 to 1.12 are read."
+    "Paths begin below `<model>`. Everything else is kept. A written SDF contains the elements of links, joints, shapes and models again, unless they name "
+    "frames or are inside elements that articad writes itself (masses, geometries); any other format reports them as losses. Versions 1.4 to 1.12 are read."
 )
 KEPT_MJCF = (
     "MuJoCo's compiler resolves defaults, classes, frames, includes and copies first. Everything else is a row of the losses of every format, "
@@ -131,8 +131,8 @@ def all_formats() -> str:
 
 ABOUT_MESHES = """\
 A mesh of a URDF or SDF has the coordinates that its file states, in metres, times the `scale` of the element that names it; x, y and z of the file are those of
-the link. STL, OBJ and PLY state no unit. A DAE states one (`<unit meter=…>`), which counts (Pinocchio leaves it out). It also states which axis points up, and a
-glTF calls y up: neither counts, because readers of URDF (Pinocchio, and trimesh under yourdfpy) take the coordinates as they are, and a robot has to look
+the link. STL, OBJ and PLY state no unit. The unit of a DAE (`<unit meter=…>`) is applied; Pinocchio ignores it. The up axis of a
+DAE, and y up in glTF, are ignored, because readers of URDF (Pinocchio, and trimesh below yourdfpy) use the coordinates as they are, and a robot must look
 the same in all of them. The nodes of a DAE or glTF are placed. Meshes of MJCF are those that MuJoCo compiles."""
 
 

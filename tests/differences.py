@@ -825,10 +825,10 @@ def _shape(shape: Any, T: Any) -> dict[str, Any]:
 # ---------------------------------------------------------------------- comparing
 
 
-_ONLY_STATED = frozenset({"geom", "mjcf joint", "mjcf body", "settings"})  # kinds of which the other engine has no elements at all
+_ONLY_STATED = frozenset({"geom", "mjcf joint", "mjcf body", "settings"})  # kinds of elements that the other engine does not have at all
 
 
-_BEYOND_URDF = frozenset({"settings", "geom", "site", "cam", "light"})  # what MuJoCo has for every model, and URDF does not speak of
+_BEYOND_URDF = frozenset({"settings", "geom", "site", "cam", "light"})  # what MuJoCo has for every model, and URDF cannot state
 
 
 def _renamed(name: str, renames: Mapping[str, str]) -> str:

@@ -94,7 +94,7 @@ def pinocchio_poses(assembly: Assembly, path: Path, q: FloatArray) -> dict[str, 
 
 
 def _bare(path: Path) -> str:
-    """Return what of a URDF places its links, for a reader that takes no part of what is left out: no mass, no effort, no shape of its own."""
+    """Return only the elements of a URDF that place its links: no mass, no effort, no shape."""
     root = etree.parse(str(path)).getroot()
     for link in root.iterfind("link"):
         for element in list(link):

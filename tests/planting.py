@@ -1,4 +1,4 @@
-"""A stranger's folder: modules of every name that a program may import, each of which leaves a mark when it runs."""
+"""A stranger's folder: modules with every name that a program may import; each leaves a mark when it runs."""
 
 from __future__ import annotations
 

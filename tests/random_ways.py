@@ -74,7 +74,7 @@ class Case:
         return [one for name in names for one in ([f"{name[:-2]}r{axis}" for axis in "xyz"] if name.endswith(".qx") else [name])]
 
     def velocities(self, at: Solution) -> tuple[FloatArray, FloatArray]:
-        """Return v of the parts' origins and ω per unit of each driver freedom, `(parts, 3, freedoms)`, as Jacobians tell them."""
+        """Return v of the parts' origins and ω per unit of each driver freedom, `(parts, 3, freedoms)`, as Jacobians state them."""
         found = self.equations.velocities(at, self.freedoms)
         for ball in self.balls:  # the equations turn a ball on its child's side, Jacobians in the parent connector's frame
             own = [self.freedoms.index(f"{ball.name}.r{axis}") for axis in "xyz"]

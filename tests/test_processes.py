@@ -184,7 +184,7 @@ def test_the_whole_group_is_killed_when_time_is_up_and_when_the_leader_ends() ->
     assert gone([int(late.out), int(early.out)])
 
 
-# An engine that waits for ever: the pipe that it is to read has no writer.
+# An engine that waits forever: the pipe that it reads has no writer.
 ENGINE = """
 import os, sys
 from pathlib import Path

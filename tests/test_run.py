@@ -170,7 +170,7 @@ def test_the_same_request_opens_its_run_again_and_another_does_not(tmp_path: Pat
 def test_a_creation_that_was_killed_can_be_repeated(tmp_path: Path) -> None:
     (tmp_path / "r/images").mkdir(parents=True)
     (tmp_path / "r/images/1.png").write_bytes(b"half")
-    (tmp_path / "r/.request.json.tmp-0123abcd").write_text("{")
+    (tmp_path / "r/.articad-unfinished-0123abcd").write_text("{")
     with Run.create(RunRequest(prompt="x", images=(UserImage.read(PNG),)), out=tmp_path / "r"):
         assert (tmp_path / "r/images/1.png").read_bytes() == PNG
     assert not list((tmp_path / "r").glob(".*"))
@@ -179,7 +179,7 @@ def test_a_creation_that_was_killed_can_be_repeated(tmp_path: Path) -> None:
 def test_leftovers_of_a_killed_process_are_swept_when_it_is_opened(tmp_path: Path) -> None:
     with Run.create(request(), out=tmp_path / "r") as run:
         run.trace("note", text="before")
-    (tmp_path / "r/.plan.json.tmp-0123abcd").write_text("{")
+    (tmp_path / "r/.articad-unfinished-0123abcd").write_text("{")
     with (tmp_path / "r/trace.jsonl").open("ab") as stream:
         stream.write(b'{"t": 1, "event": "no')
     with Run.open(tmp_path / "r") as run:
@@ -310,7 +310,7 @@ def test_a_picture_that_is_a_link_is_not_followed(tmp_path: Path) -> None:
 @pytest.mark.parametrize("place", ["trace.jsonl", "parts", "export", "export/urdf", "request.json"])
 @pytest.mark.parametrize("kind", ["link", "link to nothing", "pipe"])
 def test_a_strangers_run_that_leads_out_of_itself_is_not_opened(tmp_path: Path, place: str, kind: str) -> None:
-    """What is written to a run would be written where its links lead; a pipe would be waited for without end."""
+    """Writing to a run would follow its links, and a pipe would block forever."""
     folder, outside = tmp_path / "run", tmp_path / "outside"
     Run.create(RunRequest(prompt="a box"), out=folder).close()
     outside.mkdir()

@@ -89,7 +89,7 @@ def propose(request: RunRequest, llm: LLM, *, count: int = COUNT) -> tuple[tuple
         messages = (*opening, assistant(reply.text), user(prompt("form_repair", problem=complaint)))
     if not best:
         raise OutputError(f"No usable alternative in {TRIES} answers.\n{complaint}", raw=reply.text)
-    message = f"Only {len(best)} of {count} alternatives are structurally distinct and whole."
+    message = f"Only {len(best)} of {count} alternatives are complete and structurally distinct."
     return best, Findings([Finding(code="W_ALTERNATIVES", where="alternatives", message=message, hint="Choose among these, or ask again.")])
 
 

@@ -263,7 +263,7 @@ class Editor:
         patterns = {part.name for part in plan.parts} | {part.name for part in self._begin.parts}
         for name in touches:
             if name not in every and name not in patterns:
-                message = f'"touches" names {name!r}, which is no part.{did_you_mean(name, every)}'
+                message = f'"touches" names {name!r}, which is not a part.{did_you_mean(name, every)}'
                 yield Finding(code="E_EDIT_REACH", where="touches", message=message, hint="Name parts of the plan.")
         for name, how in edit_report.reach(before, after).items():
             if (
@@ -273,8 +273,8 @@ class Editor:
             ):
                 continue
             told = edit_report.told_otherwise(before, after, name)
-            message = f'The changes reach {name} too ({how}{f": {told}" if told else ""}), which "touches" does not name.'
-            hint = "If the customer wants that, or it must follow, name it; else change something that reaches less."
+            message = f'The changes also affect {name} ({how}{f": {told}" if told else ""}), which "touches" does not name.'
+            hint = "Name it if the customer wants that or if it must follow; otherwise change something that affects fewer parts."
             yield Finding(code="E_EDIT_REACH", where=f"parts.{name}", parts=(name,), message=message, hint=hint)
 
 

@@ -187,7 +187,7 @@ def _connected(parts: AssemblyPlan, text: str, step: str) -> Judged:
     known = {entry["name"]: entry for entry in document["parts"]}
     strangers = sorted({*answer.connectors, *answer.rest_poses} - {name for name, entry in known.items() if "derive" not in entry})
     if strangers:
-        message = f"{', '.join(strangers)} is no part that has connectors of its own."
+        message = f"{', '.join(strangers)} is not a part with its own connectors."
         hint = f"There are {', '.join(name for name, entry in known.items() if 'derive' not in entry)}; copies have those of their source."
         return None, Findings([Finding(code="E_SCHEMA", where="connectors", message=message, hint=hint)]), None
     for name, connectors in answer.connectors.items():
@@ -212,10 +212,8 @@ def _judged(text: str, step: str) -> Judged:
     found = [finding for finding in check_plan(plan) if finding.code not in _LATER]
     for part in plan.parts:
         if isinstance(part, PartSpec) and part.rest_pose == "auto":
-            hint = "Give the place at which it stands at rest."
-            found.append(
-                Finding(code="E_SCHEMA", where=f"parts.{part.name}.rest_pose", message="There is no joint yet to place it.", hint=hint)
-            )
+            hint = "Give its position at rest."
+            found.append(Finding(code="E_SCHEMA", where=f"parts.{part.name}.rest_pose", message="No joint places it yet.", hint=hint))
     return plan, Findings(found), None
 
 

@@ -224,8 +224,8 @@ class LiteLLM:
     def _read(self, answer: Json, model: str) -> Reply:
         text: str = answer["text"]
         if len(text) > _LONGEST_ANSWER:
-            message = f"{model} answered with {len(text)} characters; {_LONGEST_ANSWER} are the most that are read."
-            raise transport_error("E_TRANSPORT", message, "Name another model; no plan and no script is as long.")
+            message = f"{model} answered with {len(text)} characters; {_LONGEST_ANSWER} is the maximum."
+            raise transport_error("E_TRANSPORT", message, "Name another model; no plan or script is that long.")
         cost = None if self._api_base is not None else answer["cost"]  # the endpoint's owner sets the price, whatever name the model has
         fingerprint = answer["fingerprint"]
         return Reply(text, model, Usage(*answer["usage"]), cost, fingerprint and fingerprint[:_LONGEST_MARK])

@@ -272,9 +272,9 @@ def require_open_port() -> None:
         raise transport_error("E_TRANSPORT", f"No model may be called now: {reason}.", "Use Scripted or Replay here.")
 
 
-def transport_error(code: str, message: str, hint: str, *, where: str = "llm") -> TransportError:
+def transport_error(code: str, message: str, hint: str) -> TransportError:
     """Return the error of a model that cannot be asked, with its finding."""
-    return TransportError(f"{message} {hint}", findings=[Finding(code=code, where=where, message=message, hint=hint)])
+    return TransportError(f"{message} {hint}", findings=[Finding(code=code, where="llm", message=message, hint=hint)])
 
 
 # ---------------------------------------------------------------------- doubles

@@ -70,7 +70,7 @@ def parse_script(text: str, *, step: str) -> bytes:
     return (script.strip("\n") + "\n").encode()
 
 
-def unusable(problem: str, raw: str, *, step: str, findings: Iterable[Finding] = ()) -> OutputError:
+def unusable(problem: str, raw: str, *, step: str) -> OutputError:
     """Return the error of a reply that cannot be used."""
     start = " ".join(raw.split())[:_SHOWN]
     finding = Finding(
@@ -79,7 +79,7 @@ def unusable(problem: str, raw: str, *, step: str, findings: Iterable[Finding] =
         message=f"The reply to {step!r} cannot be used: {problem}",
         hint=f"It begins: {start!r}.",
     )
-    return OutputError(problem, raw=raw, findings=[finding, *findings])
+    return OutputError(problem, raw=raw, findings=[finding])
 
 
 def _candidates(text: str) -> Iterable[str]:

@@ -145,7 +145,7 @@ class Router:
         def read(text: str, step: str) -> Decisions:
             decisions = reader(Decisions)(text, step)
             if sorted(one.fault for one in decisions.decisions) != list(range(1, len(faults) + 1)):
-                raise unusable(f"one decision each is wanted for the faults 1 to {len(faults)}.", text, step=step)
+                raise unusable(f"exactly one decision is needed for each of the faults 1 to {len(faults)}.", text, step=step)
             for one in decisions.decisions:
                 if one.route == "code" and one.part not in scripts:
                     raise unusable(f'{one.part!r} has no script; "part" is one of {", ".join(concerned)}.', text, step=step)

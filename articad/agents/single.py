@@ -119,7 +119,7 @@ def _whole(script: bytes, text: str, step: str) -> Whole:
         raise unusable(f"it does not define {NAME}.", text, step=step) from None
     except ValidationError as error:
         problems = [f"{'.'.join(map(str, detail['loc']))}: {detail['msg']}" for detail in error.errors()]
-        raise unusable(f"{NAME} has not the form: {'; '.join(problems)}.", text, step=step) from None
+        raise unusable(f"{NAME} does not have the required form: {'; '.join(problems)}.", text, step=step) from None
     except (ValueError, TypeError, RecursionError, MemoryError):
         raise unusable(f"{NAME} is not a plain literal: write numbers and texts out.", text, step=step) from None
 

@@ -125,7 +125,7 @@ def shared_note(shared: Sequence[Finding]) -> Finding:
         parts=tuple(dict.fromkeys(name for finding in shared for name in finding.parts)),
         message=f"{counted(len(shared), 'pair')} of parts that engines do not let collide overlap at rest, the deepest {listed(deepest.parts)}, "
         f"{deepest.value or 0.0:.4g} mm.",
-        hint="Nothing, if the shapes represent bodies that fit.",
+        hint="Nothing needs to be done if the shapes represent bodies that fit.",
         value=deepest.value,
         limit=deepest.limit,
         unit=deepest.unit,

@@ -23,7 +23,7 @@ from articad.errors import ArticadError, ReadError
 from articad.findings import Findings
 from articad.formats import NAMED
 from articad.kernels.choice import kernel_named
-from articad.kernels.kernel import BuildCache, PartKernel
+from articad.kernels.kernel import PartKernel
 from articad.plan.schema import AssemblyPlan
 from articad.processes import scratch
 from articad.runs.run import digest
@@ -101,13 +101,12 @@ class BatchItem:
         return item
 
 
-def make(item: BatchItem, out: str | Path, *, cache_root: str | Path | None = None) -> Json:
+def make(item: BatchItem, out: str | Path) -> Json:
     """Make one item, unless it already exists.
 
     Args:
         item: What to make.
         out: Folder of the batch; the item's own is `<first two of its digest>/<digest>`.
-        cache_root: Cache of built parts; the user's own by default.
 
     Returns:
         Its record `articad.item/1`: provenance, whether it passed, findings, files with the sha256 of each, how long each stage took,
@@ -117,7 +116,7 @@ def make(item: BatchItem, out: str | Path, *, cache_root: str | Path | None = No
     with contextlib.suppress(OSError, ValueError):
         return {**json.loads((folder / ITEM).read_text(encoding="utf-8")), "made": "before"}
     with scratch.folder_beside(folder) as empty:
-        record = _made(item, empty, cache_root)
+        record = _made(item, empty)
         (empty / ITEM).write_text(json.dumps(record, indent=1, ensure_ascii=False, sort_keys=True) + "\n", encoding="utf-8")
     return {**record, "made": "now"}
 
@@ -127,7 +126,7 @@ def make_stored(item: Json, out: str) -> Json:
     return make(BatchItem.from_json(item), out)
 
 
-def _made(item: BatchItem, folder: Path, cache_root: str | Path | None) -> Json:
+def _made(item: BatchItem, folder: Path) -> Json:
     clock = _Clock()
     record: Json = {"schema": SCHEMA, "digest": item.digest, "articad": __version__, **item.to_json()}
     built: dict[str, int] = {}
@@ -136,8 +135,7 @@ def _made(item: BatchItem, folder: Path, cache_root: str | Path | None) -> Json:
             plan = AssemblyPlan.load(item.plan)
         with clock.on("kernel"):
             kernel = _kernel(item.kernel or plan.kernel)
-            store = BuildCache() if cache_root is None else BuildCache(Path(cache_root))
-            assembly = Assembly.from_plan(plan, Path(item.plan) / "parts", kernel=kernel, cache=store, jobs=1, parameters=item.values)
+            assembly = Assembly.from_plan(plan, Path(item.plan) / "parts", kernel=kernel, jobs=1, parameters=item.values)
         record |= {"kernel": kernel.name, "kernel_version": kernel.version}
         sources = [part for part in assembly.realised.values() if part.derived_from is None]
         built = {"parts_built": sum(not part.cached for part in sources), "parts_kept": sum(part.cached for part in sources)}

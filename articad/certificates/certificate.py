@@ -74,11 +74,6 @@ class Range:
     upper: float
     declared: tuple[float, float]
 
-    @property
-    def is_whole(self) -> bool:
-        """True if the declared range is free."""
-        return self.lower <= self.declared[0] and self.declared[1] <= self.upper
-
 
 @dataclass(frozen=True)
 class Certificate:
@@ -270,6 +265,7 @@ class _Certifying:
     _groups: list[list[str]] = field(init=False)  # drivers of each group
 
     def run(self) -> Certificate:
+        # what moves: the joints of loops and couplings, their drivers, and the groups that do not affect each other
         self._constrained = constrained_joints(self.mechanism)
         self._floating = frozenset(joint.name for joint in self.mechanism.joints if joint.type is JointType.FREE)
         names = driver_names(self.mechanism, self._constrained)
@@ -277,16 +273,19 @@ class _Certifying:
         self._checker = Checker(document, {PROOF: {}})
         self._groups = [[name for name in names if name in group] for group in self._checker.groups]
         self.asked = self._with_drivers()
+        # every pair of parts that is not one rigid body, along the joints between the two
         solid = [name for name in self.mechanism.parts if name in self.scene.bodies]
         for at, a in enumerate(solid):
             found = routes(self.mechanism.joints, a)
             for b in solid[at + 1 :]:
                 if not self.scene.relations.rigid.together(a, b):
                     self._pair(found[b])
+        # proofs that ran out of their first share of the budget get what is left
         for prover in self.later:
             self._followed(prover, prover.prove())
         self._report_left()
         self._report_unreached()
+        # measured, not proven: least clearances, and collisions of three and more joints that the search finds
         motion = MotionSampler(self.scene, self.mechanism)
         clearances = least_clearances(motion, self.asked, together=self.together, quick=True)
         self._look_at_all_at_once(motion, clearances)
@@ -364,6 +363,7 @@ class _Certifying:
             over = (*wanted, *map(self._joint_of, drivers))
             self._refuse((a, b), over, "; ".join(self.scene.broken[name] for name in (a, b) if name in self.scene.broken))
             return
+        # a pair that a linkage moves is proven along its drivers; any other over all its joints at once, else each alone and every two
         if drivers:
             self._linked(route, tied, wanted, drivers)
             return
@@ -474,6 +474,7 @@ class _Certifying:
             return False
         if tentative and any(len(some) > MOST_TOGETHER for some in sets):
             return False
+        # one track for the requested drivers of each group; tracks of different groups are combined as products
         ways = [self._way(some) for some in sets if some]
         reasons = [way for way in ways if isinstance(way, str)]
         if reasons:
@@ -536,6 +537,7 @@ class _Certifying:
             self.left.setdefault(over, []).append(parts)
             return
         else:
+            # measure the poses where the proof stopped: a collision, or contact that the proof cannot settle
             worst, pose = prover.worst(proof)
             check, found = judge(
                 self.scene, parts, worst, over=over, pose=pose, baseline=proof.overlap.volume, strength=Strength.sampled(prover.looked)
@@ -546,6 +548,7 @@ class _Certifying:
                 self.findings.append(_unproven(parts, over, worst, check.allowed, prover.looked))
         if not prover.is_single:
             return
+        # the range of a single driver is what is proven for all pairs so far
         (name,), (way,) = prover.drivers, prover.ways
         known = self.ranges.get(name, Range(name, *way.bounds[0], way.bounds[0]))
         if proof.lower is not None and proof.upper is not None:

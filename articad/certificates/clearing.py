@@ -149,6 +149,7 @@ def clear(
     Returns:
         The trail if the surfaces stay apart; otherwise the contact, or `out_of_budget`.
     """
+    # depth-first over (piece of a, piece of b, box of motion): each round settles rows by a direction, or cuts one of the three
     search = _Search(a, b, boxes, needed + ROUNDING_MM, epsilon, axis)
     stack, outcome = [search.roots()], search.outcome
     while stack and outcome.contact is None:
@@ -211,6 +212,7 @@ class _Search:
         """Settle rows whose outlines (coordinates the joint does not change) are apart, cut those that can become so; return the rest."""
         assert self.axis is not None
         a, b = self.forests
+        # intervals of radius and height (or of the angle from a ball's axis) that do not overlap keep the pieces apart at every pose
         ahead, behind = b.low[rows.b] - a.high[rows.a], a.low[rows.a] - b.high[rows.b]
         gap = np.maximum(ahead, behind)
         ball = self.axis.dimensions == 3
@@ -227,6 +229,7 @@ class _Search:
                 which = rows.number[apart & (best == k) & (side[:, k] > self.needed)]
                 self.trail.settle(which, OF_A, np.tile(sign * axes[k - 1], (len(which), 1)))
         rows = rows.of(~apart)
+        # the larger of two pieces whose outlines can still become disjoint is cut
         whole_a, whole_b = self.a.children[rows.a, 0] < 0, self.b.children[rows.b, 0] < 0
         never = ~(a.meets[rows.a] & b.meets[rows.b]) & ~(whole_a & whole_b)
         first = ((a.high - a.low)[rows.a].max(axis=1) >= (b.high - b.low)[rows.b].max(axis=1)) & ~whole_a | whole_b

@@ -330,6 +330,7 @@ class _Held:
         """Return the row with a proof, or with a pose where the fit is broken; None if neither was found."""
         least = self.least_allowed
         assert least is not None
+        # prove the least gap plus the deflection of both meshes; if that fails, the gap of the meshes alone, with twice the uncertainty
         for needed, off in ((least + 2 * self.slack, self.slack), (least, 2 * self.slack)) if self.slack else ((least, 0.0),):
             prover = _FitProver(self, moving, max(needed, 0.0))
             shrink = NO_SHRINK if needed > 0 else Shrink(max(-needed, EPSILON_MM))
@@ -342,6 +343,7 @@ class _Held:
                 return replace(row, strength=Strength.certified(off))
             if outcome.out_of_budget:
                 return None
+            # the pose where the search met contact may break the fit: measure it
             if outcome.contact is not None and self._is_within(prover, outcome.contact):
                 gap = self.gauge.between(prover.chain.matrix(outcome.contact))
                 pose = prover.pose(outcome.contact)

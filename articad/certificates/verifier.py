@@ -531,13 +531,16 @@ class Checker:
             mine = [name for name in moving if name in column]
             if moving and not mine:
                 continue
+            # the loop as one product of its joints: R, t must be the identity
             T, on_way, axes, speeds = self.placed(way, known)
             R = T[..., :3, :3]
             need(np.abs(R - np.eye(3)).max() < HALF, "a loop is not closed")  # half a turn has no residual either
+            # lever: length of the loop plus twice the reach of its slides
             distances = [math.hypot(*self.freedoms[name]["slide"]) for name in moving]
             far = [1 + (size[column[name]] if name in column else abs(self.rest[name])) for name in moving]
             lever = np.broadcast_to(length + sum(2 * slide * reach for slide, reach in zip(distances, far, strict=True)), about.shape[:-1])
             lever = np.where(lever > 0, lever, 1.0)
+            # r = ((R p + t − p)/lever, vee((R − Rᵀ)/2))
             there = R @ start + T[..., :3, 3]
             gap = (T[..., [2, 0, 1], [1, 2, 0]] - T[..., [1, 2, 0], [2, 0, 1]]) / 2
             r.append(np.broadcast_to(np.concatenate([(there - start) / lever[..., None], gap], axis=-1), (*batch, 6)))
@@ -545,6 +548,7 @@ class Checker:
             if mine:
                 moved = [on_way.index(name) for name in mine]
                 w, v = np.moveaxis(axes[moved], 0, -2), np.moveaxis(speeds[moved], 0, -2)
+                # dr for a twist (w, v): ((v + w × p)/lever, (tr R − R) w / 2)
                 turn = (np.trace(R, axis1=-2, axis2=-1)[..., None, None] * np.eye(3) - R) / 2
                 block[..., :3, at] = (v + cross(w, there[..., None, :])).swapaxes(-1, -2) / lever[..., None, None]
                 block[..., 3:, at] = turn @ w.swapaxes(-1, -2)
@@ -573,6 +577,7 @@ class Checker:
         """
         count, half = ends.shape[1], np.ptp(ends, axis=2) / 2
         r, J, share = self.closure(names, guess, guess)
+        # A: inverse of the followers' Jacobian in the middle; S = −A J_drivers: slopes of the followers
         A, S = np.linalg.pinv(J[..., count:], rcond=1e-7), np.zeros((*guess.shape[:1], count, len(names)))
         S[..., :count], S[..., count:] = np.eye(count), -(A @ J[..., :count]).swapaxes(1, 2)
         few = (np.abs(A @ J[..., count:] - np.eye(len(names) - count)).sum(2) < ROUNDING).all(1)
@@ -586,15 +591,18 @@ class Checker:
         def powers(t: Any) -> Any:  # t_k t_l / 2
             return (t[:, :, None] * t[:, None]).reshape(len(t), -1) / 2
 
+        # Q: fit of a quadratic to the residuals along the slopes, which it cancels
         t = corners_of(count, (-1, 0, 1))
         fit = np.linalg.pinv(np.concatenate([np.ones((len(t), 1)), t, powers(t)], axis=1))[1 + count :]
         Q[..., count:] = -fit @ self.closure(names, guess[:, None] + t @ S, guess[:, None])[0] @ A.swapaxes(1, 2)
+        # L_k: relative rate of the Jacobian along t_k, by least squares over the nodes
         t = corners_of(count, NODES)
         r, J, _ = self.closure(names, guess[:, None] + t @ S + powers(t) @ Q, guess[:, None])
         L = A[:, None] @ np.tensordot(np.linalg.pinv(t), J[..., count:], (1, 1)).swapaxes(0, 1)
         rates = L @ A[:, None]
         at = A[:, None] - np.tensordot(t, rates, (1, 1)).swapaxes(0, 1)
         off, bend, most = (at @ r[..., None])[..., 0], at @ J[..., count:] - np.eye(len(names) - count), np.abs(at).max(1)
+        # a polynomial is bounded by its largest Bernstein coefficient
         bernstein = functools.reduce(np.kron, [np.eye(1), *[BERNSTEIN] * count])
         off, bend = (np.abs(np.tensordot(bernstein, part, (1, 1))).max(0) for part in (off, bend))
         for k in range(count):

@@ -146,7 +146,7 @@ class SE3:
         if not findings.ok:
             raise ConnectorError("\n".join(map(str, findings.errors)), findings=findings)
         z_axis = _unit(np.asarray(z, dtype=np.float64))
-        x_axis = _across(world_x(z_axis) if x is None else _unit(np.asarray(x, dtype=np.float64)), z_axis)
+        x_axis = project_across(world_x(z_axis) if x is None else _unit(np.asarray(x, dtype=np.float64)), z_axis)
         R = np.stack([x_axis, quaternion.cross(z_axis, x_axis), z_axis], axis=-1)
         return cls.from_rotation(R, o)
 
@@ -371,11 +371,11 @@ def _right_angle_findings(z: FloatArray, x: FloatArray, where: str) -> list[Find
     along = float(x @ z)
     angle = float(np.degrees(np.arctan2(np.linalg.norm(quaternion.cross(z, x)), along)))
     if np.linalg.norm(quaternion.cross(z, x)) < _AXIS_PARALLEL:
-        hint = f"Choose x perpendicular to z, such as {_text(_across(world_x(z), z))}."
+        hint = f"Choose x perpendicular to z, such as {_text(project_across(world_x(z), z))}."
         return [_axis_finding("E_AXIS_PARALLEL", where, f"x {_text(x)} is parallel to z {_text(z)}.", hint)]
     if abs(along) <= _AXIS_SILENT:
         return []
-    right = _text(_across(x, z))
+    right = _text(project_across(x, z))
     message = f"x makes {angle:.4g}° with z."
     if abs(along) > _AXIS_PROJECTED:
         return [_axis_finding("E_AXIS_NOT_ORTHOGONAL", where, message, f"Did you mean x={right}?", angle)]
@@ -393,10 +393,10 @@ def world_x(z: npt.ArrayLike) -> FloatArray:
     direction = _unit(np.asarray(z, dtype=np.float64))
     components = np.abs(direction)
     first = int(np.argmax(components <= components.min() + _LEAST_PARALLEL_TIE))
-    return _across(np.eye(3)[first], direction)
+    return project_across(np.eye(3)[first], direction)
 
 
-def _across(x: FloatArray, z: FloatArray) -> FloatArray:
+def project_across(x: FloatArray, z: FloatArray) -> FloatArray:
     """Project x perpendicular to the unit vector z; twice, because one projection leaves rounding proportional to x · z."""
     for _ in range(2):
         x = _unit(x - (x @ z) * z)

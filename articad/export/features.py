@@ -38,6 +38,12 @@ def features_of(assembly: Assembly) -> list[Feature]:
     return features
 
 
+def motion_and_mass(assembly: Assembly) -> list[Feature]:
+    """Return what formats of shapes alone lose of every assembly: the joints that move, and masses."""
+    features = [Feature("motion", f"joints.{joint.name}") for joint in assembly.joints if joint.type is not JointType.FIXED]
+    return features + [Feature("mass", f"parts.{name}") for name, part in assembly.parts.items() if part.mass is not None]
+
+
 def joint_features(joint: Joint) -> list[Feature]:
     """Return the features of a joint that closes no loop, or that a format represents whether it closes one or not."""
     where = f"joints.{joint.name}"

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import json
 import math
-import struct
 from collections import Counter
 from typing import TYPE_CHECKING, Any
 
@@ -16,13 +14,15 @@ from articad.connectors.mate import flip
 from articad.connectors.se3 import SE3
 from articad.errors import KinematicsError
 from articad.export.bundle import Bundle
-from articad.export.losses import Feature, kept_losses, losses_of, refuse
+from articad.export.features import motion_and_mass
+from articad.export.losses import kept_losses, losses_of, refuse
 from articad.export.markup import tidy
 from articad.export.meshes import drawn_shapes
 from articad.export.names import Names, valid_name
 from articad.export.product import of_the_product
 from articad.geometry.mesh import TriMesh
-from articad.kinematics.joints import Joint, JointType
+from articad.geometry.mesh_files import linear_color, packed_glb
+from articad.kinematics.joints import Joint
 
 if TYPE_CHECKING:
     from articad.assembly import Assembly
@@ -57,7 +57,7 @@ def write_glb(assembly: Assembly, *, strict: bool = False) -> Bundle:
     Raises:
         UnrepresentableError: If `strict` and there is such a loss.
     """
-    losses = (*losses_of("glb", _features(assembly)), *kept_losses("glb", assembly.kept))
+    losses = (*losses_of("glb", motion_and_mass(assembly)), *kept_losses("glb", assembly.kept))
     if strict:
         refuse(losses)
     buffer = _Buffer()
@@ -84,7 +84,7 @@ def write_glb(assembly: Assembly, *, strict: bool = False) -> Bundle:
         **buffer.document(),
         **({"animations": animations} if animations else {}),
     }
-    return Bundle({f"{valid_name(assembly.name)}.glb": _glb(document, bytes(buffer.data))}, losses)
+    return Bundle({f"{valid_name(assembly.name)}.glb": packed_glb(document, bytes(buffer.data))}, losses)
 
 
 class _Buffer:
@@ -102,7 +102,10 @@ class _Buffer:
     def document(self) -> dict[str, Any]:
         """Return the glTF arrays; empty ones are omitted, as the format demands."""
         materials = [
-            {"name": color, "pbrMetallicRoughness": {"baseColorFactor": _linear(color), "metallicFactor": 0.0, "roughnessFactor": 0.8}}
+            {
+                "name": color,
+                "pbrMetallicRoughness": {"baseColorFactor": [*linear_color(color), 1.0], "metallicFactor": 0.0, "roughnessFactor": 0.8},
+            }
             for color in self.materials
         ]
         arrays = {"meshes": self.meshes, "materials": materials, "accessors": self.accessors, "bufferViews": self.views}
@@ -288,23 +291,3 @@ def _continuous(quaternions: FloatArray) -> FloatArray:
 
 def _placement(T: SE3) -> dict[str, list[float]]:
     return {"translation": tidy(T.translation / MM_PER_M), "rotation": tidy(T.quaternion)}
-
-
-def _linear(color: str) -> list[float]:
-    """Convert "#rrggbb" (sRGB) to the linear factors of glTF."""
-    channels = [int(color[i : i + 2], 16) / 255 for i in (1, 3, 5)]
-    return [*(c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in channels), 1.0]
-
-
-def _features(assembly: Assembly) -> list[Feature]:
-    features = [Feature("motion", f"joints.{joint.name}") for joint in assembly.joints if joint.type is not JointType.FIXED]
-    return features + [Feature("mass", f"parts.{name}") for name, part in assembly.parts.items() if part.mass is not None]
-
-
-def _glb(document: dict[str, Any], binary: bytes) -> bytes:
-    text = json.dumps(document, separators=(",", ":")).encode("ascii")
-    text += b" " * (-len(text) % 4)
-    chunks = struct.pack("<I4s", len(text), b"JSON") + text
-    if binary:
-        chunks += struct.pack("<I4s", len(binary), b"BIN\0") + binary
-    return struct.pack("<4sII", b"glTF", 2, 12 + len(chunks)) + chunks

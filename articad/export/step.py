@@ -22,14 +22,13 @@ import numpy as np
 from articad.connectors.se3 import SE3
 from articad.errors import ExportError
 from articad.export.bundle import Bundle
-from articad.export.features import body_mesh
+from articad.export.features import body_mesh, motion_and_mass
 from articad.export.hulls import rigid_groups
 from articad.export.losses import Feature, kept_losses, losses_of, refuse
 from articad.export.names import Names, valid_name
 from articad.export.product import of_the_product
 from articad.geometry.mesh import TriMesh
 from articad.geometry.part import Part
-from articad.kinematics.joints import JointType
 
 if TYPE_CHECKING:
     from articad.assembly import Assembly
@@ -376,10 +375,8 @@ def _contains(outer: np.ndarray, inner: np.ndarray) -> bool:
 
 
 def _features(assembly: Assembly) -> list[Feature]:
-    features = [Feature("motion", f"joints.{joint.name}") for joint in assembly.joints if joint.type is not JointType.FIXED]
+    features = motion_and_mass(assembly)
     for name, part in assembly.parts.items():
-        if part.mass is not None:
-            features.append(Feature("mass", f"parts.{name}"))
         if _shape_key(part) is None:
             features.append(Feature("shape.missing", f"parts.{name}"))
         elif part.solid is None or part.solid.step is None:

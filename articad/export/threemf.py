@@ -13,7 +13,7 @@ from articad.arrays import FloatArray
 from articad.connectors.se3 import SE3
 from articad.errors import ExportError
 from articad.export.bundle import Bundle
-from articad.export.features import body_mesh
+from articad.export.features import body_mesh, motion_and_mass
 from articad.export.losses import Feature, kept_losses, losses_of, refuse
 from articad.export.markup import child, document, number
 from articad.export.names import Names
@@ -177,10 +177,8 @@ def _clearances(assembly: Assembly, process: Process) -> list[Finding]:
 
 
 def _features(assembly: Assembly) -> list[Feature]:
-    features = [Feature("motion", f"joints.{joint.name}") for joint in assembly.joints if joint.type is not JointType.FIXED]
+    features = motion_and_mass(assembly)
     for name, part in assembly.parts.items():
-        if part.mass is not None:
-            features.append(Feature("mass", f"parts.{name}"))
         if body_mesh(part) is None:
             features.append(Feature("shape.missing", f"parts.{name}"))
     return features

@@ -27,6 +27,7 @@ from articad.export.names import Names, valid_name
 from articad.export.product import of_the_product
 from articad.geometry.mass import MassProperties
 from articad.geometry.mesh import TriMesh
+from articad.geometry.mesh_files import linear_color
 from articad.geometry.part import Part, Shape
 from articad.kernels.cache import BuildCache
 from articad.kinematics.joints import Coupling, Joint, JointType
@@ -158,7 +159,7 @@ class _Materials:
                 '    def Shader "surface"',
                 "    {",
                 '        uniform token info:id = "UsdPreviewSurface"',
-                f"        color3f inputs:diffuseColor = {_tuple(_linear(color))}",
+                f"        color3f inputs:diffuseColor = {_tuple(linear_color(color))}",
                 "        float inputs:roughness = 0.5",
                 "        token outputs:surface",
                 "    }",
@@ -318,7 +319,7 @@ def _mesh(name: str, triangles: list[str], color: str | None, materials: _Materi
     if color is None:
         lines.append('    uniform token physics:approximation = "convexHull"')
     else:
-        lines.append(f"    color3f[] primvars:displayColor = [{_tuple(_linear(color))}]")
+        lines.append(f"    color3f[] primvars:displayColor = [{_tuple(linear_color(color))}]")
     return [*lines, "}"]
 
 
@@ -468,12 +469,6 @@ def _tuple(values: Iterable[float]) -> str:
 def _quaternion(T: SE3) -> str:
     x, y, z, w = T.quaternion
     return _tuple([w, x, y, z])
-
-
-def _linear(color: str) -> list[float]:
-    """Convert "#rrggbb" (sRGB) to the linear colour of USD."""
-    channels = [int(color[i : i + 2], 16) / 255 for i in (1, 3, 5)]
-    return [c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in channels]
 
 
 def _indented(lines: Iterable[str], levels: int = 1) -> list[str]:

@@ -217,7 +217,7 @@ CODES: dict[str, Code] = {
         "plan",
         None,
         "A mirrored part keeps connector names or labels that contain left or right.",
-        "Nothing, or name the source's connectors without a side.",
+        "Nothing needs to be done; or name the source's connectors without a side.",
     ),
     # --- plan: couplings, fits, waivers, mechanisms
     "E_COUPLING": Code(
@@ -445,13 +445,18 @@ CODES: dict[str, Code] = {
         "A mesh is not closed, so overlap cannot be measured.",
         "Repair the mesh; every edge must belong to two triangles.",
     ),
-    "I_WAIVED": Code("interference", None, "An overlap is allowed by a waiver of the plan.", "Nothing, as long as the reason holds."),
+    "I_WAIVED": Code(
+        "interference", None, "An overlap is allowed by a waiver of the plan.", "Nothing needs to be done as long as the reason holds."
+    ),
     "E_CERTIFICATE_REFUTED": Code(
         "interference", None, "The independent checker refutes a certificate that the prover accepts.", "Report it with the plan."
     ),
     "E_NOT_CHECKED": Code("interference", None, "A requested check was not done.", "Give it a larger budget, or what it requires."),
     "I_NOT_SAMPLED": Code(
-        "motion", None, "Sampling leaves out part of what a mechanism can do.", "Nothing, or look at the named motion by itself."
+        "motion",
+        None,
+        "Sampling leaves out part of what a mechanism can do.",
+        "Nothing needs to be done; or look at the named motion by itself.",
     ),
     "W_NOT_INSERTABLE": Code(
         "interference",
@@ -563,7 +568,7 @@ CODES: dict[str, Code] = {
         "model",
         None,
         "A replay's geometry differs by rounding, because of another kernel, version or platform.",
-        "Nothing, or record again.",
+        "Nothing needs to be done; or record again.",
     ),
     "E_REPLAY_DIFFERS": Code(
         "model", None, "A replay made different files than the recording.", "Replay with the versions that recorded it, or record again."
@@ -614,7 +619,7 @@ CODES: dict[str, Code] = {
         "Keep one of the joints.",
     ),
     "W_IMPORT_DROPPED": Code(
-        "import", None, "Something in a foreign file has no counterpart and is left out.", "Nothing, if it is not needed."
+        "import", None, "Something in a foreign file has no counterpart and is left out.", "Nothing needs to be done if it is not needed."
     ),
     "W_IMPORT_MUJOCO": Code("import", None, "MuJoCo accepts a model with a warning.", "Correct what it names."),
     "I_IMPORT_CHAIN": Code(
@@ -627,7 +632,7 @@ CODES: dict[str, Code] = {
         "import",
         None,
         "A part without shape is fixed to another part and is merged into it in the adopted plan.",
-        "Nothing, if it is a frame.",
+        "Nothing needs to be done if it is a frame.",
     ),
     "I_ADOPT_FITS": Code("import", "design", "Joints of an adopted file have no fits.", "Declare the play of each joint in the plan."),
     "W_ADOPT_SHAPE": Code(
@@ -637,7 +642,7 @@ CODES: dict[str, Code] = {
         "import", "code", "An adopted part has no shape; a small ball represents it.", "Draw the part in its script."
     ),
     "W_ADOPT_UNTRIED": Code(
-        "import", None, "The parts of an adopted file were not built, so that nobody knows whether they can be.", "Build the folder."
+        "import", None, "The parts of an adopted file were not built, so it is not known whether they build.", "Build the folder."
     ),
     "E_UNSAFE_PATH": Code("import", None, "A file names a path outside its own folder.", "Keep meshes beside the file."),
     # --- audit and simulation of files that anyone made
@@ -723,7 +728,10 @@ CODES: dict[str, Code] = {
         "audit", None, "Links without shape represent a joint of several freedoms.", "Use MJCF or CAD, where it is one joint."
     ),
     "I_AUDIT_SHARED": Code(
-        "audit", None, "Shapes overlap that simulators never let collide.", "Nothing, if the shapes represent bodies that fit."
+        "audit",
+        None,
+        "Shapes overlap that simulators never let collide.",
+        "Nothing needs to be done if the shapes represent bodies that fit.",
     ),
     "W_AUDIT_PAIR_COLLISION": Code(
         "audit", None, "Two parts collide when two joints move together.", "Narrow one range, or add clearance."

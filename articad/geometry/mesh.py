@@ -160,7 +160,7 @@ class TriMesh:
             InvalidSolidError: If the factor is not positive and finite.
         """
         if not (math.isfinite(factor) and factor > 0):
-            raise InvalidSolidError(f"A mesh is scaled by a positive number, not {factor}.", status="scale")
+            raise InvalidSolidError(f"The scale of a mesh must be a positive number, not {factor}.", status="scale")
         return TriMesh(self.vertices * factor, self.triangles, self.face)
 
     def flipped(self) -> TriMesh:

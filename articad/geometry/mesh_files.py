@@ -16,6 +16,7 @@ import re
 import struct
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -171,24 +172,22 @@ def write_glb(mesh: TriMesh, color: str | None = None) -> bytes:
     if color is not None:
         primitive["material"] = 0
         document["materials"] = [
-            {"pbrMetallicRoughness": {"baseColorFactor": [*_linear_color(color), 1.0], "metallicFactor": 0.0, "roughnessFactor": 0.8}}
+            {"pbrMetallicRoughness": {"baseColorFactor": [*linear_color(color), 1.0], "metallicFactor": 0.0, "roughnessFactor": 0.8}}
         ]
+    return packed_glb(document, positions.tobytes() + indices.tobytes())
+
+
+def packed_glb(document: dict[str, Any], binary: bytes) -> bytes:
+    """Return a GLB: a header, the document of glTF as JSON, and its one buffer if it has one (glTF 2.0, chapter 4)."""
     text = json.dumps(document, separators=(",", ":")).encode("ascii")
     text += b" " * (-len(text) % 4)
-    binary = positions.tobytes() + indices.tobytes()
-    total = 12 + 8 + len(text) + 8 + len(binary)
-    return b"".join(
-        (
-            struct.pack("<4sII", b"glTF", 2, total),
-            struct.pack("<I4s", len(text), b"JSON"),
-            text,
-            struct.pack("<I4s", len(binary), b"BIN\0"),
-            binary,
-        )
-    )
+    chunks = struct.pack("<I4s", len(text), b"JSON") + text
+    if binary:
+        chunks += struct.pack("<I4s", len(binary), b"BIN\0") + binary
+    return struct.pack("<4sII", b"glTF", 2, 12 + len(chunks)) + chunks
 
 
-def _linear_color(color: str) -> list[float]:
+def linear_color(color: str) -> list[float]:
     """Convert "#rrggbb" (sRGB) to the linear factors of glTF."""
     channels = [int(color[i : i + 2], 16) / 255 for i in (1, 3, 5)]
     return [c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in channels]
@@ -348,7 +347,7 @@ def _unit_of_dae(content: bytes) -> float:
     match = re.search(rb"<unit\b[^>]*\bmeter\s*=\s*[\"']\s*([^\"'\s]+)", content[: content.find(b"</asset>") + 1 or None])
     unit = float(match[1]) if match else 1.0
     if not 0 < unit < math.inf:
-        raise ValueError(f"the unit of {unit} m is no length")
+        raise ValueError(f"the unit of {unit} m is not a valid length")
     return unit
 
 
@@ -360,7 +359,7 @@ def _require_whole(path: Path, kind: str, content: bytes) -> None:
         if announced > len(content):
             raise _unreadable(path, f"byte {len(content)}", f"its header announces {announced} bytes; is it truncated?")
     if kind == "dae" and (content[:2] == b"PK" or b"<!DOCTYPE" in content or b"<!ENTITY" in content):
-        raise _unreadable(path, "byte 0", "a DAE is plain XML, without entities and not packed")
+        raise _unreadable(path, "byte 0", "a DAE must be plain XML, without entities and not compressed")
     if kind == "ply" and b"end_header" not in content:
         raise _unreadable(path, "header", "it has no 'end_header'")
 

@@ -116,7 +116,7 @@ class _Reader:
         return names
 
     def _drop(self, where: str, message: str) -> None:
-        hint = "Nothing, if it is not needed."
+        hint = "Nothing needs to be done if it is not needed."
         self.raw.findings.append(Finding(code="W_IMPORT_DROPPED", where=where, message=message, hint=hint))
 
     # ------------------------------------------------------------------ what is kept
@@ -245,7 +245,7 @@ class _Reader:
             return
         for place, index in enumerate(indices):
             last = place == len(indices) - 1
-            far = child if last else self._bare_link(f"{child}__d{place + 1}")
+            far = child if last else self.raw.bare_link(f"{child}__d{place + 1}")
             self._add_joint(index, parent, far, start)
             parent, start = far, IDENTITY
 
@@ -301,12 +301,6 @@ class _Reader:
         self.raw.kept += self.carrier.joint(index)
         damping, friction = float(m.dof_damping[at]) * force / length, float(m.dof_frictionloss[at]) * force
         return {"effort": (effort,), "damping": (damping,), "friction": (friction,)}
-
-    def _bare_link(self, wanted: str) -> str:
-        while wanted in self.raw.links:
-            wanted += "_"
-        self.raw.links[wanted] = RawLink(wanted)
-        return wanted
 
     def _free_name(self, wanted: str) -> str:
         taken = {*self.joints, *(joint.name for joint in self.raw.joints)}

@@ -161,7 +161,7 @@ def _require_rows(numbers: Mapping[str, Any]) -> None:
     for name, value in numbers.items():
         count = _ROWS.get(name.partition("_")[0])
         if count and isinstance(value, np.ndarray) and len(value) != numbers[count]:
-            raise ValueError(f"{name} has {len(value)} rows, and {count} is {numbers[count]}")
+            raise ValueError(f"{name} has {len(value)} rows, but {count} is {numbers[count]}")
     of_meshes = numbers["geom_dataid"][numbers["geom_type"] == numbers["mjGEOM_MESH"]]  # of other geoms it leads to height fields
     for name, indices, count in (
         ("body_parentid", numbers["body_parentid"], "nbody"),

@@ -129,6 +129,13 @@ class RawModel:
     findings: list[Finding] = field(default_factory=list)
     kept: list[Kept] = field(default_factory=list)
 
+    def bare_link(self, wanted: str) -> str:
+        """Add a link without shape; return its name, which is unused before."""
+        while wanted in self.links:
+            wanted += "_"
+        self.links[wanted] = RawLink(wanted)
+        return wanted
+
 
 def aligned(axis: FloatArray) -> SE3:
     """Return a rotation that maps z to `axis`, the identity or half a turn if it is ±z."""

@@ -268,7 +268,9 @@ class _Reader:
         return MassProperties(mass, np.zeros(3), I * MM_PER_M**2).moved(pose)
 
     def _drop(self, where: str, message: str) -> None:
-        self.raw.findings.append(Finding(code="W_IMPORT_DROPPED", where=where, message=message, hint="Nothing, if it is not needed."))
+        self.raw.findings.append(
+            Finding(code="W_IMPORT_DROPPED", where=where, message=message, hint="Nothing needs to be done if it is not needed.")
+        )
 
     def _shapes(self, link: Any, tag: str, scope: Scope, where: str) -> Iterator[Shape]:
         place = 0
@@ -375,7 +377,7 @@ class _Reader:
         for place, (axis, vector) in enumerate(axes):
             last = place == len(axes) - 1
             one = name if len(axes) == 1 else f"{name}__{place + 1}"
-            end = child if last else self._bare_link(f"{name}__d1")
+            end = child if last else self.raw.bare_link(f"{name}__d1")
             R = aligned(vector)
             joint_type = {"prismatic": JointType.SLIDER, "screw": JointType.SCREW}.get(kind, JointType.REVOLUTE)
             more = self._loads([axis], scope, f"joints.{one}", slides=kind == "prismatic", endless=kind == "continuous")
@@ -391,12 +393,6 @@ class _Reader:
             return IDENTITY
         scope, element = self.links[link]
         return scope.world(element.get("name"), element)
-
-    def _bare_link(self, wanted: str) -> str:
-        while wanted in self.raw.links:
-            wanted += "_"
-        self.raw.links[wanted] = RawLink(wanted)
-        return wanted
 
     def _axis(self, scope: Scope, joint: Any, axis: Any, T: SE3) -> FloatArray:
         """Return an axis as a unit vector in the joint's frame; T is that frame in the world.
@@ -486,7 +482,7 @@ class _Reader:
             scope, _ = self.links[name]
             reserved = self.links[name][1].get("name") == WORLD
             if reserved:
-                message = f"The link {name!r} bears the name of the world, so it is held there."
+                message = f"The link {name!r} has the name of the world, so it is fixed to the world."
                 hint = "Give the link another name, and fix it to the world."
                 self.raw.findings.append(Finding(code="W_IMPORT_LIMITS", where=f"parts.{name}", message=message, hint=hint))
             kind, word = (JointType.FIXED, "fixed") if scope.static or reserved else (JointType.FREE, "free")

@@ -65,6 +65,7 @@ def check_scene(
     known: Mapping[tuple[str, str], PairCheck] | None = None,
 ) -> Checks:
     """Check one pose of a scene; see `check_pose`. Verdicts in `known` are reused as they are, without findings."""
+    # pairs whose boxes meet: oriented boxes, then radius and height about a common axis, then the Boolean intersection
     placed, coaxial = scene.at(poses), Coaxial.of(scene)
     findings = [broken_finding(name, reason) for name, reason in scene.broken.items()]
     pairs: dict[tuple[str, str], PairCheck] = {}
@@ -82,6 +83,7 @@ def check_scene(
         findings += finding
     pairs.update(unknown_pairs(scene, over))
     if over == "rest":
+        # what holds what: within rigid groups by contact, all others by nearness to the chain that leads to the ground
         holding = Holding(placed, pairs)
         findings += holding.fixed_apart()
         findings += holding.floating(ground or next(iter(poses), ""), [name for name in poses if name not in scene.bodies])

@@ -348,6 +348,7 @@ class _Search:
     def _try(self, pair: _Pair, points: FloatArray, relative: FloatArray) -> None:
         """Measure a pair at some poses `(n, freedoms)` beside its nearest one and go to the best, or make smaller steps."""
         start, before, seen, is_modelled = pair.at, pair.gap, list[float](), 1 < len(pair.movers) <= MODELLED
+        # lower bounds first (boxes, then earlier distances); only a pose that may beat the nearest one is measured
         for k in range(len(points)):
             pair.poses += 1
             T = relative[k : k + 1]
@@ -361,6 +362,7 @@ class _Search:
             pair.measured.append((points[k], gap))
             if gap < pair.gap:
                 pair.gap, pair.at = gap, points[k]
+        # a quadratic model of the distances near the best pose gives the next guess, and how far it could fall
         is_flat = len(seen) == len(points) and all(abs(gap - before) <= self._close(before) for gap in seen)
         low, high, size = self.low[pair.movers], self.high[pair.movers], pair.step * self.size[pair.movers]
         pair.guess, fall = None, math.inf
@@ -371,6 +373,7 @@ class _Search:
             if lowest is not None:
                 pair.guess, fall = pair.at.copy(), lowest[1]
                 pair.guess[pair.movers] = np.clip(pair.at[pair.movers] + lowest[0] * size, low, high)
+        # after a success look further in the same direction; without one make smaller steps
         pair.further = None
         if pair.gap < before and len(pair.movers) > 1:
             pair.further = np.clip(start + FURTHER * (pair.at - start), self.low, self.high)

@@ -1,6 +1,6 @@
 """Covering the range of one coordinate with intervals, in each of which the distance at the centre excludes contact.
 
-A distance d at q clears every q' with reach·|q' − q| < d − margin. `cover_line` walks from a start to both ends with intervals that
+A distance d at q clears every q' with reach·|q' − q| < d. `cover_line` walks from a start to both ends with intervals that
 overlap as little as possible (two-sided conservative advancement). It finds first contacts exactly; `clearing` is what proves whole
 ranges.
 """
@@ -43,7 +43,7 @@ class Cover:
         boxes: They cover `[lower, upper]` of a line, or all of a box if `is_complete`.
         lower: End of the cleared range below the start; only for a line.
         upper: The same above it.
-        contacts: Values at which the distance was not above the margin, one per end of a line.
+        contacts: Values at which there is contact, one per end of a line.
         out_of_budget: True if the work stopped early.
     """
 
@@ -65,7 +65,6 @@ def cover_line(
     start: float,
     *,
     reach: float,
-    margin: float = 0.0,
     epsilon: float = 1e-3,
     budget: WorkBudget,
     most: int = 100_000,
@@ -77,12 +76,11 @@ def cover_line(
         bounds: Bounds of the coordinate [rad or mm].
         start: Within the bounds.
         reach: Speed of the fastest point [mm/rad or 1].
-        margin: Share of every distance that proves nothing, such as the deflection of the meshes [mm].
-        epsilon: A distance that exceeds the margin by no more than this is contact [mm].
+        epsilon: A distance of no more than this is contact [mm].
         budget: The work budget.
         most: Largest number of queries for this line.
     """
-    walk = _Walk(distance, reach, margin, epsilon, budget, most)
+    walk = _Walk(distance, reach, epsilon, budget, most)
     upper = walk.outwards(start, bounds[1])
     lower = walk.outwards(start, bounds[0])
     walk.cover.lower, walk.cover.upper = lower, upper
@@ -91,26 +89,26 @@ def cover_line(
 
 
 class _Walk:
-    def __init__(self, distance: Distance, reach: float, margin: float, epsilon: float, budget: WorkBudget, most: int) -> None:
-        self.distance, self.reach, self.margin, self.epsilon = distance, max(reach, 1e-12), margin, epsilon
+    def __init__(self, distance: Distance, reach: float, epsilon: float, budget: WorkBudget, most: int) -> None:
+        self.distance, self.reach, self.epsilon = distance, max(reach, 1e-12), epsilon
         self.budget, self.left = budget, most
         self.cover = Cover()
         self._seen: dict[float, float] = {}
 
-    def spare(self, q: float) -> float:
-        """Return by how much a distance exceeds the margin [mm]."""
+    def gap(self, q: float) -> float:
+        """Return the distance at a value [mm], measured once."""
         if q not in self._seen:
             self.budget.spend(DISTANCE, queries=1)
             self.left -= 1
             self._seen[q] = self.distance((q,))
-        return self._seen[q] - self.margin
+        return self._seen[q]
 
     def outwards(self, start: float, end: float) -> float:
         """Clear from start to end; return how far that succeeded."""
         sign = 1.0 if end >= start else -1.0
         length = abs(end - start)
         done, slope = 0.0, 0.0  # measured from the start; slope of the spare distance along the way
-        here = self.spare(start)
+        here = self.gap(start)
         if not self._clears(here):
             self.cover.contacts.append((start,))
             return start
@@ -122,11 +120,11 @@ class _Walk:
                 break
             ahead = self._ahead(done, last_at, last, slope)
             at = min(done + ahead, max((done + length) / 2, done + _SMALLEST * length), length)
-            spare = self.spare(start + sign * at)
+            spare = self.gap(start + sign * at)
             half = spare / self.reach * (1 - STRICT)
             if half < at - done:  # too far: the box would not reach back, so query at the frontier itself
                 beyond_at, beyond = at, spare
-                at, spare = done, self.spare(start + sign * done)
+                at, spare = done, self.gap(start + sign * done)
                 if not self._clears(spare):
                     self.cover.contacts.append((start + sign * done,))
                     break
@@ -160,5 +158,5 @@ class _Walk:
 
     def _add(self, q: float, spare: float) -> float:
         half = spare / self.reach * (1 - STRICT)
-        self.cover.boxes.append(CoverBox((q,), (half,), spare + self.margin))
+        self.cover.boxes.append(CoverBox((q,), (half,), spare))
         return half

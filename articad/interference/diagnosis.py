@@ -138,6 +138,7 @@ class PairCase:
         """A tongue is in solid material: along the axis about which it turns there is material on both sides of it."""
         if self.region is None or self.direct is None or self.direct.type not in _TURNING:
             return None
+        # extent of the shared volume along the joint's axis, and a probe just beyond each of its ends
         direction = self._frame_of(self.direct)[:3, 2]
         along = self.region.vertices @ direction
         low, high, centre = float(along.min()), float(along.max()), self.region.centre

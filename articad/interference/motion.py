@@ -267,6 +267,7 @@ class Chain:
         self.movers: list[Mover] = []
         found: list[Freedom] = []
         K: FloatArray = np.eye(4)
+        # T_a_b = K₀ J₁(q) K₁ J₂(q) … : K collects connectors, mates and held joints between two joints that move
         for joint, near in zip(route.joints, route.parts, strict=False):
             forward = joint.parent == near
             L, R = joint.T_parent_connector.matrix, (flip(joint.mate) @ joint.T_child_connector.inverse()).matrix

@@ -94,10 +94,6 @@ class Scene:
         data = np.array([poses[name].data for name in self.bodies]).reshape(-1, 7)
         return Placement(self, np.asarray(SE3.from_unit_array(data).matrix)[:, :3])
 
-    def candidates(self, poses: Mapping[str, SE3], margin: float = _BOX_MARGIN_MM) -> list[tuple[str, str]]:
-        """Return the pairs whose boxes are closer than `margin` [mm]."""
-        return self.at(poses).candidates(margin)
-
     def boxes(self, matrices: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return lower and upper corners of the bodies' boxes for matrices `(*batch, N, 3, 4)`: `(*batch, N, 3)` each [mm]."""
         centres, halves = self.local_boxes

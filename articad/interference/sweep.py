@@ -169,6 +169,7 @@ class MotionSampler:
             return Checks(Findings(findings), (), self.scene.deflection, over, tuple(self.scene.bodies))
         findings += self._cut_short(points, kept, solution, over)
         points = [points[at] for at in kept]
+        # one track for each pair whose boxes meet at some pose; its worst pose is measured and judged
         matrices = poses[:, [self.mechanism.part_index(name) for name in self.scene.bodies], :3]
         turning = Turning.of(self.scene, self.mechanism, over[0], poses[0], matrices[0]) if len(over) == 1 else None
         tracks = self._tracks(matrices, turning)
@@ -319,7 +320,9 @@ class MotionSampler:
         except LoopError:  # whatever is sampled says so
             groups = ()
         for parts in (parts for group in groups for parts in group.idle):
-            message = f"{' and '.join(parts)} can move while all drivers stand, as a rod turns about itself. No sample moves it by itself."
+            message = (
+                f"{' and '.join(parts)} can move while all drivers rest, such as a rod that spins about its axis. No sample moves it alone."
+            )
             found.append((f"parts.{parts[0]}", parts, message, still))
         return Findings(
             Finding(code="I_NOT_SAMPLED", where=where, message=said, parts=parts, hint=hint) for where, parts, said, hint in found
@@ -335,7 +338,7 @@ class MotionSampler:
         low, high = (end(values[at] for at in kept) for end in (min, max))
         message = (
             f"{name} is sampled at {low:.6g} to {high:.6g}, not at {min(values):.6g} to {max(values):.6g}: "
-            "elsewhere, what follows it leaves its limits."
+            "elsewhere, its followers leave their limits."
         )
         hint = f"Set the limits of {name.split('.')[0]} to what the limits of its followers allow."
         yield Finding(code="I_NOT_SAMPLED", where=f"joints.{name.split('.')[0]}", message=message, hint=hint)

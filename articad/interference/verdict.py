@@ -112,7 +112,7 @@ def _waived_finding(scene: Scene, parts: tuple[str, str], found: Overlap, waiver
         parts=parts,
         message=f"{parts[0]} and {parts[1]} overlap {found.depth:.3g} mm deep ({found.volume:.4g} mm³), allowed up to {waiver.max_depth:g} mm: "
         f"{waiver.reason}.",
-        hint="Nothing, as long as the reason holds.",
+        hint="Nothing needs to be done as long as the reason holds.",
         value=found.depth,
         limit=waiver.max_depth,
         unit="mm",

@@ -228,7 +228,7 @@ def probe_findings(brief: Json, outcomes: Iterable[Json], *, ended: bool, crashe
         if kind == "unused":
             yield _unused_finding(name, dimension, step, script)
         elif kind == "refused":
-            message = f"The script refuses dimension {dimension!r} moved by {step} either way: {_why(outcome)}."
+            message = f"The script rejects dimension {dimension!r} moved by {step} either way: {_why(outcome)}."
             hint = "Let the script accept what can be built, or derive the dependent dimensions in the plan."
             yield _finding("W_DIMENSION_REFUSED", name, message, hint, dimension=dimension)
         elif kind == "broken":

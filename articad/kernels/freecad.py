@@ -295,7 +295,7 @@ def harmless(content: bytes) -> bytes:
         parser = etree.XMLParser(resolve_entities=False, no_network=True, load_dtd=False)
         root = etree.fromstring(document, parser)
     except (BadArchiveError, ValueError, etree.XMLSyntaxError) as error:
-        raise PoisonedError("the document is not FreeCAD's") from error
+        raise PoisonedError("this is not a FreeCAD document") from error
     for problem in _harms(root):
         raise PoisonedError(f"the document holds {problem}")
     named = {element.get("file") for element in root.iter() if element.get("file")}

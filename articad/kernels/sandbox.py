@@ -66,13 +66,9 @@ class ScriptLimits:
     file_size: int = 256 * 2**20
 
 
-def level(layers: Collection[str] | None = None) -> str:
-    """Return the level of isolation on this machine, `weak` if it has neither Landlock nor bubblewrap.
-
-    Args:
-        layers: Layers to consider; by default all that are available.
-    """
-    return level_of(available() if layers is None else frozenset(layers) & available())
+def level() -> str:
+    """Return the level of isolation on this machine, `weak` if it has neither Landlock nor bubblewrap."""
+    return level_of(available())
 
 
 def level_of(layers: Collection[str]) -> str:

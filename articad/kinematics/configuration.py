@@ -137,13 +137,13 @@ class Configuration:
                     errors.append(LimitError(name, float(values.flat[np.argmax(excess)]), lower, upper, unit))
         return tuple(errors)
 
-    def require_within_limits(self, slack: float = LIMIT_SLACK) -> Configuration:
+    def require_within_limits(self) -> Configuration:
         """Return this configuration.
 
         Raises:
             LimitError: For the first coordinate that is outside its limits.
         """
-        for error in self.violations(slack):
+        for error in self.violations():
             raise error
         return self
 

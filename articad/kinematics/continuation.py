@@ -157,12 +157,14 @@ class Follower:
         for _ in range(_MOST_STEPS):
             if node.s >= length:
                 return Trace(tuple(nodes), Stop.ARRIVED, length, node.Q, certify)
+            # step: at most twice the last, and small against the distance to a singular configuration (σ of the constraints)
             fastest = self._fastest(node.rate)
             if node.sigma < _SINGULAR:
                 return self._stopped(nodes, direction, certify=certify)
             h = min(2.0 * h, length - node.s, min(_STEP_LIMIT, _SIGMA_SHARE * node.sigma) / fastest)
             if certify:
                 h = min(h, self.certified_step(node))
+            # predict along the tangent, correct by Newton; halve the step until the corrector stays near the prediction
             while h * fastest >= _SMALLEST_STEP or h >= length - node.s:
                 stepped = self._step(node, h, direction, basis, sign, last=h >= length - node.s)
                 if stepped is not None:
@@ -296,12 +298,14 @@ class Follower:
             run = np.flatnonzero((s < 1.0) & ~failed)
             if not run.size:
                 break
+            # rates of the dependent freedoms from J_dep · rate = −J D, and the step that they and σ allow
             D = displacement[run]
             J = self.system.evaluate(at[run])[1][:, : self._n_rows]
             sigma, rate = self._rates(self.basis.of(J), (J @ D[..., None])[..., 0], D)
             fastest = np.maximum(np.abs(rate[:, self._looped]).max(axis=1, initial=0.0), 1e-300)
             limit = np.minimum(_STEP_LIMIT, _SIGMA_SHARE * sigma) / fastest
             step = np.minimum(np.minimum(2.0 * h[run], limit), 1.0 - s[run])
+            # predictor and corrector; a row is accepted if it closes and its correction is a small share of its step
             predicted = self.system.move(at[run], step[:, None] * rate)
             closed, norm = self.system.close_many(predicted, self.dependent, iterations=6)
             correction = np.abs(self.system.step_between(predicted, closed)[:, self._looped]).max(axis=1, initial=0.0)

@@ -109,6 +109,7 @@ class JointGraph:
         """The joints that carry parts, as (joint, near part, far part) by index, and for each part whether they reach it."""
         n, place = len(self.joints), self._place
         parents, children = [place[name] for name in self._parents], [place[name] for name in self._children]
+        # Prim's algorithm (1957) with a heap; a key orders joints by weight, then as declared, so that the tree is deterministic
         weights = [_CLOSING if joint.closing else _DRIVEN[joint.type] if joint.driver else _WEIGHTS[joint.type] for joint in self.joints]
         keys = [weight * n + index for index, weight in enumerate(weights)]  # joints are taken in the order of these numbers
         at: list[list[int]] = [[] for _ in self.parts]

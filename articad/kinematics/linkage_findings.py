@@ -175,7 +175,7 @@ def _mobility_findings(group: Group) -> list[Finding]:
         found.append(Finding(code="W_SHAKY", where=where, message=message, hint="Change a length.", parts=parts))
     elif analysis.multiple:
         message = (
-            f"The linkage has {analysis.first_order} freedoms to first order at rest and {analysis.mobility} in truth: nearby, "
+            f"The linkage has {analysis.first_order} freedoms to first order at rest and {analysis.mobility} in fact: nearby, "
             f"{analysis.multiple} more stay(s) free to first order, although no finite motion follows. Play in the joints lets parts move there."
         )
         hint = "Use fewer links, or links that are not parallel or equal."

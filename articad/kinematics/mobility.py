@@ -309,6 +309,7 @@ def choose_drivers(system: ClosureSystem, freedoms: FloatArray) -> tuple[tuple[i
     Returns:
         Columns of the system in the order in which they are declared, and the marked joints that cannot drive.
     """
+    # greedy choice of independent rows of the motions: a coordinate drives if its row is not in the span of those before it
     basis: list[FloatArray] = []
     chosen: list[int] = []
     refused: list[Joint] = []

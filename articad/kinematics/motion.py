@@ -96,6 +96,7 @@ def drive(
     coordinate = mechanism.drivers[index]
     values = np.linspace(lo, hi, steps)
     q = start_values(mechanism, at)
+    # a tree needs no continuation: its poses are a product of the coordinates
     track = track_of(mechanism, index, q, certify=certify)
     if track is None:
         rows = np.tile(q, (steps, 1))
@@ -103,6 +104,7 @@ def drive(
         configuration = mechanism.configuration(rows)
         findings = Findings(_limit_findings(coordinate, configuration, values))
         return DrivenMotion(mechanism, coordinate, values, configuration, "certified", "a tree has one branch", 0.0, findings)
+    # a linkage is followed from rest; values beyond a dead point are left out and reported
     Q, reached, proved = track.evaluate(values)
     found = [] if reached.all() else [_stop_finding(track, coordinate, float(v)) for v in (lo, hi)]
     base = mechanism.configuration(q).columns
@@ -248,6 +250,7 @@ def _margins(track: Track, sign: int, s: FloatArray, coordinate: Coordinate, end
 
     If the linkage could not be closed somewhere, a last row is minus infinity there.
     """
+    # margin of a coordinate: min(q − lower, upper − q); of a ball: cone − swing, and the twist likewise; negative outside
     values = np.array([track.value(sign, float(x)) for x in s])
     Q, reached, _ = track.evaluate(values)
     layout = track.follower.system.layout
@@ -337,7 +340,7 @@ def _gap_finding(c: Coordinate, missed: FloatArray, steps: int) -> Finding:
     """Return the finding about values that are not reached although the linkage was followed past them."""
     first = float(missed[0])
     message = f"{len(missed)} of {steps} values of driver {c.name!r} were not solved, the first at {shown(first, c.unit)}."
-    hint = "Request values beside it: the linkage is near-singular there."
+    hint = "Request values next to it: the linkage is near-singular there."
     return Finding(code="E_NOT_FOLLOWED", where=f"joints.{c.joint}", message=message, hint=hint, value=first, unit=c.unit)
 
 

@@ -142,9 +142,11 @@ def _approached(task: _Task, Q: FloatArray) -> Reach | None:
     for _ in range(_ITERATIONS):
         if norm < 1e-13:
             break
+        # active set: a coordinate at its limit is held if the descent direction −Jᵀr would push it beyond
         free = ~_held(mechanism, Q, -(J.T @ r))
         if not free.any():
             break
+        # damped step of the free coordinates, clamped to the limits; λ falls after a success and rises after a failure
         U, s, Vt = svd(J[:, free])
         y = np.zeros(layout.n_freedoms)
         y[free] = damped_step(s, U.T @ r, Vt, mu * min(1.0, norm))
@@ -166,6 +168,7 @@ def _approached(task: _Task, Q: FloatArray) -> Reach | None:
 def _result(task: _Task, Q: FloatArray, J: FloatArray, r: FloatArray) -> Reach | None:
     mechanism = task.mechanism
     held = _held(mechanism, Q, -(J.T @ r))
+    # close the loops to rounding, then ask the drivers for the same configuration: they must lead to it on their own branch
     if task.branch is not None:
         system = task.branch.system
         closed = system.close(system.to_system(Q), system.active)
@@ -177,6 +180,7 @@ def _result(task: _Task, Q: FloatArray, J: FloatArray, r: FloatArray) -> Reach |
         configuration = mechanism.configuration(q)
     except KinematicsError:
         return None
+    # equal up to whole turns
     step = mechanism.layout.difference(configuration.columns, Q)
     angles = ~mechanism.layout.is_length
     step[angles] = np.mod(step[angles] + np.pi, 2 * np.pi) - np.pi

@@ -183,6 +183,7 @@ def _ties(couplings: Sequence[Coupling], layout: Layout, in_loops: BoolArray) ->
         a, b = layout.column_of[coupling.a], layout.column_of[coupling.b]
         beside.setdefault(a, []).append((b, coupling.ratio, coupling.offset))
         beside.setdefault(b, []).append((a, 1.0 / coupling.ratio, -coupling.offset / coupling.ratio))
+    # the first member measures the tie: one that moves a loop, or else a marked driver
     order = sorted(beside, key=lambda column: (not in_loops[layout.freedom_of(column)], not _is_marked(layout, column), column))
     found: dict[int, tuple[float, float]] = {}
     ties = []
@@ -194,6 +195,7 @@ def _ties(couplings: Sequence[Coupling], layout: Layout, in_loops: BoolArray) ->
         for at in members:  # grows while it is walked
             k, c = found[at]
             for other, ratio, offset in beside[at]:
+                # q_other = ratio · (k m + c) + offset; a second path that disagrees fixes m where both lines meet
                 there = (ratio * k, ratio * c + offset)
                 if other not in found:
                     found[other] = there

@@ -284,7 +284,9 @@ class Tools:
         names = [name.strip() for name in intent.split(",")]
         entries = store.named(names, limit) if len(names) > 1 or " " not in intent.strip() else store.find(intent, min(limit, 20))
         found = [str(entry) for entry in entries]
-        found += [f"{snippet.title}\n{snippet.script}" for snippet in store.examples(intent) if example]
+        if example:
+            snippet = store.example(intent)
+            found.append(f"{snippet.title}\n{snippet.script}")
         return "\n".join(found)[:BRIEF_BYTES]
 
     async def _checked(self, design: str) -> Json:

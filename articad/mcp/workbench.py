@@ -68,7 +68,9 @@ class Workbench:
         try:
             return read_file(self.root / name, RECORD_BYTES, root=self.root)
         except OSError as error:
-            raise ReadError.at(name, f"{name} cannot be read: {error.strerror}.", "Name a file under the root that is no link.") from None
+            raise ReadError.at(
+                name, f"{name} cannot be read: {error.strerror}.", "Name a file under the root that is not a link."
+            ) from None
 
     def design(self, name: str, *, new: bool = False) -> Path:
         """Return the folder of a design.

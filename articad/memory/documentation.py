@@ -142,10 +142,10 @@ class DocumentationStore:
         order = np.lexsort((np.arange(len(scores)), -scores))
         return tuple(self.entries[index] for index in order[:limit])
 
-    def examples(self, intent: str, limit: int = 1) -> tuple[Snippet, ...]:
-        """Return the snippets that show something like an intent, the nearest first."""
+    def example(self, intent: str) -> Snippet:
+        """Return the snippet that shows what is nearest to an intent."""
         likeness = self._snippet_vectors @ self.embedder.embed([intent])[0]
-        return tuple(self.snippets[index] for index in np.lexsort((np.arange(len(likeness)), -likeness))[:limit])
+        return self.snippets[int(np.argmax(likeness))]
 
     # ------------------------------------------------------------------ internals
 

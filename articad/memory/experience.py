@@ -107,10 +107,10 @@ class ExperienceStore:
 
     # ------------------------------------------------------------------ reading
 
-    def cases(self, kind: Kind | None = None) -> tuple[Case, ...]:
-        """Return all cases, or those of one kind, the oldest first."""
+    def cases(self) -> tuple[Case, ...]:
+        """Return all cases, the oldest first."""
         with self._connection() as database:
-            rows = database.execute("select content from cases where ? is null or kind = ? order by added, id", (kind, kind)).fetchall()
+            rows = database.execute("select content from cases order by added, id").fetchall()
         return tuple(Case.from_json(json.loads(content)) for (content,) in rows)
 
     def case(self, name: str) -> Case:

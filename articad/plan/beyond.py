@@ -106,7 +106,7 @@ class _Mended:
         location, owner, raw = reading._resolved(AssemblyPlan, self.document, detail["loc"], detail["type"])  # noqa: SLF001 - the same room
         if not location:
             return False
-        holder, key = _value_at(self.document, location[:-1]), location[-1]
+        holder, key = reading.value_at(self.document, location[:-1]), location[-1]
         if detail["type"] == "extra_forbidden" and isinstance(raw, dict) and owner is not None and key in raw:
             meant = get_close_matches(str(key), [name for name in reading._keys(owner) if name not in raw], n=1)  # noqa: SLF001
             value = raw.pop(str(key))
@@ -142,12 +142,3 @@ class _Mended:
         self.places.append(f"{location[0]}.{name}" if isinstance(name, str) else str(location[0]))
         self.lists.add(str(location[0]))
         return True
-
-
-def _value_at(document: Any, location: Sequence[str | int]) -> Any:
-    for step in location:
-        try:
-            document = document[step]
-        except (KeyError, IndexError, TypeError):
-            return None
-    return document

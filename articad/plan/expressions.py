@@ -194,27 +194,6 @@ def parse(text: str) -> Expression:
     return Expression(text, tuple(names), tree, evaluator)
 
 
-def evaluate_parameters(parameters: Mapping[str, float | str], overrides: Mapping[str, float] | None = None) -> dict[str, float]:
-    """Return the value of every parameter; they may use each other in any order.
-
-    Args:
-        parameters: Number or expression by name.
-        overrides: Values that replace those of the same name.
-
-    Returns:
-        Values in the order given: mm, degrees (an angle stays in degrees) or plain numbers.
-
-    Raises:
-        ExpressionError: For the first one that has no value; E_EXPRESSION_CYCLE names the cycle.
-    """
-    given = {**parameters, **(overrides or {})}
-    values: dict[str, float] = {}
-    for name in dependency_order(given):
-        number = given[name]
-        values[name] = parse(number).evaluate(values) if isinstance(number, str) else float(number)
-    return {name: values[name] for name in given}
-
-
 def dependency_order(parameters: Mapping[str, float | str]) -> list[str]:
     """Return the names so that each comes after those that it uses.
 

@@ -15,6 +15,7 @@ import numpy as np
 
 from articad.arrays import FloatArray
 from articad.connectors import SE3, Connector, axis_findings, world_x
+from articad.connectors.se3 import project_across
 from articad.plan.derive import DraftConnector, DraftPart
 from articad.plan.evaluation import Evaluation, Triple
 
@@ -63,7 +64,7 @@ def read_frames(part: DraftPart, evaluation: Evaluation) -> None:
             frame.o, frame.z = into_part.apply(frame.o), into_part.rotate(frame.z)
             frame.x = None if frame.x is None else into_part.rotate(frame.x)
         if frame.x is not None:
-            frame.x = _across(frame.x, frame.z)
+            frame.x = project_across(frame.x, frame.z)
         part.frames[spec.name] = frame
 
 
@@ -138,7 +139,7 @@ class _Side:
         assert isinstance(self.frame, DraftConnector)
         z = self.world_z
         across = x - (x @ z) * z
-        self.frame.x = _across(self.T.inverse().rotate(x if across @ across > _ACROSS_ZERO**2 else world_x(z)), self.frame.z)
+        self.frame.x = project_across(self.T.inverse().rotate(x if across @ across > _ACROSS_ZERO**2 else world_x(z)), self.frame.z)
 
 
 def _side(part: str, connector: str, parts: Mapping[str, DraftPart]) -> _Side | None:
@@ -155,13 +156,6 @@ def _turned(x: FloatArray, z: FloatArray, angle: float) -> FloatArray:
         return x
     turned: FloatArray = math.cos(angle) * x + math.sin(angle) * np.cross(z, x) + (1.0 - math.cos(angle)) * (x @ z) * z
     return turned
-
-
-def _across(x: FloatArray, z: FloatArray) -> FloatArray:
-    """Project x perpendicular to the unit vector z; twice, because one projection leaves rounding proportional to x · z."""
-    for _ in range(2):
-        x = _unit(x - (x @ z) * z)
-    return x
 
 
 def _unit(v: FloatArray) -> FloatArray:

@@ -145,7 +145,7 @@ def _translated(form: type[PlanObject], document: Any, detail: ErrorDetails) -> 
     location, owner, raw_owner = _resolved(form, document, detail["loc"], kind)
     if "element" in context:
         location = (*location, context["element"])
-    where, key, value = _path(document, location), str(location[-1]) if location else "plan", _value_at(document, location)
+    where, key, value = _path(document, location), str(location[-1]) if location else "plan", value_at(document, location)
     match kind:
         case "plan_name":
             return _finding("E_NAME", where, f"{_shown(key if _is_key(detail) else value)} is not a valid name.", NAME_RULE)
@@ -203,7 +203,7 @@ def _unknown_key(where: str, key: str, owner: type[PlanObject] | None, raw_owner
 
 
 def _unknown_tag(where: str, location: Location, document: Any, context: Mapping[str, Any]) -> Finding:
-    raw = _value_at(document, location)
+    raw = value_at(document, location)
     if not isinstance(raw, Mapping):
         return _finding("E_SCHEMA", where, f"{_shown(raw)} is not an object.", "Give an object {…}.")
     collection = str(location[0])
@@ -284,7 +284,8 @@ def _keys(owner: type[PlanObject]) -> list[str]:
     return [field.alias or name for name, field in owner.model_fields.items()]
 
 
-def _value_at(document: Any, location: Location) -> Any:
+def value_at(document: Any, location: Location) -> Any:
+    """Return what a document has at a location; None if there is nothing."""
     for step in location:
         try:
             document = document[step]
@@ -298,7 +299,7 @@ def _path(document: Any, location: Location) -> str:
     text = ""
     node = document
     for step in location:
-        node = _value_at(node, (step,))
+        node = value_at(node, (step,))
         if isinstance(step, int):
             name = node.get("name") if isinstance(node, Mapping) else None
             text += f".{name}" if isinstance(name, str) and is_name(name) else f"[{step}]"

@@ -202,7 +202,7 @@ def _sided(draft: Draft) -> list[Finding]:
         sided = [spec.name for spec in part.connector_specs if _SIDE.search(spec.name) or _SIDE.search(spec.label)]
         if sided:
             message = f"{part.name} mirrors {part.source} and keeps connectors that say left or right: {', '.join(sided)}."
-            hint = f"Name or label the connectors of {part.source} without a side, or take it that they mean the source's."
+            hint = f"Name or label the connectors of {part.source} without a side, or accept that they mean those of the source."
             found.append(Finding(code="I_MIRROR_SIDE", where=f"{part.where}.derive", message=message, hint=hint, parts=(part.name,)))
     return found
 

@@ -43,8 +43,13 @@ def sweep() -> None:
                 _remove_if_abandoned(place)
 
 
-def write(path: Path, content: bytes) -> None:
+def write(path: Path, content: bytes, *, durable: bool = False) -> None:
     """Write a file so that a reader finds the complete old or new one; its folder is made if it does not exist.
+
+    Args:
+        path: The file.
+        content: What it will hold.
+        durable: Whether the new content is on the disk when this returns, so that it also survives a loss of power.
 
     Raises:
         OSError: If it cannot be written; the old file is intact, and nothing is left.
@@ -55,7 +60,12 @@ def write(path: Path, content: bytes) -> None:
     try:
         temporary.write_bytes(content)
         temporary.chmod(0o666 & ~_umask())
+        if durable:
+            _sync(temporary)
         temporary.replace(path)
+        if durable:
+            with contextlib.suppress(OSError):  # not every file system can sync a folder
+                _sync(path.parent)
     finally:
         temporary.unlink(missing_ok=True)
         _unlock(lock)
@@ -87,6 +97,14 @@ def _sweep_beside(folder: Path) -> None:
         _swept.add(folder)
         for place in folder.glob(f"{BESIDE}*"):
             _remove_if_abandoned(place)
+
+
+def _sync(place: Path) -> None:
+    handle = os.open(place, os.O_RDONLY)
+    try:
+        os.fsync(handle)
+    finally:
+        os.close(handle)
 
 
 def _new_file(folder: Path) -> Path:

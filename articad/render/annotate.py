@@ -210,10 +210,10 @@ def _dashed(draw: ImageDraw.ImageDraw, start: FloatArray, end: FloatArray) -> No
         position += stroke + 3.0
 
 
-def _arrow_head(draw: ImageDraw.ImageDraw, tip: FloatArray, unit: FloatArray, *, size: float = 7.0, color: Color = JOINT) -> None:
+def _arrow_head(draw: ImageDraw.ImageDraw, tip: FloatArray, unit: FloatArray, *, size: float = 7.0) -> None:
     across = np.array([-unit[1], unit[0]])
     left, right = tip - unit * size + across * size * 0.45, tip - unit * size - across * size * 0.45
-    draw.polygon([(tip[0], tip[1]), (left[0], left[1]), (right[0], right[1])], fill=color)
+    draw.polygon([(tip[0], tip[1]), (left[0], left[1]), (right[0], right[1])], fill=JOINT)
 
 
 def _end_on(draw: ImageDraw.ImageDraw, at: FloatArray, *, towards: bool, turns: bool) -> None:

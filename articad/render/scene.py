@@ -70,7 +70,7 @@ class Section:
         sign = -1.0 if axis.startswith("-") else 1.0
         index = "xyz".find(axis.lstrip("-"))
         if len(axis.lstrip("-")) != 1 or index < 0:
-            raise ValueError(f"A section is x, y or z, perhaps with a sign and '=mm', for instance -y=12.5; not {text!r}.")
+            raise ValueError(f"A section is x, y or z, optionally with a sign and '=mm', such as -y=12.5; not {text!r}.")
         point = bounds.mean(axis=0)
         if offset:
             point[index] = float(offset)

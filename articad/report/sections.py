@@ -100,10 +100,10 @@ def _section(title: str, content: str, *, opened: bool = False) -> str:
     return f'<details class="section"{" open" if opened else ""}><summary>{escape(title)}</summary>\n{content}</details>\n'
 
 
-def _show(text: str, parts: Sequence[str], pose: Mapping[str, float] | None, known: set[str], label: str = "Show") -> Html:
+def _show(text: str, parts: Sequence[str], pose: Mapping[str, float] | None, known: set[str]) -> Html:
     """Return a button that moves the model to a pose and fades all other parts."""
     target = {"pose": dict(pose) if pose else None, "parts": [part for part in parts if part in known], "text": text}
-    return Html(f'<button type="button" data-show="{escape(json.dumps(target, ensure_ascii=False))}">{label}</button>')
+    return Html(f'<button type="button" data-show="{escape(json.dumps(target, ensure_ascii=False))}">Show</button>')
 
 
 def _findings(findings: Sequence[Json], known: set[str]) -> str:

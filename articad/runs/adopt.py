@@ -128,7 +128,7 @@ def _built(
         except (PlanError, KernelError) as error:
             message = f"The parts could not be tried out: {error.message}"
             return drafts, [
-                Finding(code="W_ADOPT_UNTRIED", where="parts", message=message, hint="Build the folder to see whether they hold.")
+                Finding(code="W_ADOPT_UNTRIED", where="parts", message=message, hint="Build the folder to see whether they build.")
             ]
         else:
             return drafts, []

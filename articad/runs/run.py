@@ -28,6 +28,7 @@ from articad.aliases import Json
 from articad.errors import ReadError, RunError, WriteError
 from articad.files import RECORD_BYTES, read_file
 from articad.findings import Finding
+from articad.processes import scratch
 
 try:
     import fcntl
@@ -67,8 +68,7 @@ _RECALLED = "recalled"
 _BASE, _EDIT, _REVIEW = "base.json", "edit.json", "review.json"
 _VIEWS, _MOTION, _PAGE = "views", "motion", "report.html"
 _CERTIFICATE, _CERTIFIED = "certificate.json", "certificate"
-_PROBE = ".probe.tmp-00000000"  # a name that a run removes when it is opened
-_TEMPORARY = re.compile(r"\..+\.tmp-[0-9a-f]{8}$")
+_PROBE = f"{scratch.BESIDE}probe"  # a name that a run removes when it is opened
 
 _IMAGE_FILE = re.compile(rf"{_IMAGES}/[0-9]{{1,6}}\.(png|jpg|gif|webp)")
 _SLUG_LENGTH = 40  # characters of the prompt in a run's name: enough to recognise it in a listing
@@ -564,7 +564,7 @@ class Run:
     def _sweep(self) -> None:
         """Remove incomplete files of a killed process; called with the lock held."""
         with _writing(self.path):
-            for leftover in [entry for entry in self.path.rglob(".*") if _TEMPORARY.fullmatch(entry.name)]:
+            for leftover in list(self.path.rglob(f"{scratch.BESIDE}*")):
                 shutil.rmtree(leftover) if leftover.is_dir() else leftover.unlink()
 
     def _require_lock(self) -> None:
@@ -578,25 +578,8 @@ def write_atomically(path: Path, content: bytes) -> None:
     Raises:
         WriteError: If the disk is full, the folder read-only and the like; the old file is intact.
     """
-    temporary = path.with_name(f".{path.name}.tmp-{secrets.token_hex(4)}")
     with _writing(path):
-        path.parent.mkdir(parents=True, exist_ok=True)
-        try:
-            with temporary.open("xb") as stream:
-                stream.write(content)
-                stream.flush()
-                os.fsync(stream.fileno())
-            temporary.replace(path)
-        except BaseException:
-            with contextlib.suppress(OSError):
-                temporary.unlink()
-            raise
-        with contextlib.suppress(OSError):  # not every file system can sync a folder
-            folder = os.open(path.parent, os.O_RDONLY)
-            try:
-                os.fsync(folder)
-            finally:
-                os.close(folder)
+        scratch.write(path, content, durable=True)
 
 
 def open_or_create(request: RunRequest, out: str | Path | None) -> Run:
@@ -655,7 +638,7 @@ def _require_writable(path: Path) -> None:
 
 def _strangers(path: Path) -> list[str]:
     """Return what is in the directory of a new run."""
-    return sorted(entry.name for entry in path.iterdir() if entry.name != _IMAGES and not _TEMPORARY.fullmatch(entry.name))
+    return sorted(entry.name for entry in path.iterdir() if entry.name != _IMAGES and not entry.name.startswith(scratch.BESIDE))
 
 
 def _not_empty(path: Path, strangers: Sequence[str]) -> RunError:

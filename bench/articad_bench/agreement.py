@@ -15,7 +15,7 @@ Level = Literal["nominal", "ordinal", "interval"]
 
 
 def krippendorff_alpha(ratings: ArrayLike, level: Level = "ordinal") -> float:
-    """Return Krippendorff's α: 1 for judges who agree, 0 for judges who might as well have drawn lots.
+    """Return Krippendorff's α: 1 for judges who agree, 0 for judges who agree no better than chance.
 
     Args:
         ratings: `(judges, items)`, NaN where a judge gave none.
@@ -54,7 +54,7 @@ def _distance(values: FloatArray, totals: FloatArray, level: Level) -> FloatArra
 
 
 def icc_2k(ratings: ArrayLike) -> float:
-    """Return ICC(2,k): how reliable the mean of these judges is, the judges being a sample of all judges.
+    """Return ICC(2,k): the reliability of the mean of these judges, taken as a sample of all judges.
 
     Args:
         ratings: `(judges, items)`; items that a judge left out are not counted.

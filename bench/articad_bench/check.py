@@ -1,4 +1,4 @@
-"""What every check of a task has in common: what is wanted, what is measured, and whether that will do."""
+"""What every check of a task has in common: what is required, what is measured, and whether it is met."""
 
 from __future__ import annotations
 
@@ -59,6 +59,6 @@ class Check(PlanObject):
 
 
 def in_words(bounds: Bounds) -> str:
-    """Return a range as one reads it."""
+    """Return a range in words."""
     low, high = bounds
     return f"{low:g}" if low == high else f"at least {low:g}" if high == 999 else f"{low:g} to {high:g}"

@@ -1,6 +1,6 @@
-"""The checks of a task: data that says what must hold, judged by measurement alone, whoever made the assembly.
+"""The checks of a task: data that says what must hold, judged by measurement alone, whichever tool made the assembly.
 
-Nothing is found by its name, since tools name things as they please: a joint is known by its type, its axis and its range,
+Nothing is looked up by name, because each tool chooses its own names: a joint is identified by its type, its axis and its range,
 a part by its size. Each judgement says what was wanted and what was measured.
 """
 
@@ -65,7 +65,7 @@ class JointWanted(PlanObject):
 
 
 class Parts(Check):
-    """So many parts that have a shape."""
+    """The number of parts that have a shape."""
 
     kind: Literal["parts"] = "parts"
     number: Bounds
@@ -80,7 +80,7 @@ class Parts(Check):
 
 
 class Freedoms(Check):
-    """So many independent motions."""
+    """The number of independent motions."""
 
     kind: Literal["freedoms"] = "freedoms"
     number: int
@@ -95,7 +95,7 @@ class Freedoms(Check):
 
 
 class Joints(Check):
-    """So many joints of a kind."""
+    """The number of joints of a kind."""
 
     kind: Literal["joints"] = "joints"
     joint: JointWanted
@@ -112,7 +112,7 @@ class Joints(Check):
 
 
 class Size(Check):
-    """Sides of the box around the whole at rest; None where any side will do."""
+    """Sides of the bounding box at rest; None where any length is accepted."""
 
     kind: Literal["size"] = "size"
     mm: tuple[float | None, float | None, float | None]
@@ -129,7 +129,7 @@ class Size(Check):
 
 
 class PartSize(Check):
-    """So many parts with these sides, in any order; None where any side will do."""
+    """A number of parts with these sides, in any order; None where any length is accepted."""
 
     kind: Literal["part_size"] = "part_size"
     mm: tuple[float | None, float | None, float | None]
@@ -254,7 +254,7 @@ class Certified(Check):
 
 
 class Loops(Check):
-    """So many closed loops, closed wherever the drivers are."""
+    """The number of loops; they are closed at every value of the drivers."""
 
     kind: Literal["loops"] = "loops"
     number: Bounds
@@ -297,7 +297,7 @@ class Ratio(Check):
 
 
 class Rise(Check):
-    """While the drivers move one by one, the box around the whole grows or moves by so much along an axis."""
+    """While the drivers move one by one, the bounding box grows or moves by this much along an axis."""
 
     kind: Literal["rise"] = "rise"
     axis: Literal["x", "y", "z"] = "z"
@@ -317,7 +317,7 @@ class Rise(Check):
 
 
 class Travel(Check):
-    """So many joints really move by so much while the drivers go over their ranges, one by one [deg or mm]; an endless driver, one turn."""
+    """A number of joints move by at least this much while the drivers go over their ranges, one by one [deg or mm]; an endless driver, one turn."""
 
     kind: Literal["travel"] = "travel"
     joint: JointWanted
@@ -335,7 +335,7 @@ class Travel(Check):
 
 
 class Gap(Check):
-    """Parts that a joint connects keep this distance at rest; `within` counts only surface so near the joint's axis [mm]."""
+    """Parts that a joint connects keep this distance at rest; `within` counts only surface this close to the joint's axis [mm]."""
 
     kind: Literal["gap"] = "gap"
     joint: JointWanted
@@ -356,7 +356,7 @@ class Gap(Check):
 
 
 class Lead(Check):
-    """So many screws with this lead, right-handed or left-handed [mm/turn]."""
+    """The number of screws with this lead, right-handed or left-handed [mm/turn]."""
 
     kind: Literal["lead"] = "lead"
     joint: JointWanted = JointWanted(type=JointType.SCREW)
@@ -375,7 +375,7 @@ class Lead(Check):
 
 
 class Captive(Check):
-    """So many moving parts cannot leave in a straight line, whatever their limits."""
+    """The number of moving parts that cannot be removed in a straight line, regardless of their limits."""
 
     kind: Literal["captive"] = "captive"
     number: Bounds
@@ -410,7 +410,7 @@ class Simulates(Check):
 
 
 class Unchanged(Check):
-    """After an edit, so many parts have a shape that one had before, to the last bit, whatever they are called."""
+    """After an edit, the number of parts whose shape is bit-identical to one from before, whatever their names."""
 
     kind: Literal["unchanged"] = "unchanged"
     number: Bounds

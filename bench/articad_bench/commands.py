@@ -1,4 +1,4 @@
-"""The command `articad bench`: run the benchmark with a model, or score what any tool has made."""
+"""The command `articad bench`: run the benchmark with a model, or score the results of any tool."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ def _bench(options: argparse.Namespace, terminal: Terminal) -> Report:
 
 
 def _tasks(options: argparse.Namespace) -> list[tuple[Path, Task]]:
-    """Return the tasks that are meant: the project's own, a folder's, or public data's."""
+    """Return the selected tasks: the project's own, a folder's, or those of public data."""
     from articad_bench.task import TASKS, tasks_in
 
     return _asked_by_data(options) if options.data else tasks_in(options.tasks or TASKS, names=options.names, kind=options.kind)

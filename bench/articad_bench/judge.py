@@ -1,6 +1,6 @@
 """Judges: models that look at what was made and score it, as in the paper: integers from 1 to 5 for geometry, detail and motion.
 
-Every judge works alone: it describes, compares, goes through the keyframes, then scores, and gives a reason for each score. It sees
+Every judge works alone: it describes, compares, goes through the keyframes, then scores and gives a reason for each score. It sees
 pictures and the request, not who made the product, nor what was measured. What it said is kept, `judged/<judge>/<task>.json` beside the
 models, so that nobody is asked twice.
 """
@@ -66,7 +66,7 @@ class Judged:
         kind: Of the task.
         judge: Name of the model.
         made: The paper's success: it builds, and has every part that was asked for.
-        moves: Whether something of it is to move.
+        moves: Whether the task requires that something moves.
         opinion: What the judge said; None if it could not be asked, or there was nothing to be seen.
         error: Why there is no opinion.
         calls: Answers that it took.
@@ -115,7 +115,7 @@ def judge_files(
         tasks: Folders and tasks.
         folder: As for `score_files`; opinions are kept there.
         judges: Who scores.
-        progress: Told of each opinion.
+        progress: Called with each opinion.
 
     Returns:
         One for each task and judge; opinions that are there are not asked for again.

@@ -1,4 +1,4 @@
-"""The table of judges: what each gave and all together, how far they agree, and what it cost.
+"""The table of judges: the scores of each and of all, how far they agree, and what it cost.
 
 Motion is told twice, since it changes the mean: over the tasks of which something is to move, and over all with 5 for the others.
 """

@@ -63,7 +63,7 @@ def surface_points(mesh: TriMesh, count: int = POINTS, *, seed: int = 0) -> Floa
 
 
 def shape_score(mesh: TriMesh, truth: TriMesh, *, seed: int = 0) -> ShapeScore:
-    """Return how near a shape comes to the true one, wherever and however large it was made; turned as it was made."""
+    """Return how near a shape comes to the true one, regardless of its place and size, but not of its orientation."""
     return point_score(surface_points(mesh, seed=seed), surface_points(truth, seed=seed + 1))
 
 
@@ -167,7 +167,7 @@ def articulated_score(
 ) -> ArticulatedScore:
     """Return how near an articulated object comes to the true one: each scaled by its diagonal about its centre, aligned by ICP.
 
-    Which way an object faces is nobody's fault: ICP begins with each quarter turn about Z, and of those that end as near as the
+    The orientation of an object does not count: ICP begins with each quarter turn about Z, and of those that end as near as the
     nearest, the one counts whose joints match best. Joints are matched to those true ones whose moved parts are nearest, one to one,
     at the least total distance.
     """

@@ -28,7 +28,7 @@ def share_of(values: Sequence[bool]) -> dict[str, Any]:
 
 
 def rounded(value: float) -> float | None:
-    """Return a number as a table has it; None for one that is not."""
+    """Return a number as the table shows it; None for NaN."""
     return None if math.isnan(value) else round(value, 4)
 
 

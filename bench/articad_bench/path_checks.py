@@ -21,7 +21,7 @@ LEVEL_RAD: Final = math.radians(0.1)  # by which what does not turn may turn
 
 
 class Straight(Check):
-    """A joint that nothing guides runs along a straight line, never farther from it than `off`, over so many mm."""
+    """A joint that nothing guides runs along a straight line, never farther from it than `off`, over this many mm."""
 
     kind: Literal["straight"] = "straight"
     mm: Bounds
@@ -37,7 +37,7 @@ class Straight(Check):
 
 
 class Level(Check):
-    """So many parts move by so much without turning, the distance of their two farthest places counting."""
+    """A number of parts move by this much without turning, the distance of their two farthest places counting."""
 
     kind: Literal["level"] = "level"
     mm: Bounds
@@ -59,7 +59,7 @@ class Level(Check):
 
 
 class Turns(Check):
-    """So many parts turn `ratio` times as fast as some other part, in the frame of the whole, about parallel axes, all the way."""
+    """A number of parts turn `ratio` times as fast as some other part, in the frame of the whole, about parallel axes, all the way."""
 
     kind: Literal["turns"] = "turns"
     ratio: float

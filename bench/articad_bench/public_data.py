@@ -1,4 +1,4 @@
-"""Public data that users bring themselves, read from where they put it; none of it comes with articad.
+"""Public data sets that users provide; none of them comes with articad.
 
 What layouts are known, each known by its files:
 

@@ -1,4 +1,4 @@
-"""Answers that were recorded: the benchmark run again without model, key or network, with the same table."""
+"""Recorded answers: the benchmark runs again without model, key or network, and makes the same table."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from articad_bench.task import Task
 
 
 class RecordedAnswers:
-    """Who answers as was recorded: `<folder>/<task>` is a run, or holds `run_…` and `edit_…` as a benchmark's own folder does.
+    """Answers as recorded: `<folder>/<task>` is a run, or holds `run_…` and `edit_…` as a benchmark's own folder does.
 
-    A prompt that is not the recorded one is answered all the same; a step that was not recorded is not.
+    A prompt that differs from the recorded one is answered; a step that was not recorded is not.
     """
 
     def __init__(self, folder: str | Path) -> None:

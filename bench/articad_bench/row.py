@@ -1,4 +1,4 @@
-"""Rows: what came of each task, kept in a file of its own so that a killed benchmark goes on where it was."""
+"""Rows: what came of each task, each in a separate file, so that a killed benchmark can resume."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Runs of the benchmark: each task generated, judged and written down before the next one; a killed run goes on where it was.
+"""Runs of the benchmark: each task generated, judged and written down before the next one; a killed run resumes where it was.
 
 One folder a task: its run directory, `run_` and the key of the way it was run, that of its edit, `edit_` and the same, and `row.json`,
 its row of the table. A row that is there and was made of the same task in the same way is not made again, so the table of a finished

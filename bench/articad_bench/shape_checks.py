@@ -1,4 +1,4 @@
-"""Checks of what parts are like, measured on their surfaces: holes, studs, walls, volumes, stability, symmetry."""
+"""Checks of the shapes of parts, measured on their surfaces: holes, studs, walls, volumes, stability, symmetry."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ class _Rounds(Check):
 
 
 class Holes(_Rounds):
-    """So many round holes; `through` says whether they have no bottom."""
+    """The number of round holes; `through` requires that they have no bottom."""
 
     kind: Literal["holes"] = "holes"
     through: bool | None = None
@@ -84,7 +84,7 @@ class Holes(_Rounds):
 
 
 class Studs(_Rounds):
-    """So many faces that are round outside: pegs, legs, shafts, discs."""
+    """The number of faces that are round outside: pegs, legs, shafts, discs."""
 
     kind: Literal["studs"] = "studs"
 
@@ -148,7 +148,7 @@ class Holds(Check):
 
 
 class Stands(Check):
-    """It stands by itself, and tips over only when the ground leans by more than this, whichever way."""
+    """It stands freely and tips over only when the ground is inclined by more than this, in any direction."""
 
     kind: Literal["stands"] = "stands"
     degrees: float = 5.0

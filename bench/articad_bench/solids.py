@@ -1,6 +1,6 @@
 """Measures of solids, taken from their triangles alone: round holes and studs, thickness of walls, what a vessel holds, how far a thing tips.
 
-Whoever made a part, its surface is all that is known of it. A round face is known by its normals and its corners, which lie on
+Only the surface of a part is known, whatever tool made it. A round face is known by its normals and its corners, which lie on
 the circle; where the mesh says which triangles are one face, that is used, else faces end where the surface bends sharply.
 """
 
@@ -115,7 +115,7 @@ def _smooth_faces(mesh: TriMesh, normals: FloatArray, area: FloatArray) -> NDArr
 
 
 def _cylinder(mesh: TriMesh, normals: FloatArray, triangles: NDArray[Any]) -> _Piece | None:
-    """Return the cylinder that a face is, or None if it is none."""
+    """Return the cylinder that a face is, or None if it is not a cylinder."""
     if len(triangles) < 2:
         return None
     unit = normals / np.linalg.norm(normals, axis=1)[:, None]
@@ -323,7 +323,7 @@ def asymmetry(grid: Grid, axis: int) -> float:
 
 
 def tipping_angle(points: FloatArray, com: FloatArray) -> float:
-    """Return how far the ground may lean before a thing tips over, whichever way [deg]; below zero when it does not stand at all.
+    """Return how far the ground may be inclined in any direction before a body tips over [deg]; below zero when it does not stand at all.
 
     Args:
         points: Its corners `(n, 3)` [mm].

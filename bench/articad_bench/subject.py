@@ -45,7 +45,7 @@ class Subject:
 
     @cached_property
     def at_rest(self) -> Checks:
-        """Interference at rest; declared fits are no part of it."""
+        """Interference at rest; declared fits are not checked."""
         return check_scene(self.scene, self.assembly.at(), ground=self.assembly.ground)
 
     @cached_property
@@ -55,7 +55,7 @@ class Subject:
 
     @cached_property
     def shaped(self) -> tuple[str, ...]:
-        """Names of the parts that have a shape: links without one hold no matter."""
+        """Names of the parts that have a shape: links without a shape have no material."""
         return tuple(name for name, part in self.assembly.parts.items() if part.mesh is not None)
 
     @cached_property

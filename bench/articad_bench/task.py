@@ -116,7 +116,7 @@ class Task(PlanObject):
 
     @property
     def moves(self) -> bool:
-        """Whether something of it is to move."""
+        """Whether the task requires that something moves."""
         if self.kind == "static":
             return False
         return any(check.kind in _MOVING and getattr(check, "number", 1) not in (0, (0, 0)) for check in self.checks)

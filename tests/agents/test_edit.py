@@ -225,7 +225,7 @@ def test_addresses_that_lead_nowhere_and_plans_that_do_not_hold_go_back(plate: R
 
     assert "parts.flop" in said(llm, "edit/2")
     assert "E_MATE_OFFSET" in said(llm, "edit/3")
-    assert "'flop', which is no part" in said(llm, "edit/4")
+    assert "'flop', which is not a part" in said(llm, "edit/4")
     assert "could not be read" in said(llm, "edit/5")
     with pytest.raises(PlanError, match="E_MATE_OFFSET"):
         edited(plate, tmp_path / "other", broken, designs=1)

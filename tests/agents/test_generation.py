@@ -1,4 +1,4 @@
-"""What a part's engineer is told: all of its own entry, and nothing of other parts."""
+"""What the author of a part reads: all of its own entry, and nothing about other parts."""
 
 from __future__ import annotations
 

@@ -107,7 +107,7 @@ def test_an_expression_is_parsed_and_never_run(tmp_path: Path, value: str) -> No
     good = json.dumps(stories.FLAP_PLAN)
     run, llm = made(tmp_path / "run", plan, design__2=good)
 
-    assert "design/2" in llm.steps  # it was refused, and what was wrong was told
+    assert "design/2" in llm.steps  # it was refused, and the next prompt says why
     assert json.loads(run.plan_text() or "")["parameters"][0]["value"] == 1
 
 

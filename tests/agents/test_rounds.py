@@ -389,7 +389,7 @@ def test_a_decision_about_no_fault_or_no_part_is_asked_for_again(tmp_path: Path)
     )
     made(tmp_path, llm, rounds=2)
 
-    assert "one decision each is wanted for the faults 1 to 1" in said(llm, "rollback/1/2")
+    assert "exactly one decision is needed for each of the faults 1 to 1" in said(llm, "rollback/1/2")
     assert "'axle' has no script" in said(llm, "rollback/1/3")
     assert "E_STATIC_OVERLAP" in said(llm, "design/2")
 

@@ -1,4 +1,4 @@
-"""How far joints go, as a judge is told: drivers and what follows them, in degrees and mm."""
+"""How far joints go, in the words that a judge reads: drivers and followers, in degrees and mm."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ def test_what_follows_in_a_loop_is_told_with_its_stroke_wherever_the_crank_rests
 
 @pytest.mark.parametrize("rest", [0.0, 0.8217, math.pi / 2, math.pi])
 def test_what_follows_needs_no_leeway_beyond_the_extremes_that_it_reaches(rest: float) -> None:
-    """Designers are told so: a crank turns endlessly although its followers' limits are exactly how far they go."""
+    """The design prompt promises that a crank turns endlessly even if its followers' limits are exactly how far they go."""
     lean = math.asin(CRANK / ROD)
     exact = {"slide": (ROD - CRANK, ROD + CRANK), "small_end": (-lean, lean)}
     limits = {name: JointLimits((low,), (high,)) for name, (low, high) in exact.items()}

@@ -1,4 +1,4 @@
-"""Our own examples stand before the auditor like anyone's, as a plan, as URDF and as MJCF, and there is nothing to tell: not even a note."""
+"""Our own examples are audited like any other file, as a plan, as URDF and as MJCF: there is no finding, not even a note."""
 
 from __future__ import annotations
 

@@ -141,7 +141,7 @@ MENDED = [  # false alarms that were drawn
 
 
 def told(file: str, code: str, part: str) -> list[Finding]:
-    """What is told of a file at rest."""
+    """The findings about a file at rest."""
     found = audit_file(ROOT / file, AuditOptions(root=ROOT, engines=file.endswith(".xml"), budget=0.0)).findings.of(code)
     return [finding for finding in found if not part or part in finding.parts]
 

@@ -1,4 +1,4 @@
-"""Drawings of tasks: small, the same each time, and with every number that a picture alone must tell."""
+"""Drawings of tasks: small, the same each time, and with every number that a picture alone must state."""
 
 from __future__ import annotations
 

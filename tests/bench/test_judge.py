@@ -1,4 +1,4 @@
-"""Judges score what they see, each alone and once; the table tells their means, and how far they agree."""
+"""Judges score what they see, each alone and once; the table states their means, and how far they agree."""
 
 from __future__ import annotations
 

@@ -124,7 +124,7 @@ def acd(folder: Path) -> None:
 
 
 def fusion(folder: Path, *, own: bool) -> None:
-    """A pin in a plate, in cm; the axis is told in the bodies' own frames, or assembled."""
+    """A pin in a plate, in cm; the axis is given in the bodies' own frames, or assembled."""
     folder.mkdir(parents=True)
     pin, plate = at(tube(1, 4, 40), 0, 0, 100), box(60, 60, 10)
     for name, mesh in (("1_pin", pin), ("1_plate", plate)):

@@ -84,7 +84,7 @@ def _graph(mechanism: Mechanism) -> str:
     edges = [(joint.parent, joint.child, str(joint.type)) for joint in mechanism.joints]
     edges += [(moved[c.a.split(".")[0]], moved[c.b.split(".")[0]], f"coupled by {c.kind}") for c in mechanism.couplings]
     colors = {part: "ground" if part == mechanism.ground else "part" for part in mechanism.parts}
-    for _ in mechanism.parts:  # each part takes the colours of its neighbours in, until they all tell how the whole is joined
+    for _ in mechanism.parts:  # each part takes in the colours of its neighbours, until all colours describe how the whole is joined
         around = {part: sorted((kind, colors[b if a == part else a]) for a, b, kind in edges if part in (a, b)) for part in mechanism.parts}
         colors = {part: hashlib.sha256(repr((colors[part], around[part])).encode()).hexdigest() for part in mechanism.parts}
     return repr(sorted(colors.values()))

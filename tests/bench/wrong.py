@@ -270,7 +270,7 @@ def _nothing_around(_check: Check, subject: Subject) -> Subject:
 
 
 def _all_new(_check: Check, subject: Subject) -> Subject:
-    """Every part was made anew."""
+    """Every part was rebuilt."""
     return Subject(subject.assembly, before=_larger(_check, subject).assembly)
 
 

@@ -172,7 +172,7 @@ def test_a_read_only_folder_is_an_error_of_ours(tmp_path: Path, monkeypatch: pyt
 
 
 def test_two_processes_in_one_directory_leave_one_run(recording: Path, tmp_path: Path) -> None:
-    """Whoever comes second is told so, at once, and takes nothing."""
+    """The second process gets an error at once and takes nothing."""
     folder = tmp_path / "both"
     folder.mkdir()
     pids = []

@@ -128,7 +128,7 @@ def files(folder: Path) -> Mapping[str, str]:
     if not (folder / "run/request.json").exists():
         return batch_files(folder / "run")
     hashes = Run.view(folder / "run").hashes()
-    strangers = [name for name in hashes if ".tmp-" in name]
+    strangers = [name for name in hashes if scratch.BESIDE in name]
     assert not strangers, strangers
     for name in hashes:
         if name.endswith(".json"):

@@ -16,7 +16,7 @@ import articad
 
 PAGE = (Path(__file__).resolve().parents[2] / "docs" / "reference" / "python.md").read_text()
 NAMES = [name for name in articad.__all__ if not name.startswith("__")]
-# What tells in what a number is measured, or that it is a ratio, a direction, a transformation.
+# Words that state the unit of a number, or that it is a ratio, a direction or a transformation.
 UNIT = re.compile(r"\[|\bmm\b|\brad\b|\bkg\b|pixels|share|factor|\d\)|direction|seconds|fraction|quaternion|[mM]illimet", re.IGNORECASE)
 DEFECTS = {"AttributeError", "AssertionError", "NotImplementedError", "TypeError"}  # raised by misuse, as Python itself does
 

@@ -1,7 +1,7 @@
 """Seven products that were asked for in words and sketches, written down before the first answer, and made again from the answers.
 
 What a request states is measured here on the built solids and on the mechanism, not read from the plan. Prompts that were mended
-since are told as drifted; the answers are kept as they were given.
+since are reported as drift; the answers are kept as they were given.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Nine designs whose requests were answered by a reader who knew the prompts alone, made again from the answers.
 
 Of each run only the request, the answers, what was recalled, and the plan and checks it ended with are kept; everything else is made again here.
-The answers are kept as they were given, so prompts that were mended since are told as drifted.
+The answers are kept as they were given, so prompts that have changed since are reported as drift.
 """
 
 from __future__ import annotations

@@ -28,7 +28,7 @@ def test_there_are_recordings() -> None:
 def test_a_recorded_run_is_made_again_byte_for_byte(recording: Path, tmp_path: Path) -> None:
     again = replay(recording, out=tmp_path / "run")
 
-    # Prompts may have been mended since the run was recorded: each such step is told, and its reply alone is used.
+    # Prompts may have changed since the run was recorded: each such step is reported, and only its reply is used.
     told = {finding.where for finding in again.findings}
     assert {finding.code for finding in again.findings} <= {"I_PROMPT_DRIFT"}
     assert {name for name in again.differences if not name.startswith("llm/")} == set()

@@ -235,7 +235,7 @@ def test_an_open_mesh_is_no_print_and_the_export_is_not_ok() -> None:
 
 
 def assert_exports_are_whole(assembly: Assembly, folder: Path) -> None:
-    """Hold all exports to their parts; those of shapes to the parts' volumes, too, and meshes of OBJ to those of STL."""
+    """Compare all exports with their parts, those of shapes also with the parts' volumes, and OBJ meshes with STL meshes."""
     import trimesh
 
     bodies = {name: [part.solid] if part.solid else part.visuals or part.collisions for name, part in assembly.parts.items()}

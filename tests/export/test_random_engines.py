@@ -83,7 +83,7 @@ def test_pinocchio_places_every_part_where_the_equations_do(seed: int, tmp_path:
 
 
 def assert_agree(case: Case, poses: Engine) -> Iterator[tuple[Way, Solution]]:
-    """The engine's bodies go from rest [m] where the parts do, whatever frames they have; yield the ways while the engine stands there."""
+    """The engine's bodies move from rest [m] as the parts do, whatever frames they have; yield the displacements at each pose."""
     at_rest = poses(case.mechanism.rest)
     frames = {name: np.linalg.inv(T) @ metres(case.specimen.rest[name]) for name, T in at_rest.items()}
     for way in case.ways:

@@ -1,4 +1,4 @@
-"""What part authors are told about FreeCAD is what there is, and all of it is run by a script that other tests build."""
+"""The prompt about FreeCAD lists exactly the functions that exist, and other tests build a script that uses all of them."""
 
 from __future__ import annotations
 

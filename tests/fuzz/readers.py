@@ -1,6 +1,6 @@
 """Every reader of what others wrote, as a function of bytes that returns, or raises one of articad's own errors.
 
-Anything else that such a function raises is a fault: an exception without a name tells nobody what is wrong with the
+Anything else that such a function raises is a fault: an exception without a name does not say what is wrong with the
 file. Used by the tests of this room, within bounds, and by `scripts/fuzz`, for as long as asked.
 """
 

@@ -145,7 +145,7 @@ def metres(poses: SE3) -> FloatArray:
 
 
 def assert_equal(first: Assembly, again: Assembly, q: FloatArray) -> None:
-    """Names, limits, masses and poses of an assembly, and of the plan that tells it, are the same."""
+    """Names, limits, masses and poses of an assembly, and of the plan that describes it, are the same."""
     assert list(again.parts) == list(first.parts)
     assert again.joints == first.joints
     assert again.mechanism.couplings == first.mechanism.couplings

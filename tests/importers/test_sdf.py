@@ -596,7 +596,7 @@ def test_what_the_reader_claims_to_read_is_in_the_schema() -> None:
     assert len(UNREAD) > 100
 
 
-# elements that are told of with the shape or element in which they stand, which is left out with a finding
+# elements that are reported with the shape or element that contains them, which is left out with a finding
 TOLD_WITH_ITS_SHAPE = ("heightmap", "image", "plane", "polyline", "cone", "submesh")
 
 

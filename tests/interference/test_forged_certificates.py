@@ -1,4 +1,4 @@
-"""Forged certificates: mechanisms whose parts collide, or that are none, with every word and number chosen to deceive the checker."""
+"""Forged certificates: mechanisms whose parts collide, or that are not valid, with every word and number chosen to deceive the checker."""
 
 from __future__ import annotations
 

@@ -373,7 +373,7 @@ def turn_half_round(document: dict[str, Any]) -> None:
 
 
 def test_a_loop_that_closes_but_for_half_a_turn_is_refuted(honest: Certificate) -> None:
-    # no residual tells it from a closed one: of half a turn the antisymmetric part is none
+    # no residual distinguishes it from a closed one: the antisymmetric part of half a turn is zero
     (reason,) = refutations(honest, turn_half_round)
     assert reason.endswith("a loop is not closed")
 

@@ -115,7 +115,7 @@ def test_what_an_endless_driver_pushes_along_is_sampled_as_far_as_a_slide_withou
 
 
 def test_what_is_reached_is_sampled_where_not_all_is_and_that_is_said() -> None:
-    """A four-bar whose crank cannot go round: a post within its reach is found, and the rest of its declared turn is told of."""
+    """A four-bar whose crank cannot go round: a post within its reach is found, and the rest of its declared turn is reported."""
     lengths = crank, rod, rocker, base = 60.0, 50.0, 70.0, 100.0
     assert min(lengths) + max(lengths) > sum(sorted(lengths)[1:3])  # no link goes round (Grashof)
     tip = np.array([0.0, crank])

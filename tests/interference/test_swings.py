@@ -71,7 +71,7 @@ def test_a_checker_refuses_a_cone_that_pieces_do_not_keep_to(monkeypatch: pytest
 
 @pytest.mark.parametrize("seed", range(20))
 def test_swung_triangles_keep_to_their_cones(seed: int) -> None:
-    """Random triangles, swung and spun at random: no point passes its bound, nor is any two's distance less than the bounds tell."""
+    """Random triangles, swung and spun at random: no point passes its bound, and no distance of two is less than the bounds state."""
     rng = np.random.default_rng(seed)
     cone = float(rng.uniform(0.05, math.pi / 2))
     frame = (SE3.from_translation(rng.uniform(-5, 5, size=3)) @ random_rotation(rng)).matrix

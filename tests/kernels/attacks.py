@@ -229,11 +229,11 @@ ATTACKS = {
     ),
     "become another user": "os.setuid(12345)\nreturn os.getuid() == 12345",
     "leave core dumps": "import resource\nresource.setrlimit(resource.RLIMIT_CORE, (2**20, 2**20))\nreturn True",
-    "go before others": "os.nice(-5)\nreturn True",
+    "raise its own priority": "os.nice(-5)\nreturn True",
     "real-time priority": "os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(1))\nreturn True",
     "user namespace": "return ctypes.CDLL(None, use_errno=True).unshare(0x10000000) == 0",
     "leave by chroot": "os.chroot('/')\nreturn True",
-    "start threads without end": (
+    "start endless threads": (
         "import threading\n"
         "stop = threading.Event()\n"
         "started = 0\n"
@@ -290,8 +290,8 @@ ATTACKS = {
         "os._exit(70)"
     ),
     "fill memory": "return len(bytearray(6 * 2**30))",
-    "loop for ever": "while True:\n    pass",
-    "sleep for ever": "time.sleep(1000)",
+    "loop forever": "while True:\n    pass",
+    "sleep forever": "time.sleep(1000)",
     "flood stdout": "for _ in range(200):\n    os.write(1, bytes(2**20))\n    os.write(2, bytes(2**20))\nreturn False",
     "patch the kernel's measurements": (
         "from OCP.BRepGProp import BRepGProp\n"
@@ -320,9 +320,7 @@ ATTACKS = {
     ),
     "leave a report of 8 MB": POISON.format(report="b'[' + b'0,' * 2**22", document="b''"),
     "leave a report nested too deeply": POISON.format(report="b'[' * 10**6 + b'\\n'", document="b''"),
-    "leave numbers that are none": POISON.format(
-        report='b\'{"ok": true, "connectors": {"a": {"o": [NaN, 1e999, 0]}}}\\n\'', document="b'x'"
-    ),
+    "leave invalid numbers": POISON.format(report='b\'{"ok": true, "connectors": {"a": {"o": [NaN, 1e999, 0]}}}\\n\'', document="b'x'"),
     "leave pickles for a shape": POISON.format(
         report='b\'{"ok": true, "connectors": {}}\\n\'', document="__import__('pickle').dumps(print)"
     ),
@@ -330,15 +328,15 @@ ATTACKS = {
     "leave code in a document": POISON.format(report='b\'{"ok": true, "connectors": {}}\\n\'', document="trojan()"),
     "leave code by the name of a type": POISON.format(report='b\'{"ok": true, "connectors": {}}\\n\'', document="code"),
     "leave code in another vocabulary": POISON.format(report='b\'{"ok": true, "connectors": {}}\\n\'', document="code"),
-    "leave a number without end": POISON.format(report='b\'{"ok": true, "connectors": {}}\\n\'', document="b'1' * 2**20"),
-    "hide code from whoever reads a document's end": POISON.format(report='b\'{"ok": true, "connectors": {}}\\n\'', document="two_faced()"),
+    "leave an endless number": POISON.format(report='b\'{"ok": true, "connectors": {}}\\n\'', document="b'1' * 2**20"),
+    "hide code from readers of a document's end": POISON.format(report='b\'{"ok": true, "connectors": {}}\\n\'', document="two_faced()"),
 }
 # Those that end the process, take long or spoil what comes after them; the others can be tried one after the other in one process.
 LOUD = frozenset(ATTACKS) & {
     "make 32-bit system calls", "make system calls by other numbers", "stop itself", "loop with every signal blocked",
     "command the terminal through an error", "command the terminal through its own source", "pretend that the sandbox is broken",
-    "fill the disk", "fill memory", "loop for ever", "sleep for ever", "flood stdout", "forge the report", "leave a process behind",
-    "replace itself by a shell", "start threads without end", "start threads of small stacks", "patch the kernel's measurements",
+    "fill the disk", "fill memory", "loop forever", "sleep forever", "flood stdout", "forge the report", "leave a process behind",
+    "replace itself by a shell", "start endless threads", "start threads of small stacks", "patch the kernel's measurements",
     "write a result of a terabyte", "make many files",
 } | {name for name in ATTACKS if "os._exit(0)" in ATTACKS[name]}  # fmt: skip
 # What Landlock leaves open, for it knows no right to ask about a path, and nothing of names; only bubblewrap closes it.
@@ -380,7 +378,7 @@ FREECAD_ATTACKS = {
     "leave code in another vocabulary": FORGERY.format(
         forged="""xml = one_more(xml, 'Objects', '<a:Object xmlns:a="b" type="antigravity::X" name="More" id="99999"/>')"""
     ),
-    "leave a number without end": FORGERY.format(
+    "leave an endless number": FORGERY.format(
         forged=(
             """xml = one_more(xml, 'Objects', '<Object type="Part::Feature" name="More" id="99999"/>')\n"""
             """shape = '<Property name="Shape" type="Part::PropertyPartShape"><Part file="More.brp"/></Property>'\n"""
@@ -503,7 +501,7 @@ def attack_on(kernel: str, name: str) -> str:
 
 
 def script(attacks: Sequence[str], target: dict[str, Any]) -> bytes:
-    """Return a part script that attacks first and builds a cube of 1 mm³ then; a breach is told by its number."""
+    """Return a part script that attacks first and then builds a cube of 1 mm³; it reports a breach by its number."""
     bodies = [f"def attack_{n}():\n" + "".join(f"    {line}\n" for line in attack.splitlines()) for n, attack in enumerate(attacks)]
     made = (
         "    part.box((0, 0, 0), (1, 1, 1))\n    return part.body, {}\n"

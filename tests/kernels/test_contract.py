@@ -1,4 +1,4 @@
-"""A part script is told every breach of its contract at once, each with its numbers."""
+"""All breaches of a script's contract are reported at once, each with its numbers."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A script that fails is told its line and why, sees no path of ours, and hands back the solids it had."""
+"""The error of a failing script names its line and the cause, shows no path of this machine, and returns the solids it had."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Built parts are seated by the connector to their tree parent; what is left at the others is held to the table of drift."""
+"""Built parts are seated by the connector to their tree parent; the deviation at the others is compared with the table of drift."""
 
 from __future__ import annotations
 

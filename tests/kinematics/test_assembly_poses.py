@@ -1,4 +1,4 @@
-"""What an assembly says about poses: limits of followers, batches of which some rows are not reached, other processes."""
+"""Poses of an assembly: limits of followers, batches with rows that are not reached, other processes."""
 
 from __future__ import annotations
 

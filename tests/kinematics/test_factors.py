@@ -16,7 +16,7 @@ from tests.fuzz.readers import CORPUS, attempt
 def threads(monkeypatch: pytest.MonkeyPatch) -> list[tuple[str, int, int]]:
     """Which factor NumPy was asked for, how many threads BLAS might use for it, and how large its matrix was."""
     if not ThreadpoolController().select(user_api="blas").info():
-        pytest.skip("NumPy's BLAS here is none that can be told how many threads to use")  # as on macOS
+        pytest.skip("The number of threads of this NumPy's BLAS cannot be set")  # as on macOS
     found: list[tuple[str, int, int]] = []
     for name in ("svd", "lstsq", "solve"):
         asked = getattr(np.linalg, name)

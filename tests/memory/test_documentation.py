@@ -71,7 +71,7 @@ def test_without_freecad_our_own_helpers_are_known(tmp_path: Path, monkeypatch: 
 
 @pytest.mark.parametrize("dialect", get_args(Dialect))
 def test_an_intent_finds_a_worked_example(dialect: Dialect) -> None:
-    assert store(dialect).examples("screw holes evenly on a circle")[0].title.startswith("A flange")
+    assert store(dialect).example("screw holes evenly on a circle").title.startswith("A flange")
 
 
 @pytest.mark.parametrize("snippet", snippets("build123d"))

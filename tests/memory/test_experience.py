@@ -181,7 +181,7 @@ def test_what_was_committed_survives_kill_9(tmp_path: Path) -> None:
         told |= {f"w{attempt} {k}" for k in range(int(last[-1]) + 1 if last else 1)}
         kept = {case.prompt for case in ExperienceStore(tmp_path).cases()}
         assert told <= kept
-        assert len(kept - told) <= attempt + 1  # at most the case that was committed and not yet told, of each writer
+        assert len(kept - told) <= attempt + 1  # at most one case of each writer that was committed but not yet reported
     assert json.loads(next(iter(ExperienceStore(tmp_path).export())))["schema"] == "articad.case/1"
 
 

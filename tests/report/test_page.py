@@ -290,7 +290,7 @@ def test_everything_can_be_done_from_the_keyboard(open_page: Open) -> None:
     assert_silent(opened)
 
 
-# Parts of which a corner of the box about them is seen outside the canvas.
+# Parts with a corner of their bounding box outside the canvas.
 BEYOND = """() => articad.view.groups.filter(group => {
     const V = articad.view.middle.constructor, { clientWidth: width, clientHeight: height } = articad.view.canvas;
     group.updateMatrixWorld(true);
@@ -374,7 +374,7 @@ def test_it_looks_as_it_does_in_the_documentation(open_page: Open) -> None:
 
 
 def showcase() -> str:
-    """Return the page of which the documentation shows a picture."""
+    """Return the page whose picture is in the documentation."""
     assembly = example("desk_lamp")
     return report_page(assembly, Documents(checks=assembly.check().to_json()))
 

@@ -7,7 +7,7 @@ import os
 import subprocess
 import sys
 
-# Sockets are refused before anything else is imported; of every module of the package it is told what it tried.
+# Sockets are refused before anything else is imported; each module of the package is listed with what it tried.
 PROGRAM = """
 import json, pkgutil, socket, sys
 tried = []

@@ -108,7 +108,7 @@ class Authoring:
                 return f"Dimensions.d_{name}"
             if name in _FUNCTIONS or name in ("e", "E"):
                 return name
-            raise ValueError(f"{value!r} names {name!r}, which is no dimension; there are {', '.join(self.dimensions) or 'none'}")
+            raise ValueError(f"{value!r} names {name!r}, which is not a dimension; there are {', '.join(self.dimensions) or 'none'}")
 
         return _NAME.sub(tied, value).replace(",", ";")
 
