@@ -133,7 +133,7 @@ def test_late_connections_that_do_not_hold_go_back_to_who_wrote_them(tmp_path: P
     run = made(tmp_path / "run", llm, variant="late", look=False, inspection=False)
 
     assert "E_MATE_OFFSET" in said(llm, "connect/2")
-    assert "flop is no part" in said(llm, "connect/3")
+    assert "flop is not a part" in said(llm, "connect/3")
     assert "could not be read" in said(llm, "connect/4")
     assert sorted(step for step in llm.steps if step.startswith("part")) == ["part/flap/1", "part/plate/1"]
     assert (run.checks() or {})["ok"]
