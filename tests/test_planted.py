@@ -36,7 +36,10 @@ audit run/export/mjcf/product.xml
 sim run/export/urdf/product.urdf
 convert run/export/urdf/product.urdf other.xml
 convert foreign.xml foreign.urdf
-convert run/export/step/product.step other.urdf
+convert run/export/step/product.step step/part.urdf
+export run --to freecad
+pull run run/export/freecad/product.FCStd --out pulled
+install freecad --remove
 adopt run/export/mjcf/product.xml --out adopted --no-audit
 render run --size 64 --out pictures
 show run --no-browser --out page.html
@@ -118,14 +121,18 @@ def test_no_tool_runs_what_a_stranger_planted_in_the_root(stranger: Path) -> Non
         "schema": {"topic": "plan"},
         "check_plan": {"design": "product"},
         "build_part": {"design": "product", "part": "tray"},
+        "build_parts": {"design": "product"},
+        "edit_plan": {"design": "product", "changes": {"parameters.width.value": 52.0}},
         "build": {"design": "product"},
         "check": {"design": "product"},
         "certify": {"design": "product", "budget_s": 1.0},
+        "verify_certificate": {"design": "product"},
         "audit": {"design": "product"},
         "sim": {"design": "product"},
         "render": {"design": "product"},
         "export": {"design": "product", "formats": ["urdf", "mjcf"]},
         "convert": {"source": "product/run/export/urdf/product.urdf", "target": "other.xml"},
+        "adopt": {"source": "product/run/export/urdf/product.urdf", "design": "adopted"},
         "edit_parameters": {"design": "product", "values": {"width": 50.0}},
         "explain": {"code": "E_DUP_NAME"},
         "docs": {"dialect": "build123d", "intent": "fillet"},

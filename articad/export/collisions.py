@@ -168,7 +168,7 @@ def adjacent(assembly: Assembly, pair: Pair) -> str:
 
 def _gap(assembly: Assembly, pair: Pair) -> float | None:
     """Return the distance of two parts at rest up to `TOUCHING_MM`, measured on the visual meshes; None if one has no solid."""
-    rest = assembly.mechanism.rest_poses()
+    rest = once(assembly, "rest", assembly.mechanism.rest_poses)
     sides = []
     for name in pair:
         meshes = [shape.placed for shape in assembly.parts[name].collisions if shape.mesh.is_closed and shape.mesh.volume > 0]

@@ -90,6 +90,7 @@ class Job:
         self._unplaced: set[str] = set()
         self._turned: set[tuple[str, str]] = set()  # connectors with an expression of their whole frame
         self._stiff: dict[str, list[Number]] = {}  # numbers of connectors that FreeCAD does not follow
+        self._drawn: dict[str, Json] = {}  # volume and centre of the meshes that stand for parts
 
     def to_json(self) -> Json:
         """Return the document's parameters, parts and joints, as JSON."""
@@ -103,7 +104,10 @@ class Job:
             "task": "freecad",
             "name": self.assembly.name,
             "ground": self.assembly.ground,
-            "records": [dumps(record) for record in records(self.assembly, self.model, MeshFiles(), ())],
+            "records": [
+                dumps(record | self._drawn.get(record.get("name", ""), {}) if record["kind"] == "part" else record)
+                for record in records(self.assembly, self.model, MeshFiles(), ())
+            ],
             "parameters": parameters,
             "parameters_label": "Parameters" if live == len(parameters) else f"Parameters ({split})",
             "parts": parts,
@@ -218,6 +222,9 @@ class Job:
             return {"kind": "empty"}
         self._tell("freecad.mesh", f"parts.{name}")
         (self.folder / f"{self.objects[name]}.bms").write_bytes(mesh_kernel(part.mesh))
+        if part.mesh.is_closed and part.mesh.volume > 0:
+            volume, com, *_ = part.mesh.solid_integrals()
+            self._drawn[name] = {"drawn": {"volume": volume, "com": com.tolist()}}
         return {"kind": "mesh", "file": f"{self.objects[name]}.bms"}
 
     def _file(self, path: Path, name: str) -> str:

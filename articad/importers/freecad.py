@@ -41,6 +41,7 @@ from articad.kinematics.mechanism import Mechanism
 from articad.processes import scratch
 
 SAME_MM, SAME_RAD = 1e-9, 1e-12  # a frame this close to its record is replaced by the record
+SAME_MESH = 1e-5  # the same of a mesh in single precision
 SAME_SHAPE = 1e-9  # a volume, relative, and a centre, relative to the part's size: below, the recorded mass holds
 STANDS_MM, STANDS_RAD = 1e-4, 1e-5  # by which a part may stand elsewhere than its joints put it, before a finding says so
 _TYPES = {
@@ -522,7 +523,7 @@ class _Model:
 def _updated(model: _Model, recorded: Assembly) -> Assembly:
     """Return the recorded assembly with the content that the document has now."""
     densities = {record.name: record.density for record in recorded.materials.values()}
-    sizes = _recorded_sizes(model)
+    sizes, meshes = _recorded(model, "solid"), _recorded(model, "drawn")
     names = model.recorded
     primary: dict[str, tuple[FreeCADObject, str, Joint | None]] = {}
     extra: list[tuple[FreeCADObject, str, Joint | None]] = []
@@ -554,7 +555,9 @@ def _updated(model: _Model, recorded: Assembly) -> Assembly:
     known = {now: name for name, now in names.items()}
     order = [*(names[name] for name in recorded.parts if name in names), *(name for name in model.parts if name not in known)]
     parts = {
-        name: _part_now(recorded.parts[known[name]], name, model, joints, densities, sizes) if name in known else model.part(name, joints)
+        name: _part_now(recorded.parts[known[name]], name, model, joints, densities, sizes, meshes)
+        if name in known
+        else model.part(name, joints)
         for name in order
     }
     T_ground = model.poses[model.ground]
@@ -701,15 +704,19 @@ def _records(model: _Model) -> list[dict[str, Any]]:
     return read_records(model.records.split("\n"), model.path) if model.records else []
 
 
-def _recorded_sizes(model: _Model) -> dict[str, dict[str, Any]]:
-    """Return volume, centre and inertia of each part as articad recorded them."""
-    return {
-        record["name"]: record["solid"] for record in _records(model) if record["kind"] == "part" and isinstance(record.get("solid"), dict)
-    }
+def _recorded(model: _Model, what: str) -> dict[str, dict[str, Any]]:
+    """Return what articad recorded of parts: "solid" of exact shapes, "drawn" of meshes; volume and centre, of solids inertia too."""
+    return {record["name"]: record[what] for record in _records(model) if record["kind"] == "part" and isinstance(record.get(what), dict)}
 
 
 def _part_now(
-    part: Part, name: str, model: _Model, joints: list[Joint], densities: Mapping[str, float], sizes: Mapping[str, dict[str, Any]]
+    part: Part,
+    name: str,
+    model: _Model,
+    joints: list[Joint],
+    densities: Mapping[str, float],
+    sizes: Mapping[str, dict[str, Any]],
+    meshes: Mapping[str, dict[str, Any]],
 ) -> Part:
     """Return a recorded part with the shape, connectors and colour that the document has, and the mass of that shape."""
     frames = model.connectors(name)
@@ -726,12 +733,15 @@ def _part_now(
     item = model.parts[name]
     material = item.text("ArticadMaterial") or part.material
     solid, color = model.solid(name), model.color(name) or part.color
-    size = sizes.get(part.name)
+    size, drawn = sizes.get(part.name), meshes.get(part.name)
     if solid is None:
         shapes = model.meshes(name)
-        mass = part.mass if size is None else None
-        if size is not None:
+        held = size is None if drawn is None else _same_mesh(shapes, drawn)
+        mass = part.mass if held else None
+        if not held and size is not None:
             model.missing(name, len(shapes))
+        elif not held:
+            model.reshaped(name)
         return replace(part, name=name, connectors=connectors, visuals=shapes, collisions=shapes, color=color, material=material, mass=mass)
     shown = Part.from_solid(name, solid, connectors=connectors, color=color, material=material)
     same = size is None or _same_shape(solid, size)
@@ -750,6 +760,18 @@ def _same_shape(solid: Solid, size: Mapping[str, Any]) -> bool:
         and float(np.linalg.norm(solid.com - com)) <= SAME_SHAPE * diagonal
         and float(np.linalg.norm(solid.inertia_mm5 - inertia)) <= SAME_SHAPE * float(np.linalg.norm(inertia))
     )
+
+
+def _same_mesh(shapes: tuple[Shape, ...], drawn: Mapping[str, Any]) -> bool:
+    """Return whether one mesh, which FreeCAD keeps in single precision, has the recorded volume and centre."""
+    if len(shapes) != 1 or not shapes[0].mesh.is_closed:
+        return False
+    mesh = shapes[0].placed
+    volume, com, *_ = mesh.solid_integrals()
+    recorded = float(drawn["volume"])
+    return abs(volume - recorded) <= SAME_MESH * recorded and float(
+        np.linalg.norm(com - np.asarray(drawn["com"], dtype=np.float64))
+    ) <= SAME_MESH * float(np.abs(mesh.vertices).max())
 
 
 def _mass_now(

@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import json
 import math
+import re
 import zipfile
 from pathlib import Path
 from typing import Any
@@ -20,7 +21,13 @@ REPORT_BYTES = 2**20
 MESH_BYTES = 2**28
 MAX_ROWS = 20_000_000  # of an array; the largest checked part so far has had 5 million triangles
 MAX_MM = 1e7  # a coordinate beyond 10 km is invalid
-_HEADER_BYTES = 4096  # of an array in a .npz: magic, version, shape
+# The header of an array in a .npz, as NumPy writes it in version 1.0. Not `np.lib.format`, whose `ast.literal_eval` fails now and then
+# (SystemError: AST constructor recursion depth mismatch) when several threads of Python 3.11 use it.
+_HEADER = re.compile(
+    rb"\x93NUMPY\x01\0(?P<length>..)(?P<text>\{'descr': '(?P<descr><\w\d)', 'fortran_order': False, "
+    rb"'shape': \((?P<rows>\d{1,18}),(?: (?P<columns>\d))?\), \} *\n)",
+    re.DOTALL,
+)
 _ARRAYS: dict[str, tuple[np.dtype[Any], int]] = {
     "vertices": (np.dtype("<f8"), 2),
     "triangles": (np.dtype("<i4"), 2),
@@ -113,15 +120,16 @@ def _arrays(content: bytes) -> dict[str, NDArray[Any]]:
 
 def _array(content: bytes, dtype: np.dtype[Any], dimensions: int) -> NDArray[Any]:
     """Return an array whose header promises exactly the bytes that follow it."""
-    stream = io.BytesIO(content)
-    if np.lib.format.read_magic(stream) != (1, 0):
-        raise PoisonedError("part.npz has an unknown version")
-    shape, fortran, found = np.lib.format.read_array_header_1_0(stream, max_header_size=_HEADER_BYTES)
-    if found != dtype or fortran or len(shape) != dimensions or (dimensions == 2 and shape[1] != 3) or shape[0] > MAX_ROWS:
+    header = _HEADER.match(content)
+    if header is None or int.from_bytes(header["length"], "little") != len(header["text"]):
+        raise PoisonedError("part.npz has an unknown header")
+    shape = tuple(int(size) for size in header.group("rows", "columns") if size is not None)
+    found = header["descr"].decode()
+    if found != dtype.str or len(shape) != dimensions or (dimensions == 2 and shape[1] != 3) or shape[0] > MAX_ROWS:
         raise PoisonedError(f"part.npz holds an array {shape} of {found}")
-    if len(content) - stream.tell() != math.prod(shape) * dtype.itemsize:
+    if len(content) - header.end() != math.prod(shape) * dtype.itemsize:
         raise PoisonedError(f"part.npz claims an array {shape}, but has bytes for another")
-    return np.frombuffer(content, dtype, offset=stream.tell()).reshape(shape)
+    return np.frombuffer(content, dtype, offset=header.end()).reshape(shape)
 
 
 def read_bytes(path: Path, limit: int = MESH_BYTES) -> bytes:

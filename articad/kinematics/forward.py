@@ -237,7 +237,7 @@ class LoopModel:
                 sine = math.sqrt(a * a + b * b + c * c) + 1e-300  # of half the angle; never zero, and too small to matter
                 factor = math.copysign(2.0, w) * math.atan2(sine, abs(w)) / sine
                 r += (x / length, y / length, z / length, a * factor, b * factor, c * factor)
-        return np.array(r), D.reshape(len(r), -1)  # Pinocchio drops the axis of a single freedom
+        return np.array(r), D.reshape(len(r), self._model.nv)  # Pinocchio drops the axis of a single freedom
 
 
 def _residual_rate(residual: Sequence[float], length: float) -> list[float]:

@@ -247,7 +247,7 @@ def assert_exports_are_whole(assembly: Assembly, folder: Path) -> None:
             assert read == pytest.approx(volumes, rel=WITHIN)
         elif name == "glb":
             scene = trimesh.load_scene(folder / name / bundle.main)
-            assert scene.to_geometry().volume == pytest.approx(sum(volumes.values()) * 1e-9, rel=1e-3)
+            assert scene.to_geometry().volume == pytest.approx(sum(volumes.values()) * 1e-9, rel=WITHIN)
         elif name == "3mf":
             read = {path.removesuffix(".3mf"): trimesh.load_scene(folder / name / path).to_geometry().volume for path in bundle.files}
             assert read == pytest.approx({valid_name(part): volume for part, volume in volumes.items()}, rel=1e-6)

@@ -95,9 +95,9 @@ def test_the_flag_is_for_urdf(tmp_path: Path, capsys: pytest.CaptureFixture[str]
         '<mujoco><worldbody><body name="a"><joint name="j" pos="0 0 .3" axis="1 0 0"/><geom size=".1"/></body></worldbody></mujoco>'
     )
 
-    assert cli.main(["convert", str(source), str(tmp_path / "moved.urdf")]) == 0
+    assert cli.main(["convert", str(source), str(tmp_path / "moved.urdf"), "-v"]) == 0
     assert "0, 0, 300 mm" in capsys.readouterr().out
-    assert cli.main(["convert", str(source), str(tmp_path / "kept.urdf"), "--keep-frames"]) == 0
+    assert cli.main(["convert", str(source), str(tmp_path / "kept.urdf"), "--keep-frames", "-v"]) == 0
     assert "frame" not in capsys.readouterr().out
     assert cli.main(["convert", str(source), str(tmp_path / "a.xml"), "--keep-frames"]) == 3
     assert "no option keep_frames" in capsys.readouterr().err

@@ -58,7 +58,7 @@ def test_a_dae_that_is_packed_or_declares_entities_is_refused(content: bytes, tm
 def test_a_missing_unit_of_length_is_refused(tmp_path: Path) -> None:
     (tmp_path / "a.dae").write_text(DAE.format(unit='<unit meter="0"/>', up="Z_UP"))
 
-    with pytest.raises(ReadError, match="no length"):
+    with pytest.raises(ReadError, match="not a valid length"):
         read_mesh(tmp_path / "a.dae")
 
 

@@ -116,7 +116,7 @@ def test_a_platform_on_parallel_rods_translates_and_turns_only_on_three(n: int, 
     assert (turned < 1e-9) == (mobility == 3)
     if mobility == 2:
         (found,) = mechanism.findings().of("W_NEAR_SINGULAR")
-        assert "3 freedoms to first order at rest and 2 in truth" in found.message
+        assert "3 freedoms to first order at rest and 2 in fact" in found.message
         platform = mechanism.poses([0.1, 0.0])[1]  # the driver moves the platform, and does not turn it
         assert platform.angle_to(mechanism.poses(mechanism.rest)[1]) < 1e-8
 
