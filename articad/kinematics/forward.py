@@ -28,6 +28,7 @@ _DATA_LIMIT_BYTES = 1 << 30
 MOST_FREEDOMS = 60  # of models that are made unasked: a workspace of 14 MB, which takes as long to make as a hundred evaluations
 _ONE = np.ones(())  # an array: making one from a number takes longer than the signs of ten parts
 _CLOSED = 1e-13  # |r| of a loop: the Jacobian changes only by rounding
+_TINY = 1e-160  # the sum of squares of any finite numbers times it does not overflow
 
 
 class _Map(NamedTuple):
@@ -96,9 +97,9 @@ class CompiledModel:
         """
         q = self._map.q(Q)
         unit: FloatArray = self._pin.normalize(self.model, q)
-        with np.errstate(invalid="ignore"):
-            off = unit - q  # for a quaternion as long as its deviation from unit length; NaN where a coordinate is not finite
-        if not off.dot(off) < QUATERNION_TOLERANCE**2:
+        small = q * _TINY  # of finite length exactly if all coordinates are finite
+        # unit − q is as long as the quaternions are off unit length
+        if not (small.dot(small) < math.inf and (off := unit - q).dot(off) < QUATERNION_TOLERANCE**2):
             self.mechanism.layout.normalized(Q)  # raises the exact error, if there is one: here the deviations of all balls were summed
         return unit
 
@@ -221,7 +222,7 @@ class LoopModel:
             loops = r.reshape(-1, 6).tolist()
             rates = np.array([_residual_rate(loop, length) for loop, (_, length) in zip(loops, self._mismatches, strict=True)])
             D = (rates.reshape(-1, 6, 6) @ D.reshape(-1, 6, D.shape[1])).reshape(D.shape)
-        return r, D * self._weights
+        return r, np.multiply(D, self._weights, D)
 
     def _evaluated(self, q: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return, at Pinocchio's configuration, the residuals `(6 loops,)` and Pinocchio's constraint Jacobian `(6 loops, nv)`."""
@@ -235,7 +236,7 @@ class LoopModel:
             for M, length in self._mismatches:
                 x, y, z, a, b, c, w = pin.SE3ToXYZQUATtuple(M)
                 sine = math.sqrt(a * a + b * b + c * c) + 1e-300  # of half the angle; never zero, and too small to matter
-                factor = math.copysign(2.0, w) * math.atan2(sine, abs(w)) / sine
+                factor = 2.0 * math.atan(sine / (w or 1e-300)) / sine  # φ = 2 atan(|v| / w) v / |v|, at most π long
                 r += (x / length, y / length, z / length, a * factor, b * factor, c * factor)
         return np.array(r), D.reshape(len(r), self._model.nv)  # Pinocchio drops the axis of a single freedom
 

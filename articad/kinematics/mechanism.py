@@ -266,11 +266,11 @@ class Mechanism:
                 others.
             LoopError: E_LOOP_OPEN if a loop cannot be closed at rest.
         """
-        compiled = self._compiled_model
-        if np.ndim(q) != 1 or compiled is None:
-            return self.arrays.poses(self._columns(q))
+        values, compiled = np.asarray(q, dtype=np.float64), self._compiled_model
+        if values.ndim != 1 or compiled is None:
+            return self.arrays.poses(self._columns(values))
         # of a tree the drivers are all coordinates, and the compiled model looks for NaN and for the length of quaternions
-        return compiled.poses(self._drivers_array(q) if self.is_tree else self._columns(q))
+        return compiled.poses(values if self.is_tree and len(values) == self.layout.n_columns else self._columns(values))
 
     @cached_property
     def _compiled_model(self) -> CompiledModel | None:
