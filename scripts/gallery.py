@@ -36,9 +36,9 @@ def _page(folders: list[Path]) -> str:
         "# Gallery",
         "",
         "Every example of the repository, drawn by `scripts/gallery.py` from the plan and the part scripts, with no display or GPU:",
-        "two views, then for each driver the two ends of its motion, or the first quarter of more than half a turn. Parts that do not move are faded.",
-        "Axes point along +z of the parent connector, arrows turn by the right hand; a dot is an axis towards you, a cross one away from you.",
-        "*Move it* opens the example with a slider for each driver, made when this site was.",
+        "two views, then for each driver the two ends of its motion, or the first quarter of a motion of more than half a turn. Parts that do not move are faded.",
+        "Axes point along +z of the parent connector, arrows follow the right-hand rule; a dot is an axis towards you, a cross one away from you.",
+        "*Move it* opens the example with a slider for each driver, built together with this site.",
         "",
     ]
     for folder in folders:

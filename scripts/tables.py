@@ -95,8 +95,8 @@ def losses() -> str:
 
 
 ABOUT_FORMATS = """\
-`convert`, `read` and `write` know these formats by the ending of the file. What each holds of an assembly, feature by feature, is in
-[Formats and their losses](losses.md). An export reports what is lost; articad's own files come back as they were, because URDF, MJCF and SDF carry
+`convert`, `read` and `write` recognise these formats by the ending of the file. What each format keeps of an assembly, feature by feature, is in
+[Formats and their losses](losses.md). An export reports what is lost; articad's own files are read back unchanged, because URDF, MJCF and SDF carry
 the rest in metadata that other programs ignore."""
 
 
@@ -108,7 +108,7 @@ def all_formats() -> str:
         NOTE,
         ABOUT_FORMATS,
         "",
-        "| format | endings | read | written | holds | puts back of a file of the format | options |",
+        "| format | endings | read | written | holds | restores from a file of the same format | options |",
     ]
     lines += ["|---|---|---|---|---|---|---|"]
     for row in formats.FORMATS:
@@ -132,7 +132,7 @@ def all_formats() -> str:
 ABOUT_MESHES = """\
 A mesh of a URDF or SDF has the coordinates that its file states, in metres, times the `scale` of the element that names it; x, y and z of the file are those of
 the link. STL, OBJ and PLY state no unit. The unit of a DAE (`<unit meter=…>`) is applied; Pinocchio ignores it. The up axis of a
-DAE, and y up in glTF, are ignored, because readers of URDF (Pinocchio, and trimesh below yourdfpy) use the coordinates as they are, and a robot must look
+DAE, and y up in glTF, are ignored, because readers of URDF (Pinocchio, and yourdfpy through trimesh) use the coordinates as they are, and a robot must look
 the same in all of them. The nodes of a DAE or glTF are placed. Meshes of MJCF are those that MuJoCo compiles."""
 
 

@@ -1310,20 +1310,20 @@ def _subject(row: str) -> str:
 
 PAGE = """# What conversions change
 
-This page says what articad's conversions between URDF and MJCF keep of robots that other people made: {models:,} models, the URDF and MJCF
-files of seven packages from PyPI. It has {conversions:,} of {all:,} conversions. A program wrote it that knows nothing of articad but the file that it wrote
-and the report of its losses. The engines Pinocchio (for URDF) and MuJoCo (for MJCF) compile the original and the conversion, and the program
-compares the compiled models field by field. Two numbers are the same when they differ by less than {relative:g} of the largest number of their
+This page states what articad's conversions between URDF and MJCF keep of robots that other people made: {models:,} models, the URDF and MJCF
+files of seven packages from PyPI. It has {conversions:,} of {all:,} conversions. The comparing program
+sees only the files that articad wrote and the reports of their losses, nothing else of articad. The engines Pinocchio (for URDF) and MuJoCo (for MJCF) compile the original and the conversion, and the program
+compares the compiled models field by field. Two numbers are equal if they differ by less than {relative:g} of the largest number of their
 field.
 
-- A *named difference* is one that a row of the conversion's losses speaks of: of this field of this element. Every conversion prints these rows.
+- A *named difference* is reported by a row of the conversion's losses, for this field of this element. Every conversion prints these rows.
 - A *silent difference* is any other. There are {silent:,}.
 - A *row without a difference* is a loss that no engine sees, such as an element of another program, a picture or the name of a shape.
 
 ## The table
 
-*Models* are files; those *not run* had not been converted when the page was written. The refused ones are not compiled by the engine of the
-original, not converted by articad, or not compiled once they are converted.
+*Models* are files; those *not run* had not been converted when the page was written. Refused models are not compiled by the engine of the
+original, not converted by articad, or not compiled after the conversion.
 
 | package | conversion | models | not run | compared | refused by the engine | refused by articad | copy refused | rows of losses | named differences | rows without a difference | silent differences |
 | --- | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |
@@ -1333,29 +1333,29 @@ Of the 1,000 random objects that PyBullet ships, ten are converted.
 ## What is compared
 
 {compared}
-Shapes are compared where the engine can read all meshes of the file; Pinocchio reads none where one is missing.
+Shapes are compared if the engine can read all meshes of the file; Pinocchio reads none if one is missing.
 
-## What is refused, by whom and why
+## Refused models, and why
 
 | package | file | by | why |
 | --- | --- | --- | --- |
 {refused}
-Most of the MJCF files among these are pieces that other files include.
+Most of these MJCF files are fragments that other files include.
 
 ## Rows without a difference
 
-| what the rows speak of | urdf→urdf | urdf→mjcf | mjcf→urdf | mjcf→mjcf |
+| subject of the rows | urdf→urdf | urdf→mjcf | mjcf→urdf | mjcf→mjcf |
 | --- | ---: | ---: | ---: | ---: |
 {idle}
-## To repeat it
+## How to repeat it
 
 ```sh
-scripts/corpus DIR                            # compares, and checks that this page is what comes out
+scripts/corpus DIR                            # compares, and checks that the result is this page
 ARTICAD_CORPUS_WRITE=1 scripts/corpus DIR     # writes the page
 ```
 
 The script fetches the packages into DIR (2 GB) without installing them and runs `pytest -m corpus tests/importers/test_corpus.py`, which takes
-about an hour of one processor. Each result is appended to a file in `DIR.results` when it is made, so that a run that was interrupted continues;
+about an hour of one processor. Each result is appended to a file in `DIR.results` as soon as it exists, so an interrupted run can continue;
 results of other versions of the code are not used. For one file, `python -m tests.differences FILE TARGET FOLDER` prints what differs.
 """
 

@@ -47,7 +47,7 @@ if TYPE_CHECKING:
         "--collision",
         choices=["pieces"],
         default=None,
-        help="with --fix: divide collision meshes into convex pieces inside them, where simulators would take the hull",
+        help="with --fix: divide collision meshes into convex pieces inside them, where simulators would use the hull",
     ),
     argument("--report", metavar="PAGE.html", help="write the report as a page"),
     SANDBOX,

@@ -61,7 +61,7 @@ def _build(options: argparse.Namespace, terminal: Terminal) -> Report:
     argument(
         "--joints",
         action="store_true",
-        help="also judge by which surfaces each joint is made, and what they leave free (builds a plan's parts)",
+        help="also report which surfaces form each joint, and which motions they leave free (builds a plan's parts)",
     ),
     SANDBOX,
 )

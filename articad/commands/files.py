@@ -172,7 +172,7 @@ def _audit_of(source: Path, root: str | None, terminal: Terminal) -> Report:
 
 @command(
     "pull",
-    "Take home what was changed in a run's FreeCAD document: a new run with a new version of the plan.",
+    "Bring edits of a run's FreeCAD document back: make a new run with a new version of the plan.",
     argument("run", metavar="RUN"),
     argument("document", metavar="DOCUMENT.FCStd"),
     argument("--out", metavar="DIR", help="the new run; by default a folder below runs/"),

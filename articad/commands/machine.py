@@ -44,7 +44,7 @@ def _doctor(options: argparse.Namespace, terminal: Terminal) -> Report:
     "install",
     "Install a program that pip cannot install: FreeCAD, on Debian and Ubuntu, as root.",
     argument("program", choices=["freecad"], help="the program"),
-    argument("--next", action="store_true", help="the next FreeCAD of Debian's unstable suite, beside the other (3 GB)"),
+    argument("--next", action="store_true", help="also install the newer FreeCAD of Debian's unstable suite (3 GB)"),
     argument("--remove", action="store_true", help="remove what this command installed"),
     needs_libraries=False,
 )

@@ -19,7 +19,7 @@ CERTIFICATE = "certificate.json"
 
 @command(
     "certify",
-    "Prove that the parts of a run do not collide while its joints move over their whole ranges.",
+    "Prove that the parts of a run do not collide while its joints move over their whole ranges, one or two at a time.",
     argument("run", metavar="RUN"),
     argument("--joints", metavar="A,B", type=names, default=None, help="joints to prove (all that move)"),
     argument("--pairs", action=argparse.BooleanOptionalAction, default=True, help="move joints two at a time as well (yes)"),

@@ -113,7 +113,7 @@ CODES: dict[str, Code] = {
         "plan",
         "design",
         "A part of the environment is the ground, moves, or carries another part.",
-        "Fix it, as the child of one fixed joint, to the part that it stands still with.",
+        "Attach it as the child of one fixed joint to the part relative to which it does not move.",
     ),
     "E_JOINT_SELF": Code("plan", "design", "A joint connects a part with itself.", "Name two different parts."),
     "E_JOINT_DUP": Code("plan", "design", "Two joints connect the same two connectors.", "Remove one."),
@@ -217,7 +217,7 @@ CODES: dict[str, Code] = {
         "plan",
         None,
         "A mirrored part keeps connector names or labels that contain left or right.",
-        "Nothing needs to be done; or name the source's connectors without a side.",
+        "Nothing needs to be done, or name the source's connectors without a side.",
     ),
     # --- plan: couplings, fits, waivers, mechanisms
     "E_COUPLING": Code(
@@ -290,7 +290,12 @@ CODES: dict[str, Code] = {
     "W_NEAR_SINGULAR": Code(
         "motion", "design", "A loop is close to a singular configuration.", "Check for a misaligned axis or a dead point."
     ),
-    "W_SHAKY": Code("plan", "design", "The linkage moves to first order only.", "Change a length: it is rigid, but barely."),
+    "W_SHAKY": Code(
+        "plan",
+        "design",
+        "The linkage can move to first order only: it is rigid, but shaky.",
+        "Change a length, so that it moves or is firmly rigid.",
+    ),
     "W_IDLE_FREEDOM": Code(
         "plan", "design", "A freedom moves one part alone and drives nothing.", "This is correct for a leg that may spin; otherwise fix it."
     ),
@@ -412,12 +417,12 @@ CODES: dict[str, Code] = {
         "Solve the assembly in FreeCAD and save it.",
     ),
     "I_FREECAD_EDIT": Code(
-        "import", None, "A FreeCAD document was changed after articad wrote it; the change is taken over.", "Nothing needs to be done."
+        "import", None, "A FreeCAD document was changed after articad wrote it; articad adopts the change.", "Nothing needs to be done."
     ),
     "W_FREECAD_EDIT": Code(
         "import",
         None,
-        "A FreeCAD document was changed after articad wrote it; the change is not taken over.",
+        "A FreeCAD document was changed after articad wrote it; articad does not adopt the change.",
         "Make the change in the plan or a part script, or keep the document.",
     ),
     "W_FREECAD_SHAPE": Code("import", None, "The shape of a FreeCAD part is not one valid solid.", "Repair it in FreeCAD."),
@@ -456,7 +461,7 @@ CODES: dict[str, Code] = {
         "motion",
         None,
         "Sampling leaves out part of what a mechanism can do.",
-        "Nothing needs to be done; or look at the named motion by itself.",
+        "Nothing needs to be done, or check the named motion separately.",
     ),
     "W_NOT_INSERTABLE": Code(
         "interference",
@@ -467,31 +472,31 @@ CODES: dict[str, Code] = {
     "W_NOT_CERTIFIED": Code(
         "motion", "design", "Two parts are too close to prove that their motion is free; it was sampled.", "Give them a clearance."
     ),
-    "E_FIT_TIGHT": Code("fit", "code", "A joint's gap is smaller than its fit.", "Enlarge the bore or thin the pin by the named amount."),
-    "E_FIT_LOOSE": Code("fit", "code", "A joint's gap is larger than its fit.", "Narrow the bore or thicken the pin by the named amount."),
+    "E_FIT_TIGHT": Code("fit", "code", "A joint's gap is smaller than its fit allows.", "Enlarge the bore or thin the pin by the named amount."),
+    "E_FIT_LOOSE": Code("fit", "code", "A joint's gap is larger than its fit allows.", "Narrow the bore or thicken the pin by the named amount."),
     "W_FIT_UNRESOLVED": Code(
-        "fit", "design", "The meshes are too coarse to tell whether a fit is kept.", "Mesh the two parts with a smaller deflection."
+        "fit", "design", "The meshes are too coarse to decide whether a fit is met.", "Mesh the two parts with a smaller deflection."
     ),
     "W_FIT_NOMINAL": Code(
-        "fit", "design", "A bore has another diameter than the one for which its fit is named.", "State the fit for the bore's diameter."
+        "fit", "design", "A bore's diameter differs from the nominal diameter of its fit.", "State the fit for the bore's diameter."
     ),
     "E_FIT_CONTACT": Code(
         "fit", "design", "Contact is forbidden but found, or required but absent.", "Move the surfaces by the named amount."
     ),
     "W_JOINT_NOT_MADE": Code(
-        "fit", "design", "No surfaces of two parts make the joint between them.", "Give one part a pin and the other its bore, or a guide."
+        "fit", "design", "No surfaces of two parts form the joint between them.", "Give one part a pin and the other its bore, or a guide."
     ),
     "W_JOINT_PARTLY_MADE": Code(
-        "fit", "design", "The surfaces of a joint leave motions free that it should remove.", "Add surfaces that stop the named motions."
+        "fit", "design", "The surfaces of a joint leave motions free that the joint should block.", "Add surfaces that stop the named motions."
     ),
     "W_JOINT_LEAVES": Code(
         "fit",
         "design",
-        "A joint that is made at rest loses its surfaces in motion.",
+        "Surfaces that form a joint at rest no longer form it elsewhere in its range.",
         "Lengthen the guide or the pin, or shorten the range.",
     ),
     "W_JOINT_SHORT": Code(
-        "fit", "design", "A slide keeps too little of its guide at an end of its range.", "Lengthen the guide, or shorten the travel."
+        "fit", "design", "A slide has too little of its guide engaged at an end of its range.", "Lengthen the guide, or shorten the travel."
     ),
     # --- model
     "E_REPLY_SCHEMA": Code(
@@ -522,10 +527,10 @@ CODES: dict[str, Code] = {
         "model", None, "A model that saw pictures of a part lists what none of them shows.", "Nothing: it was not judged."
     ),
     "E_VERDICT_PLACEMENT": Code(
-        "model", None, "The judge finds parts missing, misplaced or of the wrong appearance.", "See what was expected."
+        "model", None, "The judge finds parts missing, misplaced or of the wrong appearance.", "Compare with what the finding expects."
     ),
-    "E_VERDICT_INTERFERENCE": Code("model", None, "The judge finds interference that no exact check covered.", "See what was expected."),
-    "E_VERDICT_MOTION": Code("model", None, "The judge finds that the product does not move as requested.", "See what was expected."),
+    "E_VERDICT_INTERFERENCE": Code("model", None, "The judge finds interference that no exact check covered.", "Compare with what the finding expects."),
+    "E_VERDICT_MOTION": Code("model", None, "The judge finds that the product does not move as requested.", "Compare with what the finding expects."),
     "I_OVERRULED": Code(
         "model",
         None,
@@ -548,7 +553,7 @@ CODES: dict[str, Code] = {
         "model",
         "design",
         "An edit changes a part that it must not touch.",
-        "Name the part, or change something narrower, such as the part's own number instead of a shared parameter.",
+        "Name the part, or make a smaller change, such as the part's own number instead of a shared parameter.",
     ),
     "E_EDIT_UNEQUAL": Code(
         "model",
@@ -568,7 +573,7 @@ CODES: dict[str, Code] = {
         "model",
         None,
         "A replay's geometry differs by rounding, because of another kernel, version or platform.",
-        "Nothing needs to be done; or record again.",
+        "Nothing needs to be done, or record again.",
     ),
     "E_REPLAY_DIFFERS": Code(
         "model", None, "A replay made different files than the recording.", "Replay with the versions that recorded it, or record again."
@@ -596,8 +601,8 @@ CODES: dict[str, Code] = {
     "I_EFFORT_ASSUMED": Code(
         "export",
         None,
-        "Effort, velocity or damping of a joint are computed, because the input does not state them.",
-        "State them if the drives are known.",
+        "The effort, velocity or damping of a joint is computed, because the input does not state it.",
+        "State it if the drive is known.",
     ),
     "E_REPLACES": Code(
         "export", None, "A file to be written would replace one that belongs to something else.", "Write into another folder."
@@ -656,7 +661,7 @@ CODES: dict[str, Code] = {
     "E_AUDIT_TWO_PARENTS": Code("audit", None, "A link is the child of several joints.", "Keep one; closed loops need MJCF."),
     "E_AUDIT_ROOTS": Code("audit", None, "A file has no root link, or several.", "Connect every link to one root."),
     "E_AUDIT_CIRCLE": Code("audit", None, "Links form a circle.", "Remove one of the joints between them."),
-    "E_AUDIT_MIMIC": Code("audit", None, "A joint mimics one that does not exist or does not move.", "Name a joint that moves."),
+    "E_AUDIT_MIMIC": Code("audit", None, "A joint mimics a joint that does not exist or does not move.", "Name a joint that moves."),
     "W_AUDIT_NAME": Code("audit", None, "Names contain characters that ROS or USD do not accept.", "Use letters, digits and underscores."),
     "W_AUDIT_LONG_NAME": Code("audit", None, "The robot's name is a whole sentence.", "Give it a short name."),
     "E_AUDIT_NO_INERTIA": Code(
@@ -673,7 +678,7 @@ CODES: dict[str, Code] = {
     "W_AUDIT_INERTIA_SHAPE": Code(
         "audit",
         None,
-        "An inertia is larger than possible for the body's shape.",
+        "An inertia is larger than the body's shape allows.",
         "Compute it from the shape; check its unit and reference point.",
     ),
     "W_AUDIT_COM": Code(
@@ -682,12 +687,12 @@ CODES: dict[str, Code] = {
     "W_AUDIT_DENSITY": Code("audit", None, "A body is denser than osmium, or less dense than air.", "Check the units of mass and mesh."),
     "E_AUDIT_LIMITS_ORDER": Code("audit", None, "A lower limit is above its upper limit.", "Swap the two."),
     "W_AUDIT_NO_LIMITS": Code(
-        "audit", None, "A hinge or slide has no limits, which readers interpret as zero.", "Give lower and upper, or make it continuous."
+        "audit", None, "A revolute or prismatic joint has no limits, which readers interpret as zero.", "Give lower and upper, or make it continuous."
     ),
     "W_AUDIT_LOCKED": Code("audit", None, "Both limits of a joint are equal.", "Make it fixed, or open its range."),
     "W_AUDIT_DEGREES": Code("audit", None, "Limits in radians look like degrees.", "Write radians."),
     "W_AUDIT_ENDLESS": Code(
-        "audit", None, "A limited joint spans a full turn or more.", "Make it continuous, unless a cable or thread stops it."
+        "audit", None, "A limited joint spans a full turn or more.", "Make it continuous, unless a cable or a thread stops it."
     ),
     "I_AUDIT_ZERO_OUTSIDE": Code("audit", None, "A range excludes zero, where readers place the joint.", "Move the joint's origin."),
     "W_AUDIT_NO_EFFORT": Code(
@@ -730,7 +735,7 @@ CODES: dict[str, Code] = {
     "I_AUDIT_SHARED": Code(
         "audit",
         None,
-        "Shapes overlap that simulators never let collide.",
+        "Shapes overlap whose collision simulators never check.",
         "Nothing needs to be done if the shapes represent bodies that fit.",
     ),
     "W_AUDIT_PAIR_COLLISION": Code(

@@ -204,20 +204,20 @@ def _run(command: list[str]) -> subprocess.CompletedProcess[str]:
 SIMULATORS: Final = ("MuJoCo", "PyBullet", "Newton")
 OTHERS: Final = ("simcheck mjcf", "simcheck urdf", "check_urdf urdf", "Pinocchio urdf", "USD validator usd")
 
-_HEAD = """# What simulators and validators say of the examples
+_HEAD = """# What simulators and validators say about the examples
 
 Written by `python -m tests.export.judges`, which exports the examples with default settings and runs the judges on the files. Versions are
 those of `tests/export/judges.lock` and `requirements.lock`.
 
-"100 % of 4" means: the joint that came least far, of the 4 that were driven, covered 100 % of its range. A joint that follows in a loop is held
-to the range that kinematics computes for it. `articad sim` asks for 99 %.
+"100 % of 4" means: 4 joints were driven, and the one that covered the smallest share of its range covered 100 %. The range of a follower in a loop is
+the one that kinematics computes for it. `articad sim` requires 99 %.
 
-- *loops open*: URDF has no closed loops, and PyBullet leaves out the equality constraints of MJCF. "not driven" counts the joints whose motion
-  such a loop determines.
-- Newton runs its MuJoCo solver on the processor. Its readers, mimics, loops and contacts are its own. Newton 1.8 closes only those loops
-  correctly that are closed where all joints are zero. From USD it reads both frames of a loop joint, but its solver computes the anchor on the
-  child from the poses at zero (newton-physics/newton, issue 2293 and pull request 4248). *Anchors of loops corrected* means: the judge put the
-  anchors that Newton had read in their place; without that, the loop is another mechanism. From MJCF, Newton's reader drops the position of
+- *loops open*: URDF has no closed loops, and PyBullet leaves out the equality constraints of MJCF. "3 of open loops not driven" counts the joints whose motion
+  such a loop would determine.
+- Newton runs its MuJoCo solver on the processor. Its readers, mimics, loops and contacts are its own. Newton 1.8 closes a loop correctly
+  only if it is closed where all joints are zero. From USD it reads both frames of a loop joint, but its solver computes the anchor on the
+  child from the poses at zero (newton-physics/newton, issue 2293 and pull request 4248). *Anchors of loops corrected* means: the judge
+  restored the anchors that Newton had read; otherwise, the loop is a different mechanism. From MJCF, Newton's reader drops the position of
   the second site of a `connect`, so that file is not judged.
 - An empty cell, or an example that is not listed, was not judged.
 - PyBullet does not collide parts of one body unless it is asked to, so its rows do not test collision shapes.
@@ -236,7 +236,7 @@ def page(record: Mapping[str, Mapping[str, Any]]) -> str:
     lines += ["", "## Requirements that are not met, and why", ""]
     lines += [f"- `{name}`: {reason}." for name, reason in ARGUED.items()]
     lines.append(
-        "- simcheck's `engine.rest_contacts` on URDFs of closed loops: simcheck takes zero for the rest pose. A loop need not close where all "
+        "- simcheck's `engine.rest_contacts` on URDFs of closed loops: simcheck uses zero as the rest pose. A loop need not close where all "
         "joints are zero, and URDF has no other pose. The MJCF of the same model rests at its key `home`."
     )
     return "\n".join(lines) + "\n"
