@@ -472,8 +472,12 @@ CODES: dict[str, Code] = {
     "W_NOT_CERTIFIED": Code(
         "motion", "design", "Two parts are too close to prove that their motion is free; it was sampled.", "Give them a clearance."
     ),
-    "E_FIT_TIGHT": Code("fit", "code", "A joint's gap is smaller than its fit allows.", "Enlarge the bore or thin the pin by the named amount."),
-    "E_FIT_LOOSE": Code("fit", "code", "A joint's gap is larger than its fit allows.", "Narrow the bore or thicken the pin by the named amount."),
+    "E_FIT_TIGHT": Code(
+        "fit", "code", "A joint's gap is smaller than its fit allows.", "Enlarge the bore or thin the pin by the named amount."
+    ),
+    "E_FIT_LOOSE": Code(
+        "fit", "code", "A joint's gap is larger than its fit allows.", "Narrow the bore or thicken the pin by the named amount."
+    ),
     "W_FIT_UNRESOLVED": Code(
         "fit", "design", "The meshes are too coarse to decide whether a fit is met.", "Mesh the two parts with a smaller deflection."
     ),
@@ -487,7 +491,10 @@ CODES: dict[str, Code] = {
         "fit", "design", "No surfaces of two parts form the joint between them.", "Give one part a pin and the other its bore, or a guide."
     ),
     "W_JOINT_PARTLY_MADE": Code(
-        "fit", "design", "The surfaces of a joint leave motions free that the joint should block.", "Add surfaces that stop the named motions."
+        "fit",
+        "design",
+        "The surfaces of a joint leave motions free that the joint should block.",
+        "Add surfaces that stop the named motions.",
     ),
     "W_JOINT_LEAVES": Code(
         "fit",
@@ -529,8 +536,12 @@ CODES: dict[str, Code] = {
     "E_VERDICT_PLACEMENT": Code(
         "model", None, "The judge finds parts missing, misplaced or of the wrong appearance.", "Compare with what the finding expects."
     ),
-    "E_VERDICT_INTERFERENCE": Code("model", None, "The judge finds interference that no exact check covered.", "Compare with what the finding expects."),
-    "E_VERDICT_MOTION": Code("model", None, "The judge finds that the product does not move as requested.", "Compare with what the finding expects."),
+    "E_VERDICT_INTERFERENCE": Code(
+        "model", None, "The judge finds interference that no exact check covered.", "Compare with what the finding expects."
+    ),
+    "E_VERDICT_MOTION": Code(
+        "model", None, "The judge finds that the product does not move as requested.", "Compare with what the finding expects."
+    ),
     "I_OVERRULED": Code(
         "model",
         None,
@@ -687,7 +698,10 @@ CODES: dict[str, Code] = {
     "W_AUDIT_DENSITY": Code("audit", None, "A body is denser than osmium, or less dense than air.", "Check the units of mass and mesh."),
     "E_AUDIT_LIMITS_ORDER": Code("audit", None, "A lower limit is above its upper limit.", "Swap the two."),
     "W_AUDIT_NO_LIMITS": Code(
-        "audit", None, "A revolute or prismatic joint has no limits, which readers interpret as zero.", "Give lower and upper, or make it continuous."
+        "audit",
+        None,
+        "A revolute or prismatic joint has no limits, which readers interpret as zero.",
+        "Give lower and upper, or make it continuous.",
     ),
     "W_AUDIT_LOCKED": Code("audit", None, "Both limits of a joint are equal.", "Make it fixed, or open its range."),
     "W_AUDIT_DEGREES": Code("audit", None, "Limits in radians look like degrees.", "Write radians."),

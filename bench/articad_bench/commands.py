@@ -37,7 +37,9 @@ if TYPE_CHECKING:
         metavar="DIR",
         help="your copy of CADPrompt (shapes), or of ACD, PartNet-Mobility or Fusion 360 joints (objects), for tasks",
     ),
-    argument("--refine", metavar="N", type=positive, default=None, help="same as --rounds N+1 --repairs N: how often an answer may be repaired"),
+    argument(
+        "--refine", metavar="N", type=positive, default=None, help="same as --rounds N+1 --repairs N: how often an answer may be repaired"
+    ),
     argument("--judge", metavar="NAME", dest="judges", action="append", default=[], help="a model that scores; repeat it for several"),
     argument("--tasks", metavar="DIR", help="folder of tasks (the project's own)"),
     argument("--task", metavar="NAME", dest="names", action="append", default=[], help="only this one; may be repeated"),
