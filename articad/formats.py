@@ -96,7 +96,7 @@ FORMATS: Final = (
     ),
     Format("freecad", (".fcstd",), write_freecad, read_freecad, "parts with their features, an assembly with joints and limits"),
     Format("step", (".step", ".stp"), write_step, read_step, "B-rep of the parts where they rest, names, colours, sub-assemblies"),
-    Format("glb", (".glb",), write_glb, None, "meshes, names, colours, and an animation for every joint that drives"),
+    Format("glb", (".glb",), write_glb, None, "meshes, names, colours, and an animation for every driver"),
     Format("3mf", (".3mf",), write_3mf, None, "one closed mesh for each part, as it is printed"),
     Format(
         "sdf",

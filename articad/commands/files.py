@@ -229,7 +229,7 @@ def _pull(options: argparse.Namespace, terminal: Terminal) -> Report:
     findings = Findings([*pulled.findings, *different])
     terminal.findings(findings)
     left = sum(finding.code == "W_FREECAD_EDIT" for finding in findings)
-    terminal.say(f"{place}: {len(pulled.changes)} values of the plan changed, {left} edits not taken home.")
+    terminal.say(f"{place}: {len(pulled.changes)} values of the plan changed, {left} edits not adopted.")
     terminal.say(f"Not compared: {'; '.join(UNCOMPARED)}.")
     report = checks.to_json()
     summaries.print_findings(report["findings"], terminal)

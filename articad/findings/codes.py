@@ -113,7 +113,7 @@ CODES: dict[str, Code] = {
         "plan",
         "design",
         "A part of the environment is the ground, moves, or carries another part.",
-        "Attach it as the child of one fixed joint to the part relative to which it does not move.",
+        "Make it the child of one fixed joint to a part of the product.",
     ),
     "E_JOINT_SELF": Code("plan", "design", "A joint connects a part with itself.", "Name two different parts."),
     "E_JOINT_DUP": Code("plan", "design", "Two joints connect the same two connectors.", "Remove one."),

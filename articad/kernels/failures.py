@@ -95,7 +95,9 @@ def _raised(part: str, script: str, error: Json) -> BuildError:
     if kind in _MEMORY_TYPES or "bad_alloc" in message:
         return _memory(part, script, frames, None)
     if error.get("denied") is True or module.partition(".")[0] == "articad":
-        return _error("E_SCRIPT_FORBIDDEN", part, script, f"The script did what a part script may not: {what}", _ALONE, frames)
+        return _error(
+            "E_SCRIPT_FORBIDDEN", part, script, f"The script did something that a part script must not do: {what}", _ALONE, frames
+        )
     return _error("E_SCRIPT_ERROR", part, script, what, "Correct this line.", frames)
 
 

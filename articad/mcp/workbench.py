@@ -127,7 +127,7 @@ class Workbench:
             raise ReadError.at(part, f"{part!r} is not a valid name of a part.", "Use the name that the plan gives it.")
         file = self.design(design) / "parts" / f"{part}{'.freecad.py' if kernel == 'freecad' else '.py'}"
         if file.parent.is_symlink() or file.is_symlink():
-            raise ReadError.at(part, f"{file} leads out of the root.", "Remove the link.")
+            raise ReadError.at(part, f"{file} is a link, or lies in a linked folder.", "Remove the link.")
         write_atomically(file, content)
         return file
 

@@ -37,13 +37,13 @@ def nominal_in(name: str) -> float | None:
     """Return the nominal diameter that a name states, as in "25 H7/g6" [mm]; None if it states none.
 
     Raises:
-        PlanError: If it is no name of a fit.
+        PlanError: If it is not the name of a fit.
     """
     if name in PRINTED_MM:
         return None
     fit = parsed_fit(name)
     if fit is None:
-        raise PlanError(f"{name!r} is no name of a fit.{did_you_mean(name, PRINTED_MM)} Give {_FORMS}.")
+        raise PlanError(f"{name!r} is not the name of a fit.{did_you_mean(name, PRINTED_MM)} Give {_FORMS}.")
     return fit.nominal
 
 

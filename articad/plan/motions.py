@@ -298,7 +298,7 @@ def _named_gap(form: FitSpec, where: str, evaluation: Evaluation, *, moves: bool
         if stated is not None and nominal is not None and stated != nominal:
             hint = f"Leave nominal_mm out, or name the fit {name.split()[-1]!r}."
             evaluation.report(
-                "E_FIT", f"{where}.nominal_mm", f"{name!r} states another diameter than {nominal:.6g} mm.", hint, value=nominal
+                "E_FIT", f"{where}.nominal_mm", f"{name!r} states a diameter other than {nominal:.6g} mm.", hint, value=nominal
             )
         nominal = stated if nominal is None else nominal
         if name not in PRINTED_MM and (nominal is None or math.isnan(nominal)):

@@ -83,7 +83,7 @@ class Fit:
         """
         stated = nominal_in(name)
         if stated is not None and nominal is not None and stated != nominal:
-            raise PlanError(f"The fit {name!r} states another diameter than {nominal:.6g} mm.")
+            raise PlanError(f"The fit {name!r} states a diameter other than {nominal:.6g} mm.")
         fit = cls(None, None, within, contact, name, stated if nominal is None else nominal)
         return fit if fit.nominal is None and name not in PRINTED_MM else fit.sized(fit.nominal)
 

@@ -77,18 +77,18 @@ def _environment(draft: Draft) -> list[Finding]:
 
 
 def _fault_outside(name: str, holding: Sequence[JointLine], draft: Draft, outside: Collection[str]) -> str:
-    """Return why a part cannot be of the environment; empty if it can."""
+    """Return why a part cannot be part of the environment; empty if it can."""
     if draft.plan.ground == name:
-        return f"{name} is of the environment, which is not exported, but it is the ground."
+        return f"{name} is part of the environment, which is not exported, but it is the ground."
     for line in holding:
         (parent, _), (child, _) = line.ends
         if child != name:
-            return f"{name} is of the environment, which is not exported, but it carries {child} by joint {line.name!r}."
+            return f"{name} is part of the environment, which is not exported, but it carries {child} by joint {line.name!r}."
         if parent in outside:
-            return f"{name} is of the environment, which is not exported, but {parent}, which holds it, is so, too."
+            return f"{name} is part of the environment, which is not exported, but so is {parent}, which holds it."
         if line.root.type != "fixed":
-            return f"{name} is of the environment, which stands still, but joint {line.name!r} moves it."
-    return f"{name} is of the environment, but {len(holding)} joints hold it." if len(holding) > 1 else ""
+            return f"{name} is part of the environment, but joint {line.name!r}, which holds it, is not fixed."
+    return f"{name} is part of the environment, but {len(holding)} joints hold it." if len(holding) > 1 else ""
 
 
 def _unused(draft: Draft, ends: Ends) -> list[Finding]:

@@ -368,7 +368,7 @@ def _findings(row: JointCheck) -> Iterator[Finding]:
             code="W_JOINT_NOT_MADE",
             where=where,
             parts=row.parts,
-            message=f"No surfaces of {a} and {b} make the {row.type} joint {row.joint!r}: the child is free along {ways}.",
+            message=f"No surfaces of {a} and {b} form the {row.type} joint {row.joint!r}: the child is free along {ways}.",
             hint=_remedy(row.type),
             stage="fit",
         )
@@ -390,7 +390,7 @@ def _findings(row: JointCheck) -> Iterator[Finding]:
             code="W_JOINT_SHORT",
             where=where,
             parts=row.parts,
-            message=f"Joint {row.joint!r} keeps {100 * row.share:.0f} % of its guide{at}; a quarter is the least.",
+            message=f"Joint {row.joint!r} keeps {100 * row.share:.0f} % of its guide engaged{at}; at least 25 % is needed.",
             hint="Lengthen the guide, or shorten the travel.",
             value=row.share,
             limit=LEAST_SHARE,

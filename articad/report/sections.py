@@ -149,7 +149,9 @@ def _parts(assembly: Assembly) -> str:
                 Html(f'<button type="button" data-stl="{number}" aria-label="save {escape(name)} as STL">STL</button>'),
             ]
         )
-    note = f'<p class="quiet">Together: {total_mass(assembly)}. A name shows the part alone; indented parts hang from those above.</p>'
+    note = (
+        f'<p class="quiet">Together: {total_mass(assembly)}. A name shows the part alone; indented parts are attached to those above.</p>'
+    )
     return _scroll(html_table(["", "part", "material", "mass kg", "volume mm³", ""], rows, numbers=(3, 4))) + note
 
 
@@ -238,8 +240,8 @@ def _clearances(certificate: Json | None, known: set[str]) -> str:
         shown = _show(f"Least clearance of {' and '.join(row['parts'])}.", row["parts"], row["pose"], known)
         rows.append([" – ".join(row["parts"]), joined, f"{row['gap_mm']:.4g}", at, row["strength"].get("poses"), shown])
     told = (
-        '<p class="quiet">The smallest distance that was seen of each two parts over the motion, the nearest first. '
-        "It is sampled: the true one may be smaller. What is proven stands under “Proven motion”.</p>"
+        '<p class="quiet">The smallest distance found between every two parts over the motion, the nearest pairs first.  '
+        "It is sampled: the true minimum may be smaller. “Proven motion” shows what is proven.</p>"
     )
     return told + _scroll(html_table(["parts", "", "gap mm", "at", "poses seen", ""], rows, numbers=(2, 4)))
 
@@ -257,7 +259,7 @@ def _follows(certificate: Json | None, known: set[str]) -> str:
             shown = _show(f"{table['driver']}.", (), {table["driver"]: value}, known)
             rows.append([*(_plain(number, units[name]) for number, name in zip(numbers, names, strict=True)), shown])
         found.append(_scroll(html_table(columns, rows, numbers=range(len(names)))))
-    told = '<p class="quiet">What follows each driver while the other drivers rest.</p>'
+    told = '<p class="quiet">The followers of each driver while the other drivers are at rest.</p>'
     return told + "".join(found) if found else ""
 
 

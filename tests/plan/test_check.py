@@ -233,7 +233,7 @@ CASES = [
         "E_ENVIRONMENT",
         chest_with(lambda p: part(p, "lid").update(environment=True)),
         "parts.lid.environment",
-        "stands still, but joint 'hinge' moves it",
+        "joint 'hinge', which holds it, is not fixed",
     ),
     Case("E_ENVIRONMENT", chest_with(lambda p: part(p, "box").update(environment=True)), "parts.box.environment", "but it is the ground"),
     # joints and graph

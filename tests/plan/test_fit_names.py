@@ -64,11 +64,11 @@ def test_an_interference_is_modelled_with_equal_diameters() -> None:
 @pytest.mark.parametrize(
     ("fit", "where", "words"),
     [
-        ("H7g6", "joints.j.fit", "no name of a fit"),
+        ("H7g6", "joints.j.fit", "not the name of a fit"),
         ("slidng", "joints.j.fit", "Did you mean 'sliding'?"),
         ({"name": "H7/g6", "nominal_mm": 700}, "joints.j.fit", "from 1 to 500 mm"),
         ("20 H7/t6", "joints.j.fit", "no class t6 at 20 mm"),
-        ({"name": "25 H7/g6", "nominal_mm": 30}, "joints.j.fit.nominal_mm", "another diameter than 30 mm"),
+        ({"name": "25 H7/g6", "nominal_mm": 30}, "joints.j.fit.nominal_mm", "a diameter other than 30 mm"),
         ({"name": "sliding", "gap_mm": [0, 1]}, "joints.j.fit", "both gap_mm and the name"),
         ({"nominal_mm": 30}, "joints.j.fit.nominal_mm", "without the name"),
         ("60 H7/p6", "joints.j.fit", "but the joint moves"),
@@ -98,7 +98,7 @@ def test_a_plan_with_a_name_is_written_and_read() -> None:
 
 def test_python_states_a_fit_by_name() -> None:
     assert Fit.named("25 H7/g6") == Fit(0.0035, 0.0205, None, "allowed", "25 H7/g6", 25.0)
-    with pytest.raises(PlanError, match="another diameter"):
+    with pytest.raises(PlanError, match="a diameter other"):
         Fit.named("25 H7/g6", 30)
-    with pytest.raises(PlanError, match="no name of a fit"):
+    with pytest.raises(PlanError, match="not the name of a fit"):
         Fit.named("tight")
