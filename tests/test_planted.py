@@ -122,7 +122,7 @@ def test_no_tool_runs_what_a_stranger_planted_in_the_root(stranger: Path) -> Non
         "check_plan": {"design": "product"},
         "build_part": {"design": "product", "part": "tray"},
         "build_parts": {"design": "product"},
-        "edit_plan": {"design": "product", "changes": {"parameters.width.value": 52.0}},
+        "edit_plan": {"design": "product", "changes": {"parameters.width": 52.0}},
         "build": {"design": "product"},
         "check": {"design": "product"},
         "certify": {"design": "product", "budget_s": 1.0},

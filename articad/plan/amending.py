@@ -5,7 +5,7 @@ from __future__ import annotations
 import copy
 import re
 from collections.abc import Mapping
-from typing import Any, Final
+from typing import Any, Final, NoReturn
 
 from articad.aliases import Json
 from articad.errors import ReadError, did_you_mean
@@ -21,10 +21,10 @@ def amended(plan: Json, changes: Mapping[str, Any]) -> Json:
         plan: As in `plan.json`; it is not modified.
         changes: New values by address: `{"joints.lid.angle_deg": [0, 90]}`. Entries of lists are addressed by their names, or
             by number where they have none, as `o.2` or `o[2]`. A value of None removes; a name that a list does not have adds an entry. An
-            optional object that is left out, such as `rest_pose`, is begun.
+            optional object that is left out, such as `rest_pose`, is begun. A number for a parameter becomes its value.
 
     Raises:
-        ReadError: If there is nothing at an address.
+        ReadError: If there is nothing at an address, or an object that a number or a text cannot replace.
     """
     plan = copy.deepcopy(plan)
     for address, value in changes.items():
@@ -54,11 +54,19 @@ def _put(holder: Any, step: str, value: Any, address: str) -> None:
         holder.append({"name": step} | value)
     elif isinstance(holder, list):
         index = _index(holder, step, address)
+        held = holder[index]
         if isinstance(value, dict) and step in _names(holder):
             value = {"name": step} | value
+        elif isinstance(held, dict) and value is not None and not isinstance(value, dict):
+            value = held | {"value": value} if "value" in held else _not_a_value(held, value, address)
         holder[index : index + 1] = [] if value is None else [value]
     else:
         raise _lost(address, step, [])
+
+
+def _not_a_value(held: Json, value: Any, address: str) -> NoReturn:
+    fields = ", ".join(f"{address}.{name}" for name in held if name != "name")
+    raise ReadError.at(address, f"{address} is an object; it cannot be {value!r}.", f"Change one of its fields: {fields}.")
 
 
 def _index(holder: list[Any], step: str, address: str) -> int:

@@ -50,6 +50,19 @@ def test_addresses_are_taken_as_findings_write_them_and_optional_objects_are_beg
     assert {"name": "lacquer", "density_kg_m3": 1} in more["materials"]
 
 
+def test_a_number_for_a_parameter_becomes_its_value(plan: dict[str, Any]) -> None:
+    parameter = plan["parameters"][0]
+
+    more = amended(plan, {f"parameters.{parameter['name']}": 123.0})
+
+    assert more["parameters"][0] == parameter | {"value": 123.0}
+
+
+def test_a_number_in_place_of_an_object_is_refused_with_the_fields_that_can_be_changed(plan: dict[str, Any]) -> None:
+    with pytest.raises(ReadError, match=r"joints\.hinge_left\.angle_deg"):
+        amended(plan, {"joints.hinge_left": 90})
+
+
 @pytest.mark.parametrize(
     ("address", "words"),
     [("joints.hinge_lefd.angle_deg", "hinge_left"), ("partz.cabinet.name", "parts"), ("name.x", "nothing"), ("joints.99.name", "nothing")],
