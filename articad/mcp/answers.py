@@ -25,10 +25,10 @@ def verdict(report: Json) -> Json:
     found = gathered(report)
     grave = [finding for finding in found if finding.get("severity") != "info"]
     answer = condensed(report | {"findings": grave}, detail=False)
-    for finding in answer["findings"]:
+    for finding in answer.get("findings", ()):
         finding.pop("route", None)  # it is always the plan's
-    if not answer["findings"]:
-        del answer["findings"]
+    if not answer.get("findings"):
+        answer.pop("findings", None)
     notes = [f"{finding['code']} {finding['where']}" for finding in found if finding.get("severity") == "info"]
     while sum(len(note) + 3 for note in notes) > _NOTES and len(notes) > 1:
         notes = [*notes[:-2], "… (detail: all)"] if notes[-1].startswith("…") else [*notes[:-1], "… (detail: all)"]
@@ -49,6 +49,13 @@ def changed(before: Sequence[Json], report: Json) -> Json:
 
 def _key(finding: Json) -> str:
     return json.dumps([finding.get(key) for key in ("code", "where", "message")])
+
+
+def tidied(report: Json) -> Json:
+    """Return the report of a part with its bounding box in steps of 0.0001 mm: without the dust of arithmetic."""
+    if "bbox_mm" not in report:
+        return report
+    return report | {"bbox_mm": [[round(value, 4) + 0.0 for value in corner] for corner in report["bbox_mm"]]}
 
 
 def solids(report: Json) -> Json:

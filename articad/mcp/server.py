@@ -101,7 +101,7 @@ class Tools:
         if script is not None:
             self.bench.write_script(design, part, script, kernel)
         report = await self.bench.run("part", str(folder), part, "--kernel", kernel, seconds=_PART_S, tell=_teller(context))
-        return condensed(report, detail=detail, keep=("volume_mm3", "mass_kg", "bbox_mm"))
+        return condensed(answers.tidied(report), detail=detail, keep=("volume_mm3", "mass_kg", "bbox_mm"))
 
     async def build_parts(
         self,
@@ -283,7 +283,7 @@ class Tools:
         store = DocumentationStore(dialect)
         names = [name.strip() for name in intent.split(",")]
         entries = store.named(names, limit) if len(names) > 1 or " " not in intent.strip() else store.find(intent, min(limit, 20))
-        found = [str(entry) for entry in entries]
+        found = [f"{entry.signature}\n    {entry.summary.partition('. ')[0].removesuffix('.')}." for entry in entries]
         if example:
             snippet = store.example(intent)
             found.append(f"{snippet.title}\n{snippet.script}")

@@ -209,7 +209,8 @@ def condensed(report: Json, *, detail: bool, keep: Sequence[str] = ()) -> Json:
     if error := report.get("error"):
         answer["error"] = error.get("message", error) if isinstance(error, dict) else error
     limit = len(shown) if detail else SHOWN_FINDINGS
-    answer["findings"] = shown[:limit]
+    if shown or not answer["ok"]:
+        answer["findings"] = shown[:limit]
     if len(shown) > limit:
         answer["more_findings"] = f"{len(shown) - limit} more; ask with detail"
     rest = {key: value for key, value in report.items() if key not in {"ok", "findings", "error", "schema"}}
