@@ -244,7 +244,7 @@ class PartBuilder:
 
 
 def _unbuilt(name: str, finding: Finding) -> str:
-    return f"No script for {name} kept to its entry, whatever was tried; the last one ended with {finding.code}: {finding.message}"
+    return f"Every script for {name} broke its contract; the last one ended with {finding.code}: {finding.message}"
 
 
 def _as_error(code: str) -> str:

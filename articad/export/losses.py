@@ -52,7 +52,7 @@ class Feature(NamedTuple):
     detail: str = ""
 
 
-_ONE_BODY = "that the joints before and after it are joints of one body, with nothing between them"
+_ONE_BODY = "the fact that the joints before and after it are joints of one body, with nothing between them"
 
 TABLE: dict[str, dict[Format, LossRow]] = {
     # --- joints
@@ -153,7 +153,7 @@ TABLE: dict[str, dict[Format, LossRow]] = {
         "sdf": LossRow("a link without a joint, posed at rest"),
         "usd": LossRow("a body without a joint, posed at rest"),
     },
-    "loop.free": {name: LossRow("nothing: it constrains nothing that other joints do not constrain") for name in MECHANISM_FORMATS},
+    "loop.free": {name: LossRow("nothing: other joints impose its constraints already") for name in MECHANISM_FORMATS},
     "limits.open": {
         "urdf": LossRow("a far limit, 1e6 rad or 1000 m away", "the joint is endless in that direction"),
         "mjcf": LossRow("a far limit, 1e6 rad or 1000 m away", "the joint is endless in that direction"),
@@ -349,7 +349,7 @@ TABLE: dict[str, dict[Format, LossRow]] = {
         for name in MECHANISM_FORMATS
     },
     "collision.open": {
-        name: LossRow("its mesh for collision, of which engines take the hull", "convex pieces: the surface encloses no volume")
+        name: LossRow("its mesh for collision, which engines replace by its hull", "convex pieces: the surface encloses no volume")
         for name in MECHANISM_FORMATS
     },
     "color": {

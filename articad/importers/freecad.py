@@ -792,7 +792,7 @@ def _edit_findings(model: _Model) -> Iterator[Finding]:
         yield Finding(
             code="I_FREECAD_EDIT" if taken else "W_FREECAD_EDIT",
             where=f"objects.{edit.object}",
-            message=f"{edit}{'' if taken else ' It is not taken over.'}",
+            message=f"{edit}{'' if taken else ' It was not adopted.'}",
             hint="It is in the assembly that was read."
             if taken
             else _HINTS.get(edit.key, "Nothing in an assembly holds it; keep the document."),
