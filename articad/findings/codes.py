@@ -65,6 +65,9 @@ CODES: dict[str, Code] = {
     ),
     "E_COUNT": Code("plan", "design", "A dimension that ends in _count is not a whole number.", "Give a whole number."),
     "E_DENSITY": Code("plan", "design", "A density is not positive.", "Give the density in kg/m3; steel is 7850."),
+    "W_DENSITY": Code(
+        "plan", "design", "A density is one that no material has.", "Give the density in kg/m3, not in g/cm3; steel is 7850."
+    ),
     "E_FRICTION": Code("plan", "design", "A friction coefficient is negative.", "Give a coefficient of at least 0; wood on wood is 0.4."),
     "E_ENVELOPE_VALUE": Code(
         "plan", "design", "An expected bounding box has a side that is not positive.", "Give three positive lengths in mm."
@@ -74,6 +77,12 @@ CODES: dict[str, Code] = {
         "design",
         "The assembly is smaller than 0.5 mm or larger than 1e6 mm.",
         "Lengths are millimetres; were metres or inches meant?",
+    ),
+    "W_SCALE": Code(
+        "plan",
+        "design",
+        "A dimension is thinner than anything that is made, or far longer than all others of the plan.",
+        "Lengths are millimetres; were metres, inches or micrometres meant?",
     ),
     "E_NOT_SUPPORTED": Code(
         "plan", "design", "The plan is valid, but this version cannot solve it yet.", "Use a supported joint type or structure."

@@ -19,6 +19,7 @@ from articad.plan.rest import rest_findings
 from articad.plan.schema import AssemblyPlan
 from articad.plan.usage import scale_findings, usage_findings
 
+_MOVING_KINDS = ("hinge_axis", "slide_axis", "thread_axis", "gear_axis", "ball_centre", "shaft_axis", "bore_axis")  # of connectors
 _SHOWN_AT_BOUND = 3  # findings reported in full for one bound of one parameter
 
 
@@ -127,7 +128,21 @@ def _freedom_findings(draft: Draft, freedoms: int, account: str) -> list[Finding
         return []
     message = f"Declared freedoms {declared}, but the assembly has {freedoms} ({account})."
     hint = f"Set freedoms to {freedoms}, or change the joints if {declared} is meant."
-    return [Finding(code="E_DOF_MISMATCH", where="freedoms", message=message, hint=hint, value=declared, limit=freedoms)]
+    held = _fixed_at_axes(draft) if declared > freedoms else []
+    if held:
+        hint += f" These joints are fixed, though they are at an axis: {', '.join(name for name, _ in held)}."
+    parts = tuple(dict.fromkeys(part for _, ends in held for part in ends))
+    return [Finding(code="E_DOF_MISMATCH", where="freedoms", message=message, hint=hint, parts=parts, value=declared, limit=freedoms)]
+
+
+def _fixed_at_axes(draft: Draft) -> list[tuple[str, tuple[str, str]]]:
+    """Return the fixed joints, with their two parts, both of whose connectors have a kind that is for a motion."""
+    kinds = {(name, spec.name): spec.kind for name, part in draft.parts.items() for spec in part.connector_specs}
+    return [
+        (line.name, (line.ends[0][0], line.ends[1][0]))
+        for line in draft.lines
+        if line.root.type == "fixed" and all(kinds.get(end) in _MOVING_KINDS for end in line.ends)
+    ]
 
 
 def _idle_marks(graph: JointGraph) -> list[Finding]:

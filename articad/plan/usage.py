@@ -20,6 +20,10 @@ from articad.plan.schema import DerivedJoint
 
 SMALLEST_MM = 0.5  # a smaller assembly is in metres or inches
 LARGEST_MM = 1e6  # a kilometre
+THINNEST_MM = 0.05  # a smaller dimension of a part is in metres or inches, unless it is a clearance
+LEAST_CLEARANCE_MM, NOISE_MM = 1e-3, 1e-9  # below the second, a number is a rounded zero
+LONGEST_SHARE = 50.0  # the longest dimension of a plan over the next shorter one; among 181 sound plans the greatest is 13
+LIGHTEST, HEAVIEST = 10.0, 23000.0  # kg/m³: foam and osmium
 _SUITABLE = {  # a type that is not listed accepts any kind: a pin, a hub or a bracket is fixed on an axis as well as on a face
     JointType.REVOLUTE: ("hinge_axis", "shaft_axis", "bore_axis", "gear_axis"),
     JointType.SLIDER: ("slide_axis", "shaft_axis", "bore_axis"),
@@ -32,6 +36,7 @@ _CHIRAL = re.compile(
     r"\b(threads?|threaded|helix|helical|worm|spiral|bevel|lettering|inscription|logo|(?:left|right)-hand(?:ed)?)\b", re.IGNORECASE
 )
 _SIDE = re.compile(r"(?:\b|_)(left|right)(?:\b|_)", re.IGNORECASE)
+_CLEARANCE = re.compile(r"clearance|play|gap|slack|tolerance|allowance|offset")
 _SAME = 1e-9  # rad or mm: limits computed to be the same are the same
 
 Ends = dict[tuple[str, str], list[str]]
@@ -49,6 +54,8 @@ def usage_findings(draft: Draft) -> list[Finding]:
         *_chiral(draft),
         *_sided(draft),
         *_mirrored_limits(draft),
+        *_densities(draft),
+        *_dimensions(draft),
         *scale_findings(draft),
     ]
 
@@ -249,6 +256,57 @@ def _limits_text(joint: Joint, limits: JointLimits) -> str:
         scale = math.degrees(1.0) if turns else 1.0
         texts.append(f"{name} [{low * scale + 0.0:.6g}, {high * scale + 0.0:.6g}]")
     return ", ".join(texts)
+
+
+def _densities(draft: Draft) -> list[Finding]:
+    """Find densities that no material has: they are probably in g/cm³."""
+    found = []
+    for name, (_, density, _) in draft.materials.items():
+        if 0.0 < density < LIGHTEST or density > HEAVIEST:
+            meant = density * 1000.0 if density < LIGHTEST else density / 1000.0
+            found.append(
+                Finding(
+                    code="W_DENSITY",
+                    where=f"materials.{name}.density_kg_m3",
+                    message=f"{name} has a density of {density:.6g} kg/m³; materials have {LIGHTEST:g} to {HEAVIEST:g}.",
+                    hint=f"If another unit was meant, set density_kg_m3 to {meant:.6g}; steel is 7850, oak 700.",
+                    value=density,
+                    limit=LIGHTEST if density < LIGHTEST else HEAVIEST,
+                    unit="kg/m^3",
+                )
+            )
+    return found
+
+
+def _dimensions(draft: Draft) -> list[Finding]:
+    """Find lengths among the dimensions that are probably in another unit: too thin to be made, or far longer than all others."""
+    lengths = [
+        (abs(value), part, name)
+        for part, dimensions in draft.dimensions.items()
+        for name, value in dimensions.items()
+        if not name.endswith(("_deg", "_count")) and math.isfinite(value)
+    ]
+    found = []
+    for length, part, name in lengths:
+        least = LEAST_CLEARANCE_MM if _CLEARANCE.search(name) else THINNEST_MM
+        if NOISE_MM < length < least:
+            message = f"Dimension {name!r} of {part} is {length:.6g} mm."
+            hint = f"Lengths are millimetres: were metres given? Then it is {length * 1000.0:.6g}; or make it at least {least:g} mm."
+            found.append(_dimension_finding(part, name, message, hint, value=length, limit=least))
+    longest = max((length for length, _, _ in lengths), default=0.0)
+    next_longest = max((length for length, _, _ in lengths if length * LONGEST_SHARE < longest), default=0.0)
+    alone = [(part, name) for length, part, name in lengths if length * LONGEST_SHARE >= longest]
+    if next_longest > 0.0 and len({length for length, _, _ in lengths if length * LONGEST_SHARE >= longest}) == 1:
+        for part, name in alone:
+            message = f"Dimension {name!r} of {part} is {longest:.6g} mm; all others of the plan are at most {next_longest:.6g} mm."
+            hint = f"Lengths are millimetres: were micrometres given? Then it is {longest / 1000.0:.6g}."
+            found.append(_dimension_finding(part, name, message, hint, value=longest, limit=LONGEST_SHARE * next_longest))
+    return found
+
+
+def _dimension_finding(part: str, name: str, message: str, hint: str, *, value: float, limit: float) -> Finding:
+    where = f"parts.{part}.dimensions.{name}"
+    return Finding(code="W_SCALE", where=where, message=message, hint=hint, parts=(part,), value=value, limit=limit, unit="mm")
 
 
 def scale_findings(draft: Draft) -> list[Finding]:

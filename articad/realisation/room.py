@@ -82,8 +82,8 @@ def room(touches: Sequence[Touch], held: BoolArray, centre: FloatArray) -> Float
 
 
 def _middle(touches: Sequence[Touch], body: int) -> FloatArray:
-    points = np.concatenate([touch.points for touch in touches if body in (touch.first, touch.second)])
-    return np.asarray(points.mean(axis=0))
+    points = [touch.points for touch in touches if body in (touch.first, touch.second)]
+    return np.asarray(np.concatenate(points).mean(axis=0)) if points else np.zeros(3)  # nothing depends on a body without contacts
 
 
 def _rows(touch: Touch, centres: Sequence[FloatArray]) -> FloatArray:

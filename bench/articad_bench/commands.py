@@ -24,8 +24,9 @@ if TYPE_CHECKING:
 
 @command(
     "bench",
-    "Run the benchmark with a model; score the files of any tool, or have models judge them; list the tasks, or draw their pictures.",
-    argument("action", choices=["run", "score", "judge", "table", "list", "draw", "shapes", "objects"], help="what to do"),
+    "Run the benchmark with a model; score the files of any tool, or have models judge them; list the tasks, or draw their pictures; "
+    "plant faults, and count those that no check finds.",
+    argument("action", choices=["run", "score", "judge", "table", "list", "draw", "shapes", "objects", "faults"], help="what to do"),
     argument(
         "what",
         nargs="?",
@@ -42,9 +43,15 @@ if TYPE_CHECKING:
     ),
     argument("--judge", metavar="NAME", dest="judges", action="append", default=[], help="a model that scores; repeat it for several"),
     argument("--tasks", metavar="DIR", help="folder of tasks (the project's own)"),
+    argument("--some", metavar="N", type=positive, default=None, help="faults: only N cases, spread over all kinds (all)"),
     argument("--task", metavar="NAME", dest="names", action="append", default=[], help="only this one; may be repeated"),
     argument("--kind", choices=["articulated", "static", "industrial", "hard"], default=None, help="only tasks of this kind"),
-    argument("--out", metavar="DIR", default="bench", help="where rows and runs are kept; existing ones are not made again (bench)"),
+    argument(
+        "--out",
+        metavar="DIR",
+        default="bench",
+        help="where rows, runs and the table of faults are kept; existing rows are not made again (bench)",
+    ),
     argument(
         "--variant",
         choices=["full", "late", "no-rollback", "no-memory", "single-loop"],
@@ -269,6 +276,24 @@ def _draw(options: argparse.Namespace, terminal: Terminal) -> Report:
     return {"schema": "articad.bench-drawings/1", "ok": True, "findings": [], "files": files}
 
 
+def _faults(options: argparse.Namespace, terminal: Terminal) -> Report:
+    from articad.kernels.choice import kernel_named
+    from articad_bench.fault_run import FaultRun
+    from articad_bench.fault_trial import Tools
+
+    tools = Tools(kernel_named("build123d", sandbox=sandbox_level(options)), build_cache(options))
+    run = FaultRun.of(options.names, options.some)
+    with terminal.progress("Faults", total=len(run.faults)) as tell:
+        told = run.work(Path(options.out), tools, again=options.force, tell=tell)
+    for side in ("plan", "script", "all"):
+        counts = told[side]
+        terminal.say(
+            f"{side}: {counts['cases']} cases, {counts['escaped']} escaped, {counts['named']} named, {counts['addressed']} addressed"
+        )
+    terminal.say(f"{len(told['alarms'])} false alarms on {len(told['products'])} good products.")
+    return told
+
+
 _ACTIONS: Final[Mapping[str, Callable[[argparse.Namespace, Terminal], Report]]] = {
     "run": _run,
     "score": _score,
@@ -278,4 +303,5 @@ _ACTIONS: Final[Mapping[str, Callable[[argparse.Namespace, Terminal], Report]]] 
     "draw": _draw,
     "shapes": _on_data,
     "objects": _on_data,
+    "faults": _faults,
 }

@@ -142,6 +142,38 @@ CASES = [
         300 / 70,
     ),
     Case("E_DENSITY", chest_with(lambda p: p["materials"][0].update(density_kg_m3=0)), "materials.wood.density_kg_m3", "steel 7850", 0),
+    Case(
+        "W_DENSITY",
+        chest_with(lambda p: p["materials"][0].update(density_kg_m3=0.7)),
+        "materials.wood.density_kg_m3",
+        "set density_kg_m3 to 700",
+        0.7,
+        10,
+    ),
+    Case(
+        "W_SCALE",
+        chest_with(lambda p: part(p, "box").update(dimensions={"width": "width", "wall": 0.006})),
+        "parts.box.dimensions.wall",
+        "Then it is 6; or make it at least 0.05 mm",
+        0.006,
+        0.05,
+    ),
+    Case(
+        "W_SCALE",
+        chest_with(lambda p: part(p, "box").update(dimensions={"width": "width", "play": 0.0002})),
+        "parts.box.dimensions.play",
+        "at least 0.001 mm",
+        0.0002,
+        0.001,
+    ),
+    Case(
+        "W_SCALE",
+        chest_with(lambda p: part(p, "box").update(dimensions={"width": 300, "height": 300000})),
+        "parts.box.dimensions.height",
+        "all others of the plan are at most 300 mm",
+        300000,
+        15000,
+    ),
     Case("E_FRICTION", chest_with(lambda p: p["materials"][0].update(friction=-0.1)), "materials.wood.friction", "at least 0", -0.1),
     Case(
         "E_ENVELOPE_VALUE",
@@ -270,6 +302,18 @@ CASES = [
         "Declared freedoms 3, but the assembly has 4 (hinge_left 1, hinge_right 1, slide_lower 1, slide_upper 1). Set freedoms to 4",
         3,
         4,
+    ),
+    Case(
+        "E_DOF_MISMATCH",
+        wardrobe_with(
+            lambda p: p["joints"].__setitem__(
+                2, {key: joint(p, "slide_lower")[key] for key in ("name", "parent", "child")} | {"type": "fixed"}
+            )
+        ),
+        "freedoms",
+        "These joints are fixed, though they are at an axis: slide_lower.",
+        4,
+        3,
     ),
     Case("E_DOF_MISMATCH", pair({"type": "fixed"}, 1), "freedoms", "has 0 (no joint moves)", 1, 0),
     Case("W_DRIVER", chest_with(lambda p: joint(p, "hinge").update(driver=True)), "joints.hinge.driver", "every joint is one"),

@@ -1,0 +1,88 @@
+"""A run of the benchmark of planted faults: its cases, and the files of its results."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Final, Self
+
+from articad_bench.fault_table import page, report, rows_of
+from articad_bench.fault_trial import Row, Tools, examined, tried
+from articad_bench.faulty import PRODUCTS, Fault, Product, chosen
+from articad_bench.plan_faults import PLAN_KINDS
+from articad_bench.script_faults import SCRIPT_KINDS
+
+__all__ = ["KINDS", "FaultRun"]
+
+KINDS: Final = (*PLAN_KINDS, *SCRIPT_KINDS)
+_EACH: Final = 7  # cases of a kind, each in another product
+_RESULTS, _PAGE = "faults.json", "faults.md"
+
+
+@dataclass(frozen=True)
+class FaultRun:
+    """The cases that are tried, and the good products that must cause no finding.
+
+    Attributes:
+        faults: The cases, by kind.
+        products: The good products.
+    """
+
+    faults: Sequence[Fault]
+    products: Sequence[Product]
+
+    @classmethod
+    def of(cls, names: Sequence[str] = (), some: int | None = None) -> Self:
+        """Return the cases of the benchmark.
+
+        Args:
+            names: Products; all by default.
+            some: How many cases, spread evenly over all kinds; all by default. The good products are then not tried.
+
+        Raises:
+            ReadError: If there is no product of a name.
+        """
+        products = [Product.named(name) for name in names or PRODUCTS]
+        faults = list(chosen(KINDS, products, _EACH))
+        if some is None or some >= len(faults):
+            return cls(faults, products)
+        return cls([faults[place * len(faults) // some] for place in range(some)], ())
+
+    def work(
+        self, out: Path, tools: Tools, *, again: bool = False, tell: Callable[[str, str], object] = lambda _case, _outcome: None
+    ) -> dict[str, Any]:
+        """Try all cases, write `faults.json` and the page `faults.md`, and return the report.
+
+        The results are written after every case, and a case whose plan and scripts are unchanged is not tried again.
+
+        Args:
+            out: Folder of both files.
+            tools: What parts are built with.
+            again: Whether to try cases again that have results.
+            tell: Called with each case and its outcome.
+        """
+        out.mkdir(parents=True, exist_ok=True)
+        rows = {} if again else _known(out / _RESULTS)
+        for fault in self.faults:
+            row = rows.get(fault.digest)
+            if row is None or row.case != fault.name:
+                row = rows[fault.digest] = tried(fault, tools)
+                self._save(out, rows, [])
+            tell(fault.name, "same" if row.equivalent else "escaped" if row.escaped else row.stage)
+        alarms = [f"{product.name}: {one}" for product in self.products for one in examined(product, tools).findings]
+        return self._save(out, rows, alarms)
+
+    def _save(self, out: Path, rows: Mapping[str, Row], alarms: Sequence[str]) -> dict[str, Any]:
+        told = report([rows[fault.digest] for fault in self.faults if fault.digest in rows], alarms)
+        for name, text in ((_RESULTS, json.dumps(told, indent=1) + "\n"), (_PAGE, page(told, KINDS))):
+            fresh = out / f"{name}.new"
+            fresh.write_text(text)
+            fresh.replace(out / name)  # a run that is killed leaves whole files
+        return told
+
+
+def _known(file: Path) -> dict[str, Row]:
+    """Return earlier results by digest."""
+    return {row.digest: row for row in rows_of(json.loads(file.read_text()))} if file.is_file() else {}

@@ -1,0 +1,119 @@
+"""The table of planted faults: results as JSON, and the page that shows them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any, Final
+
+from articad_bench.fault_trial import Row
+from articad_bench.faulty import Kind
+
+__all__ = ["SCHEMA", "page", "report", "rows_of"]
+
+SCHEMA: Final = "articad.bench-faults/1"
+_STAGES: Final = ("plan", "build", "evidence", "sampled")
+
+_ABOUT: Final = """\
+# Planted faults
+
+<!-- Written by `articad bench faults --out docs/reference` from its results, faults.json. -->
+
+A good product, one mistake made by rule, and what the pipeline finds of it without any model. Each kind of mistake is planted at most once in a product, at a
+place drawn with a fixed seed. [The how-to](../how-to/benchmark.md#plant-faults) says how to run it.
+
+- **found in**: the step that found something: the check of the *plan*, the *build* with the contract of each part, the *evidence* (overlaps and fits at rest,
+  samples of each joint's range), or the full *sampled* check of `articad build --verify sampled`. An error ends the trial, a warning does not; the *sampled* check follows if nothing was found before.
+- **same**: nothing is found because the product is the same: parts, masses, places at rest and in motion, limits, couplings and fits. Such cases are not counted.
+- **escaped**: no error and no warning, although the product is another one.
+- **named**: a finding names a part or joint of the mistake, and its code is one of those that state this cause. An escape is not named.
+- **addressed**: all such findings of the highest severity go to whoever made the mistake, the author of the plan or of this script, without a model deciding it.
+"""
+
+
+def rows_of(stored: Mapping[str, Any]) -> list[Row]:
+    """Return the rows of a stored report."""
+    return [Row(**{**row, "held": tuple(row["held"]), "findings": tuple(map(tuple, row["findings"]))}) for row in stored["rows"]]
+
+
+def report(rows: Iterable[Row], alarms: Sequence[str]) -> dict[str, Any]:
+    """Return the report of a run.
+
+    Args:
+        rows: One for each case.
+        alarms: Findings above a note about good products.
+    """
+    rows = list(rows)
+    return {
+        "schema": SCHEMA,
+        "ok": True,
+        "findings": [],
+        "all": _counts(rows),
+        "plan": _counts([row for row in rows if row.side == "plan"]),
+        "script": _counts([row for row in rows if row.side == "script"]),
+        "products": sorted({row.product for row in rows}),
+        "alarms": list(alarms),
+        "rows": [row.to_json() for row in rows],
+    }
+
+
+def _counts(rows: Sequence[Row]) -> dict[str, int]:
+    counted = [row for row in rows if not row.equivalent]
+    counts = {"cases": len(counted), "same": len(rows) - len(counted)}
+    counts |= {name: sum(row.stage == name for row in counted) for name in _STAGES}
+    return counts | {name: sum(getattr(row, name) for row in counted) for name in ("escaped", "named", "addressed")}
+
+
+def page(told: Mapping[str, Any], kinds: Sequence[Kind]) -> str:
+    """Return the page of a report.
+
+    Args:
+        told: As `report` returns it.
+        kinds: All kinds, in the order of the table.
+    """
+    rows = rows_of(told)
+    heads = ("", "cases", "same", *_STAGES, "escaped", "named", "addressed")
+    lines = [_ABOUT, f"{len(told['products'])} products: {', '.join(told['products'])}."]
+    lines += [f"False alarms on them: {len(told['alarms'])}." + "".join(f"\n- {alarm}" for alarm in told["alarms"]), ""]
+    lines += _table(heads, [_line(name, told[name]) for name in ("plan", "script", "all")])
+    lines += [
+        f"Escaped: {_share(told['all'], 'escaped')}. Named: {_share(told['all'], 'named')}. Addressed: {_share(told['all'], 'addressed')}."
+    ]
+    for side, title in (("plan", "Mistakes in plans"), ("script", "Mistakes in scripts")):
+        of_side = [(kind, [row for row in rows if row.kind == kind.name]) for kind in kinds if kind.side == side]
+        lines += ["", f"## {title}", ""]
+        lines += _table(heads, [_line(f"`{kind.name}`: {kind.meaning}", _counts(mine)) for kind, mine in of_side if mine])
+    reasons = {kind.name: kind.unseen for kind in kinds}
+    escapes = [(f"`{row.case}`", row.said, ", ".join(row.held), reasons.get(row.kind) or "open") for row in rows if row.escaped]
+    lines += ["## Escapes", "", "*joints*: what `articad check --joints` adds; no run asks for it.", ""]
+    lines += _table(("case", "mistake", "joints", "why nothing is found"), escapes)
+    elsewhere = [(f"`{row.case}`", row.said, _first(row)) for row in rows if row.named and not row.addressed]
+    lines += ["## Named, but addressed to another", "", *_table(("case", "mistake", "first finding"), elsewhere)]
+    defects = [(f"`{row.case}`", row.said, row.findings[0][3]) for row in rows if row.stage == "defect"]
+    lines += ["## Defects of articad", "", *_table(("case", "mistake", "exception"), defects)]
+    unnamed = [
+        (f"`{row.case}`", row.said, _first(row))
+        for row in rows
+        if not (row.named or row.escaped or row.equivalent or row.stage == "defect")
+    ]
+    lines += ["## Found, but not named", "", *_table(("case", "mistake", "first finding"), unnamed)]
+    return "\n".join(lines).rstrip() + "\n"
+
+
+def _first(row: Row) -> str:
+    code, where, route, _ = row.findings[0]
+    return f"`{code}` {where}" + (f" ({route})" if route else "")
+
+
+def _line(name: str, counts: Mapping[str, int]) -> tuple[str, ...]:
+    keys = ("cases", "same", *_STAGES, "escaped", "named", "addressed")
+    return (name, *(str(counts[key] or "") for key in keys))
+
+
+def _share(counts: Mapping[str, int], key: str) -> str:
+    return f"{counts[key]} of {counts['cases']} ({100 * counts[key] / max(counts['cases'], 1):.1f} %)"
+
+
+def _table(heads: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:
+    if not rows:
+        return ["None.", ""]
+    return [f"| {' | '.join(heads)} |", "|---" * len(heads) + "|", *(f"| {' | '.join(cells)} |" for cells in rows), ""]

@@ -1,0 +1,242 @@
+"""The trial of one faulty product: what the pipeline finds without any model, and whether that names the mistake.
+
+The steps are those of a run, in its order: the plan is read and checked, parts are built and compared with their contracts, the assembly is examined
+at rest and over each joint's range. A step with an error ends the trial, as it ends a round of a run. If nothing was found, not even a warning, the full
+sampled check of `articad build --verify sampled` follows.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import asdict, dataclass, replace
+from typing import Any, Final, Literal, Self
+
+import numpy as np
+
+from articad.agents.edit import Nobody
+from articad.agents.evidence import examine
+from articad.agents.rollback import Router
+from articad.assembly import Assembly
+from articad.errors import ArticadError, KernelError, PlanError
+from articad.findings import Finding, Findings
+from articad.kernels.choice import kernel_named
+from articad.kernels.kernel import BuildCache, PartKernel
+from articad.plan.check import check_plan
+from articad.plan.resolve import resolve
+from articad.plan.schema import AssemblyPlan
+from articad_bench.faulty import Fault, Product
+
+__all__ = ["Row", "Tools", "Trial", "examined", "tried"]
+
+Stage = Literal["plan", "build", "evidence", "sampled", "none"]
+_SAME: Final = 1e-6  # relative difference of masses and places that is rounding
+_SHOWN: Final = 4  # findings of a row
+
+
+@dataclass(frozen=True)
+class Tools:
+    """What a trial builds with.
+
+    Attributes:
+        kernel: Builds scripts.
+        cache: Stores built parts.
+    """
+
+    kernel: PartKernel
+    cache: BuildCache
+
+    @classmethod
+    def default(cls) -> Tools:
+        """Return build123d and the user's cache."""
+        return cls(kernel_named("build123d"), BuildCache())
+
+
+@dataclass(frozen=True)
+class Trial:
+    """What was found about a product.
+
+    Attributes:
+        stage: The step that found it; "none" if nothing above a note was found.
+        findings: Errors and warnings.
+        assembly: The product, if it could be assembled.
+    """
+
+    stage: Stage
+    findings: Findings
+    assembly: Assembly | None = None
+
+
+@dataclass(frozen=True)
+class Row:
+    """The result of one case.
+
+    Attributes:
+        case: Product and kind.
+        said: The mistake.
+        stage: The step that found something.
+        findings: The first findings: code, place, route, message.
+        digest: Of plan and scripts: a row of another one is not of this case.
+        escaped: Nothing above a note was found, although the product is another one.
+        equivalent: Nothing was found because the product is the same: parts, places, masses, limits.
+        named: A finding names a part or joint of the mistake, with a code that states its cause.
+        addressed: Every such finding of the highest severity goes to whoever made the mistake.
+        held: For an escape: codes that `articad check --joints` finds beside those of the good product.
+    """
+
+    case: str
+    product: str
+    kind: str
+    side: str
+    said: str
+    stage: str
+    findings: tuple[tuple[str, str, str, str], ...]
+    digest: str
+    escaped: bool = False
+    equivalent: bool = False
+    named: bool = False
+    addressed: bool = False
+    held: tuple[str, ...] = ()
+
+    @classmethod
+    def of(cls, fault: Fault, stage: str, found: Sequence[tuple[str, str, str, str]]) -> Self:
+        """Return the row of a case of which nothing is judged yet."""
+        return cls(fault.name, fault.good.name, fault.kind.name, fault.kind.side, fault.said, stage, tuple(found), fault.digest)
+
+    def to_json(self) -> dict[str, Any]:
+        """Return the row as JSON."""
+        return asdict(self)
+
+
+def tried(fault: Fault, tools: Tools) -> Row:
+    """Try one case. A defect of articad itself is the stage "defect", with its exception as the only finding."""
+    try:
+        trial = examined(fault.bad, tools)
+        row = Row.of(fault, trial.stage, [(one.code, one.where, one.route or "", one.message) for one in trial.findings[:_SHOWN]])
+        if trial.stage == "none" and trial.assembly is not None:
+            return _unseen(row, _assembled(fault.good, tools), trial.assembly)
+    except Exception as error:  # noqa: BLE001 - the other cases are tried all the same
+        return Row.of(fault, "defect", [("defect", fault.name, "", repr(error))])
+    naming = [finding for finding in trial.findings if _names(finding, fault)]
+    worst = [finding for finding in naming if finding.severity == naming[0].severity]
+    right = bool(worst) and all(_addressee(finding, fault) == fault.kind.side for finding in worst)
+    return replace(row, named=bool(naming), addressed=right)
+
+
+def examined(product: Product, tools: Tools) -> Trial:
+    """Take a product through the steps of a run until one finds an error.
+
+    Warnings of a step are kept, and the next step follows.
+    """
+    try:
+        plan = AssemblyPlan.from_json(product.plan)
+    except PlanError as error:
+        return Trial("plan", _serious(error.findings))
+    found = _serious(check_plan(plan))
+    if not found.ok:
+        return Trial("plan", found)
+    stage: Stage = "plan" if found else "none"
+    try:
+        assembly = _assembled(product, tools)
+    except KernelError as error:
+        return Trial("build", found + _serious(error.findings))
+    built = _serious(assembly.findings)
+    stage = "build" if built and stage == "none" else stage
+    evidence = found + built + _serious(examine(assembly).findings)
+    if not evidence.ok:
+        return Trial("evidence", evidence, assembly)
+    if evidence:
+        return Trial("evidence" if stage == "none" else stage, evidence, assembly)
+    sampled = _serious(assembly.check(motion=True).findings)
+    return Trial("sampled" if sampled else "none", sampled, assembly)
+
+
+def _assembled(product: Product, tools: Tools) -> Assembly:
+    plan = AssemblyPlan.from_json(product.plan)
+    return Assembly.from_plan(plan, dict(product.scripts), kernel=tools.kernel, cache=tools.cache, jobs=1)
+
+
+def _serious(findings: Iterable[Finding]) -> Findings:
+    return Findings(finding for finding in findings if finding.severity != "info")
+
+
+def _names(finding: Finding, fault: Fault) -> bool:
+    words = {*finding.parts, *finding.where.replace("[", ".").replace("]", "").split(".")}
+    return finding.code in fault.kind.causes and not words.isdisjoint(fault.names)
+
+
+def _addressee(finding: Finding, fault: Fault) -> str:
+    """Return who gets a finding: "plan", "script" if it is the author of the faulty script, "other", or "open"."""
+    if finding.stage == "plan":
+        return "plan"
+    if finding.severity != "error":
+        return "plan" if finding.route == "design" else "script"
+    try:
+        resolved = resolve(AssemblyPlan.from_json(fault.bad.plan))
+        scripts = {name: text.encode() for name, text in fault.bad.scripts.items()}
+        repair = Router(Nobody()).decide(1, [finding], resolved, scripts)
+    except ArticadError:
+        return "open"
+    if repair.design:
+        return "plan"
+    changed = {name for name, text in fault.bad.scripts.items() if text != fault.good.scripts[name]}
+    return "script" if set(repair.code) <= changed or not changed else "other"
+
+
+# ---------------------------------------------------------------- escapes
+
+
+def _unseen(row: Row, good: Assembly, bad: Assembly) -> Row:
+    """Return the row of a case in which nothing was found."""
+    if _is_same(good, bad):
+        return replace(row, equivalent=True)
+    return replace(row, escaped=True, held=_held(good, bad))
+
+
+def _held(good: Assembly, bad: Assembly) -> tuple[str, ...]:
+    """Return the codes of the judgement of joints that the good product does not have."""
+    known = {(finding.code, finding.where) for finding in good.check_joints().findings}
+    return tuple(sorted({one.code for one in bad.check_joints().findings if (one.code, one.where) not in known}))
+
+
+def _is_same(good: Assembly, bad: Assembly) -> bool:
+    """Whether two assemblies are the same product: parts, shapes, masses, places at rest and displaced, limits, couplings and fits.
+
+    Shapes are compared by volume, centre, box and inertia in the assembly's frame.
+    """
+    if set(good.parts) != set(bad.parts) or good.mechanism.rest.shape != bad.mechanism.rest.shape:
+        return False
+    stated = [
+        [*one.drivers, *((joint.name, joint.type, joint.limits) for joint in one.joints), *one.fits.items(), one.mechanism.couplings]
+        for one in (good, bad)
+    ]
+    if str(stated[0]) != str(stated[1]):
+        return False
+    return all(np.allclose(_places(good, q), _places(bad, q), rtol=_SAME, atol=_SAME) for q in _configurations(good))
+
+
+def _configurations(assembly: Assembly) -> list[Any]:
+    """Return the rest pose, and one where each driver is moved a little: enough to show every axis."""
+    rest = np.asarray(assembly.mechanism.rest, dtype=np.float64)
+    moved = [rest]
+    for column in range(len(assembly.drivers)):
+        moved.append(rest.copy())
+        moved[-1][column] += 0.05
+    return moved
+
+
+def _places(assembly: Assembly, q: Any) -> Any:
+    """Return centre, box and inertia of each part's surface in the assembly's frame at a configuration."""
+    poses: Mapping[str, Any] = dict(zip(assembly.mechanism.parts, assembly.poses(q), strict=True))
+    rows = []
+    for name in sorted(assembly.parts):
+        part = assembly.parts[name]
+        if part.mesh is None or part.solid is None:
+            continue
+        points = poses[name].apply(part.mesh.vertices)
+        turned = np.asarray(poses[name].rotation)
+        inertia = turned @ part.solid.inertia_mm5 @ turned.T / max(part.solid.volume, 1e-9)
+        mass = 0.0 if part.mass is None else part.mass.mass
+        rows.append(
+            [part.solid.volume, mass, *poses[name].apply(part.solid.com), *points.min(axis=0), *points.max(axis=0), *inertia.ravel()]
+        )
+    return np.array(rows)

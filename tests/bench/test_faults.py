@@ -1,0 +1,177 @@
+"""Planted faults: the cases, the trial of some that take seconds, the table, and, as a long run, all of them."""
+
+from __future__ import annotations
+
+import copy
+import json
+from collections import Counter
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+
+import pytest
+
+from articad.kernels.kernel import BuildCache
+from articad_bench.fault_run import KINDS, FaultRun
+from articad_bench.fault_table import page, report
+from articad_bench.fault_trial import Row, Tools, tried
+from articad_bench.faulty import PRODUCTS, Fault, Kind, Product, chosen
+
+KIND = {kind.name: kind for kind in KINDS}
+
+
+@cache
+def tools() -> Tools:
+    return Tools.default()
+
+
+@cache
+def every() -> FaultRun:
+    return FaultRun.of()
+
+
+def planted(product: str, kind: str) -> Fault:
+    (fault,) = chosen([KIND[kind]], [Product.named(product)], 1)
+    return fault
+
+
+def made(kind: str, good: Product, bad: Product, *names: str) -> Fault:
+    return Fault(KIND[kind], good, bad, "by hand", frozenset(names))
+
+
+def test_there_are_forty_kinds_and_four_hundred_cases_over_twenty_products() -> None:
+    assert len(KIND) == len(KINDS) >= 40
+    assert len(PRODUCTS) == len(every().products) == 20
+    assert len(every().faults) >= 400
+    assert {fault.kind.name for fault in every().faults} == set(KIND)
+    assert len({fault.digest for fault in every().faults}) == len({fault.name for fault in every().faults}) == len(every().faults)
+
+
+def test_no_case_is_the_good_product() -> None:
+    for fault in every().faults:
+        assert (fault.bad.plan, fault.bad.scripts) != (fault.good.plan, fault.good.scripts), fault.name
+        changed = {"plan": fault.bad.plan != fault.good.plan, "script": fault.bad.scripts != fault.good.scripts}
+        assert [side for side, is_changed in changed.items() if is_changed] == [fault.kind.side], fault.name
+
+
+def test_a_case_depends_on_its_own_kind_and_product_alone() -> None:
+    products = [Product.named(name) for name in ("hinge_butt_pin", "gears_18_36")]
+    few = {fault.name: fault.digest for fault in chosen(KINDS, products[:1], 1)}
+    more = {fault.name: fault.digest for fault in chosen(KINDS[::-1], products, 2)}
+    assert few.items() <= more.items()
+
+
+def test_some_cases_are_spread_over_the_kinds() -> None:
+    some = FaultRun.of(some=30)
+    assert len(some.faults) == 30
+    assert max(Counter(fault.kind.name for fault in some.faults).values()) == 1
+
+
+@pytest.mark.parametrize(
+    ("product", "kind", "code"),
+    [
+        ("hinge_butt_pin", "limit_order", "E_LIMITS_ORDER"),
+        ("hinge_butt_pin", "fit_impossible", "E_FIT"),
+        ("hinge_butt_pin", "density_unit", "W_DENSITY"),
+        ("four_bar", "joint_fixed", "E_MATE_ROLL"),
+        ("wardrobe", "axis_reversed", "E_MATE_FLIP"),
+        ("wardrobe", "joint_missing", "E_DISCONNECTED"),
+        ("gears_18_36", "connector_unknown", "E_CONNECTOR_UNKNOWN"),
+    ],
+)
+def test_a_faulty_plan_is_refused_before_any_part_is_built(product: str, kind: str, code: str) -> None:
+    row = tried(planted(product, kind), tools())
+    assert row.stage == "plan"
+    assert any(found[0].startswith(code) for found in row.findings)
+    assert not row.escaped
+    assert row.named
+    assert row.addressed
+
+
+@pytest.mark.parametrize(
+    ("kind", "code"),
+    [("two_solids", "E_NOT_ONE_SOLID"), ("dimension_misspelt", "E_SCRIPT_ERROR"), ("connector_turned", "E_CONNECTOR_DRIFT")],
+)
+def test_a_faulty_script_breaks_its_contract(kind: str, code: str) -> None:
+    row = tried(planted("bookcase_low", kind), tools())
+    assert row.stage == "build"
+    assert row.findings[0][0] == code
+    assert row.named
+    assert row.addressed
+
+
+def test_the_same_product_by_another_script_is_no_escape() -> None:
+    good = Product.named("hinge_butt_pin")
+    bad = replace(good, scripts={**good.scripts, "pin": good.scripts["pin"] + "\n# another script\n"})
+    row = tried(made("literal_number", good, bad, "pin"), tools())
+    assert row.equivalent
+    assert not row.escaped
+
+
+def test_another_product_without_a_finding_is_an_escape() -> None:
+    good = Product.named("bookcase_low")
+    plan = copy.deepcopy(good.plan)
+    back = next(part for part in plan["parts"] if part["name"] == "back")
+    back["dimensions"]["width"] = back["dimensions"]["width"] - 1
+    back.pop("envelope_mm", None)
+    row = tried(made("unit_inch", good, replace(good, plan=plan), "back"), tools())
+    assert row.stage == "none"
+    assert row.escaped
+    assert not row.equivalent
+    assert not row.named
+
+
+def test_a_finding_about_another_part_names_nothing() -> None:
+    fault = planted("hinge_butt_pin", "limit_order")
+    assert not tried(replace(fault, names=frozenset({"another"})), tools()).named
+    assert not tried(replace(fault, kind=replace(fault.kind, causes=frozenset())), tools()).named
+
+
+def test_results_are_kept_and_not_made_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    run = FaultRun([planted("hinge_butt_pin", kind) for kind in ("limit_order", "fit_impossible")], ())
+    first = run.work(tmp_path, Tools(tools().kernel, BuildCache(tmp_path / "cache")))
+    assert first["all"]["cases"] == first["all"]["named"] == first["all"]["plan"] == 2
+    assert json.loads((tmp_path / "faults.json").read_text()) == json.loads(json.dumps(first))
+    text = (tmp_path / "faults.md").read_text()
+    assert "| `limit_order`: limits exchanged | 1 |" in text
+    monkeypatch.setattr("articad_bench.fault_run.tried", None)  # calling it would fail
+    assert run.work(tmp_path, tools()) == json.loads((tmp_path / "faults.json").read_text()) | {"rows": first["rows"]}
+
+
+def row(kind: Kind, **given: object) -> Row:
+    found = (("E_FIT", "joints.a", "design", "A fit."),)
+    plain = Row(f"p:{kind.name}", "p", kind.name, kind.side, "said", "plan", found, "0", named=True, addressed=True)
+    return replace(plain, **given)  # type: ignore[arg-type]
+
+
+def test_the_page_counts_what_it_lists() -> None:
+    rows = [
+        row(KIND["pose_off"]),
+        row(KIND["limit_sign"], stage="none", escaped=True, named=False, addressed=False, findings=(), held=("W_JOINT_SHORT",)),
+        row(KIND["limit_order"], stage="none", equivalent=True, named=False, addressed=False, findings=()),
+        row(KIND["two_solids"], addressed=False),
+        row(KIND["shape_off"], named=False, addressed=False),
+    ]
+    told = report(rows, ["p: E_OVERLAP"])
+    assert (told["all"]["cases"], told["all"]["same"], told["all"]["escaped"], told["all"]["named"], told["all"]["addressed"]) == (
+        *(4, 1, 1, 2, 1),
+    )
+    text = page(told, KINDS)
+    assert "Escaped: 1 of 4 (25.0 %). Named: 2 of 4 (50.0 %). Addressed: 1 of 4 (25.0 %)." in text
+    assert "False alarms on them: 1.\n- p: E_OVERLAP" in text
+    assert "| `p:limit_sign` | said | W_JOINT_SHORT | open |" in text
+    assert "| `p:two_solids` | said | `E_FIT` joints.a (design) |" in text.split("Named, but addressed")[1]
+    assert "| `p:shape_off` | said | `E_FIT` joints.a (design) |" in text.split("Found, but not named")[1]
+
+
+def test_the_page_of_the_docs_is_that_of_its_results() -> None:
+    folder = Path(__file__).resolve().parents[2] / "docs" / "reference"
+    assert (folder / "faults.md").read_text() == page(json.loads((folder / "faults.json").read_text()), KINDS)
+
+
+@pytest.mark.soak
+def test_all_cases(tmp_path: Path) -> None:
+    told = every().work(tmp_path, tools())
+    stored = json.loads((Path(__file__).resolve().parents[2] / "docs" / "reference" / "faults.json").read_text())
+    assert told["alarms"] == []
+    assert {found["case"] for found in told["rows"] if found["escaped"]} <= {found["case"] for found in stored["rows"] if found["escaped"]}
