@@ -84,5 +84,6 @@ class FaultRun:
 
 
 def _known(file: Path) -> dict[str, Row]:
-    """Return earlier results by digest."""
-    return {row.digest: row for row in rows_of(json.loads(file.read_text()))} if file.is_file() else {}
+    """Return earlier results by digest, except defects: those are tried again."""
+    rows = rows_of(json.loads(file.read_text())) if file.is_file() else []
+    return {row.digest: row for row in rows if row.stage != "defect"}

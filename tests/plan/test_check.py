@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
@@ -10,6 +11,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from articad import examples
 from articad.errors import KinematicsError, LoopError, PlanError
 from articad.findings import Finding, Findings
 from articad.findings.codes import CODES
@@ -302,18 +304,6 @@ CASES = [
         "Declared freedoms 3, but the assembly has 4 (hinge_left 1, hinge_right 1, slide_lower 1, slide_upper 1). Set freedoms to 4",
         3,
         4,
-    ),
-    Case(
-        "E_DOF_MISMATCH",
-        wardrobe_with(
-            lambda p: p["joints"].__setitem__(
-                2, {key: joint(p, "slide_lower")[key] for key in ("name", "parent", "child")} | {"type": "fixed"}
-            )
-        ),
-        "freedoms",
-        "These joints are fixed, though they are at an axis: slide_lower.",
-        4,
-        3,
     ),
     Case("E_DOF_MISMATCH", pair({"type": "fixed"}, 1), "freedoms", "has 0 (no joint moves)", 1, 0),
     Case("W_DRIVER", chest_with(lambda p: joint(p, "hinge").update(driver=True)), "joints.hinge.driver", "every joint is one"),
@@ -1016,3 +1006,14 @@ def test_a_coupled_joint_may_turn_as_often_as_its_partner_asks_for() -> None:
 
     assert "W_LIMITS_UNITS" not in check(screw).codes
     assert "W_LIMITS_UNITS" in check(wheel).codes
+
+
+def test_missing_freedoms_name_the_fixed_joints_at_axes() -> None:
+    plan = json.loads((examples.folder("wardrobe") / "plan.json").read_text())
+    slide = joint(plan, "slide_lower")
+    for key in ("travel_mm", "fit"):
+        slide.pop(key)
+    slide["type"] = "fixed"
+    finding = only(check(plan), "E_DOF_MISMATCH")
+    assert finding.hint.endswith("These joints are fixed, though they are at an axis: slide_lower, slide_upper.")
+    assert finding.parts == ("cabinet", "drawer_lower", "drawer_upper")
