@@ -96,6 +96,12 @@ class Job:
         """Return the document's parameters, parts and joints, as JSON."""
         poses = self.assembly.at()
         parts = [self._part(name, part, poses[name]) for name, part in self.assembly.parts.items()]
+        by_name = {part["name"]: part for part in parts}
+        for part in parts:
+            source = part
+            while source["kind"] in ("mirror", "link"):
+                source = by_name[source["source"]]
+            part["frozen"] = source["kind"] in _FROZEN
         parameters = list(self._parameters({part["name"] for part in parts if part["kind"] in _FROZEN and part["dimensions"]}))
         live = sum(row["live"] for row in parameters)
         split = "all fixed" if not live else f"{live} live, {len(parameters) - live} fixed"

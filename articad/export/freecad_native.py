@@ -236,9 +236,8 @@ class _Writer:
         members = []
         if part["dimensions"]:
             values = self.names.claim(f"Dimensions_{item}")
-            frozen = part["kind"] not in ("body", "mirror")
-            rows = [row | {"live": not frozen} for row in part["dimensions"]]
-            members.append(self._values(values, f"{name} dimensions{' (frozen shape)' if frozen else ''}", "d", "Dimensions", rows))
+            rows = [row | {"live": False} for row in part["dimensions"]]
+            members.append(self._values(values, f"{name} dimensions (frozen shape)", "d", "Dimensions", rows))
         members += self._shape(part)
         members += [self._connector(part, connector) for connector in part["connectors"]]
         grouped = [_links("Group", members), _link("Origin", origin)]
@@ -249,10 +248,11 @@ class _Writer:
         body, kind = self.names.claim(f"{part['object']}_body"), part["kind"]
         self.shapes[part["name"]] = body
         self.colors[body] = part["color"]
+        label = f"{part['name']} body (frozen)"  # only FreeCAD can copy features
         if kind == "mesh":
             self.files[f"{body}.bms"] = (self.folder / part["file"]).read_bytes()
             mesh = _property("Mesh", "Mesh", _row("Mesh", file=f"{body}.bms"), family="Mesh::PropertyMeshKernel")
-            return [self._add(body, "Mesh::Feature", mesh, _placement("Placement", _STAYS))]
+            return [self._add(body, "Mesh::Feature", mesh, _placement("Placement", _STAYS), label=label)]
         if kind == "empty":
             return [self._add(body, "Part::Feature", _placement("Placement", _STAYS))]
         brep = (self.folder / part["file"]).read_bytes()
@@ -263,12 +263,13 @@ class _Writer:
             _placement("Placement", _stands(brep)),
         ]
         if kind == "shape":
-            return [self._add(body, "Part::Feature", *shape, label=f"{part['name']} body (frozen)")]
+            return [self._add(body, "Part::Feature", *shape, label=label)]
         source = self.names.claim(f"{part['object']}_source")
         self.hidden.append(source)
         self._add(source, "App::Link", _target("LinkedObject", self.shapes[part["source"]]), extension="LinkExtension")
         plane = [_vector("Base", part["plane"]["point"], "Position"), _vector("Normal", part["plane"]["normal"], "Direction")]
-        return [source, self._add(body, "Part::Mirroring", _link("Source", source), *plane, *shape, expressions=part["expressions"])]
+        image = self._add(body, "Part::Mirroring", _link("Source", source), *plane, *shape, label=label, expressions=part["expressions"])
+        return [source, image]
 
     def _connector(self, part: Json, connector: Json) -> str:
         expressions = dict(connector["expressions"])

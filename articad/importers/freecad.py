@@ -148,16 +148,18 @@ class _Model:
         self.now = content_of(self.document.root)
         self.edits = () if self.written is None else tuple(edits(self.written, self.now))
         self.findings: list[Finding] = []
-        self.members = [item for item in library.members(self.assembly) if self._is_part(item)]
+        self._held = dict(library.components(self.assembly))  # every member, with the pose of the group that contains it
+        self.members = [item for item in self._held if self._is_part(item)]
         self.parts: dict[str, FreeCADObject] = {}  # by the name that the part has now
         self.recorded: dict[str, str] = {}  # name in the records -> name now
         for item in self.members:
             self._take(item)
         self.names = {item: name for name, item in self.parts.items()}
         self.ground = self._grounded()
-        self.poses = {name: item.placement for name, item in self.parts.items()}
+        self.poses = {name: self._held[item] @ item.placement for name, item in self.parts.items()}
         self.colors = {self.document.path: self.document.colors()}
         self._solids: dict[FreeCADObject, tuple[Solid | None, tuple[Shape, ...]]] = {}
+        self._wrong: dict[FreeCADObject, list[Finding]] = {}  # what was said of a shape when it was read
         self._reader = BrepReader()
 
     def _top(self) -> FreeCADObject:
@@ -192,10 +194,9 @@ class _Model:
         raise unreadable(self.path, self.assembly.name, "No part of the assembly is grounded.")
 
     def joint_items(self) -> list[FreeCADObject]:
-        """Return the joints of the assembly, not those of assemblies in it."""
-        members = self.library.members(self.assembly)
-        inside = [joint for item in members if item.type == "Assembly::JointGroup" for joint in self.library.members(item)]
-        return list(dict.fromkeys([*inside, *(item for item in members if self._is_joint(item))]))
+        """Return the joints of the assembly and of flexible assemblies in it, not those of rigid ones."""
+        inside = [joint for item in self._held if item.type == "Assembly::JointGroup" for joint in self.library.members(item)]
+        return list(dict.fromkeys([*inside, *(item for item in self._held if self._is_joint(item))]))
 
     def _is_joint(self, item: FreeCADObject) -> bool:
         return any(item.document.has(item.name, key) for key in ("JointType", "ObjectToGround"))
@@ -227,7 +228,13 @@ class _Model:
     def _measured(self, name: str) -> tuple[Solid | None, tuple[Shape, ...]]:
         container = self.library.container(self.parts[name])
         if container not in self._solids:
+            start = len(self.findings)
             self._solids[container] = self._read(container, name)
+            self._wrong[container] = self.findings[start:]
+        elif not any(finding.parts == (name,) for finding in self.findings):
+            for finding in self._wrong[container]:  # each copy lacks what its source lacks
+                message = finding.message.replace(repr(finding.parts[0]), repr(name))
+                self.findings.append(replace(finding, where=f"parts.{name}", parts=(name,), message=message))
         return self._solids[container]
 
     def _read(self, container: FreeCADObject, name: str) -> tuple[Solid | None, tuple[Shape, ...]]:
@@ -457,7 +464,12 @@ class _Model:
         title = self.assembly.text("Label") or self.path.stem
         try:
             made = Assembly.from_parts(
-                _plain(title), parts=parts, joints=joints, couplings=couplings, ground=self.ground, T_ground=self.poses[self.ground]
+                _plain(title),
+                parts=parts,
+                joints=joints,
+                couplings=couplings,
+                ground=self.ground,
+                T_ground=self.assembly.placement @ self.poses[self.ground],
             )
         except ArticadError as error:
             raise unreadable(self.path, self.assembly.name, f"It is not a valid mechanism: {error.message}") from error

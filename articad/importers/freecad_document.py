@@ -24,6 +24,10 @@ MAX_MEMBERS = 20_000  # of groups of a document, each counted as often as it is 
 IDENTITY = SE3.identity()
 _GROUPS = ("App::Part", "App::DocumentObjectGroup", "Assembly::AssemblyObject", "Assembly::AssemblyLink")
 _LINKS = ("App::Link", "Assembly::AssemblyLink")
+_DATUMS = (  # objects in a body with frames of their own; beginnings of their types
+    *("Sketcher::Sketch", "PartDesign::Point", "PartDesign::Line", "PartDesign::Plane", "PartDesign::CoordinateSystem"),
+    *("Part::Datum", "Part::LocalCoordinateSystem", "App::Point", "App::Line", "App::Plane", "App::Origin", "App::LocalCoordinateSystem"),
+)
 
 
 class FreeCADDocument:
@@ -281,6 +285,25 @@ class LinkedDocuments:
                 raise unreadable(item.document.path, item.name, f"It has more than {MAX_MEMBERS} members.")
         return found
 
+    def components(self, item: FreeCADObject, T: SE3 = IDENTITY, depth: int = 0) -> Iterator[tuple[FreeCADObject, SE3]]:
+        """Yield the members of an assembly, each with the pose of the group that contains it.
+
+        FreeCAD's solver moves the members of a flexible sub-assembly one by one, so they are members of the assembly around it.
+
+        Args:
+            item: The assembly.
+            T: Pose of the frame of `item`.
+            depth: Number of assemblies around it.
+        """
+        if depth > MAX_DEPTH:
+            raise unreadable(item.document.path, item.name, "Its assemblies are nested too deep.")
+        for member in self.members(item):
+            flexible = member.type == "Assembly::AssemblyLink" and not member.document.truth(member.name, "Rigid", default=True)
+            if flexible and member.document.links(member.name, "Group"):
+                yield from self.components(member, T @ member.placement, depth + 1)
+            else:
+                yield member, T
+
     def shapes(self, item: FreeCADObject, T: SE3 = IDENTITY, depth: int = 0) -> Iterator[tuple[FreeCADObject, SE3]]:
         """Yield the bodies, solids and meshes of a part, each with the pose of its stored shape in the part's frame.
 
@@ -306,7 +329,12 @@ class LinkedDocuments:
             yield from self.shapes(member, T @ member.placement, depth + 1)
 
     def reference(self, item: FreeCADObject, key: str) -> list[FreeCADObject]:
-        """Return the objects along a reference, starting at the one that states it."""
+        """Return the objects along a reference whose placements lead to its frame, starting at the one that states it.
+
+        A reference to a face of a body goes on into the feature that made the face: `Body.Pad.Face5`. FreeCAD states the frame in the body
+        (or the link to it), so the placement of the feature says nothing. Only sketches and datums of a body have a frame of their own.
+        See `getObject` in FreeCAD's Mod/Assembly/UtilsAssembly.py.
+        """
         link = item.document.row(item.name, key, "XLink")
         if link is None:
             return []
@@ -314,9 +342,14 @@ class LinkedDocuments:
         tail = (sub.get("value") if sub is not None else link.get("sub")) or ""
         document, steps = self._document(item, link.get("file") or ""), []
         for name in (link.get("name") or "", *tail.split(".")[:-1]):
-            if name in document.items:
-                steps.append(FreeCADObject(document, name))
-                document = self.container(steps[-1]).document
+            if name not in document.items:
+                continue
+            step = FreeCADObject(document, name)
+            if steps and self.container(steps[-1]).is_shape and not step.type.startswith(_DATUMS):
+                break
+            steps.append(step)
+            inside = step.type == "Assembly::AssemblyLink" and step.document.links(step.name, "Group")
+            document = step.document if inside else self.container(step).document  # a sub-assembly has links of its own to its parts
         return steps
 
     def _document(self, item: FreeCADObject, file: str) -> FreeCADDocument:

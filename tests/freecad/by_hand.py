@@ -19,6 +19,7 @@ def main() -> None:
     document = App.newDocument("Press")
     assembly = document.addObject("Assembly::AssemblyObject", "Assembly")
     assembly.Type = "Assembly"
+    assembly.Placement = App.Placement(App.Vector(3, -2, 52), App.Rotation(App.Vector(0, 1, 0), 20))
     joints = assembly.newObject("Assembly::JointGroup", "Joints")
     bracket, lever, weight = _bracket(document, assembly), _lever(assembly), _weight(document, assembly)
     document.recompute()
@@ -40,7 +41,7 @@ def main() -> None:
     for item in (item for item in joints.Group if hasattr(item, "JointType")):
         sides = ((item.Placement1, item.Reference1), (item.Placement2, item.Reference2))
         told["joints"][item.Label] = [_seven(UtilsAssembly.getJcsGlobalPlc(placement, reference)) for placement, reference in sides]
-    told["parts"] = {item.Name.lower(): _seven(item.Placement) for item in (bracket, lever, weight)}
+    told["parts"] = {item.Name.lower(): _seven(assembly.Placement * item.Placement) for item in (bracket, lever, weight)}
     Path("/work/hand.json").write_text(json.dumps(told))
 
 
@@ -78,6 +79,7 @@ def _sketch(body: Any, name: str) -> Any:
     sketch = body.newObject("Sketcher::SketchObject", name)
     (plane,) = [item for item in body.Origin.OriginFeatures if item.Role == "XY_Plane"]
     sketch.AttachmentSupport, sketch.MapMode = [(plane, "")], "FlatFace"
+    sketch.AttachmentOffset = App.Placement(App.Vector(4, -3, 0), App.Rotation(App.Vector(0, 0, 1), 40))  # features have placements
     return sketch
 
 

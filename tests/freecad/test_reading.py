@@ -14,6 +14,7 @@ from lxml import etree
 from scipy.spatial.transform import Rotation
 
 import articad as ac
+from articad.connectors.se3 import SE3
 from articad.errors import ReadError
 from articad.export.freecad import write_freecad, write_freecad_alone
 from articad.export.urdf import write_urdf
@@ -167,6 +168,17 @@ def test_links_into_another_file_are_followed_and_gears_are_a_coupling(tmp_path:
     assert [(joint.name, str(joint.type)) for joint in read.joints] == [("axiswheela", "revolute"), ("axiswheelb", "revolute")]
     (coupling,) = read.mechanism.couplings
     assert (coupling.kind, coupling.a, coupling.b, coupling.ratio) == ("gear", "axiswheela", "axiswheelb", -1.5)
+    nested = read_freecad(tmp_path / "nested.FCStd")
+    assert [(joint.name, joint.parent, joint.child) for joint in nested.joints] == [
+        ("mountflexible", "base", "frame"),
+        ("mountrigid", "base", "rigid"),
+        ("axiswheela", "frame", "wheela"),
+        ("axiswheelb", "frame", "wheelb"),
+    ]
+    assert [(joint.name, str(joint.type)) for joint in nested.joints][2:] == [(joint.name, str(joint.type)) for joint in read.joints]
+    for name, T in read.at().items():
+        assert nested.at()[name].allclose(SE3.from_translation([0.0, 0.0, 10.0]) @ T, mm=1e-6, rad=1e-9), name
+    assert nested.at()["rigid"].allclose(SE3.from_translation([-60.0, 0.0, 30.0]), mm=1e-6, rad=1e-9)  # its wheel is at 60, 0, 10 in it
     with pytest.raises(ReadError, match=r"'Pair' \(Distance\)"):
         read_freecad(tmp_path / "distance.FCStd")
     (tmp_path / "parts.FCStd").rename(tmp_path / "elsewhere.FCStd")

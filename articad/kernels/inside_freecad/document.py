@@ -104,8 +104,8 @@ class _Writer:
             return
         if values is None:
             values = self.document.addObject("App::VarSet", f"Dimensions_{part['object']}")
-        live = part["kind"] in ("body", "mirror")
-        values.Label = f"{part['name']} dimensions{'' if live else ' (frozen shape)'}"
+        live = part["kind"] == "body"  # a mirror image has the dimensions of its source
+        values.Label = f"{part['name']} dimensions{'' if live else ' (frozen shape)' if part['frozen'] else ' (of ' + part['source'] + ')'}"
         for row in part["dimensions"]:
             name = f"d_{row['name']}"
             if name not in values.PropertiesList:
@@ -156,6 +156,7 @@ class _Writer:
             image = container.newObject("Part::Mirroring", f"{part['object']}_body")
             image.Source = source
             image.Base, image.Normal = App.Vector(*part["plane"]["point"]), App.Vector(*part["plane"]["normal"])
+            image.Label = f"{part['name']} body{' (frozen)' if part['frozen'] else ''}"
             for name, expression in part["expressions"].items():
                 image.setExpression(name, expression)
             return image
@@ -164,6 +165,7 @@ class _Writer:
 
             feature = container.newObject("Mesh::Feature", f"{part['object']}_body")
             feature.Mesh = Mesh.Mesh(part["file"])
+            feature.Label = f"{part['name']} body (frozen)"
             return feature
         feature = container.newObject("Part::Feature", f"{part['object']}_body")
         if kind == "shape":
