@@ -19,7 +19,6 @@ def main() -> None:
     document = App.newDocument("Press")
     assembly = document.addObject("Assembly::AssemblyObject", "Assembly")
     assembly.Type = "Assembly"
-    assembly.Placement = App.Placement(App.Vector(3, -2, 52), App.Rotation(App.Vector(0, 1, 0), 20))
     joints = assembly.newObject("Assembly::JointGroup", "Joints")
     bracket, lever, weight = _bracket(document, assembly), _lever(assembly), _weight(document, assembly)
     document.recompute()
@@ -37,6 +36,8 @@ def main() -> None:
     document.recompute()
 
     told: dict[str, Any] = {"code": assembly.solve(), "joints": {}, "parts": {}}
+    assembly.Placement = App.Placement(App.Vector(3, -2, 52), App.Rotation(App.Vector(0, 1, 0), 20))
+    document.recompute()
     document.saveAs("/work/hand.FCStd")
     for item in (item for item in joints.Group if hasattr(item, "JointType")):
         sides = ((item.Placement1, item.Reference1), (item.Placement2, item.Reference2))
