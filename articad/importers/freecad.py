@@ -231,7 +231,7 @@ class _Model:
             start = len(self.findings)
             self._solids[container] = self._read(container, name)
             self._wrong[container] = self.findings[start:]
-        elif not any(finding.parts == (name,) for finding in self.findings):
+        elif not any(finding.code == "W_FREECAD_SHAPE" and finding.parts == (name,) for finding in self.findings):
             for finding in self._wrong[container]:  # each copy lacks what its source lacks
                 message = finding.message.replace(repr(finding.parts[0]), repr(name))
                 self.findings.append(replace(finding, where=f"parts.{name}", parts=(name,), message=message))

@@ -157,6 +157,31 @@ def test_what_is_no_freecad_file_is_refused(content: bytes, tmp_path: Path) -> N
         read_freecad(path)
 
 
+def test_a_shape_that_cannot_be_read_is_named_for_each_part_that_shows_it(tmp_path: Path) -> None:
+    types = {
+        "Assembly": "Assembly::AssemblyObject",
+        "Source": "Part::Feature",
+        "One": "App::Link",
+        "Two": "App::Link",
+        "Held": "App::FeaturePython",
+    }
+    properties = {
+        "Assembly": '<Property name="Group"><Link value="One"/><Link value="Two"/><Link value="Held"/></Property>',
+        "Source": '<Property name="Shape"><Part file="Source.brp"/></Property>',
+        "One": '<Property name="LinkedObject"><XLink file="" name="Source"/></Property>',
+        "Two": '<Property name="LinkedObject"><XLink file="" name="Source"/></Property>',
+        "Held": '<Property name="ObjectToGround"><Link value="One"/></Property>',
+    }
+    objects = "".join(f'<Object type="{kind}" name="{name}"/>' for name, kind in types.items())
+    rows = "".join(f'<Object name="{name}"><Properties>{row}</Properties></Object>' for name, row in properties.items())
+    with zipfile.ZipFile(tmp_path / "twice.FCStd", "w") as archive:
+        archive.writestr("Document.xml", f"<Document><Objects>{objects}</Objects><ObjectData>{rows}</ObjectData></Document>")
+        archive.writestr("Source.brp", "no shape")
+    read = read_freecad(tmp_path / "twice.FCStd")
+    assert [finding.parts for finding in read.findings.of("W_FREECAD_SHAPE")] == [("one",), ("two",)]
+    assert [finding.parts for finding in read.findings.of("W_FREECAD_LOOSE")] == [("two",)]
+
+
 @pytest.mark.freecad
 @opened.needs_freecad
 def test_links_into_another_file_are_followed_and_gears_are_a_coupling(tmp_path: Path) -> None:
