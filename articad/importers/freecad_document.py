@@ -340,7 +340,8 @@ class LinkedDocuments:
             return []
         sub = link.find("Sub")
         tail = (sub.get("value") if sub is not None else link.get("sub")) or ""
-        document, steps = self._document(item, link.get("file") or ""), []
+        document = self._document(item, link.get("file") or "")
+        steps: list[FreeCADObject] = []
         for name in (link.get("name") or "", *tail.split(".")[:-1]):
             if name not in document.items:
                 continue
