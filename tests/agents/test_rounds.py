@@ -416,7 +416,7 @@ def test_a_part_that_no_script_fits_goes_to_the_designer(tmp_path: Path) -> None
     llm = flap(**wrong, design__2=changed_flap(), part__flap__5=fenced(FLAP_SCRIPTS["flap"]))
     run = made(tmp_path, llm)
 
-    assert "No script for flap kept to its entry" in said(llm, "design/2")
+    assert "Every script for flap broke its contract" in said(llm, "design/2")
     assert [step for step in llm.steps if step.startswith("part/flap")] == ["part/flap/1", "part/flap/2", "part/flap/3", "part/flap/5"]
     assert (run.round(1) or {})["kept"] == ["plate"]
     assert (run.checks() or {})["ok"]
