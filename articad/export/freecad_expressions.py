@@ -62,10 +62,12 @@ class Followed:
 
     def needed(self, numbers: Mapping[str, Sequence[Number]]) -> dict[str, set[str]]:
         """Return the parts for whose numbers each parameter is needed, directly or through other parameters."""
-        needs = {} if self._resolved is None else {parameter.name: _names(parameter.value) for parameter in self._resolved.plan.parameters}
+        needs = (
+            {} if self._resolved is None else {parameter.name: names_in(parameter.value) for parameter in self._resolved.plan.parameters}
+        )
         found: dict[str, set[str]] = {}
         for part, held in numbers.items():
-            waiting, seen = [name for number in held for name in _names(number)], set[str]()
+            waiting, seen = [name for number in held for name in names_in(number)], set[str]()
             while waiting:
                 name = waiting.pop()
                 if name not in seen:
@@ -156,7 +158,7 @@ class Followed:
         return repr(float(parse(number).evaluate(known) if isinstance(number, str) else number))
 
 
-def _names(number: Number) -> tuple[str, ...]:
+def names_in(number: Number) -> tuple[str, ...]:
     """Return the parameters that a number of the plan names."""
     try:
         return tuple(parse(number).names) if isinstance(number, str) else ()

@@ -21,7 +21,7 @@ from articad.connectors.se3 import SE3
 from articad.errors import PlanError
 from articad.export.bundle import Loss
 from articad.export.features import joint_features
-from articad.export.freecad_expressions import Followed, Number
+from articad.export.freecad_expressions import Followed, Number, names_in
 from articad.export.freecad_file import mesh_kernel
 from articad.export.losses import Feature, kept_losses, losses_of
 from articad.export.lowering import lower
@@ -136,9 +136,16 @@ class Job:
             ("it places {} at rest, which cannot follow", self.followed.placing(self._unplaced)),
             ("it turns the connector {}, which cannot follow", self._turning(resolved)),
         )
+        given = {parameter.name: resolved.overrides.get(parameter.name, parameter.value) for parameter in resolved.plan.parameters}
+        fixed = {name: [text.format(", ".join(sorted(held[name])[:5])) for text, held in frozen_things if name in held] for name in given}
+        followed = {name: [other for other in names_in(number) if other in given] for name, number in given.items()}
+        order = list(given)
+        while order:  # a value that follows only fixed values is fixed
+            order = [name for name in given if not fixed[name] and followed[name] and all(fixed[other] for other in followed[name])]
+            for name in order:
+                fixed[name].append(f"it follows {', '.join(followed[name][:5])}, which cannot be edited here")
         for parameter in resolved.plan.parameters:
-            given = resolved.overrides.get(parameter.name, parameter.value)
-            reasons = [text.format(", ".join(sorted(held[parameter.name])[:5])) for text, held in frozen_things if parameter.name in held]
+            reasons = fixed[parameter.name]
             why = f"Fixed: {'; '.join(reasons)}. Change it in the plan and export again." if reasons else ""
             yield {
                 "live": not reasons,
@@ -147,7 +154,7 @@ class Job:
                 "value": float(resolved.parameters[parameter.name]),
                 "unit": parameter.unit,
                 "description": parameter.description,
-                "expression": self.followed.number(given),
+                "expression": self.followed.number(given[parameter.name]),
             }
 
     def _turning(self, resolved: ResolvedPlan) -> dict[str, set[str]]:

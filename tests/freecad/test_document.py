@@ -175,6 +175,15 @@ def test_a_parameter_over_a_frozen_shape_is_fixed_and_says_so(native: bool) -> N
     assert look["labels"]["Parameters"] == f"Parameters ({live} live, {len(groups) - live} fixed)"
 
 
+def test_a_parameter_that_follows_only_fixed_ones_is_fixed() -> None:
+    bundle = write_freecad_alone(assembly("four_bar"))
+    (look,) = opened.steps(bundle.files[bundle.main], {"do": "look"})
+    assert look["labels"]["Parameters"] == "Parameters (all fixed)"
+    group, why, editable = look["parameters"]["p_front"]
+    assert (group, editable) == ("Fixed parameters", False)
+    assert "it follows" in why
+
+
 def test_parameters_over_feature_trees_are_live() -> None:
     bundle = write_freecad(cupboard.assembly())
     (look,) = opened.steps(bundle.files[bundle.main], {"do": "look"})
