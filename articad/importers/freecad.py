@@ -3,7 +3,7 @@
 The file is a zip of XML and B-rep; the B-rep is read in the kernels' confined worker. Parts, shapes, connectors, joints, limits, labels and
 colours come from the document as it is now, so edits in FreeCAD are kept, and masses are computed from the shapes. What FreeCAD cannot
 represent (cones, leads, drivers, linear couplings, fits) comes from articad's records in the document. Each edit is a finding; an edit that
-is not taken over is a warning that names it.
+is not adopted is a warning that names it.
 """
 
 from __future__ import annotations

@@ -107,11 +107,11 @@ NAMED = {  # words of the finding that names the edit
     "joint_label": ("slide", "Runner"),
     "connector": ("tray.rail", "Placement.Base.z", "4"),
     "material": ("tray", "ArticadMaterial", "brass"),
-    "sheet_added": ("Notes", "added", "not taken over"),
+    "sheet_added": ("Notes", "added", "not adopted"),
     "part_taken_out": ("tray", "left the group"),
-    "described": ("tray", "Label2", "for letters", "not taken over"),
-    "library_material": ("tray body", "ShapeMaterial", "not taken over"),
-    "parameter_added": ("Parameters", "p_spare", "7", "not taken over"),
+    "described": ("tray", "Label2", "for letters", "not adopted"),
+    "library_material": ("tray body", "ShapeMaterial", "not adopted"),
+    "parameter_added": ("Parameters", "p_spare", "7", "not adopted"),
 }
 
 
