@@ -75,7 +75,7 @@ class FaultRun:
         return self._save(out, rows, alarms)
 
     def _save(self, out: Path, rows: Mapping[str, Row], alarms: Sequence[str]) -> dict[str, Any]:
-        told = report([rows[fault.digest] for fault in self.faults if fault.digest in rows], alarms)
+        told = report([rows[fault.digest] for fault in self.faults if fault.digest in rows], alarms, planned=len(self.faults))
         for name, text in ((_RESULTS, json.dumps(told, indent=1) + "\n"), (_PAGE, page(told, KINDS))):
             fresh = out / f"{name}.new"
             fresh.write_text(text)

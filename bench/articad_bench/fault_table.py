@@ -35,18 +35,20 @@ def rows_of(stored: Mapping[str, Any]) -> list[Row]:
     return [Row(**{**row, "held": tuple(row["held"]), "findings": tuple(map(tuple, row["findings"]))}) for row in stored["rows"]]
 
 
-def report(rows: Iterable[Row], alarms: Sequence[str]) -> dict[str, Any]:
+def report(rows: Iterable[Row], alarms: Sequence[str], *, planned: int) -> dict[str, Any]:
     """Return the report of a run.
 
     Args:
-        rows: One for each case.
+        rows: One for each case that was tried.
         alarms: Findings above a note about good products.
+        planned: Number of cases of the run.
     """
     rows = list(rows)
     return {
         "schema": SCHEMA,
         "ok": True,
         "findings": [],
+        "planned": planned,
         "all": _counts(rows),
         "plan": _counts([row for row in rows if row.side == "plan"]),
         "script": _counts([row for row in rows if row.side == "script"]),
@@ -72,7 +74,11 @@ def page(told: Mapping[str, Any], kinds: Sequence[Kind]) -> str:
     """
     rows = rows_of(told)
     heads = ("", "cases", "same", *_STAGES, "escaped", "named", "addressed")
-    lines = [_ABOUT, f"{len(told['products'])} products: {', '.join(told['products'])}."]
+    lines = [
+        _ABOUT,
+        f"{len(rows)} of {told['planned']} cases were tried.",
+        f"{len(told['products'])} products: {', '.join(told['products'])}.",
+    ]
     lines += [f"False alarms on them: {len(told['alarms'])}." + "".join(f"\n- {alarm}" for alarm in told["alarms"]), ""]
     lines += _table(heads, [_line(name, told[name]) for name in ("plan", "script", "all")])
     lines += [

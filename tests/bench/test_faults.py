@@ -152,11 +152,12 @@ def test_the_page_counts_what_it_lists() -> None:
         row(KIND["two_solids"], addressed=False),
         row(KIND["shape_off"], named=False, addressed=False),
     ]
-    told = report(rows, ["p: E_OVERLAP"])
+    told = report(rows, ["p: E_OVERLAP"], planned=6)
     assert (told["all"]["cases"], told["all"]["same"], told["all"]["escaped"], told["all"]["named"], told["all"]["addressed"]) == (
         *(4, 1, 1, 2, 1),
     )
     text = page(told, KINDS)
+    assert "5 of 6 cases were tried." in text
     assert "Escaped: 1 of 4 (25.0 %). Named: 2 of 4 (50.0 %). Addressed: 1 of 4 (25.0 %)." in text
     assert "False alarms on them: 1.\n- p: E_OVERLAP" in text
     assert "| `p:limit_sign` | said | W_JOINT_SHORT | open |" in text
