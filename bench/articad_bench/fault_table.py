@@ -88,10 +88,14 @@ def page(told: Mapping[str, Any], kinds: Sequence[Kind]) -> str:
         of_side = [(kind, [row for row in rows if row.kind == kind.name]) for kind in kinds if kind.side == side]
         lines += ["", f"## {title}", ""]
         lines += _table(heads, [_line(f"`{kind.name}`: {kind.meaning}", _counts(mine)) for kind, mine in of_side if mine])
-    reasons = {kind.name: kind.unseen for kind in kinds}
-    escapes = [(f"`{row.case}`", row.said, ", ".join(row.held), reasons.get(row.kind) or "open") for row in rows if row.escaped]
-    lines += ["## Escapes", "", "*joints*: what `articad check --joints` adds; no run asks for it.", ""]
-    lines += _table(("case", "mistake", "joints", "why nothing is found"), escapes)
+    escapes = [(f"`{row.case}`", row.said, ", ".join(row.held)) for row in rows if row.escaped]
+    lines += [
+        "## Escapes",
+        "",
+        "No error and no warning: a check is missing, or the mistake makes another product that is possible. *joints*: what `articad check --joints` adds.",
+        "",
+    ]
+    lines += _table(("case", "mistake", "joints"), escapes)
     elsewhere = [(f"`{row.case}`", row.said, _first(row)) for row in rows if row.named and not row.addressed]
     lines += ["## Named, but addressed to another", "", *_table(("case", "mistake", "first finding"), elsewhere)]
     defects = [(f"`{row.case}`", row.said, row.findings[0][3]) for row in rows if row.stage == "defect"]

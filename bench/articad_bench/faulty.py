@@ -94,7 +94,6 @@ class Kind:
         meaning: What is done.
         causes: Codes of findings that state this cause.
         sites: Lists the places in a product where it can be made.
-        unseen: Why a case of this kind may rightly pass without a finding; empty if none should.
     """
 
     name: str
@@ -102,7 +101,6 @@ class Kind:
     meaning: str
     causes: frozenset[str]
     sites: Callable[[Product], Iterable[Site]]
-    unseen: str = ""
 
 
 @dataclass(frozen=True)

@@ -451,18 +451,8 @@ def _other_sign(coupling: Json) -> None:
         coupling["internal"] = not coupling.get("internal", False)
 
 
-_FREE_SIZE: Final = "the size is possible, and no other number of the plan depends on it"
-_FREE_RANGE: Final = "the range is possible: no part is in its way, and no number states which range is meant"
-_UNSEEN: Final = {
-    **dict.fromkeys(
-        ("unit_thousand", "unit_thousandth", "unit_inch", "parameter_thousand", "parameter_inch", "slot_small", "pin_thick"), _FREE_SIZE
-    ),
-    **dict.fromkeys(("limit_sign", "limit_radians", "travel_long", "joint_reversed"), _FREE_RANGE),
-}
-
-
 def _kind(name: str, meaning: str, causes: frozenset[str], sites: Callable[..., Iterator[Site]], *given: Any) -> Kind:
-    return Kind(name, "plan", meaning, FORM | causes, partial(sites, *given), _UNSEEN.get(name, ""))
+    return Kind(name, "plan", meaning, FORM | causes, partial(sites, *given))
 
 
 PLAN_KINDS: Final = (

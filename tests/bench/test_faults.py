@@ -160,7 +160,7 @@ def test_the_page_counts_what_it_lists() -> None:
     assert "5 of 6 cases were tried." in text
     assert "Escaped: 1 of 4 (25.0 %). Named: 2 of 4 (50.0 %). Addressed: 1 of 4 (25.0 %)." in text
     assert "False alarms on them: 1.\n- p: E_OVERLAP" in text
-    assert "| `p:limit_sign` | said | W_JOINT_SHORT | open |" in text
+    assert "| `p:limit_sign` | said | W_JOINT_SHORT |" in text
     assert "| `p:two_solids` | said | `E_FIT` joints.a (design) |" in text.split("Named, but addressed")[1]
     assert "| `p:shape_off` | said | `E_FIT` joints.a (design) |" in text.split("Found, but not named")[1]
 
