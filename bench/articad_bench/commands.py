@@ -279,6 +279,7 @@ def _draw(options: argparse.Namespace, terminal: Terminal) -> Report:
 def _faults(options: argparse.Namespace, terminal: Terminal) -> Report:
     from articad.kernels.choice import kernel_named
     from articad_bench.fault_run import FaultRun
+    from articad_bench.fault_table import alarms_line
     from articad_bench.fault_trial import Tools
 
     tools = Tools(kernel_named("build123d", sandbox=sandbox_level(options)), build_cache(options))
@@ -290,7 +291,7 @@ def _faults(options: argparse.Namespace, terminal: Terminal) -> Report:
         terminal.say(
             f"{side}: {counts['cases']} cases, {counts['escaped']} escaped, {counts['named']} named, {counts['addressed']} addressed"
         )
-    terminal.say(f"{len(told['alarms'])} false alarms on {len(told['products'])} good products.")
+    terminal.say(alarms_line(told))
     return told
 
 

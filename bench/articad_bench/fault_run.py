@@ -69,12 +69,12 @@ class FaultRun:
             row = rows.get(fault.digest)
             if row is None or row.case != fault.name:
                 row = rows[fault.digest] = tried(fault, tools)
-                self._save(out, rows, [])
+                self._save(out, rows, {})
             tell(fault.name, "same" if row.equivalent else "escaped" if row.escaped else row.stage)
-        alarms = [f"{product.name}: {one}" for product in self.products for one in examined(product, tools).findings]
+        alarms = {product.name: [str(one) for one in examined(product, tools).findings] for product in self.products}
         return self._save(out, rows, alarms)
 
-    def _save(self, out: Path, rows: Mapping[str, Row], alarms: Sequence[str]) -> dict[str, Any]:
+    def _save(self, out: Path, rows: Mapping[str, Row], alarms: Mapping[str, Sequence[str]]) -> dict[str, Any]:
         told = report([rows[fault.digest] for fault in self.faults if fault.digest in rows], alarms, planned=len(self.faults))
         for name, text in ((_RESULTS, json.dumps(told, indent=1) + "\n"), (_PAGE, page(told, KINDS))):
             fresh = out / f"{name}.new"

@@ -35,12 +35,12 @@ def rows_of(stored: Mapping[str, Any]) -> list[Row]:
     return [Row(**{**row, "held": tuple(row["held"]), "findings": tuple(map(tuple, row["findings"]))}) for row in stored["rows"]]
 
 
-def report(rows: Iterable[Row], alarms: Sequence[str], *, planned: int) -> dict[str, Any]:
+def report(rows: Iterable[Row], alarms: Mapping[str, Sequence[str]], *, planned: int) -> dict[str, Any]:
     """Return the report of a run.
 
     Args:
         rows: One for each case that was tried.
-        alarms: Findings above a note about good products.
+        alarms: Findings above a note about each good product that was examined.
         planned: Number of cases of the run.
     """
     rows = list(rows)
@@ -53,7 +53,7 @@ def report(rows: Iterable[Row], alarms: Sequence[str], *, planned: int) -> dict[
         "plan": _counts([row for row in rows if row.side == "plan"]),
         "script": _counts([row for row in rows if row.side == "script"]),
         "products": sorted({row.product for row in rows}),
-        "alarms": list(alarms),
+        "alarms": {product: list(findings) for product, findings in alarms.items()},
         "rows": [row.to_json() for row in rows],
     }
 
@@ -63,6 +63,13 @@ def _counts(rows: Sequence[Row]) -> dict[str, int]:
     counts = {"cases": len(counted), "same": len(rows) - len(counted)}
     counts |= {name: sum(row.stage == name for row in counted) for name in _STAGES}
     return counts | {name: sum(getattr(row, name) for row in counted) for name in ("escaped", "named", "addressed")}
+
+
+def alarms_line(told: Mapping[str, Any]) -> str:
+    """Return how many false alarms a report has, and on how many good products."""
+    if not told["alarms"]:
+        return "False alarms: not measured; the good products were not examined."
+    return f"False alarms: {sum(map(len, told['alarms'].values()))}, on {len(told['alarms'])} good products."
 
 
 def page(told: Mapping[str, Any], kinds: Sequence[Kind]) -> str:
@@ -79,7 +86,7 @@ def page(told: Mapping[str, Any], kinds: Sequence[Kind]) -> str:
         f"{len(rows)} of {told['planned']} cases were tried.",
         f"{len(told['products'])} products: {', '.join(told['products'])}.",
     ]
-    lines += [f"False alarms on them: {len(told['alarms'])}." + "".join(f"\n- {alarm}" for alarm in told["alarms"]), ""]
+    lines += [alarms_line(told) + "".join(f"\n- {name}: {alarm}" for name, found in told["alarms"].items() for alarm in found), ""]
     lines += _table(heads, [_line(name, told[name]) for name in ("plan", "script", "all")])
     lines += [
         f"Escaped: {_share(told['all'], 'escaped')}. Named: {_share(told['all'], 'named')}. Addressed: {_share(told['all'], 'addressed')}."
