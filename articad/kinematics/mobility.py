@@ -100,7 +100,7 @@ def mobility_of(system: ClosureSystem, Q: FloatArray) -> Mobility:
     if obstruction <= REALISED:
         return regular
     found = _near(system, Q, N, obstruction, rng)
-    best = _largest(system, found, rng) or _Neighbour(Q, N[:, :0], 0, 0.0)
+    best = _largest(system, found, first, rng) or _Neighbour(Q, N[:, :0], 0, 0.0)
     mobility = best.T.shape[1]
     return Mobility(mobility, first, n_active - mobility, best.Q, best.T, near, obstruction, best.multiple)
 
@@ -220,12 +220,15 @@ def _neighbours(system: ClosureSystem, Q: FloatArray, N: FloatArray, scale: floa
     return [_tangent_space(system, there, _WITHIN * float(way), rng) for there, way in far]
 
 
-def _largest(system: ClosureSystem, found: Sequence[_Neighbour], rng: np.random.Generator) -> _Neighbour | None:
+def _largest(system: ClosureSystem, found: Sequence[_Neighbour], first: int, rng: np.random.Generator) -> _Neighbour | None:
     """Return a neighbour on a set of the largest dimension; None without neighbours.
 
     At a single point an obstruction of high order may be too small to detect. So the dimension counts if two neighbours have it, or if a
-    step along the tangent space of the only one leads to a point that has it.
+    step along the tangent space of the only one leads to a point that has it. A set with all `first` dimensions of the tangent space at
+    rest would be smooth there, and the only one. So neighbours that have them do not count where others have fewer.
     """
+    if any(one.T.shape[1] < first for one in found):
+        found = [one for one in found if one.T.shape[1] < first]
     dimensions = [one.T.shape[1] for one in found]
     for dimension in sorted(set(dimensions), reverse=True):
         one = found[dimensions.index(dimension)]
