@@ -535,7 +535,8 @@ class _Model:
 def _updated(model: _Model, recorded: Assembly) -> Assembly:
     """Return the recorded assembly with the content that the document has now."""
     densities = {record.name: record.density for record in recorded.materials.values()}
-    sizes, meshes = _recorded(model, "solid"), _recorded(model, "drawn")
+    records = _records(model)
+    sizes, meshes = _recorded(records, "solid"), _recorded(records, "drawn")
     names = model.recorded
     primary: dict[str, tuple[FreeCADObject, str, Joint | None]] = {}
     extra: list[tuple[FreeCADObject, str, Joint | None]] = []
@@ -716,9 +717,9 @@ def _records(model: _Model) -> list[dict[str, Any]]:
     return read_records(model.records.split("\n"), model.path) if model.records else []
 
 
-def _recorded(model: _Model, what: str) -> dict[str, dict[str, Any]]:
+def _recorded(records: list[dict[str, Any]], what: str) -> dict[str, dict[str, Any]]:
     """Return what articad recorded of parts: "solid" of exact shapes, "drawn" of meshes; volume and centre, of solids inertia too."""
-    return {record["name"]: record[what] for record in _records(model) if record["kind"] == "part" and isinstance(record.get(what), dict)}
+    return {record["name"]: record[what] for record in records if record["kind"] == "part" and isinstance(record.get(what), dict)}
 
 
 def _part_now(

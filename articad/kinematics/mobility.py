@@ -227,8 +227,7 @@ def _largest(system: ClosureSystem, found: Sequence[_Neighbour], first: int, rng
     step along the tangent space of the only one leads to a point that has it. A set with all `first` dimensions of the tangent space at
     rest would be smooth there, and the only one. So neighbours that have them do not count where others have fewer.
     """
-    if any(one.T.shape[1] < first for one in found):
-        found = [one for one in found if one.T.shape[1] < first]
+    found = [one for one in found if one.T.shape[1] < first] or found
     dimensions = [one.T.shape[1] for one in found]
     for dimension in sorted(set(dimensions), reverse=True):
         one = found[dimensions.index(dimension)]

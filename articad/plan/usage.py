@@ -295,9 +295,9 @@ def _dimensions(draft: Draft) -> list[Finding]:
             found.append(_dimension_finding(part, name, message, hint, value=length, limit=least))
     longest = max((length for length, _, _ in lengths), default=0.0)
     next_longest = max((length for length, _, _ in lengths if length * LONGEST_SHARE < longest), default=0.0)
-    alone = [(part, name) for length, part, name in lengths if length * LONGEST_SHARE >= longest]
-    if next_longest > 0.0 and len({length for length, _, _ in lengths if length * LONGEST_SHARE >= longest}) == 1:
-        for part, name in alone:
+    alone = [one for one in lengths if one[0] * LONGEST_SHARE >= longest]
+    if next_longest > 0.0 and len({length for length, _, _ in alone}) == 1:
+        for _, part, name in alone:
             message = f"Dimension {name!r} of {part} is {longest:.6g} mm; all others of the plan are at most {next_longest:.6g} mm."
             hint = f"Lengths are millimetres: were micrometres given? Then it is {longest / 1000.0:.6g}."
             found.append(_dimension_finding(part, name, message, hint, value=longest, limit=LONGEST_SHARE * next_longest))

@@ -240,7 +240,7 @@ def _clearances(certificate: Json | None, known: set[str]) -> str:
         shown = _show(f"Least clearance of {' and '.join(row['parts'])}.", row["parts"], row["pose"], known)
         rows.append([" – ".join(row["parts"]), joined, f"{row['gap_mm']:.4g}", at, row["strength"].get("poses"), shown])
     told = (
-        '<p class="quiet">The smallest distance found between every two parts over the motion, the nearest pairs first.  '
+        '<p class="quiet">The smallest distance found between every two parts over the motion, the nearest pairs first. '
         "It is sampled: the true minimum may be smaller. “Proven motion” shows what is proven.</p>"
     )
     return told + _scroll(html_table(["parts", "", "gap mm", "at", "poses seen", ""], rows, numbers=(2, 4)))

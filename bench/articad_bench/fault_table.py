@@ -8,7 +8,7 @@ from typing import Any, Final
 from articad_bench.fault_trial import Row
 from articad_bench.faulty import Kind
 
-__all__ = ["SCHEMA", "page", "report", "rows_of"]
+__all__ = ["SCHEMA", "alarms_line", "page", "report", "rows_of"]
 
 SCHEMA: Final = "articad.bench-faults/1"
 _STAGES: Final = ("plan", "build", "evidence", "sampled")
