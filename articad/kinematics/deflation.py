@@ -58,6 +58,7 @@ class DeflatedSystem(ClosureSystem):
 
     def __init__(self, plain: ClosureSystem, rank: int) -> None:
         self.__dict__.update(plain.__dict__)
+        self._one = None  # S needs batches, also for one configuration
         self._plain, self._rank = plain, rank
         self._motions = self.ties.basis(self.active)
         self._held = (plain.n_loop_rows - rank) * (self._motions.size - rank)  # equations that keep the rank
@@ -81,16 +82,6 @@ class DeflatedSystem(ClosureSystem):
         """Return the residuals alone `(batch, rows)`."""
         r, J = self._plain.evaluate(Q)
         return self._joined(r, self._null_vectors(J)[2])
-
-    def evaluate_one(self, Q: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return residuals `(rows,)` and their Jacobian `(rows, freedoms)`, scaled, at one configuration `(columns,)`."""
-        r, J = self.evaluate(Q[None])
-        return r[0], J[0]
-
-    def residual_one(self, Q: FloatArray) -> FloatArray:
-        """Return the residuals alone `(rows,)`."""
-        r: FloatArray = self.residual(Q[None])[0]
-        return r
 
     def _joined(self, r: FloatArray, S: FloatArray) -> FloatArray:
         loops = self._plain.n_loop_rows

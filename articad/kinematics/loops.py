@@ -247,6 +247,8 @@ class ClosureSystem:
 
     def _loops_at(self, Q: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return the residuals of the loops alone and their Jacobian."""
+        if self._one is not None:
+            return self._one.evaluate(Q)
         r, J = self.evaluate_one(Q)
         return r[: self.n_loop_rows], J[: self.n_loop_rows]
 

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -32,6 +34,23 @@ class LinearTie:
     factor: FloatArray
     offset: FloatArray
     fixed: float | None
+
+
+class _Followers(NamedTuple):
+    """Coupled coordinates that follow one of their tie: q = (q_leader − leader_offset) / leader_factor · factor + offset.
+
+    Attributes:
+        columns: Of the coordinates that follow.
+        leaders: Columns of the coordinates that lead them.
+        leader_offset, leader_factor, factor, offset: One per coordinate that follows.
+    """
+
+    columns: IndexArray
+    leaders: IndexArray
+    leader_offset: FloatArray
+    leader_factor: FloatArray
+    factor: FloatArray
+    offset: FloatArray
 
 
 class Basis:
@@ -97,6 +116,7 @@ class Ties:
         self._tied[list(self._of)] = True
         self._in_loops = in_loops
         self._bases: dict[bytes, Basis] = {}
+        self._followers: dict[bytes, _Followers] = {}
 
     def residual(self, Q: FloatArray) -> FloatArray:
         """Return the residuals `(*batch, couplings)` of the rows at `Q` `(*batch, columns)`."""
@@ -143,17 +163,28 @@ class Ties:
         """Return coordinates `(*batch, columns)` that obey the couplings; in each tie a held member, else the first, keeps its value."""
         if not self.all:
             return Q
+        key = held.tobytes()
+        if key not in self._followers:
+            self._followers[key] = self._followers_of(held)
+        f = self._followers[key]
         Q = Q.copy()
+        Q[..., f.columns] = (Q[..., f.leaders] - f.leader_offset) / f.leader_factor * f.factor + f.offset
+        return Q
+
+    def _followers_of(self, held: BoolArray) -> _Followers:
+        """Return the coordinates that follow others while some freedoms are held; a fixed number m is a leader's factor of infinity."""
+        rows: list[tuple[float, ...]] = []
         for tie in self.all:
             first = int(np.argmax(held[tie.freedoms]))
-            if tie.fixed is not None:
-                free = ~held[tie.freedoms]
-                Q[..., tie.columns[free]] = (tie.factor * tie.fixed + tie.offset)[free]
-                continue
-            m = (Q[..., tie.columns[first]] - tie.offset[first]) / tie.factor[first]
-            others = np.arange(len(tie.columns)) != first
-            Q[..., tie.columns[others]] = m[..., None] * tie.factor[others] + tie.offset[others]
-        return Q
+            leads = held[tie.freedoms] if tie.fixed is not None else np.arange(len(tie.columns)) == first
+            for at in np.flatnonzero(~leads):
+                if tie.fixed is not None:  # (q − q₀) / ∞ · factor = 0
+                    leader, value = (tie.columns[first], 0.0, math.inf), tie.factor[at] * tie.fixed + tie.offset[at]
+                else:
+                    leader, value = (tie.columns[first], tie.offset[first], tie.factor[first]), tie.offset[at]
+                rows.append((tie.columns[at], *leader, tie.factor[at], value))
+        columns, leaders, *numbers = np.array(rows).reshape(-1, 6).T
+        return _Followers(columns.astype(np.intp), leaders.astype(np.intp), *numbers)
 
     def spread(self, change: FloatArray, known: BoolArray) -> FloatArray:
         """Return changes of coordinates `(columns,)` in which the members of each tie change consistently with a known one."""
