@@ -71,7 +71,7 @@ class Basis:
 
     def of(self, J: FloatArray) -> FloatArray:
         """Return the derivatives `(*batch, rows, n)` by the motions from those by freedoms `(*batch, rows, freedoms)`."""
-        derivatives: FloatArray = J @ self.matrix if self._alone is None else J[..., self._alone]
+        derivatives: FloatArray = J @ self.matrix if self._alone is None else J.take(self._alone, axis=-1)
         return derivatives
 
     def step(self, z: FloatArray) -> FloatArray:
