@@ -19,7 +19,7 @@ from articad.certificates.fits import FitCheck
 from articad.findings import Finding, Findings
 from articad.interference.check import check_scene
 from articad.interference.diagnosis import diagnose
-from articad.interference.motion import freedoms
+from articad.interference.freedoms import freedoms
 from articad.interference.report import Checks, PairCheck, Strength
 from articad.interference.scene import Scene
 from articad.kinematics.joints import Joint, JointType

@@ -19,7 +19,7 @@ from articad.assembly import Assembly
 from articad.connectors.se3 import SE3
 from articad.findings import Finding
 from articad.geometry.part import Part
-from articad.interference.motion import driver_values, freedoms
+from articad.interference.freedoms import driver_values, freedoms
 from articad.kernels.results import PoisonedError, read_mesh
 from articad.runs.run import digest
 

@@ -16,7 +16,7 @@ from articad.certificates.certificate import certify
 from articad.errors import ArticadError
 from articad.findings import Finding
 from articad.interference.body import relative
-from articad.interference.motion import Freedom
+from articad.interference.freedoms import Freedom
 from articad.interference.overlap import volume
 from articad.interference.relations import Groups, Relations
 from articad.interference.sweep import MotionSampler

@@ -22,7 +22,7 @@ from articad.certificates.claims import Claim
 from articad.certificates.clearing import MOST_PAIRS
 from articad.certificates.linkage import DriverTrack, LinkageProver
 from articad.certificates.proof import Proof, Prover, beyond
-from articad.certificates.ranges import driven_range
+from articad.certificates.ranges import driven_range, proven_freedoms
 from articad.certificates.verifier import PROOF, Checker, Refuted, covered, widened
 from articad.connectors.mate import flip
 from articad.connectors.se3 import SE3
@@ -32,7 +32,8 @@ from articad.geometry.mesh import TriMesh
 from articad.interference.clearance import Clearance, collisions_at, least_clearances
 from articad.interference.cover import cover_line
 from articad.interference.following import Following, what_follows
-from articad.interference.motion import Route, Values, freedoms, proven_freedoms, routes, slides_endlessly
+from articad.interference.freedoms import freedoms, slides_endlessly
+from articad.interference.motion import Route, Values, routes
 from articad.interference.overlap import NOTHING, Overlap, overlap
 from articad.interference.relations import FitLike, WaiverLike
 from articad.interference.report import Checks, FitRow, PairCheck, Strength, rounded

@@ -20,12 +20,13 @@ from articad.certificates.claims import Claim
 from articad.certificates.proof import NO_SHRINK, Prover, Shrink
 from articad.errors import PlanError
 from articad.findings import Finding, Findings
+from articad.interference.freedoms import Freedom, freedoms, scattered, travels
 from articad.interference.gauge import STOP_MM, Gauge
-from articad.interference.motion import Freedom, Route, freedoms, scattered, travels
+from articad.interference.motion import Route
 from articad.interference.overlap import NOTHING
-from articad.interference.ranges import sampled_piece
 from articad.interference.relations import FitLike
 from articad.interference.report import Strength, rounded
+from articad.interference.sampled_ranges import sampled_piece
 from articad.interference.scene import Scene
 from articad.interference.surface import Surface
 from articad.interference.sweep import MotionSampler

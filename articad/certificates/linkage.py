@@ -26,7 +26,8 @@ from articad.certificates.proof import Proof, Prover, Shrink
 from articad.certificates.spread import Spread
 from articad.certificates.verifier import Checker, Refuted, joined
 from articad.connectors.se3 import SE3
-from articad.interference.motion import Chain, Freedom, Route, scattered
+from articad.interference.freedoms import Freedom, scattered
+from articad.interference.motion import Chain, Route
 from articad.interference.overlap import Overlap, overlap
 from articad.interference.scene import Scene
 from articad.interference.verdict import UNRELATED_VOLUME_MM3

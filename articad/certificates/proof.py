@@ -19,10 +19,12 @@ from articad.arrays import FloatArray
 from articad.certificates.claims import Claim, Course
 from articad.certificates.clearing import MOST_PAIRS, Boxes, Cleared, Ranges, clear
 from articad.certificates.profile import SLIDING_WEIGHT, WEIGHT, Forest
+from articad.certificates.ranges import PROVEN, turned
 from articad.certificates.spread import Spread
 from articad.connectors.se3 import SE3
+from articad.interference.freedoms import freedoms, scattered, swing_and_twist
 from articad.interference.meridian import Ends, leaning, outline, swung
-from articad.interference.motion import Chain, Mover, Route, freedoms, scattered, swing_and_twist, turned
+from articad.interference.motion import Chain, Mover, Route
 from articad.interference.overlap import Overlap, measured, overlap
 from articad.interference.scene import Scene
 from articad.interference.surface import Core, Surface, inwards, near_by, whole_surface
@@ -112,7 +114,7 @@ class Prover:
         self.scene, self.joints = scene, tuple(joints)
         self.epsilon, self.budget = epsilon, budget or WorkBudget(float("inf"))
         self.parts = route.parts[0], route.parts[-1]
-        self.chain = Chain(route, joints, proving=True)
+        self.chain = Chain(route, joints, coordinates=PROVEN)
         self.body_a, self.body_b = (scene.bodies[name] for name in self.parts)
         self.margin = scene.deflection_of(*self.parts)
         self.look_price = look_price(self.body_a.manifold_triangles, self.body_b.manifold_triangles)

@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from articad.arrays import FloatArray
 from articad.errors import KinematicsError
 from articad.findings import Findings
-from articad.interference.motion import Freedom, scattered
+from articad.interference.freedoms import Freedom, scattered
 from articad.interference.overlap import distance, one_contains_the_other, se3_of, volume
 from articad.interference.relations import Relation
 from articad.interference.report import Checks, Strength, rounded

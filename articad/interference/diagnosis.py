@@ -18,7 +18,8 @@ from articad.arrays import FloatArray
 from articad.connectors.se3 import SE3
 from articad.findings import Finding, Findings
 from articad.interference.body import Body, winding_numbers
-from articad.interference.motion import Chain, Route, freedoms
+from articad.interference.freedoms import freedoms
+from articad.interference.motion import Chain, Route
 from articad.interference.overlap import VOLUME_NOISE_MM3, distance, intersection
 from articad.interference.scene import Scene
 from articad.interference.surface import Core

@@ -21,8 +21,8 @@ from articad.connectors.mate import flip
 from articad.connectors.se3 import SE3
 from articad.errors import InvalidSolidError
 from articad.geometry.mesh import TriMesh
+from articad.interference.freedoms import freedoms, motion_matrix, travels
 from articad.interference.meridian import meeting, outline
-from articad.interference.motion import freedoms, motion_matrix, travels
 from articad.interference.overlap import VOLUME_NOISE_MM3, overlap
 from articad.interference.relations import FitLike
 from articad.interference.scene import Scene

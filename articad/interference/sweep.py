@@ -21,11 +21,11 @@ from articad.findings import Finding, Findings
 from articad.geometry.mesh import TriMesh
 from articad.interference.boxes import meeting_boxes
 from articad.interference.check import broken_finding, unknown_pairs
-from articad.interference.motion import Freedom, driver_values, freedoms, scattered
+from articad.interference.freedoms import Freedom, driver_values, freedoms, scattered
 from articad.interference.overlap import VOLUME_NOISE_MM3, Overlap, common, may_overlap, overlap_of
-from articad.interference.ranges import MOST_TURNS, driving_joints, endless_beyond, sampled_ranges
 from articad.interference.relations import FitLike, WaiverLike
 from articad.interference.report import Checks, PairCheck, Strength
+from articad.interference.sampled_ranges import MOST_TURNS, driving_joints, endless_beyond, sampled_ranges
 from articad.interference.scene import Scene, relatives
 from articad.interference.turning import Turning
 from articad.interference.verdict import UNRELATED_VOLUME_MM3, judge

@@ -9,8 +9,8 @@ import numpy as np
 
 from articad.arrays import FloatArray
 from articad.geometry.faces import Face, faces_of
+from articad.interference.freedoms import freedoms
 from articad.interference.gauge import fixed_with, placed
-from articad.interference.motion import freedoms
 from articad.interference.scene import Scene
 from articad.kinematics.joints import Joint
 

@@ -17,9 +17,9 @@ from articad.arrays import FloatArray
 from articad.connectors.se3 import SE3
 from articad.findings import Finding, Findings
 from articad.geometry.faces import faces_of
-from articad.interference.motion import Freedom, freedoms
-from articad.interference.ranges import sampled_piece
+from articad.interference.freedoms import Freedom, freedoms
 from articad.interference.report import rounded
+from articad.interference.sampled_ranges import sampled_piece
 from articad.interference.scene import Scene
 from articad.kinematics.joints import Joint, JointType
 from articad.realisation.contacts import FaceReach, Pair, pairs

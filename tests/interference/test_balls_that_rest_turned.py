@@ -9,9 +9,10 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from articad.certificates.certificate import certify
+from articad.certificates.ranges import proven_freedoms, turned
 from articad.connectors import SE3
 from articad.geometry import TriMesh, box
-from articad.interference.motion import driver_values, freedoms, proven_freedoms, turned
+from articad.interference.freedoms import driver_values, freedoms
 from articad.interference.sweep import sweep
 from articad.kinematics.joints import Joint
 from articad.kinematics.mechanism import Mechanism

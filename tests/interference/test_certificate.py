@@ -20,6 +20,7 @@ import pytest
 from articad.certificates import verifier
 from articad.certificates.certificate import Certificate, certify
 from articad.certificates.clearing import shortest_between
+from articad.certificates.ranges import PROVEN
 from articad.certificates.spread import Spread
 from articad.certificates.verifier import PROOF, verify_file
 from articad.connectors import SE3
@@ -28,8 +29,9 @@ from articad.interference.body import body_of
 from articad.interference.boxtree import BoxTree
 from articad.interference.check import check_pose
 from articad.interference.cover import cover_line
+from articad.interference.freedoms import motion_matrix, swing_and_twist
 from articad.interference.meridian import leaning, meeting, outline
-from articad.interference.motion import Chain, Route, motion_matrix, swing_and_twist
+from articad.interference.motion import Chain, Route
 from articad.interference.overlap import overlap
 from articad.interference.surface import Core, Surface, surface_distance
 from articad.interference.work import WorkBudget
@@ -484,7 +486,7 @@ def test_no_point_strays_further_along_a_direction_than_its_bound(first: JointTy
     rng = np.random.default_rng(17 * list(JointType).index(first) + list(JointType).index(second))
     one, two = (random_joint(rng, *row) for row in (("j", first, "a", "m"), ("k", second, "b", "m")))
     for route in (Route(("a", "m", "b"), (one, two)), Route(("b", "m", "a"), (two, one))):
-        chain = Chain(route, ["j", "k"], proving=True)
+        chain = Chain(route, ["j", "k"], coordinates=PROVEN)
         low, high = (np.array([getattr(f, key) for f in chain.freedoms]) for key in ("lower", "upper"))
         for scale in (1e-3, 0.1, 1.0):
             spread, q, half = Spread(chain), rng.uniform(low, high), rng.uniform(0, scale, len(low))

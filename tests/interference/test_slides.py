@@ -13,6 +13,7 @@ from articad.certificates.certificate import certify
 from articad.certificates.clearing import Ranges, Slides, clear
 from articad.certificates.profile import Forest
 from articad.certificates.proof import NO_SHRINK, Prover
+from articad.certificates.ranges import PROVEN
 from articad.certificates.spread import Spread
 from articad.connectors import SE3
 from articad.geometry import TriMesh
@@ -110,7 +111,7 @@ def drawn(seed: int) -> tuple[m3.Manifold, m3.Manifold, Chain, np.ndarray]:
     rng = np.random.default_rng(seed)
     joints = sliders(rng, 1 + seed % 2, more=seed // 2 % 2)
     parts = tuple(f"p{at}" for at in range(len(joints) + 1))
-    chain = Chain(Route(parts, tuple(joints)), [j.name for j in joints], proving=True)
+    chain = Chain(Route(parts, tuple(joints)), [j.name for j in joints], coordinates=PROVEN)
     a, b = body(rng), body(rng)
     way = swept(b, chain)
     low, high = np.array(way.bounding_box()).reshape(2, 3)
@@ -171,7 +172,7 @@ def mixed(rng: np.random.Generator) -> Chain:
         upper = (1.0,) * {"cylindrical": 2, "planar": 3}.get(kind, 1)
         lower = tuple(-end for end in upper)
         joints.append(joint(f"j{at}", kind, *names, at_parent=frames[0], at_child=frames[1], lower=lower, upper=upper, lead=4.0))
-    return Chain(Route(tuple(f"p{at}" for at in range(len(joints) + 1)), tuple(joints)), [j.name for j in joints], proving=True)
+    return Chain(Route(tuple(f"p{at}" for at in range(len(joints) + 1)), tuple(joints)), [j.name for j in joints], coordinates=PROVEN)
 
 
 @pytest.mark.parametrize("seed", range(12))
@@ -224,7 +225,7 @@ def test_no_corner_of_a_little_box_goes_further_than_the_bound_of_the_box(seed: 
 
 
 def test_a_turn_about_the_axis_of_a_rod_is_bound_by_its_radius_not_its_length() -> None:
-    chain = Chain(Route(("p0", "p1"), (joint("r", "revolute", "p0", "p1", lower=(-1.0,), upper=(1.0,)),)), ["r"], proving=True)
+    chain = Chain(Route(("p0", "p1"), (joint("r", "revolute", "p0", "p1", lower=(-1.0,), upper=(1.0,)),)), ["r"], coordinates=PROVEN)
     spread = Spread(chain)
     box, u = spread.add(np.zeros((1, 1)), np.full((1, 1), 0.1)), np.array([[[1.0, 0, 0]]])
     rod = np.diag([2.0, 2.0, 200.0])[None]
@@ -239,7 +240,7 @@ def test_what_turns_or_slides_everywhere_has_no_directions_of_slides() -> None:
         (sliders(rng, 3, more=0), False),
         ([joint("r", "revolute", "p0", "p1")], False),
     ):
-        chain = Chain(Route(tuple(f"p{at}" for at in range(len(joints) + 1)), tuple(joints)), [j.name for j in joints], proving=True)
+        chain = Chain(Route(tuple(f"p{at}" for at in range(len(joints) + 1)), tuple(joints)), [j.name for j in joints], coordinates=PROVEN)
         spread = Spread(chain)
         spread.add(chain.rest[None], np.ones((1, len(spread.factors))))
         assert (Slides.of(spread, 0) is not None) == expected

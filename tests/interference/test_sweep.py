@@ -11,7 +11,7 @@ import pytest
 
 from articad.geometry import box, cylinder
 from articad.interference.clearance import least_clearances
-from articad.interference.motion import freedoms, scattered
+from articad.interference.freedoms import freedoms, scattered
 from articad.interference.scene import Scene
 from articad.interference.sweep import MotionSampler, sweep
 from articad.kinematics import Coupling, JointLimits

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from articad.interference.motion import ENDLESS_SLIDE_MM, Freedom, freedoms, radians_per_mm, slides_endlessly, travels
+from articad.interference.freedoms import ENDLESS_SLIDE_MM, Freedom, freedoms, radians_per_mm, slides_endlessly, travels
 from articad.kinematics.joints import Coordinate, Joint, JointType
 from articad.kinematics.mechanism import Mechanism
 from articad.kinematics.motion import track_of

@@ -13,7 +13,7 @@ from articad.connectors import SE3
 from articad.export.contacts import poses_in_motion
 from articad.geometry import box, cylinder
 from articad.interference.clearance import least_clearances
-from articad.interference.ranges import ENDLESS_SAMPLED_MM, MOST_TURNS, sampled_ranges
+from articad.interference.sampled_ranges import ENDLESS_SAMPLED_MM, MOST_TURNS, sampled_ranges
 from articad.interference.scene import Scene
 from articad.interference.sweep import MotionSampler, sweep
 from articad.kinematics import Coupling
