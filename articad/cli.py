@@ -60,7 +60,7 @@ def _add_global_flags(parser: argparse.ArgumentParser, *, default: Any) -> None:
     flags.add_argument("--json", dest="as_json", action="store_true", default=default, help="one report on stdout, nothing else")
     flags.add_argument("-q", "--quiet", action="store_true", default=default, help="findings and errors only")
     flags.add_argument("-v", "--verbose", action="store_true", default=default, help="details, and tracebacks of defects")
-    flags.add_argument("--no-color", dest="colorless", action="store_true", default=default, help="no colour, no moving bars")
+    flags.add_argument("--no-color", dest="colorless", action="store_true", default=default, help="no colour, no progress bars")
 
 
 def _parsed(arguments: Sequence[str] | None) -> argparse.Namespace:

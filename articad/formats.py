@@ -253,7 +253,7 @@ def _written_as(path: str | Path) -> Format:
     found = format_of(path)
     if found is None:
         known = ", ".join(suffix for row in FORMATS for suffix in row.suffixes)
-        raise ExportError(f"{path}: {Path(path).suffix or 'no'} extension is not one of {known}.")
+        raise ExportError(f"{path}: extension {Path(path).suffix!r} is not one of {known}.")
     return found
 
 
@@ -269,7 +269,7 @@ def _known(function: Callable[..., object], options: dict[str, Any]) -> dict[str
 
 def _not_read(path: Path) -> ReadError:
     suffix = path.suffix.lower()
-    message = f"{path}: {path.suffix or 'no'} extension is not one of {', '.join(readable())}."
+    message = f"{path}: extension {path.suffix!r} is not one of {', '.join(readable())}."
     advice = next((text for endings, text in ADVICE.items() if suffix in endings), "Convert it first, or correct its name.")
     finding = Finding(code="E_READ", where=str(path), message=message, hint=advice)
     return ReadError(f"{message} {advice}", path=str(path), findings=[finding])

@@ -178,7 +178,7 @@ articad [--json] [-q] [-v] [--no-color] COMMAND …
 | `--json` | one report on stdout, nothing else |
 | `-q`, `--quiet` | findings and errors only |
 | `-v`, `--verbose` | details, and tracebacks of defects |
-| `--no-color` | no colour, no moving bars; `NO_COLOR` does the same |
+| `--no-color` | no colour, no progress bars; `NO_COLOR` does the same |
 
 | exit code | meaning |
 |---|---|

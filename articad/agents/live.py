@@ -282,7 +282,7 @@ class LiteLLM:
         elif kind == "redirect":
             what = "sent the request on to another address, which is not followed"
         elif kind == "body":
-            what = "gave an answer that is not read"
+            what = "gave an unreadable answer"
         elif kind == "memory":
             what = "gave an answer that takes too much memory"
         elif status is not None:
@@ -290,7 +290,7 @@ class LiteLLM:
         else:
             what = "gave no usable answer"
         shown = next(iter(without_secrets(failure["text"]).strip().splitlines()), "")[:_SHOWN_CHARACTERS].rstrip(".")
-        message = f"{model} {what}, asked {number} times{f': {shown}' if shown else ''}."
+        message = f"{model} {what}, after {number} attempts{f': {shown}' if shown else ''}."
         hint = "Check --api-base and the network." if self._api_base else "Check the network, the model's name and the provider's status."
         return transport_error("E_TRANSPORT", message, hint)
 

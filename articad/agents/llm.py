@@ -482,7 +482,7 @@ class Budget:
         with self._guard:
             spent = self._spent(left)
         if spent is None and seconds >= left:
-            spent = f"The budget of {self._limits[3]:g} minutes has {left:.0f} s left, and the provider is to be asked again in {seconds:.0f} s."
+            spent = f"The budget of {self._limits[3]:g} minutes has {left:.0f} s left, but the next attempt is due in {seconds:.0f} s."
         if spent is not None:
             raise self._error(spent, step)
 
@@ -505,7 +505,7 @@ class Budget:
             return f"The budget of ${cost:g} is spent: ${self.cost:.4f} were used."
         if cost is not None and self.cost_unknown_of is not None:
             return (
-                f"The price of {self.cost_unknown_of} is unknown, so a budget of ${cost:g} cannot be held; limit calls or tokens instead."
+                f"The price of {self.cost_unknown_of} is unknown, so a budget of ${cost:g} cannot be enforced; limit calls or tokens instead."
             )
         if left <= 0:
             return f"The budget of {minutes:g} minutes is spent."

@@ -115,7 +115,7 @@ def _options_of(run: Run) -> Mapping[str, Any]:
     options = {**_UNSAID, **run.request.options}
     wrong = [key for key, kind in {**_NEEDED, **dict.fromkeys(_UNSAID, str)}.items() if not isinstance(options.get(key), kind)]
     if options.get("task") not in {"generate", "edit"}:
-        raise RunError.at(run.path, "No model was asked for it: it was built.", "Repeat `articad build` with the same --out.")
+        raise RunError.at(run.path, "This run was built from a plan, without a model.", "Repeat `articad build` with the same --out.")
     if wrong:
         raise RunError.at(run.path, f"Its request lacks options: {', '.join(wrong)}.", "Repeat the command that began it.")
     return options

@@ -167,9 +167,9 @@ def _unfinished(left: list[tuple[str, str]], count: int, budget: WorkBudget) -> 
     return Finding(
         code="W_AUDIT_NOT_CHECKED",
         where=f"parts.{left[0][0]}",
-        message=f"Overlap at rest of {len(left)} of {counted(count, 'pair')} of parts that are near each other was not checked. "
+        message=f"Overlap at rest was not checked for {len(left)} of {counted(count, 'pair')} of parts that are near each other. "
         f"{budget.ended()}",
-        hint="Spread the parts out: so many parts in one place are hardly intended.",
+        hint="Raise --budget, or spread the parts out; so many in one place are probably a mistake.",
         value=len(left),
         limit=0,
     )

@@ -123,7 +123,7 @@ def shared_note(shared: Sequence[Finding]) -> Finding:
         code="I_AUDIT_SHARED",
         where=deepest.where,
         parts=tuple(dict.fromkeys(name for finding in shared for name in finding.parts)),
-        message=f"{counted(len(shared), 'pair')} of parts that engines do not let collide overlap at rest, the deepest {listed(deepest.parts)}, "
+        message=f"{counted(len(shared), 'pair')} of parts that engines exclude from collision overlap at rest; the deepest is {listed(deepest.parts)}, "
         f"{deepest.value or 0.0:.4g} mm.",
         hint="Nothing needs to be done if the shapes represent bodies that fit.",
         value=deepest.value,

@@ -176,7 +176,7 @@ def _together(finding: Finding, names: tuple[str, str]) -> Finding:
         code="W_AUDIT_PAIR_COLLISION",
         route=None,
         stage=None,
-        message=f"{finding.message} Neither of {names[0]} and {names[1]} does that alone.",
+        message=f"{finding.message} Neither {names[0]} nor {names[1]} causes this alone.",
         hint="Narrow one of the ranges, prevent this combination, or add clearance.",
     )
 

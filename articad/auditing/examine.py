@@ -88,7 +88,7 @@ def audit_file(path: str | Path, choices: AuditOptions | None = None) -> Audit:
     path, choices = Path(path), choices or AuditOptions()
     kind = AUDITED.get(path.suffix.lower())
     if kind is None:
-        raise ReadError(f"{path}: {path.suffix or 'no'} extension is not one of {', '.join(AUDITED)}.", path=str(path))
+        raise ReadError(f"{path}: extension {path.suffix!r} is not one of {', '.join(AUDITED)}.", path=str(path))
     if not path.is_file():
         raise ReadError(f"{path} is not a file." if path.exists() else f"{path} does not exist.", path=str(path))
     start, found = time.monotonic(), _Found()
@@ -263,7 +263,7 @@ def _carriers(declared: Declared, assembly: Assembly) -> Iterator[Finding]:
             code="I_AUDIT_CARRIERS",
             where=finding.where,
             message=f"{finding.message} Links without shape represent it.",
-            hint="Nothing for URDF, which has no such joint; for MJCF and CAD, merge them with `articad convert --fuse`.",
+            hint="Nothing needs to be done for URDF, which has no such joint; for MJCF and CAD, merge them with `articad convert --fuse`.",
             cause="carrier",
         )
 

@@ -163,7 +163,7 @@ def beyond_shape(declared: Declared) -> Iterator[Finding]:
             parts=(link.name, *others),
             message=f"{link.name} weighs {mass:.4g} kg and reaches {reach:.4g} mm from its centre of mass, so no moment can exceed "
             f"{bound * 1e-6:.4g} kg·m²; it has {large * 1e-6:.4g}."
-            + (f" So have {listed(others)}, also too much for their shapes." if others else ""),
+            + (f" The inertias of {listed(others)} are also too large for their shapes." if others else ""),
             hint="Compute it from the shape (--fix does); check its unit and its reference point.",
             value=large * 1e-6,
             limit=bound * 1e-6,

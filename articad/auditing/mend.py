@@ -231,7 +231,7 @@ class _Mender:
                     self.links[name].append(element)
                 added.append(name)
         if added:
-            self.mended.done.append(f"gave {counted(len(added), 'link')} its visual shape for collision: {listed(added)}")
+            self.mended.done.append(f"copied visual shapes for collision to {counted(len(added), 'link')}: {listed(added)}")
 
     def divide(self, kept: Path | None = None) -> None:
         """Replace collision meshes that are not convex by convex pieces inside them; `pieces` gets the files of their meshes.

@@ -46,7 +46,7 @@ def loaded(audit: Audit) -> str:
 
 def _one(audit: Audit) -> str:
     blocks = [
-        f"<p>{audit.links} links, {audit.joints} joints that move; motion {audit.motion}; {escape(loaded(audit)) or 'no engine asked'}.</p>"
+        f"<p>{audit.links} links, {audit.joints} joints that move; motion {audit.motion}; {escape(loaded(audit)) or 'not loaded in any engine'}.</p>"
     ]
     for severity, title in _TITLES.items():
         found = [finding for finding in audit.findings if finding.severity == severity]
@@ -64,7 +64,7 @@ def _one(audit: Audit) -> str:
     if not audit.findings:
         blocks.append("<p>No findings.</p>")
     if audit.undone:
-        blocks.append("<h3>Not looked at</h3><ul>" + "".join(f"<li>{escape(line)}</li>" for line in audit.undone) + "</ul>")
+        blocks.append("<h3>Not checked</h3><ul>" + "".join(f"<li>{escape(line)}</li>" for line in audit.undone) + "</ul>")
     return "".join(blocks)
 
 

@@ -84,8 +84,8 @@ def roots(declared: Declared) -> Iterator[Finding]:
     if len(found) == 1 or not declared.links:
         return
     if not found:
-        message = f"Every one of the {len(declared.by_name)} links is the child of a joint: the joints form a circle."
-        hint = "Remove the joint that closes the circle."
+        message = f"Every one of the {len(declared.by_name)} links is the child of a joint: the joints form a cycle."
+        hint = "Remove the joint that closes the cycle."
     else:
         message = f"{len(found)} links are not the child of any joint: {listed(found)}. All but one of them are not connected."
         hint = "Connect each of them with a joint, or remove it."
@@ -119,7 +119,7 @@ def circles(declared: Declared) -> Iterator[Finding]:
                 code="E_AUDIT_CIRCLE",
                 where=parents[link].where,
                 parts=tuple(circle),
-                message=f"The links {listed(circle)} form a circle.",
+                message=f"The links {listed(circle)} form a cycle.",
                 hint="Remove one of the joints between them.",
                 value=len(circle),
                 limit=0,

@@ -232,7 +232,7 @@ def _kernel() -> Probe:
     if ended.late:
         return Probe(name, "missing", f"no answer in {_KERNEL_SECONDS} s", "Check the machine's load and disk.")
     if ended.code == 0:
-        return Probe(name, "ok", "a box has the correct volume; Pinocchio imports beside it")
+        return Probe(name, "ok", "a box has the correct volume; Pinocchio imports alongside it")
     return Probe(name, "missing", ended.last_line, "Run ./scripts/setup, or pip install --force-reinstall build123d pin")
 
 

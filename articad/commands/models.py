@@ -112,7 +112,7 @@ def _resume(options: argparse.Namespace, terminal: Terminal) -> Report:
         raise RunError.at(options.run, message, f"Build it again: articad build PLAN_DIR --out {options.run}; built parts are kept.")
     options.look, options.inspection = bool(asked.get("look")), bool(asked.get("inspection"))
     budget, _ = asked_model(options, terminal)
-    with terminal.progress("Going on", note=lambda: _spent(budget)) as tell:
+    with terminal.progress("Resuming", note=lambda: _spent(budget)) as tell:
         run = resume(options.run, llm=budget, services=_services(options, terminal, tell, experience(options, budget)))
     return _told(run, options, terminal, budget)
 

@@ -114,7 +114,7 @@ def _watch(options: argparse.Namespace, terminal: Terminal) -> Report:
     from articad.commands.watching import PageServer, watch
 
     with PageServer(options.port) as server:
-        terminal.say(f"{server.address}  (Ctrl-C ends)")
+        terminal.say(f"{server.address}  (Ctrl-C to stop)")
         terminal.out.flush()
         built = watch(options, terminal, server, opened=webbrowser.open if options.browser else None)
     return {"schema": "articad.watch/1", "ok": True, "built": built, "findings": []}

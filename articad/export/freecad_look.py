@@ -76,7 +76,7 @@ def looked(content: bytes, freecad: FreeCAD, *, parts: int) -> Json:
 
 def last_words(said: str) -> str:
     """Return the last line that a program wrote, for people."""
-    return ([line.strip() for line in said.splitlines() if line.strip()] or ["it left no word"])[-1][:300]
+    return ([line.strip() for line in said.splitlines() if line.strip()] or ["it printed nothing"])[-1][:300]
 
 
 def differences(row: Mapping[str, Any] | None, part: Part) -> Iterator[tuple[str, float]]:

@@ -47,7 +47,7 @@ CODES: dict[str, Code] = {
         "Use + - * / ( ), decimal literals, parameter names, pi and the listed functions.",
     ),
     "E_EXPRESSION_CYCLE": Code(
-        "plan", "design", "Parameters depend on each other in a circle.", "Give one of the parameters in the circle a number."
+        "plan", "design", "Parameters depend on each other in a cycle.", "Give one of the parameters in the cycle a number."
     ),
     "E_NONFINITE": Code(
         "plan", "design", "A number is not finite.", "Give a finite number; check for division by zero and roots of negative numbers."
@@ -201,7 +201,7 @@ CODES: dict[str, Code] = {
     # --- plan: derived parts and joints
     "E_DERIVE_UNKNOWN": Code("plan", "design", "A derived part or joint names a source that is not declared.", "Use one of those listed."),
     "E_DERIVE_CYCLE": Code(
-        "plan", "design", "Derived parts or joints derive from each other in a circle.", "Give one of them its own definition."
+        "plan", "design", "Derived parts or joints derive from each other in a cycle.", "Give one of them its own definition."
     ),
     "E_DERIVE_COUNT": Code("plan", "design", "A pattern's count is not a positive whole number.", "Give a whole number of at least 1."),
     "E_DERIVE_JOINT": Code(
@@ -680,7 +680,7 @@ CODES: dict[str, Code] = {
     "E_AUDIT_JOINT_TYPE": Code("audit", None, "A joint has a type that the format does not know.", "Use one of the format's types."),
     "E_AUDIT_TWO_PARENTS": Code("audit", None, "A link is the child of several joints.", "Keep one; closed loops need MJCF."),
     "E_AUDIT_ROOTS": Code("audit", None, "A file has no root link, or several.", "Connect every link to one root."),
-    "E_AUDIT_CIRCLE": Code("audit", None, "Links form a circle.", "Remove one of the joints between them."),
+    "E_AUDIT_CIRCLE": Code("audit", None, "Links form a cycle.", "Remove one of the joints between them."),
     "E_AUDIT_MIMIC": Code("audit", None, "A joint mimics a joint that does not exist or does not move.", "Name a joint that moves."),
     "W_AUDIT_NAME": Code("audit", None, "Names contain characters that ROS or USD do not accept.", "Use letters, digits and underscores."),
     "W_AUDIT_LONG_NAME": Code("audit", None, "The robot's name is a whole sentence.", "Give it a short name."),

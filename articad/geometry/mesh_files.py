@@ -61,7 +61,7 @@ def read_mesh(path: str | Path, scale: float = 1.0, root: Path | None = None) ->
     path = Path(path)
     reader = _READERS.get(path.suffix.lower())
     if reader is None:
-        raise _unreadable(path, "name", f"{path.suffix or 'no'} extension is not one of {', '.join(_READERS)}")
+        raise _unreadable(path, "name", f"extension {path.suffix!r} is not one of {', '.join(_READERS)}")
     try:
         content = read_file(path, MAX_FILE_BYTES, root=root)
     except OSError as error:

@@ -296,8 +296,8 @@ class _Model:
                     code="I_FREECAD_EDIT",
                     where=f"parts.{name}",
                     parts=(name,),
-                    message=f"Part {name!r} has another shape than the one that articad wrote.",
-                    hint="It is in the assembly that was read.",
+                    message=f"The shape of part {name!r} is not the one that articad wrote.",
+                    hint="The assembly that was read has the new shape.",
                 )
             )
 
@@ -685,7 +685,7 @@ def _couplings_now(model: _Model, recorded: Assembly, joints: list[Joint], renam
         ends = [column.partition(".") for column in (coupling.a, coupling.b)]
         if any(joint not in renamed or types.get(renamed[joint]) is not before[joint] for joint, _, _ in ends):
             message = f"Coupling {coupling.name!r} is left out: a joint that it couples is gone, or of another type."
-            hint = "Bring the joint back, or take the coupling away."
+            hint = "Restore the joint, or remove the coupling."
             model.findings.append(Finding(code="W_FREECAD_EDIT", where=f"couplings.{coupling.name}", message=message, hint=hint))
             continue
         a, b = (f"{renamed[joint]}{dot}{coordinate}" for joint, dot, coordinate in ends)
@@ -806,9 +806,9 @@ def _edit_findings(model: _Model) -> Iterator[Finding]:
             code="I_FREECAD_EDIT" if taken else "W_FREECAD_EDIT",
             where=f"objects.{edit.object}",
             message=f"{edit}{'' if taken else ' It was not adopted.'}",
-            hint="It is in the assembly that was read."
+            hint="The assembly that was read has this change."
             if taken
-            else _HINTS.get(edit.key, "Nothing in an assembly holds it; keep the document."),
+            else _HINTS.get(edit.key, "An assembly cannot represent it; keep the document."),
         )
 
 

@@ -270,7 +270,7 @@ class LinkedDocuments:
             if target is None:
                 return item
             item = target
-        raise unreadable(item.document.path, item.name, "Its links lead in a circle.")
+        raise unreadable(item.document.path, item.name, "Its links form a cycle.")
 
     def members(self, item: FreeCADObject) -> list[FreeCADObject]:
         """Return the members of a group, those of folders in it included."""

@@ -63,7 +63,7 @@ class _Closure:
         models: Named = []
         self._collect(path, path.parent, named, folders, models, 1)
         if len(named) * len(folders) > MAX_NAMES:
-            raise unreadable(path, "", f"It names {len(named)} files in {len(folders)} folders; that is more than {MAX_NAMES} places.")
+            raise unreadable(path, "", f"It names {len(named)} files that may be in {len(folders)} folders: more than {MAX_NAMES} places to look.")
         for (name, file, line), base in product(named, folders):
             self._checked(path.parent / base, name, file, line)
         for (name, file, line), base in product(models, folders):
@@ -101,7 +101,7 @@ class _Closure:
             if target not in self._seen:
                 self._collect(target, here, named, folders, models, times)
             elif number == 0:
-                raise unreadable(path, f"line {element.sourceline}", f"{name!r} is included again; includes must not form a circle.")
+                raise unreadable(path, f"line {element.sourceline}", f"{name!r} is included again; includes must not form a cycle.")
 
     def _checked(self, base: Path, name: str, file: Path, line: int) -> Path:
         """Return the file for a name, which lies inside the root."""

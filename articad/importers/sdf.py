@@ -99,7 +99,7 @@ class _Reader:
         version = _version(document, self.path)
         worlds, models = document.findall("world"), document.findall("model")
         if len(worlds) + len(models) != 1:
-            what = f"It has {len(worlds)} worlds and {len(models)} models; one of them is needed."
+            what = f"It has {len(worlds)} worlds and {len(models)} models; exactly one world or model is needed."
             raise unreadable(self.path, f"line {document.sourceline}", what)
         self._beside(document, {"world", "model"})
         top = Scope(worlds[0] if worlds else document, self.path, version=version)
@@ -335,7 +335,7 @@ class _Reader:
             raise scope.fault(element, f"Joint {name!r} lacks its parent or its child.")
         parent, child = (scope.body(end, element) or self.raw.ground for end in ends)
         if parent == child:
-            raise scope.fault(element, f"Joint {name!r} holds {parent!r} to itself.")
+            raise scope.fault(element, f"Joint {name!r} connects {parent!r} with itself.")
         pose, relative_to = pose_of(element, scope)
         T = scope.world(relative_to or ends[1], element) @ pose
         near, far = (self._pose_of(link).inverse() @ T for link in (parent, child))

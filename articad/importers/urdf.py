@@ -205,7 +205,7 @@ def _quaternions_to_angles(document: Any, path: Path) -> None:
         if text is None:
             continue
         if origin.get("rpy") is not None:
-            raise unreadable(path, f"line {origin.sourceline}", "An origin has rpy and quat_xyzw; one is needed.")
+            raise unreadable(path, f"line {origin.sourceline}", "An origin has both rpy and quat_xyzw; only one is allowed.")
         xyzw = [float(word) for word in text.split()]
         length = math.hypot(*xyzw)
         if not length > 1e-9:
@@ -266,7 +266,7 @@ def _require_numbers(document: Any, path: Path) -> None:
                     raise unreadable(path, f"line {element.sourceline}", f"{name}={text!r} is not a number.") from None
                 continue
             if len(numbers) not in _COUNTS.get(name, (1,)) and element.tag in {"origin", "axis", "mesh", "box"}:
-                raise unreadable(path, f"line {element.sourceline}", f"{name}={text!r} has {len(numbers)} numbers.")
+                raise unreadable(path, f"line {element.sourceline}", f"{name}={text!r} has {len(numbers)} numbers, not {' or '.join(map(str, _COUNTS.get(name, (1,))))}.")
             infinite_limit = element.tag == "limit"  # an infinite limit means none
             if any(math.isnan(number) or (abs(number) > _LARGEST and not infinite_limit) for number in numbers):
                 raise unreadable(path, f"line {element.sourceline}", f"{name}={text!r} is not a plausible number.")
@@ -285,7 +285,7 @@ def _root(robot: Any, path: Path) -> str:
     children = {joint.child for joint in robot.joints}
     roots = [link.name for link in robot.links if link.name not in children]
     if len(roots) != 1:
-        raise unreadable(path, "", f"It has {len(roots)} root links ({', '.join(map(str, roots[:5]))}); one is needed.")
+        raise unreadable(path, "", f"It has {len(roots)} root links ({', '.join(map(str, roots[:5]))}); exactly one is needed.")
     return str(roots[0])
 
 

@@ -181,8 +181,8 @@ class PairCase:
         return self._because(
             "envelope",
             "design",
-            f"{name} is {length:.6g} mm long in its {'xyz'[k]} and ends {depth:.4g} mm inside {self._other(name)}.",
-            f"Make {name} {depth:.4g} mm shorter in its {'xyz'[k]}, {room:.6g} mm, minus a gap; or move it by the same amount.",
+            f"{name} is {length:.6g} mm long along its {'xyz'[k]} and ends {depth:.4g} mm inside {self._other(name)}.",
+            f"Shorten {name} by {depth:.4g} mm along its {'xyz'[k]}, to {room:.6g} mm minus a gap; or move it by the same amount.",
             value=length,
             limit=room,
         )

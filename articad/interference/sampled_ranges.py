@@ -103,9 +103,9 @@ def _return_travel(mechanism: Mechanism, track: Track, driver: Coordinate, sign:
     turns = [ratio for c, ratio in rates if c.unit == "rad"]
     count = next((n for n in range(1, MOST_TURNS + 1) if all(abs(n * k - round(n * k)) < _WHOLE for k in turns)), None)
     if slid:
-        return max(2 * math.pi * (count or MOST_TURNS), min(slid)), "what follows it slides without limits"
+        return max(2 * math.pi * (count or MOST_TURNS), min(slid)), "a joint that follows it slides without limits"
     if count is None:
-        return 2 * math.pi * MOST_TURNS, f"what follows it does not return within {MOST_TURNS} turns"
+        return 2 * math.pi * MOST_TURNS, f"the joints that follow it do not return within {MOST_TURNS} turns"
     return 2 * math.pi * count, ""
 
 

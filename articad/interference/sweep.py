@@ -304,7 +304,7 @@ class MotionSampler:
 
     def _left_out(self, ranges: Sequence[Freedom]) -> Findings:
         """Name what can move and is not sampled: free joints, drivers beyond their range, and parts that loops let move while all drivers stand."""
-        still = "Nothing, where nothing is in its way; `certify` covers the turn of a rod between two balls."
+        still = "Nothing needs to be done if nothing is in its way; `certify` covers the turn of a rod between two balls."
         further = "Set limits where the motion ends; `certify` covers endless turns, unless the followers' ratio never brings them back."
         found: list[tuple[str, tuple[str, ...], str, str]] = [
             (f"joints.{joint.name}", (joint.child,), f"{joint.name} moves freely; it stands at rest in all samples.", still)

@@ -247,7 +247,7 @@ class Dynamics:
     def _state(self, q: npt.ArrayLike, given: FloatArray) -> _State:
         Q = self.mechanism.configuration(q).columns
         if Q.ndim != 1:
-            raise KinematicsError(f"Dynamics are of one configuration; q has shape {np.shape(q)}.")
+            raise KinematicsError(f"Dynamics are computed at one configuration; q has shape {np.shape(q)}.")
         v = self._all_velocities(Q, given)
         M, h = self._tree(Q, v)
         J, scale = self._constraints(Q)

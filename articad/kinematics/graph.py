@@ -186,7 +186,7 @@ class JointGraph:
             where, parts = f"joints.{joint.name}", (joint.parent, joint.child)
             for part in dict.fromkeys(parts):
                 if part not in known:
-                    message = f"Joint {joint.name!r} names part {part!r} which is not declared."
+                    message = f"Joint {joint.name!r} names part {part!r}, which is not declared."
                     hint = f"Declare it, or use one of {_listed(self.parts)}.{did_you_mean(part, self.parts)}"
                     found.append(Finding(code="E_PART_UNKNOWN", where=where, message=message, hint=hint))
             if joint.parent == joint.child:

@@ -461,20 +461,20 @@ def _joint_findings(joint: Joint) -> list[Finding]:
 
     found: list[Finding] = []
     if joint.type in {JointType.FIXED, JointType.FREE} and joint.driver:
-        found.append(finding("W_DRIVER", f"a {joint.type} joint cannot drive.", "Remove the mark."))
+        found.append(finding("W_DRIVER", f"a {joint.type} joint cannot drive.", "Remove its driver mark."))
     if not all(map(math.isfinite, (*joint.rest, joint.lead))):
         found.append(finding("E_NONFINITE", "rest values and lead must be finite.", "Give finite numbers."))
     if joint.type is JointType.SCREW and joint.lead == 0:
-        found.append(finding("E_LEAD_ZERO", "a screw without lead.", "Give the advance per turn in mm, or use a revolute joint."))
+        found.append(finding("E_LEAD_ZERO", "a screw joint needs a lead.", "Give the advance per turn in mm, or use a revolute joint."))
     if joint.type is JointType.BALL:
         return found + _ball_findings(joint, finding)
     if joint.type is JointType.FREE:
         return found + _free_findings(joint, finding)
     n = len(joint.type.coordinates)
     if not len(joint.limits.lower) == len(joint.limits.upper) == n or joint.limits.cone is not None or joint.limits.twist is not None:
-        found.append(finding("E_LIMITS_KIND", f"a {joint.type} joint has {n} pair(s) of limits, no cone.", "Give its own limits."))
+        found.append(finding("E_LIMITS_KIND", f"a {joint.type} joint takes {n} pair(s) of limits and no cone.", f"Give {n} pair(s)."))
     elif len(joint.rest) != n:
-        found.append(finding("E_LIMITS_KIND", f"a {joint.type} joint has {n} rest value(s), not {len(joint.rest)}.", "Give one each."))
+        found.append(finding("E_LIMITS_KIND", f"a {joint.type} joint takes {n} rest value(s), not {len(joint.rest)}.", f"Give {n}."))
     else:
         found.extend(_range_findings(joint, finding))
     return found
@@ -502,11 +502,11 @@ def _ball_findings(joint: Joint, finding: _FindingMaker) -> list[Finding]:
     limits = joint.limits
     cone = math.pi if limits.cone is None else limits.cone
     if limits.lower or limits.upper or len(joint.rest) != 4:
-        return [finding("E_LIMITS_KIND", "a ball has a cone and a twist, and rests at a quaternion.", "Give cone and twist.")]
+        return [finding("E_LIMITS_KIND", "a ball joint takes a cone and a twist; its rest is a quaternion.", "Give cone and twist.")]
     if not 0 < cone <= math.pi:
         return [finding("E_LIMITS_ORDER", f"the cone is {math.degrees(cone):.6g}°.", "Give an angle above 0° up to 180°.")]
     if abs(math.hypot(*joint.rest) - 1) > _QUATERNION_TOLERANCE:
-        return [finding("E_QUAT_NORM", f"it rests at {joint.rest}, not of unit length.", "Give a unit quaternion (x, y, z, w).")]
+        return [finding("E_QUAT_NORM", f"its rest {joint.rest} is not of unit length.", "Give a unit quaternion (x, y, z, w).")]
     if limits.twist is not None and not limits.twist[0] <= limits.twist[1]:
         lo, hi = (f"{math.degrees(v):.6g}°" for v in limits.twist)
         return [finding("E_LIMITS_ORDER", f"its twist [{lo}, {hi}] is reversed.", f"Did you mean [{hi}, {lo}]?")]
@@ -519,9 +519,9 @@ def _ball_findings(joint: Joint, finding: _FindingMaker) -> list[Finding]:
 def _free_findings(joint: Joint, finding: _FindingMaker) -> list[Finding]:
     limits = joint.limits
     if limits.lower or limits.upper or limits.cone is not None or limits.twist is not None or len(joint.rest) != 7:
-        return [finding("E_LIMITS_KIND", "a free joint has no limits, and rests at x, y, z and a quaternion.", "Give no limits.")]
+        return [finding("E_LIMITS_KIND", "a free joint takes no limits; its rest is x, y, z and a quaternion.", "Give no limits.")]
     if abs(math.hypot(*joint.rest[3:]) - 1) > _QUATERNION_TOLERANCE:
-        return [finding("E_QUAT_NORM", f"it rests turned by {joint.rest[3:]}, not of unit length.", "Give a unit quaternion (x, y, z, w).")]
+        return [finding("E_QUAT_NORM", f"its rest quaternion {joint.rest[3:]} is not of unit length.", "Give a unit quaternion (x, y, z, w).")]
     return []
 
 

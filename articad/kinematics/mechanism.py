@@ -341,7 +341,7 @@ class Mechanism:
         frame = SE3.identity() if T_part_frame is None else T_part_frame
         Q = self._columns(q)
         if Q.ndim != 1:
-            raise KinematicsError(f"A Jacobian is of one configuration; q has shape {np.shape(q)}.")
+            raise KinematicsError(f"A Jacobian is computed at one configuration; q has shape {np.shape(q)}.")
         J = self._part_jacobian(Q, self.part_index(part), frame.translation)
         return J if self.is_tree else J @ self.branch.velocities(Q)
 
@@ -532,7 +532,7 @@ def _coupling_findings(mechanism: Mechanism) -> list[Finding]:
         where = f"couplings.{coupling.name}"
         for name in dict.fromkeys((coupling.a, coupling.b)):
             if name not in columns:
-                message = f"Coupling {coupling.name!r} names coordinate {name!r} which no joint has."
+                message = f"Coupling {coupling.name!r} names coordinate {name!r}, which no joint has."
                 hint = f"Use one of [{', '.join(columns)}].{did_you_mean(name, columns)}"
                 found.append(Finding(code="E_JOINT_UNKNOWN", where=where, message=message, hint=hint))
             elif len(columns[name].type.freedom_units) != len(columns[name].type.coordinates):

@@ -380,7 +380,7 @@ def driver_index(mechanism: Mechanism, driver: str) -> int:
         raise UnknownJointError(driver, names)
     index = names.index(driver)
     if mechanism.drivers[index].unit == "1":
-        raise KinematicsError(f"{driver!r} is a component of a quaternion, which has no range of its own components.")
+        raise KinematicsError(f"{driver!r} is a component of a quaternion; such components have no ranges.")
     return index
 
 

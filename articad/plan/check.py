@@ -130,7 +130,7 @@ def _freedom_findings(draft: Draft, freedoms: int, account: str) -> list[Finding
     hint = f"Set freedoms to {freedoms}, or change the joints if {declared} is meant."
     held = _fixed_at_axes(draft) if declared > freedoms else []
     if held:
-        hint += f" These joints are fixed, though they are at an axis: {', '.join(name for name, _ in held)}."
+        hint += f" These joints are fixed although their connectors suggest a motion: {', '.join(name for name, _ in held)}."
     parts = tuple(dict.fromkeys(part for _, ends in held for part in ends))
     return [Finding(code="E_DOF_MISMATCH", where="freedoms", message=message, hint=hint, parts=parts, value=declared, limit=freedoms)]
 

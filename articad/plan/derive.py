@@ -129,7 +129,7 @@ def _count(derivation: PatternDerivation, where: str, evaluation: Evaluation) ->
     if count != int(count) or not 1 <= count <= MAX_COUNT:
         hint = f"Give a whole number from 1 to {MAX_COUNT}."
         nearest = min(max(round(count), 1), MAX_COUNT)
-        message = f"A pattern of {count:.6g} parts."
+        message = f"A pattern cannot have {count:.6g} parts."
         evaluation.report("E_DERIVE_COUNT", f"{where}.derive.count", message, f"{hint} The nearest is {nearest}.", value=count)
         return 0
     return int(count)

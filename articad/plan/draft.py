@@ -109,7 +109,7 @@ class Draft:
             if form.material not in self.materials:
                 known = list(self.materials)
                 hint = f"{did_you_mean(form.material, known).strip()} Declared: {', '.join(known) or 'none'}.".strip()
-                message = f"Part {form.name!r} names material {form.material!r} which is not declared."
+                message = f"Part {form.name!r} names material {form.material!r}, which is not declared."
                 self.evaluation.report("E_MATERIAL_UNKNOWN", f"{where}.material", message, hint, parts=(form.name,))
             self._report_repeated(f"{where}.connectors", [connector.name for connector in form.connectors])
             if not form.connectors and not alone:
@@ -223,7 +223,7 @@ class Draft:
                     hint = f"{did_you_mean(connector, known).strip()} Connectors of {part_name}: {', '.join(known)}.".strip()
                     if not known:
                         hint = f"Declare connector {connector!r} on {part_name}, which has none."
-                    message = f"Joint {form.name!r} names connector {connector!r} which part {part_name!r} does not have."
+                    message = f"Joint {form.name!r} names connector {connector!r}, which part {part_name!r} does not have."
                     self.evaluation.report("E_CONNECTOR_UNKNOWN", f"joints.{form.name}.{side}", message, hint, parts=(part_name,))
 
     # ---------------------------------------------------------------- joints, couplings, waivers
@@ -282,7 +282,7 @@ class Draft:
                 if name not in self.parts:
                     hint = f"{did_you_mean(name, self.parts).strip()} Parts: {', '.join(self.parts)}.".strip()
                     self.evaluation.report(
-                        "E_PART_UNKNOWN", f"{where}.parts", f"The waiver names part {name!r} which is not declared.", hint
+                        "E_PART_UNKNOWN", f"{where}.parts", f"The waiver names part {name!r}, which is not declared.", hint
                     )
             if a == b:
                 self.evaluation.report(

@@ -126,7 +126,7 @@ class _Mismatch:
         other = Mate.ALIGNED if mate is Mate.OPPOSED else Mate.OPPOSED
         between = 180.0 - axis if mate is Mate.OPPOSED else axis
         verb = "agree" if mate is Mate.OPPOSED else "oppose"
-        message = f"z axes of {self.parent} and {self.child} {verb} at rest (angle {between:.1f}°) but mate is {str(mate)!r}."
+        message = f"The z axes of {self.parent} and {self.child} {verb} at rest (angle {between:.1f}°) but mate is {str(mate)!r}."
         if 180.0 - axis <= ANGLE_DEG:
             hint = f"Set mate to {str(other)!r}, or {self._set(*self._axes())}."
         else:
@@ -134,12 +134,12 @@ class _Mismatch:
         return self._finding("E_MATE_FLIP", message, hint, axis, ANGLE_DEG, "deg")
 
     def _tilt(self, axis: float) -> Finding:
-        message = f"z axes of {self.parent} and {self.child} are tilted by {axis:.4g}° at rest (mate {str(self.joint.mate)!r})."
+        message = f"The z axes of {self.parent} and {self.child} are tilted by {axis:.4g}° at rest (mate {str(self.joint.mate)!r})."
         hint = f"{_capital(self._set(*self._axes()))}."
         return self._finding("E_MATE_TILT", message, hint, axis, ANGLE_DEG, "deg")
 
     def _roll(self, roll: float) -> Finding:
-        message = f"x axes of {self.parent} and {self.child} differ by {abs(roll):.1f}° about z: the part would be turned."
+        message = f"The x axes of {self.parent} and {self.child} differ by {abs(roll):.1f}° about z: the part would be turned."
         hint = f"{_capital(self._set('x'))}{self._rest_instead(roll)}."
         return self._finding("E_MATE_ROLL", message, hint, abs(roll), ANGLE_DEG, "deg")
 

@@ -92,7 +92,7 @@ def _fault_outside(name: str, holding: Sequence[JointLine], draft: Draft, outsid
         if child != name:
             return f"{name} is part of the environment, which is not exported, but it carries {child} by joint {line.name!r}."
         if parent in outside:
-            return f"{name} is part of the environment, which is not exported, but so is {parent}, which holds it."
+            return f"{name} is part of the environment, but so is {parent}, which holds it: neither is exported."
         if line.root.type != "fixed":
             return f"{name} is part of the environment, but joint {line.name!r}, which holds it, is not fixed."
     return f"{name} is part of the environment, but {len(holding)} joints hold it." if len(holding) > 1 else ""
@@ -169,12 +169,12 @@ def _placed_by_joint(draft: Draft) -> list[Finding]:
     if not joints:
         return []
     where = f"joints.{joints[0]}"
-    message = f"{parts[0]} is placed by joint {joints[0]!r}, so that joint's rest check is empty."
+    message = f"{parts[0]} is placed by joint {joints[0]!r}, so that joint's rest check always passes."
     hint = f"Give {parts[0]} a rest_pose with numbers if the check is wanted."
     if len(joints) > 1:
         where = "joints"
         placed = ", ".join(f"{part} ({joint})" for joint, part in draft.auto_joints.items())
-        message = f"{len(parts)} parts are placed by their joints, so the rest checks of these joints are empty: {placed}."
+        message = f"{len(parts)} parts are placed by their joints, so the rest checks of these joints always pass: {placed}."
         hint = "Give a part a rest_pose with numbers if the check is wanted."
     return [Finding(code="I_REST_AUTO", where=where, message=message, hint=hint, parts=parts)]
 
@@ -268,7 +268,7 @@ def _densities(draft: Draft) -> list[Finding]:
                 Finding(
                     code="W_DENSITY",
                     where=f"materials.{name}.density_kg_m3",
-                    message=f"{name} has a density of {density:.6g} kg/m³; materials have {LIGHTEST:g} to {HEAVIEST:g}.",
+                    message=f"{name} has a density of {density:.6g} kg/m³; real materials have {LIGHTEST:g} to {HEAVIEST:g} kg/m³.",
                     hint=f"If another unit was meant, set density_kg_m3 to {meant:.6g}; steel is 7850, oak 700.",
                     value=density,
                     limit=LIGHTEST if density < LIGHTEST else HEAVIEST,

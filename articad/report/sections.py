@@ -68,7 +68,7 @@ def all_sections(assembly: Assembly, documents: Documents) -> str:
             _section("Interference", _pairs(documents.checks, known)),
             _section("Proven motion", _certificate(documents.certificate, known)),
             _section("Least clearances over the motion", _clearances(documents.certificate, known)),
-            _section("What follows the drivers", _follows(documents.certificate, known)),
+            _section("Joints that follow the drivers", _follows(documents.certificate, known)),
             _section("Fits", _fits(assembly, documents.checks, known)),
             _section("Exports and what they cannot hold", _exports(documents.exports)),
             _section("Conversation with the model", _conversation(documents.replies)),
@@ -108,7 +108,7 @@ def _show(text: str, parts: Sequence[str], pose: Mapping[str, float] | None, kno
 
 def _findings(findings: Sequence[Json], known: set[str]) -> str:
     if not findings:
-        return '<p class="quiet">Nothing was found.</p>'
+        return '<p class="quiet">No findings.</p>'
     rows: list[list[Cell]] = []
     same = Counter((finding["code"], finding["message"]) for finding in findings)
     for finding in {(entry["code"], entry["message"]): entry for entry in reversed(findings)}.values():
@@ -150,7 +150,7 @@ def _parts(assembly: Assembly) -> str:
             ]
         )
     note = (
-        f'<p class="quiet">Together: {total_mass(assembly)}. A name shows the part alone; indented parts are attached to those above.</p>'
+        f'<p class="quiet">Total: {total_mass(assembly)}. Click a name to show the part alone; indented parts are attached to those above.</p>'
     )
     return _scroll(html_table(["", "part", "material", "mass kg", "volume mm³", ""], rows, numbers=(3, 4))) + note
 
@@ -196,7 +196,7 @@ def _pair(pair: Json, known: set[str]) -> list[Cell]:
     strength = pair["strength"]
     known_by = {
         "certified": "proven",
-        "sampled": f"{strength.get('poses')} poses seen",
+        "sampled": f"{strength.get('poses')} poses sampled",
         "waived": f"allowed: {strength.get('reason')}",
         "not_checked": f"not checked: {strength.get('reason')}",
     }[strength["kind"]]
@@ -243,7 +243,7 @@ def _clearances(certificate: Json | None, known: set[str]) -> str:
         '<p class="quiet">The smallest distance found between every two parts over the motion, the nearest pairs first. '
         "It is sampled: the true minimum may be smaller. “Proven motion” shows what is proven.</p>"
     )
-    return told + _scroll(html_table(["parts", "", "gap mm", "at", "poses seen", ""], rows, numbers=(2, 4)))
+    return told + _scroll(html_table(["parts", "", "gap mm", "at", "poses sampled", ""], rows, numbers=(2, 4)))
 
 
 def _follows(certificate: Json | None, known: set[str]) -> str:

@@ -147,7 +147,7 @@ def _without_frames(assembly: Assembly) -> tuple[Assembly, list[Finding]]:
             return assembly, findings
         bare, kept, T_kept_bare, joint = found
         assembly = _merged(assembly, bare, kept, T_kept_bare, joint)
-        message = f"{bare!r} has no shape and is fixed to {kept!r}; it was merged into it."
+        message = f"{bare!r} has no shape and is fixed to {kept!r}; it was merged into {kept!r}."
         hint = "Give it a shape in the file to keep it apart."
         findings.append(Finding(code="I_ADOPT_MERGED", where=f"parts.{bare}", parts=(kept,), message=message, hint=hint))
 

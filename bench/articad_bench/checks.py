@@ -293,7 +293,7 @@ class Ratio(Check):
             if joint.name != leader.name and (ratio := _ratio(subject, leader, joint)) is not None
         ]
         ok = any(abs(abs(ratio) - abs(self.ratio)) <= self.tolerance * abs(self.ratio) for ratio in found)
-        return ok, ", ".join(f"{ratio:.4g}" for ratio in found[:6]) or "no such two joints follow one another"
+        return ok, ", ".join(f"{ratio:.4g}" for ratio in found[:6]) or "no two such joints are coupled"
 
 
 class Rise(Check):

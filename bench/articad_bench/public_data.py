@@ -129,7 +129,7 @@ def shapes_in(folder: str | Path, *, measured: bool = False) -> list[ShapeSample
         if files and words.is_file():
             found.append(ShapeSample(place.name, place, words.read_text(encoding="utf-8", errors="replace").strip(), files[0]))
     if not found:
-        raise _refused(Path(folder), f"No sample of CADPrompt there: a folder each, with {_TRUTHS[0]} and {_PROMPT}.")
+        raise _refused(Path(folder), f"It holds no sample of CADPrompt, which is a folder with {_TRUTHS[0]} and {_PROMPT}.")
     return found
 
 
@@ -149,7 +149,7 @@ def objects_in(folder: str | Path) -> list[ObjectSample]:
         elif stk.is_file():
             found.append(ObjectSample(place.name, place, images, _reading(_acd, stk)))
     if not found:
-        message = "No object there: folders with mobility.urdf, or with <id>.glb and <id>.art-stk.json, or files joint_set_….json."
+        message = "It holds no object: a folder with mobility.urdf, a folder with <id>.glb and <id>.art-stk.json, or a file joint_set_….json."
         raise _refused(root, message)
     return found
 
@@ -183,7 +183,7 @@ def _reading(read: Callable[[Path], TrueObject], file: Path) -> Callable[[], Tru
         try:
             return read(file)
         except (OSError, ValueError, KeyError, TypeError, IndexError) as error:
-            raise _refused(file, f"It is not of its layout: {type(error).__name__}: {error}.") from error
+            raise _refused(file, f"It does not have the layout of its data set: {type(error).__name__}: {error}.") from error
 
     return truth
 

@@ -34,5 +34,5 @@ class RecordedAnswers:
     def _replay(self, name: str) -> Replay:
         found = model_of(name, self._folder)
         if not found.is_dir():
-            raise ReadError.at(found, f"{found} is no recorded run.", "Name the folder of a benchmark's runs.")
+            raise ReadError.at(found, f"{found} is not a recorded run.", "Name the folder of a benchmark's runs.")
         return Replay(found)

@@ -154,7 +154,7 @@ def read_task(folder: str | Path) -> Task:
         where = ".".join(str(step) for step in first["loc"])
         raise ReadError.at(file, f"{where}: {first['msg']}.", "Correct the field.") from error
     except ValueError as error:
-        raise ReadError.at(file, f"It is no JSON: {error}.", "Correct it there.") from error
+        raise ReadError.at(file, f"It is not JSON: {error}.", "Correct it there.") from error
 
 
 def write_task(task: Task, folder: Path, *, beside: Path) -> tuple[Path, Task]:

@@ -67,7 +67,7 @@ def test_shapes_are_read_and_scored_beside_the_floor_and_a_box(cadprompt: Path, 
 
 
 def test_a_folder_without_samples_is_told(tmp_path: Path) -> None:
-    with pytest.raises(ReadError, match="No sample of CADPrompt"):
+    with pytest.raises(ReadError, match="holds no sample of CADPrompt"):
         shapes_in(tmp_path)
     with pytest.raises(ReadError, match="No object there"):
         objects_in(tmp_path / "nowhere")
@@ -215,7 +215,7 @@ def test_a_file_that_is_not_of_its_layout_is_told(tmp_path: Path) -> None:
     file = tmp_path / "data" / "cabinet" / "cabinet.art-stk.json"
     file.write_text('{"parts": []}')
     (sample,) = objects_in(tmp_path / "data")
-    with pytest.raises(ReadError, match="not of its layout"):
+    with pytest.raises(ReadError, match="does not have the layout"):
         sample.truth()
     with pytest.raises(ReadError, match="no picture"):
         sample.task()

@@ -77,7 +77,7 @@ MJCFS = {
     "an absolute file": ('<mujoco><asset><hfield name="m" file="/etc/passwd"/></asset></mujoco>', "leads out"),
     "an outside folder": ('<mujoco><compiler meshdir="../.."/><asset><mesh name="m" file="x.stl"/></asset></mujoco>', "leads out"),
     "an outside include": ('<mujoco><include file="../b.xml"/></mujoco>', "leads out"),
-    "an include of itself": ('<mujoco><include file="a.xml"/></mujoco>', "must not form a circle"),
+    "an include of itself": ('<mujoco><include file="a.xml"/></mujoco>', "must not form a cycle"),
     "many copies": ('<mujoco><worldbody><replicate count="1000000"><body/></replicate></worldbody></mujoco>', "copies"),
     "many copies in three directions": ('<mujoco><worldbody><flexcomp count="100 100 100"/></worldbody></mujoco>', "copies"),
 }

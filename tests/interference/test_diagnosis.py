@@ -176,7 +176,7 @@ def test_the_hint_of_a_missing_hole_gives_diameter_and_depth() -> None:
 
 def test_the_hint_of_a_drawer_that_is_too_long_says_by_how_much() -> None:
     (finding, *_) = findings(FIXTURES[2].planted, FIXTURES[2].joints)
-    assert "Make drawer 2 mm shorter in its y" in finding.hint
+    assert "Shorten drawer by 2 mm along its y" in finding.hint
 
 
 def test_the_hint_of_axes_too_close_gives_the_distance_they_need() -> None:

@@ -177,9 +177,9 @@ def coupled(ratio: float, kind: str = "revolute") -> Mechanism:
     ("ratio", "kind", "reason"),
     [
         (-0.25, "revolute", None),
-        (math.sqrt(2), "revolute", "what follows it does not return within 16 turns"),
-        (1 / 17, "revolute", "what follows it does not return within 16 turns"),
-        (3.0, "slider", "what follows it slides without limits"),
+        (math.sqrt(2), "revolute", "the joints that follow it do not return within 16 turns"),
+        (1 / 17, "revolute", "the joints that follow it do not return within 16 turns"),
+        (3.0, "slider", "a joint that follows it slides without limits"),
     ],
 )
 def test_a_sweep_says_which_part_of_an_endless_motion_it_samples(ratio: float, kind: str, reason: str | None) -> None:

@@ -1015,5 +1015,5 @@ def test_missing_freedoms_name_the_fixed_joints_at_axes() -> None:
         slide.pop(key)
     slide["type"] = "fixed"
     finding = only(check(plan), "E_DOF_MISMATCH")
-    assert finding.hint.endswith("These joints are fixed, though they are at an axis: slide_lower, slide_upper.")
+    assert finding.hint.endswith("These joints are fixed although their connectors suggest a motion: slide_lower, slide_upper.")
     assert finding.parts == ("cabinet", "drawer_lower", "drawer_upper")

@@ -35,7 +35,7 @@ def test_flip_names_the_mate_and_the_axis() -> None:
     connector(plan, "lid", "hinge")["z"] = [-1, 0, 0]
     finding = only(check(plan), "E_MATE_FLIP")
     assert finding.where == "joints.hinge"
-    assert finding.message == "z axes of box.hinge and lid.hinge oppose at rest (angle 180.0°) but mate is 'aligned'."
+    assert finding.message == "The z axes of box.hinge and lid.hinge oppose at rest (angle 180.0°) but mate is 'aligned'."
     assert finding.hint == "Set mate to 'opposed', or set z of lid.hinge to (1, 0, 0)."
     assert finding.value == pytest.approx(180)
     assert (finding.limit, finding.unit, finding.parts) == (0.05, "deg", ("box", "lid"))
@@ -45,7 +45,7 @@ def test_flip_of_an_opposed_mate_says_that_the_axes_agree() -> None:
     plan = chest()
     joint(plan, "hinge")["mate"] = "opposed"
     finding = only(check(plan), "E_MATE_FLIP")
-    assert finding.message == "z axes of box.hinge and lid.hinge agree at rest (angle 0.0°) but mate is 'opposed'."
+    assert finding.message == "The z axes of box.hinge and lid.hinge agree at rest (angle 0.0°) but mate is 'opposed'."
     assert finding.hint.startswith("Set mate to 'aligned'")
 
 
@@ -67,7 +67,7 @@ def test_tilt_names_the_angle_and_the_corrected_axes() -> None:
     plan = chest()
     connector(plan, "lid", "hinge")["z"] = [1, math.tan(math.radians(10)), 0]
     finding = only(check(plan), "E_MATE_TILT")
-    assert finding.message == "z axes of box.hinge and lid.hinge are tilted by 10° at rest (mate 'aligned')."
+    assert finding.message == "The z axes of box.hinge and lid.hinge are tilted by 10° at rest (mate 'aligned')."
     assert finding.hint == "Set z of lid.hinge to (1, 0, 0)."
     assert finding.value == pytest.approx(10)
     assert finding.limit == 0.05
@@ -77,7 +77,7 @@ def test_roll_names_x_and_the_rest_value() -> None:
     plan = chest()
     connector(plan, "lid", "hinge")["x"] = [0, -1, 0]  # +90° about z = X from (0, 0, 1)
     finding = only(check(plan), "E_MATE_ROLL")
-    assert finding.message == "x axes of box.hinge and lid.hinge differ by 90.0° about z: the part would be turned."
+    assert finding.message == "The x axes of box.hinge and lid.hinge differ by 90.0° about z: the part would be turned."
     assert finding.hint == "Set x of lid.hinge to (0, 0, 1), or rest_deg of the joint to 90."
     assert finding.value == pytest.approx(90)
     assert (finding.limit, finding.unit) == (0.05, "deg")
@@ -150,7 +150,7 @@ def test_the_fault_of_a_derived_childs_joint_is_mended_at_the_parent() -> None:
     connector(plan, "cabinet", "hinge_right")["x"] = [1, 0, 0]
     finding = only(check(plan), "E_MATE_ROLL")
     assert finding.where == "joints.hinge_right"
-    assert finding.message.startswith("x axes of cabinet.hinge_right and door_right.hinge differ by 180.0° about z")
+    assert finding.message.startswith("The x axes of cabinet.hinge_right and door_right.hinge differ by 180.0° about z")
     assert finding.hint == "Set x of cabinet.hinge_right to (-1, 0, 0)."
     assert finding.value == pytest.approx(180)
     assert finding.parts == ("cabinet", "door_right")

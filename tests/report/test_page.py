@@ -396,7 +396,7 @@ def test_least_clearances_and_followers_stand_in_degrees_and_mm(open_page: Open)
     }
     opened = open_page(report_page(assembly, Documents(certificate=certificate)))
     text = "s => [...document.querySelectorAll('details.section')].find(d => d.querySelector('summary').textContent === s).textContent"
-    clearances, follows = (opened(text, title) for title in ("Least clearances over the motion", "What follows the drivers"))
+    clearances, follows = (opened(text, title) for title in ("Least clearances over the motion", "Joints that follow the drivers"))
     assert f"{driver} = 30.00°" in clearances
     assert "1.25" in clearances
     assert f"{driver} °other mm" in follows

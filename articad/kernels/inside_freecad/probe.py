@@ -110,7 +110,7 @@ def _probe(document: Any, body: Any, systems: dict[str, str], dimensions: Json, 
         if best["outcome"] == "broken" or name == list(dimensions)[-1]:
             document.recompute()
             if not _same(_fingerprint(document, body, systems), before):
-                best = _broken("the part does not come back when the dimensions are set back")
+                best = _broken("the part does not return to its shape when the dimensions are reset")
         yield {"dimension": name} | best
 
 
