@@ -274,7 +274,7 @@ class Assembly:
 
     @property
     def environment(self) -> frozenset[str]:
-        """Names of the parts that are checked against but belong to no product: a floor, a wall, room for a hand."""
+        """Names of the parts that are checked against but not exported: a floor, a wall, room for a hand."""
         return frozenset() if self.resolved is None else frozenset(name for name, part in self.resolved.parts.items() if part.environment)
 
     def product(self) -> Assembly:
@@ -383,7 +383,7 @@ class Assembly:
     def path(self, start: ArrayLike, goal: ArrayLike, *, clear: bool = False) -> FloatArray:
         """Return waypoints of the drivers from one configuration to another; straight lines between them keep to branch and limits.
 
-        Return waypoints of the drivers from one configuration to another; on the straight lines between them, branch and limits hold.
+        Args:
             start: Values of the drivers `(nq,)` [rad, mm].
             goal: Values of the drivers `(nq,)` [rad, mm].
             clear: Whether the path must also be free of collisions; this is sampled every 0.1 rad or 0.1 lengths of a link, not proven.

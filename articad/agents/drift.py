@@ -58,7 +58,11 @@ def _finding(kind: str, files: list[str], recorded: Run, again: Run, why: str, *
     if math.isfinite(far):
         message += f" Meshes differ by {far:.2g} mm at most."
     harmless = other and (far <= SAME_MM or kind == "exports")
-    hint = "Nothing needs to be done: another kernel or platform rounds differently." if harmless else "Replay with the versions that recorded it, or record again."
+    hint = (
+        "Nothing needs to be done: another kernel or platform rounds differently."
+        if harmless
+        else "Replay with the versions that recorded it, or record again."
+    )
     return Finding(
         code="W_REPLAY_DRIFT" if harmless else "E_REPLAY_DIFFERS",
         where=files[0],
@@ -99,7 +103,10 @@ def _why(before: Mapping[str, str], now: Mapping[str, str]) -> tuple[str, bool]:
     ]
     if changed:
         return f"It was made with {'; '.join(changed)}.", True
-    return "It was made with the same versions on the same platform: one of the two runs was changed since, or this is a defect of articad.", False
+    return (
+        "It was made with the same versions on the same platform: one of the two runs was changed since, or this is a defect of articad.",
+        False,
+    )
 
 
 def _distance(recorded: Run, again: Run, files: Sequence[str]) -> float:

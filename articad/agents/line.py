@@ -140,7 +140,7 @@ class Line:
         self.builder.announce("design", f"{what}, {len(findings.errors)} errors")
 
     def _concept(self) -> Alternative:
-        """Return what an open request shall become."""
+        """Return the product to make for an open request."""
         self.builder.announce("brainstorm", "started")
         alternatives, findings = brainstorm.propose(self.run.request, self.port)
         for finding in findings:

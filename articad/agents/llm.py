@@ -504,9 +504,7 @@ class Budget:
         if cost is not None and self.cost >= cost:
             return f"The budget of ${cost:g} is spent: ${self.cost:.4f} were used."
         if cost is not None and self.cost_unknown_of is not None:
-            return (
-                f"The price of {self.cost_unknown_of} is unknown, so a budget of ${cost:g} cannot be enforced; limit calls or tokens instead."
-            )
+            return f"The price of {self.cost_unknown_of} is unknown, so a budget of ${cost:g} cannot be enforced; limit calls or tokens instead."
         if left <= 0:
             return f"The budget of {minutes:g} minutes is spent."
         return None

@@ -25,11 +25,11 @@ _ENDS = re.compile(r"ends ([-+.\de]+) mm inside")
 
 @dataclass
 class Contacts:
-    """pairs: Verdicts on every pair, at the rest pose.
+    """The results of the checks.
 
     Attributes:
+        pairs: Verdicts on every pair, at the rest pose.
         findings: All findings.
-        findings: All of them.
         undone: What was not checked, in words.
         strength: "sampled", "certified" or "certified in part", for the motion.
         certificate: Certificate of the motion, if a proof was requested.

@@ -34,7 +34,8 @@ def refusals(loadings: Iterable[Loading]) -> Iterator[Finding]:
         if loading.loads is not False:
             continue
         cause, hint = next(
-            ((cause, hint) for pattern, cause, hint in _CAUSES if re.search(pattern, loading.message)), (None, "Correct what it names.")
+            ((cause, hint) for pattern, cause, hint in _CAUSES if re.search(pattern, loading.message)),
+            (None, "Correct what the message names."),
         )
         yield Finding(
             code="W_AUDIT_ENGINE",

@@ -51,7 +51,6 @@ class Claim:
         start: Values of `vary` at which the overlap was measured; the motion is proven from there.
         overlap: Common volume of the two solids at the start [mm³].
         shrink: Distance by which the first part's vertices were moved inwards: the depth up to which contact is allowed [mm].
-        within: Only vertices within this radius about the joint were moved; None: all of them [mm].
         clear: The distance is larger than this throughout [mm]: the deflection of both meshes.
         course: How it was found.
     """

@@ -82,7 +82,7 @@ class DriverTrack:
     Args:
         checker: Checker of a certificate without claims; it holds joints, groups and drivers.
         drivers: Coordinates of one group; the other drivers of the group stay at rest.
-        bounds: Lower and upper end for each driver; the way covers as much of them as it can follow.
+        bounds: Lower and upper end for each driver; the track covers as much of them as can be followed.
 
     Attributes:
         work: Units of work spent on pieces, including pieces that could not be followed.

@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     argument(
         "--keep-frames",
         action="store_true",
-        help="for URDF: give every link its part's frame, with a bare link and a fixed joint where the joint does not pass through it",
+        help="for URDF: give every link its part's frame, with an empty link and a fixed joint where a joint's axis misses its origin",
     ),
     argument("--ros", metavar="PACKAGE", default=None, help="write URDF as a ROS 2 package, with SRDF and ros2_control"),
     argument(
@@ -91,7 +91,7 @@ def _export(options: argparse.Namespace, terminal: Terminal) -> Report:
     argument(
         "--keep-frames",
         action="store_true",
-        help="for URDF: give every link its part's frame, with a bare link and a fixed joint where the joint does not pass through it",
+        help="for URDF: give every link its part's frame, with an empty link and a fixed joint where a joint's axis misses its origin",
     ),
 )
 def _convert(options: argparse.Namespace, terminal: Terminal) -> Report:

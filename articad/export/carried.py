@@ -3,7 +3,6 @@
 Parts joined by fixed joints form a group, in which every distance is known. Beyond a moving joint only a bound is known: the distance to
 that joint's origin, its travel, and the distance from there. Such bounds add up along the tree, and so do Σm, Σm·r and Σ(m·r² + J) when
 every r grows by the same c:
-Σm, Σm·r and Σ(m·r² + J) when every r grows by the same c:
 
     Σm(r + c) = Σm·r + c·Σm,    Σm(r + c)² = Σm·r² + 2c·Σm·r + c²·Σm
 

@@ -23,7 +23,7 @@ def leaders(assembly: Assembly) -> list[str]:
 
 
 def as_stated(follows: dict[str, Follows], model: LoweredModel, stated: Container[str]) -> dict[str, Follows]:
-    """Return the relations with those as they came that a file states: there, a follower may lead others.
+    """Return the relations; those that a file states keep the file's form, in which a follower may lead others.
 
     Args:
         follows: What each tied freedom follows.

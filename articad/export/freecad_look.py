@@ -60,7 +60,7 @@ def looked(content: bytes, freecad: FreeCAD, *, parts: int) -> Json:
     """Return what FreeCAD finds in a document, as written and saved by FreeCAD again.
 
     Raises:
-        OSError: If FreeCAD ends without a report; says its last words.
+        OSError: If FreeCAD ends without a report; the message is the last line of its output.
     """
     with scratch.folder("freecad") as name:
         folder = Path(name)

@@ -646,7 +646,7 @@ CODES: dict[str, Code] = {
     "W_IMPORT_DROPPED": Code(
         "import", None, "Something in a foreign file has no counterpart and is left out.", "Nothing needs to be done if it is not needed."
     ),
-    "W_IMPORT_MUJOCO": Code("import", None, "MuJoCo accepts a model with a warning.", "Correct what it names."),
+    "W_IMPORT_MUJOCO": Code("import", None, "MuJoCo accepts a model with a warning.", "Correct what the warning names."),
     "I_IMPORT_CHAIN": Code(
         "import", None, "A chain of joints over links without shape could be read as one joint.", "Read with fuse to merge them."
     ),
@@ -765,7 +765,7 @@ CODES: dict[str, Code] = {
         "audit", None, "Two parts collide when two joints move together.", "Narrow one range, or add clearance."
     ),
     "W_AUDIT_NOT_CHECKED": Code("audit", None, "The budget did not suffice for a check.", "Raise `--budget`."),
-    "W_AUDIT_ENGINE": Code("audit", None, "A simulator does not load the file.", "Correct what it names."),
+    "W_AUDIT_ENGINE": Code("audit", None, "A simulator does not load the file.", "Correct what its message names."),
     "W_AUDIT_UNNAMED": Code(
         "audit", None, "Parts of a STEP file have no names of their own.", "Name the products before they are exported."
     ),

@@ -37,7 +37,7 @@ class Face:
     """A face of a solid.
 
     Attributes:
-        kind: Type of the surface; "other" for what is none of the three.
+        kind: Type of the surface; "other" for any other surface.
         point: A point of a plane, a point on the axis of a cylinder, the centre of a sphere, `(3,)` [mm].
         axis: Outward normal of a plane, direction of a cylinder's axis, `(3,)`; zero for the others.
         radius: Of a cylinder or sphere [mm], else 0.

@@ -1,7 +1,7 @@
 """Mesh files: STL, OBJ, GLB and PLY, read and written; COLLADA (DAE), read.
 
 STL and OBJ are read with NumPy, and so is everything written; trimesh is loaded only to read GLB, PLY and DAE.
-A DAE states its unit, which is applied, and an axis that points up, which is not, no more than y of a glTF: readers of URDF take coordinates
+The unit that a DAE states is applied. Its up axis is ignored, as is glTF's convention that y points up: readers of URDF take coordinates
 as they are (Pinocchio, and trimesh under yourdfpy).
 What is written depends on the mesh alone: no times, no names of programs, no order of dictionaries.
 A file is somebody else's: whatever is wrong with it becomes a `ReadError` that says where.

@@ -279,13 +279,13 @@ class _Model:
         return []
 
     def missing(self, name: str, meshes: int) -> None:
-        """Say that a part which was one solid is not one any more."""
+        """Report that a part that was one solid no longer is."""
         if not any(finding.parts == (name,) and finding.code == "W_FREECAD_SHAPE" for finding in self.findings):
             now = f"{meshes} shapes" if meshes else "no shape"
             self._misshapen(name, f"Part {name!r} was one solid; in the document it has {now}, so it has no mass.", "Give it one solid.")
 
     def reshaped(self, name: str) -> None:
-        """Say that a part has another shape, unless an edit of what shapes it says so."""
+        """Report that a part's shape has changed, unless an edit of what shapes it is reported already."""
         if self.written is None:
             return
         start = [shape for shape, _ in self.library.shapes(self.library.container(self.parts[name]))]

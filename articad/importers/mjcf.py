@@ -74,7 +74,7 @@ def read_mjcf(path: str | Path, *, root: str | Path | None = None, metadata: boo
     model = _Reader(compiled, document.get("model") or path.stem, whole).model()
     model.findings += edited
     for text in dict.fromkeys(compiled.warnings):
-        hint = "Correct what it names: simulators read the file in the same way."
+        hint = "Correct what the warning names: simulators read the file in the same way."
         model.findings.append(Finding(code="W_IMPORT_MUJOCO", where=path.name, message=f"MuJoCo warns: {text}", hint=hint))
     require_links(model, path)
     return assemble(fused(model) if fuse else with_chains_named(model), path)

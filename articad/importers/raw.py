@@ -228,9 +228,12 @@ def _rest_values(joints: list[RawJoint], ties: list[RawTie]) -> dict[str, tuple[
 
 def _joint(joint: RawJoint, rest: tuple[float, ...], findings: list[Finding]) -> Joint:
     ranges = []
-    for (low, high), value in zip(joint.ranges, rest, strict=False):
+    for (low, high), value, unit in zip(joint.ranges, rest, joint.type.units, strict=False):
         if not low <= value <= high:
-            message = f"Joint {joint.name!r} follows another joint and is outside its limits [{low:.6g}, {high:.6g}] at rest; the limits were widened."
+            limits = f"[{low:.6g}, {high:.6g}] {unit}"
+            message = (
+                f"Joint {joint.name!r} follows another joint and rests at {value:.6g} {unit}, outside {limits}; its limits were widened."
+            )
             findings.append(Finding(code="W_IMPORT_LIMITS", where=f"joints.{joint.name}", message=message, hint="Correct the limits."))
         ranges.append((min(low, value), max(high, value)))
     return Joint(

@@ -63,7 +63,9 @@ class _Closure:
         models: Named = []
         self._collect(path, path.parent, named, folders, models, 1)
         if len(named) * len(folders) > MAX_NAMES:
-            raise unreadable(path, "", f"It names {len(named)} files that may be in {len(folders)} folders: more than {MAX_NAMES} places to look.")
+            raise unreadable(
+                path, "", f"It names {len(named)} files that may be in {len(folders)} folders: more than {MAX_NAMES} places to look."
+            )
         for (name, file, line), base in product(named, folders):
             self._checked(path.parent / base, name, file, line)
         for (name, file, line), base in product(models, folders):

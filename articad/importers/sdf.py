@@ -422,7 +422,7 @@ class _Reader:
             low, high = (_number(limit, name, usual, scope) for name, usual in (("lower", -math.inf), ("upper", math.inf)))
             bounds = (-math.inf if low <= -NO_BOUND else low * unit, math.inf if high >= NO_BOUND else high * unit)
             if bounds[0] > bounds[1]:
-                message = f"The limits [{low:g}, {high:g}] are reversed; the joint is taken as endless."
+                message = f"The limits [{low:g}, {high:g}] {'m' if slides else 'rad'} are reversed; the joint is treated as endless."
                 self.raw.findings.append(Finding(code="W_IMPORT_LIMITS", where=where, message=message, hint="Give lower and upper."))
                 bounds = ENDLESS
             found["ranges"].append(ENDLESS if endless else bounds)

@@ -266,7 +266,11 @@ def _require_numbers(document: Any, path: Path) -> None:
                     raise unreadable(path, f"line {element.sourceline}", f"{name}={text!r} is not a number.") from None
                 continue
             if len(numbers) not in _COUNTS.get(name, (1,)) and element.tag in {"origin", "axis", "mesh", "box"}:
-                raise unreadable(path, f"line {element.sourceline}", f"{name}={text!r} has {len(numbers)} numbers, not {' or '.join(map(str, _COUNTS.get(name, (1,))))}.")
+                raise unreadable(
+                    path,
+                    f"line {element.sourceline}",
+                    f"{name}={text!r} has {len(numbers)} numbers, not {' or '.join(map(str, _COUNTS.get(name, (1,))))}.",
+                )
             infinite_limit = element.tag == "limit"  # an infinite limit means none
             if any(math.isnan(number) or (abs(number) > _LARGEST and not infinite_limit) for number in numbers):
                 raise unreadable(path, f"line {element.sourceline}", f"{name}={text!r} is not a plausible number.")
@@ -437,7 +441,7 @@ def _range(model: RawModel, joint: Any, unit: float) -> tuple[float, float]:
     if lower is None and upper is None:
         message = f"Joint {joint.name!r} has no limits; it is treated as endless."
     elif (lower or 0.0) > (upper or 0.0):
-        message = f"Joint {joint.name!r} has limits [{lower}, {upper}] that are reversed; it is treated as endless."
+        message = f"Joint {joint.name!r} has reversed limits [{lower}, {upper}] {'rad' if unit == 1 else 'm'}; it is treated as endless."
     else:
         return (lower or 0.0) * unit, (upper or 0.0) * unit
     model.findings.append(Finding(code="W_IMPORT_LIMITS", where=f"joints.{joint.name}", message=message, hint="Give lower and upper."))

@@ -151,7 +151,7 @@ def _of_material(material: Any, where: str) -> Iterator[Kept]:
     name = material.get("name")
     for element in material:
         if element.tag == "texture" and not element.get("filename"):
-            continue  # of no picture
+            continue  # it names no picture
         if element.tag != "color":
             what = f"texture {element.get('filename')!r}" if element.tag == "texture" else f"<{element.tag}>"
             yield Kept("urdf", where, f"{what} of material {name!r}")

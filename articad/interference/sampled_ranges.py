@@ -38,7 +38,7 @@ def endless_beyond(mechanism: Mechanism) -> dict[str, str]:
 
 
 def _ranges(mechanism: Mechanism) -> Iterator[tuple[Freedom, str]]:
-    """Yield the sampled range of every driving freedom, and why the motion goes on beyond it, if it does."""
+    """Yield the sampled range of every driving freedom, and why the motion continues beyond it, if it does."""
     places = {driver.name: index for index, driver in enumerate(mechanism.drivers)}
     for joint in driving_joints(mechanism):
         for freedom in travels(joint):
@@ -50,7 +50,7 @@ def _ranges(mechanism: Mechanism) -> Iterator[tuple[Freedom, str]]:
 
 
 def _endless(mechanism: Mechanism, joint: Joint, index: int, freedom: Freedom) -> tuple[Freedom, str]:
-    """Return the range of a driver that lacks a limit, or both, and why the motion goes on beyond it."""
+    """Return the range of a driver that lacks a limit, or both, and why the motion continues beyond it."""
     driver = mechanism.drivers[index]
     track = track_of(mechanism, index, mechanism.rest)
     if track is None and _slides(joint, driver):

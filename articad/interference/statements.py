@@ -73,7 +73,9 @@ def about_rest(checks: Json) -> Statement:
         return Statement(f"{_counted(len(overlaps), 'overlap')} at rest", f"Interference at rest ({near}; {deepest}).", "bad")
     if unknown:
         return Statement(
-            f"{_counted(unknown, 'pair')} not checked at rest", f"No interference found at rest, but not every pair was checked ({near}).", "warn"
+            f"{_counted(unknown, 'pair')} not checked at rest",
+            f"No interference found at rest, but not every pair was checked ({near}).",
+            "warn",
         )
     return Statement("clear at rest", f"No interference at rest ({near}).", "good")
 

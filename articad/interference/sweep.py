@@ -331,7 +331,7 @@ class MotionSampler:
     def _cut_short(
         self, points: Sequence[Mapping[str, float]], kept: NDArray[np.int64], solution: Solution, over: tuple[str, ...]
     ) -> Iterator[Finding]:
-        """Say over what of its range a single freedom is sampled, where the limits of what follows it end the motion before."""
+        """Yield the finding that a single freedom is sampled over a part of its range, because followers reach their limits there."""
         if len(over) > 1 or len(kept) == int(solution.reached.sum()):
             return
         (name,), values = over, [point[over[0]] for point in points]

@@ -361,7 +361,7 @@ def _opened(job: Path, names: tuple[str, ...], reads: int) -> Iterator[list[int]
 
 
 def _outcome(ended: FreeCADEnded) -> JobOutcome:
-    """Return an end in the words of the worker; FreeCAD turns a crash into exit code 1 itself."""
+    """Return how a process ended, as the worker reports it; FreeCAD itself turns a crash into exit code 1."""
     killed = ended.code - 128 if ended.code > 128 else -min(ended.code, 0)
     crashed = signal.SIGSEGV if "SIGSEGV" in ended.said or "Segmentation" in ended.said else 0
     return JobOutcome(None if killed or crashed else ended.code, int(killed or crashed), ended.late, 0)

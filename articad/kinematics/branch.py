@@ -164,7 +164,7 @@ class Group:
         return self._places[int(at[0])] if at.size else None
 
     def track(self, column: int, *, certify: bool = False, Q: FloatArray | None = None) -> Track:
-        """Return the way of one driver (a column of the system) from rest, kept for later questions, or from Q, which is not kept."""
+        """Return the track of one driver (a column of the system): from rest, which is cached, or from Q, which is not."""
         if Q is not None:
             return Track(self.follower, Q, column, certify)
         return self._tracks.setdefault((column, certify), Track(self.follower, self.Q, column, certify))

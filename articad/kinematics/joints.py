@@ -521,7 +521,9 @@ def _free_findings(joint: Joint, finding: _FindingMaker) -> list[Finding]:
     if limits.lower or limits.upper or limits.cone is not None or limits.twist is not None or len(joint.rest) != 7:
         return [finding("E_LIMITS_KIND", "a free joint takes no limits; its rest is x, y, z and a quaternion.", "Give no limits.")]
     if abs(math.hypot(*joint.rest[3:]) - 1) > _QUATERNION_TOLERANCE:
-        return [finding("E_QUAT_NORM", f"its rest quaternion {joint.rest[3:]} is not of unit length.", "Give a unit quaternion (x, y, z, w).")]
+        return [
+            finding("E_QUAT_NORM", f"its rest quaternion {joint.rest[3:]} is not of unit length.", "Give a unit quaternion (x, y, z, w).")
+        ]
     return []
 
 

@@ -129,7 +129,7 @@ def _driver_findings(group: Group, beyond: Correction | None) -> list[Finding]:
     found = []
     for joint in group.refused:
         message = f"Joint {joint.name!r} is marked as a driver, but {names} already drive(s) the {analysis.mobility} freedom(s)."
-        hint = f"Remove the mark of {joint.name!r}, or of a joint that it is to replace: one independent joint for each freedom."
+        hint = f"Remove the driver mark of {joint.name!r}, or of the joint that it is to replace: each freedom has one independent driver."
         found.append(Finding(code="E_DRIVER", where=f"joints.{joint.name}", message=message, hint=hint, value=analysis.mobility))
     return found
 

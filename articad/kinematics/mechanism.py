@@ -220,7 +220,7 @@ class Mechanism:
     def findings(self) -> Findings:
         """Return the findings about a valid mechanism.
 
-        For a tree these are only warnings about its joints; for loops and couplings they say also whether they close and move
+        For a tree these are only warnings about its joints; for loops and couplings they also say whether they close and move
         (E_LOOP_OPEN, E_LOOP_LOCKED, E_COUPLING_LOCKED, E_DRIVER, W_LOOP_INEXACT, W_SHAKY, W_NEAR_SINGULAR, W_IDLE_FREEDOM, I_REDUNDANT).
         `motion_findings` checks ranges.
         """

@@ -300,7 +300,7 @@ def _range_findings(c: Coordinate, lower: float, upper: float, lower_reason: str
             whys["E_NOT_FOLLOWED"] = "the constraints have a multiple root,"
         why = whys.get(code, f"the {reason}")
         how = "was followed over" if code == "E_NOT_FOLLOWED" else "reaches"
-        message = f"driver {c.name!r} declared {declared} but the loop {how} only {reached}: {why} at {shown(value, c.unit)}."
+        message = f"driver {c.name!r} is declared {declared}, but the loop {how} only {reached}: {why} at {shown(value, c.unit)}."
         finite = math.isfinite(lower) and math.isfinite(upper)
         widen = f", or widen those of {reason.removeprefix('limit of ')}" if code == "E_LOOP_LIMIT" else ""
         hint = f"Set its limits to {_inside(lower, upper, c.unit)}{widen}." if finite else _one_limit(lower, upper, c.unit)
@@ -332,7 +332,7 @@ def _stop_finding(track: Track, c: Coordinate, asked: float) -> Finding | None:
         return None
     code = {Stop.DEAD_POINT: "E_DEAD_POINT", Stop.STEPS: "E_NOT_FOLLOWED", Stop.MULTIPLE: "E_NOT_FOLLOWED"}.get(trace.stop, "E_SINGULAR")
     how = "was followed to" if code == "E_NOT_FOLLOWED" else "reaches"
-    message = f"driver {c.name!r} was asked for {shown(asked, c.unit)} but the loop {how} only {shown(end, c.unit)}."
+    message = f"driver {c.name!r} was asked for {shown(asked, c.unit)}, but the loop {how} only {shown(end, c.unit)}."
     return Finding(code=code, where=f"joints.{c.joint}", message=message, hint="Stay on this side of it.", value=end, unit=c.unit)
 
 

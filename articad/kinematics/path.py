@@ -56,7 +56,7 @@ class _Tree:
 
 
 class PathPlanner:
-    """Looks for ways.
+    """Searches for paths.
 
     Args:
         mechanism: The mechanism.

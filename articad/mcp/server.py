@@ -72,7 +72,7 @@ class Tools:
         plan: Annotated[dict[str, Any] | None, Field(description="the whole plan; without it, the plan.json that is there")] = None,
         detail: Detail = False,
     ) -> Json:
-        """Keep a plan and say everything that is wrong with it, before any geometry exists."""
+        """Save a plan and report everything that is wrong with it, before any geometry exists."""
         if plan is not None:
             self.bench.write_plan(design, plan)
         report = await self._checked(design)
@@ -96,7 +96,7 @@ class Tools:
     async def build_part(
         self, context: Context, design: Design, part: str, script: str | None = None, kernel: Dialect = "build123d", detail: Detail = False
     ) -> Json:
-        """Keep a part's script, build it and hold it to its contract."""
+        """Save a part's script, build it, and check it against its contract."""
         folder = self.bench.design(design)
         if script is not None:
             self.bench.write_script(design, part, script, kernel)
@@ -116,7 +116,7 @@ class Tools:
         kernel: Dialect = "build123d",
         detail: Detail = False,
     ) -> Json:
-        """Build several parts, or all, side by side, and hold them to their contracts."""
+        """Build several parts, or all, in parallel, and check them against their contracts."""
         folder = self.bench.design(design)
         names: list[str] = []
         for parts, file in (files or {}).items():

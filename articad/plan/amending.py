@@ -84,7 +84,5 @@ def _names(holder: list[Any]) -> list[str]:
 
 def _lost(address: str, step: str, known: list[str]) -> ReadError:
     message = f"The plan has nothing at {address}."
-    hint = did_you_mean(step, known).strip() or (
-        f"There are {', '.join(known[:20])}." if known else "A number or a text has no fields."
-    )
+    hint = did_you_mean(step, known).strip() or (f"There are {', '.join(known[:20])}." if known else "A number or a text has no fields.")
     return ReadError.at(address, message, hint)

@@ -81,7 +81,7 @@ def _without_minus_zero(values: tuple[float, ...]) -> tuple[float, ...]:
 
 
 def motion(form: JointSpec, evaluation: Evaluation) -> JointNumbers | None:
-    """Return a joint's motion, reporting what is wrong with it; None if a number of it is missing or not one."""
+    """Return a joint's motion, reporting what is wrong with it; None if one of its numbers is missing or invalid."""
     where, joint_type = f"joints.{form.name}", JointType(form.type)
     effort, velocity = _capacity(form, joint_type, where, evaluation)
     lead = evaluation.number(form.lead_mm, where, "lead_mm") if isinstance(form, ScrewSpec) else 0.0

@@ -167,7 +167,7 @@ class ResolvedPart:
 
     @property
     def environment(self) -> bool:
-        """Whether it is of the environment: checked against, but no part of the product."""
+        """Whether it belongs to the environment, which is checked against but not exported."""
         return self.spec.environment
 
 

@@ -128,13 +128,13 @@ class Child:
 
     @property
     def stdin(self) -> IO[bytes]:
-        """Its end of a pipe that was asked for."""
+        """The end of its input at which this process writes, if a pipe was requested."""
         assert self._process.stdin is not None
         return self._process.stdin
 
     @property
     def stdout(self) -> IO[bytes]:
-        """Its end of a pipe that was asked for."""
+        """The end of its output at which this process reads, if a pipe was requested."""
         assert self._process.stdout is not None
         return self._process.stdout
 

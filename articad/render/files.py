@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 class PictureOptions(TypedDict):
-    """PictureOptions that labelled and clean pictures share."""
+    """Options that labelled and clean pictures share."""
 
     only: Sequence[str] | None
     section: str | None

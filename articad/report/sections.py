@@ -149,9 +149,7 @@ def _parts(assembly: Assembly) -> str:
                 Html(f'<button type="button" data-stl="{number}" aria-label="save {escape(name)} as STL">STL</button>'),
             ]
         )
-    note = (
-        f'<p class="quiet">Total: {total_mass(assembly)}. Click a name to show the part alone; indented parts are attached to those above.</p>'
-    )
+    note = f'<p class="quiet">Total: {total_mass(assembly)}. Click a name to show the part alone; indented parts are attached to those above.</p>'
     return _scroll(html_table(["", "part", "material", "mass kg", "volume mm³", ""], rows, numbers=(3, 4))) + note
 
 
@@ -247,7 +245,7 @@ def _clearances(certificate: Json | None, known: set[str]) -> str:
 
 
 def _follows(certificate: Json | None, known: set[str]) -> str:
-    """Return a table for each driver: its values, and those of what follows it."""
+    """Return a table for each driver: its values, and those of its followers."""
     found = []
     for table in (certificate or {}).get("follows", ()):
         followers, units = table["followers"], table["units"]

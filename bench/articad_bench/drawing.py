@@ -126,7 +126,7 @@ def _view(scene: DrawnScene, view: str, camera: Camera, kinds: Sequence[JointKin
 
 
 def _dimensions(draw: ImageDraw.ImageDraw, bounds: FloatArray, view: str, camera: Camera, measured: set[str]) -> None:
-    """Draw a dimension line for each side that no other view has told yet."""
+    """Draw a dimension line for each side that no other view has shown yet."""
     corners = camera.project(bounds)
     left, right = sorted(corners[:, 0])
     top, bottom = sorted(corners[:, 1])

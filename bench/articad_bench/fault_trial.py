@@ -99,7 +99,7 @@ class Row:
 
     @classmethod
     def of(cls, fault: Fault, stage: str, found: Sequence[tuple[str, str, str, str]]) -> Self:
-        """Return the row of a case of which nothing is judged yet."""
+        """Return the row of a case that is not judged yet."""
         return cls(fault.name, fault.good.name, fault.kind.name, fault.kind.side, fault.said, stage, tuple(found), fault.digest)
 
     def to_json(self) -> dict[str, Any]:

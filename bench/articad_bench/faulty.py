@@ -73,9 +73,9 @@ class Site:
 
     Attributes:
         said: What is changed there.
-        names: Parts, joints and other entries of the plan of which a finding has to name one.
+        names: Parts, joints and other entries of the plan; a finding has to name one of them.
         plan: Makes the mistake in a copy of the plan.
-        script: Part, and what returns the source of its faulty script, for a mistake in a script.
+        script: For a mistake in a script: the part, and a function that returns the source of its faulty script.
     """
 
     said: str

@@ -36,7 +36,7 @@ _MEDIA: Final = {".png": "image/png", ".jpg": "image/jpeg", ".jpeg": "image/jpeg
 _MADE: Final = frozenset({"parts", "solids"})
 
 Judges = Mapping[str, Callable[[], LLM]]
-"""Who scores: by name of the model, what gives it, once for each task."""
+"""The judges: by name of the model, a function that returns it; called once for each task."""
 
 
 class Scored(ReplyForm):
@@ -59,7 +59,7 @@ class Opinion(ReplyForm):
 
 @dataclass(frozen=True)
 class Judged:
-    """What a judge made of a task.
+    """A judge's result for one task.
 
     Attributes:
         task: Its name.
@@ -172,7 +172,7 @@ def _of_task(place: Path, task: Task, folder: Path, judges: Judges) -> Iterable[
         kept, now = _kept(file, key), replace(row, judge=judge, made=made, key=key)
         if kept is None:
             yield _asked(now, asked, given(), file)
-        else:  # what was said stays; whether it has every part is for the task's checks of today
+        else:  # the opinion stays; whether every part is there is decided by the task's present checks
             yield replace(kept, kind=now.kind, made=now.made, moves=now.moves)
 
 

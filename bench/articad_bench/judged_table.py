@@ -1,6 +1,6 @@
 """The table of judges: the scores of each and of all, how far they agree, and what it cost.
 
-Motion is told twice, since it changes the mean: over the tasks of which something is to move, and over all with 5 for the others.
+Motion is reported twice: over the tasks that require motion, and over all tasks with 5 for the others. The means differ.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from articad_bench.judge import DIMENSIONS, Judged, judges_of
 from articad_bench.numbers import mean_of, rounded, share_of
 
 SCHEMA: Final = "articad.bench-judged/1"
-STILL: Final = 5.0  # motion of a task of which nothing is to move, where such tasks are counted
+STILL: Final = 5.0  # score for the motion of a task that requires none, where such tasks are counted
 
 
 def judged_table(rows: Sequence[Judged]) -> dict[str, Any]:
@@ -60,7 +60,7 @@ def _mean(rows: Sequence[Judged], dimension: str) -> float:
 
 
 def _agreement(rows: Sequence[Judged], judges: Sequence[str], dimension: str) -> dict[str, Any]:
-    """Return how far judges agree on what they saw; tasks of which nothing is to move say nothing of motion."""
+    """Return how far judges agree on what they saw; for motion, only tasks that require motion count."""
     seen = [row for row in rows if row.opinion is not None and (dimension != "motion" or row.moves)]
     tasks = list(dict.fromkeys(row.task for row in seen))
     ratings: FloatArray = np.full((len(judges), len(tasks)), math.nan)

@@ -1,10 +1,10 @@
 """Public data sets that users provide; none of them comes with articad.
 
-What layouts are known, each known by its files:
+These layouts are recognised, each by its files:
 
-- CADPrompt: a folder a sample, with `Ground_Truth.stl` or `.obj` and `Natural_Language_Descriptions_Prompt.txt`.
-- PartNet-Mobility: a folder an object, with `mobility.urdf` and its meshes.
-- ACD (of S2O): a folder an object, with `<id>.glb` and `<id>.art-stk.json`; its Y points up, and is turned so that Z does.
+- CADPrompt: a folder for each sample, with `Ground_Truth.stl` or `.obj` and `Natural_Language_Descriptions_Prompt.txt`.
+- PartNet-Mobility: a folder for each object, with `mobility.urdf` and its meshes.
+- ACD (of S2O): a folder for each object, with `<id>.glb` and `<id>.art-stk.json`; its Y points up, and is turned so that Z does.
 - Fusion 360 Gallery, joint data: files `joint_set_….json` and the bodies' `.obj` beside them, in cm.
 """
 
@@ -81,7 +81,7 @@ class ShapeSample:
 
 @dataclass(frozen=True, eq=False)
 class TrueObject:
-    """An articulated object as data has it: all of it at rest, and its moving joints."""
+    """An articulated object as a data set states it: its surface at rest, and its moving joints."""
 
     mesh: TriMesh
     joints: tuple[MovingJoint, ...]
@@ -149,13 +149,15 @@ def objects_in(folder: str | Path) -> list[ObjectSample]:
         elif stk.is_file():
             found.append(ObjectSample(place.name, place, images, _reading(_acd, stk)))
     if not found:
-        message = "It holds no object: a folder with mobility.urdf, a folder with <id>.glb and <id>.art-stk.json, or a file joint_set_….json."
+        message = (
+            "It holds no object: a folder with mobility.urdf, a folder with <id>.glb and <id>.art-stk.json, or a file joint_set_….json."
+        )
         raise _refused(root, message)
     return found
 
 
 def object_of(assembly: Assembly) -> TrueObject:
-    """Return an assembly as data has objects: what each joint moves is its side away from the ground, and all that hangs from it."""
+    """Return an assembly in the form of a data set's object: each joint moves its side away from the ground, and all that hangs from it."""
     subject = Subject(assembly)
     placed = {name: part.mesh.transformed(subject.rest[name]) for name, part in assembly.parts.items() if part.mesh is not None}
     joints = [_moving(subject, joint, placed) for joint in assembly.joints if joint.type is not JointType.FIXED]
@@ -163,7 +165,7 @@ def object_of(assembly: Assembly) -> TrueObject:
 
 
 def _moving(subject: Subject, joint: Joint, placed: Mapping[str, TriMesh]) -> MovingJoint | None:
-    """Return a joint as data has it; None where it moves nothing that has a shape."""
+    """Return a joint in the form of a data set; None where it moves nothing that has a shape."""
     below = {joint.child}
     while more := {other.child for other in subject.assembly.joints if other.parent in below} - below - {subject.assembly.ground}:
         below |= more
@@ -248,7 +250,7 @@ def _fusion(file: Path) -> TrueObject:
 def _axis(sides: Sequence[Mapping[str, Any]], frames: Sequence[SE3], size: float) -> tuple[FloatArray, FloatArray]:
     """Return point [mm] and direction of the joint's axis in the assembled state.
 
-    Copies of the data state it there or in each body's own frame: that reading is taken by which both sides have the same line.
+    Some copies of the data state it there, others in each body's own frame. The reading in which both sides give the same line is used.
     """
     own = [(MM_PER_CM * _vector(side["axis_line"]["origin"]), _vector(side["axis_line"]["direction"])) for side in sides]
     placed = [(frame.apply(point), frame.rotate(direction)) for frame, (point, direction) in zip(frames, own, strict=True)]

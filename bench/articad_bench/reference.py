@@ -46,7 +46,7 @@ def reference(folder: Path, task: Task, *, cache: BuildCache | None = None, kern
 def edited_reference(
     folder: Path, task: Task, before: Assembly, *, cache: BuildCache | None = None, kernel: PartKernel | None = None
 ) -> Assembly:
-    """Build what the reference becomes by the task's edit.
+    """Build the reference solution after the task's edit.
 
     Args:
         folder: Of the task.

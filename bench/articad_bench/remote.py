@@ -1,4 +1,4 @@
-"""Tasks in other processes: one run or scored by a worker, told and answered in JSON."""
+"""Tasks in other processes: a worker runs or scores one task; requests and answers are JSON."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from articad_bench.task import Task, read_task
 
 
 def score_calls(tasks: Iterable[tuple[Path, Task]], models: str | Path) -> list[Call]:
-    """Return what workers are told to score: each task's files in a folder."""
+    """Return the calls by which workers score each task's files in a folder."""
     folder = str(Path(models).resolve())
     return [
         Call("articad_bench.remote:score_stored", {"folder": str(place.resolve()), "models": folder}, f"score-{task.name}")
@@ -31,7 +31,7 @@ def score_calls(tasks: Iterable[tuple[Path, Task]], models: str | Path) -> list[
 
 
 def run_calls(tasks: Iterable[tuple[Path, Task]], out: str | Path, options: Mapping[str, Any]) -> list[Call]:
-    """Return what workers are told to run; see `run_stored`."""
+    """Return the calls by which workers run tasks; see `run_stored`."""
     said = dict(options)
     return [
         Call(

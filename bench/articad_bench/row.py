@@ -20,13 +20,13 @@ _JUDGED: Final = ("judgements", "edited")
 
 @dataclass(frozen=True)
 class Row:
-    """What came of one task.
+    """The result of one task.
 
     Attributes:
         task: Its name.
         kind: Of the task.
         modality: What it was asked by.
-        edit: Whether the task goes on with an edit.
+        edit: Whether the task includes an edit.
         judgements: Of every check; none if nothing was made.
         edited: Of every check of the edited product; none if there is none.
         error: Why nothing was made.

@@ -33,7 +33,7 @@ Ask = Callable[[Task], LLM]
 """Who answers a task's requests."""
 
 Finished = Callable[[Run], object]
-"""Told of each finished run: to remember it, for instance."""
+"""Called with each finished run, for example to remember it."""
 
 
 def run_tasks(
@@ -66,12 +66,12 @@ def run_tasks(
         cache: Likewise.
         memory: Likewise.
         look: Whether models look at parts and assembly.
-        model: Name of who answers: rows of another model are made again.
+        model: Name of the model that answers: rows of another model are made again.
         repairs: As for `generate`.
         rounds: As for `generate`.
         jobs: How many tasks at once.
-        finished: Told of each finished run.
-        progress: Told of each row.
+        finished: Called with each finished run.
+        progress: Called with each row.
 
     Returns:
         A row for each task, in order.

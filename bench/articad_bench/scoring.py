@@ -24,7 +24,7 @@ _SIMULATED: Final = frozenset({".urdf", ".xml", ".mjcf"})
 def score_files(tasks: Iterable[tuple[Path, Task]], folder: str | Path) -> list[Row]:
     """Judge files that any tool made: `<folder>/<task>.urdf`, or the one model in `<folder>/<task>/`.
 
-    What became of a model by the task's edit is at `<task>_edited` in place of `<task>`.
+    The model after the task's edit is at `<task>_edited` in place of `<task>`.
 
     Args:
         tasks: Folders and tasks; one without a file is a row with an error.
@@ -54,7 +54,7 @@ def _scored_edit(row: Row, task: Task, folder: Path, before: Subject) -> Row:
 
 
 def model_of(name: str, folder: Path) -> Path:
-    """Return the model of a task, or of a task edited.
+    """Return the model of a task, or of an edited task.
 
     Raises:
         ReadError: If there is none.
@@ -77,7 +77,7 @@ def model_of(name: str, folder: Path) -> Path:
 def subject_of(found: Path) -> Subject:
     """Return what is to be judged: a run's assembly, or what a file holds.
 
-    A link of a file that collides with nothing is taken for what is drawn of it; simulators get the file as it is.
+    A link without collision shapes is judged by its visual shapes; simulators get the file as it is.
 
     Raises:
         ArticadError: If it cannot be read.

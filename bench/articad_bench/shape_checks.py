@@ -16,7 +16,7 @@ LEAN: Final = 0.996  # cosine of the 5° by which an axis may lean from the one 
 
 
 class _Rounds(Check):
-    """So many cylindrical faces of a diameter, in all parts together, at rest.
+    """A number of cylindrical faces of one diameter, in all parts together, at rest.
 
     `length` is along the axis, `axis` in the frame of the whole, `pitch` the distance of each axis from the nearest parallel one of them,
     `circle` the diameter of the circle on which all axes lie.
@@ -97,7 +97,7 @@ class Studs(_Rounds):
 
 
 class Wall(Check):
-    """So many parts with a wall so thick under at least this share of their surface, measured straight inwards."""
+    """A number of parts whose wall has this thickness under at least this share of their surface, measured straight inwards."""
 
     kind: Literal["wall"] = "wall"
     mm: Bounds

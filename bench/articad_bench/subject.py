@@ -1,4 +1,4 @@
-"""What checks look at: an assembly made by anyone, in any format that articad reads, with what is measured of it kept."""
+"""What checks look at: an assembly made by anyone, in any format that articad reads; measurements are cached."""
 
 from __future__ import annotations
 

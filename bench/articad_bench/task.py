@@ -1,7 +1,7 @@
 """Tasks: what is asked for, and the checks that say whether it was made.
 
 A task is a folder with `task.json`, pictures that it is asked by, and a reference solution that passes its checks: `reference/plan.json`
-with `reference/parts/*.py`. A task with an `edit` goes on once the product stands:
+with `reference/parts/*.py`. A task with an `edit` continues once the product is finished:
 
     "edit": {
      "prompt": "Make the drawers 20 % deeper; all else stays.",
@@ -12,18 +12,18 @@ with `reference/parts/*.py`. A task with an `edit` goes on once the product stan
      "values": {"depth": 480}
     }
 
-The edited product must pass `edit.checks`, and all checks of the task that are of other kinds once more: so who restates one check of
-a kind restates all of that kind. `unchanged` counts the parts whose shape is the same to the last bit. `values` are what the reference
-makes the change by: parameters of its plan, in the unit that it gives them; `reference` is a second folder with `plan.json`, for changes
-that are more than numbers, whose scripts are its own `parts/*.py` and, where it has none of a name, those of the task's reference.
+The edited product must pass `edit.checks`, and again all checks of the task that are of other kinds. So an edit that restates one check
+of a kind restates all of that kind. `unchanged` counts the parts whose shape is the same to the last bit. `values` make the change
+in the reference: parameters of its plan, in the unit that it gives them; `reference` is a second folder with `plan.json`, for changes
+that numbers alone cannot make. Its scripts are its own `parts/*.py`; those that it lacks are taken from the task's reference.
 
-A task that is asked by a picture names it, and says how it is drawn from the reference:
+A task that is posed by a picture names it, and says how it is drawn from the reference:
 
     "images": ["drawing.png"],
     "drawing": {"parts": ["shelf"], "notes": ["All boards are 18 mm thick."]}
 
 `articad bench draw --task NAME` draws it: measures of the whole, what each joint does and how far, the sides of the named parts, and
-the notes, so that nothing that is checked is left to guess where the prompt is empty.
+the notes, so that even with an empty prompt nothing that is checked has to be guessed.
 """
 
 from __future__ import annotations

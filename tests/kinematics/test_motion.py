@@ -237,7 +237,7 @@ def test_dead_points_end_a_range_to_the_last_digit_and_give_the_limits_to_set() 
     assert reached.upper_reason == "dead point"
     found = reached.findings[0]
     assert found.code == "E_DEAD_POINT"
-    assert "declared [-90.000°, 90.000°] but the loop reaches only [-72.542°, 72.542°]" in found.message
+    assert "is declared [-90.000°, 90.000°], but the loop reaches only [-72.542°, 72.542°]" in found.message
     assert "[-72.542, 72.542] deg" in found.hint
 
 

@@ -222,7 +222,7 @@ def limited(finding: Finding, _plan: Json, match: Match) -> Json:
 RULES = [
     Rule(r"Set its limits to (\[.*?\]) (deg|mm)", limited),
     Rule(r"or widen those of (\w+)", lambda _finding, _plan, match: {f"joints.{match[1]}.angle_deg": "endless"}),
-    Rule(r"Remove the mark of '(\w+)'", lambda _finding, _plan, match: {f"joints.{match[1]}.driver": None}),
+    Rule(r"Remove the driver mark of '(\w+)'", lambda _finding, _plan, match: {f"joints.{match[1]}.driver": None}),
     Rule(r"Remove a coupling|or remove 'environment'", here(None)),
     Rule(r"^Parameters: (\w+)", respelt),
     Rule(

@@ -17,7 +17,7 @@ def prompt_file(name: str) -> str:
 
 
 def prompt_section(name: str, first: str, after: str) -> str:
-    """Return what stands in a file from one heading up to another: rules that several roles share are written once."""
+    """Return the text of a file from one heading up to another: rules that several roles share are written once."""
     text = prompt_file(name)
     start = text.index(first)
     return text[start : text.index(after, start)].strip()

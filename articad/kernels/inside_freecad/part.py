@@ -82,7 +82,7 @@ class Authoring:
         return f"({self._arithmetic(value)}) * 1 deg"
 
     def number(self, value: Value) -> float:
-        """Return what a number or a text over dimensions is now."""
+        """Return the present value of a number, or of a text over dimensions."""
         if not isinstance(value, str):
             return float(value)
         degrees = {
