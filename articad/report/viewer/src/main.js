@@ -250,7 +250,7 @@ function buildTools() {
     pressed($("tool-measure"), measuring.on);
     view.canvas.classList.toggle("measuring", measuring.on);
     refreshMeasure();
-    if (measuring.on) say("Click two points; corners are caught.");
+    if (measuring.on) say("Click two points; clicks snap to corners.");
   });
   $("explode").addEventListener("input", () => {
     view.explode($("explode").valueAsNumber);
