@@ -303,7 +303,7 @@ CODES: dict[str, Code] = {
         "plan",
         "design",
         "The linkage can move to first order only: it is rigid, but shaky.",
-        "Change a length, so that it moves or is firmly rigid.",
+        "Change a length, so that it moves or is clearly rigid.",
     ),
     "W_IDLE_FREEDOM": Code(
         "plan", "design", "A freedom moves one part alone and drives nothing.", "This is correct for a leg that may spin; otherwise fix it."

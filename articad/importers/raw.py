@@ -234,7 +234,14 @@ def _joint(joint: RawJoint, rest: tuple[float, ...], findings: list[Finding]) ->
             message = (
                 f"Joint {joint.name!r} follows another joint and rests at {value:.6g} {unit}, outside {limits}; its limits were widened."
             )
-            findings.append(Finding(code="W_IMPORT_LIMITS", where=f"joints.{joint.name}", message=message, hint="Correct the limits."))
+            findings.append(
+                Finding(
+                    code="W_IMPORT_LIMITS",
+                    where=f"joints.{joint.name}",
+                    message=message,
+                    hint="Widen the limits in the file, or correct the ratio and offset.",
+                )
+            )
         ranges.append((min(low, value), max(high, value)))
     return Joint(
         name=joint.name,

@@ -423,7 +423,14 @@ class _Reader:
             bounds = (-math.inf if low <= -NO_BOUND else low * unit, math.inf if high >= NO_BOUND else high * unit)
             if bounds[0] > bounds[1]:
                 message = f"The limits [{low:g}, {high:g}] {'m' if slides else 'rad'} are reversed; the joint is treated as endless."
-                self.raw.findings.append(Finding(code="W_IMPORT_LIMITS", where=where, message=message, hint="Give lower and upper."))
+                self.raw.findings.append(
+                    Finding(
+                        code="W_IMPORT_LIMITS",
+                        where=where,
+                        message=message,
+                        hint="State lower and upper limits in the file, the lower one first.",
+                    )
+                )
                 bounds = ENDLESS
             found["ranges"].append(ENDLESS if endless else bounds)
             for name, factor in (("effort", force), ("velocity", unit)):

@@ -444,7 +444,14 @@ def _range(model: RawModel, joint: Any, unit: float) -> tuple[float, float]:
         message = f"Joint {joint.name!r} has reversed limits [{lower}, {upper}] {'rad' if unit == 1 else 'm'}; it is treated as endless."
     else:
         return (lower or 0.0) * unit, (upper or 0.0) * unit
-    model.findings.append(Finding(code="W_IMPORT_LIMITS", where=f"joints.{joint.name}", message=message, hint="Give lower and upper."))
+    model.findings.append(
+        Finding(
+            code="W_IMPORT_LIMITS",
+            where=f"joints.{joint.name}",
+            message=message,
+            hint="State lower and upper limits in the file, the lower one first.",
+        )
+    )
     return ENDLESS
 
 

@@ -172,7 +172,15 @@ def _mobility_findings(group: Group) -> list[Finding]:
     found = []
     if analysis.shaky:
         message = f"The linkage has {analysis.first_order} freedom(s) to first order only: it is rigid, but barely."
-        found.append(Finding(code="W_SHAKY", where=where, message=message, hint="Change a length.", parts=parts))
+        found.append(
+            Finding(
+                code="W_SHAKY",
+                where=where,
+                message=message,
+                hint="Change a length, so that the linkage moves or is clearly rigid.",
+                parts=parts,
+            )
+        )
     elif analysis.multiple:
         message = (
             f"The linkage has {analysis.first_order} freedoms to first order at rest and {analysis.mobility} in fact: nearby, "

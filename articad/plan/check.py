@@ -150,8 +150,8 @@ def _idle_marks(graph: JointGraph) -> list[Finding]:
         Finding(
             code="W_DRIVER",
             where=f"joints.{joint.name}.driver",
-            message=f"Joint {joint.name!r} is marked as a driver, but without loops and couplings every joint is one.",
-            hint="Remove the mark.",
+            message=f"Joint {joint.name!r} is marked as a driver, but without loops and couplings every joint is a driver.",
+            hint="Remove the driver mark.",
         )
         for joint in graph.joints
         if joint.driver

@@ -306,7 +306,7 @@ CASES = [
         4,
     ),
     Case("E_DOF_MISMATCH", pair({"type": "fixed"}, 1), "freedoms", "has 0 (no joint moves)", 1, 0),
-    Case("W_DRIVER", chest_with(lambda p: joint(p, "hinge").update(driver=True)), "joints.hinge.driver", "every joint is one"),
+    Case("W_DRIVER", chest_with(lambda p: joint(p, "hinge").update(driver=True)), "joints.hinge.driver", "every joint is a driver"),
     # limits
     Case("E_LIMITS_MISSING", chest_with(lambda p: joint(p, "hinge").pop("angle_deg")), "joints.hinge.angle_deg", 'or "endless"'),
     Case("E_LIMITS_MISSING", pair({"type": "slider"}, 1), "joints.j.travel_mm", 'Add "travel_mm": [0, 100].'),

@@ -261,7 +261,7 @@ RULES = [
     Rule(r"eclare a connector for each joint", connector_of_its_own),
     Rule(r"Declare a connector where", connectors_that_joints_name),
     Rule(r"Name two different parts", another_part),
-    Rule(r"Remove one of them|Remove the mark|eave it out|Remove one joint of the loop", here(None)),
+    Rule(r"Remove one of them|Remove the driver mark|eave it out|Remove one joint of the loop", here(None)),
     Rule(r"drop 'tree'", lambda _finding, _plan, _match: {"tree": None}),
     Rule(r"Choose one of \['(\w+)'", lambda finding, _plan, match: {finding.where: match[1]}),
     Rule(r"Add a joint between", joined),
