@@ -290,7 +290,7 @@ class LiteLLM:
         else:
             what = "gave no usable answer"
         shown = next(iter(without_secrets(failure["text"]).strip().splitlines()), "")[:_SHOWN_CHARACTERS].rstrip(".")
-        message = f"{model} {what}, after {number} attempts{f': {shown}' if shown else ''}."
+        message = f"{model} {what}, after {number} attempt{'' if number == 1 else 's'}{f': {shown}' if shown else ''}."
         hint = "Check --api-base and the network." if self._api_base else "Check the network, the model's name and the provider's status."
         return transport_error("E_TRANSPORT", message, hint)
 

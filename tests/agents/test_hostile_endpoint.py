@@ -133,7 +133,7 @@ def test_each_try_is_a_call_of_the_budget() -> None:
 def test_no_redirect_takes_the_prompt_to_another_address(status: str) -> None:
     with hostile(says(completion("mine"))) as other, hostile(redirects_to(other.address + "/chat/completions", status)) as endpoint:
         llm = LiteLLM("x", api_base=endpoint.address)
-        with pytest.raises(TransportError, match="another address, which is not followed, asked 1 times"):
+        with pytest.raises(TransportError, match="another address, which is not followed, after 1 attempt"):
             llm.complete(QUESTION)
         assert (endpoint.requests, other.requests) == (1, 0)
 

@@ -150,7 +150,7 @@ def test_an_empty_answer_is_asked_for_again() -> None:
 def test_a_provider_that_stays_busy_is_given_up_with_its_status() -> None:
     with openai_stub([Canned(status=503, body=b'{"error": {"message": "no room"}}')]) as stub:
         llm, waits = live(stub.address, tries=3)
-        with pytest.raises(TransportError, match=r"status 503, asked 3 times") as caught:
+        with pytest.raises(TransportError, match=r"status 503, after 3 attempts") as caught:
             llm.complete(question())
         assert caught.value.findings.codes == ("E_TRANSPORT",)
         assert len(waits) == 2
@@ -198,7 +198,7 @@ def test_a_body_that_is_no_completion_gives_an_error_of_ours(body: bytes) -> Non
 def test_silence_ends_in_a_timeout_and_a_closed_door_in_no_connection() -> None:
     with openai_stub([Canned(wait=1.0)]) as stub, pytest.raises(TransportError, match=r"within 0\.2 s"):
         live(stub.address, timeout=0.2, tries=1)[0].complete(question())
-    with pytest.raises(TransportError, match="asked 2 times"):
+    with pytest.raises(TransportError, match="after 2 attempts"):
         live("http://127.0.0.1:9/v1", tries=2)[0].complete(question())
 
 

@@ -69,7 +69,7 @@ def test_shapes_are_read_and_scored_beside_the_floor_and_a_box(cadprompt: Path, 
 def test_a_folder_without_samples_is_told(tmp_path: Path) -> None:
     with pytest.raises(ReadError, match="holds no sample of CADPrompt"):
         shapes_in(tmp_path)
-    with pytest.raises(ReadError, match="No object there"):
+    with pytest.raises(ReadError, match="holds no object"):
         objects_in(tmp_path / "nowhere")
 
 

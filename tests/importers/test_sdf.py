@@ -373,7 +373,7 @@ def test_an_include_that_leads_out_of_the_root_or_round_is_refused(tmp_path: Pat
         ('<link name="a"><pose>nan 0 0 0 0 0</pose></link>', "plausible"),
         ('<link name="a"/><link name="a"/>', "have the name 'a'"),
         ("<link/>", "no name"),
-        ('<link name="a"/><joint name="j" type="fixed"><parent>a</parent><child>a</child></joint>', "to itself"),
+        ('<link name="a"/><joint name="j" type="fixed"><parent>a</parent><child>a</child></joint>', "with itself"),
         ('<link name="a"/><joint name="j" type="revolute"><parent>world</parent><child>a</child></joint>', "0 axes"),
         (
             '<link name="a"/><joint name="j" type="revolute"><parent>world</parent><child>a</child><axis><xyz>0 0 0</xyz></axis></joint>',
