@@ -12,6 +12,7 @@ from dataclasses import dataclass, field, replace
 from typing import Final
 
 from articad.agents.numbers import placed, short
+from articad.agents.orders import addressed
 from articad.agents.travel import travels
 from articad.arrays import FloatArray
 from articad.assembly import Assembly, Poses
@@ -72,14 +73,15 @@ def examine(assembly: Assembly, known: Known | None = None) -> Evidence:
         known: Pairs that need not be checked again.
 
     Returns:
-        The checks of the rest pose, and a sampled verdict for every pair that meets in motion.
+        The checks of the rest pose, and a sampled verdict for every pair that meets in motion. Findings go to whoever is proven to have made the
+        fault (`articad.agents.orders`).
     """
     scene = assembly.scene()
     checks = assembly.check(known=None if known is None else known.rest)
     if all(finding.stage == "fit" for finding in checks.findings.errors):  # what overlaps at rest overlaps in motion too
         for joint in assembly.mechanism.driving_joints:
             checks = _with_motion(checks, assembly, joint, scene, {} if known is None else known.motion.get(joint, {}))
-    checks = replace(checks, findings=diagnose(scene, assembly.mechanism.tree, checks.findings))
+    checks = replace(checks, findings=addressed(diagnose(scene, assembly.mechanism.tree, checks.findings), assembly))
     return Evidence(checks, _sizes(assembly))
 
 

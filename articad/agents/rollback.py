@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 from typing import Any, Final, Literal
 
 from articad.agents.llm import LLM, system, user
+from articad.agents.orders import source_of
 from articad.agents.part_writer import specification
 from articad.agents.prompts import prompt
 from articad.agents.replies import ReplyForm, ask, reader, schema_of, unusable
@@ -135,7 +136,7 @@ class Router:
     ) -> dict[int, str]:
         """Return the part whose script causes each fault, or an empty name for the plan, as a model decides."""
         concerned = list(
-            dict.fromkeys(_source(name, resolved) for index in faults for name in failures[index].parts if name in resolved.parts)
+            dict.fromkeys(source_of(name, resolved) for index in faults for name in failures[index].parts if name in resolved.parts)
         )
         lines = ["The faults:", "", *(f"{place}. {failures[index]}" for place, index in enumerate(faults, 1))]
         for name in concerned:
@@ -170,10 +171,10 @@ def _culprit(finding: Finding, resolved: ResolvedPlan) -> str | None:
     """Return the part whose script must be fixed: the one that is named, the only one, or of two the one with the bore."""
     named = finding.where.removeprefix("parts.").split(".", maxsplit=1)[0]
     if finding.where.startswith("parts.") and named in resolved.parts:
-        return _source(named, resolved)
+        return source_of(named, resolved)
     parts = [name for name in finding.parts if name in resolved.parts]
     if len(parts) == 1:
-        return _source(parts[0], resolved)
+        return source_of(parts[0], resolved)
     bored = {
         side
         for joint in resolved.joints
@@ -181,14 +182,7 @@ def _culprit(finding: Finding, resolved: ResolvedPlan) -> str | None:
         for side, connector in ((joint.parent, joint.parent_connector), (joint.child, joint.child_connector))
         if resolved.parts[side].connectors[connector].kind == _BORED
     }
-    return _source(bored.pop(), resolved) if len(bored) == 1 else None
-
-
-def _source(name: str, resolved: ResolvedPlan) -> str:
-    """Return the part that has the script: a derived part's faults belong to its source."""
-    while (derivation := resolved.parts[name].derivation) is not None:
-        name = derivation.source
-    return name
+    return source_of(bored.pop(), resolved) if len(bored) == 1 else None
 
 
 def _is_opinion(finding: Finding) -> bool:

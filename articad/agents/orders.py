@@ -1,0 +1,145 @@
+"""Who made a fault between two parts: a script that departs from its order, or the plan that ordered it.
+
+Decided by proof, from the round surfaces about the axes of joints and from the probe of dimensions. A script departs if a dimension of its part has no
+effect, if a bore or pin about a joint's axis has a diameter that none of its dimensions states, or if an ordered bore is absent. If both surfaces of a
+joint have the diameters that were ordered, the plan is wrong. Everything else stays open.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import replace
+from typing import Final, NamedTuple
+
+import numpy as np
+
+from articad.assembly import Assembly
+from articad.findings import Finding, Findings
+from articad.geometry.faces import Face
+from articad.interference.scene import Scene
+from articad.kinematics.joints import Joint, JointType
+from articad.plan.resolve import ResolvedPlan
+from articad.realisation.bores import TILT, along
+from articad.realisation.sides import sides
+
+__all__ = ["addressed", "source_of"]
+
+_CODES: Final = frozenset({"E_OVERLAP", "E_STATIC_OVERLAP", "E_MOTION_COLLISION", "E_FIT_TIGHT", "E_FIT_LOOSE", "E_FIT_CONTACT"})
+_ROUND: Final = (JointType.REVOLUTE, JointType.CYLINDRICAL, JointType.SCREW)
+_ON_AXIS_MM: Final = 0.2  # a surface whose axis is farther away is not about the joint's axis
+_ALIKE: Final = 0.3  # difference of radii, as a share of the larger
+_ROUNDING_MM: Final = 0.005  # of a diameter
+_CLEARANCE: Final = re.compile(r"clearance|play|gap|slack|tolerance|allowance")
+
+
+class _Round(NamedTuple):
+    """A cylinder about a joint's axis: its part, diameter and error [mm], and whether it is a bore."""
+
+    part: str
+    diameter: float
+    off: float
+    hollow: bool
+
+
+def addressed(findings: Iterable[Finding], assembly: Assembly) -> Findings:
+    """Send each error about two parts to whoever made it, where the parts prove it; others keep their route.
+
+    Args:
+        findings: Of an examination of the assembly; those that have a root cause are kept.
+        assembly: A product that was built from a plan.
+    """
+    resolved = assembly.resolved
+    if resolved is None:
+        return Findings(findings)
+    scene = assembly.scene()
+    return Findings(_addressed(finding, assembly, resolved, scene) for finding in findings)
+
+
+def source_of(name: str, resolved: ResolvedPlan) -> str:
+    """Return the part that has the script: a derived part's faults belong to its source."""
+    while (derivation := resolved.parts[name].derivation) is not None:
+        name = derivation.source
+    return name
+
+
+def _addressed(finding: Finding, assembly: Assembly, resolved: ResolvedPlan, scene: Scene) -> Finding:
+    if finding.code not in _CODES or finding.cause is not None or len(finding.parts) != 2:
+        return finding
+    for name in finding.parts:
+        source = source_of(name, resolved)
+        unused = assembly.realised[source].findings.of("W_DIMENSION_UNUSED")
+        if unused:
+            return _to_script(finding, source, f"{source} does not follow its dimension {unused[0].where.rsplit('.', 1)[-1]!r}.")
+    joints = [joint for joint in assembly.joints if {joint.parent, joint.child} == set(finding.parts) and joint.type in _ROUND]
+    proven = bool(joints)
+    for joint in joints:
+        surfaces = _mating(scene, joint)
+        for one in surfaces:
+            source = source_of(one.part, resolved)
+            if not _is_stated(one, resolved.parts[source].dimensions):
+                what = "bore" if one.hollow else "pin"
+                message = f"The {what} of {source} about the axis of {joint.name!r} has a diameter of {one.diameter:.4g} mm, which none of its dimensions states."
+                return _to_script(finding, source, message)
+        absent = _without_bore(joint, surfaces, resolved)
+        if absent:
+            return _to_script(finding, absent, f"{absent} has no bore about the axis of joint {joint.name!r}.")
+        proven = proven and bool(surfaces)
+    return replace(finding, route="design") if proven else finding
+
+
+def _to_script(finding: Finding, part: str, reason: str) -> Finding:
+    hint = f"{reason} Build {part} as its specification states."
+    return replace(finding, route="code", where=f"parts.{part}", hint=hint)
+
+
+def _mating(scene: Scene, joint: Joint) -> list[_Round]:
+    """Return the bores and pins about a joint's axis, one on each side of it, that meet along it and are nearly equal in size."""
+    both = [[(one.part, one.face) for one in side if _is_about(one.face)] for side in sides(scene, joint)]
+    found = []
+    for one, other in ((both[0], both[1]), (both[1], both[0])):
+        for part, bore in one:
+            for against, pin in other:
+                (low, high), (start, end) = along(bore), along(pin)
+                alike = abs(bore.radius - pin.radius) <= _ALIKE * max(bore.radius, pin.radius)
+                if bore.hollow and not pin.hollow and alike and min(high, end) > max(low, start):
+                    found += [_Round(part, 2 * bore.radius, bore.off, hollow=True), _Round(against, 2 * pin.radius, pin.off, hollow=False)]
+    return found
+
+
+def _is_about(face: Face) -> bool:
+    """Return whether a face is a cylinder about the z axis."""
+    if face.kind != "cylinder" or np.hypot(face.axis[0], face.axis[1]) > TILT:
+        return False
+    height = sum(along(face)) / 2
+    at = face.point + (height - face.point[2]) / face.axis[2] * face.axis
+    return float(np.hypot(at[0], at[1])) < _ON_AXIS_MM
+
+
+def _is_stated(surface: _Round, dimensions: Mapping[str, float]) -> bool:
+    """Return whether a diameter is that of a dimension, taken as diameter or radius, with or without a clearance."""
+    allowed = 2 * surface.off + _ROUNDING_MM
+    return any(abs(surface.diameter - stated) <= allowed for stated in _diameters(dimensions))
+
+
+def _diameters(dimensions: Mapping[str, float]) -> Iterator[float]:
+    lengths = {name: float(value) for name, value in dimensions.items() if not name.endswith(("_deg", "_count"))}
+    clearances = [0.0, *(value for name, value in lengths.items() if _CLEARANCE.search(name))]
+    for value in lengths.values():
+        for clearance in clearances:
+            for sign in (1, -1):
+                yield from (
+                    value + sign * clearance,
+                    value + 2 * sign * clearance,
+                    2 * value + sign * clearance,
+                    2 * value + 2 * sign * clearance,
+                )
+
+
+def _without_bore(joint: Joint, surfaces: Iterable[_Round], resolved: ResolvedPlan) -> str:
+    """Return the part whose connector orders a bore about a joint's axis that it does not have; empty if there is none."""
+    hollow = {one.part for one in surfaces if one.hollow}
+    for part, connector in ((joint.parent, joint.parent_connector), (joint.child, joint.child_connector)):
+        if resolved.parts[part].connectors[connector].kind == "bore_axis" and not hollow:
+            return source_of(part, resolved)
+    return ""
