@@ -3,22 +3,24 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, Final
 
 from articad.agents.llm import LLM, Image, Message, Request, assistant, system, user
 from articad.agents.prompts import prompt, prompt_file
-from articad.agents.replies import object_text
+from articad.agents.replies import object_text, unusable
 from articad.agents.requirements import Requirements, pictures_of
 from articad.agents.retrieval import Memory, NoMemory, listed_cases
-from articad.errors import OutputError, PlanError
+from articad.errors import OutputError, PlanError, ReadError
 from articad.findings import Finding, Findings
+from articad.plan.amending import amended
 from articad.plan.check import check_plan
 from articad.plan.schema import AssemblyPlan
 from articad.runs.run import RunRequest
 
 TRIES: Final = 5  # answers until a plan is valid; the findings of each go back to the model
 SHOWN_FINDINGS: Final = 40  # more at once are not read; the next answer brings the rest
+DOUBTS: Final = frozenset({"W_SCALE", "W_DENSITY"})  # numbers that are probably in another unit: asked about once each
 ROLE: Final = "design"
 ANALYSIS: Final = "Its analysis, made before there was a plan (where numbers differ, what the request states binds, then the plan):"
 _DIALECTS: Final = {
@@ -36,8 +38,11 @@ Tell = Callable[[AssemblyPlan | None, Findings], None]
 """Called with each answer: the plan, if it could be read, and its findings."""
 
 
-def response_schema() -> dict[str, Any]:
+def response_schema(*, changes: bool = False) -> dict[str, Any]:
     """Return the JSON schema of a reply: the plan's top level only.
+
+    Args:
+        changes: Whether changes to a plan are accepted in place of a whole one.
 
     Providers differ in the depth and the unions that they accept; the prompt describes the whole form, and `check_plan` checks it.
     """
@@ -52,6 +57,8 @@ def response_schema() -> dict[str, Any]:
         **dict.fromkeys(("parameters", "materials", "parts", "joints", "couplings", "allow"), items),
         "assumptions": {"type": "array", "items": text},
     }
+    if changes:
+        return {"type": "object", "properties": {**properties, "changes": {"type": "object"}}}
     return {
         "type": "object",
         "properties": properties,
@@ -90,7 +97,8 @@ class Designer:
         self._tries = tries
         self._tell = tell or (lambda _plan, _findings: None)
         self._answered = 0
-        self._said = ""
+        self._said = ""  # the last plan, whole, as JSON
+        self._doubted: set[tuple[str, str]] = set()
         words = task(request, requirements) + _dialect(request) + _recalled(memory or NoMemory(), request, requirements)
         self._opening = (system(instructions or _instructions()), user(words, *pictures_of(request)))
 
@@ -126,7 +134,13 @@ class Designer:
         words = prompt("redesign", findings=listed(findings), note=note)
         if pictures:
             words += "\n\nPictures of the places follow; what parts have in common is red."
-        return self._until_valid((*self._opening, assistant(self._said or plan.dumps()), user(words, *pictures)))
+        return self._until_valid((*self._opening, assistant(self._whole(plan)), user(words, *pictures)))
+
+    def _whole(self, plan: AssemblyPlan) -> str:
+        """Return a plan as its author wrote it, or as it is if it has changed since: fine-tuned connectors stay."""
+        if not self._said or self._judge(self._said, ROLE)[0] != plan:
+            self._said = plan.dumps()
+        return self._said
 
     def _until_valid(self, messages: tuple[Message, ...]) -> AssemblyPlan:
         before: object = None
@@ -134,12 +148,16 @@ class Designer:
         for number in range(1, self._tries + 1):
             self._answered += 1
             step = f"design/{self._answered}"
-            reply = self._llm.complete(Request(ROLE, step, messages, response_schema()))
-            self._said = reply.text
-            plan, findings, problem = self._judge(reply.text, step)
+            reply = self._llm.complete(Request(ROLE, step, messages, response_schema(changes=bool(self._said))))
+            plan, findings, problem = self._read(reply.text, step)
             self._tell(plan, findings)
             if plan is not None and findings.ok:
-                return plan
+                doubts = [finding for finding in findings if finding.code in DOUBTS and _place(finding) not in self._doubted]
+                if not doubts or number == self._tries:
+                    return plan
+                self._doubted.update(map(_place, doubts))
+                messages = (*self._opening, assistant(self._said), user(prompt("design_doubts", findings=listed(doubts))))
+                continue
             now = None if problem else tuple((finding.code, finding.where, finding.message) for finding in findings.errors)
             alike = alike + 1 if now is not None and now == before else 0
             before = now
@@ -150,8 +168,34 @@ class Designer:
                 complaint = prompt("form_repair", problem=problem.message)
             else:
                 complaint = prompt("design_anew" if alike else "design_repair", findings=listed(findings))
-            messages = (*self._opening, assistant(reply.text), user(complaint))
+            messages = (*self._opening, assistant(reply.text if problem else self._said), user(complaint))
         raise AssertionError("the last try either returns or raises")
+
+    def _read(self, text: str, step: str) -> Judged:
+        """Return what a reply states, a whole plan or changes to the last one; `_said` becomes the whole plan."""
+        try:
+            whole = object_text(text, step=step)
+            changes = changes_of(json.loads(whole))
+            if changes is not None and self._said:
+                whole, changes = json.dumps(amended(json.loads(self._said), changes), indent=1, ensure_ascii=False), None
+        except OutputError as error:
+            return None, error.findings, error
+        except ReadError as error:
+            problem = unusable(f"its changes do not fit the plan: {error.message}", text, step=step)
+            return None, problem.findings, problem
+        if changes is None:
+            self._said = whole
+        return self._judge(whole, step)
+
+
+def changes_of(answer: Mapping[str, Any]) -> Mapping[str, Any] | None:
+    """Return the changes by address, if an answer has those instead of a whole plan."""
+    changes = answer.get("changes")
+    return changes if isinstance(changes, dict) and "parts" not in answer else None
+
+
+def _place(finding: Finding) -> tuple[str, str]:
+    return finding.code, finding.where
 
 
 def listed(findings: Iterable[Finding]) -> str:

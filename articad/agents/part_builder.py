@@ -233,13 +233,18 @@ class PartBuilder:
         return f"```python\n{script.removesuffix(self.ending).decode()}```"
 
     def _build(self, resolved: ResolvedPlan, name: str, script: bytes) -> RealisedPart:
-        """Build a script; a connector that is off is taken into the plan if that is valid, else the script must be corrected."""
+        """Build a script; a connector that is off is taken into the plan if that is valid, else the script must be corrected.
+
+        The script must also be corrected where a connector's feature is absent.
+        """
         with self._building:
             part = build_source(resolved, name, script, kernel=self.kernel, cache=self.cache, deflection=DEFLECTION_MM)
         if drift := part.findings.of("W_CONNECTOR_DRIFT"):
             if self._options.get("finetune") and absorbed(resolved, {name: part}) is not None:
                 return part
             raise ContractError("\n".join(map(str, drift)), findings=drift, parts=(name,))
+        if absent := part.findings.of("W_CONNECTOR_FEATURE"):
+            raise ContractError("\n".join(map(str, absent)), findings=absent, parts=(name,))
         return part
 
 

@@ -350,6 +350,12 @@ CODES: dict[str, Code] = {
     "W_CONNECTOR_DRIFT": Code(
         "build", "code", "A realised connector is slightly off the plan's.", "Build the feature where the plan's connector is."
     ),
+    "W_CONNECTOR_FEATURE": Code(
+        "build",
+        "code",
+        "A connector's kind orders a bore, a shaft or a face that the part does not have there.",
+        "Build the feature where the connector is; or give the connector the kind 'frame'.",
+    ),
     "E_NOT_EDITABLE": Code(
         "build",
         "code",

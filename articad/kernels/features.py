@@ -1,0 +1,85 @@
+"""Whether a part has the feature that a connector's kind orders: something round about an axis, a face where it is mounted."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Final
+
+import numpy as np
+
+from articad.connectors.connector import Connector
+from articad.findings import Finding, Findings
+from articad.geometry.faces import Face, faces_of
+from articad.geometry.mesh import TriMesh
+from articad.interference.body import winding_numbers
+from articad.kernels.contract import DRIFT_ANGLE, DRIFT_RADIAL_MM
+
+__all__ = ["feature_findings"]
+
+_AXES: Final = frozenset({"bore_axis", "shaft_axis"})
+_NAMES: Final = {"bore_axis": "a bore", "shaft_axis": "a shaft or bore", "mount_face": "a face"}
+
+
+def feature_findings(part: str, connectors: Mapping[str, Connector], mesh: TriMesh) -> Findings:
+    """Return W_CONNECTOR_FEATURE for each connector whose kind orders a feature that the part does not have there.
+
+    An axis needs a cylinder about it, anywhere along it. A face to mount on needs a plane through the connector across its z, or material
+    at the connector, or a cylinder about its z. Surfaces other than planes, cylinders and spheres are not recognised: an axis that passes
+    through the box of one counts as realised.
+
+    Args:
+        part: Its name.
+        connectors: Of the plan, in the part's frame.
+        mesh: Its surface in the same frame [mm].
+    """
+    return Findings(_findings(part, connectors, mesh))
+
+
+def _findings(part: str, connectors: Mapping[str, Connector], mesh: TriMesh) -> Iterator[Finding]:
+    for name, connector in connectors.items():
+        if connector.kind not in _NAMES:
+            continue
+        faces = [face.moved(connector.frame.inverse().matrix) for face in faces_of(mesh)]
+        if any(_is_round(face) for face in faces):
+            continue
+        if connector.kind not in _AXES and (any(_is_seat(face) for face in faces) or _is_in_material(connector, mesh)):
+            continue
+        place = "about its axis" if connector.kind in _AXES else "at its place"
+        yield Finding(
+            code="W_CONNECTOR_FEATURE",
+            where=f"parts.{part}.connectors.{name}",
+            parts=(part,),
+            message=f"Connector {name!r} of {part} is {'an' if connector.kind[0] in 'aeiou' else 'a'} {connector.kind}, "
+            f"but the part has nothing {place} that could be {_NAMES[connector.kind]}.",
+            hint=f"Build {_NAMES[connector.kind]} of the part there; is a shape on the other side of a plane, or in another unit?",
+        )
+
+
+def _is_round(face: Face) -> bool:
+    """Return whether a face goes round the z axis, or may do so."""
+    if face.kind == "cylinder":
+        return _is_upright(face) and float(np.hypot(*_at_origin(face))) < DRIFT_RADIAL_MM
+    points = face.corners.reshape(-1, 3)[:, :2]
+    return face.kind == "other" and bool((points.min(axis=0) <= 0.0).all() and (points.max(axis=0) >= 0.0).all())
+
+
+def _is_upright(face: Face) -> bool:
+    return float(np.hypot(face.axis[0], face.axis[1])) < DRIFT_ANGLE
+
+
+def _at_origin(face: Face) -> tuple[float, float]:
+    """Return where a cylinder's axis passes through z = 0 [mm]."""
+    at = face.point - face.point[2] / face.axis[2] * face.axis
+    return float(at[0]), float(at[1])
+
+
+def _is_seat(face: Face) -> bool:
+    """Return whether a face lies in the plane z = 0."""
+    return face.kind == "plane" and _is_upright(face) and abs(float(face.point[2])) < DRIFT_RADIAL_MM
+
+
+def _is_in_material(connector: Connector, mesh: TriMesh) -> bool:
+    """Return whether a connector's origin is on the surface of the part, or inside it."""
+    corners = mesh.vertices[mesh.triangles]
+    around = connector.frame.translation + DRIFT_RADIAL_MM * np.vstack([np.eye(3), -np.eye(3)])
+    return bool((winding_numbers(around, corners) > 0.5).any())

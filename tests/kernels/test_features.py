@@ -1,0 +1,82 @@
+"""A connector's kind orders a feature: random parts that have it, in any place, and parts that do not."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import trimesh
+from numpy.random import default_rng
+
+from articad.connectors.connector import Connector
+from articad.connectors.se3 import SE3
+from articad.geometry.mesh import TriMesh
+from articad.kernels.features import feature_findings
+
+SEEDS = range(8)
+
+
+def mesh_of(shape: trimesh.Trimesh, T: SE3) -> TriMesh:
+    return TriMesh(T.apply(shape.vertices), np.asarray(shape.faces, dtype=np.int32))
+
+
+def place(seed: int) -> SE3:
+    return SE3.exp(np.concatenate([default_rng(seed).uniform(-80, 80, 3), default_rng(seed + 99).normal(size=3)]))
+
+
+def found(kind: str, frame: SE3, mesh: TriMesh) -> tuple[str, ...]:
+    return feature_findings("part", {"at": Connector("at", frame, kind=kind)}, mesh).codes
+
+
+def tube(seed: int) -> trimesh.Trimesh:
+    inner, wall, height = default_rng(seed).uniform(2, 20, 3)
+    return trimesh.creation.annulus(inner, inner + wall, height, sections=48)
+
+
+def board(seed: int) -> trimesh.Trimesh:
+    return trimesh.creation.box(default_rng(seed).uniform(5, 300, 3))
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+@pytest.mark.parametrize("kind", ["bore_axis", "shaft_axis"])
+def test_an_axis_needs_something_round_about_it(kind: str, seed: int) -> None:
+    T = place(seed)
+    along = SE3.from_translation((0, 0, float(default_rng(seed).uniform(-50, 50))))
+    tilt = SE3.rot_x(0.1)
+
+    assert found(kind, T @ along, mesh_of(tube(seed), T)) == ()
+    assert found(kind, T @ SE3.from_translation((2, 0, 0)), mesh_of(tube(seed), T)) == ("W_CONNECTOR_FEATURE",)
+    assert found(kind, T @ tilt, mesh_of(tube(seed), T)) == ("W_CONNECTOR_FEATURE",)
+    assert found(kind, T, mesh_of(board(seed), T)) == ("W_CONNECTOR_FEATURE",)
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_a_mount_needs_a_face_or_material_there(seed: int) -> None:
+    T, shape = place(seed), board(seed)
+    half = shape.extents / 2
+    outside = SE3.from_translation((half[0] + 5, half[1] + 5, half[2] + 5))
+
+    assert found("mount_face", T @ SE3.from_translation((0, 0, half[2])), mesh_of(shape, T)) == ()  # in the middle of a face
+    assert found("mount_face", T @ SE3.from_translation((half[0] + 40, 0, half[2])), mesh_of(shape, T)) == ()  # in its plane, beside it
+    assert found("mount_face", T @ SE3.from_translation((half[0], 0, half[2] / 3)), mesh_of(shape, T)) == ()  # z along the face
+    assert found("mount_face", T @ outside, mesh_of(shape, T)) == ("W_CONNECTOR_FEATURE",)
+
+
+@pytest.mark.parametrize("kind", ["frame", "hinge_axis", "slide_axis", "ball_centre", "gear_axis", "thread_axis"])
+def test_other_kinds_may_lie_in_empty_space(kind: str) -> None:
+    assert found(kind, SE3.from_translation((900, 900, 900)), mesh_of(board(0), place(0))) == ()
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_a_part_mirrored_turned_or_in_inches_loses_the_face(seed: int) -> None:
+    shape, T = board(seed), place(seed)
+    low = shape.extents / 2
+    shape.apply_translation(low)  # from 0 to its sizes, as scripts build boards
+    frame = T @ SE3.from_translation(shape.extents * (1, 0.5, 1)) @ SE3.rot_x(0.4)
+    wrong = {
+        "mirrored": shape.copy().apply_transform(np.diag([-1, 1, 1, 1.0])),
+        "inches": shape.copy().apply_scale(1 / 25.4),
+        "turned": shape.copy().apply_transform(SE3.rot_z(np.pi).matrix),
+    }
+
+    assert found("mount_face", frame, mesh_of(shape, T)) == ()
+    assert [found("mount_face", frame, mesh_of(one, T)) for one in wrong.values()] == [("W_CONNECTOR_FEATURE",)] * 3
