@@ -1,8 +1,8 @@
 """Who made a fault between two parts: a script that departs from its order, or the plan that ordered it.
 
-Decided by proof, from the round surfaces about the axes of joints and from the probe of dimensions. A script departs if a dimension of its part has no
-effect, if a bore or pin about a joint's axis has a diameter that none of its dimensions states, or if an ordered bore is absent. If both surfaces of a
-joint have the diameters that were ordered, the plan is wrong. Everything else stays open.
+Decided by proof, from the round surfaces about the axes of joints and from the probe of dimensions. A script departs if a dimension of its
+part has no effect, or if a bore or pin about a joint's axis has a diameter that none of its dimensions states. If both surfaces of each
+joint between the parts have the diameters that were ordered, the plan is wrong. Everything else stays open.
 """
 
 from __future__ import annotations
@@ -81,9 +81,6 @@ def _addressed(finding: Finding, assembly: Assembly, resolved: ResolvedPlan, sce
                 what = "bore" if one.hollow else "pin"
                 message = f"The {what} of {source} about the axis of {joint.name!r} has a diameter of {one.diameter:.4g} mm, which none of its dimensions states."
                 return _to_script(finding, source, message)
-        absent = _without_bore(joint, surfaces, resolved)
-        if absent:
-            return _to_script(finding, absent, f"{absent} has no bore about the axis of joint {joint.name!r}.")
         proven = proven and bool(surfaces)
     return replace(finding, route="design") if proven else finding
 
@@ -134,12 +131,3 @@ def _diameters(dimensions: Mapping[str, float]) -> Iterator[float]:
                     2 * value + sign * clearance,
                     2 * value + 2 * sign * clearance,
                 )
-
-
-def _without_bore(joint: Joint, surfaces: Iterable[_Round], resolved: ResolvedPlan) -> str:
-    """Return the part whose connector orders a bore about a joint's axis that it does not have; empty if there is none."""
-    hollow = {one.part for one in surfaces if one.hollow}
-    for part, connector in ((joint.parent, joint.parent_connector), (joint.child, joint.child_connector)):
-        if resolved.parts[part].connectors[connector].kind == "bore_axis" and not hollow:
-            return source_of(part, resolved)
-    return ""

@@ -111,6 +111,7 @@ def build(part):
     return shape, {"bore": {"o": (0, 0, 0), "z": (0, 0, 1), "x": (1, 0, 0)}}
 """
 TIGHT = WHEEL.replace('Cylinder(d["bore_radius"]', 'Cylinder(d["bore_radius"] - 0.7')
+ASIDE = WHEEL.replace("Pos(0, 0, -1)", 'Pos(d["bore_radius"] / 4, 0, -1)')
 SOLID = WHEEL.replace("Pos(0, 0, -1)", "Pos(0, 0, 50)")
 
 
@@ -364,13 +365,13 @@ def test_a_hole_that_was_not_bored_goes_to_the_script_with_the_number(tmp_path: 
 
 
 def test_where_geometry_does_not_tell_a_model_decides_with_both_entries_and_scripts_before_it(tmp_path: Path) -> None:
-    decision = {"fault": 1, "route": "code", "part": "wheel", "reason": "the bore is smaller than ordered"}
-    llm = wheel("frame", part__wheel__1=fenced(TIGHT), part__wheel__2=fenced(WHEEL), rollback__1=json.dumps({"decisions": [decision]}))
+    decision = {"fault": 1, "route": "code", "part": "wheel", "reason": "the bore is not in the middle"}
+    llm = wheel("frame", part__wheel__1=fenced(ASIDE), part__wheel__2=fenced(WHEEL), rollback__1=json.dumps({"decisions": [decision]}))
     run = made(tmp_path, llm)
     told = said(llm, "rollback/1")
 
     assert "1. E_STATIC_OVERLAP" in told
-    assert 'd["bore_radius"] - 0.7' in told
+    assert 'd["bore_radius"] / 4' in told
     assert "- bore_radius = 3.2" in told
     assert 'Cylinder(d["radius"], 12' in told
     assert list((run.round(1) or {})["code"]) == ["wheel"]
@@ -381,7 +382,7 @@ def test_a_decision_about_no_fault_or_no_part_is_asked_for_again(tmp_path: Path)
     design = {"decisions": [{"fault": 1, "route": "design", "part": "", "reason": "the order is wrong"}]}
     llm = wheel(
         "frame",
-        part__wheel__1=fenced(TIGHT),
+        part__wheel__1=fenced(ASIDE),
         rollback__1=json.dumps({"decisions": []}),
         rollback__1__2=json.dumps(nobody),
         rollback__1__3=json.dumps(design),
@@ -492,10 +493,10 @@ def test_a_connector_that_is_far_off_is_built_again(tmp_path: Path) -> None:
 def test_a_run_with_every_kind_of_detour_is_replayed_byte_for_byte_and_draws_nothing(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    decision = {"fault": 1, "route": "code", "part": "wheel", "reason": "the bore is smaller than ordered"}
+    decision = {"fault": 1, "route": "code", "part": "wheel", "reason": "the bore is not in the middle"}
     llm = wheel(
         "frame",
-        part__wheel__1=fenced(TIGHT),
+        part__wheel__1=fenced(ASIDE),
         part__wheel__2=fenced(WHEEL),
         look__post__1=looks("shape", "specification"),
         rollback__1=json.dumps({"decisions": [decision]}),
