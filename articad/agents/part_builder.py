@@ -26,6 +26,7 @@ from articad.plan.resolve import ResolvedPlan, resolve
 from articad.plan.schema import AssemblyPlan
 from articad.runs.run import Run
 
+SENT_BACK: Final = frozenset({"W_CONNECTOR_DRIFT", "W_CONNECTOR_FEATURE"})  # warnings about a part that its author must mend
 CALLS_AT_ONCE: Final = 8  # parts requested in parallel; a model's answer takes minutes, and providers limit the rate
 
 
@@ -239,13 +240,11 @@ class PartBuilder:
         """
         with self._building:
             part = build_source(resolved, name, script, kernel=self.kernel, cache=self.cache, deflection=DEFLECTION_MM)
-        if drift := part.findings.of("W_CONNECTOR_DRIFT"):
-            if self._options.get("finetune") and absorbed(resolved, {name: part}) is not None:
-                return part
-            raise ContractError("\n".join(map(str, drift)), findings=drift, parts=(name,))
-        if absent := part.findings.of("W_CONNECTOR_FEATURE"):
-            raise ContractError("\n".join(map(str, absent)), findings=absent, parts=(name,))
-        return part
+        wrong = Findings(finding for finding in part.findings if finding.code in SENT_BACK)
+        drifted = set(wrong.codes) == {"W_CONNECTOR_DRIFT"} and self._options.get("finetune")
+        if not wrong or (drifted and absorbed(resolved, {name: part}) is not None):
+            return part
+        raise ContractError("\n".join(map(str, wrong)), findings=wrong, parts=(name,))
 
 
 def _unbuilt(name: str, finding: Finding) -> str:

@@ -1,7 +1,8 @@
 """The trial of one faulty product: what the pipeline finds without any model, and whether that names the mistake.
 
-The steps are those of a run, in its order: the plan is read and checked, parts are built and compared with their contracts, the assembly is examined
-at rest and over each joint's range. A step with an error ends the trial, as it ends a round of a run. If nothing was found, not even a warning, the full
+The steps are those of a run, in its order: the plan is read and checked, parts are built and compared with their contracts, the assembly is
+examined at rest and over each joint's range. A step with an error ends the trial, as it ends a round of a run; so does a warning that a run
+sends back to its author. If nothing was found, not even a warning, the full
 sampled check of `articad build --verify sampled` follows.
 """
 
@@ -13,8 +14,10 @@ from typing import Any, Final, Literal, Self
 
 import numpy as np
 
+from articad.agents.design import DOUBTS
 from articad.agents.edit import Nobody
 from articad.agents.evidence import examine
+from articad.agents.part_builder import SENT_BACK
 from articad.agents.rollback import Router
 from articad.assembly import Assembly
 from articad.errors import ArticadError, KernelError, PlanError
@@ -132,7 +135,7 @@ def examined(product: Product, tools: Tools) -> Trial:
     except PlanError as error:
         return Trial("plan", _serious(error.findings))
     found = _serious(check_plan(plan))
-    if not found.ok:
+    if not found.ok or not DOUBTS.isdisjoint(found.codes):
         return Trial("plan", found)
     stage: Stage = "plan" if found else "none"
     try:
@@ -141,7 +144,8 @@ def examined(product: Product, tools: Tools) -> Trial:
         return Trial("build", found + _serious(error.findings))
     built = _serious(assembly.findings)
     stage = "build" if built and stage == "none" else stage
-    evidence = found + built + _serious(examine(assembly).findings)
+    is_sent_back = not SENT_BACK.isdisjoint(built.codes)
+    evidence = found + built + (Findings() if is_sent_back else _serious(examine(assembly).findings))
     if not evidence.ok:
         return Trial("evidence", evidence, assembly)
     if evidence:

@@ -147,8 +147,26 @@ def _made(kind: Kind, product: Product, site: Site) -> Fault:
     if site.plan is not None:
         plan = copy.deepcopy(product.plan)
         site.plan(plan)
-        bad = replace(bad, plan=plan)
+        bad = replace(bad, plan=plan, scripts=_obedient(product, plan))
     if site.script is not None:
         part, written = site.script
         bad = replace(bad, scripts={**product.scripts, part: written()})
     return Fault(kind, product, bad, site.said, site.names)
+
+
+_OBEDIENT: Final = """
+
+_by_dimensions = build
+
+
+def build(part):
+    shape, connectors = _by_dimensions(part)
+    return shape, {**connectors, **part.connectors}
+"""
+
+
+def _obedient(product: Product, plan: Json) -> Mapping[str, str]:
+    """Return the scripts of authors who follow a faulty plan: parts with another entry have their connectors where it orders them."""
+    before = {part["name"]: part for part in product.plan["parts"]}
+    changed = {part["name"] for part in plan["parts"] if part.get("connectors") != before.get(part["name"], part).get("connectors")}
+    return {name: text + _OBEDIENT if name in changed and "freecad" not in text else text for name, text in product.scripts.items()}
