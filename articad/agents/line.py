@@ -11,7 +11,7 @@ from typing import Any, Final, Protocol
 
 from articad.agents import brainstorm
 from articad.agents.brainstorm import Alternative
-from articad.agents.design import Designer, listed
+from articad.agents.design import DOUBTS, Designer, listed
 from articad.agents.evidence import Evidence, examine
 from articad.agents.inspection import Verdict, inspect, verdict_of
 from articad.agents.llm import Image, closed_port
@@ -185,14 +185,15 @@ class Line:
             evidence = self.examined(assembly)
             record_checks(self.run, evidence.checks)
         self.builder.announce("check", "ok" if evidence.ok else f"{len(evidence.findings.errors)} errors")
-        if not self.options.get("inspection", False):
-            return evidence, verdict_of(evidence, number)
+        doubts = Findings(finding for finding in assembly.findings if finding.code in DOUBTS)
         verdict = verdict_of(evidence, number)
+        if not self.options.get("inspection", False):
+            return evidence, replace(verdict, findings=verdict.findings + doubts)
         if evidence.ok:
             self.builder.announce("inspection", "started")
             verdict = inspect(assembly, evidence, self.asked, requirements, self.port, number=number)
             self.builder.announce("inspection", "ok" if verdict.ok else f"{len(verdict.findings.errors)} errors")
-        verdict = replace(verdict, findings=verdict.findings + self.builder.opinions)
+        verdict = replace(verdict, findings=verdict.findings + self.builder.opinions + doubts)
         self._save_verdict(verdict)
         return evidence, verdict
 

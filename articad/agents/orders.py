@@ -46,7 +46,7 @@ def addressed(findings: Iterable[Finding], assembly: Assembly) -> Findings:
     """Send each error about two parts to whoever made it, where the parts prove it; others keep their route.
 
     Args:
-        findings: Of an examination of the assembly; those that have a root cause are kept.
+        findings: Of an examination of the assembly; the route of a root cause is kept, unless a dimension has no effect.
         assembly: A product that was built from a plan.
     """
     resolved = assembly.resolved
@@ -64,13 +64,15 @@ def source_of(name: str, resolved: ResolvedPlan) -> str:
 
 
 def _addressed(finding: Finding, assembly: Assembly, resolved: ResolvedPlan, scene: Scene) -> Finding:
-    if finding.code not in _CODES or finding.cause is not None or len(finding.parts) != 2:
+    if finding.code not in _CODES or len(finding.parts) != 2:
         return finding
     for name in finding.parts:
         source = source_of(name, resolved)
         unused = assembly.realised[source].findings.of("W_DIMENSION_UNUSED")
         if unused:
             return _to_script(finding, source, f"{source} does not follow its dimension {unused[0].where.rsplit('.', 1)[-1]!r}.")
+    if finding.cause is not None:
+        return finding
     joints = [joint for joint in assembly.joints if {joint.parent, joint.child} == set(finding.parts) and joint.type in _ROUND]
     proven = bool(joints)
     for joint in joints:

@@ -11,6 +11,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Final, Literal
 
+from articad.agents.design import DOUBTS
 from articad.agents.llm import LLM, system, user
 from articad.agents.orders import source_of
 from articad.agents.part_writer import specification
@@ -85,7 +86,7 @@ class Router:
         self._tried: dict[_Signature, list[str]] = {}
 
     def due(self, findings: Iterable[Finding]) -> list[Finding]:
-        """Return the findings to be routed: errors, and once each an inspector's complaints about a part's entry in the plan."""
+        """Return the findings to be routed: errors, and once each the plan's doubtful numbers and an inspector's complaints about its entries."""
         return [
             finding
             for finding in findings
@@ -186,7 +187,7 @@ def _culprit(finding: Finding, resolved: ResolvedPlan) -> str | None:
 
 
 def _is_opinion(finding: Finding) -> bool:
-    return finding.code.startswith("W_LOOK_")
+    return finding.code.startswith("W_LOOK_") or finding.code in DOUBTS
 
 
 def _signature(finding: Finding) -> _Signature:

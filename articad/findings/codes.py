@@ -350,6 +350,12 @@ CODES: dict[str, Code] = {
     "W_CONNECTOR_DRIFT": Code(
         "build", "code", "A realised connector is slightly off the plan's.", "Build the feature where the plan's connector is."
     ),
+    "E_CONNECTOR_FEATURE": Code(
+        "build",
+        "design",
+        "No script built the bore, shaft or face that a connector's kind orders.",
+        "Describe the feature at the connector, or give the connector the kind 'frame'.",
+    ),
     "W_CONNECTOR_FEATURE": Code(
         "build",
         "code",

@@ -19,7 +19,7 @@ from articad.errors import KernelError
 from articad.findings import Finding, Findings
 from articad.geometry.part import Part, Solid
 from articad.kernels.cache import BuildCache
-from articad.kernels.contract import drift_findings, primary_connector, seating
+from articad.kernels.contract import dimension_findings, drift_findings, primary_connector, seating
 from articad.kernels.features import feature_findings
 from articad.kernels.results import read_mesh
 from articad.plan.brief import brief, brief_digest, build_digest
@@ -187,8 +187,8 @@ def realise(resolved_part: ResolvedPart, built: BuiltPart) -> tuple[Part, Findin
     C*·C⁻¹·G; the remaining deviation at the other connectors is drift.
 
     Returns:
-        The part, and the findings about its connectors that `built.findings` does not already contain: `E_CONNECTOR_DRIFT` if drift
-        exceeds the bounds, `W_CONNECTOR_FEATURE` if a connector's kind orders a feature that is not there.
+        The part, and the findings that `built.findings` does not already contain: `E_CONNECTOR_DRIFT` if drift exceeds the bounds,
+        `W_CONNECTOR_FEATURE` if a connector's kind orders a feature that is not there, `W_SCALE` for a dimension far longer than the part.
     """
     T = seating(resolved_part, built.connectors, primary_connector(resolved_part, built.brief))
     solid = built.solid if T.allclose(SE3.identity(), mm=SEATED_MM, rad=SEATED_RAD) else built.solid.moved(T)
@@ -202,7 +202,9 @@ def realise(resolved_part: ResolvedPart, built: BuiltPart) -> tuple[Part, Findin
     )
     known = {(finding.code, finding.where) for finding in built.findings}
     drift = drift_findings(resolved_part, built.brief, built.connectors, built.solid.bbox)
-    found = drift + feature_findings(resolved_part.name, resolved_part.connectors, solid.mesh)
+    found = (
+        drift + feature_findings(resolved_part.name, resolved_part.connectors, solid.mesh) + dimension_findings(resolved_part, solid.bbox)
+    )
     return part, Findings(finding for finding in found if (finding.code, finding.where) not in known)
 
 

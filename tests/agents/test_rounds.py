@@ -395,6 +395,30 @@ def test_a_decision_about_no_fault_or_no_part_is_asked_for_again(tmp_path: Path)
     assert "E_STATIC_OVERLAP" in said(llm, "design/2")
 
 
+def test_a_dimension_far_longer_than_its_part_is_asked_about_once(tmp_path: Path) -> None:
+    deep = wheel_plan()
+    deep["parts"][1]["dimensions"]["through"] = 900
+    through = WHEEL.replace("Pos(0, 0, -1)", 'Pos(0, 0, -d["through"] / 2)').replace('d["width"] + 2', 'd["through"]')
+    llm = wheel(design__1=json.dumps(deep), part__wheel__1=fenced(through), design__2=json.dumps({"changes": {}}))
+    run = made(tmp_path, llm)
+
+    assert "W_SCALE parts.wheel.dimensions.through: Dimension 'through' of wheel is 900 mm" in said(llm, "design/2")
+    assert [step for step in llm.steps if step.startswith(("design", "part/wheel"))] == ["design/1", "part/wheel/1", "design/2"]
+    assert codes(run.verdict()) == ["W_SCALE"]
+    assert (run.verdict() or {})["ok"]
+
+
+def test_a_script_without_the_ordered_bore_is_sent_back_and_in_the_end_the_plan(tmp_path: Path) -> None:
+    outside = 'Box(2 * d["radius"], 2 * d["radius"], d["width"], align=LOW)'
+    square = ASIDE.replace('Cylinder(d["radius"], d["width"], align=LOW)', outside).replace("Align, Cyl", "Align, Box, Cyl")
+    aside = {f"part__wheel__{n}": fenced(square) for n in range(1, 5)}
+    llm = wheel(**aside, design__2=json.dumps(wheel_plan("frame", description="again")), part__wheel__5=fenced(WHEEL))
+    made(tmp_path, llm)
+
+    assert "Connector 'bore' of wheel is a bore_axis, but the part has nothing about its axis" in said(llm, "part/wheel/2")
+    assert "E_CONNECTOR_FEATURE" in said(llm, "design/2")
+
+
 def test_a_fault_that_comes_back_goes_another_way_then_with_a_demand_and_then_ends_it(tmp_path: Path) -> None:
     tight = {f"part__wheel__{n}": fenced(TIGHT) for n in range(1, 4)}
     plans = {f"design__{n}": json.dumps(wheel_plan(description=f"version {n}")) for n in range(2, 5)}
